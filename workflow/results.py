@@ -1,0 +1,212 @@
+"""The one writer of result files: each appears whole or not at all.
+
+A file is written under a temporary name in its own directory, synced to disk and renamed, so that the
+existence of a result means that it is complete (a half-written HDF5 file opens without complaint).
+"""
+
+import csv
+import json
+import os
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+SCHEMA_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """Values of an HDF5 dataset with the facts a reader needs.
+
+    `dims` names one dimension per axis of `values`; `unit` is "1" where there is none.
+    """
+
+    values: Any
+    unit: str
+    long_name: str
+    dims: tuple[str, ...]
+
+
+@contextmanager
+def atomic_path(path: str | Path) -> Iterator[Path]:
+    """Yield a temporary path beside `path`; on success sync it and rename it to `path`.
+
+    The temporary name keeps the suffix, because foreign writers choose their format by it.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}.", suffix=path.suffix)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        umask = os.umask(0)
+        os.umask(umask)
+        temporary.chmod(0o666 & ~umask)  # mkstemp makes private files; results follow the user's umask
+        with temporary.open("rb") as stream:
+            os.fsync(stream.fileno())
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_bytes(path: str | Path, content: bytes) -> None:
+    """Write a binary result file."""
+    with atomic_path(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def write_text(path: str | Path, content: str) -> None:
+    """Write a text result file (UTF-8)."""
+    write_bytes(path, content.encode())
+
+
+def write_csv(
+    path: str | Path, rows: Iterable[Mapping[str, Any]], columns: Sequence[str] | None = None
+) -> None:
+    """Write rows as CSV; floats keep every digit, so that reading gives back the same number.
+
+    Parameters
+    ----------
+    rows : mappings from column name (with its unit as suffix) to value; a missing value is an empty cell.
+    columns : their order; by default that of the first row.
+
+    Raises
+    ------
+    ValueError : a row has a column that is not in `columns`, or there is neither row nor column.
+    """
+    rows = list(rows)
+    if columns is None:
+        if not rows:
+            raise ValueError(f"{path}: no rows and no columns given")
+        columns = list(rows[0])
+    with atomic_path(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, columns, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({key: _cell(value) for key, value in row.items()} for row in rows)
+
+
+def _cell(value: Any) -> Any:
+    if value is None:
+        return ""
+    if isinstance(value, np.generic):
+        value = value.item()
+    return repr(value) if isinstance(value, float) else value
+
+
+def read_csv(path: str | Path) -> list[dict[str, str]]:
+    """Read a CSV result file as one mapping per row (all values text)."""
+    with Path(path).open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def write_json(
+    path: str | Path, data: Mapping[str, Any], provenance: Mapping[str, Any] | None = None
+) -> None:
+    """Write a JSON result file; NaN and infinities become null, arrays become lists."""
+    content = dict(data)
+    if provenance is not None:
+        content["provenance"] = {"schema_version": SCHEMA_VERSION, **provenance}
+    write_text(path, json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def _plain(value: Any) -> Any:
+    """Numpy and non-finite values as JSON has them."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return value
+
+
+def read_json(path: str | Path) -> dict[str, Any]:
+    """Read a JSON result file."""
+    return json.loads(Path(path).read_text(encoding="utf-8"))
+
+
+def write_h5(
+    path: str | Path,
+    groups: Mapping[str, Mapping[str, Dataset]],
+    attributes: Mapping[str, Any],
+    provenance: Mapping[str, Any],
+    group_attributes: Mapping[str, Mapping[str, Any]] | None = None,
+) -> None:
+    """Write an HDF5 result file.
+
+    Parameters
+    ----------
+    groups : datasets by group name ("/" for the root) and dataset name.
+    attributes, group_attributes : scalars, text or arrays, on the root and by group name.
+    provenance : `Job.provenance`; stored on the root beside `schema_version` and `complete`.
+    """
+    import h5py
+
+    with atomic_path(path) as temporary:
+        # libver and track_times: the same content gives the same bytes
+        with h5py.File(temporary, "w", libver="latest") as file:
+            for group_name, datasets in groups.items():
+                group = file.require_group(group_name)
+                for name, dataset in datasets.items():
+                    values = np.asarray(dataset.values)
+                    if values.ndim != len(dataset.dims):
+                        raise ValueError(f"{path}: {group_name}/{name} has {values.ndim} axes, not {dataset.dims}")
+                    options = {"compression": "gzip", "shuffle": True} if values.size > 4096 else {}
+                    stored = group.create_dataset(name, data=values, track_times=False, **options)
+                    stored.attrs["units"] = dataset.unit
+                    stored.attrs["long_name"] = dataset.long_name
+                    for axis, dim in enumerate(dataset.dims):
+                        stored.dims[axis].label = dim
+            for group_name, values in (group_attributes or {}).items():
+                file.require_group(group_name).attrs.update(_attributes(values))
+            file.attrs.update(_attributes(attributes))
+            file.attrs.update(_attributes({"schema_version": SCHEMA_VERSION, **provenance}))
+            file.attrs["complete"] = True
+
+
+def _attributes(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Attributes as HDF5 stores them: nested mappings as JSON text."""
+    return {
+        key: json.dumps(_plain(value)) if isinstance(value, Mapping) else value
+        for key, value in values.items()
+        if value is not None
+    }
+
+
+def read_h5(
+    path: str | Path,
+) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
+    """Read an HDF5 result file: datasets by group, root attributes, attributes by group.
+
+    Raises
+    ------
+    ValueError : the file is not a complete result file.
+    """
+    import h5py
+
+    groups: dict[str, dict[str, np.ndarray]] = {}
+    group_attributes: dict[str, dict[str, Any]] = {}
+
+    with h5py.File(path, "r") as file:
+        if not file.attrs.get("complete", False):
+            raise ValueError(f"{path}: not a complete result file; delete it and run again")
+
+        def visit(name: str, item: Any) -> None:
+            if isinstance(item, h5py.Dataset):
+                parent, _, leaf = name.rpartition("/")
+                groups.setdefault(parent or "/", {})[leaf] = item[()]
+            elif item.attrs:
+                group_attributes[name] = dict(item.attrs)
+
+        file.visititems(visit)
+        return groups, dict(file.attrs), group_attributes

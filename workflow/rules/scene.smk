@@ -1,0 +1,9 @@
+rule write_scene:
+    output:
+        f"{RESULTS}/scene.yaml",
+    log:
+        f"{RESULTS}/logs/write_scene.log",
+    params:
+        scene=RESOLVED,
+    script:
+        "../scripts/write_scene.py"

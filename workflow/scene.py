@@ -1,0 +1,246 @@
+"""A scene: the resolved settings of one run, from the documented defaults and a YAML file.
+
+`python -m workflow.scene` rewrites config/config.yaml, which documents every key; a test fails when the
+two drift apart.
+"""
+
+import difflib
+import json
+import re
+import types
+from pathlib import Path
+from typing import Any, Literal, Union, get_args, get_origin
+
+import yaml
+from annotated_types import Ge, Gt, Le, Lt, MaxLen, MinLen
+from pydantic import BaseModel, Field, ValidationError
+from pydantic.fields import FieldInfo
+
+from atomistic.settings import ElasticSettings, HardnessSettings
+from mesoscale.settings import (
+    ContactSettings,
+    DeviceSettings,
+    InputsSettings,
+    LawSettings,
+    Settings,
+    TopographySettings,
+    UncertaintySettings,
+)
+
+ROOT = Path(__file__).resolve().parent.parent
+SCENES = ROOT / "config" / "scenes"
+DEFAULTS = ROOT / "config" / "config.yaml"
+COMPUTED = ("hardness", "elastic", "topography")
+
+
+class SceneError(Exception):
+    """A scene that cannot be used; the message has one line per mistake."""
+
+
+class Scene(Settings):
+    """Everything a run depends on."""
+
+    name: str = Field(
+        "reduced",
+        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$",
+        description="name of the scene; results go to results/<name>/ (default: the file's name)",
+    )
+    compute: tuple[Literal["hardness", "elastic", "topography"], ...] = Field(
+        (),
+        description="stages to run and report although no input is taken from them",
+    )
+    inputs: InputsSettings = InputsSettings()
+    hardness: HardnessSettings = HardnessSettings()
+    elastic: ElasticSettings = ElasticSettings()
+    topography: TopographySettings = TopographySettings()
+    contact: ContactSettings = ContactSettings()
+    law: LawSettings = LawSettings()
+    uncertainty: UncertaintySettings = UncertaintySettings()
+    device: DeviceSettings = DeviceSettings()
+
+    def stages(self) -> set[str]:
+        """The stages among hardness, elastic and topography that this scene computes."""
+        return (set(self.inputs.origins()) & set(COMPUTED)) | set(self.compute)
+
+
+class _Loader(yaml.SafeLoader):
+    """Safe YAML that also refuses duplicate keys and reads 7e3 as a number (YAML 1.1 reads text)."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        keys = [self.construct_object(key, deep=True) for key, _ in node.value]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise yaml.constructor.ConstructorError(None, None, f"key {key!r} stands twice", node.start_mark)
+        return super().construct_mapping(node, deep)
+
+
+_Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:float",
+    re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$"),
+    list("-+0123456789."),
+)
+
+
+def load_scene(name_or_path: str) -> Scene:
+    """Read and validate a scene by name (config/scenes/<name>.yaml) or by the path of a YAML file.
+
+    Raises
+    ------
+    SceneError : the scene is missing, unreadable or has a mistake; one line per mistake, each naming file,
+        key, value and what is accepted.
+    """
+    path = _find(str(name_or_path))
+    try:
+        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)  # noqa: S506 (a SafeLoader)
+    except (OSError, UnicodeDecodeError) as error:
+        raise SceneError(f"{path}: cannot be read ({error}); give a readable YAML file") from None
+    except yaml.YAMLError as error:
+        raise SceneError(f"{path}: not valid YAML ({' '.join(str(error).split())})") from None
+    if content is None:
+        content = {}
+    if not isinstance(content, dict):
+        raise SceneError(f"{path}: a scene is a mapping of keys to values, not {type(content).__name__}")
+    content.setdefault("name", path.stem)
+    try:
+        # JSON mode: strict types, yet a YAML list may fill a tuple
+        return Scene.model_validate_json(json.dumps(content, default=str), strict=True)
+    except ValidationError as error:
+        lines = [_explain(path, item) for item in error.errors()]
+        raise SceneError("\n".join(dict.fromkeys(lines))) from None
+
+
+def _find(name_or_path: str) -> Path:
+    path = Path(name_or_path)
+    if path.suffix in {".yaml", ".yml"} or len(path.parts) > 1:
+        if not path.is_file():
+            raise SceneError(f"scene={name_or_path}: no such file; give the path of a YAML file or a scene's name")
+        return path
+    known = {file.stem: file for file in sorted(SCENES.glob("*.yaml"))}
+    if name_or_path not in known:
+        raise SceneError(
+            f"scene={name_or_path}: unknown scene; accepted: {', '.join(known)}, or the path of a YAML file"
+        )
+    return known[name_or_path]
+
+
+def _explain(path: Path, error: Any) -> str:
+    """One line for one pydantic error."""
+    location = tuple(part for part in error["loc"] if part != "__root__")
+    key = ".".join(str(part) for part in location)
+    if error["type"] == "extra_forbidden":
+        owner = _model_at(location[:-1])
+        known = list(owner.model_fields) if owner else []
+        close = difflib.get_close_matches(str(location[-1]), known, n=1)
+        hint = f"; did you mean {close[0]}?" if close else ""
+        return f"{path}: {key}: unknown key{hint} (accepted: {', '.join(known)})"
+    field = _field_at(location)
+    accepted = accepted_values(field) if field else error["msg"]
+    value = json.dumps(error["input"], ensure_ascii=False, default=str)
+    value = value if len(value) <= 60 else value[:57] + "..."
+    if error["type"] == "value_error":
+        return f"{path}: {key + ': ' if key else ''}{error['msg'].removeprefix('Value error, ')}"
+    return f"{path}: {key} = {value}: accepted is {accepted}"
+
+
+def _strip_optional(annotation: Any) -> Any:
+    if get_origin(annotation) in (Union, types.UnionType):
+        members = [member for member in get_args(annotation) if member is not type(None)]
+        if len(members) == 1:
+            return members[0]
+    return annotation
+
+
+def _as_model(annotation: Any) -> type[BaseModel] | None:
+    annotation = _strip_optional(annotation)
+    return annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
+
+
+def _field_at(location: tuple[Any, ...]) -> FieldInfo | None:
+    """The deepest settings field on the way to `location`."""
+    model: type[BaseModel] | None = Scene
+    field = None
+    for part in location:
+        if model is None or part not in model.model_fields:
+            return field
+        field = model.model_fields[part]
+        model = _as_model(field.annotation)
+    return field
+
+
+def _model_at(location: tuple[Any, ...]) -> type[BaseModel] | None:
+    if not location:
+        return Scene
+    field = _field_at(location)
+    return _as_model(field.annotation) if field else None
+
+
+def accepted_values(field: FieldInfo) -> str:
+    """What a settings field accepts, in words: type, choices, range, unit."""
+    annotation = _strip_optional(field.annotation)
+    words = _type_words(annotation)
+    bounds = []
+    for item in field.metadata:
+        for kind, sign in ((Ge, ">="), (Gt, ">"), (Le, "<="), (Lt, "<")):
+            if isinstance(item, kind):
+                bounds.append(f"{sign} {getattr(item, kind.__name__.lower()):g}")
+        if isinstance(item, MinLen):
+            bounds.append(f"at least {item.min_length} entries")
+        if isinstance(item, MaxLen):
+            bounds.append(f"at most {item.max_length} entries")
+        if getattr(item, "pattern", None):
+            bounds.append(f"of the form {item.pattern}")
+    extra = field.json_schema_extra
+    unit = extra.get("unit") if isinstance(extra, dict) else None
+    if unit and unit != "1":
+        words += f" in {unit}"
+    if bounds:
+        words += " " + ", ".join(bounds)
+    if annotation is not field.annotation:
+        words += ", or null"
+    return words
+
+
+def _type_words(annotation: Any) -> str:
+    origin = get_origin(annotation)
+    if origin is Literal:
+        return "one of " + ", ".join(str(choice) for choice in get_args(annotation))
+    if origin in (tuple, list):
+        return "a list; each entry " + _type_words(get_args(annotation)[0])
+    if origin in (Union, types.UnionType):
+        return " or ".join(_type_words(member) for member in get_args(annotation))
+    names = {int: "an integer", float: "a number", str: "text", bool: "true or false", type(None): "null"}
+    return names.get(annotation, "a mapping")
+
+
+def documented_defaults() -> str:
+    """The text of config/config.yaml: every key with its description, what it accepts and its default."""
+    head = (
+        "# Every key of a scene, with its default (scene `reduced`). A scene in config/scenes/, or a file of\n"
+        "# your own, states only what differs. Generated by `python -m workflow.scene` from the settings\n"
+        "# classes in atomistic/settings.py, mesoscale/settings.py and workflow/scene.py: edit those.\n"
+    )
+    return head + "\n".join(_document(Scene(), 0)) + "\n"
+
+
+def _document(model: BaseModel, depth: int) -> list[str]:
+    indent = "  " * depth
+    lines = []
+    for name, field in type(model).model_fields.items():
+        value = getattr(model, name)
+        if isinstance(value, BaseModel):
+            summary = field.description or (type(value).__doc__ or "").strip().splitlines()[0]
+            lines += ["" if depth == 0 else None, f"{indent}# {summary}", f"{indent}{name}:"]
+            body = _document(value, depth + 1)
+            if not body:
+                lines[-1] += " {}"
+            lines += body
+            continue
+        dumped = json.loads(model.model_dump_json(include={name}))[name]
+        text = yaml.safe_dump({name: dumped}, default_flow_style=None, sort_keys=False, width=100, allow_unicode=True)
+        lines.append(f"{indent}# {field.description} ({accepted_values(field)})")
+        lines += [indent + line for line in text.rstrip().splitlines()]
+    return [line for line in lines if line is not None]
+
+
+if __name__ == "__main__":
+    DEFAULTS.write_text(documented_defaults(), encoding="utf-8")
