@@ -6,6 +6,7 @@ Choose a scene with `--config scene=NAME` (config/scenes/) or the path of your o
 import fcntl
 import os
 import sys
+from pathlib import Path
 
 from workflow.scene import COMPUTED, SceneError, load_scene
 
@@ -21,6 +22,20 @@ except SceneError as error:
     sys.exit(1)
 
 RESULTS = f"results/{SCENE.name}"
+
+if workflow.is_main_process and not workflow.dryrun:
+    # two runs of one scene would overwrite each other; the system frees this lock even after SIGKILL
+    try:
+        Path(RESULTS).mkdir(parents=True, exist_ok=True)
+        run_lock = open(f"{RESULTS}/.lock", "w")
+        fcntl.flock(run_lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        print(f"ERROR {RESULTS}: another run of this scene is working here; wait for it or stop it", file=sys.stderr)
+        sys.exit(1)
+    except OSError as error:
+        print(f"ERROR {RESULTS}: cannot write ({error.strerror}); run in a folder you may write to", file=sys.stderr)
+        sys.exit(1)
+
 RESOLVED = SCENE.model_dump(mode="json")
 ACCURACY = []  # result files of the error-against-run-time studies, filled by the stages' rules
 STABILITY = []  # result files of the stability studies
@@ -63,3 +78,8 @@ rule accuracy:
 rule stability:
     input:
         STABILITY,
+
+
+onsuccess:
+    report = Path(RESULTS) / "report.html"
+    print(f"results are in {RESULTS}" + (f"; the report is {report}" if report.exists() else ""))

@@ -60,7 +60,7 @@ class Scene(Settings):
 
     def stages(self) -> set[str]:
         """The stages among hardness, elastic and topography that this scene computes."""
-        return (set(self.inputs.origins()) & set(COMPUTED)) | set(self.compute)
+        return (set(getattr(self.inputs, "origins", set)()) & set(COMPUTED)) | set(self.compute)
 
 
 class _Loader(yaml.SafeLoader):
@@ -236,9 +236,9 @@ def _document(model: BaseModel, depth: int) -> list[str]:
             lines += body
             continue
         dumped = json.loads(model.model_dump_json(include={name}))[name]
-        text = yaml.safe_dump({name: dumped}, default_flow_style=None, sort_keys=False, width=100, allow_unicode=True)
         lines.append(f"{indent}# {field.description} ({accepted_values(field)})")
-        lines += [indent + line for line in text.rstrip().splitlines()]
+        # JSON is valid YAML; exponents without a point would be read as text, hence the loader above
+        lines.append(f"{indent}{name}: {json.dumps(dumped, ensure_ascii=False)}")
     return [line for line in lines if line is not None]
 
 

@@ -1,4 +1,6 @@
 rule write_scene:
+    message:
+        "record the resolved scene"
     output:
         f"{RESULTS}/scene.yaml",
     log:

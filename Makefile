@@ -1,0 +1,35 @@
+# make run [SCENE=reduced|ci|paper|full|path.yaml] [TARGET=law]   set up, then run a scene
+# make test | bench | lint
+SCENE ?= reduced
+TARGET ?=
+
+UV_VERSION := 0.13.9
+UV := $(or $(shell command -v uv 2>/dev/null),.uv/bin/uv)
+RUN := $(UV) run --locked --no-sync
+# trust the system's certificates, so that set-up works behind a TLS-inspecting proxy
+export UV_SYSTEM_CERTS := 1
+
+.PHONY: run test bench lint setup
+run: setup
+	@$(RUN) snakemake --workflow-profile workflow/profiles/local $(TARGET) --config scene="$(SCENE)"
+
+test: setup
+	$(RUN) pytest
+
+bench: setup
+	$(RUN) python -m benchmarks
+
+lint: setup
+	$(RUN) ruff format --check .
+	$(RUN) ruff check .
+	$(RUN) pyright
+
+setup: .venv/.asperity-ready
+
+.venv/.asperity-ready: pyproject.toml uv.lock | $(UV)
+	@echo "setting up the environment (about 1.5 GB, once)"
+	@$(UV) sync --locked --quiet
+	@touch $@
+
+.uv/bin/uv:
+	@python3 -m pip install --quiet --disable-pip-version-check --target .uv uv==$(UV_VERSION)
