@@ -6,8 +6,10 @@ Choose a scene with `--config scene=NAME` (config/scenes/) or the path of your o
 import fcntl
 import os
 import sys
+import time
 from pathlib import Path
 
+from workflow.job import failures
 from workflow.scene import COMPUTED, SceneError, load_scene
 
 # one thread per process: the jobs themselves fill the cores, and results do not depend on their number
@@ -36,6 +38,7 @@ if workflow.is_main_process and not workflow.dryrun:
         print(f"ERROR {RESULTS}: cannot write ({error.strerror}); run in a folder you may write to", file=sys.stderr)
         sys.exit(1)
 
+STARTED = time.time()
 RESOLVED = SCENE.model_dump(mode="json")
 ACCURACY = []  # result files of the error-against-run-time studies, filled by the stages' rules
 STABILITY = []  # result files of the stability studies
@@ -83,3 +86,8 @@ rule stability:
 onsuccess:
     report = Path(RESULTS) / "report.html"
     print(f"results are in {RESULTS}" + (f"; the report is {report}" if report.exists() else ""))
+
+
+onerror:
+    # repeated at the very end, where a person looks first
+    print("\n".join(["", *failures(Path(RESULTS) / "logs", STARTED)]), file=sys.stderr)

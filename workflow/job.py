@@ -77,9 +77,17 @@ def job(snakemake: Any) -> Iterator[Job]:
             yield running
         except Exception as error:
             traceback.print_exc(file=log)
-            print(f"ERROR {running.label}: {_one_line(error, log_path)}", file=sys.stderr, flush=True)
-            print(_one_line(error, log_path), file=log, flush=True)
+            line = f"ERROR {running.label}: {_one_line(error, log_path)}"
+            print(line, file=sys.stderr, flush=True)
+            print(line, file=log, flush=True)
             sys.exit(1)
+
+
+def failures(logs: Path, since: float) -> list[str]:
+    """The one-line errors of the jobs that failed after `since` (seconds of the system clock)."""
+    recent = sorted(path for path in logs.glob("**/*.log") if path.stat().st_mtime >= since)
+    last_lines = (path.read_text(encoding="utf-8", errors="replace").rstrip().rpartition("\n")[2] for path in recent)
+    return [line for line in last_lines if line.startswith("ERROR ")]
 
 
 def _one_line(error: Exception, log_path: Path) -> str:
