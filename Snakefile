@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from workflow.job import failures
-from workflow.scene import COMPUTED, SceneError, load_scene
+from workflow.scene import ROOT, SceneError, load_scene
 
 # one thread per process: the jobs themselves fill the cores, and results do not depend on their number
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
@@ -38,6 +38,7 @@ if workflow.is_main_process and not workflow.dryrun:
         print(f"ERROR {RESULTS}: cannot write ({error.strerror}); run in a folder you may write to", file=sys.stderr)
         sys.exit(1)
 
+CONFIG = ROOT / "config"  # data files that ship with the project
 STARTED = time.time()
 RESOLVED = SCENE.model_dump(mode="json")
 ACCURACY = []  # result files of the error-against-run-time studies, filled by the stages' rules

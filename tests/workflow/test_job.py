@@ -1,0 +1,56 @@
+"""A failing job says why in one line; the traceback is in its log."""
+
+import time
+from types import SimpleNamespace
+
+import pytest
+
+from mesoscale.errors import InputError
+from workflow.job import failures, job
+
+
+@pytest.fixture
+def snakemake(tmp_path):
+    return SimpleNamespace(
+        rule="analyse_scan", wildcards={"scan": "a"}, input=[], params={"settings": {}}, log=[str(tmp_path / "logs/a.log")]
+    )
+
+
+def test_bad_input_is_one_line(snakemake, tmp_path, capsys):
+    start = time.time() - 1
+    with pytest.raises(SystemExit) as caught, job(snakemake):
+        raise InputError("a.gwy: no physical size;\n give topography.size_nm")
+    assert caught.value.code == 1
+    line = "ERROR analyse_scan a: a.gwy: no physical size; give topography.size_nm"
+    assert capsys.readouterr().err == line + "\n"
+    assert failures(tmp_path / "logs", start) == [line]
+    assert "Traceback" in (tmp_path / "logs/a.log").read_text()
+
+
+def test_an_unforeseen_error_is_called_internal(snakemake, capsys):
+    with pytest.raises(SystemExit), job(snakemake):
+        raise ZeroDivisionError("division by zero")
+    assert "internal error (ZeroDivisionError: division by zero); details in" in capsys.readouterr().err
+
+
+def test_a_full_disk_is_named(snakemake, capsys):
+    with pytest.raises(SystemExit), job(snakemake):
+        raise OSError(28, "No space left on device", "results/a.h5")
+    message = capsys.readouterr().err
+    assert "No space left on device" in message
+    assert "finished results are kept" in message
+
+
+def test_provenance_depends_on_settings_and_inputs(snakemake, tmp_path):
+    scan = tmp_path / "scan"
+    scan.write_text("1")
+    snakemake.input = [scan]
+    hashes = []
+    for value in (1, 2):
+        snakemake.params = {"settings": {"value": value}}
+        with job(snakemake) as run:
+            hashes.append(run.provenance["inputs_hash"])
+    scan.write_text("2")
+    with job(snakemake) as run:
+        hashes.append(run.provenance["inputs_hash"])
+    assert len(set(hashes)) == 3

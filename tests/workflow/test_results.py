@@ -1,0 +1,84 @@
+"""Result files appear whole or not at all, and give back what was written."""
+
+import csv
+import os
+import stat
+
+import numpy as np
+import pytest
+
+from workflow.results import Dataset, atomic_path, read_csv, read_h5, read_json, write_csv, write_h5, write_json
+
+
+def test_a_writer_that_fails_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text("old")
+    with pytest.raises(RuntimeError), atomic_path(path) as temporary:
+        temporary.write_text("half of the n")
+        raise RuntimeError
+    assert path.read_text() == "old"
+    assert os.listdir(tmp_path) == ["points.csv"]
+
+
+def test_results_follow_the_umask(tmp_path):
+    old = os.umask(0o022)
+    try:
+        write_csv(tmp_path / "a.csv", [{"x": 1}])
+    finally:
+        os.umask(old)
+    assert stat.S_IMODE((tmp_path / "a.csv").stat().st_mode) == 0o644
+
+
+def test_csv_gives_back_every_digit(tmp_path):
+    value = np.float64(0.1) + 0.2
+    write_csv(tmp_path / "a.csv", [{"force_nN": value, "status": None}])
+    (row,) = read_csv(tmp_path / "a.csv")
+    assert float(row["force_nN"]) == value
+    assert row["status"] == ""
+
+
+def test_csv_refuses_a_column_nobody_named(tmp_path):
+    with pytest.raises(ValueError, match="fields not in fieldnames"):
+        write_csv(tmp_path / "a.csv", [{"a": 1, "b": 2}], columns=["a"])
+    assert not os.listdir(tmp_path)
+
+
+def test_csv_quotes_what_needs_it(tmp_path):
+    write_csv(tmp_path / "a.csv", [{"status": "rejected: few points, noisy"}])
+    with (tmp_path / "a.csv").open() as stream:
+        assert list(csv.reader(stream))[1] == ["rejected: few points, noisy"]
+
+
+def test_json_has_no_nan(tmp_path):
+    write_json(tmp_path / "a.json", {"H": np.nan, "interval": np.array([1.0, np.inf])}, {"rule": "fit"})
+    content = read_json(tmp_path / "a.json")
+    assert content["H"] is None
+    assert content["interval"] == [1.0, None]
+    assert content["provenance"]["rule"] == "fit"
+
+
+def test_h5_is_documented_and_reproducible(tmp_path):
+    import h5py
+
+    force = Dataset(np.arange(3.0), "nN", "repulsive force", ("step",))
+    for name in ("a.h5", "b.h5"):
+        write_h5(
+            tmp_path / name, {"plastic/closing": {"force": force}}, {"seed": 1}, {}, {"plastic": {"model": "plastic"}}
+        )
+    groups, attributes, group_attributes = read_h5(tmp_path / "a.h5")
+    np.testing.assert_array_equal(groups["plastic/closing"]["force"], [0, 1, 2])
+    assert attributes["complete"]
+    assert group_attributes == {"plastic": {"model": "plastic"}}
+    with h5py.File(tmp_path / "a.h5") as file:
+        stored = file["plastic/closing/force"]
+        assert (stored.attrs["units"], stored.dims[0].label) == ("nN", "step")
+    assert (tmp_path / "a.h5").read_bytes() == (tmp_path / "b.h5").read_bytes()
+
+
+def test_an_incomplete_h5_is_refused(tmp_path):
+    import h5py
+
+    with h5py.File(tmp_path / "half.h5", "w") as file:
+        file["force"] = [1.0]
+    with pytest.raises(ValueError, match="not a complete result file"):
+        read_h5(tmp_path / "half.h5")
