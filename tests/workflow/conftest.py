@@ -1,0 +1,83 @@
+"""Running the real workflow in a folder of its own."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+SNAKEMAKE = [
+    str(Path(sys.executable).with_name("snakemake")),
+    "--snakefile",
+    str(ROOT / "Snakefile"),
+    "--workflow-profile",
+    str(ROOT / "workflow/profiles/local"),
+]
+
+
+class Workflow:
+    """Snakemake on this checkout's Snakefile, with its results in `folder`."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.environment = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache")}
+
+    def _command(self, scene: str, targets: tuple[str, ...], options: tuple[str, ...]) -> list[str]:
+        return [*SNAKEMAKE, "--directory", str(self.folder), *options, *targets, "--config", f"scene={scene}"]
+
+    def run(self, scene: str, *targets: str, options: tuple[str, ...] = ()) -> subprocess.CompletedProcess[str]:
+        """Run to the end."""
+        return subprocess.run(
+            self._command(scene, targets, options), env=self.environment, capture_output=True, text=True, check=False
+        )
+
+    def planned(self, scene: str, *targets: str) -> dict[str, int]:
+        """Number of jobs by rule that would run."""
+        done = self.run(scene, *targets, options=("--dry-run", "--quiet", "rules"))
+        assert done.returncode == 0, done.stdout + done.stderr
+        lines = (done.stdout + done.stderr).splitlines()
+        if "job" not in [line.split(" ")[0] for line in lines if "count" in line]:
+            return {}
+        start = next(number for number, line in enumerate(lines) if line.startswith("job") and "count" in line)
+        table = {}
+        for line in lines[start + 2 :]:
+            if not line.strip():
+                break
+            rule, count = line.split()
+            table[rule] = int(count)
+        table.pop("total", None)
+        return table
+
+    def kill_when(self, scene: str, condition: Callable[[], bool], timeout_s: float = 600) -> bool:
+        """Start a run and SIGKILL it with all its children once `condition()` holds; False if it ended first."""
+        process = subprocess.Popen(
+            self._command(scene, (), ()),
+            env=self.environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        deadline = time.monotonic() + timeout_s
+        try:
+            while process.poll() is None and time.monotonic() < deadline:
+                if condition():
+                    os.killpg(process.pid, signal.SIGKILL)
+                    process.wait()
+                    return True
+                time.sleep(0.05)
+            return False
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+
+
+@pytest.fixture
+def workflow_in(tmp_path):
+    """A workflow with an empty folder for its results."""
+    return Workflow(tmp_path)

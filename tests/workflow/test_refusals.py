@@ -1,0 +1,51 @@
+"""What cannot run is refused in one line, before any job starts."""
+
+import fcntl
+
+import pytest
+
+
+def errors(done):
+    return [line for line in (done.stdout + done.stderr).splitlines() if line.startswith("ERROR")]
+
+
+def test_an_unknown_scene(workflow_in):
+    done = workflow_in.run("papre")
+    assert done.returncode != 0
+    (line,) = errors(done)
+    assert "unknown scene" in line
+    assert "Traceback" not in done.stderr
+
+
+def test_a_mistake_in_a_scene(workflow_in):
+    scene = workflow_in.folder / "mine.yaml"
+    scene.write_text("contact: {pixels: 1}")
+    done = workflow_in.run(str(scene))
+    assert done.returncode != 0
+    (line,) = errors(done)
+    assert "contact.pixels = 1" in line
+
+
+def test_no_permission_to_write(workflow_in):
+    # a file where the folder of results should be stops everybody, the superuser of a CI machine included
+    (workflow_in.folder / "results").write_text("")
+    done = workflow_in.run("paper")
+    assert done.returncode != 0
+    (line,) = errors(done)
+    assert "cannot write" in line
+
+
+def test_two_runs_of_one_scene(workflow_in):
+    results = workflow_in.folder / "results/paper"
+    results.mkdir(parents=True)
+    with (results / ".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        done = workflow_in.run("paper")
+    assert done.returncode != 0
+    (line,) = errors(done)
+    assert "another run of this scene" in line
+
+
+@pytest.mark.parametrize("scene", ["ci", "paper", "reduced", "full"])
+def test_every_shipped_scene_plans(workflow_in, scene):
+    assert workflow_in.planned(scene)
