@@ -1,6 +1,8 @@
 """Settings of the mesoscale stages: every key with its default, unit and accepted range."""
 
-from pydantic import BaseModel, ConfigDict, Field
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 
 class Settings(BaseModel):
@@ -16,17 +18,356 @@ class TopographySettings(Settings):
 class ContactSettings(Settings):
     """Mesoscale contact model (docs/contact.md)."""
 
+    model: Literal["elastic", "nonlinear", "plastic"] = Field(
+        "plastic",
+        description="single asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the surface",
+        json_schema_extra={"unit": "1"},
+    )
+    pixels: int = Field(
+        1024, ge=32, le=16384, description="grid points per side", json_schema_extra={"unit": "1"}
+    )
+    length_nm: float = Field(
+        1000.0,
+        gt=0,
+        le=1e6,
+        description="side of the square, periodic cell",
+        json_schema_extra={"unit": "nm"},
+    )
+    max_force_nN: float = Field(
+        7000.0,
+        gt=0,
+        le=1e12,
+        description="repulsive force at which closing turns into opening",
+        json_schema_extra={"unit": "nN"},
+    )
+    convention: Literal["profile", "areal"] = Field(
+        "profile",
+        description="slope of the two-dimensional PSD: -(2H+1), the paper's, or -(2H+2), an isotropic surface's",
+        json_schema_extra={"unit": "1"},
+    )
+    q1_per_nm: float | None = Field(
+        None,
+        gt=0,
+        description="short-wave cut-off of the spectrum; null: the grid's Nyquist limit",
+        json_schema_extra={"unit": "1/nm"},
+    )
+    gap_cutoff_nm: float = Field(
+        0.165,
+        gt=0,
+        le=10,
+        description="D0 of eq. 1: smaller gaps attract as if they were D0",
+        json_schema_extra={"unit": "nm"},
+    )
+    touching_attracts: bool = Field(
+        True,
+        description="whether sites in contact attract (with the gap D0) or are left out of eq. 1",
+        json_schema_extra={"unit": "1"},
+    )
+    prefactor: Literal["paper", "hertz"] = Field(
+        "paper", description="p of eq. 3: 2/3 as printed, or Hertz's 4/3", json_schema_extra={"unit": "1"}
+    )
+    radius: Literal["curvature", "truncation"] = Field(
+        "curvature",
+        description="asperity radius: mean curvature of the sites (eq. 2), or R = A/(2 pi delta)",
+        json_schema_extra={"unit": "1"},
+    )
+    area: Literal["sites", "hertz"] = Field(
+        "sites",
+        description="asperity area in eq. 4: its contacting sites, or Hertz's pi R delta",
+        json_schema_extra={"unit": "1"},
+    )
+    neighbours: Literal[4, 8] = Field(
+        8,
+        description="neighbours through which contacting sites are connected",
+        json_schema_extra={"unit": "1"},
+    )
+    flow: Literal["increment", "return"] = Field(
+        "return",
+        description="plastic flow: fixed increments, or the amplitude that returns the asperity to its yield surface",
+        json_schema_extra={"unit": "1"},
+    )
+    flow_pair: Literal["paper", "wide"] = Field(
+        "wide",
+        description="second Gaussian: 3 times the radius of curvature (s2 = 3^(1/4) s1), or 3 times the width",
+        json_schema_extra={"unit": "1"},
+    )
+    flow_increment_nm: float = Field(
+        0.3,
+        gt=0,
+        le=10,
+        description="amplitude of one increment (flow: increment)",
+        json_schema_extra={"unit": "nm"},
+    )
+    flow_width_nm: float = Field(
+        0.3,
+        gt=0,
+        le=10,
+        description="a1 in the width s1 = sqrt(a1 R) of the first Gaussian",
+        json_schema_extra={"unit": "nm"},
+    )
+    flow_floor_pixels: float = Field(
+        1.0,
+        ge=0,
+        le=10,
+        description="smallest s1, so that the grid resolves the flow; 0: none",
+        json_schema_extra={"unit": "pixel"},
+    )
+    flow_tolerance: float = Field(
+        1e-3,
+        ge=1e-9,
+        le=0.1,
+        description="an asperity yields above its hardness times 1 + this (flow: return)",
+        json_schema_extra={"unit": "1"},
+    )
+    max_sweeps: int = Field(
+        500,
+        ge=1,
+        le=100000,
+        description="bound on the flow sweeps of one separation; reaching it raises a flag",
+        json_schema_extra={"unit": "1"},
+    )
+    force_steps: int = Field(
+        40,
+        ge=4,
+        le=10000,
+        description="force steps from contact to the largest force; separations follow from them",
+        json_schema_extra={"unit": "1"},
+    )
+    gap_bins: int = Field(
+        4096,
+        ge=16,
+        le=1048576,
+        description="bins of the gap histogram behind the far part of the attraction",
+        json_schema_extra={"unit": "1"},
+    )
+    nominal_seed: int = Field(
+        1,
+        ge=0,
+        description="surface seed of the nominal curves (figures 4 and 11)",
+        json_schema_extra={"unit": "1"},
+    )
+    nominal_force_nN: float = Field(
+        1e4,
+        gt=0,
+        le=1e12,
+        description="largest force of the model comparison (figure 4)",
+        json_schema_extra={"unit": "nN"},
+    )
+    nominal_loads_nN: list[float] = Field(
+        [1e3, 3e3, 7e3, 1e4, 2e4, 5e4],
+        min_length=1,
+        description="largest forces of the load series (figure 11)",
+        json_schema_extra={"unit": "nN"},
+    )
+
+
+class InputRow(Settings):
+    """One uncertain input: where its distribution comes from and, for literature, what it is."""
+
+    origin: Literal["literature", "hardness", "elastic", "topography"] = Field(
+        "literature", description="where the distribution comes from: this file, or the result of that stage"
+    )
+    distribution: Literal["uniform", "normal", "truncated_normal", "samples", "fixed"] = Field(
+        "uniform",
+        description="form of a literature distribution: uniform a..b; normal with mean a and deviation b; "
+        "the same truncated to low..high; samples read from `file`; fixed at a",
+    )
+    a: float | None = Field(None, description="lower end, mean, or fixed value, in the input's unit")
+    b: float | None = Field(None, description="upper end or standard deviation, in the input's unit")
+    low: float | None = Field(None, description="lower truncation of truncated_normal")
+    high: float | None = Field(None, description="upper truncation of truncated_normal")
+    file: str | None = Field(None, description="CSV with one sample a row in a column named like the input")
+    source: str = Field("", description="where the literature values come from, shown in the report")
+
+    @model_validator(mode="after")
+    def _complete(self) -> "InputRow":
+        given = {key for key in ("a", "b", "low", "high", "file") if getattr(self, key) is not None}
+        if self.origin != "literature":
+            if given:
+                raise ValueError(
+                    f"origin {self.origin} takes no {', '.join(sorted(given))}; that stage gives them"
+                )
+            return self
+        wanted = {
+            "uniform": {"a", "b"},
+            "normal": {"a", "b"},
+            "truncated_normal": {"a", "b", "low", "high"},
+            "samples": {"file"},
+            "fixed": {"a"},
+        }[self.distribution]
+        if given != wanted:
+            raise ValueError(f"distribution {self.distribution} takes exactly {', '.join(sorted(wanted))}")
+        if self.distribution == "uniform" and not (self.a or 0.0) <= (self.b or 0.0):
+            raise ValueError(f"uniform from a = {self.a} to b = {self.b}: a must not exceed b")
+        if "normal" in self.distribution and not (self.b or 0.0) >= 0:
+            raise ValueError(f"deviation b = {self.b} must be >= 0")
+        if self.distribution == "truncated_normal" and not (self.low or 0.0) < (self.high or 0.0):
+            raise ValueError(f"truncation {self.low} .. {self.high}: low must lie below high")
+        return self
+
+
+class Correlation(Settings):
+    """Dependence of two inputs."""
+
+    first: str = Field(description="name of an input")
+    second: str = Field(description="name of another input")
+    rank: float = Field(gt=-1, lt=1, description="Spearman's rank correlation of the two")
+
+
+TABLE_1 = "Kim et al. (2013), Table 1"
+
 
 class InputsSettings(Settings):
     """Origin and distribution of the uncertain inputs (docs/uncertainty.md)."""
+
+    hamaker: InputRow = Field(
+        InputRow(a=0.18, b=0.25, source=TABLE_1), description="Hamaker constant (1e-18 J)"
+    )
+    e_star: InputRow = Field(InputRow(origin="elastic"), description="effective elastic modulus E* (GPa)")
+    h_macro: InputRow = Field(
+        InputRow(a=0.7, b=3.2, source=TABLE_1), description="hardness of large asperities H_macro (GPa)"
+    )
+    h_prime: InputRow = Field(
+        InputRow(origin="hardness"), description="size effect of hardness H' (GPa nm^0.5)"
+    )
+    q0: InputRow = Field(InputRow(origin="topography"), description="roll-off wave vector (1/nm)")
+    hurst: InputRow = Field(InputRow(origin="topography"), description="Hurst exponent (1)")
+    rms: InputRow = Field(InputRow(origin="topography"), description="RMS roughness (nm)")
+    gap_cutoff: InputRow | None = Field(
+        None, description="optional eighth input: smallest gap of the attraction D0 (nm)"
+    )
+    correlations: tuple[Correlation, ...] = Field(
+        (), description="rank correlations between inputs, besides those that a stage reports itself"
+    )
+
+    @model_validator(mode="after")
+    def _known_names(self) -> "InputsSettings":
+        names = list(self.rows())
+        for pair in self.correlations:
+            for name in (pair.first, pair.second):
+                if name not in names:
+                    raise ValueError(f"correlations: unknown input {name}; accepted: {', '.join(names)}")
+            if pair.first == pair.second:
+                raise ValueError(f"correlations: {pair.first} with itself; name two inputs")
+        for name, row in self.rows().items():
+            if name in ("hamaker", "h_macro", "gap_cutoff") and row.origin != "literature":
+                raise ValueError(f"{name}: no stage computes it; origin must be literature")
+            if row.origin != "literature" and row.origin != STAGE_OF_INPUT[name]:
+                raise ValueError(f"{name}: origin {row.origin}; accepted: literature, {STAGE_OF_INPUT[name]}")
+        return self
+
+    def rows(self) -> dict[str, InputRow]:
+        """The inputs in use, by name."""
+        named = {name: getattr(self, name) for name in (*STAGE_OF_INPUT, "gap_cutoff")}
+        return {name: row for name, row in named.items() if row is not None}
+
+    def origins(self) -> set[str]:
+        """Where the inputs come from; cheap, so that a workflow can decide which stages to run."""
+        return {row.origin for row in self.rows().values()}
+
+
+STAGE_OF_INPUT = {
+    "hamaker": "literature",
+    "e_star": "elastic",
+    "h_macro": "literature",
+    "h_prime": "hardness",
+    "q0": "topography",
+    "hurst": "topography",
+    "rms": "topography",
+}
 
 
 class LawSettings(Settings):
     """Fit of the compact force-separation law (docs/law.md)."""
 
+    contact_definition: Literal["first_contact", "force_fraction", "free_fit"] = Field(
+        "first_contact",
+        description="what d_c is: where the first (on opening the last) asperity touches; where the "
+        "repulsion reaches `force_fraction` of its maximum; or a fit parameter shared by attraction and repulsion",
+    )
+    force_fraction: float = Field(
+        0.01,
+        gt=0,
+        lt=0.5,
+        description="share of the largest repulsion that counts as contact",
+        json_schema_extra={"unit": "1"},
+    )
+    rho_a_nm: float = Field(
+        2.0,
+        ge=0,
+        le=100,
+        description="attraction length rho_a (the paper fixes 2 nm)",
+        json_schema_extra={"unit": "nm"},
+    )
+    shield_nm: float = Field(
+        2.0, gt=0, le=1000, description="shielding distance alpha of eq. 12", json_schema_extra={"unit": "nm"}
+    )
+    weights: Literal["uniform", "relative"] = Field(
+        "uniform", description="misfit of the repulsion: absolute, or relative above `relative_floor`"
+    )
+    relative_floor: float = Field(
+        0.01,
+        gt=0,
+        le=1,
+        description="floor of relative weights, share of the largest repulsion",
+        json_schema_extra={"unit": "1"},
+    )
+    points: int = Field(
+        200, ge=20, le=10000, description="even points in separation that a branch is resampled to"
+    )
+    min_points: int = Field(4, ge=3, le=1000, description="fewest points of the curve in contact for a fit")
+    min_depth_ratio: float = Field(
+        0.2,
+        gt=0,
+        lt=1,
+        description="smallest (window / rho_r) that counts as identified",
+        json_schema_extra={"unit": "1"},
+    )
+    max_depth_ratio: float = Field(
+        200.0,
+        gt=1,
+        le=600,
+        description="largest (window / rho_r) that counts as identified",
+        json_schema_extra={"unit": "1"},
+    )
+    max_relative_error: float = Field(
+        1.0,
+        gt=0,
+        le=100,
+        description="largest relative error of C_r and rho_r that counts as identified",
+        json_schema_extra={"unit": "1"},
+    )
+    max_residual: float = Field(
+        0.15,
+        gt=0,
+        le=1,
+        description="misfit above which a fit is marked poor, share of the largest repulsion",
+        json_schema_extra={"unit": "1"},
+    )
+
 
 class UncertaintySettings(Settings):
     """Propagation of uncertainty and sensitivity (docs/uncertainty.md)."""
+
+    surrogate: Literal["level1", "level2"] = Field(
+        "level1",
+        description="response surface: level1 is the paper's (2n+1 nodes, linear); level2 is the next "
+        "Smolyak level with quadratic and interaction terms (113 nodes for seven inputs)",
+    )
+    seeds: int = Field(8, ge=1, le=10000, description="surfaces per node, the same ones at every node")
+    first_seed: int = Field(0, ge=0, le=2**31, description="seed of the first surface")
+    central_share: float = Field(
+        0.999,
+        gt=0.5,
+        lt=1,
+        description="central share of an unbounded distribution that the nodes span",
+        json_schema_extra={"unit": "1"},
+    )
+    chunk_runs: int = Field(60, ge=1, le=100000, description="contact cycles per job and file")
+    samples: int = Field(10000, ge=10, le=10**7, description="samples of the inputs sent through the surface")
+    sample_seed: int = Field(1, ge=0, le=2**31, description="seed of those samples")
+    bootstrap: int = Field(200, ge=20, le=100000, description="resamplings for intervals")
+    validation_runs: int = Field(60, ge=0, le=10**6, description="independent runs that validate the surface")
 
 
 class DeviceSettings(Settings):
@@ -92,7 +433,7 @@ class DeviceSettings(Settings):
         0.01,
         ge=0,
         le=1,
-        description="share of the electrode area that meets the dielectric as the law describes it; a bowed or "
+        description="share of the electrode area that meets the dielectric as in the law; a bowed or "
         "tilted beam lands on little of it",
         json_schema_extra={"unit": "1"},
     )
