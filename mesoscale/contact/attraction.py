@@ -1,0 +1,92 @@
+"""Van der Waals attraction of a rough surface and a plane (section 2.1, eq. 1).
+
+Sum over the sites of 1/g^3, with the gap g = h + separation cut off at D0. Sites far from contact are
+summed through a histogram of their heights that keeps the first four moments of each bin; sites near
+contact, and all sites that plastic flow has moved, are summed one by one.
+"""
+
+import numpy as np
+from numba import njit
+
+MOMENTS = 4
+NEAR_BINS = 100  # a site is near while its gap is below this many bin widths
+
+
+@njit(cache=True)
+def bin_heights(heights, lowest, width, moments):
+    """Add every site to the moments of its bin: sums of t^0..t^3, t = h - bin centre."""
+    last = moments.shape[0] - 1
+    for site in range(heights.size):
+        x = (heights[site] - lowest) / width
+        b = min(int(x), last)
+        t = (x - b - 0.5) * width
+        moments[b, 0] += 1.0
+        moments[b, 1] += t
+        moments[b, 2] += t * t
+        moments[b, 3] += t * t * t
+
+
+@njit(cache=True)
+def take_out(originals, start, stop, lowest, width, moments):
+    """Remove sites (given by their original heights) from the moments."""
+    last = moments.shape[0] - 1
+    for k in range(start, stop):
+        x = (originals[k] - lowest) / width
+        b = min(int(x), last)
+        t = (x - b - 0.5) * width
+        moments[b, 0] -= 1.0
+        moments[b, 1] -= t
+        moments[b, 2] -= t * t
+        moments[b, 3] -= t * t * t
+
+
+@njit(cache=True)
+def inverse_cubes(
+    heights,
+    separation,
+    cutoff,
+    touching,
+    order,
+    order_heights,
+    changed,
+    changed_sites,
+    changed_count,
+    lowest,
+    width,
+    moments,
+):
+    """Sum over the sites of 1/max(g, cutoff)^3; ``touching``: whether sites with g < 0 count.
+
+    ``order`` holds at least all sites of the near bins, by rising original height.
+    """
+    bins = moments.shape[0]
+    far = int(np.floor((max(NEAR_BINS * width, 2.0 * cutoff) - separation - lowest) / width)) + 1
+    far = min(max(far, 0), bins)
+    near = 0.0
+    for place in range(order.size):
+        if min(int((order_heights[place] - lowest) / width), bins - 1) >= far:
+            break
+        if changed[order[place]] == 0:
+            gap = order_heights[place] + separation
+            if gap >= 0.0 or touching:
+                gap = max(gap, cutoff)
+                near += 1.0 / (gap * gap * gap)
+    moved = 0.0
+    for place in range(changed_count):
+        gap = heights[changed_sites[place]] + separation
+        if gap >= 0.0 or touching:
+            gap = max(gap, cutoff)
+            moved += 1.0 / (gap * gap * gap)
+    rest = 0.0
+    for b in range(far, bins):
+        u = 1.0 / (lowest + (b + 0.5) * width + separation)
+        rest += (
+            u
+            * u
+            * u
+            * (
+                moments[b, 0]
+                + u * (-3.0 * moments[b, 1] + u * (6.0 * moments[b, 2] - u * 10.0 * moments[b, 3]))
+            )
+        )
+    return near + moved + rest

@@ -1,0 +1,171 @@
+"""One closing-opening cycle of a rough contact: the entry point of the mesoscale model."""
+
+import math
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mesoscale.errors import InputError
+from mesoscale.settings import ContactSettings
+
+if TYPE_CHECKING:
+    from mesoscale.contact.engine import Contact, Row
+
+
+@dataclass(frozen=True)
+class ContactInputs:
+    """The seven inputs of Table 1."""
+
+    hamaker: float  # aJ = 1e-18 J = nN nm
+    e_star: float  # GPa
+    h_macro: float  # GPa
+    h_prime: float  # GPa nm^0.5
+    q0: float  # 1/nm
+    hurst: float  # 1
+    rms: float  # nm
+
+    def __post_init__(self):
+        positive = {"e_star", "q0", "hurst"}
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not math.isfinite(value) or value < 0 or (value == 0 and field.name in positive):
+                bound = "> 0" if field.name in positive else ">= 0"
+                raise InputError(f"{field.name} = {value}: accepted are finite numbers {bound}")
+
+
+@dataclass(frozen=True)
+class Branch:
+    """One branch of a force-separation curve; arrays of one length, in the order they were traversed."""
+
+    separation_nm: np.ndarray  # mean plane to flat
+    repulsive_nN: np.ndarray
+    attractive_nN: np.ndarray  # negative: attraction
+    contact_area_nm2: np.ndarray  # contacting sites x site area
+    asperities: np.ndarray
+    sweeps: np.ndarray  # flow sweeps of the step that ends here
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """Closing and opening of one surface."""
+
+    closing: Branch
+    opening: Branch
+    first_contact_nm: float  # separation at which the untouched surface first touches
+    flags: dict[str, int | bool | str | float]
+    converged: bool  # every step converged and the requested force was reached
+    heights: np.ndarray | None = None  # the surface afterwards, nm (only if asked for)
+
+
+def run_cycle(
+    inputs: ContactInputs,
+    settings: ContactSettings,
+    seed: int,
+    max_force_nN: float | None = None,
+    heights: np.ndarray | None = None,
+    keep_surface: bool = False,
+) -> Cycle:
+    """Close a rough surface onto a flat up to a force, and open it again.
+
+    Parameters
+    ----------
+    inputs, settings
+        Physical inputs, and model readings and resolution.
+    seed
+        Noise of the surface: the same seed gives the same noise whatever the inputs and the grid.
+    max_force_nN
+        Repulsive force at which closing ends; default `settings.max_force_nN`.
+    heights
+        (N, N) surface in nm to use instead of a random one, for instance `Cycle.heights` of an
+        earlier cycle; it is not changed. Contact is at its minima.
+    keep_surface
+        Return the surface as it is after the cycle.
+
+    Raises
+    ------
+    InputError
+        For a surface that is not square or holds non-finite heights.
+    """
+    from mesoscale.contact.engine import Contact, trace
+
+    plastic = settings.model == "plastic"
+    if heights is None:
+        from mesoscale.topography.synthesis import synthesize
+
+        surface = synthesize(
+            settings.pixels,
+            settings.length_nm,
+            inputs.q0,
+            inputs.hurst,
+            inputs.rms,
+            seed,
+            settings.convention,
+            settings.q1_per_nm,
+        )
+    else:
+        surface = _checked(heights)
+        if plastic:
+            surface = surface.copy()
+    force = settings.max_force_nN if max_force_nN is None else max_force_nN
+    if not (math.isfinite(force) and force > 0):
+        raise InputError(f"max_force_nN = {force}: accepted are finite forces > 0 nN")
+    contact = Contact(surface, inputs, settings)
+    first_contact = contact.touching_separation
+    approach = _approach(contact, contact.rms)
+    closing = trace(contact, settings.force_steps, plastic, stop_force=force)
+    last = closing.rows[-1]
+    reached = bool(abs(last.force - force) <= contact.FORCE_TOLERANCE * force)
+    if plastic and last.force > 0:
+        contact.lift()
+        departure = _approach(contact, contact.rms)
+        path = trace(contact, settings.force_steps, False, last.force, stop_separation=last.separation)
+        # the last row of the way down is the state in which closing ended
+        opening = [last._replace(sweeps=0), *path.rows[-2::-1]]
+    else:
+        departure = approach
+        opening = [row._replace(sweeps=0) for row in closing.rows[::-1]]
+    return Cycle(
+        closing=_branch(contact, [*approach, *closing.rows]),
+        opening=_branch(contact, [*opening, *departure[::-1]]),
+        first_contact_nm=first_contact + contact.offset,
+        flags={
+            "force_reached": reached,
+            "unconverged_steps": closing.unconverged,
+            "radius_bound_events": closing.bounds,
+            "repeated_steps": closing.repeated,
+            "changed_sites": contact.changed_sites,
+        },
+        converged=reached and closing.unconverged == 0,
+        heights=surface if keep_surface else None,
+    )
+
+
+def _checked(heights: np.ndarray) -> np.ndarray:
+    heights = np.ascontiguousarray(heights, dtype=float)
+    if heights.ndim != 2 or heights.shape[0] != heights.shape[1] or heights.shape[0] < 3:
+        raise InputError(f"heights: accepted is a square array of at least 3 x 3 sites, not {heights.shape}")
+    if not np.isfinite(heights).all():
+        raise InputError("heights: accepted are finite numbers in nm; fill or cut missing data")
+    return heights
+
+
+def _approach(contact: "Contact", rms: float) -> "list[Row]":
+    """Rows before first contact, from afar, where only the attraction acts."""
+    from mesoscale.contact.engine import Row
+
+    touch = contact.touching_separation
+    gaps = np.geomspace(max(4.0 * rms, 10.0), max(0.01 * rms, 0.01), 20)
+    return [Row(touch + gap, 0.0, contact.attraction(touch + gap), 0, 0, 0) for gap in gaps]
+
+
+def _branch(contact: "Contact", rows: "list[Row]") -> Branch:
+    separation, force, attraction, sites, asperities, sweeps = zip(*rows, strict=True)
+    return Branch(
+        np.array(separation) + contact.offset,
+        np.array(force),
+        np.array(attraction),
+        np.array(sites) * contact.mechanics.site_area,
+        np.array(asperities),
+        np.array(sweeps),
+    )

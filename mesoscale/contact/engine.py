@@ -1,0 +1,307 @@
+"""The state of a contact and the walk along its force-separation curve.
+
+Nothing here loops over the whole surface more often than needed: the sites are sorted by height in
+bands as the flat comes down, asperities grow locally, and flow touches only its own patch.
+"""
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from mesoscale.contact import asperities as asp
+from mesoscale.contact import attraction, flow
+from mesoscale.settings import ContactSettings
+
+PREFACTOR = {"paper": 2.0 / 3.0, "hertz": 4.0 / 3.0}
+WIDTH_RATIO = {"paper": 3.0**0.25, "wide": 3.0}
+
+
+class Row(NamedTuple):
+    """The contact at one separation (nm from the plane the heights are measured from)."""
+
+    separation: float
+    force: float
+    attraction: float
+    sites: int
+    asperities: int
+    sweeps: int
+
+
+@dataclass
+class Path:
+    """Rows in the order of falling separation, and what happened on the way."""
+
+    rows: list[Row] = field(default_factory=list)
+    unconverged: int = 0
+    bounds: int = 0
+    repeated: int = 0
+
+
+class Contact:
+    """A surface, its contacting sites and its asperities at the current separation.
+
+    Parameters
+    ----------
+    surface
+        (N, N) heights in nm; changed in place by flow.
+    """
+
+    FORCE_TOLERANCE = 1e-6
+
+    def __init__(self, surface: np.ndarray, inputs, settings: ContactSettings):
+        self.n = surface.shape[0]
+        self.heights = surface.reshape(-1)
+        self.spacing = settings.length_nm / self.n
+        self.length = settings.length_nm
+        self.offset = float(self.heights.mean())
+        self.lowest = float(self.heights.min())
+        self.highest = float(self.heights.max())
+        self.rms = float(self.heights.std()) if settings.model != "plastic" or not inputs.rms else inputs.rms
+        self.capped = settings.model == "nonlinear"
+        self.mechanics = asp.Mechanics(
+            PREFACTOR[settings.prefactor] * inputs.e_star,
+            float(inputs.h_macro),
+            float(inputs.h_prime),
+            self.spacing**2,
+            settings.radius == "curvature",
+            settings.area == "sites",
+            settings.neighbours == 8,
+        )
+        self.rule = flow.FlowRule(
+            settings.flow == "increment",
+            settings.flow_increment_nm,
+            settings.flow_width_nm,
+            settings.flow_floor_pixels * self.spacing,
+            WIDTH_RATIO[settings.flow_pair],
+            settings.flow_tolerance,
+            settings.max_sweeps,
+        )
+        self.asperities = asp.no_asperities(self.heights.size)
+        # a surface that cannot flow needs no record of changes
+        self.changes = flow.no_changes(self.heights.size if settings.model == "plastic" else 0)
+        self.changed = self.changes.changed if settings.model == "plastic" else np.zeros(self.n**2, np.uint8)
+        self.order = np.empty(0, np.int32)
+        self.order_heights = np.empty(0)
+        self.sorted_to = -np.inf
+        self.pointer = 0
+        self.attracts = inputs.hamaker > 0
+        if self.attracts:
+            self.cutoff = settings.gap_cutoff_nm
+            self.touching = settings.touching_attracts
+            self.strength = inputs.hamaker * self.spacing**2 / (6.0 * np.pi)
+            self.bin_width = max(self.highest - self.lowest, 1e-6 * self.cutoff) / settings.gap_bins
+            self.moments = np.zeros((settings.gap_bins, attraction.MOMENTS))
+            attraction.bin_heights(self.heights, self.lowest, self.bin_width, self.moments)
+            self.taken_out = 0
+
+    @property
+    def changed_sites(self) -> int:
+        """Sites that flow has moved."""
+        return int(self.changes.used[0])
+
+    @property
+    def touching_separation(self) -> float:
+        """Separation of first contact of the surface as it is now."""
+        return -float(self.heights.min())
+
+    def _sort_to(self, height: float) -> None:
+        """Have all unchanged sites below ``height`` sorted by height."""
+        band = 0.5 * self.rms
+        while self.sorted_to < height:
+            start = self.sorted_to if np.isfinite(self.sorted_to) else self.lowest - 1.0
+            upper = max(height, max(start, self.lowest) + band)
+            if upper >= self.highest:
+                upper = np.inf
+            sites = _sites_between(self.heights, self.changed, self.sorted_to, upper)
+            values = self.heights[sites]
+            rank = np.argsort(values)
+            self.order = np.concatenate((self.order, sites[rank]))
+            self.order_heights = np.concatenate((self.order_heights, values[rank]))
+            self.sorted_to = upper
+
+    def move_to(self, separation: float, with_flow: bool) -> tuple[float, int, int, int, int, bool]:
+        """Bring the flat down to a separation; it may be undone by `back` until the next move.
+
+        Returns force (nN), sites, asperities, bounds on R, sweeps, whether flow converged.
+        """
+        level = -separation
+        self._sort_to(level)
+        stop = int(np.searchsorted(self.order_heights, level))
+        self.changes.used[1] = 0
+        self.changes.used[2] += 1
+        asp.touch(
+            self.asperities,
+            self.heights,
+            self.n,
+            level,
+            self.spacing,
+            self.mechanics.eight,
+            self.order,
+            self.pointer,
+            stop,
+            self.changed,
+            self.changes.sites,
+            self.changes.used[0],
+        )
+        self.pointer = stop
+        sweeps, settled = 0, True
+        if with_flow:
+            sweeps, settled = flow.settle(
+                self.heights,
+                self.n,
+                self.spacing,
+                level,
+                self.asperities,
+                self.mechanics,
+                self.rule,
+                self.changes,
+            )
+        force, sites, alive, bounds = asp.total_force(self.asperities, level, self.mechanics, self.capped)
+        return force, sites, alive, bounds, sweeps, settled
+
+    def back(self) -> None:
+        """Undo the last move's flow and lift the flat; the next move finds all contacts anew."""
+        flow.undo(self.heights, self.changes)
+        self.lift()
+
+    def lift(self) -> None:
+        """Leave contact; the surface stays as it is."""
+        asp.clear(self.asperities)
+        self.pointer = 0
+
+    def attraction(self, separation: float) -> float:
+        """Attractive force in nN, negative (eq. 1); 0 without a pass over anything if A_H = 0."""
+        if not self.attracts:
+            return 0.0
+        if self.changes.used[0] > self.taken_out:
+            attraction.take_out(
+                self.changes.original,
+                self.taken_out,
+                self.changes.used[0],
+                self.lowest,
+                self.bin_width,
+                self.moments,
+            )
+            self.taken_out = int(self.changes.used[0])
+        near = max(attraction.NEAR_BINS * self.bin_width, 2.0 * self.cutoff)
+        self._sort_to(min(near - separation + 2.0 * self.bin_width, self.highest))
+        return -self.strength * attraction.inverse_cubes(
+            self.heights,
+            separation,
+            self.cutoff,
+            self.touching,
+            self.order,
+            self.order_heights,
+            self.changed,
+            self.changes.sites,
+            self.changes.used[0],
+            self.lowest,
+            self.bin_width,
+            self.moments,
+        )
+
+
+@njit(cache=True)
+def _sites_between(heights, changed, lower, upper):
+    """Unchanged sites with lower <= h < upper."""
+    found = np.empty(4096, np.int32)
+    used = 0
+    for site in range(heights.size):
+        height = heights[site]
+        if lower <= height < upper and changed[site] == 0:
+            if used == found.size:
+                larger = np.empty(2 * used, np.int32)
+                larger[:used] = found
+                found = larger
+            found[used] = site
+            used += 1
+    return found[:used].copy()
+
+
+def trace(
+    contact: Contact,
+    steps: int,
+    with_flow: bool,
+    stop_force: float = np.inf,
+    stop_separation: float = -np.inf,
+) -> Path:
+    """Bring the flat down from first contact, in steps that follow the force.
+
+    Steps aim at force increments of a ``steps``-th of the final force, and at 30 % of the force
+    reached so far in the foot of the curve; a step that misses by more than a factor of two is
+    undone and repeated smaller. The last step is solved for the requested force (the force can jump
+    when asperities merge: then the closer side of the jump is taken).
+    """
+    path = Path()
+    final = stop_force
+    separation = contact.touching_separation
+    path.rows.append(Row(separation, 0.0, contact.attraction(separation), 0, 0, 0))
+    force = 0.0
+    scale = max(contact.rms, 1e-3 * contact.spacing)
+    largest, smallest = scale / 30.0, 1e-7 * scale
+    step = 0.1 * largest
+    limit = -contact.highest - 2.0 * contact.length
+
+    def accept(target: float, moved) -> None:
+        nonlocal separation, force
+        separation = target
+        force, sites, alive, bounds, sweeps, settled = moved
+        path.rows.append(Row(target, force, contact.attraction(target), sites, alive, sweeps))
+        path.bounds += bounds
+        path.unconverged += not settled
+
+    while separation > stop_separation and force < final * (1.0 - contact.FORCE_TOLERANCE):
+        target = max(separation - step, stop_separation)
+        if target < limit:
+            break
+        moved = contact.move_to(target, with_flow)
+        if moved[0] > final * (1.0 + contact.FORCE_TOLERANCE):
+            contact.back()
+            target = _solve_force(contact, separation, target, force, moved[0], final, with_flow, smallest)
+            accept(target, contact.move_to(target, with_flow))
+            break
+        rise = moved[0] - force
+        wanted = min(final / steps, max(0.3 * force, 0.02 * final / steps))
+        if rise > 2.0 * wanted and step > smallest:
+            contact.back()
+            path.repeated += 1
+            step *= max(0.25, wanted / rise)
+            continue
+        accept(target, moved)
+        wanted = min(final / steps, max(0.3 * force, 0.02 * final / steps))
+        step = min(step * min(2.0, max(0.5, wanted / rise if rise > 0 else 2.0)), largest)
+    return path
+
+
+def _solve_force(contact, start, beyond, low_force, high_force, wanted, with_flow, smallest) -> float:
+    """Separation at which the force is the wanted one: regula falsi (Illinois), each trial from ``start``."""
+    high, low = start, beyond  # force below, above the wanted one
+    f_high, f_low = low_force - wanted, high_force - wanted
+    best, best_miss = (high, -f_high) if -f_high < f_low else (low, f_low)
+    side = 0
+    for trial in range(60):
+        if high - low <= smallest:
+            break
+        if trial % 4 == 3:
+            middle = 0.5 * (high + low)
+        else:
+            middle = (high * f_low - low * f_high) / (f_low - f_high)
+        miss = contact.move_to(middle, with_flow)[0] - wanted
+        contact.back()
+        if abs(miss) < best_miss:
+            best, best_miss = middle, abs(miss)
+        if abs(miss) <= 0.5 * contact.FORCE_TOLERANCE * wanted:
+            break
+        if miss > 0:
+            low, f_low = middle, miss
+            if side == 1:
+                f_high *= 0.5
+            side = 1
+        else:
+            high, f_high = middle, miss
+            if side == -1:
+                f_low *= 0.5
+            side = -1
+    return best
