@@ -1,0 +1,122 @@
+"""An AFM scan and the explicit, recorded steps that make its heights ready for a spectrum."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from mesoscale.errors import InputError
+from mesoscale.settings import TopographySettings
+
+
+@dataclass(frozen=True)
+class Scan:
+    """Heights measured on a regular grid.
+
+    Attributes
+    ----------
+    heights_nm : (nx, ny); x (the first axis) is the fast scan direction, so `heights_nm[:, j]` is a scan
+        line. Missing pixels are NaN.
+    lengths_nm : (2,) physical size along x and y.
+    name : what messages and results call the scan.
+    steps : what has been done to the heights so far, in order, in words.
+    """
+
+    heights_nm: np.ndarray
+    lengths_nm: tuple[float, float]
+    name: str
+    steps: tuple[str, ...] = field(default=())
+
+    @property
+    def pixel_nm(self) -> tuple[float, float]:
+        """Distance of neighbouring pixels along x and y."""
+        nx, ny = self.heights_nm.shape
+        return self.lengths_nm[0] / nx, self.lengths_nm[1] / ny
+
+    @property
+    def length_nm(self) -> float:
+        """The shorter side."""
+        return min(self.lengths_nm)
+
+    @property
+    def rms_nm(self) -> float:
+        """RMS height about the mean."""
+        return float(np.nanstd(self.heights_nm))
+
+
+def clean(scan: Scan, settings: TopographySettings) -> Scan:
+    """Level a scan, align its lines, remove spikes and fill missing pixels; every step is recorded.
+
+    Raises
+    ------
+    InputError : more pixels are missing than `settings.max_missing` allows.
+    """
+    heights = np.array(scan.heights_nm, dtype=float)
+    steps = list(scan.steps)
+    missing = ~np.isfinite(heights)
+    share = float(missing.mean())
+    if share > settings.max_missing:
+        raise InputError(
+            f"{scan.name}: {share:.1%} of the pixels are missing; accepted are {settings.max_missing:.1%} "
+            "(topography.max_missing); crop the scan or measure again"
+        )
+    if share > 0:
+        heights[missing] = np.nan
+    if settings.detrend != "none":
+        heights -= fitted_trend(heights, order=1 if settings.detrend == "plane" else 2)
+        steps.append(f"subtracted a {settings.detrend} fit")
+    if settings.line_alignment == "median":
+        heights -= np.nanmedian(heights, axis=0)
+        steps.append("subtracted the median of each scan line")
+    if share > 0:
+        heights = fill_missing(heights)
+        steps.append(f"filled {int(missing.sum())} missing pixels from their neighbours")
+    if settings.spike_threshold > 0:
+        heights, spikes = without_spikes(heights, settings.spike_threshold)
+        if spikes:
+            steps.append(f"replaced {spikes} spikes by the median of their neighbours")
+    heights -= heights.mean()
+    return replace(scan, heights_nm=heights, steps=tuple(steps))
+
+
+def fitted_trend(heights: np.ndarray, order: int) -> np.ndarray:
+    """Least-squares plane (order 1) or quadratic (order 2) through heights (nx, ny); NaN are left out."""
+    nx, ny = heights.shape
+    x, y = np.linspace(-1, 1, nx)[:, None], np.linspace(-1, 1, ny)[None, :]
+    terms = [np.ones_like(x * y), x + 0 * y, y + 0 * x]
+    if order >= 2:
+        terms += [x**2 + 0 * y, x * y, y**2 + 0 * x]
+    known = np.isfinite(heights)
+    if known.all():
+        gram = np.array([[np.vdot(a, b) for b in terms] for a in terms])
+        right = np.array([np.vdot(a, heights) for a in terms])
+    else:
+        gram = np.array([[np.sum(a * b, where=known) for b in terms] for a in terms])
+        right = np.array([np.sum(a * heights, where=known) for a in terms])
+    coefficients = np.linalg.lstsq(gram, right, rcond=None)[0]
+    return sum(c * term for c, term in zip(coefficients, terms, strict=True))
+
+
+def fill_missing(heights: np.ndarray) -> np.ndarray:
+    """Fill NaN by linear interpolation along the scan line; lines without any value become the mean."""
+    filled = heights.copy()
+    positions = np.arange(heights.shape[0])
+    for j in np.flatnonzero(~np.isfinite(heights).all(axis=0)):
+        known = np.isfinite(heights[:, j])
+        if known.any():
+            filled[:, j] = np.interp(positions, positions[known], heights[known, j])
+    return np.where(np.isfinite(filled), filled, np.nanmean(filled))
+
+
+def without_spikes(heights: np.ndarray, threshold: float) -> tuple[np.ndarray, int]:
+    """Replace pixels far from the median of their 3 x 3 neighbourhood; returns heights and their number."""
+    from scipy.ndimage import median_filter
+
+    local = median_filter(heights.astype(np.float32), size=3, mode="nearest")
+    away = np.abs(heights - local)
+    # the scale is taken far out in the distribution: tips leave smooth scans with many sharp creases,
+    # which a median absolute deviation would call spikes
+    scale = float(np.quantile(away[::2, ::2], 0.99)) / 2.576
+    if scale == 0:
+        return heights, 0
+    spikes = away > threshold * scale
+    return np.where(spikes, local, heights), int(spikes.sum())

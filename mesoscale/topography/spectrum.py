@@ -1,0 +1,175 @@
+"""Power spectral density of scans: equations 7 and 8 of the paper, sections, windows, radial averages.
+
+All spectra are two-dimensional, C(q) in nm^4, normalised so that the sum of C (2 pi / L)^2 over all wave
+vectors is the mean square height (Parseval).  Averaging C over directions gives the isotropic spectrum;
+its slope is the physical quantity from which either convention of the Hurst exponent follows.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+
+FLOOR = 1e-300  # keeps logarithms of empty spectra finite
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Isotropic power spectrum of one scan on shells of equal width.
+
+    Attributes
+    ----------
+    q : (m,) mean wave vector of each shell, 1/nm.
+    psd : (m,) mean of C over the shell, nm^4.
+    modes : (m,) number of independent complex amplitudes behind each mean (not an integer: overlapping
+        sections and windows count for the area they really cover).
+    spacing : width of a shell, 1/nm.
+    nyquist : largest wave vector that the pixels resolve along both axes, 1/nm.
+    """
+
+    q: np.ndarray
+    psd: np.ndarray
+    modes: np.ndarray
+    spacing: float
+    nyquist: float
+
+
+def power_spectrum(heights: np.ndarray, lengths_nm: tuple[float, float]) -> np.ndarray:
+    """Equation 8 without window: C(qx, qy) in nm^4 of heights (nx, ny) in nm, in FFT order."""
+    nx, ny = heights.shape
+    amplitude = lengths_nm[0] * lengths_nm[1] / (2 * np.pi * nx * ny) * scipy.fft.fft2(heights)  # eq. 7
+    return np.abs(amplitude) ** 2 / (lengths_nm[0] * lengths_nm[1])
+
+
+def flat_window(n: int, flat: float) -> np.ndarray:
+    """Window of n points, one over the central share `flat`, falling to zero as a half cosine at the ends.
+
+    `flat = 0` is the Hann window.
+    """
+    distance = (np.arange(n) + 0.5) / n
+    distance = np.minimum(distance, 1 - distance)
+    edge = (1 - flat) / 2
+    if edge <= 0:
+        return np.ones(n)
+    return np.where(distance >= edge, 1.0, 0.5 * (1 - np.cos(np.pi * np.minimum(distance / edge, 1))))
+
+
+def section_starts(pixels: int, section: int, count: int) -> np.ndarray:
+    """First pixels of `count` sections spread evenly over one axis, duplicates removed."""
+    return np.unique(np.round(np.linspace(0, pixels - section, count)).astype(int))
+
+
+def section_pixels(pixels: int, fraction: float) -> int:
+    """Side of a section: a fast FFT size near `fraction` of the scan (768 of 1024)."""
+    wanted = max(16, round(pixels * fraction))
+    return min(pixels, scipy.fft.next_fast_len(wanted, real=True) if wanted < pixels else pixels)
+
+
+def radial_spectrum(
+    heights: np.ndarray,
+    lengths_nm: tuple[float, float],
+    sections: int,
+    fraction: float,
+    flat: float,
+    skip_lines: bool = False,
+) -> Spectrum:
+    """Isotropic spectrum averaged over overlapping windowed sections (paper, section 4.2).
+
+    Parameters
+    ----------
+    heights : (nx, ny) in nm, first axis the fast scan direction.
+    sections : number of sections, rounded to a square number.
+    fraction : side of a section over side of the scan.
+    flat : flat share of the window; 0.99 is the paper's, 0 the Hann window, whose side lobes do not
+        cover steep spectra.
+    skip_lines : leave out the two lowest wave numbers along the fast direction, where offsets between
+        scan lines (and their alignment) act.
+    """
+    nx, ny = heights.shape
+    per_side = max(1, round(np.sqrt(sections)))
+    mx, my = section_pixels(nx, fraction), section_pixels(ny, fraction)
+    xs, ys = section_starts(nx, mx, per_side), section_starts(ny, my, per_side)
+    wx, wy = flat_window(mx, flat), flat_window(my, flat)
+    window = np.outer(wx, wy).astype(np.float32)
+    data = np.ascontiguousarray(heights, dtype=np.float32)  # 7 digits; spectra span fewer (docs/topography.md)
+    total = np.zeros((mx, my // 2 + 1))
+    for x in xs:
+        for y in ys:
+            part = data[x : x + mx, y : y + my]
+            z = scipy.fft.rfft2((part - part.mean()) * window, overwrite_x=True)
+            total += z.real**2 + z.imag**2
+    total /= len(xs) * len(ys)
+
+    size = lengths_nm[0] * mx / nx, lengths_nm[1] * my / ny
+    cell = size[0] * size[1] / (mx * my)
+    window_power = float(np.mean(wx**2) * np.mean(wy**2))
+    psd = total * (cell / (2 * np.pi)) ** 2 / (size[0] * size[1] * window_power)
+
+    kx = np.abs(np.fft.fftfreq(mx, 1 / mx)).astype(int)
+    ky = np.arange(my // 2 + 1)
+    qx, qy = 2 * np.pi / size[0] * kx, 2 * np.pi / size[1] * ky
+    spacing = max(2 * np.pi / size[0], 2 * np.pi / size[1])
+    nyquist = min(np.pi * mx / size[0], np.pi * my / size[1])
+    q = np.sqrt(qx[:, None] ** 2 + qy[None, :] ** 2)
+    shell = np.rint(q / spacing).astype(np.int64)
+    weight = np.where((ky == 0) | ((ky == my // 2) & (my % 2 == 0)), 0.5, 1.0) * np.ones_like(q)
+    if skip_lines:
+        weight[kx <= 1] = 0.0
+    count = int(nyquist / spacing)
+    inside = shell <= count
+    index, weight = shell[inside], weight[inside]
+    modes = np.bincount(index, weight, count + 1)[1:]
+    known = modes > 0
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean_q = (np.bincount(index, weight * q[inside], count + 1)[1:] / modes)[known]
+        mean_psd = (np.bincount(index, weight * psd[inside], count + 1)[1:] / modes)[known]
+    area = _covered(nx, xs, wx) / mx * _covered(ny, ys, wy) / my
+    return Spectrum(mean_q, np.maximum(mean_psd, FLOOR), modes[known] * area, float(spacing), float(nyquist))
+
+
+def _covered(pixels: int, starts: np.ndarray, window: np.ndarray) -> float:
+    """Length, in pixels, of the data that the shifted windows really average over.
+
+    The variance of a spectrum averaged over windowed sections is that of a boxcar of length
+    (sum W)^2 / sum W^2, with W the mean of the squared shifted windows.
+    """
+    weight = np.zeros(pixels)
+    for start in starts:
+        weight[start : start + len(window)] += window**2
+    return float(weight.sum() ** 2 / np.sum(weight**2))
+
+
+def profile_spectrum(heights: np.ndarray, lengths_nm: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """One-dimensional spectrum along the fast axis, Hann window: q (1/nm) and C1 (nm^3).
+
+    Normalised so that the sum of C1 2 pi / L over positive and negative q is the mean square height.
+    """
+    nx = heights.shape[0]
+    window = flat_window(nx, 0.0)[:, None]
+    z = scipy.fft.rfft((heights - heights.mean(axis=0)) * window, axis=0)
+    step = lengths_nm[0] / nx
+    c1 = np.mean(np.abs(z) ** 2, axis=1) * step**2 / (2 * np.pi * lengths_nm[0] * np.mean(window**2))
+    q = 2 * np.pi / lengths_nm[0] * np.arange(len(c1))
+    return q[1:], c1[1:]
+
+
+def autocorrelation(heights: np.ndarray, lengths_nm: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """Height autocorrelation along the fast axis up to half the scan: lag (nm) and <h h> (nm^2).
+
+    Unbiased (each lag divided by its number of pairs), not periodic.
+    """
+    nx = heights.shape[0]
+    padded = scipy.fft.next_fast_len(2 * nx, real=True)
+    z = scipy.fft.rfft(heights - heights.mean(), n=padded, axis=0)
+    sums = scipy.fft.irfft(np.mean(np.abs(z) ** 2, axis=1), n=padded)[: nx // 2]
+    return np.arange(nx // 2) * lengths_nm[0] / nx, sums / (nx - np.arange(nx // 2))
+
+
+def log_bins(spectrum: Spectrum, per_decade: int = 12) -> Spectrum:
+    """The spectrum on bins of equal width in log q; each bin holds at least one shell."""
+    grid = np.floor(np.log10(spectrum.q) * per_decade).astype(int)
+    _, index = np.unique(grid, return_inverse=True)
+    modes = np.bincount(index, spectrum.modes)
+    q = np.exp(np.bincount(index, spectrum.modes * np.log(spectrum.q)) / modes)
+    psd = np.bincount(index, spectrum.modes * spectrum.psd) / modes
+    return Spectrum(q, psd, modes, spectrum.spacing, spectrum.nyquist)
