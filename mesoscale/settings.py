@@ -87,7 +87,8 @@ class TopographySettings(Settings):
         "directory; empty: synthetic scans with known truth",
     )
     channel: str | None = Field(
-        None, description="name of the height channel; null takes the only one (or the first of trace and retrace)"
+        None,
+        description="name of the height channel; null takes the only one (or the first of trace and retrace)",
     )
     tip_radius_nm: float = Field(
         5.0,
@@ -125,7 +126,11 @@ class TopographySettings(Settings):
         json_schema_extra={"unit": "1"},
     )
     section_fraction: float = Field(
-        0.75, ge=0.1, le=1, description="side of a section over side of its scan", json_schema_extra={"unit": "1"}
+        0.75,
+        ge=0.1,
+        le=1,
+        description="side of a section over side of its scan",
+        json_schema_extra={"unit": "1"},
     )
     window_flat: float = Field(
         0.99,
@@ -144,12 +149,21 @@ class TopographySettings(Settings):
         "interval of the typical value",
     )
     confidence: float = Field(
-        0.9, ge=0.5, le=0.999, description="level of the confidence intervals", json_schema_extra={"unit": "1"}
+        0.9,
+        ge=0.5,
+        le=0.999,
+        description="level of the confidence intervals",
+        json_schema_extra={"unit": "1"},
     )
-    hurst_convention: Literal["profile", "areal"] = Field(
+    convention: Literal["profile", "areal"] = Field(
         "profile",
         description="how H follows from the slope of the two-dimensional spectrum: profile 2H+1 (the paper), "
-        "areal 2H+2; contact must use the same",
+        "areal 2H+2; contact.convention must be the same",
+    )
+    on_doubt: Literal["stop", "warn"] = Field(
+        "stop",
+        description="what happens to parameters that the scans do not determine well: stop before they are used, "
+        "or warn in the report and use them",
     )
     scans_per_job: int = Field(
         6, ge=1, le=200, description="scans analysed by one job", json_schema_extra={"unit": "1"}
@@ -508,8 +522,17 @@ class UncertaintySettings(Settings):
     chunk_runs: int = Field(60, ge=1, le=100000, description="contact cycles per job and file")
     samples: int = Field(10000, ge=10, le=10**7, description="samples of the inputs sent through the surface")
     sample_seed: int = Field(1, ge=0, le=2**31, description="seed of those samples")
+    sobol_samples: int = Field(
+        4096, ge=64, le=10**6, description="size of each of the n + 2 samples behind the Sobol' indices"
+    )
     bootstrap: int = Field(200, ge=20, le=100000, description="resamplings for intervals")
-    validation_runs: int = Field(60, ge=0, le=10**6, description="independent runs that validate the surface")
+    direct_runs: int = Field(
+        100,
+        ge=0,
+        le=10**6,
+        description="independent cycles, each with its own inputs and surface: they validate the response "
+        "surfaces; 10000 or more make a brute-force reference",
+    )
 
 
 class DeviceSettings(Settings):

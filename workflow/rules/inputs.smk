@@ -1,0 +1,27 @@
+STAGE_RESULT = {
+    "hardness": f"{RESULTS}/hardness/fit.json",
+    "elastic": f"{RESULTS}/elastic/e_star.json",
+    "topography": f"{RESULTS}/topography/parameters.json",
+}
+INPUT_STAGES = {stage: path for stage, path in STAGE_RESULT.items() if stage in SCENE.inputs.origins()}
+
+
+rule inputs:
+    input:
+        f"{RESULTS}/inputs.csv",
+
+
+rule collect_inputs:
+    message:
+        "collect the uncertain inputs"
+    input:
+        **INPUT_STAGES,
+    output:
+        f"{RESULTS}/inputs.csv",
+    log:
+        f"{RESULTS}/logs/collect_inputs.log",
+    params:
+        settings=settings("inputs"),
+        central_share=SCENE.uncertainty.central_share,
+    script:
+        "../scripts/collect_inputs.py"

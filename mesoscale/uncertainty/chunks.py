@@ -1,0 +1,24 @@
+"""How runs are cut into jobs.  Imports nothing heavy: the workflow reads it to plan."""
+
+from mesoscale.settings import UncertaintySettings
+
+
+def collocation_level(settings: UncertaintySettings) -> int:
+    """Level of the sparse grid."""
+    return 2 if settings.surrogate == "level2" else 1
+
+
+def node_count(inputs: int, level: int) -> int:
+    """Number of nodes of the sparse grid: 2n + 1 at level 1, 2n² + 2n + 1 at level 2."""
+    return 2 * inputs + 1 if level == 1 else 2 * inputs**2 + 2 * inputs + 1
+
+
+def collocation_run_count(inputs: int, settings: UncertaintySettings) -> int:
+    """Number of contact cycles of the collocation."""
+    return node_count(inputs, collocation_level(settings)) * settings.seeds
+
+
+def chunk_bounds(runs: int, chunk_runs: int) -> dict[str, tuple[int, int]]:
+    """First and last+1 run of every chunk, by its three-digit name."""
+    starts = range(0, runs, chunk_runs)
+    return {f"{k:03d}": (start, min(start + chunk_runs, runs)) for k, start in enumerate(starts)}

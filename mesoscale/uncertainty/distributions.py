@@ -1,0 +1,124 @@
+"""Distributions of the uncertain inputs: quantile function, support, and joint samples with correlation."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesoscale.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """A one-dimensional distribution of one of the kinds of `InputRow.distribution`."""
+
+    kind: str
+    """uniform, normal, truncated_normal, samples or fixed."""
+    a: float = np.nan
+    """Lower end, mean or fixed value."""
+    b: float = np.nan
+    """Upper end or standard deviation."""
+    low: float = -np.inf
+    """Lower truncation."""
+    high: float = np.inf
+    """Upper truncation."""
+    values: Array = field(default_factory=lambda: np.empty(0))
+    """Sorted samples, shape (n,), of kind `samples`."""
+
+    def quantile(self, probability: ArrayLike) -> Array:
+        """The value below which a share `probability` (any shape, in [0, 1]) lies."""
+        p = np.asarray(probability, float)
+        if self.kind == "fixed":
+            return np.full_like(p, self.a)
+        if self.kind == "uniform":
+            return self.a + p * (self.b - self.a)
+        if self.kind == "samples":
+            return np.quantile(self.values, p)
+        from scipy.special import ndtr, ndtri  # light, unlike scipy.stats
+
+        if self.b == 0:
+            return np.full_like(p, self.a)
+        below, above = ndtr((self.low - self.a) / self.b), ndtr((self.high - self.a) / self.b)
+        return np.clip(self.a + self.b * ndtri(below + p * (above - below)), self.low, self.high)
+
+    def span(self, central_share: float) -> tuple[float, float]:
+        """Ends of the range that response surfaces cover.
+
+        All of a bounded distribution; the central share of an unbounded one.
+        """
+        share = central_share if self.kind == "normal" else 1.0
+        low, high = self.quantile(np.array([(1 - share) / 2, (1 + share) / 2]))
+        return float(low), float(high)
+
+
+@dataclass(frozen=True)
+class UncertainInput:
+    """One row of the table of inputs."""
+
+    name: str
+    unit: str
+    distribution: Distribution
+    origin: str
+    """literature, hardness, elastic or topography."""
+    source: str
+    """Reference or result file."""
+
+
+@dataclass(frozen=True)
+class InputTable:
+    """The uncertain inputs in use with their dependence."""
+
+    rows: tuple[UncertainInput, ...]
+    correlation: Array
+    """Spearman's rank correlation, shape (n, n)."""
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the inputs in order."""
+        return [row.name for row in self.rows]
+
+    def ranges(self, central_share: float) -> Array:
+        """Range that response surfaces cover, shape (n, 2)."""
+        return np.array([row.distribution.span(central_share) for row in self.rows])
+
+    def transform(self, unit_points: Array) -> Array:
+        """Points of the unit cube (m, n) to values of the inputs with their correlation (Gaussian copula)."""
+        if not np.array_equal(self.correlation, np.eye(len(self.rows))):
+            from scipy.special import ndtr, ndtri
+
+            # the copula's linear correlation that gives this rank correlation
+            linear = 2 * np.sin(np.pi / 6 * self.correlation)
+            factor = np.linalg.cholesky(linear)
+            inside = np.clip(unit_points, 1e-15, 1 - 1e-15)
+            unit_points = ndtr(ndtri(inside) @ factor.T)
+        columns = [row.distribution.quantile(unit_points[:, k]) for k, row in enumerate(self.rows)]
+        return np.stack(columns, axis=1)
+
+    def sample(self, count: int, seed: int) -> Array:
+        """Independent random samples of the inputs, shape (count, n)."""
+        rng = np.random.default_rng(np.random.SeedSequence([seed, 0x1A]))
+        return self.transform(rng.random((count, len(self.rows))))
+
+
+def correlation_matrix(names: list[str], pairs: dict[tuple[str, str], float]) -> Array:
+    """Rank correlation matrix from pairs of names.
+
+    Raises
+    ------
+    InputError : the pairs contradict one another (matrix not positive definite).
+    """
+    matrix = np.eye(len(names))
+    for (first, second), rank in pairs.items():
+        i, j = names.index(first), names.index(second)
+        matrix[i, j] = matrix[j, i] = rank
+    if (
+        np.linalg.eigvalsh(2 * np.sin(np.pi / 6 * matrix) * (1 - np.eye(len(names))) + np.eye(len(names)))[0]
+        <= 0
+    ):
+        raise InputError(
+            f"inputs.correlations: {', '.join(f'{a}-{b} {r:g}' for (a, b), r in pairs.items())} contradict "
+            "one another (not positive definite); make them weaker"
+        )
+    return matrix

@@ -1,0 +1,230 @@
+"""From the law at the nodes to the distribution of its parameters (the paper's Table 2)."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.law import PARAMETERS
+from mesoscale.settings import UncertaintySettings
+from mesoscale.uncertainty.chunks import collocation_level
+from mesoscale.uncertainty.collocation import elementary_effects, interpolating_surface, level1_surface
+from mesoscale.uncertainty.distributions import InputTable
+from mesoscale.uncertainty.paper_tables import short_name
+from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
+from mesoscale.uncertainty.surrogate import Surrogate, to_json
+
+Array = NDArray[np.float64]
+
+SURFACES = tuple(f"{branch}_{name}" for branch in ("closing", "opening") for name in PARAMETERS)
+"""Outputs that have a response surface; the changes on opening are differences of two of them."""
+
+
+@dataclass(frozen=True)
+class NodeOutputs:
+    """The law at every node for every surface seed."""
+
+    seeds: list[int]
+    values: Array
+    """Shape (seeds, nodes, 8): the closing parameters, then the opening ones; NaN where missing."""
+
+    @property
+    def paper_outputs(self) -> Array:
+        """The eight outputs of Table 2: closing, and opening minus closing; same shape."""
+        return to_paper_outputs(self.values)
+
+
+def to_paper_outputs(surfaces: Array) -> Array:
+    """Closing and opening parameters (..., 8) to closing parameters and their change (..., 8)."""
+    closing, opening = surfaces[..., :4], surfaces[..., 4:]
+    return np.concatenate([closing, opening - closing], axis=-1)
+
+
+def read_nodes(rows: Iterable[Mapping[str, str]]) -> NodeOutputs:
+    """Arrange the rows of law/parameters.csv by seed and node."""
+    rows = list(rows)
+    seeds = sorted({int(row["seed"]) for row in rows})
+    count = max(int(row["node"]) for row in rows) + 1
+    values = np.full((len(seeds), count, 8), np.nan)
+    position = {seed: k for k, seed in enumerate(seeds)}
+    for row in rows:
+        start = 0 if row["branch"] == "closing" else 4
+        numbers = [float(row[name]) if row[name] else np.nan for name in PARAMETERS]
+        values[position[int(row["seed"])], int(row["node"]), start : start + 4] = numbers
+    return NodeOutputs(seeds, values)
+
+
+def fit_surface(y: Array, ranges: Array, settings: UncertaintySettings) -> Surrogate:
+    """Response surface of one output from its node values, shape (nodes,)."""
+    if settings.surrogate == "level1":
+        return level1_surface(y, ranges)
+    return interpolating_surface(y, ranges, collocation_level(settings))
+
+
+@dataclass(frozen=True)
+class Propagation:
+    """Response surfaces and what the samples of the inputs become through them."""
+
+    samples: Array
+    """Samples of the inputs, shape (m, n)."""
+    outputs: Array
+    """Closing and opening parameters of every sample through the surface of the mean over seeds, (m, 8)."""
+    surfaces: list[Surrogate | None]
+    """One per SURFACES; None where no seed has all nodes."""
+    by_seed: Array
+    """Mean and deviation of the eight outputs of Table 2 of every seed's own surface, shape (seeds, 2, 8)."""
+    seed_share: Array
+    """Share of the variance of each output of Table 2 that is scatter between seeds, shape (8,)."""
+
+
+def propagate(nodes: NodeOutputs, table: InputTable, settings: UncertaintySettings) -> Propagation:
+    """Send samples of the inputs through every seed's response surface and through their mean.
+
+    A seed with a missing node has no surface for that output; nothing is filled in.
+    """
+    ranges = table.ranges(settings.central_share)
+    samples = table.sample(settings.samples, settings.sample_seed)
+    seeds = len(nodes.seeds)
+    total, total_squares = np.zeros((len(samples), 8)), np.zeros((len(samples), 8))
+    by_seed = np.full((seeds, 2, 8), np.nan)
+    for s in range(seeds):
+        y = np.stack([_evaluate(nodes.values[s, :, k], ranges, settings, samples) for k in range(8)], axis=1)
+        y = to_paper_outputs(y)
+        by_seed[s] = y.mean(axis=0), y.std(axis=0)
+        usable = np.isfinite(by_seed[s, 0])
+        total[:, usable] += y[:, usable]
+        total_squares[:, usable] += y[:, usable] ** 2
+    used = np.isfinite(by_seed[:, 0]).sum(axis=0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = total / used
+        within = np.maximum(total_squares / used - mean**2, 0).mean(axis=0) * used / (used - 1)
+        between = np.maximum(mean.var(axis=0) - within / used, 0)
+        seed_share = np.where(used > 1, within / (within + between), np.nan)
+    surfaces: list[Surrogate | None] = []
+    for k in range(8):
+        complete = np.isfinite(nodes.values[:, :, k]).all(axis=1)
+        average = nodes.values[complete, :, k].mean(axis=0) if complete.any() else None
+        surfaces.append(None if average is None else fit_surface(average, ranges, settings))
+    outputs = np.stack(
+        [surface(samples) if surface else np.full(len(samples), np.nan) for surface in surfaces], axis=1
+    )
+    return Propagation(samples, outputs, surfaces, by_seed, seed_share)
+
+
+def _evaluate(y: Array, ranges: Array, settings: UncertaintySettings, samples: Array) -> Array:
+    if not np.isfinite(y).all():
+        return np.full(len(samples), np.nan)
+    return fit_surface(y, ranges, settings)(samples)
+
+
+def output_rows(
+    nodes: NodeOutputs,
+    result: Propagation,
+    paper: Mapping[str, tuple[float, float]],
+    paper_exchanged: Mapping[str, tuple[float, float]],
+) -> list[dict[str, Any]]:
+    """Rows of uq/outputs.csv: Table 2 beside the paper's, differences in units of the scatter of seeds."""
+    y = nodes.paper_outputs
+    inputs = result.samples.shape[1]
+    propagated = to_paper_outputs(result.outputs)
+    rows = []
+    for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
+        complete = np.isfinite(result.by_seed[:, 0, k])
+        mean, dev = (_center_and_scatter(result.by_seed[complete, j, k]) for j in (0, 1))
+        centre = _center_and_scatter(y[complete, 0, k])
+        effects = [np.sqrt((elementary_effects(line, inputs) ** 2).sum() / 12) for line in y[complete, :, k]]
+        quantiles = np.quantile(propagated[:, k], [0.05, 0.5, 0.95])
+        name = short_name(output)
+        reference = paper.get(name, (np.nan, np.nan))
+        exchanged = paper_exchanged.get(name, (np.nan, np.nan))
+        rows.append(
+            {
+                "output": output,
+                "unit": unit,
+                "mean": mean[0],
+                "dev": dev[0],
+                "mean_seed_sd": mean[1],
+                "dev_seed_sd": dev[1],
+                "paper_mean": reference[0],
+                "paper_dev": reference[1],
+                "mean_difference_in_seed_sd": (mean[0] - reference[0]) / mean[1] if mean[1] else np.nan,
+                "dev_difference_in_seed_sd": (dev[0] - reference[1]) / dev[1] if dev[1] else np.nan,
+                "paper_mean_exchanged": exchanged[0],
+                "paper_dev_exchanged": exchanged[1],
+                "centre": centre[0],
+                "centre_seed_sd": centre[1],
+                "q05": quantiles[0],
+                "q50": quantiles[1],
+                "q95": quantiles[2],
+                "dev_from_mu_star": float(np.mean(effects)) if effects else np.nan,
+                "seed_share": result.seed_share[k],
+                "seeds_used": int(complete.sum()),
+                "seeds": len(nodes.seeds),
+                "runs": y.shape[0] * y.shape[1],
+                "missing": int(np.isnan(y[:, :, k]).sum()),
+            }
+        )
+    return rows
+
+
+def _center_and_scatter(values: Array) -> tuple[float, float]:
+    """Mean over seeds and standard deviation of one seed."""
+    if len(values) == 0:
+        return np.nan, np.nan
+    return float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else np.nan
+
+
+def surrogate_json(
+    result: Propagation,
+    nodes: NodeOutputs,
+    table: InputTable,
+    settings: UncertaintySettings,
+    law: Mapping[str, float],
+    symbols: Mapping[str, str],
+    paper: Mapping[str, tuple[float, float]],
+) -> dict[str, Any]:
+    """Content of uq/surrogate.json: usable without this code (docs/uncertainty.md)."""
+    inputs = [
+        {
+            "name": row.name,
+            "symbol": symbols.get(row.name, row.name),
+            "unit": row.unit,
+            "distribution": row.distribution.kind,
+            "a": row.distribution.a,
+            "b": row.distribution.b,
+            "low": low,
+            "high": high,
+        }
+        for row, (low, high) in zip(table.rows, table.ranges(settings.central_share).tolist(), strict=True)
+    ]
+    outputs = []
+    for k, name in enumerate(SURFACES):
+        surface = result.surfaces[k]
+        if surface is None:
+            continue
+        branch, _, parameter = name.partition("_")
+        scatter = (
+            np.nanmean(np.nanstd(nodes.values[:, :, k], axis=0, ddof=1)) if len(nodes.seeds) > 1 else np.nan
+        )
+        outputs.append(
+            {
+                "name": name,
+                "unit": OUTPUT_UNITS[k],
+                **to_json(surface),
+                "residual_std": float(scatter),
+                "paper_mean": paper.get(short_name(parameter), (np.nan,))[0]
+                if branch == "closing"
+                else np.nan,
+            }
+        )
+    return {
+        "about": "value = transform(sum of coefficient * product of Legendre P_degree(u)), u = 2 (x - low) / "
+        "(high - low) - 1; valid for low <= x <= high; residual_std: scatter from one surface to the next",
+        "method": settings.surrogate,
+        "seeds": len(nodes.seeds),
+        "inputs": inputs,
+        "law": dict(law),
+        "outputs": outputs,
+    }

@@ -1,0 +1,93 @@
+"""Response surfaces in Legendre polynomials: evaluate, moments, Sobol' indices, plain JSON."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def legendre(u: Array, highest: int) -> Array:
+    """Legendre polynomials P_0 .. P_highest (P_n(1) = 1), shape (highest + 1, *u.shape)."""
+    values = [np.ones_like(u), u]
+    for n in range(1, highest):
+        values.append(((2 * n + 1) * u * values[n] - n * values[n - 1]) / (n + 1))
+    return np.stack(values[: highest + 1])
+
+
+def basis_matrix(u: Array, degrees: NDArray[np.int_]) -> Array:
+    """Products of Legendre polynomials.
+
+    Parameters
+    ----------
+    u : points in [-1, 1]^n, shape (m, n).
+    degrees : degree of each term in each input, shape (terms, n).
+
+    Returns
+    -------
+    shape (m, terms).
+    """
+    powers = legendre(u, max(1, int(degrees.max(initial=0))))
+    matrix = np.ones((len(u), len(degrees)))
+    for k in range(u.shape[1]):
+        matrix *= powers[degrees[:, k], :, k].T
+    return matrix
+
+
+@dataclass(frozen=True)
+class Surrogate:
+    """y = transform( sum_t coefficient_t prod_k P_{degree_tk}(u_k) ), u = 2 (x - low)/(high - low) - 1."""
+
+    ranges: Array
+    """Range of each input, shape (n, 2)."""
+    degrees: NDArray[np.int_]
+    """Shape (terms, n); the first row is the constant."""
+    coefficients: Array
+    """Shape (terms,)."""
+    transform: str = "identity"
+    """identity, or log: the sum is the logarithm of the output."""
+
+    def scaled(self, x: Array) -> Array:
+        """Inputs (m, n) scaled to [-1, 1]; an input of zero width maps to 0."""
+        low, high = self.ranges[:, 0], self.ranges[:, 1]
+        width = high - low
+        return np.where(width > 0, 2 * (x - low) / np.where(width > 0, width, 1.0) - 1, 0.0)
+
+    def __call__(self, x: Array) -> Array:
+        """Output at inputs x of shape (m, n)."""
+        total = basis_matrix(self.scaled(np.atleast_2d(x)), self.degrees) @ self.coefficients
+        return np.exp(total) if self.transform == "log" else total
+
+
+def uniform_moments(surrogate: Surrogate) -> tuple[float, float]:
+    """Mean and variance of an identity surrogate for independent inputs, uniform over their ranges."""
+    norms = np.prod(1.0 / (2 * surrogate.degrees + 1), axis=1)
+    variances = surrogate.coefficients**2 * norms
+    constant = surrogate.degrees.sum(axis=1) == 0
+    return float(surrogate.coefficients[constant].sum()), float(variances[~constant].sum())
+
+
+def to_json(surrogate: Surrogate) -> dict[str, Any]:
+    """The surface as plain values; docs/uncertainty.md has a ten-line reader."""
+    return {
+        "transform": surrogate.transform,
+        "terms": [
+            {"degrees": degrees, "coefficient": coefficient}
+            for degrees, coefficient in zip(
+                surrogate.degrees.tolist(), surrogate.coefficients.tolist(), strict=True
+            )
+        ],
+    }
+
+
+def from_json(output: Mapping[str, Any], inputs: list[Mapping[str, Any]]) -> Surrogate:
+    """The surface of one entry of `outputs` in uq/surrogate.json."""
+    return Surrogate(
+        np.array([[row["low"], row["high"]] for row in inputs], float),
+        np.array([term["degrees"] for term in output["terms"]], int),
+        np.array([term["coefficient"] for term in output["terms"]], float),
+        output["transform"],
+    )

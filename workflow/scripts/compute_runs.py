@@ -1,0 +1,51 @@
+"""Compute a chunk of contact cycles of the collocation.
+
+In: inputs.csv.  Out: curves/runs/chunk_NNN.h5 (groups run_NNNN/closing and run_NNNN/opening; nm, nN, nm^2).
+"""
+
+from dataclasses import fields
+
+from mesoscale.settings import ContactSettings, UncertaintySettings
+from mesoscale.uncertainty.inputs import from_rows
+from mesoscale.uncertainty.runs import collocation_runs, compute_all
+from workflow.job import job
+from workflow.results import Dataset, read_csv, write_h5
+
+COLUMNS = {
+    "separation_nm": ("nm", "mean separation"),
+    "repulsive_nN": ("nN", "repulsive force"),
+    "attractive_nN": ("nN", "attractive force (negative)"),
+    "contact_area_nm2": ("nm^2", "area of contacting sites"),
+    "asperities": ("1", "number of asperities in contact"),
+    "sweeps": ("1", "flow sweeps of the step"),
+}
+
+with job(snakemake) as run:
+    contact = ContactSettings(**snakemake.params.contact)
+    uncertainty = UncertaintySettings(**snakemake.params.uncertainty)
+    runs = collocation_runs(
+        from_rows(read_csv(snakemake.input.inputs)), uncertainty, *snakemake.params.bounds
+    )
+    groups, attributes = {}, {}
+    for item, cycle in compute_all(runs, contact, run.progress):
+        name = f"run_{item.index:04d}"
+        facts = {"run": item.index, "node": item.node, "seed": item.seed, **item.values}
+        if isinstance(cycle, str):
+            attributes[name] = {**facts, "status": cycle}
+            continue
+        attributes[name] = {
+            **facts,
+            "status": "ok" if cycle.converged else "unconverged",
+            "flags": cycle.flags,
+            "first_contact_nm": cycle.first_contact_nm,
+            "last_contact_nm": getattr(cycle, "last_contact_nm", None),
+        }
+        for branch in ("closing", "opening"):
+            curve = getattr(cycle, branch)
+            groups[f"{name}/{branch}"] = {
+                field.name: Dataset(getattr(curve, field.name), *COLUMNS[field.name], ("point",))
+                for field in fields(curve)
+                if field.name in COLUMNS
+            }
+    reading = {"cell_area_nm2": contact.length_nm**2, "contact": contact.model_dump(mode="json")}
+    write_h5(snakemake.output[0], groups, reading, run.provenance, attributes)

@@ -1,0 +1,28 @@
+"""Fit the force-separation law to both branches of every curve of the runs.
+
+In: inputs.csv, curves/runs/chunk_NNN.h5 (nm, nN).  Out: law/parameters.csv, one row per run and branch.
+"""
+
+from mesoscale.settings import LawSettings
+from mesoscale.uncertainty.inputs import from_rows
+from mesoscale.uncertainty.runs import fit_stored
+from workflow.job import job
+from workflow.results import read_csv, read_h5, write_csv
+
+with job(snakemake) as run:
+    settings = LawSettings(**snakemake.params.settings)
+    names = from_rows(read_csv(snakemake.input.inputs)).names
+    rows = []
+    for done, path in enumerate(snakemake.input.chunks):
+        curves, root, attributes = read_h5(path)
+        for name in sorted(key for key in attributes if "/" not in key):
+            facts = attributes[name]
+            head = {key: facts[key] for key in ("run", "node", "seed")}
+            values = {key: facts[key] for key in names}
+            rows += [
+                {**head, **row, **values}
+                for row in fit_stored(curves, name, facts, root["cell_area_nm2"], settings)
+            ]
+        run.progress((done + 1) / len(snakemake.input.chunks), "curves fitted")
+    rows.sort(key=lambda row: row["run"])
+    write_csv(snakemake.output.parameters, rows)

@@ -1,0 +1,19 @@
+"""Fit the force-separation law to both branches of every nominal curve.
+
+In: curves/nominal.h5 (nm, nN).  Out: law/nominal.csv, one row per curve and branch.
+"""
+
+from mesoscale.settings import LawSettings
+from mesoscale.uncertainty.runs import fit_stored
+from workflow.job import job
+from workflow.results import read_h5, write_csv
+
+with job(snakemake) as run:
+    settings = LawSettings(**snakemake.params.settings)
+    curves, root, attributes = read_h5(snakemake.input.nominal)
+    rows = []
+    for name in sorted({key.rpartition("/")[0] for key in curves if "/" in key}):
+        facts = {**root, **attributes.get(name, {})}
+        area = float(facts["length_nm"]) ** 2
+        rows += [{"curve": name, **row} for row in fit_stored(curves, name, facts, area, settings)]
+    write_csv(snakemake.output[0], rows)

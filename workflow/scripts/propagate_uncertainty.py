@@ -1,0 +1,43 @@
+"""Propagate the inputs' uncertainty through the response surfaces and validate these.
+
+In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, the paper's Tables 1 and 2.
+Out: uq/outputs.csv (Table 2), uq/surrogate.json, uq/samples.csv, uq/validation.csv (nm, GPa/nm, GPa).
+"""
+
+import numpy as np
+
+from mesoscale.settings import LawSettings, UncertaintySettings
+from mesoscale.uncertainty.inputs import from_rows
+from mesoscale.uncertainty.paper_tables import table2
+from mesoscale.uncertainty.propagation import SURFACES, output_rows, propagate, read_nodes, surrogate_json
+from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, read_direct_runs, validation_rows
+from workflow.job import job
+from workflow.results import read_csv, write_csv, write_json
+
+with job(snakemake) as run:
+    settings = UncertaintySettings(**snakemake.params.settings)
+    law = LawSettings(**snakemake.params.law)
+    table = from_rows(read_csv(snakemake.input.inputs))
+    nodes = read_nodes(read_csv(snakemake.input.parameters))
+    paper_rows = read_csv(snakemake.input.table2)
+    paper = table2(paper_rows)
+    symbols = {row["parameter"]: row["symbol"] for row in read_csv(snakemake.input.table1)}
+
+    result = propagate(nodes, table, settings)
+    write_csv(snakemake.output.outputs, output_rows(nodes, result, paper, table2(paper_rows, exchanged=True)))
+    constants = {"rho_a_nm": law.rho_a_nm, "alpha_nm": law.shield_nm}
+    write_json(
+        snakemake.output.surrogate,
+        surrogate_json(result, nodes, table, settings, constants, symbols, paper),
+        run.provenance,
+    )
+    columns = [*table.names, *SURFACES]
+    values = np.hstack([result.samples, result.outputs]).tolist()
+    write_csv(snakemake.output.samples, (dict(zip(columns, line, strict=True)) for line in values), columns)
+
+    direct = [row for path in snakemake.input.direct for row in read_csv(path)]
+    inputs, outputs = read_direct_runs(direct, table.names)
+    rows = validation_rows(
+        inputs, outputs, result.surfaces, result.outputs, settings.bootstrap, settings.sample_seed
+    )
+    write_csv(snakemake.output.validation, rows, VALIDATION_COLUMNS)
