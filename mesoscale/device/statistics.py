@@ -1,0 +1,89 @@
+"""Distributions of the switch's behaviour over samples of the law."""
+
+from typing import Any
+
+import numpy as np
+
+from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, Switch, SwitchStates
+from mesoscale.law import Law
+
+QUANTILES = (0.05, 0.16, 0.25, 0.5, 0.75, 0.84, 0.95)
+Z_95 = 1.959963984540054
+
+
+def describe(values: np.ndarray) -> dict[str, Any]:
+    """Mean, deviation and quantiles of the finite values."""
+    values = np.asarray(values, dtype=float)
+    finite = values[np.isfinite(values)]
+    if finite.size == 0:
+        return {"samples": 0, "mean": None, "std": None, "quantiles": {}}
+    quantiles = np.quantile(finite, QUANTILES)
+    return {
+        "samples": int(finite.size),
+        "mean": float(finite.mean()),
+        "std": float(finite.std(ddof=1)) if finite.size > 1 else 0.0,
+        "quantiles": {f"{q:g}": float(value) for q, value in zip(QUANTILES, quantiles, strict=True)},
+    }
+
+
+def probability(count: int, total: int) -> dict[str, float | int]:
+    """Share of `count` in `total` with its 95 % Wilson interval, which stays sensible at 0 and 1."""
+    share = count / total
+    centre = (share + Z_95**2 / (2 * total)) / (1 + Z_95**2 / total)
+    half = Z_95 / (1 + Z_95**2 / total) * np.sqrt(share * (1 - share) / total + Z_95**2 / (4 * total**2))
+    low = centre - half if count else 0.0  # exact at the ends, where rounding would show
+    high = centre + half if count < total else 1.0
+    return {
+        "value": share,
+        "low": float(low),
+        "high": float(high),
+        "count": int(count),
+        "samples": int(total),
+    }
+
+
+def describe_states(states: SwitchStates) -> dict[str, Any]:
+    """Pull-in, release and stiction over the samples; release only of switches that do release."""
+    total = len(states.stuck)
+    return {
+        "pull_in_V": describe(states.pull_in_V),
+        "release_V": describe(np.where(states.stuck, np.nan, states.release_V)),
+        "release_nm": describe(np.where(states.stuck, np.nan, states.release_nm)),
+        "stiction_probability": probability(int(states.stuck.sum()), total),
+        "critical_landed_fraction": describe(states.critical_fraction),
+        "hold_nm": describe(states.hold_nm),
+        "hold_pressure_MPa": describe(states.hold_pressure_GPa * 1e3),
+    }
+
+
+def stiction_curve(critical_fraction: np.ndarray, points: int = 61) -> list[dict[str, float]]:
+    """Probability of stiction against landed fraction (it sticks above its critical fraction)."""
+    rows = []
+    for fraction in np.logspace(-4, 0, points):
+        share = probability(int((critical_fraction < fraction).sum()), len(critical_fraction))
+        rows.append(
+            {
+                "landed_fraction": float(fraction),
+                "stiction_probability": share["value"],
+                "low": share["low"],
+                "high": share["high"],
+            }
+        )
+    return rows
+
+
+def analytic_pull_in_V(switch: Switch) -> float:
+    """Pull-in of an ideal plate: sqrt(8 k (g + t/eps)^3 / (27 eps0 A))."""
+    gap = (switch.gap_nm + switch.dielectric_nm) * NM
+    return float(np.sqrt(8 * switch.spring_N_per_m * gap**3 / (27 * VACUUM_PERMITTIVITY * switch.area_m2)))
+
+
+def analytic_release_V(switch: Switch, opening: Law) -> np.ndarray:
+    """Release without adhesion, at the last touch s = d_c: sqrt(2 k (g - d_c) (d_c + t/eps)^2 / (eps0 A)).
+
+    Holds where the repulsion falls faster than the electrostatic force, which any real contact does.
+    """
+    contact = np.asarray(opening.d_c_nm, dtype=float)
+    electric = (contact + switch.dielectric_nm) * NM
+    spring = switch.spring_N_per_m * (switch.gap_nm - contact) * NM
+    return np.sqrt(2 * spring * electric**2 / (VACUUM_PERMITTIVITY * switch.area_m2))
