@@ -46,13 +46,25 @@ class Branch:
     sweeps: np.ndarray  # flow sweeps of the step that ends here
 
 
+BRANCH_COLUMNS = {
+    "separation_nm": ("nm", "mean separation"),
+    "repulsive_nN": ("nN", "repulsive force"),
+    "attractive_nN": ("nN", "attractive force (negative)"),
+    "contact_area_nm2": ("nm^2", "area of contacting sites"),
+    "asperities": ("1", "number of asperities in contact"),
+    "sweeps": ("1", "flow sweeps of the step"),
+}
+"""Unit and long name of each array of a `Branch`, as result files state them."""
+
+
 @dataclass(frozen=True)
 class Cycle:
     """Closing and opening of one surface."""
 
     closing: Branch
     opening: Branch
-    first_contact_nm: float  # separation at which the untouched surface first touches
+    first_contact_nm: float  # separation at which the surface first touches on closing
+    last_contact_nm: float  # separation at which it last touches on opening
     flags: dict[str, int | bool | str | float]
     converged: bool  # every step converged and the requested force was reached
     heights: np.ndarray | None = None  # the surface afterwards, nm (only if asked for)
@@ -112,13 +124,12 @@ def run_cycle(
         raise InputError(f"max_force_nN = {force}: accepted are finite forces > 0 nN")
     contact = Contact(surface, inputs, settings)
     first_contact = contact.touching_separation
-    approach = _approach(contact, contact.rms)
+    approach = _approach(contact)
     closing = trace(contact, settings.force_steps, plastic, stop_force=force)
     last = closing.rows[-1]
-    reached = bool(abs(last.force - force) <= contact.FORCE_TOLERANCE * force)
     if plastic and last.force > 0:
         contact.lift()
-        departure = _approach(contact, contact.rms)
+        departure = _approach(contact)
         path = trace(contact, settings.force_steps, False, last.force, stop_separation=last.separation)
         # the last row of the way down is the state in which closing ended
         opening = [last._replace(sweeps=0), *path.rows[-2::-1]]
@@ -129,14 +140,16 @@ def run_cycle(
         closing=_branch(contact, [*approach, *closing.rows]),
         opening=_branch(contact, [*opening, *departure[::-1]]),
         first_contact_nm=first_contact + contact.offset,
+        last_contact_nm=(opening[-1].separation if last.force > 0 else first_contact) + contact.offset,
         flags={
-            "force_reached": reached,
+            "force_reached": closing.reached,
+            "force_miss": abs(last.force - force) / force,
             "unconverged_steps": closing.unconverged,
             "radius_bound_events": closing.bounds,
             "repeated_steps": closing.repeated,
             "changed_sites": contact.changed_sites,
         },
-        converged=reached and closing.unconverged == 0,
+        converged=closing.reached and closing.unconverged == 0,
         heights=surface if keep_surface else None,
     )
 
@@ -150,12 +163,12 @@ def _checked(heights: np.ndarray) -> np.ndarray:
     return heights
 
 
-def _approach(contact: "Contact", rms: float) -> "list[Row]":
+def _approach(contact: "Contact") -> "list[Row]":
     """Rows before first contact, from afar, where only the attraction acts."""
     from mesoscale.contact.engine import Row
 
     touch = contact.touching_separation
-    gaps = np.geomspace(max(4.0 * rms, 10.0), max(0.01 * rms, 0.01), 20)
+    gaps = np.geomspace(max(4.0 * contact.rms, 10.0), max(0.01 * contact.rms, 0.01), 20)
     return [Row(touch + gap, 0.0, contact.attraction(touch + gap), 0, 0, 0) for gap in gaps]
 
 

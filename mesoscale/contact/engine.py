@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from mesoscale.contact import asperities as asp
 from mesoscale.contact import attraction, flow
@@ -37,6 +36,7 @@ class Path:
     unconverged: int = 0
     bounds: int = 0
     repeated: int = 0
+    reached: bool = True  # the wanted end, up to a jump of the force
 
 
 class Contact:
@@ -82,6 +82,7 @@ class Contact:
         # a surface that cannot flow needs no record of changes
         self.changes = flow.no_changes(self.heights.size if settings.model == "plastic" else 0)
         self.changed = self.changes.changed if settings.model == "plastic" else np.zeros(self.n**2, np.uint8)
+        self.work = flow.workspace(self.heights.size if settings.model == "plastic" else 0)
         self.order = np.empty(0, np.int32)
         self.order_heights = np.empty(0)
         self.sorted_to = -np.inf
@@ -114,7 +115,8 @@ class Contact:
             upper = max(height, max(start, self.lowest) + band)
             if upper >= self.highest:
                 upper = np.inf
-            sites = _sites_between(self.heights, self.changed, self.sorted_to, upper)
+            sites = np.flatnonzero((self.heights >= self.sorted_to) & (self.heights < upper)).astype(np.int32)
+            sites = sites[self.changed[sites] == 0]
             values = self.heights[sites]
             rank = np.argsort(values)
             self.order = np.concatenate((self.order, sites[rank]))
@@ -157,6 +159,7 @@ class Contact:
                 self.mechanics,
                 self.rule,
                 self.changes,
+                self.work,
             )
         force, sites, alive, bounds = asp.total_force(self.asperities, level, self.mechanics, self.capped)
         return force, sites, alive, bounds, sweeps, settled
@@ -203,23 +206,6 @@ class Contact:
         )
 
 
-@njit(cache=True)
-def _sites_between(heights, changed, lower, upper):
-    """Unchanged sites with lower <= h < upper."""
-    found = np.empty(4096, np.int32)
-    used = 0
-    for site in range(heights.size):
-        height = heights[site]
-        if lower <= height < upper and changed[site] == 0:
-            if used == found.size:
-                larger = np.empty(2 * used, np.int32)
-                larger[:used] = found
-                found = larger
-            found[used] = site
-            used += 1
-    return found[:used].copy()
-
-
 def trace(
     contact: Contact,
     steps: int,
@@ -255,6 +241,7 @@ def trace(
     while separation > stop_separation and force < final * (1.0 - contact.FORCE_TOLERANCE):
         target = max(separation - step, stop_separation)
         if target < limit:
+            path.reached = False
             break
         moved = contact.move_to(target, with_flow)
         if moved[0] > final * (1.0 + contact.FORCE_TOLERANCE):

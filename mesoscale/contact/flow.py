@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from mesoscale.contact.asperities import compact, grow, hardness, kill, shape
+from mesoscale.contact.asperities import compact, grow, hardness, shape
 
-REACH = 4.0  # the flow ends 4 s2 away from the peak: exp(-8) of the second Gaussian's amplitude
+REACH = 3.0  # the flow ends 3 s2 away from the peak, at 1 % of the second Gaussian's amplitude
 
 
 class FlowRule(NamedTuple):
@@ -47,6 +47,29 @@ def no_changes(sites: int) -> Changes:
     )
 
 
+class Workspace(NamedTuple):
+    """Lists that a sweep fills anew; preallocated because growing arrays are slow in compiled loops."""
+
+    active: np.ndarray  # int32: asperities to look at
+    peak: np.ndarray  # int32: where the flows of this sweep are
+    amplitude: np.ndarray  # float64: nm
+    width: np.ndarray  # float64: s1, nm
+    half: np.ndarray  # int32: half-width of the patch in sites
+    seeds: np.ndarray  # int32: sites waiting to be joined to asperities
+
+
+def workspace(sites: int) -> Workspace:
+    """Room for the worst case; the memory is touched only as needed."""
+    return Workspace(
+        np.empty(2 * sites, np.int32),
+        np.empty(sites, np.int32),
+        np.empty(sites),
+        np.empty(sites),
+        np.empty(sites, np.int32),
+        np.empty(sites, np.int32),
+    )
+
+
 @njit(cache=True)
 def undo(heights, changes):
     """Take back the flow of this step."""
@@ -56,23 +79,15 @@ def undo(heights, changes):
 
 
 @njit(cache=True)
-def _appended(buffer, used, value):
-    """Append to a growing buffer; returns it (a new one if it was full)."""
-    if used == buffer.size:
-        larger = np.empty(2 * buffer.size, buffer.dtype)
-        larger[:used] = buffer
-        buffer = larger
-    buffer[used] = value
-    return buffer
-
-
-@njit(cache=True)
-def _half_gaussian(width, half, spacing):
-    values = np.empty(half + 1)
-    for k in range(half + 1):
-        x = k * spacing / width
+def _gaussian(width, half, spacing):
+    """Values at -half .. half sites, and their sum."""
+    values = np.empty(2 * half + 1)
+    total = 0.0
+    for k in range(2 * half + 1):
+        x = (k - half) * spacing / width
         values[k] = np.exp(-0.5 * x * x)
-    return values
+        total += values[k]
+    return values, total
 
 
 @njit(cache=True)
@@ -83,68 +98,96 @@ def _add_flow(heights, n, spacing, peak, amplitude, narrow, ratio, at_peak, chan
     """
     wide = ratio * narrow
     half = min(int(np.ceil(REACH * wide / spacing)), (n - 1) // 2)
-    g1 = _half_gaussian(narrow, half, spacing)
-    g2 = _half_gaussian(wide, half, spacing)
-    sum1 = 2.0 * g1[1:].sum() + 1.0
-    sum2 = 2.0 * g2[1:].sum() + 1.0
+    g1, sum1 = _gaussian(narrow, half, spacing)
+    g2, sum2 = _gaussian(wide, half, spacing)
     balance = (sum1 / sum2) ** 2
     if at_peak:
         amplitude /= 1.0 - balance
-    row, col = peak // n, peak % n
+    width = 2 * half + 1
     step = changes.used[2]
-    for dr in range(-half, half + 1):
-        r = row + dr
-        if r < 0:
-            r += n
-        elif r >= n:
-            r -= n
-        f1 = amplitude * g1[abs(dr)]
-        f2 = amplitude * balance * g2[abs(dr)]
-        for dc in range(-half, half + 1):
-            c = col + dc
-            if c < 0:
-                c += n
-            elif c >= n:
-                c -= n
-            site = r * n + c
-            if changes.stamp[site] != step:
-                changes.stamp[site] = step
-                changes.journal[changes.used[1]] = site
-                changes.before[changes.used[1]] = heights[site]
-                changes.used[1] += 1
-                if changes.changed[site] == 0:
-                    changes.changed[site] = 1
-                    changes.sites[changes.used[0]] = site
-                    changes.original[changes.used[0]] = heights[site]
-                    changes.used[0] += 1
-            heights[site] += f1 * g1[abs(dc)] - f2 * g2[abs(dc)]
+    recorded = changes.used[1]
+    known = changes.used[0]
+    top = peak // n - half + n
+    left = (peak % n - half + n) % n
+    before_edge = min(width, n - left)
+    for k in range(width):
+        start = ((top + k) % n) * n
+        f1 = amplitude * g1[k]
+        f2 = amplitude * balance * g2[k]
+        for part in range(2):  # columns up to the cell's edge, then those wrapped around it
+            first, last = (0, before_edge) if part == 0 else (before_edge, width)
+            origin = start + left if part == 0 else start - before_edge
+            for m in range(first, last):
+                site = origin + m
+                if changes.stamp[site] != step:
+                    changes.stamp[site] = step
+                    changes.journal[recorded] = site
+                    changes.before[recorded] = heights[site]
+                    recorded += 1
+                    if changes.changed[site] == 0:
+                        changes.changed[site] = 1
+                        changes.sites[known] = site
+                        changes.original[known] = heights[site]
+                        known += 1
+            for m in range(first, last):
+                heights[origin + m] += f1 * g1[m] - f2 * g2[m]
+    changes.used[1] = recorded
+    changes.used[0] = known
     return half
 
 
 @njit(cache=True)
-def settle(heights, n, spacing, level, asperities, mechanics, rule, changes):
+def _release(heights, n, level, peak, reach, asperities, seeds, waiting):
+    """Break up the asperities within ``reach`` of a peak; their touching sites wait to be joined again.
+
+    A waiting site has label -1. Returns the number of waiting sites.
+    """
+    label = asperities.label
+    width = 2 * reach + 1
+    top = peak // n - reach + n
+    left = (peak % n - reach + n) % n
+    before_edge = min(width, n - left)
+    for k in range(width):
+        start = ((top + k) % n) * n
+        for m in range(width):
+            site = start + left + m if m < before_edge else start + m - before_edge
+            owner = label[site]
+            if owner > 0:
+                first = asperities.first[owner - 1]
+                last = first + asperities.count[owner - 1]
+                asperities.count[owner - 1] = 0
+                for place in range(first, last):
+                    member = asperities.arena[place]
+                    if heights[member] < level:
+                        label[member] = -1
+                        seeds[waiting] = member
+                        waiting += 1
+                    else:
+                        label[member] = 0
+            elif owner == 0 and heights[site] < level:
+                label[site] = -1
+                seeds[waiting] = site
+                waiting += 1
+    return waiting
+
+
+@njit(cache=True)
+def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, work):
     """Let all yielding asperities flow, all at once, sweep after sweep, until none is above its hardness.
 
     Only asperities that flowed or whose sites or neighbours moved are looked at again.
 
     Returns the sweeps done and whether no asperity is left above its hardness.
     """
-    active = np.empty(1024, np.int32)
     actives = 0
     for number in range(asperities.used[0]):
         if asperities.count[number] > 0:
-            active = _appended(active, actives, number)
+            work.active[actives] = number
             actives += 1
-    peaks = np.empty(256, np.int32)
-    amplitudes = np.empty(256)
-    widths = np.empty(256)
-    halves = np.empty(256, np.int32)
-    seeds = np.empty(1024, np.int32)
-    sweeps = 0
-    while True:
+    for sweeps in range(rule.max_sweeps + 1):
         flows = 0
         for k in range(actives):
-            number = active[k]
+            number = work.active[k]
             if asperities.count[number] == 0:
                 continue
             indentation, radius, area, _ = shape(asperities, number, level, mechanics)
@@ -160,48 +203,38 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes):
                 amplitude = indentation * (1.0 - (ceiling / force) ** (2.0 / 3.0))
             # no wider than the contact itself (flattened tops have no curvature), no narrower than the floor
             width = max(rule.floor, min(np.sqrt(rule.width * radius), np.sqrt(area / np.pi)))
-            peaks = _appended(peaks, flows, asperities.peak[number])
-            amplitudes = _appended(amplitudes, flows, amplitude)
-            widths = _appended(widths, flows, width)
+            work.peak[flows] = asperities.peak[number]
+            work.amplitude[flows] = amplitude
+            work.width[flows] = width
             flows += 1
         if flows == 0:
             return sweeps, True
         if sweeps == rule.max_sweeps:
             return sweeps, False
-        sweeps += 1
         if asperities.used[1] > 2 * heights.size or asperities.used[0] > heights.size:
             compact(asperities)
-        if halves.size < flows:
-            halves = np.empty(peaks.size, np.int32)
         for k in range(flows):
-            halves[k] = _add_flow(
-                heights, n, spacing, peaks[k], amplitudes[k], widths[k], rule.ratio, not rule.fixed, changes
+            work.half[k] = _add_flow(
+                heights,
+                n,
+                spacing,
+                work.peak[k],
+                work.amplitude[k],
+                work.width[k],
+                rule.ratio,
+                not rule.fixed,
+                changes,
             )
         waiting = 0
         for k in range(flows):
             # one ring more than the flow: a site's curvature sees its neighbours
-            reach = min(halves[k] + 1, (n - 1) // 2)
-            row, col = peaks[k] // n, peaks[k] % n
-            for dr in range(-reach, reach + 1):
-                r = (row + dr) % n
-                for dc in range(-reach, reach + 1):
-                    site = r * n + (col + dc) % n
-                    owner = asperities.label[site]
-                    if owner > 0:
-                        number = owner - 1
-                        first = asperities.first[number]
-                        for place in range(first, first + asperities.count[number]):
-                            member = asperities.arena[place]
-                            if heights[member] < level:
-                                seeds = _appended(seeds, waiting, member)
-                                waiting += 1
-                        kill(asperities, number)
-                    elif heights[site] < level:
-                        seeds = _appended(seeds, waiting, site)
-                        waiting += 1
+            reach = min(work.half[k] + 1, (n - 1) // 2)
+            waiting = _release(heights, n, level, work.peak[k], reach, asperities, work.seeds, waiting)
         actives = 0
         for k in range(waiting):
-            if asperities.label[seeds[k]] == 0:
-                number = grow(asperities, heights, n, level, spacing, mechanics.eight, seeds[k])
-                active = _appended(active, actives, number)
+            if asperities.label[work.seeds[k]] == -1:
+                work.active[actives] = grow(
+                    asperities, heights, n, level, spacing, mechanics.eight, work.seeds[k]
+                )
                 actives += 1
+    return rule.max_sweeps, False

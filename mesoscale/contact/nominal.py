@@ -1,0 +1,28 @@
+"""The curves of figures 4 and 11: models compared, and one surface closed to rising loads."""
+
+from collections.abc import Callable, Iterator
+
+from mesoscale.contact.cycle import ContactInputs, Cycle, run_cycle
+from mesoscale.settings import ContactSettings
+
+MODELS = ("elastic", "nonlinear", "plastic")
+
+
+def nominal_cycles(
+    inputs: ContactInputs,
+    settings: ContactSettings,
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[tuple[str, ContactSettings, float, Cycle]]:
+    """Yield name, settings, largest force (nN) and cycle of each nominal curve.
+
+    Named by model for figure 4 (`settings.nominal_force_nN`), and ``load_<F>`` for figure 11
+    (`settings.nominal_loads_nN`, with the model of the settings). One surface for all.
+    """
+    plan = [
+        (model, settings.model_copy(update={"model": model}), settings.nominal_force_nN) for model in MODELS
+    ]
+    plan += [(f"load_{force:.12g}", settings, force) for force in settings.nominal_loads_nN]
+    for done, (name, chosen, force) in enumerate(plan):
+        yield name, chosen, force, run_cycle(inputs, chosen, settings.nominal_seed, force)
+        if progress is not None:
+            progress((done + 1) / len(plan), name)
