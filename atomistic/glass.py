@@ -1,0 +1,211 @@
+"""Oxide glass by melt and quench, and the gates it must pass.
+
+A glass cell is cubic and periodic; asperities are cut from a tiling of it, so that a wavelength is a whole
+number of cells and nothing is strained.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from atomistic.errors import InputError
+from atomistic.lammps import Atoms, Progress, Workspace, read_data, run_lammps, write_data
+from atomistic.potentials import Potential
+from atomistic.settings import GlassSettings
+
+AVOGADRO = 6.02214076e23
+NEAREST_START_A = 1.5  # random starts keep atoms this far apart
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What experiment says of a glass; the accepted ranges are those of a fast quench."""
+
+    density_g_cm3: float
+    density_range: tuple[float, float]
+    bond_A: float  # first peak of g(r) of cation and oxygen
+    bond_range_A: tuple[float, float]
+    cation_coordination: float
+    coordination_range: tuple[float, float]
+    cutoff_A: float  # first minimum of that g(r)
+    source: str
+
+
+REFERENCES = {
+    "SiO2": Reference(
+        2.20, (2.05, 2.45), 1.61, (1.55, 1.68), 4.0, (3.9, 4.1), 2.2,
+        "Mozzi and Warren, J. Appl. Cryst. 2, 164 (1969); Mei et al., Phys. Rev. Lett. 98, 057802 (2007)",
+    ),
+    "TiO2": Reference(
+        3.8, (3.3, 4.3), 1.96, (1.85, 2.05), 5.5, (4.9, 6.3), 2.6,
+        "Petkov et al., J. Non-Cryst. Solids 231, 17 (1998)",
+    ),
+}  # fmt: skip
+
+
+def cations(material: str, potential: Potential) -> tuple[str, ...]:
+    """The cation species of a material."""
+    return tuple(ion for ion in potential.materials[material] if potential.species[ion].charge_e > 0)
+
+
+def random_start(material: str, potential: Potential, settings: GlassSettings, seed: int) -> Atoms:
+    """Ions at random places of a cube of the experimental density, no two nearer than 1.5 Å."""
+    formula = _formula(material, potential)
+    units = max(1, round(settings.atoms / sum(formula.values())))
+    elements = tuple(formula)
+    counts = [units * count for count in formula.values()]
+    mass_g = (
+        sum(n * potential.species[ion].mass_u for n, ion in zip(counts, elements, strict=True)) / AVOGADRO
+    )
+    length = (mass_g / REFERENCES[material].density_g_cm3 * 1e24) ** (1 / 3)
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 1]))
+    placed = np.empty((sum(counts), 3))
+    for k in range(len(placed)):
+        while True:
+            trial = rng.uniform(0, length, 3)
+            apart = placed[:k] - trial
+            apart -= length * np.round(apart / length)
+            if not np.any(np.einsum("ij,ij->i", apart, apart) < NEAREST_START_A**2):
+                break
+        placed[k] = trial
+    types = rng.permutation(np.repeat(np.arange(1, len(elements) + 1), counts))
+    return Atoms(elements, types, placed, np.full(3, length))
+
+
+def _formula(material: str, potential: Potential) -> Mapping[str, int]:
+    if material not in potential.materials:
+        raise InputError(
+            f"potential {potential.name}: material {material} is not among {', '.join(potential.materials)}; "
+            "choose another potential or material"
+        )
+    if material not in REFERENCES:
+        raise InputError(
+            f"material {material}: no reference values of its glass; known are {', '.join(REFERENCES)}"
+        )
+    return potential.materials[material]
+
+
+def write_forcefield(
+    workspace: Workspace, potential: Potential, elements: tuple[str, ...], energy_scale: float
+) -> None:
+    """Write the table and the commands that use it into a workspace (files `table` and `pairs`)."""
+    (workspace / "table").write_text(potential.table(elements, energy_scale), encoding="utf-8")
+    lines = ["pair_style table linear 4000"]
+    for i, first in enumerate(elements, 1):
+        for j, second in enumerate(elements[i - 1 :], i):
+            lines.append(f"pair_coeff {i} {j} table {first}_{second} {potential.cutoff_A}")
+    lines += ["neighbor 0.6 bin", "neigh_modify every 2 delay 0 check yes"]
+    (workspace / "pairs").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def make_glass(
+    material: str,
+    potential: Potential,
+    settings: GlassSettings,
+    seed: int,
+    work: Path,
+    progress: Progress | None = None,
+) -> Atoms:
+    """Melt a random start and quench it under zero pressure; resumes in `work` after a kill.
+
+    Returns
+    -------
+    Atoms at `settings.final_temperature_K`, cell at the volume of the last step.
+    """
+    elements = tuple(_formula(material, potential))
+    identity = {
+        "potential": potential.model_dump(),
+        "settings": settings.model_dump(),
+        "seed": seed,
+        "of": material,
+    }
+    workspace = Workspace(work, identity, "glass.in")
+    masses = {ion: potential.species[ion].mass_u for ion in elements}
+    segments = schedule(settings)
+    done = workspace.segments_done(len(segments))
+    if not done:
+        write_forcefield(workspace, potential, elements, 1.0)
+        write_data(workspace / "start.data", random_start(material, potential, settings, seed), masses)
+    total = sum(segment["steps"] for segment in segments)
+
+    def on_step(step: int) -> None:
+        if progress is not None:
+            progress(step / total, f"{step * settings.timestep_fs / 1000:.0f} ps of melt and quench")
+
+    if done < len(segments):
+        left = segments[done:]
+        variables = {
+            "data": "start.data",
+            "pairs": "pairs",
+            "seed": 1 + int(np.random.SeedSequence([seed, 2]).generate_state(1)[0] % 900_000_000),
+            "timestep": settings.timestep_fs / 1000,
+            "segment": range(done + 1, len(segments) + 1),
+            "previous": range(done, len(segments)),
+            **{key: [segment[key] for segment in left] for key in ("ensemble", "from", "to", "steps")},
+        }
+        run_lammps("glass.in", workspace, variables, on_step)
+    glass = read_data(workspace / "glass.data", elements)
+    workspace.remove()
+    return glass
+
+
+def schedule(settings: GlassSettings) -> list[dict]:
+    """Segments of the melt (constant volume), the quench and the rest (both at zero pressure)."""
+
+    def steps(duration_ps: float) -> int:
+        return max(1, round(1000 * duration_ps / settings.timestep_fs))
+
+    melt, end = settings.melt_temperature_K, settings.final_temperature_K
+    quench_ps = (melt - end) / settings.quench_rate_K_ps
+    parts = max(1, round(steps(quench_ps) / settings.segment_steps))
+    ramp = np.linspace(melt, end, parts + 1).tolist()
+    segments = [
+        {"ensemble": "nvt", "from": 1.5 * melt, "to": melt, "steps": steps(0.3 * settings.melt_ps)},
+        {"ensemble": "nvt", "from": melt, "to": melt, "steps": steps(0.7 * settings.melt_ps)},
+    ]
+    segments += [
+        {"ensemble": "npt", "from": high, "to": low, "steps": steps(quench_ps / parts)}
+        for high, low in pairwise(ramp)
+    ]
+    return [*segments, {"ensemble": "npt", "from": end, "to": end, "steps": steps(settings.rest_ps)}]
+
+
+def glass_properties(material: str, potential: Potential, atoms: Atoms) -> dict:
+    """Density, coordination and bond length of a glass, with the gate that compares them to `REFERENCES`."""
+    reference = REFERENCES[material]
+    mass_g = sum(atoms.count(ion) * potential.species[ion].mass_u for ion in atoms.elements) / AVOGADRO
+    density = mass_g / (float(np.prod(atoms.cell_A)) * 1e-24)
+    is_cation = np.isin(atoms.types, [atoms.elements.index(ion) + 1 for ion in cations(material, potential)])
+    tree = cKDTree(atoms.positions_A, boxsize=atoms.cell_A)
+    close = tree.query_pairs(3.0, output_type="ndarray")
+    mixed = close[is_cation[close[:, 0]] != is_cation[close[:, 1]]]
+    distance = atoms.positions_A[mixed[:, 0]] - atoms.positions_A[mixed[:, 1]]
+    distance -= atoms.cell_A * np.round(distance / atoms.cell_A)
+    r = np.sqrt(np.einsum("ij,ij->i", distance, distance))
+    edges = np.arange(1.2, 3.0, 0.02)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    density_of_r = np.histogram(r, edges)[0] / middle**2
+    smooth = np.convolve(density_of_r, np.ones(3) / 3, mode="same")
+    bond = float(middle[np.argmax(smooth)])
+    coordination = float(np.sum(r < reference.cutoff_A) / np.sum(is_cation))
+    checks = {
+        "density_g_cm3": (density, reference.density_range),
+        "bond_A": (bond, reference.bond_range_A),
+        "cation_coordination": (coordination, reference.coordination_range),
+    }
+    reasons = [
+        f"{material} glass: {name} {value:.3g} outside {low:g}..{high:g} ({reference.source})"
+        for name, (value, (low, high)) in checks.items()
+        if not low <= value <= high
+    ]
+    return {
+        "material": material,
+        "atoms": len(atoms),
+        "cell_nm": float(atoms.cell_A[0]) / 10,
+        **{name: value for name, (value, _) in checks.items()},
+        "gate": {"passed": not reasons, "reasons": reasons},
+    }

