@@ -66,14 +66,15 @@ def take(law: Law, index: Any) -> Law:
 
 
 def physical(law: Law) -> NDArray[np.bool_]:
-    """Which samples can be used: all parameters finite, C_r and rho_r positive.
+    """Which samples can be used: all parameters finite, C_r and rho_r positive, C_a not negative.
 
     A response surface that is linear in the inputs does not know the signs; samples that break them are
     counted and left out, never clipped.
     """
     law = flat(law, samples_of(law))
     finite = np.logical_and.reduce([np.isfinite(getattr(law, name)) for name in PARAMETERS])
-    return finite & (np.asarray(law.C_r_GPa) > 0) & (np.asarray(law.rho_r_nm) > 0)
+    positive = (np.asarray(law.C_r_GPa) > 0) & (np.asarray(law.rho_r_nm) > 0)
+    return finite & positive & (np.asarray(law.C_a_GPa_nm) >= 0)
 
 
 def law_from_columns(columns: Mapping[str, Any], branch: str, rho_a_nm: float, shield_nm: float) -> Law:

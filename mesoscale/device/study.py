@@ -1,13 +1,13 @@
 """The device stage as a whole: samples of the law in, behaviour of the switch out."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from mesoscale.device.capacitance import rough_capacitance_F
-from mesoscale.device.contact_law import BRANCHES, law_from_columns, physical, scale_adhesion, take
+from mesoscale.device.contact_law import BRANCHES, SAMPLED, law_from_columns, physical, scale_adhesion, take
 from mesoscale.device.statistics import (
     analytic_pull_in_V,
     analytic_release_V,
@@ -30,6 +30,7 @@ class LawSamples:
     Attributes
     ----------
     laws, nominal : by branch; samples of shape (samples,) and single numbers
+    nominal_from : where the nominal law comes from
     columns : the columns of the samples kept, shape (samples,) each
     dropped : samples left out because C_r or rho_r was not positive or a number was missing
     """
@@ -38,12 +39,23 @@ class LawSamples:
     nominal: dict[str, Law]
     columns: dict[str, np.ndarray]
     dropped: int
+    nominal_from: str
 
 
 def read_samples(
-    rows: Sequence[Mapping[str, str]], settings: DeviceSettings, rho_a_nm: float, shield_nm: float
+    rows: Sequence[Mapping[str, str]],
+    fitted: Sequence[Mapping[str, str]],
+    settings: DeviceSettings,
+    rho_a_nm: float,
+    shield_nm: float,
 ) -> LawSamples:
-    """Samples of the law from the rows of uq/samples.csv; the nominal law is the median of each parameter.
+    """Samples of the law, and the nominal law beside them.
+
+    Parameters
+    ----------
+    rows : uq/samples.csv, joint samples of inputs and of the parameters of both branches
+    fitted : law/parameters.csv; its runs at central inputs (node 0) give the nominal law, the mean over
+        their seeds.  Where a fit is missing, the medians of the samples are taken instead.
 
     Raises
     ------
@@ -56,15 +68,58 @@ def read_samples(
     usable = physical(laws["closing"]) & physical(laws["opening"])
     if not usable.any():
         raise InputError(
-            f"uq/samples.csv: none of {len(chosen)} samples has C_r > 0 and rho_r > 0 on both branches, so "
-            "the law cannot drive a switch; look at law/parameters.csv for failed fits"
+            f"uq/samples.csv: none of {len(chosen)} samples has positive C_r and rho_r and C_a >= 0 on both "
+            "branches, so the law cannot drive a switch; look at law/parameters.csv for failed fits"
         )
-    laws = {
-        branch: scale_adhesion(take(law, usable), settings.adhesion_scale) for branch, law in laws.items()
+    laws = {branch: take(law, usable) for branch, law in laws.items()}
+    central = {
+        branch: [row for row in fitted if row["branch"] == branch and row["node"] == "0" and row["C_r_GPa"]]
+        for branch in BRANCHES
     }
-    nominal = {branch: _median(law) for branch, law in laws.items()}
-    columns = {name: values[usable] for name, values in columns.items()}
-    return LawSamples(laws, nominal, columns, int((~usable).sum()))
+    if all(central.values()):
+        nominal = {branch: _mean_of(central[branch], rho_a_nm, shield_nm) for branch in BRANCHES}
+        nominal_from = f"mean of {len(central['closing'])} run(s) at central inputs"
+    else:
+        nominal = {branch: _median(law) for branch, law in laws.items()}
+        nominal_from = "medians of the samples, as no run at central inputs could be fitted"
+    return LawSamples(
+        {branch: scale_adhesion(law, settings.adhesion_scale) for branch, law in laws.items()},
+        {branch: scale_adhesion(law, settings.adhesion_scale) for branch, law in nominal.items()},
+        {name: values[usable] for name, values in columns.items()},
+        int((~usable).sum()),
+        nominal_from,
+    )
+
+
+def samples_json(samples: LawSamples, settings: DeviceSettings) -> dict[str, Any]:
+    """Content of device/law.json: the closed form, the nominal parameters and the joint samples."""
+    first = samples.laws["closing"]
+    return {
+        "law": {
+            "pressure_GPa": "C_r (exp(max(d_c - s, 0)/rho_r) - 1) - hamaker/(6 pi (max(s, 0)^3 + shield^3)) "
+            "- C_a max(d_c + rho_a - s, 0)",
+            "s": "mean separation, nm; positive pressure pushes the surfaces apart",
+            "source": "Kim et al., Modelling Simul. Mater. Sci. Eng. 21 (2013) 085002, eqs 10-13",
+        },
+        "units": {
+            "hamaker": "1e-18 J",
+            "d_c_nm": "nm",
+            "C_a_GPa_nm": "GPa/nm",
+            "C_r_GPa": "GPa",
+            "rho_r_nm": "nm",
+            "rho_a_nm": "nm",
+            "shield_nm": "nm",
+        },
+        "constants": {"rho_a_nm": first.rho_a_nm, "shield_nm": first.shield_nm},
+        "adhesion_scale": settings.adhesion_scale,
+        "nominal": _nominal_json(samples),
+        "nominal_from": samples.nominal_from,
+        "samples": {
+            name: np.round(column, 15)
+            for branch, law in samples.laws.items()
+            for name, column in _named_columns(branch, law).items()
+        },
+    }
 
 
 def study_switch(
@@ -94,10 +149,8 @@ def study_switch(
         "switch": {**asdict(switch), "landed_fraction": settings.landed_fraction},
         "adhesion_scale": settings.adhesion_scale,
         "samples": {"used": len(rms), "dropped": samples.dropped},
-        "nominal_law": {
-            branch: {name: float(getattr(law, name)) for name in (*PARAMETERS, "hamaker")}
-            for branch, law in samples.nominal.items()
-        },
+        "nominal_law": _nominal_json(samples),
+        "nominal_from": samples.nominal_from,
         **{case: describe_states(found) for case, found in states.items()},
         "capacitance_fF": {
             "up": float(switch.capacitance_F(up_nm)[0] * 1e15),
@@ -156,8 +209,24 @@ def stiction_rows(states: dict[str, SwitchStates]) -> list[dict[str, float]]:
 
 
 def _median(law: Law) -> Law:
-    values = {name: float(np.median(np.asarray(getattr(law, name)))) for name in (*PARAMETERS, "hamaker")}
-    return Law(**values, rho_a_nm=float(np.max(law.rho_a_nm)), shield_nm=float(np.max(law.shield_nm)))
+    return replace(law, **{name: float(np.median(np.asarray(getattr(law, name)))) for name in SAMPLED})
+
+
+def _mean_of(rows: Sequence[Mapping[str, str]], rho_a_nm: float, shield_nm: float) -> Law:
+    values = {name: float(np.mean([float(row[name]) for row in rows])) for name in SAMPLED}
+    return Law(**values, rho_a_nm=rho_a_nm, shield_nm=shield_nm)
+
+
+def _nominal_json(samples: LawSamples) -> dict[str, dict[str, float]]:
+    return {
+        branch: {name: float(getattr(law, name)) for name in SAMPLED}
+        for branch, law in samples.nominal.items()
+    }
+
+
+def _named_columns(branch: str, law: Law) -> dict[str, np.ndarray]:
+    values = {f"{branch}_{name}": np.asarray(getattr(law, name)) for name in PARAMETERS}
+    return values | {"hamaker": np.asarray(law.hamaker)}
 
 
 def _checks(switch: Switch, samples: LawSamples, states: dict[str, SwitchStates]) -> dict[str, float]:

@@ -1,0 +1,48 @@
+rule device:
+    input:
+        f"{RESULTS}/device/switch.json",
+        f"{RESULTS}/device/law.csv",
+
+
+rule solve_switch:
+    message:
+        "solve the switch"
+    input:
+        samples=f"{RESULTS}/uq/samples.csv",
+        parameters=f"{RESULTS}/law/parameters.csv",
+    output:
+        switch=f"{RESULTS}/device/switch.json",
+        release=f"{RESULTS}/device/release.csv",
+        stiction=f"{RESULTS}/device/stiction.csv",
+        path=f"{RESULTS}/device/path.csv",
+    log:
+        f"{RESULTS}/logs/solve_switch.log",
+    params:
+        settings=settings("device"),
+        law=settings("law"),
+        max_force_nN=SCENE.contact.max_force_nN,
+        length_nm=SCENE.contact.length_nm,
+    script:
+        "../scripts/solve_switch.py"
+
+
+rule export_law:
+    message:
+        "export the law for device and circuit simulators"
+    input:
+        samples=f"{RESULTS}/uq/samples.csv",
+        parameters=f"{RESULTS}/law/parameters.csv",
+    output:
+        table=f"{RESULTS}/device/law.csv",
+        samples=f"{RESULTS}/device/law.json",
+        spice=f"{RESULTS}/device/asperity_contact.sub",
+        testbench=f"{RESULTS}/device/asperity_contact.cir",
+        verilog=f"{RESULTS}/device/asperity_contact.va",
+    log:
+        f"{RESULTS}/logs/export_law.log",
+    params:
+        settings=settings("device"),
+        law=settings("law"),
+        length_nm=SCENE.contact.length_nm,
+    script:
+        "../scripts/export_law.py"
