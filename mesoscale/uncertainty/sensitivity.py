@@ -31,7 +31,8 @@ def sobol_indices(y_a: Array, y_b: Array, y_ab: Array) -> tuple[Array, Array]:
     variance = np.concatenate([y_a, y_b]).var()
     if not variance > 1e-28 * np.square(y_a).mean():
         return np.full(len(y_ab), np.nan), np.full(len(y_ab), np.nan)
-    first = (y_b * (y_ab - y_a)).mean(axis=1) / variance
+    centre = (y_a.mean() + y_b.mean()) / 2  # else the mean's square swamps small indices
+    first = ((y_b - centre) * (y_ab - y_a)).mean(axis=1) / variance
     total = ((y_a - y_ab) ** 2).mean(axis=1) / (2 * variance)
     return first, total
 
@@ -43,13 +44,10 @@ def pick_freeze(table: InputTable, count: int, seed: int) -> Array:
     the independent variables behind them, in the order of the table (Rosenblatt's order).
     """
     inputs = len(table.rows)
-    # a Kronecker sequence of the generalised golden ratio: evenly spread, any length
-    ratio = 2.0
-    for _ in range(60):
-        ratio = (1 + ratio) ** (1 / (2 * inputs + 1))
-    steps = ratio ** -np.arange(1.0, 2 * inputs + 1)
+    import openturns  # a second to import, needed here alone
+
     shift = np.random.default_rng(np.random.SeedSequence([seed, 0x50])).random(2 * inputs)
-    unit = (shift + np.arange(1, count + 1)[:, None] * steps) % 1.0
+    unit = (np.asarray(openturns.SobolSequence(2 * inputs).generate(count)) + shift) % 1.0
     a, b = unit[:, :inputs], unit[:, inputs:]
     mixed = []
     for k in range(inputs):
@@ -150,9 +148,7 @@ def _index_intervals(
         indices(np.bincount(rng.integers(seeds, size=seeds), minlength=seeds) / seeds)
         for _ in range(settings.bootstrap if seeds > 1 else 0)
     ]
-    low, high = (
-        np.nanquantile(resampled, [0.05, 0.95], axis=0)
-        if resampled
-        else (np.full_like(estimate, np.nan), np.full_like(estimate, np.nan))
-    )
+    low, high = np.full_like(estimate, np.nan), np.full_like(estimate, np.nan)
+    if resampled and np.isfinite(estimate).all():
+        low, high = np.nanquantile(resampled, [0.05, 0.95], axis=0)
     return (np.stack([estimate[0], low[0], high[0]]), np.stack([estimate[1], low[1], high[1]]))

@@ -1,0 +1,224 @@
+"""Propagation, sensitivity and validation on functions whose answers are known."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mesoscale.law import PARAMETERS
+from mesoscale.settings import UncertaintySettings
+from mesoscale.uncertainty.collocation import nodes, to_values
+from mesoscale.uncertainty.distributions import (
+    Distribution,
+    InputTable,
+    UncertainInput,
+    correlation_matrix,
+)
+from mesoscale.uncertainty.paper_tables import table2, table3
+from mesoscale.uncertainty.propagation import (
+    NodeOutputs,
+    output_rows,
+    propagate,
+    read_nodes,
+    surrogate_json,
+)
+from mesoscale.uncertainty.runs import OUTPUTS
+from mesoscale.uncertainty.sensitivity import pick_freeze, sensitivity_rows, sobol_indices
+from mesoscale.uncertainty.surrogate import from_json
+from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, validation_rows
+
+PAPER = Path(__file__).parents[3] / "config" / "paper"
+SETTINGS = UncertaintySettings(samples=2000, bootstrap=50, sobol_samples=1024)
+
+
+def uniform_table(inputs=3, correlation=None):
+    rows = tuple(
+        UncertainInput(f"x{k}", "1", Distribution("uniform", 0.0, 1.0), "literature", "")
+        for k in range(inputs)
+    )
+    return InputTable(rows, np.eye(inputs) if correlation is None else correlation)
+
+
+def linear_nodes(table, slopes, seeds=6, scatter=0.0):
+    """Node outputs y_k = 10 + x . slopes (closing), opening twice that; a seed shifts all nodes alike."""
+    x = to_values(nodes(len(table.rows), 1), table.ranges(0.999))
+    base = 10 + x @ np.asarray(slopes, float)
+    shifts = scatter * np.linspace(-1, 1, seeds)
+    closing = base + shifts[:, None]
+    return NodeOutputs(list(range(seeds)), np.stack([closing] * 4 + [2 * closing] * 4, axis=-1))
+
+
+def paper_rows(name):
+    with (PAPER / name).open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_mean_and_deviation_of_a_linear_function():
+    table = uniform_table()
+    result = propagate(linear_nodes(table, [1, 2, 3]), table, SETTINGS)
+    exact = np.sqrt(14 / 12)
+    # Monte Carlo with 2000 samples: 2.2 % of the deviation
+    assert result.by_seed[0, 0, 0] == pytest.approx(13, abs=4 * exact / np.sqrt(2000))
+    assert result.by_seed[0, 1, 0] == pytest.approx(exact, rel=0.06)
+    assert result.seed_share == pytest.approx(np.zeros(8), abs=1e-9)
+
+
+def test_seed_share_of_a_seed_that_shifts_everything():
+    table = uniform_table()
+    nodes_given = linear_nodes(table, [1, 2, 3], seeds=40, scatter=2.0)
+    result = propagate(nodes_given, table, SETTINGS)
+    within = np.var(2 * np.linspace(-1, 1, 40), ddof=1)
+    assert result.seed_share[0] == pytest.approx(within / (within + 14 / 12), rel=0.06)
+
+
+def test_missing_nodes_are_counted_and_not_filled():
+    table = uniform_table()
+    given = linear_nodes(table, [1, 2, 3], seeds=4)
+    given.values[1, 2, 3] = np.nan
+    result = propagate(given, table, SETTINGS)
+    row = {r["output"]: r for r in output_rows(given, result, {}, {})}["rho_r_nm"]
+    assert (row["missing"], row["seeds_used"], row["seeds"]) == (1, 3, 4)
+    assert row["mean"] == pytest.approx(13, abs=0.1)
+    given.values[:, 0, 3] = np.nan
+    result = propagate(given, table, SETTINGS)
+    row = {r["output"]: r for r in output_rows(given, result, {}, {})}["rho_r_nm"]
+    assert row["seeds_used"] == 0
+    assert np.isnan(row["mean"])
+    assert result.surfaces[3] is None
+
+
+def test_one_input_and_twelve_inputs():
+    for inputs in (1, 12):
+        table = uniform_table(inputs)
+        given = linear_nodes(table, np.ones(inputs))
+        row = output_rows(given, propagate(given, table, SETTINGS), {}, {})[0]
+        assert row["dev"] == pytest.approx(np.sqrt(inputs / 12), rel=0.06)
+
+
+def test_all_equal_outputs_have_no_spread_and_no_indices():
+    table = uniform_table()
+    given = linear_nodes(table, [0, 0, 0])
+    row = output_rows(given, propagate(given, table, SETTINGS), {}, {})[0]
+    assert row["dev"] == pytest.approx(0, abs=1e-12)
+    indices = sensitivity_rows(given, table, SETTINGS, np.zeros(8), {}, {})
+    assert all(r["mu_star"] == pytest.approx(0, abs=1e-12) for r in indices)
+    assert all(np.isnan(r["sobol_first"]) for r in indices)
+
+
+def test_sobol_indices_of_a_linear_function():
+    table = uniform_table()
+    rows = sensitivity_rows(linear_nodes(table, [1, 2, 3]), table, SETTINGS, np.zeros(8), {}, {})
+    for row in rows[:3]:
+        exact = {"x0": 1 / 14, "x1": 4 / 14, "x2": 9 / 14}[row["input"]]
+        assert row["sobol_first"] == pytest.approx(exact, abs=0.02)
+        assert row["sobol_total"] == pytest.approx(exact, abs=0.02)
+        assert row["sobol_total_low"] <= row["sobol_total"] <= row["sobol_total_high"]
+
+
+def test_sobol_estimators_on_ishigami():
+    """Ishigami's function (a 7, b 0.1): first 0.3139, 0.4424, 0; total 0.5576, 0.4424, 0.2437."""
+    table = uniform_table(3)
+    x = (2 * pick_freeze(table, 16384, 1) - 1) * np.pi
+    y = np.sin(x[..., 0]) + 7 * np.sin(x[..., 1]) ** 2 + 0.1 * x[..., 2] ** 4 * np.sin(x[..., 0])
+    first, total = sobol_indices(y[0], y[1], y[2:])
+    assert first == pytest.approx([0.3139, 0.4424, 0.0], abs=0.02)
+    assert total == pytest.approx([0.5576, 0.4424, 0.2437], abs=0.02)
+
+
+def test_correlation_widens_the_sum_and_narrows_the_difference():
+    correlation = correlation_matrix(["x0", "x1"], {("x0", "x1"): 0.8})
+    free, bound = uniform_table(2), uniform_table(2, correlation)
+    for slopes, wider in (([1, 1], True), ([1, -1], False)):
+        deviations = [propagate(linear_nodes(t, slopes), t, SETTINGS).by_seed[0, 1, 0] for t in (free, bound)]
+        assert (deviations[1] > 1.2 * deviations[0]) == wider
+        assert (deviations[1] < 0.6 * deviations[0]) == (not wider)
+
+
+def test_zero_width_inputs():
+    table = uniform_table(2)
+    fixed = UncertainInput("x1", "1", Distribution("fixed", 0.5), "literature", "")
+    table = InputTable((table.rows[0], fixed), np.eye(2))
+    given = linear_nodes(table, [1, 1])
+    result = propagate(given, table, SETTINGS)
+    assert result.by_seed[0, 1, 0] == pytest.approx(1 / np.sqrt(12), rel=0.06)
+    rows = sensitivity_rows(given, table, SETTINGS, np.zeros(8), {}, {})
+    assert rows[1]["mu_star"] == pytest.approx(0, abs=1e-12)
+
+
+def test_surrogate_json_reproduces_the_propagated_values():
+    table = uniform_table()
+    given = linear_nodes(table, [1, 2, 3])
+    result = propagate(given, table, SETTINGS)
+    content = surrogate_json(result, given, table, SETTINGS, {"rho_a_nm": 2.0, "alpha_nm": 2.0}, {}, {})
+    assert [o["name"] for o in content["outputs"]][:2] == ["closing_d_c_nm", "closing_C_a_GPa_nm"]
+    for k, output in enumerate(content["outputs"]):
+        surface = from_json(output, content["inputs"])
+        assert surface(result.samples[:5]) == pytest.approx(result.outputs[:5, k])
+
+
+def test_validation_of_a_perfect_and_of_a_biased_surface():
+    table = uniform_table()
+    result = propagate(linear_nodes(table, [1, 2, 3]), table, SETTINGS)
+    x = table.sample(400, 9)
+    direct = np.stack([10 + x @ [1, 2, 3]] * 4 + [20 + x @ [2, 4, 6]] * 4, axis=1)
+    row = validation_rows(x, direct, result.surfaces, result.outputs, 50, 1)[0]
+    assert row["q2"] == pytest.approx(1)
+    assert row["mean_direct_low"] <= row["mean_direct"] <= row["mean_direct_high"]
+    # 400 and 2000 samples of a deviation of 1.08
+    assert row["mean_surface"] == pytest.approx(row["mean_direct"], abs=4 * 1.08 / 20)
+    row = validation_rows(x, direct + 1.0, result.surfaces, result.outputs, 50, 1)[0]
+    assert row["bias"] == pytest.approx(-1)
+    assert row["q2"] == pytest.approx(1 - 1 / (direct[:, 0].var()), rel=1e-6)
+
+
+def test_validation_without_runs_reports_none():
+    table = uniform_table()
+    result = propagate(linear_nodes(table, [1, 2, 3]), table, SETTINGS)
+    rows = validation_rows(np.empty((0, 3)), np.empty((0, 8)), result.surfaces, result.outputs, 50, 1)
+    assert [row["runs"] for row in rows] == [0] * 8
+    assert set(rows[0]) <= set(VALIDATION_COLUMNS)
+
+
+def test_nodes_are_read_by_seed_and_branch():
+    rows = [
+        {
+            "seed": str(seed),
+            "node": str(node),
+            "branch": branch,
+            **dict.fromkeys(PARAMETERS, str(10 * seed + node)),
+        }
+        for seed in (4, 5)
+        for node in (0, 1, 2)
+        for branch in ("closing", "opening")
+    ]
+    rows[-1]["C_r_GPa"] = ""
+    given = read_nodes(rows)
+    assert given.seeds == [4, 5]
+    assert given.values[1, 1].tolist() == [51.0] * 8
+    assert np.isnan(given.values[1, 2, 6])
+    assert np.isnan(given.paper_outputs[1, 2, 6])
+
+
+def test_the_papers_tables_agree_with_each_other_only_with_labels_exchanged():
+    """dev = sqrt(sum mu*^2 / 12) within 3 %, the rounding of the tables."""
+    two, three = table2(paper_rows("table2.csv")), table3(paper_rows("table3.csv"))
+    for output in ("d_c", "C_a", "C_r", "rho_r", "delta_d_c", "delta_rho_r"):
+        from_effects = np.sqrt(sum(value**2 for value in three[output].values()) / 12)
+        assert from_effects == pytest.approx(two[output][1], rel=0.03), output
+    printed = table3(paper_rows("table3.csv"), as_printed=True)
+    assert np.sqrt(sum(v**2 for v in printed["C_a"].values()) / 12) > 2 * two["C_a"][1]
+
+
+def test_outputs_are_the_papers_columns():
+    assert len(OUTPUTS) == 8
+    rows = output_rows(
+        linear_nodes(uniform_table(), [1, 2, 3]),
+        propagate(linear_nodes(uniform_table(), [1, 2, 3]), uniform_table(), SETTINGS),
+        table2(paper_rows("table2.csv")),
+        table2(paper_rows("table2.csv"), exchanged=True),
+    )
+    by_name = {row["output"]: row for row in rows}
+    assert by_name["C_a_GPa_nm"]["paper_mean"] == pytest.approx(15.1e-5)
+    assert by_name["delta_C_r_GPa"]["paper_mean"] == pytest.approx(2.76e-4)
+    assert by_name["delta_C_r_GPa"]["paper_mean_exchanged"] == pytest.approx(5.5e-5)

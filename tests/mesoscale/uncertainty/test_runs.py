@@ -1,0 +1,78 @@
+"""Runs of the real engine on small surfaces: planning, failures, repeated inputs."""
+
+import numpy as np
+import pytest
+
+from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
+from mesoscale.uncertainty import runs as runs_module
+from mesoscale.uncertainty.inputs import collect
+from mesoscale.uncertainty.propagation import SURFACES
+from mesoscale.uncertainty.runs import (
+    collocation_runs,
+    compute,
+    compute_all,
+    compute_rows,
+    contact_of,
+    fit_cycle,
+    random_runs,
+)
+from workflow.scene import load_scene
+
+PAPER = collect(load_scene("paper").inputs, {}, {}, 0.999)
+CONTACT = ContactSettings(pixels=64)
+CENTRE = collocation_runs(PAPER, UncertaintySettings(), 0, 1)[0].values
+
+
+def test_runs_of_a_chunk_do_not_depend_on_the_number_of_seeds():
+    few, many = UncertaintySettings(seeds=2), UncertaintySettings(seeds=20)
+    assert collocation_runs(PAPER, few, 10, 30) == collocation_runs(PAPER, many, 10, 30)
+    assert [run.seed for run in collocation_runs(PAPER, few, 14, 16)] == [0, 1]
+
+
+def test_random_runs_can_be_cut_anywhere():
+    whole = random_runs(PAPER, UncertaintySettings(), 0, 10)
+    assert random_runs(PAPER, UncertaintySettings(), 4, 10) == whole[4:]
+    assert len({run.seed for run in whole}) == 10
+    assert all(2 <= run.values["rms"] <= 15 for run in whole)
+
+
+def test_a_cycle_gives_eight_outputs():
+    cycle = compute(CENTRE, 0, CONTACT)
+    assert not isinstance(cycle, str)
+    outcome = fit_cycle(cycle, CENTRE["hamaker"], 1e6, LawSettings())
+    assert outcome.outputs.shape == (8,)
+    assert outcome.closing.d_c_nm == pytest.approx(cycle.first_contact_nm)
+    # a smooth closing: contact a few rms from the mean plane
+    assert 2 < outcome.closing.d_c_nm / CENTRE["rms"] < 6
+
+
+def test_rough_surfaces_touch_at_separations_in_proportion_to_rms():
+    """Common random numbers: the same surface, scaled."""
+    cycles = [compute({**CENTRE, "rms": rms}, 3, CONTACT) for rms in (4.0, 8.0)]
+    assert cycles[1].first_contact_nm == pytest.approx(2 * cycles[0].first_contact_nm)
+
+
+def test_a_failing_engine_is_reported_and_leaves_no_numbers():
+    rows = list(compute_rows([runs_module.Run(0, -1, 1, {**CENTRE, "e_star": -1.0})], CONTACT, LawSettings()))
+    assert rows[0]["curve_status"].startswith("failed: InputError")
+    assert all(rows[0][name] == "" for name in SURFACES)
+
+
+def test_equal_inputs_are_computed_once(monkeypatch):
+    calls = []
+    monkeypatch.setattr(runs_module, "compute", lambda *args: calls.append(args) or "failed: test")
+    same = [runs_module.Run(k, k, 0, CENTRE) for k in range(5)]
+    assert len(list(compute_all(same, CONTACT))) == 5
+    assert len(calls) == 1
+
+
+def test_the_eighth_input_reaches_the_engine():
+    inputs, settings = contact_of({**CENTRE, "gap_cutoff": 0.3}, CONTACT)
+    assert settings.gap_cutoff_nm == 0.3
+    near, far = (
+        fit_cycle(compute({**CENTRE, "gap_cutoff": d}, 0, CONTACT), 0.215, 1e6, LawSettings())
+        for d in (0.165, 0.3)
+    )
+    assert near.closing.C_a_GPa_nm > far.closing.C_a_GPa_nm
+    assert np.isclose(near.closing.rho_r_nm, far.closing.rho_r_nm)
+    assert inputs.rms == CENTRE["rms"]
