@@ -115,7 +115,8 @@ class TopographySettings(Settings):
         0.05,
         ge=0,
         le=0.5,
-        description="largest share of missing pixels that is filled from neighbours; above, the scan is refused",
+        description="largest share of missing pixels that is filled from neighbours; above, the scan is "
+        "refused",
         json_schema_extra={"unit": "1"},
     )
     sections: int = Field(
@@ -141,7 +142,8 @@ class TopographySettings(Settings):
     )
     method: Literal["likelihood", "lines"] = Field(
         "likelihood",
-        description="estimate that feeds the inputs: maximum likelihood, or the paper's line fits made precise",
+        description="estimate that feeds the inputs: maximum likelihood, or the paper's line fits made "
+        "precise",
     )
     ranges: Literal["scatter", "interval"] = Field(
         "scatter",
@@ -162,8 +164,8 @@ class TopographySettings(Settings):
     )
     on_doubt: Literal["stop", "warn"] = Field(
         "stop",
-        description="what happens to parameters that the scans do not determine well: stop before they are used, "
-        "or warn in the report and use them",
+        description="what happens to parameters that the scans do not determine well: stop before they are "
+        "used, or warn in the report and use them",
     )
     scans_per_job: int = Field(
         6, ge=1, le=200, description="scans analysed by one job", json_schema_extra={"unit": "1"}

@@ -1,4 +1,4 @@
-"""A synthetic AFM: rough surfaces of known spectrum, scanned with tip, noise, tilt, drift and digital steps."""
+"""A synthetic AFM: surfaces of known spectrum, scanned with tip, noise, tilt, drift and digital steps."""
 
 import math
 from collections.abc import Iterator
@@ -11,8 +11,11 @@ from mesoscale.settings import SyntheticScanSettings
 from mesoscale.topography.model import RoughSpectrum
 from mesoscale.topography.scan import Scan
 
-PERIOD = 1.5  # side of the periodic surface over side of the scan cut from it, so that scans are not periodic
+PERIOD = (
+    1.25  # side of the periodic surface over side of the scan cut from it, so that scans are not periodic
+)
 ALIASES = 12  # images of the spectrum folded back by coarse pixels
+TIP_STEP_NM = 5.0  # the tip meets the surface on pixels this fine, or twice as fine as the scan's
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,9 @@ def synthetic_scans(settings: SyntheticScanSettings) -> Iterator[SyntheticScan]:
             rng = np.random.default_rng(np.random.SeedSequence(settings.seed, spawn_key=(key, number)))
             rms = settings.rms_nm * math.exp(settings.rms_variation * rng.standard_normal())
             truth = RoughSpectrum.from_rms(rms, settings.q0, settings.slope, settings.q1)
-            surface = surface_patch(truth, settings.pixels, length, rng)
+            finer = 2 if settings.tip_radius_nm > 0 and length / settings.pixels > TIP_STEP_NM else 1
+            surface = surface_patch(truth, finer * settings.pixels, length, rng)
+            surface = dilate(surface, settings.tip_radius_nm, length / len(surface))[::finer, ::finer]
             name = f"{size}_{number + 1:02d}"
             yield SyntheticScan(measure(surface, length, settings, rng, name), truth)
 
@@ -60,19 +65,16 @@ def surface_patch(
 def _folded_psd(truth: RoughSpectrum, qx: np.ndarray, qy: np.ndarray, sampling: float) -> np.ndarray:
     """Sum of C over the images of each wave vector at multiples of the sampling wave vector."""
     images = min(ALIASES, math.ceil(truth.q1 / sampling + 0.5))
-    near = np.zeros((len(qx), len(qy)))
-    # distant images vary slowly over the grid: a coarse one and linear interpolation do
+    # the images vary slowly over the grid: a coarse one and linear interpolation do
     nodes = np.linspace(-sampling / 2, sampling / 2, 33)
     far = np.zeros((33, 33))
     for i in range(-images, images + 1):
         for j in range(-images, images + 1):
-            if max(abs(i), abs(j)) <= 1:
-                near += truth.psd(np.hypot(qx[:, None] + i * sampling, qy[None, :] + j * sampling))
-            else:
+            if (i, j) != (0, 0):
                 far += truth.psd(np.hypot(nodes[:, None] + i * sampling, nodes[None, :] + j * sampling))
     unit = np.eye(33)
     along_x, along_y = (np.stack([np.interp(q, nodes, row) for row in unit], axis=1) for q in (qx, qy))
-    return near + along_x @ far @ along_y.T
+    return truth.psd(np.hypot(qx[:, None], qy[None, :])) + along_x @ far @ along_y.T
 
 
 def measure(
@@ -82,13 +84,11 @@ def measure(
     rng: np.random.Generator,
     name: str,
 ) -> Scan:
-    """Scan a surface (pixels, pixels; nm): tip dilation, tilt, drift, line offsets, noise, digital steps."""
+    """Scan what the tip traces (pixels, pixels; nm): tilt, drift, line offsets, noise, digital steps."""
     pixels = surface.shape[0]
-    step = length_nm / pixels
-    heights = dilate(surface, settings.tip_radius_nm, step)
     position = np.linspace(-0.5, 0.5, pixels)
     tilt = np.tan(np.radians(settings.tilt_deg * rng.uniform(-1, 1, 2))) * length_nm
-    heights = heights + tilt[0] * position[:, None] + tilt[1] * position[None, :]
+    heights = surface + tilt[0] * position[:, None] + tilt[1] * position[None, :]
     # drift acts in time, that is along the slow axis: a smooth curve of three random cosines
     phases = rng.uniform(0, 2 * np.pi, 3)
     drift = sum(np.cos(np.pi * (k + 1) * position + phase) / (k + 1) for k, phase in enumerate(phases))
@@ -103,7 +103,7 @@ def measure(
 def dilate(surface: np.ndarray, tip_radius_nm: float, step_nm: float) -> np.ndarray:
     """What a paraboloidal tip of the given radius traces: max over u of h(x+u) - u^2 / 2R.
 
-    A paraboloid separates into one pass per axis. Pixels coarser than the tip do not see it.
+    A paraboloid separates into one pass per axis. What lies below the pixels does not touch the tip.
     """
     if tip_radius_nm <= 0:
         return surface.copy()

@@ -91,7 +91,9 @@ def radial_spectrum(
     xs, ys = section_starts(nx, mx, per_side), section_starts(ny, my, per_side)
     wx, wy = flat_window(mx, flat), flat_window(my, flat)
     window = np.outer(wx, wy).astype(np.float32)
-    data = np.ascontiguousarray(heights, dtype=np.float32)  # 7 digits; spectra span fewer (docs/topography.md)
+    data = np.ascontiguousarray(
+        heights, dtype=np.float32
+    )  # 7 digits; spectra span fewer (docs/topography.md)
     total = np.zeros((mx, my // 2 + 1))
     for x in xs:
         for y in ys:

@@ -1,0 +1,92 @@
+# AFM scans → spectra → q0, Hurst exponent and RMS with ranges (docs/topography.md)
+
+TOPOGRAPHY = SCENE.topography
+SCANS = f"{RESULTS}/topography/scans"
+
+
+def scan_files():
+    """The scans to analyse: the user's own, or the synthetic ones that the workflow writes."""
+    if not TOPOGRAPHY.scans:
+        synthetic = TOPOGRAPHY.synthetic
+        names = [f"small_{k + 1:02d}" for k in range(synthetic.small_scans)]
+        names += [f"large_{k + 1:02d}" for k in range(synthetic.large_scans)]
+        return [f"{SCANS}/{name}.gwy" for name in names]
+    scene_folder = Path(str(config.get("scene", ""))).parent
+    found, missing = [], []
+    for name in TOPOGRAPHY.scans:
+        places = [Path(name), scene_folder / name]
+        existing = [place for place in places if place.is_file()]
+        found.append(str(existing[0]) if existing else name)
+        missing += [] if existing else [name]
+    if missing and workflow.is_main_process:
+        for name in missing:
+            print(
+                f"ERROR topography.scans: {name}: no such file here or beside the scene; correct the path",
+                file=sys.stderr,
+            )
+        sys.exit(1)
+    return found
+
+
+SCAN_FILES = scan_files() if needed("topography") or not TOPOGRAPHY.scans else list(TOPOGRAPHY.scans)
+SCAN_CHUNKS = [
+    SCAN_FILES[k : k + TOPOGRAPHY.scans_per_job] for k in range(0, len(SCAN_FILES), TOPOGRAPHY.scans_per_job)
+]
+
+
+rule topography:
+    input:
+        f"{RESULTS}/topography/spectra.h5",
+        f"{RESULTS}/topography/parameters.json",
+
+
+if not TOPOGRAPHY.scans:
+
+    rule write_synthetic_scans:
+        output:
+            scans=SCAN_FILES,
+            truth=f"{RESULTS}/topography/truth.json",
+        log:
+            f"{RESULTS}/logs/write_synthetic_scans.log",
+        params:
+            settings=settings("topography")["synthetic"],
+        message:
+            "write synthetic AFM scans with known truth"
+        script:
+            "../scripts/write_synthetic_scans.py"
+
+
+rule analyse_scans:
+    input:
+        scans=lambda wildcards: SCAN_CHUNKS[int(wildcards.chunk)],
+    output:
+        f"{RESULTS}/topography/spectra/chunk_{{chunk}}.h5",
+    log:
+        f"{RESULTS}/logs/analyse_scans_{{chunk}}.log",
+    params:
+        settings=settings("topography"),
+        first=lambda wildcards: int(wildcards.chunk) * TOPOGRAPHY.scans_per_job,
+    message:
+        "read AFM scans and compute their spectra (part {wildcards.chunk})"
+    script:
+        "../scripts/analyse_scans.py"
+
+
+rule pool_spectra:
+    input:
+        chunks=expand(
+            f"{RESULTS}/topography/spectra/chunk_{{chunk}}.h5",
+            chunk=[f"{k:03d}" for k in range(len(SCAN_CHUNKS))],
+        ),
+        truth=[] if TOPOGRAPHY.scans else f"{RESULTS}/topography/truth.json",
+    output:
+        spectra=f"{RESULTS}/topography/spectra.h5",
+        parameters=f"{RESULTS}/topography/parameters.json",
+    log:
+        f"{RESULTS}/logs/pool_spectra.log",
+    params:
+        settings=settings("topography"),
+    message:
+        "fit roll-off, slope and RMS to the spectra"
+    script:
+        "../scripts/pool_spectra.py"

@@ -1,0 +1,112 @@
+"""From one cleaned scan to its spectra, and from all spectra to the curves of figures 9 and 10."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesoscale.settings import TopographySettings
+from mesoscale.topography.likelihood import TrustedSpectrum, trusted_range
+from mesoscale.topography.model import RoughSpectrum
+from mesoscale.topography.parameters import Topography
+from mesoscale.topography.scan import Scan, clean
+from mesoscale.topography.spectrum import (
+    Spectrum,
+    autocorrelation,
+    log_bins,
+    profile_spectrum,
+    radial_spectrum,
+)
+
+HANN_SECTIONS = 25  # Hann-windowed sections overlap more than flat ones; more than this adds nothing
+THUMBNAIL = 256  # pixels per side of the picture of a scan
+CURVE_POINTS = 200
+
+
+@dataclass(frozen=True)
+class ScanAnalysis:
+    """Spectra of one scan.
+
+    Attributes
+    ----------
+    cleaned : the scan after levelling, with the steps taken.
+    raw_rms_nm : RMS height before any step.
+    spectrum : isotropic spectrum, Hann window, without the lowest wave numbers along the scan lines; the fits
+        use it.
+    flat_spectrum : isotropic spectrum by the paper's sections and nearly flat window.
+    profile_q, profile_psd : one-dimensional spectrum along the scan lines, 1/nm and nm^3.
+    lag_nm, autocorrelation_nm2 : height autocorrelation along the scan lines.
+    """
+
+    cleaned: Scan
+    raw_rms_nm: float
+    spectrum: Spectrum
+    flat_spectrum: Spectrum
+    profile_q: np.ndarray
+    profile_psd: np.ndarray
+    lag_nm: np.ndarray
+    autocorrelation_nm2: np.ndarray
+
+
+def analyse_scan(scan: Scan, settings: TopographySettings) -> ScanAnalysis:
+    """Clean a scan and compute its spectra."""
+    cleaned = clean(scan, settings)
+    heights, lengths = cleaned.heights_nm, cleaned.lengths_nm
+    sections, fraction = settings.sections, settings.section_fraction
+    spectrum = radial_spectrum(
+        heights, lengths, min(sections, HANN_SECTIONS), fraction, flat=0.0, skip_lines=True
+    )
+    flat = radial_spectrum(heights, lengths, sections, fraction, settings.window_flat)
+    profile_q, profile_psd = profile_spectrum(heights, lengths)
+    lag, correlation = autocorrelation(heights, lengths)
+    return ScanAnalysis(cleaned, scan.rms_nm, spectrum, flat, profile_q, profile_psd, lag, correlation)
+
+
+def trusted(name: str, spectrum: Spectrum, settings: TopographySettings) -> TrustedSpectrum:
+    """The spectrum with its trusted range for the tip of the settings."""
+    return trusted_range(name, spectrum, settings.tip_radius_nm)
+
+
+def thumbnail(heights: np.ndarray) -> np.ndarray:
+    """Heights thinned to at most THUMBNAIL pixels a side, single precision."""
+    stride = max(1, -(-max(heights.shape) // THUMBNAIL))
+    return heights[::stride, ::stride].astype(np.float32)
+
+
+def pooled_curve(spectra: Sequence[Spectrum]) -> dict[str, np.ndarray]:
+    """Geometric mean, lowest and highest C of all scans on common bins of log q, with the number of scans."""
+    per_decade = 12
+    rows: dict[int, list[tuple[float, float]]] = {}
+    for spectrum in spectra:
+        binned = log_bins(spectrum, per_decade)
+        for q, psd in zip(binned.q, binned.psd, strict=True):
+            rows.setdefault(int(np.floor(np.log10(q) * per_decade)), []).append((q, psd))
+    keys = sorted(rows)
+    return {
+        "q": np.array([np.exp(np.mean([np.log(q) for q, _ in rows[key]])) for key in keys]),
+        "psd": np.array([np.exp(np.mean([np.log(psd) for _, psd in rows[key]])) for key in keys]),
+        "psd_low": np.array([min(psd for _, psd in rows[key]) for key in keys]),
+        "psd_high": np.array([max(psd for _, psd in rows[key]) for key in keys]),
+        "scans": np.array([len(rows[key]) for key in keys]),
+    }
+
+
+def fit_curves(
+    topography: Topography, lowest_q: float, truth: RoughSpectrum | None = None
+) -> Mapping[str, np.ndarray]:
+    """The fits of figure 10 on a common grid of q (1/nm), C in nm^4; bounds are those of the line fits."""
+    q = np.geomspace(lowest_q, max(topography.cutoff, 2 * lowest_q), CURVE_POINTS)
+    curves = {"q": q}
+    if topography.likelihood is not None:
+        curves["likelihood"] = topography.likelihood.spectrum(topography.cutoff).psd(q)
+    line = topography.line_fit
+    if line is not None:
+        end = topography.cutoff
+        curves["lines"] = RoughSpectrum(line.plateau, line.q0, line.slope, end).psd(q)
+        curves["shallow_bound"] = RoughSpectrum(line.plateau, line.q0, line.slope_low, end).psd(q)
+        curves["steep_bound"] = RoughSpectrum(line.plateau, line.q0, line.slope_high, end).psd(q)
+        curves["plateau_low"] = np.where(q <= line.q0, line.plateau_low, np.nan)
+        curves["plateau_high"] = np.where(q <= line.q0, line.plateau_high, np.nan)
+    if truth is not None:
+        curves["truth"] = truth.psd(q)
+    return curves

@@ -1,0 +1,317 @@
+"""Maximum-likelihood fit of equation 9 to the spectra of several scans at once.
+
+The mean of a spectrum over n independent modes is Gamma distributed about the true C(q) with n degrees of
+freedom (Whittle's likelihood).  All scans share q0 and the slope; each has its own amplitude, drawn from a
+log-normal population, because amplitudes of real places differ by far more than their statistical error.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesoscale.topography.model import RoughSpectrum, mean_square
+from mesoscale.topography.spectrum import Spectrum
+
+DISCREPANCY = 0.04  # relative error of C that no averaging removes: rest of tip, noise and window corrections
+MAX_SLOPE = 10.0
+BINS_PER_DECADE = 12  # the discrepancy is shared within a bin of this width
+# dilation lowers C by exp(-a k^b), k = R sqrt(2 pi q^6 C) the tip's radius times the curvature per octave;
+# measured on slopes 2.3-3.8, RMS 3 and 8 nm, tips of 2-10 nm: one curve to 3 % (docs/topography.md)
+TIP_BIAS = (0.5, 1.3)
+
+
+def tip_bias(curvature: np.ndarray) -> np.ndarray:
+    """-ln of what dilation leaves of C where a tip's radius times the curvature per octave is `curvature`."""
+    return TIP_BIAS[0] * np.minimum(curvature, 3.0) ** TIP_BIAS[1]
+
+
+@dataclass(frozen=True)
+class TrustedSpectrum:
+    """A scan's spectrum with the range of wave vectors that the instrument leaves undisturbed.
+
+    Attributes
+    ----------
+    low, high : trusted wave vectors, 1/nm.
+    limit : what ends the range above: `tip`, `noise` or `pixels`.
+    tip_radius_nm : radius used for the tip's correction.
+    """
+
+    name: str
+    spectrum: Spectrum
+    low: float
+    high: float
+    limit: str
+    tip_radius_nm: float
+
+    @property
+    def trusted(self) -> np.ndarray:
+        """(m,) bool: shells inside the range."""
+        return (self.spectrum.q >= self.low) & (self.spectrum.q <= self.high)
+
+    def corrected_psd(self) -> np.ndarray:
+        """(m,) C with the tip's bias taken out, nm^4; meaningful inside the trusted range."""
+        q, psd = self.spectrum.q, self.spectrum.psd
+        smooth = np.exp(_running_mean(np.log(psd), q))
+        bias = np.zeros_like(q)
+        for _ in range(5):
+            bias = tip_bias(self.tip_radius_nm * np.sqrt(2 * np.pi * smooth * np.exp(bias)) * q**3)
+        return psd * np.exp(bias)
+
+
+@dataclass(frozen=True)
+class LikelihoodFit:
+    """Fit of equation 9 to all scans.
+
+    Attributes
+    ----------
+    plateau, q0, slope : of the typical place (median of the population).
+    covariance : (3, 3) of (ln plateau, ln q0, slope).
+    amplitudes : (scans,) plateau of each scan, nm^4.
+    amplitude_sd : standard deviation of ln amplitude between places, statistical error removed.
+    dispersion : mean square residual in units of its expectation.
+    misfit : RMS of the logarithmic residuals of the pooled bins; above about 0.3 this is no power law.
+    plateau_gain, power_gain : improvement of 2 ln L over a pure power law and over a flat spectrum.
+    """
+
+    plateau: float
+    q0: float
+    slope: float
+    covariance: np.ndarray
+    amplitudes: np.ndarray
+    amplitude_sd: float
+    dispersion: float
+    misfit: float
+    plateau_gain: float
+    power_gain: float
+
+    def spectrum(self, q1: float) -> RoughSpectrum:
+        """The typical place's spectrum up to q1."""
+        return RoughSpectrum(self.plateau, self.q0, self.slope, q1)
+
+    def scan_rms(self, q1: float) -> np.ndarray:
+        """(scans,) RMS heights in nm of the places scanned, integrated from zero to q1."""
+        return np.sqrt(self.amplitudes * mean_square(1.0, self.q0, self.slope, q1))
+
+
+class _Data:
+    """Trusted shells of all scans, flat arrays with the scan and bin each belongs to."""
+
+    def __init__(self, spectra: Sequence[TrustedSpectrum]):
+        parts = []
+        for number, item in enumerate(spectra):
+            s, ok = item.spectrum, item.trusted
+            bins = np.floor(np.log10(s.q[ok]) * BINS_PER_DECADE).astype(int)
+            size_class = round(float(np.log(s.spacing)) * 20)  # scans of one size share their discrepancies
+            columns = (s.q[ok], s.psd[ok], s.modes[ok], bins)
+            whole = (number, size_class, item.tip_radius_nm)
+            parts.append([*columns, *(np.full(int(ok.sum()), value) for value in whole)])
+        joined = [np.concatenate(column) for column in zip(*parts, strict=True)]
+        self.q, self.psd, self.modes, bins, scan, size_class, self.tip = joined
+        self.scan = scan.astype(int)
+        self.scans = len(spectra)
+        _, self.bin = np.unique(np.stack([size_class, bins]), axis=1, return_inverse=True)
+        self.bin = self.bin.ravel()
+        per_bin = np.bincount(self.bin, self.modes)
+        # weight of a bin: modes in parallel with the discrepancy, shared out in proportion to the modes
+        self.weight = self.modes / (1 + DISCREPANCY**2 * per_bin)[self.bin]
+        self.log_q = np.log(self.q)
+        self.per_scan = np.bincount(self.scan, self.weight, self.scans)
+
+    def ratio(self, log_q0: float, slope: float, level: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """ln of the model's shape and measured over modelled shape, the tip's bias at amplitude `level`."""
+        shape = -slope * np.maximum(self.log_q - log_q0, 0.0)
+        curvature = np.sqrt(2 * np.pi * np.exp(level[self.scan] + shape)) * self.q**3
+        shape = shape - tip_bias(self.tip * curvature)
+        return shape, self.psd * np.exp(-shape)
+
+
+def fit(spectra: Sequence[TrustedSpectrum]) -> LikelihoodFit | None:
+    """Fit plateau, q0 and slope to the trusted ranges; None where there are too few shells to fit."""
+    from scipy.optimize import minimize
+
+    spectra = [item for item in spectra if item.trusted.sum() >= 3]
+    if not spectra:
+        return None
+    data = _Data(spectra)
+    bins = data.bin.max() + 1
+    if bins < 6:
+        return None
+
+    level = np.array([np.log(np.median(item.spectrum.psd[item.trusted][:5])) for item in spectra])
+    spread = 1.0  # standard deviation of ln amplitude, updated below
+
+    low, high = data.log_q.min(), data.log_q.max()
+
+    def objective(parameters: np.ndarray) -> float:
+        outside = max(low - parameters[0], 0.0) + max(parameters[0] - high, 0.0)
+        outside += max(-parameters[1], 0.0) + max(parameters[1] - MAX_SLOPE, 0.0)
+        inside = np.clip(parameters, [low, 0.0], [high, MAX_SLOPE])
+        return _deviance(data, inside[0], inside[1], spread, level)[0] + 1e6 * outside
+
+    grid = [(q0, slope) for q0 in np.linspace(low, high, 14)[:-1] for slope in (1.0, 2.0, 3.0, 4.0)]
+    best = np.array(min(grid, key=lambda point: objective(np.array(point))))
+    dispersion = 1.0
+    for _ in range(4):
+        found = minimize(objective, best, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-3})
+        best = np.clip(found.x, [low, 0.0], [high, MAX_SLOPE])
+        _, level, ratio = _deviance(data, best[0], best[1], spread, level)
+        raw = np.log(np.bincount(data.scan, data.weight * ratio, data.scans) / data.per_scan)
+        residual = np.bincount(data.bin, data.weight * ratio * np.exp(-raw[data.scan]))
+        residual /= np.bincount(data.bin, data.weight)
+        bin_weight = np.bincount(data.bin, data.weight)
+        freedom = max(bins - 2 - data.scans / 2, 2)
+        dispersion = float(np.sum(bin_weight * (residual - 1) ** 2) / freedom)
+        spread = _between(raw, max(dispersion, 1.0) / data.per_scan)
+
+    scale = max(dispersion, 1.0)
+    typical, typical_variance = _typical(raw, scale / data.per_scan, spread)
+    covariance = _covariance(data, best, spread, level, scale, typical_variance)
+    value = objective(best)
+    pure = minimize(lambda p: objective(np.array([low, p[0]])), [best[1]], method="Nelder-Mead").fun
+    flat = objective(np.array([best[0], 0.0]))
+    return LikelihoodFit(
+        plateau=float(np.exp(typical)),
+        q0=float(np.exp(best[0])),
+        slope=float(best[1]),
+        covariance=covariance,
+        amplitudes=np.exp(raw),
+        amplitude_sd=float(spread),
+        dispersion=dispersion,
+        misfit=float(np.sqrt(np.mean(np.log(np.maximum(residual, 1e-12)) ** 2))),
+        plateau_gain=float(pure - value) / scale,
+        power_gain=float(flat - value) / scale,
+    )
+
+
+def _deviance(
+    data: _Data, log_q0: float, slope: float, spread: float, level: np.ndarray
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """-2 ln L, marginal over the amplitudes in Gaussian approximation; amplitudes; measured over shape."""
+    shape, ratio = data.ratio(log_q0, slope, level)
+    mean = np.bincount(data.scan, data.weight * ratio, data.scans) / data.per_scan
+    raw = np.log(np.maximum(mean, 1e-300))
+    own = 2 * np.sum(data.weight * (shape - np.log(data.psd))) + 2 * np.sum(data.per_scan * (1 + raw))
+    variance = 1 / data.per_scan + spread**2
+    typical = np.sum(raw / variance) / np.sum(1 / variance)
+    # amplitudes at their own optimum cost nothing; the population pulls them together
+    population = np.sum((raw - typical) ** 2 / variance)
+    return float(own + population), raw, ratio
+
+
+def _between(raw: np.ndarray, variance: np.ndarray) -> float:
+    """Spread between places by moments (DerSimonian and Laird, doi:10.1016/0197-2456(86)90046-2)."""
+    if len(raw) < 2:
+        return 0.0
+    weight = 1 / variance
+    mean = np.sum(weight * raw) / weight.sum()
+    excess = np.sum(weight * (raw - mean) ** 2) - (len(raw) - 1)
+    return float(np.sqrt(max(excess, 0.0) / (weight.sum() - np.sum(weight**2) / weight.sum())))
+
+
+def _typical(raw: np.ndarray, variance: np.ndarray, spread: float) -> tuple[float, float]:
+    """Mean ln amplitude of the population and its variance."""
+    weight = 1 / (variance + spread**2)
+    return float(np.sum(weight * raw) / weight.sum()), float(1 / weight.sum())
+
+
+def _covariance(
+    data: _Data, best: np.ndarray, spread: float, level: np.ndarray, scale: float, typical_variance: float
+) -> np.ndarray:
+    """Covariance of (ln plateau, ln q0, slope) from the curvature of the deviance."""
+    steps = np.array([0.05, 0.03])
+
+    def value(point: np.ndarray) -> tuple[float, float]:
+        total, raw, _ = _deviance(data, point[0], point[1], spread, level)
+        return total, _typical(raw, scale / data.per_scan, spread)[0]
+
+    centre = value(best)[0]
+    hessian, gradient = np.zeros((2, 2)), np.zeros(2)
+    for i in range(2):
+        up, down = best.copy(), best.copy()
+        up[i] += steps[i]
+        down[i] -= steps[i]
+        (f_up, l_up), (f_down, l_down) = value(up), value(down)
+        hessian[i, i] = (f_up + f_down - 2 * centre) / steps[i] ** 2
+        gradient[i] = (l_up - l_down) / (2 * steps[i])
+    corners = [value(best + steps * np.array(sign))[0] for sign in ((1, 1), (1, -1), (-1, 1), (-1, -1))]
+    hessian[0, 1] = hessian[1, 0] = (corners[0] - corners[1] - corners[2] + corners[3]) / (4 * steps.prod())
+    values, vectors = np.linalg.eigh(hessian / (2 * scale))
+    shape = vectors @ np.diag(1 / np.maximum(values, 1e-6)) @ vectors.T
+    full = np.zeros((3, 3))
+    full[1:, 1:] = shape
+    full[0, 1:] = full[1:, 0] = gradient @ shape
+    full[0, 0] = typical_variance + gradient @ shape @ gradient
+    return full
+
+
+def trusted_range(
+    name: str,
+    spectrum: Spectrum,
+    tip_radius_nm: float,
+    lowest_shell: float = 2.5,
+    noise_margin: float = 20.0,
+    tip_margin: float = 0.5,
+) -> TrustedSpectrum:
+    """Bound a spectrum to what the instrument resolves.
+
+    Below, `lowest_shell` shells: levelling and the window change longer waves. Above, the first of
+
+    - *pixels*: 0.7 of the Nyquist wave vector;
+    - *noise*: C falls under `noise_margin` times its level at the Nyquist wave vector, which bounds noise and
+      short waves folded back by the pixels;
+    - *tip*: the roughness of an octave is curved like the tip, R sqrt(2 pi q^6 C) > `tip_margin` (dilation
+      takes 20 % of C there; the fit corrects the known part).
+    """
+    q, psd = spectrum.q, spectrum.psd
+    low = lowest_shell * spectrum.spacing
+    tail = float(np.median(psd[q > 0.93 * spectrum.nyquist])) if len(q) > 20 else float(psd[-1])
+    smooth = np.exp(_running_mean(np.log(psd), q))
+    limits = {"pixels": 0.7 * spectrum.nyquist}
+    above = q > low
+    noisy = above & (smooth < noise_margin * tail)
+    if noisy.any():
+        limits["noise"] = float(q[noisy][0])
+    if tip_radius_nm > 0:
+        blunt = above & (tip_radius_nm * np.sqrt(2 * np.pi * smooth) * q**3 > tip_margin)
+        if blunt.any():
+            limits["tip"] = float(q[blunt][0])
+    limit = min(limits, key=lambda key: limits[key])
+    return TrustedSpectrum(name, spectrum, low, limits[limit], limit, tip_radius_nm)
+
+
+def _running_mean(values: np.ndarray, q: np.ndarray, width: float = 0.12) -> np.ndarray:
+    """Mean over q (1 - width) ... q (1 + width)."""
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    first = np.searchsorted(q, q * (1 - width), side="left")
+    last = np.searchsorted(q, q * (1 + width), side="right")
+    return (total[last] - total[first]) / (last - first)
+
+
+def single_scans(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit) -> tuple[np.ndarray, np.ndarray]:
+    """q0 of each scan that shows its own knee (the common slope kept), and slope of each with a decade third.
+
+    Their range is the scatter between places; it includes the statistical error of single scans.
+    """
+    from scipy.optimize import minimize_scalar
+
+    log_q0 = np.log(fitted.q0)
+    knees, slopes = [], []
+    for item in spectra:
+        if item.trusted.sum() < 3:
+            continue
+        data = _Data([item])
+        level = np.array([np.log(fitted.plateau)])
+
+        def deviance(at: float, slope: float, data: _Data = data, level: np.ndarray = level) -> float:
+            return _deviance(data, at, slope, 0.0, level)[0]
+
+        if item.low < fitted.q0 / 2 and item.high > 1.5 * fitted.q0:
+            bounds = (log_q0 - 1.0, log_q0 + 1.0)
+            found = minimize_scalar(lambda at: deviance(at, fitted.slope), bounds=bounds, method="bounded")
+            knees.append(float(np.exp(found.x)))
+        if item.high > 2.2 * max(fitted.q0, item.low):
+            bounds = (fitted.slope - 2, fitted.slope + 2)
+            found = minimize_scalar(lambda slope: deviance(log_q0, slope), bounds=bounds, method="bounded")
+            slopes.append(float(found.x))
+    return np.array(knees), np.array(slopes)

@@ -1,0 +1,226 @@
+"""Roughness parameters of a set of scans: q0, q1, slope, Hurst exponent and RMS, with ranges and a gate."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from mesoscale.settings import TopographySettings
+from mesoscale.topography import likelihood, lines
+from mesoscale.topography.likelihood import LikelihoodFit, TrustedSpectrum
+from mesoscale.topography.lines import LineFit
+from mesoscale.topography.model import hurst_from_slope, mean_square
+
+MAX_MISFIT = 0.3  # RMS logarithmic residual of pooled bins above which equation 9 does not describe them
+MIN_GAIN = 12.0  # improvement of 2 ln L that a plateau or a power law must bring
+MIN_SPAN = 2.5  # the trusted range must reach this multiple of q0
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A parameter with its confidence interval and its scatter between scans."""
+
+    value: float
+    interval: tuple[float, float]
+    scatter: tuple[float, float]
+
+    def plain(self) -> dict[str, Any]:
+        """As a result file has it."""
+        return {"value": self.value, "interval": list(self.interval), "scatter": list(self.scatter)}
+
+
+@dataclass(frozen=True)
+class Topography:
+    """Everything known about the roughness of a set of scans.
+
+    Attributes
+    ----------
+    likelihood, line_fit : the two fits; None where impossible.
+    q1, q1_limited : end of the power law (1/nm), or of what the finest trusted scan resolves.
+    cutoff : wave vector up to which RMS heights are integrated: the finest Nyquist wave vector, 1/nm.
+    estimates : q0 (1/nm), slope, hurst, rms (nm) of the method in use; empty where not identifiable.
+    reasons : why the parameters should not be used; empty when the gate is passed.
+    """
+
+    likelihood: LikelihoodFit | None
+    line_fit: LineFit | None
+    q1: float
+    q1_limited: bool
+    cutoff: float
+    estimates: dict[str, Estimate]
+    reasons: tuple[str, ...]
+
+
+def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) -> Topography:
+    """Parameters of the surface behind the trusted spectra of its scans."""
+    cutoff = max((item.spectrum.nyquist for item in spectra), default=0.0)
+    fitted = likelihood.fit(spectra)
+    line_fit = lines.fit_lines(spectra)
+    reasons = _doubts(spectra, fitted, line_fit, settings)
+    estimates: dict[str, Estimate] = {}
+    if settings.method == "likelihood" and fitted is not None:
+        estimates = _likelihood_estimates(spectra, fitted, cutoff, settings)
+    elif settings.method == "lines" and line_fit is not None:
+        estimates = _line_estimates(spectra, line_fit, cutoff, settings)
+    q1 = line_fit.q1 if line_fit else max((item.high for item in spectra), default=0.0)
+    limited = line_fit.q1_limited if line_fit else True
+    return Topography(fitted, line_fit, q1, limited, cutoff, estimates, reasons)
+
+
+def inputs(topography: Topography, settings: TopographySettings) -> dict[str, dict[str, Any]]:
+    """Distributions of q0, hurst and rms for Table 1: uniform over the range the settings ask for."""
+    rows = {}
+    for name in ("q0", "hurst", "rms"):
+        if name in topography.estimates:
+            low, high = getattr(topography.estimates[name], settings.ranges)
+            rows[name] = {"distribution": "uniform", "a": low, "b": high}
+    return rows
+
+
+def _doubts(
+    spectra: Sequence[TrustedSpectrum],
+    fitted: LikelihoodFit | None,
+    line_fit: LineFit | None,
+    settings: TopographySettings,
+) -> tuple[str, ...]:
+    """Why the parameters are not identifiable or not to be trusted, in words with numbers."""
+    if fitted is None:
+        return (
+            "not identifiable: too few wave vectors between the scan's size and what the instrument resolves",
+        )
+    reasons = []
+    highest = max(item.high for item in spectra)
+    lowest = min(item.low for item in spectra)
+    if fitted.power_gain < MIN_GAIN or fitted.slope < 0.5:
+        reasons.append("not identifiable: no power law, the spectrum is flat (noise, or pixels too coarse)")
+    if fitted.plateau_gain < MIN_GAIN or fitted.q0 < 1.2 * lowest:
+        reasons.append(
+            f"q0 is not identifiable: no plateau down to {lowest:.2g} /nm; add scans of a larger area"
+        )
+    if highest < MIN_SPAN * fitted.q0:
+        reasons.append(
+            f"slope is not identifiable: the trusted range ends at {highest:.2g} /nm, less than "
+            f"{MIN_SPAN:g} times q0 ({fitted.q0:.2g} /nm); add finer scans or use a sharper tip"
+        )
+    if fitted.misfit > MAX_MISFIT:
+        reasons.append(
+            f"not a plateau with a power law: the fit misses the spectrum by a factor "
+            f"{np.exp(fitted.misfit):.2g} (RMS); other kinds of roughness need the measured surface itself"
+        )
+    hurst = hurst_from_slope(fitted.slope, settings.convention)
+    if not 0 < hurst < 1:
+        other = hurst_from_slope(fitted.slope, "areal")
+        hint = " (with topography.convention and contact.convention: areal it is in)" if 0 < other < 1 else ""
+        reasons.append(f"H = {hurst:.2f} is outside 0 ... 1 in convention {settings.convention}{hint}")
+    if settings.method == "lines" and line_fit is None:
+        reasons.append("not identifiable by line fits: no plateau followed by a power law")
+    return tuple(reasons)
+
+
+def _likelihood_estimates(
+    spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, cutoff: float, settings: TopographySettings
+) -> dict[str, Estimate]:
+    centre = np.array([np.log(fitted.plateau), np.log(fitted.q0), fitted.slope])
+    error = np.sqrt(np.diag(fitted.covariance))
+    reach = _normal_quantile(settings.confidence)
+    q0_interval = tuple(np.exp(centre[1] + reach * error[1] * np.array([-1, 1])))
+    slope_interval = tuple(centre[2] + reach * error[2] * np.array([-1, 1]))
+
+    def log_rms(at: np.ndarray) -> float:
+        return 0.5 * float(np.log(mean_square(np.exp(at[0]), np.exp(at[1]), at[2], cutoff)))
+
+    step = 1e-4
+    gradient = np.array(
+        [(log_rms(centre + step * e) - log_rms(centre - step * e)) / (2 * step) for e in np.eye(3)]
+    )
+    rms_error = float(np.sqrt(gradient @ fitted.covariance @ gradient))
+    rms = float(np.exp(log_rms(centre)))
+    if fitted.amplitude_sd > 0:  # the typical place is then the mean of few: Student's distribution
+        reach = _student_quantile(settings.confidence, max(len(fitted.amplitudes) - 1, 1))
+    rms_interval = tuple(rms * np.exp(reach * rms_error * np.array([-1, 1])))
+    own_q0, own_slope = likelihood.single_scans(spectra, fitted)
+    own_rms = fitted.scan_rms(cutoff)
+    return _with_hurst(
+        q0=Estimate(fitted.q0, _pair(q0_interval), _union(q0_interval, own_q0)),
+        slope=Estimate(fitted.slope, _pair(slope_interval), _union(slope_interval, own_slope)),
+        rms=Estimate(rms, _pair(rms_interval), _union(rms_interval, own_rms)),
+        settings=settings,
+    )
+
+
+def _line_estimates(
+    spectra: Sequence[TrustedSpectrum], fitted: LineFit, cutoff: float, settings: TopographySettings
+) -> dict[str, Estimate]:
+    """Intervals by jackknife over scans; scatter by the lines that bound the points (the paper's way)."""
+    values = np.array([np.log(fitted.q0), fitted.slope, np.log(fitted.rms(cutoff))])
+    left_out = []
+    for k in range(len(spectra)):
+        other = lines.fit_lines([item for i, item in enumerate(spectra) if i != k])
+        if other is not None:
+            left_out.append([np.log(other.q0), other.slope, np.log(other.rms(cutoff))])
+    n = len(left_out)
+    error = np.full(3, np.inf)
+    if n >= 2:
+        error = np.sqrt((n - 1) / n * np.sum((np.array(left_out) - np.mean(left_out, axis=0)) ** 2, axis=0))
+    reach = _normal_quantile(settings.confidence) * error
+    if not np.all(np.isfinite(reach)):  # one scan says nothing about scatter between scans
+        reach = np.zeros(3)
+    low, high = values - reach, values + reach
+    level = np.sqrt(np.array([fitted.plateau_low, fitted.plateau_high]) / fitted.plateau) * fitted.rms(cutoff)
+    intervals = [
+        _pair((np.exp(low[0]), np.exp(high[0]))),
+        _pair((low[1], high[1])),
+        _pair((np.exp(low[2]), np.exp(high[2]))),
+    ]
+    return _with_hurst(
+        q0=Estimate(fitted.q0, intervals[0], _union(intervals[0], [fitted.q0, fitted.departure])),
+        slope=Estimate(
+            fitted.slope, intervals[1], _union(intervals[1], [fitted.slope_low, fitted.slope_high])
+        ),
+        rms=Estimate(fitted.rms(cutoff), intervals[2], _union(intervals[2], level)),
+        settings=settings,
+    )
+
+
+def _with_hurst(
+    q0: Estimate, slope: Estimate, rms: Estimate, settings: TopographySettings
+) -> dict[str, Estimate]:
+    def convert(pair: tuple[float, float]) -> tuple[float, float]:
+        low, high = (hurst_from_slope(value, settings.convention) for value in pair)
+        return low, high
+
+    value = hurst_from_slope(slope.value, settings.convention)
+    hurst = Estimate(value, convert(slope.interval), _usable(convert(slope.scatter), value))
+    if value > 0:
+        hurst = replace(hurst, interval=_usable(hurst.interval, value))
+    return {"q0": q0, "slope": slope, "hurst": hurst, "rms": rms}
+
+
+def _usable(pair: tuple[float, float], value: float) -> tuple[float, float]:
+    """Clip a range of H to 0.05 ... 1 where the value itself lies inside (the paper clips 1.20 to 1.0)."""
+    if not 0.05 < value < 1:
+        return pair
+    return max(pair[0], 0.05), min(pair[1], 1.0)
+
+
+def _union(interval: Sequence[float], values: Sequence[float] | np.ndarray) -> tuple[float, float]:
+    """Smallest range that holds the interval and all values."""
+    every = np.concatenate([np.asarray(interval, dtype=float), np.asarray(values, dtype=float)])
+    return float(every.min()), float(every.max())
+
+
+def _pair(values: Sequence[float]) -> tuple[float, float]:
+    return float(values[0]), float(values[1])
+
+
+def _normal_quantile(confidence: float) -> float:
+    from scipy.special import ndtri
+
+    return float(ndtri(0.5 + confidence / 2))
+
+
+def _student_quantile(confidence: float, freedom: int) -> float:
+    from scipy.special import stdtrit
+
+    return float(stdtrit(freedom, 0.5 + confidence / 2))

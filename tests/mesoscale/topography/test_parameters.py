@@ -1,0 +1,100 @@
+"""Recovery of known roughness, and "not identifiable" where there is nothing to recover."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from mesoscale.settings import SyntheticScanSettings, TopographySettings
+from mesoscale.topography.afm import synthetic_scans
+from mesoscale.topography.analysis import analyse_scan, trusted
+from mesoscale.topography.model import hurst_from_slope, slope_from_hurst
+from mesoscale.topography.parameters import analyse, inputs
+from mesoscale.topography.scan import Scan
+
+TRUTH = SyntheticScanSettings(pixels=512, small_scans=4, large_scans=2, rms_variation=0.0)
+
+
+@cache
+def spectra(truth=TRUTH):
+    settings = TopographySettings()
+    scans = [item.scan for item in synthetic_scans(truth)]
+    return [trusted(scan.name, analyse_scan(scan, settings).spectrum, settings) for scan in scans]
+
+
+def from_heights(heights, length=1000.0, settings=None):
+    settings = settings or TopographySettings()
+    scan = Scan(heights, (length, length), "scan")
+    return analyse([trusted("scan", analyse_scan(scan, settings).spectrum, settings)], settings)
+
+
+@pytest.mark.parametrize("method", ["likelihood", "lines"])
+def test_recovers_truth_through_tip_noise_tilt_and_drift(method):
+    result = analyse(spectra(), TopographySettings(method=method))
+    assert result.reasons == ()
+    estimates = result.estimates
+    assert estimates["q0"].value == pytest.approx(TRUTH.q0, rel=0.2)
+    assert estimates["slope"].value == pytest.approx(TRUTH.slope, abs=0.15)
+    assert estimates["rms"].value == pytest.approx(TRUTH.rms_nm, rel=0.05)
+
+
+def test_places_of_different_roughness_widen_the_range_of_rms_only():
+    varied = analyse(
+        spectra(TRUTH.model_copy(update={"rms_variation": 0.5, "small_scans": 5})), TopographySettings()
+    )
+    low, high = varied.estimates["rms"].scatter
+    assert high / low > 1.5
+    assert varied.likelihood is not None
+    assert varied.likelihood.amplitude_sd > 0.3
+    assert varied.estimates["slope"].value == pytest.approx(TRUTH.slope, abs=0.2)
+
+
+def test_heights_and_spectrum_scale_together():
+    """Twice the heights: twice the RMS, the same q0 and slope (the tip scaled along)."""
+    scans = [item.scan for item in synthetic_scans(TRUTH.model_copy(update={"tip_radius_nm": 0.0}))]
+    settings = TopographySettings(tip_radius_nm=0.0)
+
+    def result(factor):
+        items = [Scan(scan.heights_nm * factor, scan.lengths_nm, scan.name) for scan in scans]
+        return analyse(
+            [trusted(s.name, analyse_scan(s, settings).spectrum, settings) for s in items], settings
+        )
+
+    one, two = result(1.0), result(2.0)
+    assert two.estimates["rms"].value == pytest.approx(2 * one.estimates["rms"].value, rel=1e-3)
+    assert two.estimates["q0"].value == pytest.approx(one.estimates["q0"].value, rel=1e-3)
+    assert two.estimates["slope"].value == pytest.approx(one.estimates["slope"].value, abs=2e-3)
+
+
+def test_conventions_differ_by_one_half():
+    assert hurst_from_slope(2.84, "profile") == pytest.approx(0.92)
+    assert hurst_from_slope(2.84, "areal") == pytest.approx(0.42)
+    assert slope_from_hurst(0.42, "areal") == pytest.approx(2.84)
+
+
+def test_inputs_are_ranges_of_q0_hurst_and_rms():
+    result = analyse(spectra(), TopographySettings())
+    rows = inputs(result, TopographySettings())
+    assert set(rows) == {"q0", "hurst", "rms"}
+    for row in rows.values():
+        assert row["distribution"] == "uniform"
+        assert 0 < row["a"] < row["b"]
+    narrow = inputs(result, TopographySettings(ranges="interval"))
+    assert narrow["rms"]["b"] - narrow["rms"]["a"] <= rows["rms"]["b"] - rows["rms"]["a"]
+
+
+def test_white_noise_has_no_power_law():
+    result = from_heights(np.random.default_rng(0).standard_normal((256, 256)))
+    assert any("not identifiable" in reason for reason in result.reasons)
+
+
+def test_constant_scan_is_not_identifiable():
+    result = from_heights(np.zeros((128, 128)))
+    assert any("not identifiable" in reason for reason in result.reasons)
+    assert inputs(result, TopographySettings()) == {} or result.reasons
+
+
+def test_small_scans_alone_show_no_plateau():
+    only_small = [item for item in spectra() if item.name.startswith("small")]
+    result = analyse(only_small, TopographySettings())
+    assert any("no plateau" in reason for reason in result.reasons)
