@@ -223,7 +223,7 @@ def hardness(area, mechanics):
 
 @njit(cache=True)
 def total_force(asperities, level, mechanics, capped):
-    """Repulsive force (nN), sites, asperities and bounds on R in use; ``capped``: at most H A each (eq. 4)."""
+    """Repulsive force (nN), sites, asperities, bounds on R in use; ``capped``: at most H A each (eq. 4)."""
     force = 0.0
     sites = 0
     alive = 0

@@ -1,20 +1,20 @@
 """Van der Waals attraction of a rough surface and a plane (section 2.1, eq. 1).
 
 Sum over the sites of 1/g^3, with the gap g = h + separation cut off at D0. Sites far from contact are
-summed through a histogram of their heights that keeps the first four moments of each bin; sites near
+summed through a histogram of their heights that keeps the first five moments of each bin; sites near
 contact, and all sites that plastic flow has moved, are summed one by one.
 """
 
 import numpy as np
 from numba import njit
 
-MOMENTS = 4
+MOMENTS = 5
 NEAR_BINS = 100  # a site is near while its gap is below this many bin widths
 
 
 @njit(cache=True)
 def bin_heights(heights, lowest, width, moments):
-    """Add every site to the moments of its bin: sums of t^0..t^3, t = h - bin centre."""
+    """Add every site to the moments of its bin: sums of t^0..t^4, t = h - bin centre."""
     last = moments.shape[0] - 1
     for site in range(heights.size):
         x = (heights[site] - lowest) / width
@@ -24,6 +24,7 @@ def bin_heights(heights, lowest, width, moments):
         moments[b, 1] += t
         moments[b, 2] += t * t
         moments[b, 3] += t * t * t
+        moments[b, 4] += t * t * t * t
 
 
 @njit(cache=True)
@@ -38,6 +39,7 @@ def take_out(originals, start, stop, lowest, width, moments):
         moments[b, 1] -= t
         moments[b, 2] -= t * t
         moments[b, 3] -= t * t * t
+        moments[b, 4] -= t * t * t * t
 
 
 @njit(cache=True)
@@ -80,13 +82,13 @@ def inverse_cubes(
     rest = 0.0
     for b in range(far, bins):
         u = 1.0 / (lowest + (b + 0.5) * width + separation)
-        rest += (
-            u
-            * u
-            * u
+        # (g + t)^-3 expanded in t / g
+        rest += u**3 * (
+            moments[b, 0]
+            + u
             * (
-                moments[b, 0]
-                + u * (-3.0 * moments[b, 1] + u * (6.0 * moments[b, 2] - u * 10.0 * moments[b, 3]))
+                -3.0 * moments[b, 1]
+                + u * (6.0 * moments[b, 2] + u * (-10.0 * moments[b, 3] + u * 15.0 * moments[b, 4]))
             )
         )
     return near + moved + rest

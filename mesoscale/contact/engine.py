@@ -271,10 +271,8 @@ def _solve_force(contact, start, beyond, low_force, high_force, wanted, with_flo
     for trial in range(60):
         if high - low <= smallest:
             break
-        if trial % 4 == 3:
-            middle = 0.5 * (high + low)
-        else:
-            middle = (high * f_low - low * f_high) / (f_low - f_high)
+        secant = (high * f_low - low * f_high) / (f_low - f_high)
+        middle = 0.5 * (high + low) if trial % 4 == 3 else secant
         miss = contact.move_to(middle, with_flow)[0] - wanted
         contact.back()
         if abs(miss) < best_miss:

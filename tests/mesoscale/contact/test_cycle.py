@@ -1,0 +1,169 @@
+import numpy as np
+import pytest
+
+from mesoscale.contact import ContactInputs, attraction, engine, run_cycle
+from mesoscale.errors import InputError
+from mesoscale.settings import ContactSettings
+from mesoscale.topography.synthesis import synthesize
+
+INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
+MODELS = ["elastic", "nonlinear", "plastic"]
+
+
+def settings_for(**changes) -> ContactSettings:
+    return ContactSettings(**{"pixels": 256, "length_nm": 250.0, "max_force_nN": 500.0, **changes})
+
+
+def work(branch) -> float:
+    """Work against the repulsion, nN nm; negative on closing."""
+    return float(np.trapezoid(branch.repulsive_nN, branch.separation_nm))
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_cycle_is_physical(model, seed):
+    cycle = run_cycle(INPUTS, settings_for(model=model), seed)
+    closing, opening = cycle.closing, cycle.opening
+    assert cycle.converged
+    for branch in (closing, opening):
+        assert all(np.isfinite(array).all() for array in vars(branch).values())
+        assert (branch.repulsive_nN >= 0).all()
+        assert (branch.attractive_nN < 0).all()
+    assert (np.diff(closing.separation_nm) < 0).all()
+    assert (np.diff(opening.separation_nm) > 0).all()
+    assert closing.repulsive_nN[-1] == pytest.approx(500.0, rel=max(1e-6, cycle.flags["force_miss"]))
+    assert cycle.flags["force_miss"] < 0.02  # one site more or less in contact
+    for name in ("separation_nm", "repulsive_nN", "attractive_nN", "contact_area_nm2"):
+        assert getattr(opening, name)[0] == getattr(closing, name)[-1]
+    dissipated = -work(closing) - work(opening)
+    if model == "plastic":
+        assert dissipated > 0.2 * -work(closing)
+        assert cycle.last_contact_nm < cycle.first_contact_nm
+    else:
+        assert dissipated == pytest.approx(0.0, abs=1e-9 * -work(closing))
+        assert cycle.last_contact_nm == cycle.first_contact_nm
+    touching = closing.repulsive_nN > 0
+    assert (closing.separation_nm[touching] < cycle.first_contact_nm).all()
+    assert closing.separation_nm[~touching].min() == cycle.first_contact_nm
+
+
+def test_plasticity_softens_and_yield_limits_the_pressure():
+    """Elastic > capped; the mean pressure of a yielded contact lies below the hardness of one site."""
+    ends = {model: run_cycle(INPUTS, settings_for(model=model), 1).closing for model in MODELS}
+    assert ends["elastic"].separation_nm[-1] > ends["nonlinear"].separation_nm[-1]
+    assert ends["elastic"].separation_nm[-1] > ends["plastic"].separation_nm[-1]
+    pressure = 500.0 / ends["plastic"].contact_area_nm2[-1]
+    one_site = 1.95 + 8.375 * (250 / 256) ** -0.5
+    assert 1.95 < pressure < one_site
+
+
+def test_a_harder_surface_is_the_elastic_one():
+    hard = ContactInputs(**{**vars(INPUTS), "h_macro": 1e9})
+    plastic = run_cycle(hard, settings_for(), 1)
+    elastic = run_cycle(hard, settings_for(model="elastic"), 1)
+    assert plastic.flags["changed_sites"] == 0
+    np.testing.assert_allclose(plastic.closing.repulsive_nN, elastic.closing.repulsive_nN, rtol=1e-12)
+
+
+def test_forces_scale_with_the_materials():
+    """Stiffness, hardness and Hamaker constant times three: the same curve with three times the force."""
+    one = run_cycle(INPUTS, settings_for(), 1, 500.0)
+    scaled = {name: 3 * getattr(INPUTS, name) for name in ("hamaker", "e_star", "h_macro", "h_prime")}
+    three = run_cycle(ContactInputs(**{**vars(INPUTS), **scaled}), settings_for(), 1, 1500.0)
+    np.testing.assert_allclose(three.closing.separation_nm, one.closing.separation_nm, rtol=1e-9)
+    np.testing.assert_allclose(three.opening.repulsive_nN, 3 * one.opening.repulsive_nN, rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(three.opening.attractive_nN, 3 * one.opening.attractive_nN, rtol=1e-6)
+
+
+def test_the_same_seed_gives_the_same_bits():
+    one, two = (run_cycle(INPUTS, settings_for(), 3) for _ in range(2))
+    for branch in ("closing", "opening"):
+        for name, values in vars(getattr(one, branch)).items():
+            np.testing.assert_array_equal(values, getattr(getattr(two, branch), name))
+
+
+def test_cycles_on_the_changed_surface_shake_down():
+    """The second closing to the same force follows the first opening, and hardly anything flows any more."""
+    settings = settings_for()
+    first = run_cycle(INPUTS, settings, 1, keep_surface=True)
+    second = run_cycle(INPUTS, settings, 1, heights=first.heights, keep_surface=True)
+    assert second.first_contact_nm == pytest.approx(first.last_contact_nm, abs=1e-12)
+    assert second.first_contact_nm < first.first_contact_nm
+    loss = [-work(c.closing) - work(c.opening) for c in (first, second)]
+    assert loss[1] < 0.3 * loss[0]
+    assert abs(second.heights.mean() - first.heights.mean()) < 1e-13
+
+
+def test_a_larger_load_continues_a_smaller_one():
+    """A closing interrupted by opening reaches the same end as one without, but for the path's steps."""
+    settings = settings_for(force_steps=100)
+    half = run_cycle(INPUTS, settings, 1, 250.0, keep_surface=True)
+    continued = run_cycle(INPUTS, settings, 1, 500.0, heights=half.heights).closing
+    direct = run_cycle(INPUTS, settings, 1, 500.0).closing
+    assert continued.separation_nm[-1] == pytest.approx(direct.separation_nm[-1], abs=0.1)
+
+
+def test_given_heights_are_not_changed_and_their_mean_plane_counts():
+    heights = synthesize(256, 250.0, 0.025, 0.75, 8.5, 1)
+    kept = heights.copy()
+    own = run_cycle(INPUTS, settings_for(), 1)
+    given = run_cycle(INPUTS, settings_for(), 99, heights=heights)
+    np.testing.assert_array_equal(heights, kept)
+    np.testing.assert_allclose(given.closing.separation_nm, own.closing.separation_nm, rtol=1e-12)
+    lifted = run_cycle(INPUTS, settings_for(model="elastic"), 99, heights=heights + 4.0)
+    assert lifted.first_contact_nm == pytest.approx(own.first_contact_nm, rel=1e-12)
+
+
+def test_nothing_is_spent_on_an_attraction_that_is_absent(monkeypatch):
+    calls = []
+
+    def counted(name, function):
+        return lambda *arguments: calls.append(name) or function(*arguments)
+
+    for name in ("bin_heights", "inverse_cubes", "take_out"):
+        monkeypatch.setattr(attraction, name, counted(name, getattr(attraction, name)))
+    without = ContactInputs(**{**vars(INPUTS), "hamaker": 0.0})
+    cycle = run_cycle(without, settings_for(), 1)
+    assert not calls
+    assert not cycle.closing.attractive_nN.any()
+    run_cycle(INPUTS, settings_for(), 1)
+    assert calls.count("bin_heights") == 1
+
+
+def test_elastic_models_copy_no_surface_and_never_flow(monkeypatch):
+    heights = synthesize(256, 250.0, 0.025, 0.75, 8.5, 1)
+    held = []
+    start = engine.Contact.__init__
+
+    def remember(self, surface, *rest):
+        held.append(surface)
+        start(self, surface, *rest)
+
+    monkeypatch.setattr(engine.Contact, "__init__", remember)
+    monkeypatch.setattr(engine.flow, "settle", lambda *a: pytest.fail("an elastic surface flowed"))
+    for model in ("elastic", "nonlinear"):
+        run_cycle(INPUTS, settings_for(model=model), 1, heights=heights)
+    assert all(np.shares_memory(surface, heights) for surface in held)
+
+
+def test_a_flat_surface_touches_everywhere():
+    cycle = run_cycle(INPUTS, settings_for(model="elastic"), 1, heights=np.zeros((64, 64)))
+    assert cycle.converged
+    assert cycle.first_contact_nm == 0.0
+    assert cycle.closing.contact_area_nm2[-1] == pytest.approx(250.0**2)
+
+
+@pytest.mark.parametrize(
+    ("heights", "words"),
+    [(np.zeros((4, 5)), "square"), (np.zeros(9), "square"), (np.full((8, 8), np.nan), "finite")],
+)
+def test_bad_surfaces_are_refused_in_one_line(heights, words):
+    with pytest.raises(InputError, match=words) as refusal:
+        run_cycle(INPUTS, settings_for(), 1, heights=heights)
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("change", [{"e_star": 0.0}, {"rms": -1.0}, {"h_macro": float("nan")}, {"q0": 0.0}])
+def test_impossible_inputs_are_refused(change):
+    with pytest.raises(InputError, match=next(iter(change))):
+        ContactInputs(**{**vars(INPUTS), **change})

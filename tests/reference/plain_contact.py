@@ -1,0 +1,169 @@
+"""The contact model written down plainly in NumPy and SciPy: its definition, and the oracle of the engine.
+
+Whole-grid passes, no local updates, no history beyond the heights. Slow and meant to be read beside
+docs/contact.md. Units nm, nN, GPa. It shares no code with the engine.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from mesoscale.contact import ContactInputs
+from mesoscale.settings import ContactSettings
+
+
+@dataclass
+class Asperity:
+    sites: np.ndarray  # flat indices
+    peak: tuple[int, int]
+    indentation: float
+    radius: float
+    area: float  # the one of eq. 4
+    elastic_force: float  # eq. 3
+    hardness: float
+
+
+def connected_sites(touching: np.ndarray, neighbours: int) -> list[np.ndarray]:
+    """Connected sets of touching sites on the periodic grid, as flat indices."""
+    structure = np.ones((3, 3)) if neighbours == 8 else ndimage.generate_binary_structure(2, 1)
+    n = len(touching)
+    tiled, _ = ndimage.label(np.tile(touching, (3, 3)), structure)
+    # one period's labels, joined where two labels of the tiling are the same site
+    parent: dict[int, int] = {}
+
+    def root(label):
+        while parent.setdefault(label, label) != label:
+            label = parent[label]
+        return label
+
+    tiles = [tiled[i * n : (i + 1) * n, j * n : (j + 1) * n] for i in range(3) for j in range(3)]
+    for tile in tiles:
+        for a, b in set(zip(tile[touching].tolist(), tiles[4][touching].tolist(), strict=True)):
+            parent[root(a)] = root(b)
+    flat = np.flatnonzero(touching)
+    roots = np.array([root(label) for label in tiles[4].ravel()[flat].tolist()])
+    return [flat[roots == r] for r in np.unique(roots)] if flat.size else []
+
+
+def curvature(h: np.ndarray, spacing: float) -> np.ndarray:
+    """Mean of the x and y profile curvatures at every site (eq. 2, corrected)."""
+    total = np.zeros_like(h)
+    for axis in (0, 1):
+        ahead, behind = np.roll(h, -1, axis), np.roll(h, 1, axis)
+        slope = (ahead - behind) / (2 * spacing)
+        total += (ahead + behind - 2 * h) / spacing**2 / (1 + slope**2) ** 1.5
+    return total / 2
+
+
+def asperities(
+    h: np.ndarray, separation: float, inputs: ContactInputs, settings: ContactSettings
+) -> list[Asperity]:
+    """All asperities in contact at a separation, with eq. 3 and eq. 4."""
+    spacing = settings.length_nm / len(h)
+    p = {"paper": 2 / 3, "hertz": 4 / 3}[settings.prefactor]
+    kappa = curvature(h, spacing)
+    found = []
+    for sites in connected_sites(h + separation < 0, settings.neighbours):
+        heights = h.ravel()[sites]
+        peak = sites[heights == heights.min()].min()
+        indentation = -(heights.min() + separation)
+        area = len(sites) * spacing**2
+        if settings.radius == "curvature":
+            mean = kappa.ravel()[sites].mean()
+            # no stiffer than a rigid flat punch of the same area, which also bounds flattened tops
+            bound = 9 * area / (4 * np.pi * indentation)
+            radius = min(1 / mean, bound) if mean > 0 else bound
+        else:
+            radius = area / (2 * np.pi * indentation)
+        if settings.area == "hertz":
+            area = np.pi * radius * indentation
+        found.append(
+            Asperity(
+                sites,
+                divmod(int(peak), len(h)),
+                indentation,
+                radius,
+                area,
+                p * inputs.e_star * np.sqrt(radius * indentation**3),
+                inputs.h_macro + inputs.h_prime * area**-0.25,
+            )
+        )
+    return found
+
+
+def repulsion(h, separation, inputs: ContactInputs, settings: ContactSettings) -> float:
+    """Repulsive force in nN: eq. 3, or eq. 4 for the non-linear elastic model."""
+    found = asperities(h, separation, inputs, settings)
+    if settings.model == "nonlinear":
+        return sum(min(a.elastic_force, a.hardness * a.area) for a in found)
+    return sum(a.elastic_force for a in found)
+
+
+def attraction(h, separation, inputs: ContactInputs, settings: ContactSettings) -> float:
+    """Attractive force in nN, negative (eq. 1)."""
+    gap = h + separation
+    if not settings.touching_attracts:
+        gap = gap[gap >= 0]
+    gap = np.maximum(gap, settings.gap_cutoff_nm)
+    area = (settings.length_nm / len(h)) ** 2
+    return -inputs.hamaker * area / (6 * np.pi) * np.sum(gap**-3)
+
+
+def flow(h: np.ndarray, asperity: Asperity, amplitude: float, settings: ContactSettings) -> np.ndarray:
+    """Change of the surface by one flow: a narrow Gaussian up, a wide one down, no change of volume."""
+    n = len(h)
+    spacing = settings.length_nm / n
+    contact = np.sqrt(asperity.area / np.pi)
+    s1 = min(np.sqrt(settings.flow_width_nm * asperity.radius), contact)
+    s1 = max(s1, settings.flow_floor_pixels * spacing)
+    s2 = s1 * {"paper": 3**0.25, "wide": 3.0}[settings.flow_pair]
+    reach = min(int(np.ceil(3 * s2 / spacing)), (n - 1) // 2)
+    rows, columns = (np.abs((np.arange(n) - p + n // 2) % n - n // 2) for p in asperity.peak)
+    inside = (rows[:, None] <= reach) & (columns[None, :] <= reach)
+    squared = (rows[:, None] ** 2 + columns[None, :] ** 2) * spacing**2
+    narrow = np.where(inside, np.exp(-squared / (2 * s1**2)), 0)
+    wide = np.where(inside, np.exp(-squared / (2 * s2**2)), 0)
+    change = narrow - wide * narrow.sum() / wide.sum()
+    if settings.flow == "return":
+        change = change / change[asperity.peak]
+    return amplitude * change
+
+
+def settle(h, separation, inputs: ContactInputs, settings: ContactSettings) -> tuple[np.ndarray, int, bool]:
+    """Let yielding asperities flow until none is above its hardness.
+
+    Returns the surface, the sweeps, and whether flow came to its end.
+    """
+    for sweeps in range(settings.max_sweeps + 1):
+        tolerance = settings.flow_tolerance if settings.flow == "return" else 0.0
+        change = np.zeros_like(h)
+        yielding = 0
+        for a in asperities(h, separation, inputs, settings):
+            limit = a.hardness * a.area
+            if a.elastic_force <= limit * (1 + tolerance):
+                continue
+            yielding += 1
+            amplitude = settings.flow_increment_nm
+            if settings.flow == "return":
+                # the indentation at which eq. 3 would give the limit, R and A unchanged
+                amplitude = a.indentation * (1 - (limit / a.elastic_force) ** (2 / 3))
+            change += flow(h, a, amplitude, settings)
+        if yielding == 0:
+            return h, sweeps, True
+        if sweeps == settings.max_sweeps:
+            break
+        h = h + change
+    return h, settings.max_sweeps, False
+
+
+def walk(h, separations, inputs: ContactInputs, settings: ContactSettings):
+    """Repulsion and attraction at falling separations; returns them and the final surface."""
+    forces = []
+    for separation in separations:
+        if settings.model == "plastic":
+            h, _, _ = settle(h, separation, inputs, settings)
+        forces.append(
+            (repulsion(h, separation, inputs, settings), attraction(h, separation, inputs, settings))
+        )
+    return np.array(forces), h
