@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mesoscale.contact import asperities as asp
-from mesoscale.contact import attraction, flow
+from mesoscale.contact import attraction, kernels, state
 from mesoscale.settings import ContactSettings
 
 PREFACTOR = {"paper": 2.0 / 3.0, "hertz": 4.0 / 3.0}
@@ -60,7 +59,7 @@ class Contact:
         self.highest = float(self.heights.max())
         self.rms = float(self.heights.std()) if settings.model != "plastic" or not inputs.rms else inputs.rms
         self.capped = settings.model == "nonlinear"
-        self.mechanics = asp.Mechanics(
+        self.mechanics = state.Mechanics(
             PREFACTOR[settings.prefactor] * inputs.e_star,
             float(inputs.h_macro),
             float(inputs.h_prime),
@@ -69,7 +68,7 @@ class Contact:
             settings.area == "sites",
             settings.neighbours == 8,
         )
-        self.rule = flow.FlowRule(
+        self.rule = state.FlowRule(
             settings.flow == "increment",
             settings.flow_increment_nm,
             settings.flow_width_nm,
@@ -78,11 +77,11 @@ class Contact:
             settings.flow_tolerance,
             settings.max_sweeps,
         )
-        self.asperities = asp.no_asperities(self.heights.size)
+        self.asperities = state.no_asperities(self.heights.size)
         # a surface that cannot flow needs no record of changes
-        self.changes = flow.no_changes(self.heights.size if settings.model == "plastic" else 0)
+        self.changes = state.no_changes(self.heights.size if settings.model == "plastic" else 0)
         self.changed = self.changes.changed if settings.model == "plastic" else np.zeros(self.n**2, np.uint8)
-        self.work = flow.workspace(self.heights.size if settings.model == "plastic" else 0)
+        self.work = state.workspace(self.heights.size if settings.model == "plastic" else 0)
         self.order = np.empty(0, np.int32)
         self.order_heights = np.empty(0)
         self.sorted_to = -np.inf
@@ -133,7 +132,7 @@ class Contact:
         stop = int(np.searchsorted(self.order_heights, level))
         self.changes.used[1] = 0
         self.changes.used[2] += 1
-        asp.touch(
+        kernels.touch(
             self.asperities,
             self.heights,
             self.n,
@@ -150,7 +149,7 @@ class Contact:
         self.pointer = stop
         sweeps, settled = 0, True
         if with_flow:
-            sweeps, settled = flow.settle(
+            sweeps, settled = kernels.settle(
                 self.heights,
                 self.n,
                 self.spacing,
@@ -161,17 +160,17 @@ class Contact:
                 self.changes,
                 self.work,
             )
-        force, sites, alive, bounds = asp.total_force(self.asperities, level, self.mechanics, self.capped)
+        force, sites, alive, bounds = kernels.total_force(self.asperities, level, self.mechanics, self.capped)
         return force, sites, alive, bounds, sweeps, settled
 
     def back(self) -> None:
         """Undo the last move's flow and lift the flat; the next move finds all contacts anew."""
-        flow.undo(self.heights, self.changes)
+        kernels.undo(self.heights, self.changes)
         self.lift()
 
     def lift(self) -> None:
         """Leave contact; the surface stays as it is."""
-        asp.clear(self.asperities)
+        kernels.clear(self.asperities)
         self.pointer = 0
 
     def attraction(self, separation: float) -> float:

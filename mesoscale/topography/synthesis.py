@@ -78,7 +78,7 @@ def synthesize(
     spectrum = np.zeros((pixels, pixels // 2 + 1), dtype=complex)
     power = _fill_spectrum(spectrum, normals, amplitude, highest)
     spectrum *= rms * pixels**2 / np.sqrt(power)
-    return fft.irfft2(spectrum, s=(pixels, pixels), overwrite_x=True)
+    return np.asarray(fft.irfft2(spectrum, s=(pixels, pixels), overwrite_x=True))
 
 
 @njit(cache=True)

@@ -1,0 +1,104 @@
+"""What a contact consists of: its asperities, its constants, and the record of its plastic changes."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Asperities(NamedTuple):
+    """Asperities of one surface; a dead (merged) one has ``sites`` 0. Sizes: N^2 sites."""
+
+    label: np.ndarray  # (N^2,) int32: asperity number + 1 of each site, 0 where there is no contact
+    arena: np.ndarray  # (3 N^2,) int32: sites, those of one asperity in a row
+    first: np.ndarray  # (2 N^2,) int32: where an asperity's sites start in the arena
+    sites: np.ndarray  # (2 N^2,) int32: number of sites
+    peak: np.ndarray  # (2 N^2,) int32: lowest site (the smaller number among equals)
+    lowest: np.ndarray  # (2 N^2,) float64: its height, nm
+    curvature: np.ndarray  # (2 N^2,) float64: sum of the sites' mean curvature, 1/nm
+    used: np.ndarray  # (2,) int64: asperity numbers and arena places in use
+
+
+def no_asperities(sites: int) -> Asperities:
+    """Empty set for a surface of N^2 sites; the memory is touched only as contact grows."""
+    return Asperities(
+        np.zeros(sites, np.int32),
+        np.empty(3 * sites, np.int32),
+        np.empty(2 * sites, np.int32),
+        np.empty(2 * sites, np.int32),
+        np.empty(2 * sites, np.int32),
+        np.empty(2 * sites),
+        np.empty(2 * sites),
+        np.zeros(2, np.int64),
+    )
+
+
+class Mechanics(NamedTuple):
+    """Constants of eqs 2-4."""
+
+    stiffness: float  # p E*, GPa
+    h_macro: float  # GPa
+    h_prime: float  # GPa nm^0.5
+    site_area: float  # nm^2
+    curvature_radius: bool  # else truncation
+    area_of_sites: bool  # else Hertz's
+    eight: bool  # 8 neighbours, else 4
+
+
+class FlowRule(NamedTuple):
+    """Shape and size of one flow, see ContactSettings."""
+
+    fixed: bool  # fixed increment, else return mapping
+    increment: float  # nm
+    width: float  # nm: s1 = sqrt(width * R)
+    floor: float  # nm: smallest s1
+    ratio: float  # s2 / s1
+    tolerance: float
+    max_sweeps: int
+
+
+class Changes(NamedTuple):
+    """What flow has done to a surface of N^2 sites, and what undoes the step under way."""
+
+    changed: np.ndarray  # (N^2,) uint8: 1 where the height is no longer the original
+    sites: np.ndarray  # (N^2,) int32: the changed sites
+    original: np.ndarray  # (N^2,) float64: their heights before the first change, nm
+    journal: np.ndarray  # (N^2,) int32: sites changed in this step
+    before: np.ndarray  # (N^2,) float64: their heights before it
+    stamp: np.ndarray  # (N^2,) int32: last step in which a site changed
+    used: np.ndarray  # (3,) int64: changed sites, journal entries, number of this step
+
+
+def no_changes(sites: int) -> Changes:
+    """An untouched surface; the memory is touched only as flow spreads."""
+    return Changes(
+        np.zeros(sites, np.uint8),
+        np.empty(sites, np.int32),
+        np.empty(sites),
+        np.empty(sites, np.int32),
+        np.empty(sites),
+        np.zeros(sites, np.int32),
+        np.zeros(3, np.int64),
+    )
+
+
+class Workspace(NamedTuple):
+    """Lists that a sweep fills anew; preallocated because growing arrays are slow in compiled loops."""
+
+    active: np.ndarray  # int32: asperities to look at
+    peak: np.ndarray  # int32: where the flows of this sweep are
+    amplitude: np.ndarray  # float64: nm
+    width: np.ndarray  # float64: s1, nm
+    half: np.ndarray  # int32: half-width of the patch in sites
+    seeds: np.ndarray  # int32: sites waiting to be joined to asperities
+
+
+def workspace(sites: int) -> Workspace:
+    """Room for the worst case; the memory is touched only as needed."""
+    return Workspace(
+        np.empty(2 * sites, np.int32),
+        np.empty(sites, np.int32),
+        np.empty(sites),
+        np.empty(sites),
+        np.empty(sites, np.int32),
+        np.empty(sites, np.int32),
+    )
