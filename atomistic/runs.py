@@ -32,3 +32,12 @@ def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
         for seed in settings.seeds
         for scale in settings.energy_scales
     ]
+
+
+def run_named(name: str, settings: HardnessSettings) -> ClosingRun:
+    """The run of a name that `planned_runs` gave (its seed and energy scale need not be in `settings`)."""
+    asperity_name, seed, scale_name = name.split("_")
+    asperity = next(asperity for asperity in settings.asperities if asperity.name == asperity_name)
+    scales = {label: scale for scale, label in SCALE_NAMES.items()}
+    scale = scales[scale_name] if scale_name in scales else float(scale_name.removeprefix("x"))
+    return ClosingRun(name, asperity, int(seed.removeprefix("seed")), scale)

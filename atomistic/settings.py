@@ -15,7 +15,7 @@ class GlassSettings(Settings):
     """Melt and quench of a periodic glass cell."""
 
     atoms: int = Field(
-        1650, ge=100, le=2_000_000, description="atoms of the cell, about", json_schema_extra={"unit": "1"}
+        690, ge=100, le=2_000_000, description="atoms of the cell, about", json_schema_extra={"unit": "1"}
     )
     melt_temperature_K: float = Field(
         4000, ge=1500, le=12000, description="temperature of the melt", json_schema_extra={"unit": "K"}
@@ -114,7 +114,7 @@ class ClosingSettings(Settings):
         json_schema_extra={"unit": "nm"},
     )
     depth_over_amplitude: float = Field(
-        1.6, gt=0, le=2, description="travel below the top, in amplitudes", json_schema_extra={"unit": "1"}
+        1.5, gt=0, le=2, description="travel below the top, in amplitudes", json_schema_extra={"unit": "1"}
     )
     segment_nm: float = Field(
         0.1,
@@ -140,7 +140,7 @@ class AreaSettings(Settings):
         json_schema_extra={"unit": "A"},
     )
     disc_A: float = Field(
-        1.6, gt=0, le=4, description="radius of an atom's disc", json_schema_extra={"unit": "A"}
+        1.5, gt=0, le=4, description="radius of an atom's disc", json_schema_extra={"unit": "A"}
     )
     grid_A: float = Field(0.5, ge=0.05, le=2, description="grid spacing", json_schema_extra={"unit": "A"})
     travel_A: float = Field(
@@ -191,6 +191,13 @@ class YieldSettings(Settings):
         ge=3,
         le=100,
         description="averages beyond the onset (and each side of a kink)",
+        json_schema_extra={"unit": "1"},
+    )
+    max_exponent: float = Field(
+        0.5,
+        gt=0,
+        le=2,
+        description="largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic",
         json_schema_extra={"unit": "1"},
     )
     max_drift_meV_atom_ps: float = Field(
@@ -248,9 +255,9 @@ class HardnessSettings(Settings):
     )
     asperities: tuple[AsperitySettings, ...] = Field(
         (
-            AsperitySettings(name="small", tiles=2, amplitude_nm=0.4),
-            AsperitySettings(name="medium", tiles=3, amplitude_nm=0.6),
-            AsperitySettings(name="blunt", tiles=3, amplitude_nm=0.3),
+            AsperitySettings(name="small", tiles=2, amplitude_nm=0.43),
+            AsperitySettings(name="medium", tiles=3, amplitude_nm=0.64),
+            AsperitySettings(name="large", tiles=4, amplitude_nm=0.86),
         ),
         min_length=1,
         description="asperities to close",
@@ -275,14 +282,22 @@ class NitrideGlassSettings(Settings):
     melt_temperature_K: float = Field(
         5000, ge=1500, le=12000, description="temperature of the melt", json_schema_extra={"unit": "K"}
     )
-    melt_ps: float = Field(5, gt=0, le=10_000, description="time in the melt", json_schema_extra={"unit": "ps"})
-    quench_rate_K_ps: float = Field(50, gt=0, le=5000, description="cooling rate", json_schema_extra={"unit": "K/ps"})
+    melt_ps: float = Field(
+        5, gt=0, le=10_000, description="time in the melt", json_schema_extra={"unit": "ps"}
+    )
+    quench_rate_K_ps: float = Field(
+        50, gt=0, le=5000, description="cooling rate", json_schema_extra={"unit": "K/ps"}
+    )
     final_temperature_K: float = Field(
         300, ge=10, le=1000, description="end of the quench", json_schema_extra={"unit": "K"}
     )
     timestep_fs: float = Field(0.5, ge=0.1, le=1, description="time step", json_schema_extra={"unit": "fs"})
     attempts: int = Field(
-        6, ge=1, le=100, description="quenches per structure until one passes the gates", json_schema_extra={"unit": "1"}
+        6,
+        ge=1,
+        le=100,
+        description="quenches per structure until one passes the gates",
+        json_schema_extra={"unit": "1"},
     )
 
 
@@ -290,7 +305,8 @@ class DftSettings(Settings):
     """Engine and numerical parameters of the density functional calculations."""
 
     engine: Literal["pyscf", "espresso", "vasp", "abinit", "cp2k", "gpaw", "siesta"] = Field(
-        "pyscf", description="pyscf (built in), or an ASE calculator configured in your own ASE configuration file"
+        "pyscf",
+        description="pyscf (built in), or an ASE calculator configured in your own ASE configuration file",
     )
     parameters: dict[str, str | float | int | bool | dict[str, str | float | int | bool]] = Field(
         {}, description="keyword parameters of an ASE calculator other than pyscf; no commands"
@@ -302,19 +318,33 @@ class DftSettings(Settings):
         "gth-dzvp-molopt-sr", pattern=r"^[a-z0-9-]+$", description="GTH basis set by PySCF's name"
     )
     cutoff_Ha: float = Field(
-        100, ge=20, le=1000, description="plane-wave cutoff of the density", json_schema_extra={"unit": "hartree"}
+        100,
+        ge=20,
+        le=1000,
+        description="plane-wave cutoff of the density",
+        json_schema_extra={"unit": "hartree"},
     )
     tolerance_Ha: float = Field(
-        1e-6, gt=0, le=1e-3, description="SCF convergence of the energy per cell", json_schema_extra={"unit": "hartree"}
+        1e-6,
+        gt=0,
+        le=1e-3,
+        description="SCF convergence of the energy per cell",
+        json_schema_extra={"unit": "hartree"},
     )
-    max_cycles: int = Field(50, ge=1, le=1000, description="SCF cycles before giving up", json_schema_extra={"unit": "1"})
+    max_cycles: int = Field(
+        50, ge=1, le=1000, description="SCF cycles before giving up", json_schema_extra={"unit": "1"}
+    )
 
 
 class RelaxationSettings(Settings):
     """Relaxation of a glass by DFT before its E(V) scan: positions, and the edge of the cube."""
 
     cutoff_Ha: float = Field(
-        60, ge=20, le=1000, description="plane-wave cutoff during relaxation", json_schema_extra={"unit": "hartree"}
+        60,
+        ge=20,
+        le=1000,
+        description="plane-wave cutoff during relaxation",
+        json_schema_extra={"unit": "hartree"},
     )
     rounds: int = Field(
         2, ge=0, le=10, description="rounds of positions, then volume; 0: keep the potential's geometry",
@@ -323,17 +353,23 @@ class RelaxationSettings(Settings):
     force_eV_A: float = Field(
         0.15, gt=0, le=5, description="largest force left on an atom", json_schema_extra={"unit": "eV/A"}
     )
-    max_steps: int = Field(12, ge=1, le=500, description="ionic steps per round", json_schema_extra={"unit": "1"})
+    max_steps: int = Field(
+        12, ge=1, le=500, description="ionic steps per round", json_schema_extra={"unit": "1"}
+    )
 
 
 class ElasticSettings(Settings):
     """Effective modulus E* from density functional theory (docs/elastic.md)."""
 
     material: str = Field(
-        "silicon_nitride", pattern=r"^[A-Za-z0-9_-]+$", description="file in config/materials: the computed body"
+        "silicon_nitride",
+        pattern=r"^[A-Za-z0-9_-]+$",
+        description="file in config/materials: the computed body",
     )
     counter_body: str = Field(
-        "titanium", pattern=r"^[A-Za-z0-9_-]+$", description="file in config/materials: the other body, from experiment"
+        "titanium",
+        pattern=r"^[A-Za-z0-9_-]+$",
+        description="file in config/materials: the other body, from experiment",
     )
     crystals: tuple[str, ...] = Field(
         ("beta",), description="crystals of the material scanned beside the glass, to anchor the engine"
@@ -352,16 +388,27 @@ class ElasticSettings(Settings):
         json_schema_extra={"unit": "1"},
     )  # fmt: skip
     relaxed_force_eV_A: float = Field(
-        0.1, gt=0, le=5, description="largest force left when ions relax at a strain", json_schema_extra={"unit": "eV/A"}
+        0.1,
+        gt=0,
+        le=5,
+        description="largest force left when ions relax at a strain",
+        json_schema_extra={"unit": "eV/A"},
     )
     ions: Literal["clamped", "relaxed"] = Field(
-        "clamped", description="which bulk moduli go into E* (the paper's scaling of all positions is 'clamped')"
+        "clamped",
+        description="which bulk moduli go into E* (the paper's scaling of all positions is 'clamped')",
     )
     poisson_ratio: tuple[float, float] = Field(
-        (0.15, 0.25), description="range of the glass's Poisson ratio (Kim et al. 2013)", json_schema_extra={"unit": "1"}
+        (0.15, 0.25),
+        description="range of the glass's Poisson ratio (Kim et al. 2013)",
+        json_schema_extra={"unit": "1"},
     )
     min_structures: int = Field(
-        4, ge=2, le=1000, description="trusted bulk moduli below which E* fails its gate", json_schema_extra={"unit": "1"}
+        4,
+        ge=2,
+        le=1000,
+        description="trusted bulk moduli below which E* fails its gate",
+        json_schema_extra={"unit": "1"},
     )
     samples: int = Field(
         20_000, ge=100, le=10_000_000, description="samples of E*", json_schema_extra={"unit": "1"}
@@ -375,7 +422,9 @@ class ElasticSettings(Settings):
     @classmethod
     def _stable_solid(cls, value: tuple[float, float]) -> tuple[float, float]:
         if not -1 < value[0] < value[1] < 0.5:
-            raise ValueError("two increasing numbers between -1 and 0.5: at 0.5 a solid has no finite E = 3B(1-2ν)")
+            raise ValueError(
+                "two increasing numbers between -1 and 0.5: at 0.5 a solid has no finite E = 3B(1-2ν)"
+            )
         return value
 
     @field_validator("strains")

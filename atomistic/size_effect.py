@@ -1,0 +1,218 @@
+"""Size dependence of hardness, H(A) = H_macro + H' A^-0.25 (Kim et al. 2013, eq. 4).
+
+A reduced series of sizes cannot identify both parameters, so two fits stand side by side: the default takes
+H_macro from its literature range and H' = (H - H_macro) A^0.25 from every MD point; the free fit takes both
+from the points.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from atomistic.settings import FitSettings, HardnessSettings
+
+INTERVAL = (0.16, 0.84)  # 68 %, as in the paper
+Point = Mapping[str, str]
+
+
+def fit_size_effect(points: Sequence[Point], glasses: Sequence[Mapping], settings: HardnessSettings) -> dict:
+    """Fit both ways, with 68 % intervals by bootstrap over runs, and judge whether the fit may be used.
+
+    Parameters
+    ----------
+    points : rows of points.csv.
+    glasses : properties of the glasses, each with its gate.
+
+    Returns
+    -------
+    Content of fit.json (docs/hardness.md).
+    """
+    fit = settings.fit
+    used = [point for point in points if point["status"] == "yield"]
+    refused = [
+        {"run": point["run"], "status": point["status"]} for point in points if point["status"] != "yield"
+    ]
+    reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
+    if len(used) < fit.min_points:
+        reasons.append(
+            f"{len(used)} of {len(points)} runs gave a defended hardness, {fit.min_points} are needed"
+        )
+    elif len(used) < fit.min_share * len(points):
+        reasons.append(
+            f"only {len(used)} of {len(points)} runs gave a defended hardness (gate {fit.min_share:.0%})"
+        )
+    scales = {float(point["energy_scale"]) for point in used}
+    if missing := sorted(set(settings.energy_scales) - scales):
+        reasons.append(f"no defended hardness at energy scale {', '.join(f'{scale:g}' for scale in missing)}")
+    result: dict = {
+        "method": fit.h_macro,
+        "points_used": len(used),
+        "points_total": len(points),
+        "points_rejected": refused,
+        "inputs": {},
+        "gate": {"passed": False, "reasons": reasons},
+    }
+    if len(used) < 2:
+        result["gate"]["reasons"] = reasons or ["fewer than two points"]
+        return result
+    free = {"together": used} | {f"scale_{scale:g}": _of_scale(used, scale) for scale in sorted(scales)}
+    result["free_fit"] = {name: free_fit(group, fit) for name, group in free.items()}
+    result["halved_over_full"] = scale_ratios(used)
+    result["size_effect"] = size_exponents(used, fit)
+    h_macro, h_prime = (literature_samples if fit.h_macro == "literature" else free_samples)(used, fit)
+    result["inputs"] = {
+        "h_macro": {"distribution": "uniform", **_range(h_macro, fit), "unit": "GPa"},
+        "h_prime": {
+            "distribution": "uniform",
+            "a": float(np.quantile(h_prime, INTERVAL[0])),
+            "b": float(np.quantile(h_prime, INTERVAL[1])),
+            "unit": "GPa nm^0.5",
+            "correlation": {"h_macro": _spearman(h_macro, h_prime)},
+        },
+    }
+    result["H_macro_GPa"] = _summary(h_macro)
+    result["H_prime_GPa_nm0.5"] = _summary(h_prime)
+    result["curve"] = band(h_macro, h_prime)
+    if result["inputs"]["h_prime"]["a"] <= 0 or result["inputs"]["h_macro"]["a"] <= 0:
+        reasons.append(
+            "the fit allows a hardness that falls with decreasing size or is negative: not identifiable"
+        )
+    result["gate"] = {"passed": not reasons, "reasons": reasons}
+    return result
+
+
+def literature_samples(points: Sequence[Point], fit: FitSettings) -> tuple[np.ndarray, np.ndarray]:
+    """Joint samples of H_macro (uniform in its range) and H' (from the points, energy scales alike)."""
+    rng = _rng(11)
+    hardness, spread, length, scale = _columns(points)
+    scales = np.unique(scale)
+    weight = np.array([1 / np.sum(scale == own) for own in scale]) / len(scales)
+    chosen = rng.choice(len(points), size=fit.bootstrap, p=weight)
+    h_macro = rng.uniform(*fit.h_macro_GPa, fit.bootstrap)
+    drawn = hardness[chosen] + spread[chosen] * rng.normal(size=fit.bootstrap)
+    return h_macro, (drawn - h_macro) * np.sqrt(length[chosen])
+
+
+def free_samples(points: Sequence[Point], fit: FitSettings) -> tuple[np.ndarray, np.ndarray]:
+    """Bootstrap over runs of the straight line H against A^-0.25."""
+    rng = _rng(12)
+    hardness, spread, length, _ = _columns(points)
+    x = 1 / np.sqrt(length)
+    chosen = rng.integers(0, len(points), (fit.bootstrap, len(points)))
+    drawn = hardness[chosen] + spread[chosen] * rng.normal(size=chosen.shape)
+    x = x[chosen]
+    varies = np.ptp(x, axis=1) > 1e-6
+    x, drawn = x[varies], drawn[varies]
+    centred = x - x.mean(axis=1, keepdims=True)
+    h_prime = np.sum(centred * drawn, axis=1) / np.sum(centred**2, axis=1)
+    return drawn.mean(axis=1) - h_prime * x.mean(axis=1), h_prime
+
+
+def free_fit(points: Sequence[Point], fit: FitSettings) -> dict:
+    """Both parameters from the points, with intervals; `identifiable` if both intervals are positive."""
+    if len({point["contact_length_nm"] for point in points}) < 3:
+        return {"points": len(points), "identifiable": False}
+    h_macro, h_prime = free_samples(points, fit)
+    macro, prime = _summary(h_macro), _summary(h_prime)
+    return {
+        "points": len(points),
+        "H_macro_GPa": macro,
+        "H_prime_GPa_nm0.5": prime,
+        "identifiable": bool(macro["low"] > 0 and prime["low"] > 0),
+    }
+
+
+def size_exponents(points: Sequence[Point], fit: FitSettings) -> dict:
+    """n in H ~ L^-n at each energy scale, with its 68 % interval: 0 means that no size effect shows."""
+    rng = _rng(13)
+    found = {}
+    for scale in sorted({float(point["energy_scale"]) for point in points}):
+        hardness, spread, length, _ = _columns(_of_scale(points, scale))
+        if len(hardness) < 3 or np.ptp(length) < 0.3:
+            continue
+        chosen = rng.integers(0, len(hardness), (fit.bootstrap, len(hardness)))
+        drawn = np.maximum(hardness[chosen] + spread[chosen] * rng.normal(size=chosen.shape), 0.1)
+        x, y = np.log(length[chosen]), np.log(drawn)
+        x = x - x.mean(axis=1, keepdims=True)
+        varies = np.sum(x**2, axis=1) > 1e-6
+        slope = np.sum(x * y, axis=1)[varies] / np.sum(x**2, axis=1)[varies]
+        found[f"scale_{scale:g}"] = {
+            **_summary(-slope),
+            "length_min_nm": length.min(),
+            "length_max_nm": length.max(),
+        }
+    return found
+
+
+def scale_ratios(points: Sequence[Point]) -> list[dict]:
+    """Hardness at the lowest over that at the highest energy scale, per asperity, with its 68 % interval."""
+    scales = sorted({float(point["energy_scale"]) for point in points})
+    rows = []
+    if len(scales) < 2:
+        return rows
+    for asperity in sorted({point["asperity"] for point in points}):
+        groups = [
+            _columns([p for p in _of_scale(points, scale) if p["asperity"] == asperity])
+            for scale in (scales[0], scales[-1])
+        ]
+        if any(len(group[0]) == 0 for group in groups):
+            continue
+        rng = _rng(14)
+        means = [
+            np.mean(hardness)
+            + rng.normal(size=2000) * np.sqrt(np.mean(spread**2) / len(hardness) + _scatter(hardness))
+            for hardness, spread, _, _ in groups
+        ]
+        rows.append(
+            {"asperity": asperity, "scales": [scales[0], scales[-1]], **_summary(means[0] / means[1])}
+        )
+    return rows
+
+
+def band(h_macro: np.ndarray, h_prime: np.ndarray) -> list[dict[str, float]]:
+    """H(L) with its 68 % band, L = sqrt(A) from 1 to 20 nm."""
+    rows = []
+    for length in np.geomspace(1, 20, 40).tolist():
+        hardness = h_macro + h_prime / np.sqrt(length)
+        low, middle, high = np.quantile(hardness, [INTERVAL[0], 0.5, INTERVAL[1]]).tolist()
+        rows.append({"contact_length_nm": length, "low_GPa": low, "median_GPa": middle, "high_GPa": high})
+    return rows
+
+
+def _columns(points: Sequence[Point]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Hardness, half its interval, contact length, energy scale."""
+
+    def column(name: str) -> np.ndarray:
+        return np.array([float(point[name]) for point in points])
+
+    spread = 0.5 * (column("hardness_hi") - column("hardness_lo"))
+    return column("hardness_GPa"), spread, column("contact_length_nm"), column("energy_scale")
+
+
+def _of_scale(points: Sequence[Point], scale: float) -> list[Point]:
+    return [point for point in points if float(point["energy_scale"]) == scale]
+
+
+def _scatter(values: np.ndarray) -> float:
+    """Variance of the mean between runs."""
+    return float(np.var(values, ddof=1) / len(values)) if len(values) > 1 else 0.0
+
+
+def _range(h_macro: np.ndarray, fit: FitSettings) -> dict[str, float]:
+    if fit.h_macro == "literature":
+        return {"a": fit.h_macro_GPa[0], "b": fit.h_macro_GPa[1]}
+    return {"a": float(np.quantile(h_macro, INTERVAL[0])), "b": float(np.quantile(h_macro, INTERVAL[1]))}
+
+
+def _summary(samples: np.ndarray) -> dict[str, float]:
+    low, middle, high = np.quantile(samples, [INTERVAL[0], 0.5, INTERVAL[1]]).tolist()
+    return {"median": middle, "low": low, "high": high}
+
+
+def _spearman(first: np.ndarray, second: np.ndarray) -> float:
+    ranks = [np.argsort(np.argsort(values, kind="stable"), kind="stable") for values in (first, second)]
+    return float(np.corrcoef(*ranks)[0, 1])
+
+
+def _rng(stream: int) -> np.random.Generator:
+    return np.random.default_rng(np.random.SeedSequence([stream]))

@@ -1,0 +1,18 @@
+"""Fit H(A) to the MD points.
+
+In:  points.csv (GPa, nm), glass/*.json.  Out: fit.json (H_macro in GPa, H' in GPa nm^0.5, gate).
+"""
+
+from atomistic.settings import HardnessSettings
+from atomistic.size_effect import fit_size_effect
+from workflow.job import job
+from workflow.results import read_csv, read_json, write_json
+
+with job(snakemake) as run:
+    settings = HardnessSettings(**snakemake.params.settings)
+    glasses = [read_json(path) for path in snakemake.input.glasses]
+    write_json(
+        snakemake.output.fit,
+        fit_size_effect(read_csv(snakemake.input.points), glasses, settings),
+        run.provenance,
+    )
