@@ -26,6 +26,7 @@ from mesoscale.settings import (
     TopographySettings,
     UncertaintySettings,
 )
+from workflow.report.settings import ReportSettings
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENES = ROOT / "config" / "scenes"
@@ -57,6 +58,7 @@ class Scene(Settings):
     law: LawSettings = LawSettings()
     uncertainty: UncertaintySettings = UncertaintySettings()
     device: DeviceSettings = DeviceSettings()
+    report: ReportSettings = ReportSettings()
 
     def stages(self) -> set[str]:
         """The stages among hardness, elastic and topography that this scene computes."""

@@ -251,7 +251,7 @@ def _warnings(
     warnings = []
     if extrapolates:
         warnings.append(
-            f"held closed, the landed part carries {hold_MPa:.3g} MPa (median), more than the "
+            f"held closed, the landed part carries {hold_MPa:.0f} MPa (median), more than the "
             f"{law_pressure_MPa:.3g} MPa that the law was fitted to: the closed separation is extrapolated"
         )
     stuck = states["with_adhesion"].stuck.mean()

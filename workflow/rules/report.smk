@@ -1,0 +1,35 @@
+def report_inputs():
+    """Result files of exactly the stages that the scene needs; each has its section in the page."""
+    files = ["scene.yaml", "inputs.csv", "curves/nominal.h5", "law/parameters.csv", "law/nominal.csv"]
+    files += [f"uq/{name}" for name in ("outputs.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")]
+    files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "path.csv", "law.csv")]
+    if needed("hardness"):
+        files += ["hardness/points.csv", "hardness/fit.json", *(f"hardness/closing/{run}.csv" for run in CLOSINGS)]
+    if needed("elastic"):
+        files += [f"elastic/{name}" for name in ("points.csv", "bulk_moduli.csv", "e_star.json", "e_star.h5")]
+    if needed("topography"):
+        files += ["topography/spectra.h5", "topography/parameters.json"]
+    studies = [*ACCURACY, *STABILITY] if SCENE.report.studies else []
+    return [f"{RESULTS}/{name}" for name in files] + studies
+
+
+rule report:
+    input:
+        f"{RESULTS}/report.html",
+
+
+rule render_report:
+    message:
+        "write the report"
+    input:
+        report_inputs(),
+        style=[str(ROOT / "workflow" / "report" / name) for name in ("template.html.j2", "style.css", "explorer.js")],
+    output:
+        f"{RESULTS}/report.html",
+    log:
+        f"{RESULTS}/logs/render_report.log",
+    params:
+        root=RESULTS,
+        scene=SCENE.name,
+    script:
+        "../scripts/render_report.py"

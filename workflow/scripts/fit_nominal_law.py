@@ -14,6 +14,6 @@ with job(snakemake) as run:
     rows = []
     for name in sorted({key.rpartition("/")[0] for key in curves if "/" in key}):
         facts = {**root, **attributes.get(name, {})}
-        area = float(facts["length_nm"]) ** 2
+        area = float(facts["cell_area_nm2"])
         rows += [{"curve": name, **row} for row in fit_stored(curves, name, facts, area, settings)]
     write_csv(snakemake.output[0], rows)

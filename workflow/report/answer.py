@@ -1,0 +1,115 @@
+"""The first screen: the law with its intervals, the hysteresis, the switch, and what matters most."""
+
+from typing import Any
+
+import numpy as np
+
+from workflow.report.available import Results, Row, column, number, show
+from workflow.report.figures_contact import OUTPUTS, SYMBOLS, law_band
+from workflow.report.page import Table
+
+MEANINGS = {
+    "d_c_nm": "mean separation at first contact",
+    "C_a_GPa_nm": "adhesion per nm of approach",
+    "C_r_GPa": "scale of the repulsion",
+    "rho_r_nm": "decay length of the repulsion",
+}
+
+
+def answer(results: Results) -> dict[str, Any]:
+    """Sentences, table and figure that open the report."""
+    content: dict[str, Any] = {"sentences": [], "figure": None, "table": None, "cards": []}
+    if results.has("uq/outputs.csv", "uq/samples.csv"):
+        rows = {row["output"]: row for row in results.csv("uq/outputs.csv")}
+        samples = results.csv("uq/samples.csv")
+        content["table"] = _law_table(rows, samples)
+        content["cards"] += _law_cards(rows)
+    if results.has("uq/sensitivity.csv"):
+        content["cards"].append(_cause_card(results.csv("uq/sensitivity.csv")))
+    if results.has("device/switch.json"):
+        content["cards"].append(_switch_card(results.json("device/switch.json")))
+    if results.has("device/law.csv"):
+        content["figure"] = law_band(results)
+    return content
+
+
+def ranking(rows: list[Row], output: str) -> list[tuple[str, float]]:
+    """Inputs by their share of an output's variance (total Sobol' index), or of the summed squares of the
+    elementary effects where no index was computed; largest first."""
+    part = [row for row in rows if row["output"] == output]
+    if any(np.isfinite(number(row.get("sobol_total"))) for row in part):
+        shares = [(row["input"], number(row["sobol_total"])) for row in part]
+    else:
+        squares = column(part, "mu_star") ** 2
+        whole = np.nansum(squares)
+        shares = [(row["input"], s / whole if whole > 0 else 0) for row, s in zip(part, squares, strict=True)]
+    known = [(name, share) for name, share in shares if np.isfinite(share)]
+    return sorted(known, key=lambda pair: -pair[1])
+
+
+def _law_cards(rows: dict[str, Row]) -> list[dict[str, str]]:
+    d_c, delta = rows["d_c_nm"], rows["delta_d_c_nm"]
+    return [
+        {
+            "title": "First contact",
+            "value": f"{show(d_c['mean'])} nm",
+            "detail": f"5 to 95 %: {_interval(d_c)} nm; the paper has {show(d_c['paper_mean'])} ± "
+            f"{show(d_c['paper_dev'])} nm",
+        },
+        {
+            "title": "Hysteresis",
+            "value": f"{show(delta['mean'])} nm",
+            "detail": f"shift of contact on opening; 5 to 95 %: {_interval(delta)} nm; the paper has "
+            f"{show(delta['paper_mean'])} ± {show(delta['paper_dev'])} nm",
+        },
+    ]
+
+
+def _cause_card(rows: list[Row]) -> dict[str, str]:
+    ranked = ranking(rows, "d_c_nm")
+    name, share = ranked[0]
+    words = f"{min(share, 1):.0%} of the variance of first contact"
+    opening = ranking(rows, "delta_d_c_nm")
+    if opening:
+        pairs = [f"{SYMBOLS.get(key, key)} {min(part, 1):.0%}" for key, part in opening[:3]]
+        words += "; of the hysteresis: " + ", ".join(pairs)
+    return {"title": "Main cause of the spread", "value": SYMBOLS.get(name, name), "detail": words}
+
+
+def _switch_card(switch: dict[str, Any]) -> dict[str, str]:
+    with_adhesion, without = switch["with_adhesion"], switch["without_adhesion"]
+    stiction = with_adhesion["stiction_probability"]
+    release = with_adhesion["release_V"]
+    value = "all stuck" if not release["quantiles"] else f"{show(release['quantiles']['0.5'])} V"
+    detail = (
+        f"median release voltage of the example switch ({show(without['release_V']['quantiles']['0.5'])} "
+        f"V without adhesion); {stiction['value']:.0%} of the samples stick at a landed fraction of "
+        f"{switch['switch']['landed_fraction']:g}"
+    )
+    return {"title": "Release", "value": value, "detail": detail}
+
+
+def _law_table(rows: dict[str, Row], samples: list[Row]) -> Table:
+    lines = []
+    for name, meaning in MEANINGS.items():
+        symbol, unit, factor = OUTPUTS[name]
+        cells = [f"{symbol} ({unit}), {meaning}"]
+        for branch in ("closing", "opening"):
+            values = column(samples, f"{branch}_{name}") * factor
+            values = values[np.isfinite(values)]
+            low, high = np.quantile(values, [0.05, 0.95])
+            cells.append(f"{show(values.mean())} [{show(low)}, {show(high)}]")
+        paper = rows[name]
+        cells.append(
+            f"{show(number(paper['paper_mean']) * factor)} ± {show(number(paper['paper_dev']) * factor)}"
+        )
+        lines.append(cells)
+    return Table(
+        "The force–separation law: mean and 5 to 95 % interval over all uncertain inputs",
+        ("parameter", "closing", "opening", "paper, closing (mean ± dev)"),
+        lines,
+    )
+
+
+def _interval(row: Row) -> str:
+    return f"{show(row['q05'])} to {show(row['q95'])}"

@@ -1,0 +1,107 @@
+"""Figures as inline SVG that follow the page: its font, its colours, light and dark.
+
+Matplotlib draws in marker colours, each of which becomes a CSS variable of the page afterwards.
+"""
+
+import io
+import re
+from collections.abc import Callable
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("svg")
+from matplotlib.figure import Figure
+
+INK, SOFT, GRID, PAPER = "#010203", "#010204", "#010205", "#010206"
+SERIES = ("#020301", "#020302", "#020303", "#020304", "#020305", "#020306")
+BLUE, ORANGE, GREEN, PURPLE, SKY, RED = SERIES
+VARIABLES = {
+    INK: "--ink",
+    SOFT: "--soft",
+    GRID: "--grid",
+    PAPER: "--card",
+    **{color: f"--series-{i + 1}" for i, color in enumerate(SERIES)},
+}
+STYLE: dict[Any, Any] = {
+    "svg.fonttype": "none",  # text stays text: selectable, read aloud, in the page's font
+    "font.family": "sans-serif",
+    "font.size": 10,
+    "axes.edgecolor": SOFT,
+    "axes.labelcolor": INK,
+    "axes.titlecolor": INK,
+    "axes.titlesize": 10.5,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": GRID,
+    "grid.linewidth": 0.7,
+    "xtick.color": SOFT,
+    "ytick.color": SOFT,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "text.color": INK,
+    "lines.linewidth": 1.8,
+    "legend.frameon": False,
+    "legend.fontsize": 9,
+    "axes.formatter.use_mathtext": False,
+    "path.simplify_threshold": 0.3,
+}
+
+
+def draw(
+    name: str,
+    label: str,
+    plot: Callable[..., None],
+    size: tuple[float, float] = (6.4, 3.9),
+    columns: int = 1,
+    rows: int = 1,
+    **options: Any,
+) -> str:
+    """SVG of a figure.
+
+    Parameters
+    ----------
+    name : unique on the page; prefixes every id, so that figures cannot disturb each other
+    label : what the figure shows, read aloud by screen readers
+    plot : called with the axes, one argument per panel
+    options : passed to `Figure.subplots`
+    """
+    with matplotlib.rc_context({**STYLE, "svg.hashsalt": name}):
+        figure = Figure(figsize=size, layout="constrained")
+        figure.patch.set_alpha(0)
+        axes = figure.subplots(rows, columns, squeeze=False, **options).ravel()
+        for axis in axes:
+            axis.patch.set_alpha(0)
+        plot(*axes)
+        stream = io.StringIO()
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+    return _inline(stream.getvalue(), name, label)
+
+
+def _inline(svg: str, name: str, label: str) -> str:
+    svg = svg[svg.index("<svg") :]
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+    svg = re.sub(r'\bid="([^"]+)"', rf'id="{name}-\1"', svg)
+    svg = re.sub(r"url\(#([^)]+)\)", rf"url(#{name}-\1)", svg)
+    svg = re.sub(r'href="#([^"]+)"', rf'href="#{name}-\1"', svg)
+    for color, variable in VARIABLES.items():
+        svg = svg.replace(color, f"var({variable})")
+    # fonts come from the page; sizes stay
+    svg = re.sub(r"font: ([\d.]+px) [^;\"]+", r"font-size: \1", svg)
+    svg = re.sub(r"font-family: [^;\"]+;? ?", "", svg)
+    # matplotlib blackens what has no colour of its own
+    svg = svg.replace("fill: #000000", "fill: var(--ink)").replace("stroke: #000000", "stroke: var(--ink)")
+    svg = re.sub(r"\n\s*", "\n", svg)
+    opening = re.match(r"<svg[^>]*>", svg)
+    assert opening is not None
+    box = re.search(r'viewBox="([^"]+)"', opening[0])
+    assert box is not None
+    width = float(box[1].split()[2]) * 4 / 3
+    label = label.replace("&", "and").replace('"', "'").replace("<", "less than")
+    start = (
+        '<svg xmlns:xlink="http://www.w3.org/1999/xlink" xmlns="http://www.w3.org/2000/svg" '
+        f'viewBox="{box[1]}" role="img" aria-label="{label}" style="max-width:{width:.0f}px">'
+    )
+    return start + svg[opening.end() :]

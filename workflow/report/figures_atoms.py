@@ -1,0 +1,262 @@
+"""Figures of the stages that feed the contact: hardness, elasticity, topography."""
+
+import numpy as np
+
+from workflow.report.available import Results, Row, column, number
+from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SERIES, SKY, SOFT, draw
+
+SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE, "s")}
+PAPER_HARDNESS = ((3.0, 10.0), (15.0, 2.0))  # nm, GPa: "~10 GPa at 3 nm, ~2 GPa at 15 nm" in the paper's text
+
+
+def contact_stress(results: Results) -> str | None:
+    """Figure 7: contact stress against contact length of the closing runs."""
+    runs = results.matching("hardness/closing/", ".csv")
+    if not runs:
+        return None
+    points = {row["run"]: row for row in results.csv("hardness/points.csv")}
+
+    def plot(axis):
+        highest = 1.0
+        for name in runs:
+            rows = results.csv(name)
+            length, stress = column(rows, "contact_length_nm"), column(rows, "contact_stress_GPa")
+            run = name.rpartition("/")[2].removesuffix(".csv")
+            point = points.get(run, {})
+            _, color, _ = _scale(point)
+            use = np.isfinite(length) & np.isfinite(stress) & (length > 0.8)
+            if not use.any():
+                continue
+            axis.plot(length[use], stress[use], color=color, linewidth=0.8, alpha=0.7)
+            highest = max(highest, float(np.quantile(stress[use], 0.98)))
+            at, hardness = number(point.get("contact_length_nm")), number(point.get("hardness_GPa"))
+            if point.get("status") == "yield" and np.isfinite(at):
+                axis.plot(at, hardness, "D", color=color, markeredgecolor=INK, markersize=6)
+        for label, color, _ in SCALES.values():
+            axis.plot([], [], color=color, label=label)
+        axis.plot([], [], "D", color=SOFT, label="hardness of the run")
+        axis.set(
+            xlabel="contact length √A (nm)",
+            ylabel="contact stress (GPa)",
+            ylim=(0, 1.1 * highest),
+            xlim=(0.8, None),
+        )
+        axis.legend()
+
+    return draw("fig7", "Contact stress against contact length of each closing run", plot)
+
+
+def hardness_size(results: Results) -> str | None:
+    """Figure 8: hardness against contact length, with the fit and the paper's two stated values."""
+    points = results.csv("hardness/points.csv")
+    fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
+
+    def plot(axis):
+        for key, (label, color, marker) in SCALES.items():
+            part = [row for row in points if _key(row) == key and row.get("status") == "yield"]
+            if part:
+                length, hardness = column(part, "contact_length_nm"), column(part, "hardness_GPa")
+                low, high = column(part, "hardness_lo"), column(part, "hardness_hi")
+                bars = np.nan_to_num(np.clip([hardness - low, high - hardness], 0, None))
+                axis.errorbar(length, hardness, yerr=bars, fmt=marker, color=color, label=label, capsize=3)
+        macro, prime = _middle(fit, "h_macro"), _middle(fit, "h_prime")
+        macro = number(fit.get("H_macro_GPa")) if not np.isfinite(macro) else macro
+        prime = number(fit.get("H_prime_GPa_nm0.5")) if not np.isfinite(prime) else prime
+        length = np.linspace(1.5, 20, 200)
+        if np.isfinite(macro) and np.isfinite(prime):
+            axis.plot(
+                length,
+                macro + prime / np.sqrt(length),
+                color=GREEN,
+                label="H_macro + H′ A^−¼ in use (centre)",
+            )
+        axis.fill_between(
+            length,
+            0.7 + 1.95 / np.sqrt(length),
+            3.2 + 14.8 / np.sqrt(length),
+            color=SOFT,
+            alpha=0.13,
+            linewidth=0,
+        )
+        axis.plot(
+            *zip(*PAPER_HARDNESS, strict=True),
+            "x",
+            color=INK,
+            markersize=8,
+            label="paper, values in its text",
+        )
+        axis.fill_between([], [], [], color=SOFT, alpha=0.3, label="paper, range of its Table 1")
+        axis.set(xlabel="contact length √A (nm)", ylabel="hardness (GPa)", ylim=(0, None), xlim=(1, 20))
+        axis.legend(fontsize=8.5)
+
+    return draw("fig8", "Hardness of single asperities against contact length", plot)
+
+
+def elastic_distribution(results: Results) -> str | None:
+    """Figure 5: bulk moduli of the ensemble and the resulting E*."""
+    rows = results.csv("elastic/bulk_moduli.csv")
+    summary = results.json("elastic/e_star.json")
+    names = sorted({(row["xc"], row.get("ions", "")) for row in rows})
+    samples = results.h5("elastic/e_star.h5")[0] if results.has("elastic/e_star.h5") else {}
+    flat = {name: values for group in samples.values() for name, values in group.items()}
+
+    def plot(axis, other):
+        every = column(rows, "B_GPa")
+        every = every[np.isfinite(every)]
+        bins = np.linspace(every.min() - 5, every.max() + 5, 12) if every.size else np.linspace(0, 1, 2)
+        colors = {name: SERIES[i % len(SERIES)] for i, name in enumerate(names)}
+        for xc, ions in names:
+            part = column([row for row in rows if (row["xc"], row.get("ions", "")) == (xc, ions)], "B_GPa")
+            label = f"{xc.upper()}, {ions} ions" if ions else xc.upper()
+            part = part[np.isfinite(part)]
+            if part.size:
+                axis.hist(part, bins=bins, color=colors[xc, ions], alpha=0.5, label=label, linewidth=0)
+        axis.set(xlabel="bulk modulus B (GPa)", ylabel="structures")
+        axis.legend(fontsize=8.5)
+        mean, std = number(summary.get("mean_GPa")), number(summary.get("std_GPa"))
+        e_star = next((values for name, values in flat.items() if "e_star" in name.lower()), None)
+        grid = np.linspace(min(75, mean - 4 * std), max(107, mean + 4 * std), 300)
+        if e_star is not None and np.size(e_star) > 50:
+            other.hist(
+                np.ravel(e_star), bins=50, density=True, color=BLUE, alpha=0.5, label="here", linewidth=0
+            )
+        else:
+            other.plot(grid, _normal(grid, mean, std), color=BLUE, label=f"here, {mean:.1f} ± {std:.1f} GPa")
+        other.plot(grid, _normal(grid, 91.0, 3.8), "--", color=ORANGE, label="paper, 91 ± 3.8 GPa")
+        other.set(xlabel="E* (GPa)", ylabel="density (1/GPa)", ylim=(0, None))
+        other.legend(fontsize=8.5)
+
+    return draw(
+        "fig5", "Bulk moduli of the structures and the effective modulus", plot, (9.4, 3.7), columns=2
+    )
+
+
+def energy_volume(results: Results) -> str | None:
+    """E(V) of every structure, the data behind figure 5."""
+    rows = [row for row in results.csv("elastic/points.csv") if row.get("converged") in ("True", "true", "1")]
+    curves: dict[tuple[str, str, str], list[Row]] = {}
+    for row in rows:
+        curves.setdefault((row["structure"], row["xc"], row.get("ions", "")), []).append(row)
+    if not curves:
+        return None
+
+    def plot(axis):
+        colors = {xc: SERIES[i % len(SERIES)] for i, xc in enumerate(sorted({key[1] for key in curves}))}
+        for (_, xc, _), part in curves.items():
+            strain, energy = column(part, "strain"), column(part, "energy_eV")
+            order = np.argsort(strain)
+            axis.plot(
+                100 * strain[order],
+                energy[order] - energy.min(),
+                "o-",
+                color=colors[xc],
+                markersize=3,
+                linewidth=1,
+            )
+        for xc, color in colors.items():
+            axis.plot([], [], "o-", color=color, label=xc.upper())
+        axis.set(xlabel="strain (%)", ylabel="energy above lowest point (eV per cell)")
+        axis.legend()
+
+    return draw("energy", "Energy against strain of every structure", plot, (5.6, 3.6))
+
+
+def scans(results: Results) -> str | None:
+    """Figure 9: height maps of the scans."""
+    groups, _, facts = results.h5("topography/spectra.h5")
+    names = [name for name in sorted(groups) if name.startswith("scans/") and "heights" in groups[name]]
+    if not names:
+        return None
+    # one of each size first, then more up to six
+    names.sort(key=lambda name: (float(facts[name].get("length_x_nm", 0)), name))
+    shown = names if len(names) <= 6 else names[:3] + names[-3:]
+    columns = min(3, len(shown))
+    rows = -(-len(shown) // columns)
+
+    def plot(*axes):
+        for axis, name in zip(axes, shown, strict=False):
+            heights = _thin(groups[name]["heights"])
+            size = float(facts[name]["length_x_nm"]) / 1e3
+            limit = float(np.quantile(np.abs(heights), 0.995))
+            axis.imshow(
+                heights.T, origin="lower", extent=(0, size, 0, size), cmap="cividis", vmin=-limit, vmax=limit
+            )
+            rms = float(facts[name].get("rms_nm", np.nan))
+            axis.set_title(f"{name.removeprefix('scans/')}: RMS {rms:.2f} nm", fontsize=9)
+            axis.set_xlabel("µm", fontsize=8)
+            axis.grid(False)
+        for axis in axes[len(shown) :]:
+            axis.set_visible(False)
+
+    return draw("fig9", "Height maps of the scans", plot, (8.4, 2.9 * rows), columns, rows)
+
+
+def spectra(results: Results) -> str | None:
+    """Figure 10: spectra of all scans, pooled spectrum, fits, and the truth of synthetic scans."""
+    groups, attributes, _ = results.h5("topography/spectra.h5")
+    names = [name for name in groups if name.startswith("scans/")]
+    if not names:
+        return None
+    styles = {
+        "likelihood": ("fit of eq. 9 (maximum likelihood)", BLUE, "-"),
+        "lines": ("line fits as in the paper", GREEN, "-"),
+        "shallow_bound": ("bounding slopes", RED, "--"),
+        "steep_bound": (None, RED, "--"),
+        "plateau_low": ("bounding plateaus", PURPLE, ":"),
+        "plateau_high": (None, PURPLE, ":"),
+        "truth": ("truth of the synthetic surface", INK, "--"),
+    }
+
+    def plot(axis):
+        lowest, highest = np.inf, 0.0
+        for name in sorted(names):
+            q, psd = groups[name]["q"], groups[name]["psd"]
+            use = psd > 0
+            axis.loglog(q[use], psd[use], color=SKY, linewidth=0.7, alpha=0.8)
+            lowest, highest = min(lowest, psd[use].min()), max(highest, psd[use].max())
+        axis.plot(
+            [],
+            [],
+            color=SKY,
+            label=f"{len(names)} {'synthetic ' if attributes.get('synthetic') else ''}scans",
+        )
+        if "pooled" in groups:
+            axis.loglog(groups["pooled"]["q"], groups["pooled"]["psd"], color=ORANGE, label="pooled")
+        fits = groups.get("fits", {})
+        for name, (label, color, style) in styles.items():
+            if name in fits:
+                axis.loglog(fits["q"], fits[name], style, color=color, label=label, linewidth=1.3)
+        axis.set(
+            xlabel="wave vector q (1/nm)",
+            ylabel="PSD (nm⁴)",
+            ylim=(max(lowest, highest * 1e-12), 5 * highest),
+        )
+        axis.legend(fontsize=8)
+
+    return draw("fig10", "Power spectra of the scans with fits", plot, (7.0, 4.6))
+
+
+def _scale(point: Row) -> tuple[str, str, str]:
+    return SCALES.get(_key(point), ("other energies", PURPLE, "^"))
+
+
+def _key(point: Row) -> str:
+    value = number(point.get("energy_scale", "1"))
+    return f"{value:.1f}" if np.isfinite(value) else "1.0"
+
+
+def _middle(fit: dict, name: str) -> float:
+    """Centre of the input that the fit hands on, wherever its distribution puts it."""
+    entry = fit.get("inputs", {}).get(name, {})
+    if entry.get("distribution") == "uniform":
+        return (number(entry.get("a")) + number(entry.get("b"))) / 2
+    return number(entry.get("a", entry.get("mean")))
+
+
+def _normal(x: np.ndarray, mean: float, std: float) -> np.ndarray:
+    return np.exp(-(((x - mean) / std) ** 2) / 2) / (std * np.sqrt(2 * np.pi))
+
+
+def _thin(heights: np.ndarray, most: int = 160) -> np.ndarray:
+    step = max(1, -(-max(heights.shape) // most))
+    return heights[::step, ::step]

@@ -1,0 +1,72 @@
+"""Building blocks of the page: figures, tables, gates and sections."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+COMPUTED, LITERATURE, SYNTHETIC = "computed", "literature", "synthetic"
+
+
+@dataclass(frozen=True)
+class Figure:
+    """An SVG with its caption; `paper` names the paper's figure that it corresponds to."""
+
+    svg: str
+    caption: str
+    paper: str = ""
+    wide: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of text cells; the first `heads` columns are row headers."""
+
+    caption: str
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    heads: int = 1
+
+
+@dataclass(frozen=True)
+class Gate:
+    """Whether a number can be trusted, and why not."""
+
+    stage: str
+    passed: bool
+    reasons: Sequence[str] = ()
+
+
+@dataclass
+class Section:
+    """One part of the page."""
+
+    anchor: str
+    title: str
+    lead: str
+    origin: str = ""
+    blocks: list[Figure | Table] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    files: list[str] = field(default_factory=list)
+
+    def add(self, svg: str | None, caption: str, paper: str = "", wide: bool = False) -> None:
+        """Append a figure if there was anything to draw."""
+        if svg:
+            self.blocks.append(Figure(svg, caption, paper, wide))
+
+
+def kind(block: Figure | Table) -> str:
+    """Name of a block's class, for the template."""
+    return "figure" if isinstance(block, Figure) else "table"
+
+
+@dataclass(frozen=True)
+class Page:
+    """All that the template needs."""
+
+    scene: str
+    answer: dict[str, Any]
+    sections: Sequence[Section]
+    gates: Sequence[Gate]
+    limits: Sequence[str]
+    provenance: Sequence[tuple[str, str]]
+    explorer: dict[str, Any] | None
