@@ -52,13 +52,14 @@ def surface_patch(
     The spectrum is folded at the Nyquist wave vector as point sampling folds it, so that a coarse scan of a
     surface that is rough below its pixels is exact, RMS included.
     """
-    n = scipy.fft.next_fast_len(math.ceil(PERIOD * pixels), real=True)
+    wanted = math.ceil(PERIOD * pixels)
+    n = scipy.fft.next_fast_len(wanted, True) or wanted
     step = length_nm / pixels
     qx = 2 * np.pi * np.fft.fftfreq(n, step)
     qy = 2 * np.pi * np.fft.rfftfreq(n, step)
     folded = _folded_psd(truth, qx, qy, 2 * np.pi / step)
-    noise = scipy.fft.rfft2(rng.standard_normal((n, n)))
-    surface = scipy.fft.irfft2(noise * np.sqrt(folded) * (2 * np.pi / step), s=(n, n))
+    noise = np.asarray(scipy.fft.rfft2(rng.standard_normal((n, n))))
+    surface = np.asarray(scipy.fft.irfft2(noise * np.sqrt(folded) * (2 * np.pi / step), s=(n, n)))
     return surface[:pixels, :pixels]
 
 

@@ -62,9 +62,15 @@ def analyse_scan(scan: Scan, settings: TopographySettings) -> ScanAnalysis:
     return ScanAnalysis(cleaned, scan.rms_nm, spectrum, flat, profile_q, profile_psd, lag, correlation)
 
 
-def trusted(name: str, spectrum: Spectrum, settings: TopographySettings) -> TrustedSpectrum:
-    """The spectrum with its trusted range for the tip of the settings."""
-    return trusted_range(name, spectrum, settings.tip_radius_nm)
+def trusted(name: str, spectrum: Spectrum, rms_nm: float, settings: TopographySettings) -> TrustedSpectrum:
+    """The spectrum of a scan of known RMS height with its trusted range for the tip of the settings."""
+    return trusted_range(name, spectrum, settings.tip_radius_nm, rms_nm=rms_nm)
+
+
+def trusted_scan(scan: Scan, settings: TopographySettings) -> TrustedSpectrum:
+    """Spectrum and trusted range of a raw scan."""
+    result = analyse_scan(scan, settings)
+    return trusted(scan.name, result.spectrum, result.cleaned.rms_nm, settings)
 
 
 def thumbnail(heights: np.ndarray) -> np.ndarray:

@@ -5,8 +5,9 @@ freedom (Whittle's likelihood).  All scans share q0 and the slope; each has its 
 log-normal population, because amplitudes of real places differ by far more than their statistical error.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -35,6 +36,7 @@ class TrustedSpectrum:
     low, high : trusted wave vectors, 1/nm.
     limit : what ends the range above: `tip`, `noise` or `pixels`.
     tip_radius_nm : radius used for the tip's correction.
+    rms_nm : RMS of the cleaned heights.
     """
 
     name: str
@@ -43,6 +45,7 @@ class TrustedSpectrum:
     high: float
     limit: str
     tip_radius_nm: float
+    rms_nm: float = 0.0
 
     @property
     def trusted(self) -> np.ndarray:
@@ -151,7 +154,7 @@ def fit(spectra: Sequence[TrustedSpectrum]) -> LikelihoodFit | None:
 
     grid = [(q0, slope) for q0 in np.linspace(low, high, 14)[:-1] for slope in (1.0, 2.0, 3.0, 4.0)]
     best = np.array(min(grid, key=lambda point: objective(np.array(point))))
-    dispersion = 1.0
+    dispersion, raw, residual = 1.0, level, np.ones(bins)
     for _ in range(4):
         found = minimize(objective, best, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-3})
         best = np.clip(found.x, [low, 0.0], [high, MAX_SLOPE])
@@ -252,6 +255,7 @@ def trusted_range(
     lowest_shell: float = 2.5,
     noise_margin: float = 20.0,
     tip_margin: float = 0.5,
+    rms_nm: float = 0.0,
 ) -> TrustedSpectrum:
     """Bound a spectrum to what the instrument resolves.
 
@@ -277,7 +281,7 @@ def trusted_range(
         if blunt.any():
             limits["tip"] = float(q[blunt][0])
     limit = min(limits, key=lambda key: limits[key])
-    return TrustedSpectrum(name, spectrum, low, limits[limit], limit, tip_radius_nm)
+    return TrustedSpectrum(name, spectrum, low, limits[limit], limit, tip_radius_nm, rms_nm)
 
 
 def _running_mean(values: np.ndarray, q: np.ndarray, width: float = 0.12) -> np.ndarray:
@@ -293,8 +297,6 @@ def single_scans(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit) -> t
 
     Their range is the scatter between places; it includes the statistical error of single scans.
     """
-    from scipy.optimize import minimize_scalar
-
     log_q0 = np.log(fitted.q0)
     knees, slopes = [], []
     for item in spectra:
@@ -303,15 +305,19 @@ def single_scans(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit) -> t
         data = _Data([item])
         level = np.array([np.log(fitted.plateau)])
 
-        def deviance(at: float, slope: float, data: _Data = data, level: np.ndarray = level) -> float:
-            return _deviance(data, at, slope, 0.0, level)[0]
-
         if item.low < fitted.q0 / 2 and item.high > 1.5 * fitted.q0:
-            bounds = (log_q0 - 1.0, log_q0 + 1.0)
-            found = minimize_scalar(lambda at: deviance(at, fitted.slope), bounds=bounds, method="bounded")
-            knees.append(float(np.exp(found.x)))
+            knee = _lowest(lambda at, d=data, a=level: _deviance(d, at, fitted.slope, 0.0, a)[0], log_q0, 1.0)
+            knees.append(float(np.exp(knee)))
         if item.high > 2.2 * max(fitted.q0, item.low):
-            bounds = (fitted.slope - 2, fitted.slope + 2)
-            found = minimize_scalar(lambda slope: deviance(log_q0, slope), bounds=bounds, method="bounded")
-            slopes.append(float(found.x))
+            slopes.append(
+                _lowest(lambda at, d=data, a=level: _deviance(d, log_q0, at, 0.0, a)[0], fitted.slope, 2.0)
+            )
     return np.array(knees), np.array(slopes)
+
+
+def _lowest(function: Callable[[float], float], centre: float, reach: float) -> float:
+    """Minimum of a function of one variable within `reach` of `centre`."""
+    from scipy.optimize import minimize_scalar
+
+    found: Any = minimize_scalar(function, bounds=(centre - reach, centre + reach), method="bounded")
+    return float(found.x)

@@ -185,7 +185,8 @@ def _threshold(freedom: int) -> float:
 
 def _knee(x: np.ndarray, y: np.ndarray, end: int) -> tuple[float, float, float, float] | None:
     """Meeting point of plateau and power law: ln q0, plateau level, intercept and slope of the line."""
-    log_q0 = x[end] - 0.2
+    log_q0 = float(x[end]) - 0.2
+    level = intercept = slope = 0.0
     for _ in range(20):
         flat, fall = x < log_q0 - 0.1, x > log_q0 + 0.15
         if flat.sum() < 2 or fall.sum() < 4:

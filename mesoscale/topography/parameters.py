@@ -59,7 +59,9 @@ def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) ->
     line_fit = lines.fit_lines(spectra)
     reasons = _doubts(spectra, fitted, line_fit, settings)
     estimates: dict[str, Estimate] = {}
-    if settings.method == "likelihood" and fitted is not None:
+    if fitted is not None and fitted.misfit > MAX_MISFIT:
+        estimates = _separate_estimates(spectra, cutoff, settings)
+    elif settings.method == "likelihood" and fitted is not None:
         estimates = _likelihood_estimates(spectra, fitted, cutoff, settings)
     elif settings.method == "lines" and line_fit is not None:
         estimates = _line_estimates(spectra, line_fit, cutoff, settings)
@@ -105,8 +107,8 @@ def _doubts(
         )
     if fitted.misfit > MAX_MISFIT:
         reasons.append(
-            f"not a plateau with a power law: the fit misses the spectrum by a factor "
-            f"{np.exp(fitted.misfit):.2g} (RMS); other kinds of roughness need the measured surface itself"
+            f"no plateau with a power law common to the scans: the fit misses the spectra by a factor "
+            f"{np.exp(fitted.misfit):.2g} (RMS); the ranges are those of the scans, each on its own"
         )
     hurst = hurst_from_slope(fitted.slope, settings.convention)
     if not 0 < hurst < 1:
@@ -141,10 +143,42 @@ def _likelihood_estimates(
     rms_interval = tuple(rms * np.exp(reach * rms_error * np.array([-1, 1])))
     own_q0, own_slope = likelihood.single_scans(spectra, fitted)
     own_rms = fitted.scan_rms(cutoff)
+    # where places differ, the range of RMS is theirs; otherwise it is the statistical one
+    rms_scatter = _union([rms], own_rms) if fitted.amplitude_sd > 0 else _union(rms_interval, own_rms)
     return _with_hurst(
         q0=Estimate(fitted.q0, _pair(q0_interval), _union(q0_interval, own_q0)),
         slope=Estimate(fitted.slope, _pair(slope_interval), _union(slope_interval, own_slope)),
-        rms=Estimate(rms, _pair(rms_interval), _union(rms_interval, own_rms)),
+        rms=Estimate(rms, _pair(rms_interval), rms_scatter),
+        settings=settings,
+    )
+
+
+def _separate_estimates(
+    spectra: Sequence[TrustedSpectrum], cutoff: float, settings: TopographySettings
+) -> dict[str, Estimate]:
+    """Scans that share no spectrum: each described alone; values are means, every range is the scans'."""
+    fits = [fitted for item in spectra if (fitted := likelihood.fit([item])) is not None]
+    if not fits:
+        return {}
+    heights = np.array([item.rms_nm for item in spectra])
+    q0 = np.array([fitted.q0 for fitted in fits])
+    slope = np.array([fitted.slope for fitted in fits])
+
+    def estimate(values: np.ndarray, errors: np.ndarray, log: bool) -> Estimate:
+        middle = float(np.exp(np.mean(np.log(values)))) if log else float(np.mean(values))
+        reach = _normal_quantile(settings.confidence) * errors
+        low, high = (
+            (values * np.exp(-reach), values * np.exp(reach)) if log else (values - reach, values + reach)
+        )
+        around = (float(low.min()), float(high.max()))
+        return Estimate(middle, around, around)
+
+    q0_error = np.array([np.sqrt(fitted.covariance[1, 1]) for fitted in fits])
+    slope_error = np.array([np.sqrt(fitted.covariance[2, 2]) for fitted in fits])
+    return _with_hurst(
+        q0=estimate(q0, q0_error, log=True),
+        slope=estimate(slope, slope_error, log=False),
+        rms=estimate(heights, np.full(len(heights), 0.05), log=True),  # levelling takes up to 5 %
         settings=settings,
     )
 

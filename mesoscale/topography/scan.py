@@ -93,7 +93,7 @@ def fitted_trend(heights: np.ndarray, order: int) -> np.ndarray:
         gram = np.array([[np.sum(a * b, where=known) for b in terms] for a in terms])
         right = np.array([np.sum(a * heights, where=known) for a in terms])
     coefficients = np.linalg.lstsq(gram, right, rcond=None)[0]
-    return sum(c * term for c, term in zip(coefficients, terms, strict=True))
+    return np.sum([c * term for c, term in zip(coefficients, terms, strict=True)], axis=0)
 
 
 def fill_missing(heights: np.ndarray) -> np.ndarray:

@@ -37,7 +37,9 @@ class Spectrum:
 def power_spectrum(heights: np.ndarray, lengths_nm: tuple[float, float]) -> np.ndarray:
     """Equation 8 without window: C(qx, qy) in nm^4 of heights (nx, ny) in nm, in FFT order."""
     nx, ny = heights.shape
-    amplitude = lengths_nm[0] * lengths_nm[1] / (2 * np.pi * nx * ny) * scipy.fft.fft2(heights)  # eq. 7
+    amplitude = (
+        lengths_nm[0] * lengths_nm[1] / (2 * np.pi * nx * ny) * np.asarray(scipy.fft.fft2(heights))
+    )  # eq. 7
     return np.abs(amplitude) ** 2 / (lengths_nm[0] * lengths_nm[1])
 
 
@@ -62,7 +64,7 @@ def section_starts(pixels: int, section: int, count: int) -> np.ndarray:
 def section_pixels(pixels: int, fraction: float) -> int:
     """Side of a section: a fast FFT size near `fraction` of the scan (768 of 1024)."""
     wanted = max(16, round(pixels * fraction))
-    return min(pixels, scipy.fft.next_fast_len(wanted, real=True) if wanted < pixels else pixels)
+    return min(pixels, scipy.fft.next_fast_len(wanted, True) or wanted)
 
 
 def radial_spectrum(
@@ -98,7 +100,7 @@ def radial_spectrum(
     for x in xs:
         for y in ys:
             part = data[x : x + mx, y : y + my]
-            z = scipy.fft.rfft2((part - part.mean()) * window, overwrite_x=True)
+            z: np.ndarray = np.asarray(scipy.fft.rfft2((part - part.mean()) * window, overwrite_x=True))
             total += z.real**2 + z.imag**2
     total /= len(xs) * len(ys)
 
@@ -148,7 +150,7 @@ def profile_spectrum(heights: np.ndarray, lengths_nm: tuple[float, float]) -> tu
     """
     nx = heights.shape[0]
     window = flat_window(nx, 0.0)[:, None]
-    z = scipy.fft.rfft((heights - heights.mean(axis=0)) * window, axis=0)
+    z = np.asarray(scipy.fft.rfft((heights - heights.mean(axis=0)) * window, axis=0))
     step = lengths_nm[0] / nx
     c1 = np.mean(np.abs(z) ** 2, axis=1) * step**2 / (2 * np.pi * lengths_nm[0] * np.mean(window**2))
     q = 2 * np.pi / lengths_nm[0] * np.arange(len(c1))
@@ -161,9 +163,9 @@ def autocorrelation(heights: np.ndarray, lengths_nm: tuple[float, float]) -> tup
     Unbiased (each lag divided by its number of pairs), not periodic.
     """
     nx = heights.shape[0]
-    padded = scipy.fft.next_fast_len(2 * nx, real=True)
-    z = scipy.fft.rfft(heights - heights.mean(), n=padded, axis=0)
-    sums = scipy.fft.irfft(np.mean(np.abs(z) ** 2, axis=1), n=padded)[: nx // 2]
+    padded = scipy.fft.next_fast_len(2 * nx, True) or 2 * nx
+    z = np.asarray(scipy.fft.rfft(heights - heights.mean(), n=padded, axis=0))
+    sums = np.asarray(scipy.fft.irfft(np.mean(np.abs(z) ** 2, axis=1), n=padded))[: nx // 2]
     return np.arange(nx // 2) * lengths_nm[0] / nx, sums / (nx - np.arange(nx // 2))
 
 

@@ -37,7 +37,7 @@ with job(snakemake) as run:
     for name, data in scans.items():
         spacing, nyquist = attributes[name]["spacing"], attributes[name]["nyquist"]
         spectrum = Spectrum(data["q"], data["psd"], data["modes"], spacing, nyquist)
-        spectra.append(trusted(name, spectrum, settings))
+        spectra.append(trusted(name, spectrum, attributes[name]["rms_nm"], settings))
         flat.append(Spectrum(data["flat_q"], data["flat_psd"], data["flat_modes"], spacing, nyquist))
     topography = analyse(spectra, settings)
     rows = scan_rows(spectra, topography, attributes, truth)

@@ -7,7 +7,7 @@ import pytest
 
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
 from mesoscale.topography.afm import synthetic_scans
-from mesoscale.topography.analysis import analyse_scan, trusted
+from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.model import hurst_from_slope, slope_from_hurst
 from mesoscale.topography.parameters import analyse, inputs
 from mesoscale.topography.scan import Scan
@@ -19,13 +19,13 @@ TRUTH = SyntheticScanSettings(pixels=512, small_scans=4, large_scans=2, rms_vari
 def spectra(truth=TRUTH):
     settings = TopographySettings()
     scans = [item.scan for item in synthetic_scans(truth)]
-    return [trusted(scan.name, analyse_scan(scan, settings).spectrum, settings) for scan in scans]
+    return [trusted_scan(scan, settings) for scan in scans]
 
 
 def from_heights(heights, length=1000.0, settings=None):
     settings = settings or TopographySettings()
     scan = Scan(heights, (length, length), "scan")
-    return analyse([trusted("scan", analyse_scan(scan, settings).spectrum, settings)], settings)
+    return analyse([trusted_scan(scan, settings)], settings)
 
 
 @pytest.mark.parametrize("method", ["likelihood", "lines"])
@@ -56,9 +56,7 @@ def test_heights_and_spectrum_scale_together():
 
     def result(factor):
         items = [Scan(scan.heights_nm * factor, scan.lengths_nm, scan.name) for scan in scans]
-        return analyse(
-            [trusted(s.name, analyse_scan(s, settings).spectrum, settings) for s in items], settings
-        )
+        return analyse([trusted_scan(item, settings) for item in items], settings)
 
     one, two = result(1.0), result(2.0)
     assert two.estimates["rms"].value == pytest.approx(2 * one.estimates["rms"].value, rel=1e-3)
