@@ -27,6 +27,15 @@ def tip_bias(curvature: np.ndarray) -> np.ndarray:
     return TIP_BIAS[0] * np.minimum(curvature, 3.0) ** TIP_BIAS[1]
 
 
+def blur(slope: float, shell: np.ndarray) -> np.ndarray:
+    """ln of what the Hann window and the shells' width add to a power law at shell number `shell`.
+
+    The window spreads each wave vector over its neighbours (variance 1/3 shell^2 along each axis), the shell
+    averages over its width (variance 1/12); both lift a convex spectrum.
+    """
+    return np.log1p((slope**2 / 6 + slope * (slope + 1) / 24) / shell**2)
+
+
 @dataclass(frozen=True)
 class TrustedSpectrum:
     """A scan's spectrum with the range of wave vectors that the instrument leaves undisturbed.
@@ -107,10 +116,11 @@ class _Data:
             bins = np.floor(np.log10(s.q[ok]) * BINS_PER_DECADE).astype(int)
             size_class = round(float(np.log(s.spacing)) * 20)  # scans of one size share their discrepancies
             columns = (s.q[ok], s.psd[ok], s.modes[ok], bins)
-            whole = (number, size_class, item.tip_radius_nm)
+            whole = (number, size_class, item.tip_radius_nm, s.spacing)
             parts.append([*columns, *(np.full(int(ok.sum()), value) for value in whole)])
         joined = [np.concatenate(column) for column in zip(*parts, strict=True)]
-        self.q, self.psd, self.modes, bins, scan, size_class, self.tip = joined
+        self.q, self.psd, self.modes, bins, scan, size_class, self.tip, spacing = joined
+        self.shell = self.q / spacing
         self.scan = scan.astype(int)
         self.scans = len(spectra)
         _, self.bin = np.unique(np.stack([size_class, bins]), axis=1, return_inverse=True)
@@ -124,6 +134,7 @@ class _Data:
     def ratio(self, log_q0: float, slope: float, level: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """ln of the model's shape and measured over modelled shape, the tip's bias at amplitude `level`."""
         shape = -slope * np.maximum(self.log_q - log_q0, 0.0)
+        shape += np.where(self.log_q > log_q0, blur(slope, self.shell), 0.0)
         curvature = np.sqrt(2 * np.pi * np.exp(level[self.scan] + shape)) * self.q**3
         shape = shape - tip_bias(self.tip * curvature)
         return shape, self.psd * np.exp(-shape)

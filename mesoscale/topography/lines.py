@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesoscale.topography.likelihood import TrustedSpectrum
+from mesoscale.topography.likelihood import TrustedSpectrum, blur
 from mesoscale.topography.model import mean_square
 
 SIGNIFICANCE = 0.01
@@ -69,14 +69,20 @@ class LineFit:
         return float(np.sqrt(mean_square(self.plateau, self.q0, self.slope, q1)))
 
 
-def points(spectra: Sequence[TrustedSpectrum]) -> Points:
-    """Mean ln C of each scan on common bins of ln q, inside each scan's trusted range."""
+def points(spectra: Sequence[TrustedSpectrum], q0: float = np.inf, slope: float = 0.0) -> Points:
+    """Mean ln C of each scan on common bins of ln q, inside each scan's trusted range.
+
+    Once knee and slope are known roughly, the window's blur beyond `q0` is taken out.
+    """
     rows = []
     for number, item in enumerate(spectra):
         ok = item.trusted
         if not ok.any():
             continue
         log_q, log_c = np.log(item.spectrum.q[ok]), np.log(item.corrected_psd()[ok])
+        log_c = log_c - np.where(
+            item.spectrum.q[ok] > q0, blur(slope, item.spectrum.q[ok] / item.spectrum.spacing), 0
+        )
         modes = item.spectrum.modes[ok]
         bins = np.floor(log_q / np.log(10) * BINS_PER_DECADE).astype(int)
         for b in np.unique(bins):
@@ -120,7 +126,12 @@ def line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
 
 def fit_lines(spectra: Sequence[TrustedSpectrum]) -> LineFit | None:
     """The paper's procedure on the trusted spectra; None when there is no plateau or no power law to fit."""
-    data = points(spectra)
+    rough = _fit_points(points(spectra))
+    return None if rough is None else _fit_points(points(spectra, rough.q0, rough.slope))
+
+
+def _fit_points(data: Points) -> LineFit | None:
+    """Plateau, knee, power law and their bounds from the scans' points."""
     if len(np.unique(data.bin)) < 8:
         return None
     x, y = pooled(data)

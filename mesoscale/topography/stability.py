@@ -95,7 +95,7 @@ def _saturated(heights: np.ndarray) -> np.ndarray:
 
 def _wide(scan: Scan) -> Scan:
     """Only the middle three quarters of the lines: a scan that is not square."""
-    nx, ny = scan.heights_nm.shape
+    ny = scan.heights_nm.shape[1]
     kept = 3 * ny // 4
     return replace(
         scan,
