@@ -93,6 +93,7 @@ def _inline(svg: str, name: str, label: str) -> str:
     svg = re.sub(r"font-family: [^;\"]+;? ?", "", svg)
     # matplotlib blackens what has no colour of its own
     svg = svg.replace("fill: #000000", "fill: var(--ink)").replace("stroke: #000000", "stroke: var(--ink)")
+    svg = re.sub(r">([^<]*\w_\w[^<]*)<", lambda match: f">{_subscripts(match[1])}<", svg)
     svg = re.sub(r"\n\s*", "\n", svg)
     opening = re.match(r"<svg[^>]*>", svg)
     assert opening is not None
@@ -102,6 +103,15 @@ def _inline(svg: str, name: str, label: str) -> str:
     label = label.replace("&", "and").replace('"', "'").replace("<", "less than")
     start = (
         '<svg xmlns:xlink="http://www.w3.org/1999/xlink" xmlns="http://www.w3.org/2000/svg" '
-        f'viewBox="{box[1]}" role="img" aria-label="{label}" style="max-width:{width:.0f}px">'
+        f'viewBox="{box[1]}" role="img" aria-label="{label}" style="--width:{width:.0f}px">'
     )
     return start + svg[opening.end() :]
+
+
+SUBSCRIPT = re.compile(r"(?<![A-Za-z])(δ?[A-Za-zρ])_(macro|[a-zA-Z])(?![A-Za-z_])")
+
+
+def _subscripts(text: str) -> str:
+    """Names such as d_c with their index set low."""
+    low = r'\1<tspan dy="2.5" font-size="75%">\2</tspan><tspan dy="-2.5">&#8203;</tspan>'
+    return SUBSCRIPT.sub(low, text)

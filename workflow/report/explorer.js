@@ -107,12 +107,12 @@
   }
 
   function fill(laws) {
-    const rows = [["d_c (nm)", 1], ["C_a (10⁻⁵ GPa/nm)", 1e5], ["C_r (10⁻⁴ GPa)", 1e4], ["ρ_r (nm)", 1]];
+    const rows = [["d<sub>c</sub> (nm)", 1], ["C<sub>a</sub> (10⁻⁵ GPa/nm)", 1e5], ["C<sub>r</sub> (10⁻⁴ GPa)", 1e4], ["ρ<sub>r</sub> (nm)", 1]];
     body.replaceChildren(...rows.map(([label, factor], i) => {
       const row = document.createElement("tr");
       const head = document.createElement("th");
       head.scope = "row";
-      head.textContent = label;
+      head.innerHTML = label; // our own constant text
       row.append(head, ...branches.map((branch) => {
         const cell = document.createElement("td");
         cell.textContent = (laws[branch][i] * factor).toPrecision(3);

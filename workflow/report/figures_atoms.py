@@ -59,17 +59,14 @@ def hardness_size(results: Results) -> str | None:
                 low, high = column(part, "hardness_lo"), column(part, "hardness_hi")
                 bars = np.nan_to_num(np.clip([hardness - low, high - hardness], 0, None))
                 axis.errorbar(length, hardness, yerr=bars, fmt=marker, color=color, label=label, capsize=3)
-        macro, prime = _middle(fit, "h_macro"), _middle(fit, "h_prime")
-        macro = number(fit.get("H_macro_GPa")) if not np.isfinite(macro) else macro
-        prime = number(fit.get("H_prime_GPa_nm0.5")) if not np.isfinite(prime) else prime
-        length = np.linspace(1.5, 20, 200)
-        if np.isfinite(macro) and np.isfinite(prime):
-            axis.plot(
-                length,
-                macro + prime / np.sqrt(length),
-                color=GREEN,
-                label="H_macro + H′ A^−¼ in use (centre)",
+        if fit.get("curve"):
+            length, low, high, middle = (
+                np.array([point[key] for point in fit["curve"]], dtype=float)
+                for key in ("contact_length_nm", "low_GPa", "high_GPa", "median_GPa")
             )
+            axis.fill_between(length, low, high, color=GREEN, alpha=0.18, linewidth=0)
+            axis.plot(length, middle, color=GREEN, label="H_macro + H′/√L in use, 68 %")
+        length = np.linspace(1.5, 20, 200)
         axis.fill_between(
             length,
             0.7 + 1.95 / np.sqrt(length),
@@ -243,14 +240,6 @@ def _scale(point: Row) -> tuple[str, str, str]:
 def _key(point: Row) -> str:
     value = number(point.get("energy_scale", "1"))
     return f"{value:.1f}" if np.isfinite(value) else "1.0"
-
-
-def _middle(fit: dict, name: str) -> float:
-    """Centre of the input that the fit hands on, wherever its distribution puts it."""
-    entry = fit.get("inputs", {}).get(name, {})
-    if entry.get("distribution") == "uniform":
-        return (number(entry.get("a")) + number(entry.get("b"))) / 2
-    return number(entry.get("a", entry.get("mean")))
 
 
 def _normal(x: np.ndarray, mean: float, std: float) -> np.ndarray:

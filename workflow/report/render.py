@@ -6,9 +6,11 @@ from typing import Any
 
 import yaml
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup, escape
 
 from workflow.report.answer import answer
 from workflow.report.available import Results
+from workflow.report.drawing import SUBSCRIPT
 from workflow.report.figures_contact import SYMBOLS
 from workflow.report.gates import LIMITS, gates
 from workflow.report.page import Page, kind
@@ -43,6 +45,7 @@ def render(results: Results, scene: str) -> str:
     environment = Environment(
         loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
+    environment.filters["low"] = _low
     return environment.get_template("template.html.j2").render(
         page=page,
         kind=kind,
@@ -50,6 +53,11 @@ def render(results: Results, scene: str) -> str:
         script=(HERE / "explorer.js").read_text(encoding="utf-8"),
         explorer_json=_script_json(explorer),
     )
+
+
+def _low(text: str) -> Markup:
+    """Escaped text in which names such as d_c have their index set low."""
+    return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))))
 
 
 def _explorer(results: Results) -> dict[str, Any] | None:

@@ -93,12 +93,7 @@ def hardness(results: Results) -> Section:
     ]
     header = ("run", "energy scale", "geometry", "λ (nm)", "contact length (nm)", "hardness (GPa)", "status")
     section.blocks.append(Table("Every run and what became of it", header, lines))
-    for key, label in (("H_macro_GPa", "H_macro"), ("H_prime_GPa_nm0.5", "H′")):
-        if np.isfinite(number(fit.get(key))):
-            section.notes.append(
-                f"Free fit of both constants: {label} = {show(fit[key])}{_fit_interval(fit, key)}."
-            )
-    section.notes += [str(note) for note in fit.get("notes", [])]
+    section.notes += _fit_notes(fit)
     section.files += ["hardness/points.csv", "hardness/fit.json"]
     return section
 
@@ -422,7 +417,7 @@ def _switch_lines(found: dict[str, Any]) -> list[tuple[str, ...]]:
 
 
 def _distribution(row: Row) -> str:
-    a, b = show(row["a"], 4), show(row["b"], 4)
+    a, b = f"{number(row['a']):.4g}", f"{number(row['b']):.4g}"
     if row["distribution"] == "uniform":
         return f"uniform from {a} to {b}"
     text = f"normal, {a} ± {b}"
@@ -449,12 +444,30 @@ def _range(row: Row, name: str) -> str:
     return f"{show(value)} [{show(low)}, {show(high)}]" if np.isfinite(low) else show(value)
 
 
-def _fit_interval(fit: dict[str, Any], key: str) -> str:
-    for name in (f"{key}_68", f"{key}_interval", f"{key}_interval_68"):
-        pair = fit.get(name)
-        if isinstance(pair, list) and len(pair) == 2:
-            return f", 68 % interval {show(pair[0])} to {show(pair[1])}"
-    return ""
+def _fit_notes(fit: dict[str, Any]) -> list[str]:
+    """What the MD points say about both constants, and how the halved energies compare."""
+    notes = []
+    method = "from the literature" if fit.get("method") == "literature" else "from the same points"
+    for key, label, unit in (("H_macro_GPa", "H_macro", "GPa"), ("H_prime_GPa_nm0.5", "H′", "GPa nm½")):
+        entry = fit.get(key)
+        if isinstance(entry, dict):
+            origin = method if label == "H_macro" else "from the points"
+            span = f"{show(entry['median'])} [{show(entry['low'])}, {show(entry['high'])}] {unit}"
+            notes.append(f"{label} in use, {origin}: {span} (median and 68 % interval).")
+    free = fit.get("free_fit", {}).get("together", {})
+    if "H_macro_GPa" in free:
+        pairs = [
+            f"{label} = {show(free[key]['median'])} [{show(free[key]['low'])}, {show(free[key]['high'])}]"
+            for key, label in (("H_macro_GPa", "H_macro"), ("H_prime_GPa_nm0.5", "H′"))
+        ]
+        word = "" if free.get("identifiable") else ": the points alone do not identify both"
+        notes.append(f"Free fit of both constants to all points: {', '.join(pairs)}{word}.")
+    for ratio in fit.get("halved_over_full", []):
+        notes.append(
+            f"Halved over full energies, asperity {ratio['asperity']}: {show(ratio['median'])} "
+            f"[{show(ratio['low'])}, {show(ratio['high'])}]; 0.5 is expected."
+        )
+    return notes
 
 
 def _cell(text: str) -> str:

@@ -1,0 +1,263 @@
+"""Small made-up result files of every stage, in the formats that the stages write."""
+
+from pathlib import Path
+
+import numpy as np
+
+from workflow.results import Dataset, write_csv, write_h5, write_json, write_text
+
+INPUTS = {  # name: unit, distribution, a, b, origin
+    "hamaker": ("1e-18 J", "uniform", 0.18, 0.25, "literature"),
+    "e_star": ("GPa", "normal", 91.0, 3.8, "elastic"),
+    "h_macro": ("GPa", "uniform", 0.7, 3.2, "literature"),
+    "h_prime": ("GPa nm^0.5", "uniform", 1.95, 14.8, "hardness"),
+    "q0": ("1/nm", "uniform", 0.015, 0.035, "topography"),
+    "hurst": ("1", "uniform", 0.5, 1.0, "topography"),
+    "rms": ("nm", "uniform", 2.0, 15.0, "topography"),
+}
+LAW = {"d_c_nm": 31.8, "C_a_GPa_nm": 15e-5, "C_r_GPa": 6.4e-4, "rho_r_nm": 3.31}
+OPENED = {"d_c_nm": 28.5, "C_a_GPa_nm": 20e-5, "C_r_GPa": 9.2e-4, "rho_r_nm": 2.67}
+PROVENANCE = {"rule": "made_up", "inputs_hash": "0", "versions": {}}
+
+
+def write_all(root: Path) -> list[Path]:
+    """Write results of every stage under `root` and name the files."""
+    write_text(root / "scene.yaml", "scene: {}\nversions: {numpy: '2.4'}\ngit_commit: abc\n")
+    _inputs(root)
+    _curves(root)
+    _uncertainty(root)
+    _device(root)
+    _hardness(root)
+    _elastic(root)
+    _topography(root)
+    return sorted(path for path in root.rglob("*") if path.is_file())
+
+
+def _inputs(root: Path) -> None:
+    write_csv(
+        root / "inputs.csv",
+        [
+            {
+                "parameter": name,
+                "unit": unit,
+                "distribution": kind,
+                "a": a,
+                "b": b,
+                "origin": origin,
+                "file": "f",
+            }
+            for name, (unit, kind, a, b, origin) in INPUTS.items()
+        ],
+    )
+
+
+def _curves(root: Path) -> None:
+    h = np.linspace(20, 45, 30)
+    groups, facts = {}, {}
+    for name in ("elastic", "nonlinear", "plastic", "load_1000", "load_7000"):
+        facts[name] = {"max_force_nN": 7000.0, "first_contact_nm": 40.0, "converged": True, "hamaker": 0.215}
+        for branch in ("closing", "opening"):
+            force = 7000 * np.exp(-(h - 20) / 3)
+            groups[f"{name}/{branch}"] = {
+                "separation_nm": Dataset(h, "nm", "mean separation", ("point",)),
+                "repulsive_nN": Dataset(force, "nN", "repulsion", ("point",)),
+                "attractive_nN": Dataset(-0.05 * force, "nN", "attraction", ("point",)),
+            }
+    contact = {"length_nm": 1000.0, "pixels": 128, "convention": "profile", "flow_pair": "wide"}
+    write_h5(
+        root / "curves/nominal.h5", groups, {"cell_area_nm2": 1e6, "contact": contact}, PROVENANCE, facts
+    )
+    rows = [
+        {"run": 0, "node": 0, "seed": 0, "branch": branch, **law, "status": "ok", "hamaker": 0.215}
+        for branch, law in (("closing", LAW), ("opening", OPENED))
+    ]
+    rows.append({**rows[1], "status": "poor_fit"})
+    write_csv(root / "law/parameters.csv", rows)
+    write_csv(root / "law/nominal.csv", [{"curve": "load_7000", **row} for row in rows[:2]])
+
+
+def _uncertainty(root: Path) -> None:
+    rng = np.random.default_rng(0)
+    rms = rng.uniform(2, 15, 200)
+    samples = {name: np.full(200, 1.0) for name in INPUTS} | {"rms": rms, "hamaker": np.full(200, 0.215)}
+    for branch, law in (("closing", LAW), ("opening", OPENED)):
+        for name, value in law.items():
+            samples[f"{branch}_{name}"] = value * (rms / 8.5 if name.endswith("_nm") else np.ones(200))
+    rows = [dict(zip(samples, line, strict=True)) for line in zip(*samples.values(), strict=True)]
+    write_csv(root / "uq/samples.csv", rows)
+    outputs = [*LAW, *(f"delta_{name}" for name in LAW)]
+    values = [*LAW.values(), *(OPENED[name] - LAW[name] for name in LAW)]
+    write_csv(
+        root / "uq/outputs.csv",
+        [
+            {
+                "output": name,
+                "unit": "nm",
+                "mean": value,
+                "dev": abs(value) / 2,
+                "centre": value,
+                "q05": value / 2,
+            }
+            | {
+                "q50": value,
+                "q95": 2 * value,
+                "paper_mean": value,
+                "paper_dev": abs(value) / 3,
+                "seed_share": 0.1,
+            }
+            for name, value in zip(outputs, values, strict=True)
+        ],
+    )
+    write_csv(
+        root / "uq/sensitivity.csv",
+        [
+            {"output": output, "input": name, "mu_star": i, "paper_mu_star": i, "sobol_total": i / 21}
+            for output in outputs
+            for i, name in enumerate(INPUTS)
+        ],
+    )
+    write_csv(
+        root / "uq/validation.csv",
+        [{"output": name, "q2": 0.9, "q2_low": 0.8, "q2_high": 0.95} for name in outputs],
+    )
+    zero, last = [0] * 7, [0] * 6 + [1]
+    surfaces = [
+        {
+            "name": f"{branch}_{name}",
+            "transform": "identity",
+            "residual_std": 0.05 * value,
+            "terms": [
+                {"degrees": zero, "coefficient": value},
+                {"degrees": last, "coefficient": 0.5 * value if name == "d_c_nm" else 0.0},
+            ],
+        }
+        for branch, law in (("closing", LAW), ("opening", OPENED))
+        for name, value in law.items()
+    ]
+    inputs = [
+        {
+            "name": name,
+            "unit": unit,
+            "low": a if kind == "uniform" else a - 4 * b,
+            "high": b if kind == "uniform" else a + 4 * b,
+        }
+        for name, (unit, kind, a, b, _) in INPUTS.items()
+    ]
+    content = {"inputs": inputs, "outputs": surfaces, "law": {"rho_a_nm": 2.0, "alpha_nm": 2.0}}
+    write_json(root / "uq/surrogate.json", content, PROVENANCE)
+
+
+def _device(root: Path) -> None:
+    from mesoscale.device.export import TABLE_COLUMNS, law_table
+    from mesoscale.device.study import read_samples, state_rows, stiction_rows, study_switch, switch_path
+    from mesoscale.settings import DeviceSettings
+    from workflow.results import read_csv
+
+    settings = DeviceSettings()
+    rows, fitted = read_csv(root / "uq/samples.csv"), read_csv(root / "law/parameters.csv")
+    samples = read_samples(rows, fitted, settings, 2.0, 2.0)
+    results, states = study_switch(samples, settings, 7.0)
+    write_json(root / "device/switch.json", results, PROVENANCE)
+    write_csv(root / "device/release.csv", state_rows(states))
+    write_csv(root / "device/stiction.csv", stiction_rows(states))
+    write_csv(root / "device/path.csv", switch_path(samples, settings))
+    write_csv(root / "device/law.csv", law_table(samples.nominal, samples.laws), TABLE_COLUMNS)
+
+
+def _hardness(root: Path) -> None:
+    points = []
+    for scale in (1.0, 0.5):
+        run = f"small_{scale:g}"
+        length = np.linspace(0.5, 4, 20)
+        write_csv(
+            root / f"hardness/closing/{run}.csv",
+            [{"contact_length_nm": x, "contact_stress_GPa": 10 * scale * min(x / 2, 1)} for x in length],
+        )
+        points.append(
+            {
+                "run": run,
+                "energy_scale": scale,
+                "geometry": "asperity-flat",
+                "wavelength_nm": 5.8,
+                "status": "yield",
+            }
+            | {
+                "contact_length_nm": 3.0,
+                "hardness_GPa": 10 * scale,
+                "hardness_lo": 9 * scale,
+                "hardness_hi": 11 * scale,
+            }
+        )
+    write_csv(root / "hardness/points.csv", points)
+    fit = {
+        "method": "literature",
+        "gate": {"passed": False, "reasons": ["only 2 of 9 runs <gave> a hardness"]},
+        "H_macro_GPa": {"median": 1.9, "low": 1.1, "high": 2.8},
+        "curve": [
+            {"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9} for x in (2.0, 10.0)
+        ],
+    }
+    write_json(root / "hardness/fit.json", fit, PROVENANCE)
+
+
+def _elastic(root: Path) -> None:
+    write_csv(
+        root / "elastic/bulk_moduli.csv",
+        [
+            {
+                "structure": i,
+                "xc": xc,
+                "ions": "clamped",
+                "B_GPa": 150 + 5 * i,
+                "B_prime": 4,
+                "V0_A3": 300,
+                "flags": "",
+            }
+            for i in range(4)
+            for xc in ("gga", "lda")
+        ],
+    )
+    write_csv(
+        root / "elastic/points.csv",
+        [
+            {
+                "structure": 0,
+                "xc": "gga",
+                "ions": "clamped",
+                "strain": x,
+                "energy_eV": x * x,
+                "converged": "True",
+            }
+            for x in np.linspace(-0.05, 0.05, 5)
+        ],
+    )
+    gate = {"passed": True, "reasons": []}
+    write_json(root / "elastic/e_star.json", {"mean_GPa": 90.0, "std_GPa": 4.0, "gate": gate}, PROVENANCE)
+    values = Dataset(np.random.default_rng(1).normal(90, 4, 500), "GPa", "E*", ("sample",))
+    write_h5(root / "elastic/e_star.h5", {"samples": {"e_star_GPa": values}}, {}, PROVENANCE)
+
+
+def _topography(root: Path) -> None:
+    q = np.geomspace(0.006, 3, 40)
+    psd = 1e4 / (1 + (q / 0.02) ** 3)
+
+    def curve(values, unit="nm^4"):
+        return Dataset(values, unit, "made up", ("q",))
+
+    heights = np.random.default_rng(2).normal(0, 3, (64, 64))
+    groups = {
+        "pooled": {"q": curve(q, "1/nm"), "psd": curve(psd)},
+        "fits": {"q": curve(q, "1/nm"), "likelihood": curve(psd), "truth": curve(psd)},
+        "scans/small_01": {
+            "q": curve(q, "1/nm"),
+            "psd": curve(1.2 * psd),
+            "heights": Dataset(heights, "nm", "heights", ("x", "y")),
+        },
+    }
+    facts = {"scans/small_01": {"length_x_nm": 1000.0, "rms_nm": 3.0}}
+    write_h5(root / "topography/spectra.h5", groups, {"synthetic": True}, PROVENANCE, facts)
+    estimates = {"q0": {"value": 0.02, "low": 0.015, "high": 0.025, "unit": "1/nm"}}
+    content = {"synthetic": True, "convention": "profile", "estimates": estimates, "truth": {"q0": 0.021}}
+    write_json(
+        root / "topography/parameters.json", {**content, "gate": {"passed": True, "reasons": []}}, PROVENANCE
+    )

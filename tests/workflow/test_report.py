@@ -1,0 +1,161 @@
+"""The report page: complete, self-contained, only what exists, alive in a real browser."""
+
+import json
+import re
+import shutil
+import subprocess
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from made_up_results import write_all
+from workflow.report.available import Results, show
+from workflow.report.drawing import draw
+from workflow.report.gates import gates
+from workflow.report.render import render
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+SECTIONS = ("inputs", "hardness", "elastic", "topography", "curves", "uncertainty", "sensitivity", "device")
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    root = tmp_path_factory.mktemp("results") / "made_up"
+    return root, write_all(root)
+
+
+@pytest.fixture(scope="module")
+def page(files):
+    root, paths = files
+    return render(Results(root, paths), "made_up")
+
+
+class Outline(HTMLParser):
+    """Ids, references and images of a page."""
+
+    def __init__(self):
+        super().__init__()
+        self.ids, self.outside, self.labels, self.figures = [], [], 0, 0
+
+    def handle_starttag(self, tag, attrs):
+        attributes = dict(attrs)
+        if "id" in attributes:
+            self.ids.append(attributes["id"])
+        for name in ("src", "href", "xlink:href", "action", "data"):
+            value = attributes.get(name) or ""
+            if value and not value.startswith(("#", "data:")):
+                self.outside.append(value)
+        if tag == "svg":
+            self.figures += 1
+            self.labels += bool(attributes.get("aria-label"))
+
+
+def outline(page):
+    parser = Outline()
+    parser.feed(page)
+    return parser
+
+
+def test_every_stage_has_its_section_and_every_figure_is_drawn(page):
+    for anchor in SECTIONS:
+        assert f'<section id="{anchor}"' in page
+    for number in (4, 5, 7, 8, 9, 10, 11):
+        assert f"Figure {number} of the paper" in page
+    assert "Table 2 of the paper" in page
+    assert "Table 3 of the paper" in page
+
+
+def test_page_is_self_contained_small_and_well_formed(page):
+    found = outline(page)
+    assert found.outside == []
+    assert "@import" not in page
+    assert "http-equiv" in page
+    assert len(page.encode()) < 8e6
+    assert len(found.ids) == len(set(found.ids)), "ids of two figures collide"
+    assert found.labels == found.figures, "a figure without a text alternative"
+
+
+def test_answer_comes_first(page):
+    answer = page[page.index('id="answer"') : page.index('id="explorer"')]
+    for words in ("First contact", "Hysteresis", "Main cause of the spread", "RMS", "Release"):
+        assert words in answer
+    assert page.index('id="answer"') < min(page.index(f'id="{anchor}"') for anchor in SECTIONS)
+
+
+def test_only_what_exists_is_shown(files):
+    root, paths = files
+    few = [path for path in paths if path.name in ("inputs.csv", "scene.yaml")]
+    page = render(Results(root, few), "few")
+    shown = [anchor for anchor in SECTIONS if f'<section id="{anchor}"' in page]
+    assert shown == ["inputs"]
+    assert 'id="explorer"' not in page
+    assert "<script" not in page
+
+
+def test_gates_tell_what_failed_and_text_is_escaped(files, page):
+    root, paths = files
+    found = {gate.stage: gate for gate in gates(Results(root, paths))}
+    assert not found["hardness"].passed
+    assert found["law"].passed
+    assert found["law"].reasons == ["1 of 3 fits: poor fit"]
+    assert "gate failed" in page
+    assert "&lt;gave&gt;" in page
+    assert "<gave>" not in page
+
+
+def test_same_results_give_the_same_page(files, page):
+    root, paths = files
+    assert render(Results(root, paths), "made_up") == page
+
+
+def test_synthetic_scans_and_unused_stages_are_named(page):
+    assert '<span class="badge synthetic">' in page
+    assert "they are no measurement" in page
+
+
+def test_figures_follow_the_page_colours():
+    svg = draw("one", "a line", lambda axis: axis.plot([0, 1], [0, 1], color="#020301"))
+    assert "var(--series-1)" in svg
+    assert not re.search(r"#0[12]0[123]0[1-6]", svg)
+    assert "url(#" not in svg or "url(#one-" in svg
+
+
+def test_numbers_read_well():
+    assert show(31.8) == "31.8"
+    assert show(-3.32) == "−3.32"
+    assert show(0.000151) == "1.51·10⁻⁴"
+    assert show("") == "–"
+    assert show(0) == "0"
+
+
+PROBE = Path(__file__).with_name("probe.js")
+WATCH = """<script>window.failures = [];
+window.addEventListener("error", (event) => failures.push(event.message));</script>"""
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium is installed (Debian package chromium)")
+def test_page_lives_in_a_real_browser(page, tmp_path):
+    path = tmp_path / "report.html"
+    probe = f"<script>{PROBE.read_text()}</script></body>"
+    path.write_text(page.replace("<style>", WATCH + "<style>", 1).replace("</body>", probe))
+    options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}"]
+    options += ["--enable-logging=stderr", "--virtual-time-budget=3000", "--window-size=1280,900"]
+    done = subprocess.run(
+        [CHROMIUM, *options, "--dump-dom", path.as_uri()],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    probe = re.search(r'<pre id="probe">(.*?)</pre>', done.stdout)
+    assert probe, done.stderr[-2000:]
+    found = json.loads(probe[1])
+    assert found["errors"] == []
+    assert "CONSOLE" not in done.stderr, re.findall(r".*CONSOLE.*", done.stderr)
+    assert found["sliders"] == 7
+    assert found["curves"] > 1000
+    assert found["curve_moved"]
+    assert found["table_moved"]
+    assert found["empty"] == 0
+    assert found["overflow"] <= 0, "the page scrolls sideways"
+    assert found["load_ms"] < 2000
