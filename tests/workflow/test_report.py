@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from made_up_results import write_all
+from tests.workflow.made_up_results import write_all
 from workflow.report.available import Results, show
 from workflow.report.drawing import draw
 from workflow.report.gates import gates
