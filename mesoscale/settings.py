@@ -167,6 +167,20 @@ class TopographySettings(Settings):
         description="what happens to parameters that the scans do not determine well: stop before they are "
         "used, or warn in the report and use them",
     )
+    study_repeats: int = Field(
+        3,
+        ge=1,
+        le=1000,
+        description="surfaces per point of error against run time",
+        json_schema_extra={"unit": "1"},
+    )
+    study_sets: int = Field(
+        10,
+        ge=1,
+        le=10000,
+        description="sets of scans with random truth and artefacts in the recovery study",
+        json_schema_extra={"unit": "1"},
+    )
     scans_per_job: int = Field(
         6, ge=1, le=200, description="scans analysed by one job", json_schema_extra={"unit": "1"}
     )
@@ -526,6 +540,14 @@ class UncertaintySettings(Settings):
     sample_seed: int = Field(1, ge=0, le=2**31, description="seed of those samples")
     sobol_samples: int = Field(
         4096, ge=64, le=10**6, description="size of each of the n + 2 samples behind the Sobol' indices"
+    )
+    audit_seeds: int = Field(
+        4, ge=1, le=1000, description="surfaces per reading of the reproduction audit (target `audit`)"
+    )
+    audit_readings: tuple[str, ...] = Field(
+        (),
+        description="readings of the contact model to audit, named as in audit/ranking.csv; empty: all that "
+        "differ in more than the attraction of touching sites",
     )
     bootstrap: int = Field(200, ge=20, le=100000, description="resamplings for intervals")
     direct_runs: int = Field(

@@ -1,6 +1,18 @@
 """How runs are cut into jobs.  Imports nothing heavy: the workflow reads it to plan."""
 
+from itertools import product
+
 from mesoscale.settings import UncertaintySettings
+
+CHOICES: dict[str, tuple[str, ...]] = {
+    "convention": ("profile", "areal"),
+    "flow_pair": ("paper", "wide"),
+    "prefactor": ("paper", "hertz"),
+    "radius": ("curvature", "truncation"),
+    "area": ("sites", "hertz"),
+    "touching_attracts": ("true", "false"),
+}
+"""Ambiguities of the contact model, as keys of ContactSettings with the values tried."""
 
 
 def collocation_level(settings: UncertaintySettings) -> int:
@@ -22,3 +34,18 @@ def chunk_bounds(runs: int, chunk_runs: int) -> dict[str, tuple[int, int]]:
     """First and last+1 run of every chunk, by its three-digit name."""
     starts = range(0, runs, chunk_runs)
     return {f"{k:03d}": (start, min(start + chunk_runs, runs)) for k, start in enumerate(starts)}
+
+
+def contact_readings() -> list[str]:
+    """Names of all readings of the contact model that can be computed, values joined by dots.
+
+    Hertz's area with the mean curvature is left out: the mean curvature of a flattened asperity says nothing
+    about its area, no asperity ever stops yielding and cycles do not converge.
+    """
+    named = (".".join(values) for values in product(*CHOICES.values()))
+    return [name for name in named if ".curvature.hertz." not in name]
+
+
+def default_readings() -> list[str]:
+    """Readings audited by default: touching sites attract, which alone meets the paper's C_a."""
+    return [name for name in contact_readings() if name.endswith(".true")]

@@ -32,10 +32,13 @@ def table2(rows: Iterable[Mapping[str, str]], exchanged: bool = False) -> dict[s
     return values
 
 
-def table3(rows: Iterable[Mapping[str, str]], as_printed: bool = False) -> dict[str, dict[str, float]]:
+def table3(
+    rows: Iterable[Mapping[str, str]], as_printed: bool = False, exchange_changes: bool = False
+) -> dict[str, dict[str, float]]:
     """mu* by output and input of config/paper/table3.csv (its row of units is skipped).
 
     By default the closing labels C_a and C_r are exchanged, as argued above; `as_printed` keeps them.
+    `exchange_changes` also exchanges those of delta_C_a and delta_C_r.
     """
     values: dict[str, dict[str, float]] = {}
     for row in rows:
@@ -45,5 +48,7 @@ def table3(rows: Iterable[Mapping[str, str]], as_printed: bool = False) -> dict[
             if column == "parameter":
                 continue
             output = column if as_printed or column.startswith("delta") else EXCHANGED.get(column, column)
+            if exchange_changes and column.startswith("delta"):
+                output = EXCHANGED.get(column, column)
             values.setdefault(output, {})[row["parameter"]] = float(text) * SCALE_TABLE_3.get(column, 1.0)
     return values

@@ -1,4 +1,4 @@
-from mesoscale.uncertainty.chunks import chunk_bounds
+from mesoscale.uncertainty.chunks import chunk_bounds, default_readings
 
 DIRECT_CHUNKS = chunk_bounds(SCENE.uncertainty.direct_runs, SCENE.uncertainty.chunk_runs)
 
@@ -73,3 +73,49 @@ rule rank_sensitivity:
         settings=settings("uncertainty"),
     script:
         "../scripts/rank_sensitivity.py"
+
+
+rule audit:
+    input:
+        f"{RESULTS}/audit/ranking.csv",
+
+
+rule compute_audit:
+    message:
+        "audit reading {wildcards.reading}, surface {wildcards.seed}"
+    input:
+        inputs=f"{RESULTS}/inputs.csv",
+    output:
+        f"{RESULTS}/audit/runs/{{reading}}_{{seed}}.csv",
+    log:
+        f"{RESULTS}/logs/compute_audit_{{reading}}_{{seed}}.log",
+    params:
+        contact=settings("contact"),
+        law=settings("law"),
+        uncertainty={**RUN_SETTINGS, "surrogate": "level1"},
+    wildcard_constraints:
+        seed=r"\d+",
+    script:
+        "../scripts/compute_audit.py"
+
+
+rule rank_readings:
+    message:
+        "rank the readings by their distance to the paper's tables"
+    input:
+        inputs=f"{RESULTS}/inputs.csv",
+        table2=str(CONFIG / "paper" / "table2.csv"),
+        table3=str(CONFIG / "paper" / "table3.csv"),
+        runs=[
+            f"{RESULTS}/audit/runs/{reading}_{seed}.csv"
+            for reading in SCENE.uncertainty.audit_readings or default_readings()
+            for seed in range(SCENE.uncertainty.audit_seeds)
+        ],
+    output:
+        f"{RESULTS}/audit/ranking.csv",
+    log:
+        f"{RESULTS}/logs/rank_readings.log",
+    params:
+        central_share=SCENE.uncertainty.central_share,
+    script:
+        "../scripts/rank_readings.py"

@@ -1,0 +1,26 @@
+"""Compute the nodes of one surface under one reading of the contact model and all readings of the law.
+
+In: inputs.csv.  Out: audit/runs/READING_SEED.csv.
+"""
+
+from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
+from mesoscale.uncertainty.audit import AUDIT_COLUMNS, audit_rows
+from mesoscale.uncertainty.chunks import node_count
+from mesoscale.uncertainty.inputs import from_rows
+from mesoscale.uncertainty.runs import collocation_runs
+from workflow.job import job
+from workflow.results import read_csv, write_csv
+
+with job(snakemake) as run:
+    table = from_rows(read_csv(snakemake.input.inputs))
+    count = node_count(len(table.rows), 1)
+    first = int(snakemake.wildcards.seed) * count
+    runs = collocation_runs(table, UncertaintySettings(**snakemake.params.uncertainty), first, first + count)
+    rows = audit_rows(
+        snakemake.wildcards.reading,
+        runs,
+        ContactSettings(**snakemake.params.contact),
+        LawSettings(**snakemake.params.law),
+        run.progress,
+    )
+    write_csv(snakemake.output[0], rows, AUDIT_COLUMNS)

@@ -1,0 +1,22 @@
+"""Rank the readings of the paper by their distance to its Tables 2 and 3.
+
+In: inputs.csv, audit/runs/*.csv, the paper's Tables 2 and 3.  Out: audit/ranking.csv.
+"""
+
+from mesoscale.uncertainty.audit import rank
+from mesoscale.uncertainty.inputs import from_rows
+from mesoscale.uncertainty.paper_tables import table2, table3
+from workflow.job import job
+from workflow.results import read_csv, write_csv
+
+with job(snakemake) as run:
+    rows = [row for path in snakemake.input.runs for row in read_csv(path)]
+    two, three = read_csv(snakemake.input.table2), read_csv(snakemake.input.table3)
+    ranked = rank(
+        rows,
+        from_rows(read_csv(snakemake.input.inputs)),
+        snakemake.params.central_share,
+        [table2(two), table2(two, exchanged=True)],
+        [table3(three), table3(three, exchange_changes=True)],
+    )
+    write_csv(snakemake.output[0], ranked)
