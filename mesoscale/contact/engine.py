@@ -36,6 +36,19 @@ class Path:
     bounds: int = 0
     repeated: int = 0
     reached: bool = True  # the wanted end, up to a jump of the force
+    load: float = 0.0  # largest force of an asperity over its yield force
+
+
+class State(NamedTuple):
+    """What a move led to."""
+
+    force: float  # nN
+    sites: int
+    asperities: int
+    bounds: int  # asperities whose radius is bounded
+    load: float  # largest force of an asperity over its yield force
+    sweeps: int
+    settled: bool
 
 
 class Contact:
@@ -122,11 +135,8 @@ class Contact:
             self.order_heights = np.concatenate((self.order_heights, values[rank]))
             self.sorted_to = upper
 
-    def move_to(self, separation: float, with_flow: bool) -> tuple[float, int, int, int, int, bool]:
-        """Bring the flat down to a separation; it may be undone by `back` until the next move.
-
-        Returns force (nN), sites, asperities, bounds on R, sweeps, whether flow converged.
-        """
+    def move_to(self, separation: float, with_flow: bool) -> State:
+        """Bring the flat down to a separation; it may be undone by `back` until the next move."""
         level = -separation
         self._sort_to(level)
         stop = int(np.searchsorted(self.order_heights, level))
@@ -160,8 +170,8 @@ class Contact:
                 self.changes,
                 self.work,
             )
-        force, sites, alive, bounds = kernels.total_force(self.asperities, level, self.mechanics, self.capped)
-        return force, sites, alive, bounds, sweeps, settled
+        totals = kernels.total_force(self.asperities, level, self.mechanics, self.capped)
+        return State(*totals, sweeps, settled)
 
     def back(self) -> None:
         """Undo the last move's flow and lift the flat; the next move finds all contacts anew."""
@@ -229,13 +239,14 @@ def trace(
     step = 0.1 * largest
     limit = -contact.highest - 2.0 * contact.length
 
-    def accept(target: float, moved) -> None:
+    def accept(target: float, moved: State) -> None:
         nonlocal separation, force
-        separation = target
-        force, sites, alive, bounds, sweeps, settled = moved
-        path.rows.append(Row(target, force, contact.attraction(target), sites, alive, sweeps))
-        path.bounds += bounds
-        path.unconverged += not settled
+        separation, force = target, moved.force
+        pull = contact.attraction(target)
+        path.rows.append(Row(target, force, pull, moved.sites, moved.asperities, moved.sweeps))
+        path.bounds += moved.bounds
+        path.unconverged += not moved.settled
+        path.load = max(path.load, moved.load)
 
     while separation > stop_separation and force < final * (1.0 - contact.FORCE_TOLERANCE):
         target = max(separation - step, stop_separation)
@@ -243,12 +254,12 @@ def trace(
             path.reached = False
             break
         moved = contact.move_to(target, with_flow)
-        if moved[0] > final * (1.0 + contact.FORCE_TOLERANCE):
+        if moved.force > final * (1.0 + contact.FORCE_TOLERANCE):
             contact.back()
-            target = _solve_force(contact, separation, target, force, moved[0], final, with_flow, smallest)
+            target = _solve_force(contact, separation, target, force, moved.force, final, with_flow, smallest)
             accept(target, contact.move_to(target, with_flow))
             break
-        rise = moved[0] - force
+        rise = moved.force - force
         wanted = min(final / steps, max(0.3 * force, 0.02 * final / steps))
         if rise > 2.0 * wanted and step > smallest:
             contact.back()
@@ -272,7 +283,7 @@ def _solve_force(contact, start, beyond, low_force, high_force, wanted, with_flo
             break
         secant = (high * f_low - low * f_high) / (f_low - f_high)
         middle = 0.5 * (high + low) if trial % 4 == 3 else secant
-        miss = contact.move_to(middle, with_flow)[0] - wanted
+        miss = contact.move_to(middle, with_flow).force - wanted
         contact.back()
         if abs(miss) < best_miss:
             best, best_miss = middle, abs(miss)

@@ -187,23 +187,29 @@ def hardness(area, mechanics):
 
 @njit(cache=True)
 def total_force(asperities, level, mechanics, capped):
-    """Repulsive force (nN), sites, asperities, bounds on R in use; ``capped``: at most H A each (eq. 4)."""
+    """Repulsive force; ``capped``: at most H A each (eq. 4).
+
+    Returns the force (nN), sites, asperities, bounds on R in use, and the largest F / (H A) before the cap.
+    """
     force = 0.0
     sites = 0
     alive = 0
     bounds = 0
+    load = 0.0
     for number in range(asperities.used[0]):
         if asperities.sites[number] == 0:
             continue
         indentation, radius, area, bounded = shape(asperities, number, level, mechanics)
         single = mechanics.stiffness * np.sqrt(radius * indentation) * indentation
+        ceiling = hardness(area, mechanics) * area
+        load = max(load, single / ceiling if ceiling > 0.0 else np.inf)
         if capped:
-            single = min(single, hardness(area, mechanics) * area)
+            single = min(single, ceiling)
         force += single
         sites += asperities.sites[number]
         alive += 1
         bounds += bounded
-    return force, sites, alive, bounds
+    return force, sites, alive, bounds, load
 
 
 @njit(cache=True)
