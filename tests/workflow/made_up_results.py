@@ -256,7 +256,7 @@ def _topography(root: Path) -> None:
     }
     facts = {"scans/small_01": {"length_x_nm": 1000.0, "rms_nm": 3.0}}
     write_h5(root / "topography/spectra.h5", groups, {"synthetic": True}, PROVENANCE, facts)
-    estimates = {"q0": {"value": 0.02, "low": 0.015, "high": 0.025, "unit": "1/nm"}}
+    estimates = {"q0": {"value": 0.02, "interval": [0.015, 0.025], "scatter": [0.01, 0.03], "unit": "1/nm"}}
     content = {"synthetic": True, "convention": "profile", "estimates": estimates, "truth": {"q0": 0.021}}
     write_json(
         root / "topography/parameters.json", {**content, "gate": {"passed": True, "reasons": []}}, PROVENANCE

@@ -160,24 +160,24 @@ def topography(results: Results) -> Section:
         "Power spectra of all scans, pooled, with the fits behind q₀, Hurst exponent and RMS.",
         "Figure 10",
     )
-    paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20)", "rms": "1.82 to 14.17", "slope": "−2.84"}
+    paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20)", "rms": "1.82 to 14.17", "slope": "2.84"}
     truth = found.get("truth") or {}
     lines = []
     for name, estimate in found.get("estimates", {}).items():
-        low, high = estimate.get("low"), estimate.get("high")
         true = truth.get(name, truth.get(f"{name}_nm"))
         lines.append(
             (
                 SYMBOLS.get(name, name),
                 str(estimate.get("unit", "")),
                 show(estimate.get("value")),
-                f"{show(low)} to {show(high)}",
+                _pair(estimate.get("interval")),
+                _pair(estimate.get("scatter")),
                 show(true) if true is not None else "–",
                 paper.get(name, "–"),
             )
         )
     if lines:
-        header = ("parameter", "unit", "estimate", "range", "truth", "paper")
+        header = ("parameter", "unit", "estimate", "interval", "scatter of scans", "truth", "paper")
         section.blocks.append(Table("Roughness parameters", header, lines))
     section.files += ["topography/spectra.h5", "topography/parameters.json"]
     return section
@@ -424,6 +424,10 @@ def _distribution(row: Row) -> str:
     if row["distribution"] == "truncated_normal":
         text += f" within {show(row.get('low'))} to {show(row.get('high'))}"
     return text
+
+
+def _pair(pair: Any) -> str:
+    return f"{show(pair[0])} to {show(pair[1])}" if isinstance(pair, list) and len(pair) == 2 else "–"
 
 
 def _used(results: Results, stage: str) -> str:
