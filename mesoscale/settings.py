@@ -331,6 +331,16 @@ class ContactSettings(Settings):
         description="largest forces of the load series (figure 11)",
         json_schema_extra={"unit": "nN"},
     )
+    study_seeds: int = Field(
+        3, ge=1, le=1000, description="surfaces per case of the accuracy study", json_schema_extra={"unit": "1"}
+    )
+    study_draws: int = Field(
+        60,
+        ge=0,
+        le=100000,
+        description="random draws from Table 1 of the stability study, on three surfaces each",
+        json_schema_extra={"unit": "1"},
+    )
 
 
 class InputRow(Settings):

@@ -124,7 +124,9 @@ def _likelihood_estimates(
     spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, cutoff: float, settings: TopographySettings
 ) -> dict[str, Estimate]:
     centre = np.array([np.log(fitted.plateau), np.log(fitted.q0), fitted.slope])
-    error = np.sqrt(np.diag(fitted.covariance))
+    error = np.minimum(
+        np.sqrt(np.diag(fitted.covariance)), 10.0
+    )  # unidentified: a factor of e^10 is wide enough
     reach = _normal_quantile(settings.confidence)
     q0_interval = tuple(np.exp(centre[1] + reach * error[1] * np.array([-1, 1])))
     slope_interval = tuple(centre[2] + reach * error[2] * np.array([-1, 1]))
@@ -136,7 +138,7 @@ def _likelihood_estimates(
     gradient = np.array(
         [(log_rms(centre + step * e) - log_rms(centre - step * e)) / (2 * step) for e in np.eye(3)]
     )
-    rms_error = float(np.sqrt(gradient @ fitted.covariance @ gradient))
+    rms_error = min(float(np.sqrt(gradient @ fitted.covariance @ gradient)), 10.0)
     rms = float(np.exp(log_rms(centre)))
     if fitted.amplitude_sd > 0:  # the typical place is then the mean of few: Student's distribution
         reach = _student_quantile(settings.confidence, max(len(fitted.amplitudes) - 1, 1))

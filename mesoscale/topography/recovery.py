@@ -12,6 +12,14 @@ from mesoscale.topography.likelihood import TrustedSpectrum
 from mesoscale.topography.parameters import Topography, analyse
 
 TOLERANCE = {"q0": 0.20, "slope": 0.15, "rms": 0.05}  # relative for q0 and rms, absolute for the slope
+COLUMNS = (
+    *("set", "method", "tip_radius_nm", "told_tip_radius_nm", "gate"),
+    *(
+        name + suffix
+        for name in TOLERANCE
+        for suffix in ("_true", "", "_low", "_high", "_error", "_within", "_covered")
+    ),
+)
 TIP_UNCERTAINTY = 0.2  # the analysis is told a tip radius that is wrong by up to this share
 
 

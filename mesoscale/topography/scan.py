@@ -1,11 +1,14 @@
 """An AFM scan and the explicit, recorded steps that make its heights ready for a spectrum."""
 
+import warnings
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
+
+MAX_CUT_OFF = 0.01  # share of pixels at one end of the heights above which they are no measurement
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,7 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
 
     Raises
     ------
-    InputError : more pixels are missing than `settings.max_missing` allows.
+    InputError : more pixels are missing than `settings.max_missing` allows, or the heights are cut off.
     """
     heights = np.array(scan.heights_nm, dtype=float)
     steps = list(scan.steps)
@@ -61,11 +64,19 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
         )
     if share > 0:
         heights[missing] = np.nan
+    cut = cut_off_share(heights)
+    if cut > MAX_CUT_OFF:
+        raise InputError(
+            f"{scan.name}: {cut:.1%} of the pixels lie exactly at the highest or lowest height: the scan is cut "
+            "off at the end of the scanner's range; measure again with a larger range"
+        )
     if settings.detrend != "none":
         heights -= fitted_trend(heights, order=1 if settings.detrend == "plane" else 2)
         steps.append(f"subtracted a {settings.detrend} fit")
     if settings.line_alignment == "median":
-        heights -= np.nanmedian(heights, axis=0)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # lines without any value stay empty until filled
+            heights -= np.nanmedian(heights, axis=0)
         steps.append("subtracted the median of each scan line")
     if share > 0:
         heights = fill_missing(heights)
@@ -76,6 +87,15 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
             steps.append(f"replaced {spikes} spikes by the median of their neighbours")
     heights -= heights.mean()
     return replace(scan, heights_nm=heights, steps=tuple(steps))
+
+
+def cut_off_share(heights: np.ndarray) -> float:
+    """Share of pixels at the very highest or lowest value; 0 where all heights are equal."""
+    top, bottom = np.nanmax(heights), np.nanmin(heights)
+    if top == bottom:
+        return 0.0
+    at_top, at_bottom = np.mean(heights == top), np.mean(heights == bottom)
+    return float(max(at_top, at_bottom))
 
 
 def fitted_trend(heights: np.ndarray, order: int) -> np.ndarray:

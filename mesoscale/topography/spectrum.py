@@ -100,8 +100,8 @@ def radial_spectrum(
     for x in xs:
         for y in ys:
             part = data[x : x + mx, y : y + my]
-            z: np.ndarray = np.asarray(scipy.fft.rfft2((part - part.mean()) * window, overwrite_x=True))
-            total += z.real**2 + z.imag**2
+            z = np.asarray(scipy.fft.rfft2((part - part.mean()) * window, overwrite_x=True))
+            total += np.real(z) ** 2 + np.imag(z) ** 2
     total /= len(xs) * len(ys)
 
     size = lengths_nm[0] * mx / nx, lengths_nm[1] * my / ny

@@ -16,8 +16,8 @@ from mesoscale.topography.parameters import Topography, analyse
 from mesoscale.topography.scan import Scan
 
 COLUMNS = ("stage", "case", "description", "checks", "passed", "detail", "wall_s")
-TRUTH = SyntheticScanSettings(
-    pixels=256, small_scans=3, large_scans=3, large_length_nm=4000, rms_variation=0.0
+TRUTH = SyntheticScanSettings.model_validate(
+    {"pixels": 256, "small_scans": 3, "large_scans": 3, "large_length_nm": 4000.0, "rms_variation": 0.0}
 )
 WITHIN = {"q0": 0.25, "slope": 0.25, "rms": 0.1}  # coarse: a few scans of 256 x 256 pixels
 
@@ -88,7 +88,7 @@ def _stepped(heights: np.ndarray) -> np.ndarray:
 
 
 def _saturated(heights: np.ndarray) -> np.ndarray:
-    """The scanner's range ends at one standard deviation."""
+    """The scanner's range ends within the roughness."""
     centred = heights - heights.mean()
     return np.clip(centred, -0.3 * centred.std(), 0.3 * centred.std())
 
@@ -130,7 +130,12 @@ CASES = (
     Case("streaks", "scan lines offset by 4 nm", lambda: _edit(_streaked), "recovers"),
     Case("not square", "scans of 256 x 192 pixels", lambda: _standard(_wide), "recovers"),
     Case("oblong pixels", "pixels twice as long across the lines", lambda: _standard(_thinned), "recovers"),
-    Case("one size", "large scans only", lambda: _standard(small_scans=0), "recovers"),
+    Case(
+        "one size",
+        "large scans only",
+        lambda: _standard(small_scans=0, large_length_nm=3000.0, large_scans=4),
+        "recovers",
+    ),
     Case("coarse digits", "height steps of 0.5 nm", lambda: _standard(step_nm=0.5), "recovers"),
     Case("loud", "0.5 nm noise per pixel", lambda: _standard(noise_nm=0.5), "recovers"),
     Case("64", "scans of 64 x 64 pixels", lambda: _standard(pixels=64), "doubts", "identifiable"),
@@ -141,7 +146,7 @@ CASES = (
         "recovers",
     ),
     Case("steps", "a terrace edge of 60 nm in each scan", lambda: _edit(_stepped), "doubts"),
-    Case("saturated", "heights cut off at 0.3 of their RMS", lambda: _edit(_saturated), "doubts"),
+    Case("saturated", "heights cut off at 0.3 of their RMS", lambda: _edit(_saturated), "refuses", "cut off"),
     Case("constant", "all heights equal", lambda: _alone(np.zeros((256, 256))), "doubts", "identifiable"),
     Case(
         "white noise",

@@ -90,3 +90,45 @@ rule pool_spectra:
         "fit roll-off, slope and RMS to the spectra"
     script:
         "../scripts/pool_spectra.py"
+
+
+ACCURACY.append(f"{RESULTS}/accuracy/topography.csv")
+ACCURACY.append(f"{RESULTS}/accuracy/topography_recovery.csv")
+STABILITY.append(f"{RESULTS}/stability/topography.csv")
+
+
+rule measure_topography_accuracy:
+    output:
+        f"{RESULTS}/accuracy/topography.csv",
+    log:
+        f"{RESULTS}/logs/measure_topography_accuracy.log",
+    params:
+        settings=settings("topography"),
+    message:
+        "measure error against run time of the scan analysis"
+    script:
+        "../scripts/measure_topography_accuracy.py"
+
+
+rule measure_topography_recovery:
+    output:
+        f"{RESULTS}/accuracy/topography_recovery.csv",
+    log:
+        f"{RESULTS}/logs/measure_topography_recovery.log",
+    params:
+        settings=settings("topography"),
+    message:
+        "recover known truth from synthetic scans with artefacts"
+    script:
+        "../scripts/measure_topography_recovery.py"
+
+
+rule check_topography_stability:
+    output:
+        f"{RESULTS}/stability/topography.csv",
+    log:
+        f"{RESULTS}/logs/check_topography_stability.log",
+    message:
+        "check the scan analysis on hard cases"
+    script:
+        "../scripts/check_topography_stability.py"

@@ -129,3 +129,9 @@ def test_real_scans_are_read_in_nanometres(name, length, rms):
     scan = read_scan(AFM / name)
     assert scan.lengths_nm == pytest.approx((length, length))
     assert scan.rms_nm == pytest.approx(rms, abs=0.01)
+
+
+def test_cut_off_scans_are_refused():
+    heights = np.clip(np.random.default_rng(0).standard_normal((64, 64)), -1.0, None)
+    with pytest.raises(InputError, match="cut off"):
+        clean(Scan(heights, (1.0, 1.0), "low"), TopographySettings())

@@ -1,0 +1,12 @@
+"""Hard cases for the scan analysis: recover, doubt or refuse.
+
+In: nothing.  Out: stability/topography.csv.
+"""
+
+from mesoscale.settings import TopographySettings
+from mesoscale.topography.stability import COLUMNS, stability_rows
+from workflow.job import job
+from workflow.results import write_csv
+
+with job(snakemake) as run:
+    write_csv(snakemake.output[0], stability_rows(TopographySettings(), run.progress), COLUMNS)
