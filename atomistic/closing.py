@@ -209,17 +209,26 @@ def _curve(
 ) -> list[dict[str, float]]:
     """Averages over `area.travel_A` of force, contact area and temperature, with the energy balance."""
     rows: dict[int, np.ndarray] = {}
-    touching: dict[int, np.ndarray] = {}
+    near: dict[int, np.ndarray] = {}
     for n in range(1, plan.segments + 1):
         rows |= {int(row[0]): row for row in read_averages(workspace / f"averages.{n}")}
-        touching |= {
-            step: table[table[:, 4] > -area.depth_A, 2:4]
-            for step, table in read_dump(workspace / f"near.{n}")
-        }
+        near |= dict(read_dump(workspace / f"near.{n}"))
     steps = sorted(rows)
     cell = (wavelength_A, wavelength_A)
     peak = (wavelength_A / 4, wavelength_A / 4)
-    areas = np.array([contact_area(touching[step], cell, area.disc_A, area.grid_A, peak) for step in steps])
+
+    def areas(depth_A: float) -> np.ndarray:
+        return np.array(
+            [
+                contact_area(
+                    near[step][near[step][:, 4] > -depth_A, 2:4], cell, area.disc_A, area.grid_A, peak
+                )
+                for step in steps
+            ]
+        )
+
+    contact_areas = areas(area.depth_A)
+    other_areas = {depth: areas(depth) for depth in area.other_depths_A}
     table = np.array([rows[step] for step in steps])
     plane, force, temperature, energy = table[:, 1:].T
     # energy balance: what the plane has done is the only energy that may come in; segments start afresh
@@ -233,7 +242,7 @@ def _curve(
     per = area.snapshots
     for k in range(0, len(steps) - per + 1, per):
         part = slice(k, k + per)
-        contact, push = float(np.mean(areas[part])), float(np.mean(force[part]))
+        contact, push = float(np.mean(contact_areas[part])), float(np.mean(force[part]))
         curve.append(
             {
                 "step": steps[k + per - 1],
@@ -245,8 +254,14 @@ def _curve(
                 "contact_stress_GPa": push / contact * EV_A3_GPA if contact > 0 else float("nan"),
                 "temperature_K": float(np.mean(temperature[part])),
                 "energy_drift_meV_per_atom": 1000 * float(np.mean(gained[part])) / atoms,
-                "contact_atoms": float(np.mean([len(touching[step]) for step in steps[part]])),
+                "contact_atoms": float(
+                    np.mean([np.sum(near[step][:, 4] > -area.depth_A) for step in steps[part]])
+                ),
                 "atoms": atoms,
+                **{
+                    f"contact_area_nm2_depth_{depth:g}A": float(np.mean(values[part])) / 100
+                    for depth, values in other_areas.items()
+                },
             }
         )
     return curve

@@ -146,12 +146,8 @@ def _first_stretch(mask: np.ndarray) -> np.ndarray:
 def _kink(
     length: np.ndarray, stress: np.ndarray, fraction: np.ndarray, settings: YieldSettings
 ) -> dict[str, float]:
-    """The paper's change of slope, looked for from half of the window's shortest length on."""
-    use = (
-        np.isfinite(stress)
-        & (length >= settings.min_length_nm / 2)
-        & (fraction <= settings.max_area_fraction)
-    )
+    """The paper's change of slope, in the window of lengths in which stress is judged."""
+    use = np.isfinite(stress) & (length >= settings.min_length_nm) & (fraction <= settings.max_area_fraction)
     kink = find_kink(length[use], stress[use], settings.min_points)
     if kink is None:
         return {}
@@ -165,10 +161,10 @@ def _kink(
 
 
 def _interval_of_mean(values: np.ndarray, block: int = 4, samples: int = 2000) -> tuple[float, float]:
-    """68 % interval of the mean by a moving-block bootstrap (neighbouring averages are correlated)."""
-    rng = np.random.default_rng(np.random.SeedSequence([len(values), 8]))
-    block = min(block, len(values))
-    starts = rng.integers(0, len(values) - block + 1, (samples, -(-len(values) // block)))
-    picked = values[(starts[:, :, None] + np.arange(block)).reshape(samples, -1)[:, : len(values)]]
-    low, high = np.quantile(picked.mean(axis=1), [0.16, 0.84])
+    """68 % interval of the mean by a circular block bootstrap (neighbouring averages are correlated)."""
+    count = len(values)
+    rng = np.random.default_rng(np.random.SeedSequence([count, 8]))
+    starts = rng.integers(0, count, (samples, -(-count // block)))
+    order = (starts[:, :, None] + np.arange(min(block, count))) % count
+    low, high = np.quantile(values[order].reshape(samples, -1).mean(axis=1), [0.16, 0.84])
     return float(low), float(high)

@@ -135,8 +135,13 @@ class AreaSettings(Settings):
     depth_A: float = Field(
         0.5,
         gt=0,
-        le=3,
+        le=2,
         description="atoms nearer than this to the plane, or beyond it, touch",
+        json_schema_extra={"unit": "A"},
+    )
+    other_depths_A: tuple[Annotated[float, Field(gt=0, le=2)], ...] = Field(
+        (0.25, 1.0, 1.5),
+        description="further depths for which the area is reported, to show what the definition does",
         json_schema_extra={"unit": "A"},
     )
     disc_A: float = Field(
@@ -339,23 +344,32 @@ class DftSettings(Settings):
 class RelaxationSettings(Settings):
     """Relaxation of a glass by DFT before its E(V) scan: positions, and the edge of the cube."""
 
-    cutoff_Ha: float = Field(
-        60,
-        ge=20,
-        le=1000,
-        description="plane-wave cutoff during relaxation",
-        json_schema_extra={"unit": "hartree"},
+    basis: str = Field(
+        "gth-szv-molopt-sr", pattern=r"^[a-z0-9-]+$", description="GTH basis set during relaxation, by PySCF's name"
     )
-    rounds: int = Field(
-        2, ge=0, le=10, description="rounds of positions, then volume; 0: keep the potential's geometry",
-        json_schema_extra={"unit": "1"},
-    )  # fmt: skip
+    cutoff_Ha: float = Field(
+        60, ge=20, le=1000, description="plane-wave cutoff during relaxation", json_schema_extra={"unit": "hartree"}
+    )
+    tolerance_Ha: float = Field(
+        1e-8, gt=0, le=1e-3, description="SCF convergence where forces are needed", json_schema_extra={"unit": "hartree"}
+    )
     force_eV_A: float = Field(
-        0.15, gt=0, le=5, description="largest force left on an atom", json_schema_extra={"unit": "eV/A"}
+        0.2, gt=0, le=5, description="largest force left on an atom", json_schema_extra={"unit": "eV/A"}
     )
     max_steps: int = Field(
-        12, ge=1, le=500, description="ionic steps per round", json_schema_extra={"unit": "1"}
-    )
+        15, ge=0, le=500, description="ionic steps; 0 keeps the cheap potential's geometry",
+        json_schema_extra={"unit": "1"},
+    )  # fmt: skip
+
+    def applied_to(self, dft: DftSettings) -> DftSettings:
+        """The engine with the cheaper parameters of the relaxation."""
+        return dft.model_copy(
+            update={"basis": self.basis, "cutoff_Ha": self.cutoff_Ha, "tolerance_Ha": self.tolerance_Ha}
+        )
+
+    def tight(self, dft: DftSettings) -> DftSettings:
+        """The engine at full quality, converged tightly enough for forces."""
+        return dft.model_copy(update={"tolerance_Ha": min(self.tolerance_Ha, dft.tolerance_Ha)})
 
 
 class ElasticSettings(Settings):

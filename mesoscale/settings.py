@@ -332,7 +332,11 @@ class ContactSettings(Settings):
         json_schema_extra={"unit": "nN"},
     )
     study_seeds: int = Field(
-        3, ge=1, le=1000, description="surfaces per case of the accuracy study", json_schema_extra={"unit": "1"}
+        3,
+        ge=1,
+        le=1000,
+        description="surfaces per case of the accuracy study",
+        json_schema_extra={"unit": "1"},
     )
     study_draws: int = Field(
         60,
@@ -465,7 +469,7 @@ class LawSettings(Settings):
     contact_definition: Literal["first_contact", "force_fraction", "free_fit"] = Field(
         "first_contact",
         description="what d_c is: where the first (on opening the last) asperity touches; where the "
-        "repulsion reaches `force_fraction` of its maximum; or a fit parameter shared by attraction and repulsion",
+        "repulsion reaches `force_fraction` of its maximum; or fitted to attraction and repulsion together",
     )
     force_fraction: float = Field(
         0.01,
@@ -536,6 +540,13 @@ class UncertaintySettings(Settings):
         description="response surface: level1 is the paper's (2n+1 nodes, linear); level2 is the next "
         "Smolyak level with quadratic and interaction terms (113 nodes for seven inputs)",
     )
+    surface: Literal["linear", "polynomial", "regression"] = Field(
+        "regression",
+        description="surface behind samples, Sobol' indices and surrogate.json: the paper's linear one; the "
+        "polynomial through all nodes; or sparse polynomial chaos fitted to the direct runs. The last two "
+        "take C_a, C_r and rho_r in logarithm, so that they stay positive. Table 2 always has the linear one",
+    )
+    chaos_degree: int = Field(3, ge=1, le=6, description="highest total degree of the regression surface")
     seeds: int = Field(8, ge=1, le=10000, description="surfaces per node, the same ones at every node")
     first_seed: int = Field(0, ge=0, le=2**31, description="seed of the first surface")
     central_share: float = Field(
@@ -549,7 +560,7 @@ class UncertaintySettings(Settings):
     samples: int = Field(10000, ge=10, le=10**7, description="samples of the inputs sent through the surface")
     sample_seed: int = Field(1, ge=0, le=2**31, description="seed of those samples")
     sobol_samples: int = Field(
-        4096, ge=64, le=10**6, description="size of each of the n + 2 samples behind the Sobol' indices"
+        2048, ge=64, le=10**6, description="size of each of the n + 2 samples behind the Sobol' indices"
     )
     audit_seeds: int = Field(
         4, ge=1, le=1000, description="surfaces per reading of the reproduction audit (target `audit`)"
@@ -559,13 +570,16 @@ class UncertaintySettings(Settings):
         description="readings of the contact model to audit, named as in audit/ranking.csv; empty: all that "
         "differ in more than the attraction of touching sites",
     )
+    sobol_bootstrap: int = Field(
+        40, ge=0, le=10000, description="resamplings for the intervals of Sobol' indices"
+    )
     bootstrap: int = Field(200, ge=20, le=100000, description="resamplings for intervals")
     direct_runs: int = Field(
-        100,
+        200,
         ge=0,
         le=10**6,
-        description="independent cycles, each with its own inputs and surface: they validate the response "
-        "surfaces; 10000 or more make a brute-force reference",
+        description="independent cycles, each with its own inputs and surface: they train the regression "
+        "surface and validate all of them; 10000 or more make a brute-force reference",
     )
 
 

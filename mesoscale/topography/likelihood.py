@@ -6,7 +6,7 @@ log-normal population, because amplitudes of real places differ by far more than
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from mesoscale.topography.spectrum import Spectrum
 
 DISCREPANCY = 0.04  # relative error of C that no averaging removes: rest of tip, noise and window corrections
 MAX_SLOPE = 10.0
+SMALL_BLUR_SHELL = 5.0
 BINS_PER_DECADE = 12  # the discrepancy is shared within a bin of this width
 # dilation lowers C by exp(-a k^b), k = R sqrt(2 pi q^6 C) the tip's radius times the curvature per octave;
 # measured on slopes 2.3-3.8, RMS 3 and 8 nm, tips of 2-10 nm: one curve to 3 % (docs/topography.md)
@@ -138,6 +139,20 @@ class _Data:
         curvature = np.sqrt(2 * np.pi * np.exp(level[self.scan] + shape)) * self.q**3
         shape = shape - tip_bias(self.tip * curvature)
         return shape, self.psd * np.exp(-shape)
+
+
+def past_the_blur(spectra: Sequence[TrustedSpectrum], q0: float) -> list[TrustedSpectrum]:
+    """Raise the lower bound of scans that begin beyond the knee, to where the blur is a small correction.
+
+    On the plateau the window's blur does nothing; at the first shells of a scan too small to show the plateau
+    it is large, and mixes plateau and power law.
+    """
+    return [
+        replace(item, low=max(item.low, SMALL_BLUR_SHELL * item.spectrum.spacing))
+        if item.low > q0 / 2
+        else item
+        for item in spectra
+    ]
 
 
 def fit(spectra: Sequence[TrustedSpectrum]) -> LikelihoodFit | None:

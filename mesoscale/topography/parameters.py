@@ -56,6 +56,9 @@ def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) ->
     """Parameters of the surface behind the trusted spectra of its scans."""
     cutoff = max((item.spectrum.nyquist for item in spectra), default=0.0)
     fitted = likelihood.fit(spectra)
+    if fitted is not None:
+        spectra = likelihood.past_the_blur(spectra, fitted.q0)
+        fitted = likelihood.fit(spectra) or fitted
     line_fit = lines.fit_lines(spectra)
     reasons = _doubts(spectra, fitted, line_fit, settings)
     estimates: dict[str, Estimate] = {}

@@ -67,8 +67,8 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
     cut = cut_off_share(heights)
     if cut > MAX_CUT_OFF:
         raise InputError(
-            f"{scan.name}: {cut:.1%} of the pixels lie exactly at the highest or lowest height: the scan is cut "
-            "off at the end of the scanner's range; measure again with a larger range"
+            f"{scan.name}: {cut:.1%} of the pixels lie exactly at the highest or lowest height: the scan is "
+            "cut off at the end of the scanner's range; measure again with a larger range"
         )
     if settings.detrend != "none":
         heights -= fitted_trend(heights, order=1 if settings.detrend == "plane" else 2)

@@ -56,11 +56,51 @@ def read_nodes(rows: Iterable[Mapping[str, str]]) -> NodeOutputs:
     return NodeOutputs(seeds, values)
 
 
-def fit_surface(y: Array, ranges: Array, settings: UncertaintySettings) -> Surrogate:
-    """Response surface of one output from its node values, shape (nodes,)."""
-    if settings.surrogate == "level1":
-        return level1_surface(y, ranges)
-    return interpolating_surface(y, ranges, collocation_level(settings))
+def transform_of(surface: int, settings: UncertaintySettings) -> str:
+    """Transform of the exported surface of an entry of SURFACES: d_c may have any sign, the rest not."""
+    return "identity" if settings.surface == "linear" or surface % 4 == 0 else "log"
+
+
+def exported_surfaces(
+    nodes: NodeOutputs, direct: tuple[Array, Array], ranges: Array, settings: UncertaintySettings
+) -> list[Surrogate | None]:
+    """The surfaces behind samples, Sobol' indices and surrogate.json, one per SURFACES.
+
+    Parameters
+    ----------
+    direct : inputs (m, n) and closing and opening parameters (m, 8) of the direct runs, for `regression`.
+
+    Returns
+    -------
+    None for an output that no seed (or too few runs) determines; nothing is filled in.
+    """
+    surfaces: list[Surrogate | None] = []
+    for k in range(len(SURFACES)):
+        transform = transform_of(k, settings)
+        if settings.surface == "regression":
+            surfaces.append(_regression(direct[0], direct[1][:, k], ranges, transform, settings))
+            continue
+        y = nodes.values[:, :, k]
+        complete = np.isfinite(y).all(axis=1)
+        average = y[complete].mean(axis=0) if complete.any() else np.full(y.shape[1], np.nan)
+        if not np.isfinite(average).all() or (transform == "log" and (average <= 0).any()):
+            surfaces.append(None)
+        elif settings.surface == "linear":
+            surfaces.append(level1_surface(average[: 2 * len(ranges) + 1], ranges))
+        else:
+            surfaces.append(interpolating_surface(average, ranges, collocation_level(settings), transform))
+    return surfaces
+
+
+def _regression(
+    x: Array, y: Array, ranges: Array, transform: str, settings: UncertaintySettings
+) -> Surrogate | None:
+    from mesoscale.uncertainty.regression import sparse_chaos
+
+    try:
+        return sparse_chaos(x, y, ranges, settings.chaos_degree, transform)
+    except ValueError:  # too few usable runs; the count of missing ones is in uq/validation.csv
+        return None
 
 
 @dataclass(frozen=True)
@@ -70,7 +110,7 @@ class Propagation:
     samples: Array
     """Samples of the inputs, shape (m, n)."""
     outputs: Array
-    """Closing and opening parameters of every sample through the surface of the mean over seeds, (m, 8)."""
+    """Closing and opening parameters of every sample through the exported surfaces, shape (m, 8)."""
     surfaces: list[Surrogate | None]
     """One per SURFACES; None where no seed has all nodes."""
     by_seed: Array
@@ -79,8 +119,13 @@ class Propagation:
     """Share of the variance of each output of Table 2 that is scatter between seeds, shape (8,)."""
 
 
-def propagate(nodes: NodeOutputs, table: InputTable, settings: UncertaintySettings) -> Propagation:
-    """Send samples of the inputs through every seed's response surface and through their mean.
+def propagate(
+    nodes: NodeOutputs,
+    table: InputTable,
+    settings: UncertaintySettings,
+    direct: tuple[Array, Array] | None = None,
+) -> Propagation:
+    """Send samples of the inputs through every seed's linear surface and through the exported surfaces.
 
     A seed with a missing node has no surface for that output; nothing is filled in.
     """
@@ -90,7 +135,7 @@ def propagate(nodes: NodeOutputs, table: InputTable, settings: UncertaintySettin
     total, total_squares = np.zeros((len(samples), 8)), np.zeros((len(samples), 8))
     by_seed = np.full((seeds, 2, 8), np.nan)
     for s in range(seeds):
-        y = np.stack([_evaluate(nodes.values[s, :, k], ranges, settings, samples) for k in range(8)], axis=1)
+        y = np.stack([_linear(nodes.values[s, :, k], ranges, samples) for k in range(8)], axis=1)
         y = to_paper_outputs(y)
         by_seed[s] = y.mean(axis=0), y.std(axis=0)
         usable = np.isfinite(by_seed[s, 0])
@@ -102,21 +147,20 @@ def propagate(nodes: NodeOutputs, table: InputTable, settings: UncertaintySettin
         within = np.maximum(total_squares / used - mean**2, 0).mean(axis=0) * used / (used - 1)
         between = np.maximum(mean.var(axis=0) - within / used, 0)
         seed_share = np.where(used > 1, within / (within + between), np.nan)
-    surfaces: list[Surrogate | None] = []
-    for k in range(8):
-        complete = np.isfinite(nodes.values[:, :, k]).all(axis=1)
-        average = nodes.values[complete, :, k].mean(axis=0) if complete.any() else None
-        surfaces.append(None if average is None else fit_surface(average, ranges, settings))
+    nothing = np.empty((0, len(ranges))), np.empty((0, len(SURFACES)))
+    surfaces = exported_surfaces(nodes, direct or nothing, ranges, settings)
     outputs = np.stack(
         [surface(samples) if surface else np.full(len(samples), np.nan) for surface in surfaces], axis=1
     )
     return Propagation(samples, outputs, surfaces, by_seed, seed_share)
 
 
-def _evaluate(y: Array, ranges: Array, settings: UncertaintySettings, samples: Array) -> Array:
+def _linear(y: Array, ranges: Array, samples: Array) -> Array:
+    """The paper's linear surface from the nodes of level 1, which come first."""
+    y = y[: 2 * len(ranges) + 1]
     if not np.isfinite(y).all():
         return np.full(len(samples), np.nan)
-    return fit_surface(y, ranges, settings)(samples)
+    return level1_surface(y, ranges)(samples)
 
 
 def output_rows(
@@ -125,16 +169,23 @@ def output_rows(
     paper: Mapping[str, tuple[float, float]],
     paper_exchanged: Mapping[str, tuple[float, float]],
 ) -> list[dict[str, Any]]:
-    """Rows of uq/outputs.csv: Table 2 beside the paper's, differences in units of the scatter of seeds."""
+    """Rows of uq/outputs.csv: Table 2 beside the paper's, differences in units of the scatter of seeds.
+
+    mean and dev are the paper's method; surface_* are those of the exported surfaces.
+    """
     y = nodes.paper_outputs
     inputs = result.samples.shape[1]
     propagated = to_paper_outputs(result.outputs)
     rows = []
     for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
+        first_level = y[:, : 2 * inputs + 1]
         complete = np.isfinite(result.by_seed[:, 0, k])
         mean, dev = (_center_and_scatter(result.by_seed[complete, j, k]) for j in (0, 1))
         centre = _center_and_scatter(y[complete, 0, k])
-        effects = [np.sqrt((elementary_effects(line, inputs) ** 2).sum() / 12) for line in y[complete, :, k]]
+        effects = [
+            np.sqrt((elementary_effects(line, inputs) ** 2).sum() / 12)
+            for line in first_level[complete, :, k]
+        ]
         quantiles = np.quantile(propagated[:, k], [0.05, 0.5, 0.95])
         name = short_name(output)
         reference = paper.get(name, (np.nan, np.nan))
@@ -155,9 +206,11 @@ def output_rows(
                 "paper_dev_exchanged": exchanged[1],
                 "centre": centre[0],
                 "centre_seed_sd": centre[1],
-                "q05": quantiles[0],
-                "q50": quantiles[1],
-                "q95": quantiles[2],
+                "surface_mean": propagated[:, k].mean(),
+                "surface_dev": propagated[:, k].std(),
+                "surface_q05": quantiles[0],
+                "surface_q50": quantiles[1],
+                "surface_q95": quantiles[2],
                 "dev_from_mu_star": float(np.mean(effects)) if effects else np.nan,
                 "seed_share": result.seed_share[k],
                 "seeds_used": int(complete.sum()),
@@ -222,7 +275,9 @@ def surrogate_json(
     return {
         "about": "value = transform(sum of coefficient * product of Legendre P_degree(u)), u = 2 (x - low) / "
         "(high - low) - 1; valid for low <= x <= high; residual_std: scatter from one surface to the next",
-        "method": settings.surrogate,
+        "method": f"{settings.surface} ({settings.surrogate} grid)"
+        if settings.surface != "regression"
+        else "regression",
         "seeds": len(nodes.seeds),
         "inputs": inputs,
         "law": dict(law),

@@ -1,6 +1,6 @@
 """Which input matters: elementary effects (the paper's Table 3) and Sobol' indices with intervals."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,10 @@ from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import elementary_effects
 from mesoscale.uncertainty.distributions import InputTable
 from mesoscale.uncertainty.paper_tables import short_name
-from mesoscale.uncertainty.propagation import NodeOutputs, fit_surface, to_paper_outputs
+from mesoscale.uncertainty.propagation import NodeOutputs, exported_surfaces, to_paper_outputs
+from mesoscale.uncertainty.regression import refit
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
+from mesoscale.uncertainty.surrogate import Surrogate
 
 Array = NDArray[np.float64]
 
@@ -64,24 +66,24 @@ def sensitivity_rows(
     seed_share: Array,
     paper: Mapping[str, Mapping[str, float]],
     paper_as_printed: Mapping[str, Mapping[str, float]],
+    direct: tuple[Array, Array] | None = None,
 ) -> list[dict[str, Any]]:
     """Rows of uq/sensitivity.csv: every output with every input.
 
-    mu* is the mean over seeds of every seed's own value, beside its scatter. Sobol' indices are those of the
-    mean surface over seeds; their intervals (5 to 95 %) come from resampling the seeds.
+    mu* is the mean over seeds of every seed's own value on the nodes of level 1, beside its scatter. Sobol'
+    indices are those of the exported surfaces, that is of the mean over surfaces' randomness; their intervals
+    (5 to 95 %) come from resampling the seeds, or the direct runs if the surfaces are fitted to these.
     """
     y = nodes.paper_outputs
     ranges = table.ranges(settings.central_share)
-    points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
-    inputs, count = len(table.rows), points.shape[1]
-    flat = points.reshape(-1, inputs)
-    rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB0]))
+    inputs = len(table.rows)
+    direct = direct or (np.empty((0, inputs)), np.empty((0, 8)))
+    first, total = index_intervals(nodes, direct, table, settings)
     rows = []
     for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
-        complete = np.isfinite(y[:, :, k]).all(axis=1)
-        lines = y[complete, :, k]
+        lines = y[:, : 2 * len(ranges) + 1, k]
+        lines = lines[np.isfinite(lines).all(axis=1)]
         effects = np.array([elementary_effects(line, inputs) for line in lines]).reshape(-1, inputs)
-        first, total = _index_intervals(nodes.values[complete], k, ranges, settings, flat, count, rng)
         name = short_name(output)
         for i, row in enumerate(table.rows):
             rows.append(
@@ -93,62 +95,63 @@ def sensitivity_rows(
                     "mu_star_seed_sd": effects[:, i].std(ddof=1) if len(effects) > 1 else np.nan,
                     "paper_mu_star": paper.get(name, {}).get(row.name, np.nan),
                     "paper_mu_star_as_printed": paper_as_printed.get(name, {}).get(row.name, np.nan),
-                    "sobol_first": first[0, i],
-                    "sobol_first_low": first[1, i],
-                    "sobol_first_high": first[2, i],
-                    "sobol_total": total[0, i],
-                    "sobol_total_low": total[1, i],
-                    "sobol_total_high": total[2, i],
+                    "sobol_first": first[0, k, i],
+                    "sobol_first_low": first[1, k, i],
+                    "sobol_first_high": first[2, k, i],
+                    "sobol_total": total[0, k, i],
+                    "sobol_total_low": total[1, k, i],
+                    "sobol_total_high": total[2, k, i],
                     "seed_share": seed_share[k],
-                    "seeds_used": int(complete.sum()),
+                    "seeds_used": len(lines),
                 }
             )
     return rows
 
 
-def _index_intervals(
-    values: Array,
-    output: int,
-    ranges: Array,
-    settings: UncertaintySettings,
-    points: Array,
-    count: int,
-    rng: np.random.Generator,
+def index_intervals(
+    nodes: NodeOutputs, direct: tuple[Array, Array], table: InputTable, settings: UncertaintySettings
 ) -> tuple[Array, Array]:
-    """Estimate, lower and upper end of the indices of one output of Table 2, shape (3, n) each."""
-    inputs, seeds = len(ranges), len(values)
-    if seeds == 0:
-        missing = np.full((3, inputs), np.nan)
-        return missing, missing
-    # every seed's own surface once; the mean surface over any resample of seeds is then a mean of these
-    columns = sorted({output % 4, output})
-    surfaces = np.stack(
-        [
-            to_paper_outputs(
-                np.stack(
-                    [
-                        fit_surface(line[:, j], ranges, settings)(points)
-                        if j in columns
-                        else np.zeros(len(points))
-                        for j in range(8)
-                    ],
-                    axis=-1,
-                )
-            )[:, output]
-            for line in values
-        ]
-    )
+    """First-order and total indices of the eight outputs: estimate, lower and upper end, shape (3, 8, n)."""
+    ranges = table.ranges(settings.central_share)
+    points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
+    count, inputs = points.shape[1:]
+    flat = points.reshape(-1, inputs)
+    rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB0]))
 
-    def indices(weights: Array) -> Array:
-        mean = (weights @ surfaces).reshape(-1, count)
-        return np.stack(sobol_indices(mean[0], mean[1], mean[2:]))
+    def indices(surfaces: Sequence[Surrogate | None]) -> Array:
+        y = np.stack([s(flat) if s else np.full(len(flat), np.nan) for s in surfaces], axis=1)
+        y = to_paper_outputs(y).reshape(inputs + 2, count, 8)
+        return np.stack([sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(8)], axis=1)
 
-    estimate = indices(np.full(seeds, 1 / seeds))
-    resampled = [
-        indices(np.bincount(rng.integers(seeds, size=seeds), minlength=seeds) / seeds)
-        for _ in range(settings.bootstrap if seeds > 1 else 0)
-    ]
-    low, high = np.full_like(estimate, np.nan), np.full_like(estimate, np.nan)
-    if resampled and np.isfinite(estimate).all():
-        low, high = np.nanquantile(resampled, [0.05, 0.95], axis=0)
-    return (np.stack([estimate[0], low[0], high[0]]), np.stack([estimate[1], low[1], high[1]]))
+    surfaces = exported_surfaces(nodes, direct, ranges, settings)
+    estimate = indices(surfaces)
+    resampled = []
+    for _ in range(settings.sobol_bootstrap):
+        if settings.surface == "regression":
+            picks = rng.integers(len(direct[0]), size=len(direct[0])) if len(direct[0]) else np.empty(0, int)
+            resampled.append(indices(_refitted(surfaces, direct[0][picks], direct[1][picks])))
+        elif len(nodes.seeds) > 1:
+            chosen = rng.integers(len(nodes.seeds), size=len(nodes.seeds))
+            again = NodeOutputs(nodes.seeds, nodes.values[chosen])
+            resampled.append(indices(exported_surfaces(again, direct, ranges, settings)))
+    ends = np.full((2, *estimate.shape), np.nan)
+    if resampled:
+        draws = np.array(resampled)
+        known = np.isfinite(draws).all(axis=0)
+        ends[:, known] = np.quantile(draws[:, known], [0.05, 0.95], axis=0)
+    first, total = (np.stack([estimate[j], ends[0, j], ends[1, j]]) for j in (0, 1))
+    return first, total
+
+
+def _refitted(surfaces: Sequence[Surrogate | None], x: Array, y: Array) -> list[Surrogate | None]:
+    """The regression surfaces with their terms kept and their coefficients fitted to other runs."""
+    again: list[Surrogate | None] = []
+    for k, surface in enumerate(surfaces):
+        if surface is None:
+            again.append(None)
+            continue
+        usable = np.isfinite(y[:, k]) & ((y[:, k] > 0) | (surface.transform == "identity"))
+        u = np.clip(surface.scaled(x[usable]), -1, 1)
+        target = np.log(y[usable, k]) if surface.transform == "log" else y[usable, k]
+        again.append(refit(u, target, surface.ranges, surface.degrees, surface.transform))
+    return again

@@ -1,16 +1,26 @@
 """Response surfaces against direct cycles: bias of mean and deviation, errors, Q²."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.uncertainty.propagation import SURFACES, to_paper_outputs
+from mesoscale.settings import UncertaintySettings
+from mesoscale.uncertainty.distributions import InputTable
+from mesoscale.uncertainty.propagation import (
+    SURFACES,
+    NodeOutputs,
+    Propagation,
+    exported_surfaces,
+    to_paper_outputs,
+)
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
 from mesoscale.uncertainty.surrogate import Surrogate
 
 Array = NDArray[np.float64]
+Surfaces = Sequence[Surrogate | None]
 
 
 def read_direct_runs(rows: Iterable[Mapping[str, str]], names: Sequence[str]) -> tuple[Array, Array]:
@@ -21,87 +31,100 @@ def read_direct_runs(rows: Iterable[Mapping[str, str]], names: Sequence[str]) ->
     return inputs, outputs.reshape(len(rows), len(SURFACES))
 
 
+def held_out_predictions(
+    direct: tuple[Array, Array],
+    nodes: NodeOutputs,
+    surfaces: Surfaces,
+    ranges: Array,
+    settings: UncertaintySettings,
+) -> Array:
+    """Closing and opening parameters of every direct run by surfaces that never saw it, shape (m, 8).
+
+    Surfaces from the nodes are independent of the direct runs. A regression surface is fitted to these, so it
+    is fitted anew, terms and coefficients, without each fifth of them (five-fold cross-validation).
+    """
+    x, y = direct
+    if settings.surface != "regression":
+        return np.stack([s(x) if s else np.full(len(x), np.nan) for s in surfaces], axis=1)
+    predicted = np.full_like(y, np.nan)
+    folds = np.arange(len(x)) % 5
+    for fold in range(5):
+        rest, held = folds != fold, folds == fold
+        again = exported_surfaces(nodes, (x[rest], y[rest]), ranges, settings)
+        predicted[held] = np.stack(
+            [s(x[held]) if s else np.full(int(held.sum()), np.nan) for s in again], axis=1
+        )
+    return predicted
+
+
 def validation_rows(
-    inputs: Array,
-    direct: Array,
-    surfaces: Sequence[Surrogate | None],
-    propagated: Array,
-    bootstrap: int,
-    seed: int,
+    direct: tuple[Array, Array],
+    nodes: NodeOutputs,
+    table: InputTable,
+    result: Propagation,
+    settings: UncertaintySettings,
 ) -> list[dict[str, Any]]:
     """Rows of uq/validation.csv, one per output of Table 2.
 
     Parameters
     ----------
-    inputs, direct : the direct runs, (m, n) and (m, 8).
-    surfaces : the response surfaces in the order of SURFACES.
-    propagated : closing and opening parameters of the propagated samples, shape (k, 8).
+    direct : inputs (m, n) and closing and opening parameters (m, 8) of the direct runs.
 
     Notes
     -----
-    Every direct run has its own surface, so `q2` (1 - mean squared error / variance of the runs) includes the
-    scatter between surfaces and cannot reach 1. Intervals (5 to 95 %) are bootstraps over the direct runs.
+    `*_direct` are the truth up to sampling, with bootstrap intervals (5 to 95 %) over the direct runs;
+    `*_linear` the paper's method; `*_surface` the exported surface. Every direct run has its own surface, so
+    `q2` (1 - mean squared error / variance of the runs) includes the scatter between surfaces and cannot
+    reach 1.
     """
-    predicted = to_paper_outputs(
-        np.stack([s(inputs) if s else np.full(len(inputs), np.nan) for s in surfaces], axis=1).reshape(-1, 8)
-    )
-    truth, samples = to_paper_outputs(direct), to_paper_outputs(propagated)
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xB1]))
+    outputs = direct[1]
+    ranges = table.ranges(settings.central_share)
+    predicted = to_paper_outputs(held_out_predictions(direct, nodes, result.surfaces, ranges, settings))
+    linear_settings = settings.model_copy(update={"surface": "linear"})
+    linear_surfaces = exported_surfaces(nodes, direct, ranges, linear_settings)
+    linear = to_paper_outputs(held_out_predictions(direct, nodes, linear_surfaces, ranges, linear_settings))
+    truth, samples = to_paper_outputs(outputs), to_paper_outputs(result.outputs)
+    rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB1]))
     rows = []
     for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
         usable = np.isfinite(truth[:, k])
-        y, fit = truth[usable, k], predicted[usable, k]
+        y = truth[usable, k]
         row: dict[str, Any] = {
             "output": output,
             "unit": unit,
             "runs": len(truth),
             "missing": int((~usable).sum()),
         }
-        if len(y) >= 3:
-            picks = rng.integers(len(y), size=(bootstrap, len(y)))
-            resampled = y[picks]
-            statistics = {
-                "mean": (y.mean(), resampled.mean(axis=1), samples[:, k].mean()),
-                "dev": (y.std(ddof=1), resampled.std(axis=1, ddof=1), samples[:, k].std()),
-                "q05": (
-                    np.quantile(y, 0.05),
-                    np.quantile(resampled, 0.05, axis=1),
-                    np.quantile(samples[:, k], 0.05),
-                ),
-                "q50": (
-                    np.quantile(y, 0.5),
-                    np.quantile(resampled, 0.5, axis=1),
-                    np.quantile(samples[:, k], 0.5),
-                ),
-                "q95": (
-                    np.quantile(y, 0.95),
-                    np.quantile(resampled, 0.95, axis=1),
-                    np.quantile(samples[:, k], 0.95),
-                ),
-            }
-            for name, (direct_value, draws, surface_value) in statistics.items():
-                low, high = np.quantile(draws, [0.05, 0.95])
-                row |= {
-                    f"{name}_direct": direct_value,
-                    f"{name}_direct_low": low,
-                    f"{name}_direct_high": high,
-                    f"{name}_surface": surface_value,
-                }
-            errors = fit - y
-            q2 = 1 - (errors**2).mean() / y.var() if y.var() > 0 else np.nan
-            draws = 1 - (errors[picks] ** 2).mean(axis=1) / np.maximum(resampled.var(axis=1), 1e-300)
-            low, high = np.quantile(draws, [0.05, 0.95]) if np.isfinite(draws).all() else (np.nan, np.nan)
-            row |= {
-                "rmse": np.sqrt((errors**2).mean()),
-                "bias": errors.mean(),
-                "q2": q2,
-                "q2_low": low,
-                "q2_high": high,
-            }
         rows.append(row)
+        if len(y) < 3:
+            continue
+        row["mean_linear"], row["dev_linear"] = np.nanmean(result.by_seed[:, :, k], axis=0)
+        picks = rng.integers(len(y), size=(settings.bootstrap, len(y)))
+        resampled = y[picks]
+        for name, statistic in STATISTICS.items():
+            row[f"{name}_direct"] = statistic(y, axis=0)
+            draws = statistic(resampled, axis=1)
+            row[f"{name}_direct_low"], row[f"{name}_direct_high"] = np.quantile(draws, [0.05, 0.95])
+            row[f"{name}_surface"] = statistic(samples[:, k], axis=0)
+        errors = predicted[usable, k] - y
+        variance = y.var()
+        row["rmse"], row["bias"] = np.sqrt((errors**2).mean()), errors.mean()
+        if variance > 0:
+            row["q2"] = 1 - (errors**2).mean() / variance
+            row["q2_linear"] = 1 - ((linear[usable, k] - y) ** 2).mean() / variance
+            spread = np.maximum(resampled.var(axis=1), 1e-12 * variance)
+            low, high = np.quantile(1 - (errors[picks] ** 2).mean(axis=1) / spread, [0.05, 0.95])
+            row["q2_low"], row["q2_high"] = low, high
     return rows
 
 
+STATISTICS: dict[str, Callable[..., Any]] = {
+    "mean": np.mean,
+    "dev": partial(np.std, ddof=1),
+    "q05": partial(np.quantile, q=0.05),
+    "q50": partial(np.quantile, q=0.5),
+    "q95": partial(np.quantile, q=0.95),
+}
 VALIDATION_COLUMNS = (
     "output",
     "unit",
@@ -112,9 +135,12 @@ VALIDATION_COLUMNS = (
         for name in ("mean", "dev", "q05", "q50", "q95")
         for kind in ("direct", "direct_low", "direct_high", "surface")
     ),
+    "mean_linear",
+    "dev_linear",
     "rmse",
     "bias",
     "q2",
     "q2_low",
     "q2_high",
+    "q2_linear",
 )

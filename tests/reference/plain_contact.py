@@ -27,23 +27,27 @@ class Asperity:
 def connected_sites(touching: np.ndarray, neighbours: int) -> list[np.ndarray]:
     """Connected sets of touching sites on the periodic grid, as flat indices."""
     structure = np.ones((3, 3)) if neighbours == 8 else ndimage.generate_binary_structure(2, 1)
-    n = len(touching)
-    tiled, _ = ndimage.label(np.tile(touching, (3, 3)), structure)
-    # one period's labels, joined where two labels of the tiling are the same site
-    parent: dict[int, int] = {}
+    labels, count = ndimage.label(touching, structure)
+    parent = np.arange(count + 1)
 
     def root(label):
-        while parent.setdefault(label, label) != label:
+        while parent[label] != label:
             label = parent[label]
         return label
 
-    tiles = [tiled[i * n : (i + 1) * n, j * n : (j + 1) * n] for i in range(3) for j in range(3)]
-    for tile in tiles:
-        for a, b in set(zip(tile[touching].tolist(), tiles[4][touching].tolist(), strict=True)):
+    # join what meets across the cell's edges: every shift that neighbours allow
+    shifts = [(1, 0), (0, 1), (1, 1), (1, -1)] if neighbours == 8 else [(1, 0), (0, 1)]
+    for shift in shifts:
+        other = np.roll(labels, shift, (0, 1))
+        edge = np.zeros_like(touching)
+        edge[0, :] = edge[:, 0] = edge[:, -1] = True
+        meet = edge & (labels > 0) & (other > 0) & (labels != other)
+        for a, b in set(zip(labels[meet].tolist(), other[meet].tolist(), strict=True)):
             parent[root(a)] = root(b)
-    flat = np.flatnonzero(touching)
-    roots = np.array([root(label) for label in tiles[4].ravel()[flat].tolist()])
-    return [flat[roots == r] for r in np.unique(roots)] if flat.size else []
+    joined = np.array([root(label) for label in range(count + 1)])[labels.ravel()]
+    sites = np.flatnonzero(joined)
+    order = sites[np.argsort(joined[sites], kind="stable")]
+    return np.split(order, np.flatnonzero(np.diff(joined[order])) + 1) if len(order) else []
 
 
 def curvature(h: np.ndarray, spacing: float) -> np.ndarray:
@@ -110,8 +114,11 @@ def attraction(h, separation, inputs: ContactInputs, settings: ContactSettings) 
     return -inputs.hamaker * area / (6 * np.pi) * np.sum(gap**-3)
 
 
-def flow(h: np.ndarray, asperity: Asperity, amplitude: float, settings: ContactSettings) -> np.ndarray:
-    """Change of the surface by one flow: a narrow Gaussian up, a wide one down, no change of volume."""
+def flow(h: np.ndarray, asperity: Asperity, amplitude: float, settings: ContactSettings):
+    """One flow: a narrow Gaussian up, a wide one down, no change of volume.
+
+    Returns the (periodic) patch of the grid it reaches, and the change of the heights there.
+    """
     n = len(h)
     spacing = settings.length_nm / n
     contact = np.sqrt(asperity.area / np.pi)
@@ -119,15 +126,15 @@ def flow(h: np.ndarray, asperity: Asperity, amplitude: float, settings: ContactS
     s1 = max(s1, settings.flow_floor_pixels * spacing)
     s2 = s1 * {"paper": 3**0.25, "wide": 3.0}[settings.flow_pair]
     reach = min(int(np.ceil(3 * s2 / spacing)), (n - 1) // 2)
-    rows, columns = (np.abs((np.arange(n) - p + n // 2) % n - n // 2) for p in asperity.peak)
-    inside = (rows[:, None] <= reach) & (columns[None, :] <= reach)
-    squared = (rows[:, None] ** 2 + columns[None, :] ** 2) * spacing**2
-    narrow = np.where(inside, np.exp(-squared / (2 * s1**2)), 0)
-    wide = np.where(inside, np.exp(-squared / (2 * s2**2)), 0)
+    offsets = np.arange(-reach, reach + 1)
+    patch = np.ix_(*((p + offsets) % n for p in asperity.peak))
+    squared = (offsets[:, None] ** 2 + offsets[None, :] ** 2) * spacing**2
+    narrow = np.exp(-squared / (2 * s1**2))
+    wide = np.exp(-squared / (2 * s2**2))
     change = narrow - wide * narrow.sum() / wide.sum()
     if settings.flow == "return":
-        change = change / change[asperity.peak]
-    return amplitude * change
+        change = change / change[reach, reach]
+    return patch, amplitude * change
 
 
 def settle(h, separation, inputs: ContactInputs, settings: ContactSettings) -> tuple[np.ndarray, int, bool]:
@@ -148,7 +155,8 @@ def settle(h, separation, inputs: ContactInputs, settings: ContactSettings) -> t
             if settings.flow == "return":
                 # the indentation at which eq. 3 would give the limit, R and A unchanged
                 amplitude = a.indentation * (1 - (limit / a.elastic_force) ** (2 / 3))
-            change += flow(h, a, amplitude, settings)
+            patch, moved = flow(h, a, amplitude, settings)
+            change[patch] += moved
         if yielding == 0:
             return h, sweeps, True
         if sweeps == settings.max_sweeps:

@@ -17,3 +17,35 @@ rule compute_nominal:
     threads: 1
     script:
         "../scripts/compute_nominal.py"
+
+
+rule study_contact_accuracy:
+    message:
+        "study the error of the contact model against its run time"
+    output:
+        f"{RESULTS}/accuracy/contact.csv",
+    log:
+        f"{RESULTS}/logs/study_contact_accuracy.log",
+    params:
+        settings=settings("contact"),
+    threads: 1
+    script:
+        "../scripts/study_contact_accuracy.py"
+
+
+rule study_contact_stability:
+    message:
+        "study the contact model in stiff and extreme cases"
+    output:
+        f"{RESULTS}/stability/contact.csv",
+    log:
+        f"{RESULTS}/logs/study_contact_stability.log",
+    params:
+        settings=settings("contact"),
+    threads: 1
+    script:
+        "../scripts/study_contact_stability.py"
+
+
+ACCURACY.append(f"{RESULTS}/accuracy/contact.csv")
+STABILITY.append(f"{RESULTS}/stability/contact.csv")

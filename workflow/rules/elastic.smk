@@ -1,0 +1,148 @@
+import yaml
+
+ELASTIC = settings("elastic")
+MATERIALS = CONFIG / "materials"
+GLASSES = [f"a{k:02d}" for k in range(1, ELASTIC["glass"]["structures"] + 1)]
+CRYSTALS = {}  # name → file that holds it
+if needed("elastic"):
+    for key in ("material", "counter_body"):
+        if not (MATERIALS / f"{ELASTIC[key]}.yaml").exists():
+            known = ", ".join(sorted(path.stem for path in MATERIALS.glob("*.yaml")))
+            print(f"ERROR {config.get('scene', 'reduced')}: elastic.{key}: no material {ELASTIC[key]!r}; known: {known}", file=sys.stderr)
+            sys.exit(1)
+for path in sorted(MATERIALS.glob("*.yaml")):
+    for crystal in yaml.safe_load(path.read_text(encoding="utf-8")).get("crystals", {}):
+        CRYSTALS.setdefault(crystal, str(path))
+for crystal in ELASTIC["crystals"]:
+    if crystal not in CRYSTALS:
+        print(
+            f"ERROR {config.get('scene', 'reduced')}: elastic.crystals: no crystal {crystal!r}; known: {', '.join(CRYSTALS)}",
+            file=sys.stderr,
+        )
+        sys.exit(1)
+SCANS = [f"{name}_{xc}_clamped" for name in ELASTIC["crystals"] for xc in ("GGA", "LDA")]
+SCANS += [f"{name}_GGA_clamped" for name in GLASSES]
+SCANS += [f"{name}_LDA_clamped" for name in GLASSES[: ELASTIC["lda_structures"]]]
+SCANS += [f"{name}_GGA_relaxed" for name in GLASSES[: ELASTIC["relaxed_structures"]]]
+MATERIAL = str(MATERIALS / f"{ELASTIC['material']}.yaml")
+COUNTER_BODY = str(MATERIALS / f"{ELASTIC['counter_body']}.yaml")
+
+
+def elastic_settings(*keys):
+    """Only the settings a rule depends on, so that the others do not re-run it."""
+    return {key: ELASTIC[key] for key in keys}
+
+
+wildcard_constraints:
+    amorphous="a\\d+",
+    crystal="|".join(CRYSTALS),
+    structure="|".join(["a\\d+", *CRYSTALS]),
+    xc="GGA|LDA",
+    ions="clamped|relaxed",
+
+
+rule elastic:
+    input:
+        f"{RESULTS}/elastic/e_star.json",
+
+
+rule make_crystal:
+    message:
+        "set up crystal {wildcards.crystal}"
+    input:
+        material=lambda wildcards: CRYSTALS[wildcards.crystal],
+    output:
+        structure=f"{RESULTS}/elastic/structures/{{crystal}}.xyz",
+    log:
+        f"{RESULTS}/logs/make_crystal_{{crystal}}.log",
+    script:
+        "../scripts/make_crystal.py"
+
+
+rule make_amorphous:
+    message:
+        "melt and quench amorphous cell {wildcards.amorphous}"
+    input:
+        material=MATERIAL,
+    output:
+        structure=f"{RESULTS}/elastic/quenched/{{amorphous}}.xyz",
+        attempts=f"{RESULTS}/elastic/quenched/{{amorphous}}.csv",
+    log:
+        f"{RESULTS}/logs/make_amorphous_{{amorphous}}.log",
+    params:
+        settings=elastic_settings("material", "glass"),
+        work=f"{RESULTS}/work/{{amorphous}}",
+    priority: 90
+    script:
+        "../scripts/make_amorphous.py"
+
+
+rule relax_amorphous:
+    message:
+        "relax amorphous cell {wildcards.amorphous}"
+    input:
+        material=MATERIAL,
+        structure=f"{RESULTS}/elastic/quenched/{{amorphous}}.xyz",
+    output:
+        structure=f"{RESULTS}/elastic/structures/{{amorphous}}.xyz",
+        report=f"{RESULTS}/elastic/structures/{{amorphous}}.json",
+    log:
+        f"{RESULTS}/logs/relax_amorphous_{{amorphous}}.log",
+    params:
+        settings=elastic_settings("material", "dft", "relaxation"),
+        store=f"{RESULTS}/work/scf/relax_{{amorphous}}",
+    priority: 90
+    script:
+        "../scripts/relax_amorphous.py"
+
+
+rule scan_volumes:
+    message:
+        "E(V) of {wildcards.structure}, {wildcards.xc}, ions {wildcards.ions}"
+    input:
+        structure=f"{RESULTS}/elastic/structures/{{structure}}.xyz",
+        material=MATERIAL,
+    output:
+        points=f"{RESULTS}/elastic/scans/{{structure}}_{{xc}}_{{ions}}.csv",
+    log:
+        f"{RESULTS}/logs/scan_volumes_{{structure}}_{{xc}}_{{ions}}.log",
+    params:
+        settings=elastic_settings("strains", "relaxed_force_eV_A", "relaxation", "dft"),
+        store=f"{RESULTS}/work/scf/{{structure}}_{{xc}}_{{ions}}",
+    priority: 80
+    script:
+        "../scripts/scan_volumes.py"
+
+
+rule fit_bulk_moduli:
+    message:
+        "fit equations of state"
+    input:
+        scans=[f"{RESULTS}/elastic/scans/{scan}.csv" for scan in SCANS],
+    output:
+        points=f"{RESULTS}/elastic/points.csv",
+        moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
+    log:
+        f"{RESULTS}/logs/fit_bulk_moduli.log",
+    script:
+        "../scripts/fit_bulk_moduli.py"
+
+
+rule combine_e_star:
+    message:
+        "combine E* from bulk moduli, Poisson's ratio and the counter body"
+    input:
+        moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
+        structures=[f"{RESULTS}/elastic/structures/{name}.json" for name in GLASSES],
+        attempts=[f"{RESULTS}/elastic/quenched/{name}.csv" for name in GLASSES],
+        counter_body=COUNTER_BODY,
+    output:
+        e_star=f"{RESULTS}/elastic/e_star.json",
+        samples=f"{RESULTS}/elastic/e_star.h5",
+        structures=f"{RESULTS}/elastic/structures.csv",
+    log:
+        f"{RESULTS}/logs/combine_e_star.log",
+    params:
+        settings=ELASTIC,
+    script:
+        "../scripts/combine_e_star.py"

@@ -64,6 +64,7 @@ rule rank_sensitivity:
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
         outputs=f"{RESULTS}/uq/outputs.csv",
+        direct=[f"{RESULTS}/uq/direct/chunk_{chunk}.csv" for chunk in DIRECT_CHUNKS],
         table3=str(CONFIG / "paper" / "table3.csv"),
     output:
         f"{RESULTS}/uq/sensitivity.csv",

@@ -23,7 +23,9 @@ with job(snakemake) as run:
     paper = table2(paper_rows)
     symbols = {row["parameter"]: row["symbol"] for row in read_csv(snakemake.input.table1)}
 
-    result = propagate(nodes, table, settings)
+    direct = read_direct_runs((row for path in snakemake.input.direct for row in read_csv(path)), table.names)
+
+    result = propagate(nodes, table, settings, direct)
     write_csv(snakemake.output.outputs, output_rows(nodes, result, paper, table2(paper_rows, exchanged=True)))
     constants = {"rho_a_nm": law.rho_a_nm, "alpha_nm": law.shield_nm}
     write_json(
@@ -35,9 +37,5 @@ with job(snakemake) as run:
     values = np.hstack([result.samples, result.outputs]).tolist()
     write_csv(snakemake.output.samples, (dict(zip(columns, line, strict=True)) for line in values), columns)
 
-    direct = [row for path in snakemake.input.direct for row in read_csv(path)]
-    inputs, outputs = read_direct_runs(direct, table.names)
-    rows = validation_rows(
-        inputs, outputs, result.surfaces, result.outputs, settings.bootstrap, settings.sample_seed
-    )
+    rows = validation_rows(direct, nodes, table, result, settings)
     write_csv(snakemake.output.validation, rows, VALIDATION_COLUMNS)

@@ -1,6 +1,7 @@
 """Rank the inputs: elementary effects beside the paper's Table 3, and Sobol' indices with intervals.
 
-In: inputs.csv, law/parameters.csv, uq/outputs.csv (the seeds' share of the variance), the paper's Table 3.
+In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, uq/outputs.csv (the seeds' share of the
+variance), the paper's Table 3.
 Out: uq/sensitivity.csv.
 """
 
@@ -11,17 +12,20 @@ from mesoscale.uncertainty.inputs import from_rows
 from mesoscale.uncertainty.paper_tables import table3
 from mesoscale.uncertainty.propagation import read_nodes
 from mesoscale.uncertainty.sensitivity import sensitivity_rows
+from mesoscale.uncertainty.validation import read_direct_runs
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 
 with job(snakemake) as run:
+    table = from_rows(read_csv(snakemake.input.inputs))
     paper = read_csv(snakemake.input.table3)
     rows = sensitivity_rows(
         read_nodes(read_csv(snakemake.input.parameters)),
-        from_rows(read_csv(snakemake.input.inputs)),
+        table,
         UncertaintySettings(**snakemake.params.settings),
         np.array([float(row["seed_share"] or "nan") for row in read_csv(snakemake.input.outputs)]),
         table3(paper),
         table3(paper, as_printed=True),
+        read_direct_runs((row for path in snakemake.input.direct for row in read_csv(path)), table.names),
     )
     write_csv(snakemake.output[0], rows)

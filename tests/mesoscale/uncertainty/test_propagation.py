@@ -29,7 +29,7 @@ from mesoscale.uncertainty.surrogate import from_json
 from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, validation_rows
 
 PAPER = Path(__file__).parents[3] / "config" / "paper"
-SETTINGS = UncertaintySettings(samples=2000, bootstrap=50, sobol_samples=1024)
+SETTINGS = UncertaintySettings(surface="linear", samples=2000, bootstrap=50, sobol_samples=1024)
 
 
 def uniform_table(inputs=3, correlation=None):
@@ -159,23 +159,25 @@ def test_surrogate_json_reproduces_the_propagated_values():
 
 def test_validation_of_a_perfect_and_of_a_biased_surface():
     table = uniform_table()
-    result = propagate(linear_nodes(table, [1, 2, 3]), table, SETTINGS)
+    given = linear_nodes(table, [1, 2, 3])
+    result = propagate(given, table, SETTINGS)
     x = table.sample(400, 9)
     direct = np.stack([10 + x @ [1, 2, 3]] * 4 + [20 + x @ [2, 4, 6]] * 4, axis=1)
-    row = validation_rows(x, direct, result.surfaces, result.outputs, 50, 1)[0]
+    row = validation_rows((x, direct), given, table, result, SETTINGS)[0]
     assert row["q2"] == pytest.approx(1)
     assert row["mean_direct_low"] <= row["mean_direct"] <= row["mean_direct_high"]
     # 400 and 2000 samples of a deviation of 1.08
     assert row["mean_surface"] == pytest.approx(row["mean_direct"], abs=4 * 1.08 / 20)
-    row = validation_rows(x, direct + 1.0, result.surfaces, result.outputs, 50, 1)[0]
+    row = validation_rows((x, direct + 1.0), given, table, result, SETTINGS)[0]
     assert row["bias"] == pytest.approx(-1)
     assert row["q2"] == pytest.approx(1 - 1 / (direct[:, 0].var()), rel=1e-6)
 
 
 def test_validation_without_runs_reports_none():
     table = uniform_table()
-    result = propagate(linear_nodes(table, [1, 2, 3]), table, SETTINGS)
-    rows = validation_rows(np.empty((0, 3)), np.empty((0, 8)), result.surfaces, result.outputs, 50, 1)
+    given = linear_nodes(table, [1, 2, 3])
+    result = propagate(given, table, SETTINGS)
+    rows = validation_rows((np.empty((0, 3)), np.empty((0, 8))), given, table, result, SETTINGS)
     assert [row["runs"] for row in rows] == [0] * 8
     assert set(rows[0]) <= set(VALIDATION_COLUMNS)
 
@@ -222,3 +224,51 @@ def test_outputs_are_the_papers_columns():
     assert by_name["C_a_GPa_nm"]["paper_mean"] == pytest.approx(15.1e-5)
     assert by_name["delta_C_r_GPa"]["paper_mean"] == pytest.approx(2.76e-4)
     assert by_name["delta_C_r_GPa"]["paper_mean_exchanged"] == pytest.approx(5.5e-5)
+
+
+@pytest.mark.parametrize("surface", ["polynomial", "regression"])
+def test_positive_outputs_stay_positive_where_the_linear_surface_does_not(surface):
+    """y = exp(4 x0): the paper's linear surface is negative over part of the range."""
+    table = uniform_table()
+    x = to_values(nodes(3, 1), table.ranges(0.999))
+    values = np.repeat(np.exp(4 * x[:, :1]), 8, axis=1)
+    given = NodeOutputs([0, 1], np.stack([values, values]))
+    samples = table.sample(200, 5)
+    direct = (samples, np.repeat(np.exp(4 * samples[:, :1]), 8, axis=1))
+    linear = propagate(given, table, SETTINGS, direct)
+    assert (linear.outputs[:, 1] < 0).any()
+    settings = SETTINGS.model_copy(update={"surface": surface})
+    result = propagate(given, table, settings, direct)
+    assert (result.outputs[:, 1] > 0).all()
+    assert result.outputs[:, 1] == pytest.approx(np.exp(4 * result.samples[:, 0]), rel=1e-6)
+    # exact in the logarithm; the mean of the linear surface is that of Simpson's rule (here 14 % too high)
+    exact = (np.exp(4) - 1) / 4
+    assert result.outputs[:, 1].mean() == pytest.approx(exact, rel=0.1)
+
+
+def test_regression_recovers_the_mean_over_noise_and_reports_intervals():
+    table = uniform_table()
+    rng = np.random.default_rng(2)
+    x = table.sample(300, 6)
+    truth = 5 + x @ [1.0, 2.0, 3.0]
+    noisy = truth[:, None] + rng.normal(0, 0.3, (300, 8))
+    settings = SETTINGS.model_copy(update={"surface": "regression", "sobol_bootstrap": 20})
+    given = linear_nodes(table, [1, 2, 3])
+    result = propagate(given, table, settings, (x, noisy))
+    expected = 5 + result.samples @ [1.0, 2.0, 3.0]
+    # standard error of a coefficient: 0.3/sqrt(300) = 0.017, a handful of terms
+    assert result.outputs[:, 0] == pytest.approx(expected, abs=0.25)
+    row = validation_rows((x, noisy), given, table, result, settings)[0]
+    best = 1 - 0.3**2 / noisy[:, 0].var()
+    assert best - 0.05 < row["q2"] < best + 0.03
+    first = sensitivity_rows(given, table, settings, np.zeros(8), {}, {}, (x, noisy))[2]
+    assert first["sobol_first_low"] < 9 / 14 < first["sobol_first_high"] + 0.02
+
+
+def test_too_few_runs_give_no_regression_surface():
+    table = uniform_table()
+    settings = SETTINGS.model_copy(update={"surface": "regression"})
+    x = table.sample(5, 1)
+    result = propagate(linear_nodes(table, [1, 2, 3]), table, settings, (x, np.ones((5, 8))))
+    assert result.surfaces == [None] * 8
+    assert np.isnan(result.outputs).all()

@@ -1,0 +1,137 @@
+"""Equations of state: bulk modulus and equilibrium volume from E(V), with the checks that make them trustworthy.
+
+Birch–Murnaghan (third order, Phys. Rev. 71, 809 (1947)):
+    E = E0 + (9/16) V0 B0 { (x−1)³ B′ + (x−1)² (6 − 4x) },  x = (V0/V)^{2/3},
+a cubic polynomial in V^{−2/3}, hence one linear least-squares problem with an analytic minimum.
+
+Vinet (PRB 35, 1945 (1987)):
+    E = E0 + (9 B0 V0/c²) { 1 − [1 − c(1−η)] e^{c(1−η)} },  c = 3(B′−1)/2,  η = (V/V0)^{1/3}.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from atomistic.errors import InputError
+
+EV_PER_A3_IN_GPA = 160.21766208
+MIN_POINTS = 5
+B_PRIME_RANGE = (2.0, 7.0)  # outside it, a solid this side of melting is unlikely and the fit suspect
+FORMS_AGREE = 0.02  # Birch–Murnaghan and Vinet must give the same B within this
+
+
+@dataclass(frozen=True)
+class EquationOfState:
+    """A fitted equation of state.
+
+    Attributes
+    ----------
+    V0_A3, E0_eV, B_GPa, B_prime : equilibrium volume, energy, bulk modulus and its pressure derivative
+    B_vinet_GPa : bulk modulus by Vinet's form
+    residual_meV : root mean square misfit of the Birch–Murnaghan fit, per cell
+    points : number of points fitted
+    flags : what is wrong, in words; empty when the numbers can be trusted
+    """
+
+    V0_A3: float
+    E0_eV: float
+    B_GPa: float
+    B_prime: float
+    B_vinet_GPa: float
+    residual_meV: float
+    points: int
+    flags: tuple[str, ...]
+
+    @property
+    def trusted(self) -> bool:
+        return not self.flags
+
+
+def birch_murnaghan(volume, V0, E0, B, B_prime):
+    """E(V) in eV; B in eV/Å³."""
+    x = (V0 / np.asarray(volume)) ** (2 / 3)
+    return E0 + 9 / 16 * V0 * B * ((x - 1) ** 3 * B_prime + (x - 1) ** 2 * (6 - 4 * x))
+
+
+def vinet(volume, V0, E0, B, B_prime):
+    """E(V) in eV; B in eV/Å³."""
+    eta = (np.asarray(volume) / V0) ** (1 / 3)
+    c = 1.5 * (B_prime - 1)
+    return E0 + 9 * B * V0 / c**2 * (1 - (1 - c * (1 - eta)) * np.exp(c * (1 - eta)))
+
+
+def fit_equation_of_state(volumes_A3: Sequence[float], energies_eV: Sequence[float]) -> EquationOfState:
+    """Fit E(V) of one structure.
+
+    Parameters
+    ----------
+    volumes_A3, energies_eV : (n,) converged points, n ≥ 5
+
+    Raises
+    ------
+    InputError
+        if there are fewer than five different volumes
+    """
+    from scipy.optimize import least_squares
+
+    volume, energy = np.asarray(volumes_A3, float), np.asarray(energies_eV, float)
+    if len(np.unique(volume)) < MIN_POINTS:
+        raise InputError(
+            f"equation of state: {len(np.unique(volume))} different volumes, at least {MIN_POINTS} are needed; "
+            "give more strains (elastic.strains)"
+        )
+    if not (np.all(np.isfinite(energy)) and np.all(volume > 0)):
+        raise InputError("equation of state: volumes must be positive and energies finite")
+    flags: list[str] = []
+    centre = volume[np.argmin(energy)]
+    basis = np.vander((volume / centre) ** (-2 / 3), 4, increasing=True)
+    shift = energy.mean()
+    coefficients, *_ = np.linalg.lstsq(basis, energy - shift, rcond=None)
+    residual = float(np.sqrt(np.mean((basis @ coefficients - (energy - shift)) ** 2)) * 1000)
+    V0, E0, B, B_prime = _minimum(coefficients, float(centre), volume)
+    E0 += float(shift)
+    if not np.isfinite(V0):
+        flags.append("E(V) has no minimum")
+        nan = float("nan")
+        return EquationOfState(nan, nan, nan, nan, nan, residual, len(volume), tuple(flags))
+    if not volume.min() < V0 < volume.max():
+        flags.append(f"V0 {V0:.1f} Å3 outside the scanned {volume.min():.1f} to {volume.max():.1f} Å3")
+    if not B_PRIME_RANGE[0] <= B_prime <= B_PRIME_RANGE[1]:
+        flags.append(f"B' {B_prime:.1f} outside {B_PRIME_RANGE[0]:g} to {B_PRIME_RANGE[1]:g}")
+    scale = np.ptp(energy) or 1.0
+    start = np.array([1.0, 0.0, 1.0, max(B_prime, 1.5) if np.isfinite(B_prime) else 4.0])
+
+    def misfit(p):
+        return (vinet(volume, p[0] * V0, E0 + p[1] * scale, p[2] * B, p[3]) - energy) / scale
+
+    solution = least_squares(misfit, start, method="lm" if len(volume) >= 4 else "trf")
+    B_vinet = float(solution.x[2] * B)
+    if not solution.success or abs(B_vinet / B - 1) > FORMS_AGREE:
+        flags.append(
+            f"Birch-Murnaghan {B * EV_PER_A3_IN_GPA:.1f} and Vinet {B_vinet * EV_PER_A3_IN_GPA:.1f} GPa "
+            f"differ by more than {FORMS_AGREE:.0%}"
+        )
+    return EquationOfState(
+        V0, E0, B * EV_PER_A3_IN_GPA, B_prime, B_vinet * EV_PER_A3_IN_GPA, residual, len(volume), tuple(flags)
+    )
+
+
+def _minimum(coefficients: np.ndarray, centre: float, volume: np.ndarray) -> tuple[float, float, float, float]:
+    """V0, E(V0), B (eV/Å³) and B' of the cubic in x = (V/centre)^(-2/3); NaN where there is no minimum."""
+    a0, a1, a2, a3 = coefficients
+    slope = np.polynomial.Polynomial([a1, 2 * a2, 3 * a3])
+    candidates = [
+        root.real for root in slope.roots() if abs(root.imag) < 1e-12 and root.real > 0 and slope.deriv()(root.real) > 0
+    ]
+    if not candidates:
+        return (float("nan"),) * 4
+    middle = (np.mean([volume.min(), volume.max()]) / centre) ** (-2 / 3)
+    x = min(candidates, key=lambda root: abs(root - middle))
+    V = float(centre * x**-1.5)
+    # derivatives in V by the chain rule, x = (V/centre)^(-2/3)
+    d1, d2, d3 = a1 + 2 * a2 * x + 3 * a3 * x * x, 2 * a2 + 6 * a3 * x, 6 * a3
+    x1, x2, x3 = -2 / 3 * x / V, 10 / 9 * x / V**2, -80 / 27 * x / V**3
+    second = d2 * x1**2 + d1 * x2
+    third = d3 * x1**3 + 3 * d2 * x1 * x2 + d1 * x3
+    return V, float(a0 + a1 * x + a2 * x**2 + a3 * x**3), float(V * second), float(-1 - V * third / second)

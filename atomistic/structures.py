@@ -1,0 +1,239 @@
+"""Structures for the elastic stage: crystals from data files, amorphous silicon nitride by melt and quench.
+
+Lengths in Å.  A glass cell is cubic.  It is melted and quenched at the density of experiment with a Tersoff
+potential in LAMMPS, minimised, and must then pass gates on density, coordination and shortest distances.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from ase import Atoms
+
+from atomistic.errors import InputError
+from atomistic.settings import NitrideGlassSettings
+
+AMU_PER_A3_IN_G_CM3 = 1.66053906660
+START_DISTANCE_A = 1.4  # random start: nothing closer than this
+
+
+def crystal(material: Mapping[str, Any], name: str) -> Atoms:
+    """A crystal of a material file (config/materials), repeated to its supercell.
+
+    Raises
+    ------
+    InputError
+        if the material has no such crystal
+    """
+    from ase.spacegroup import crystal as from_spacegroup
+
+    known = material.get("crystals", {})
+    if name not in known:
+        raise InputError(
+            f"elastic.crystals: {material['name']} has no crystal {name!r}; it has {', '.join(known) or 'none'}"
+        )
+    data = known[name]
+    symbols, sites = zip(
+        *((element, site) for element, places in data["sites"].items() for site in places), strict=True
+    )
+    atoms = from_spacegroup(
+        list(symbols),
+        list(sites),
+        spacegroup=data["spacegroup"],
+        setting=data.get("setting", 1),
+        cellpar=data["cell"],
+        primitive_cell=data.get("primitive", False),
+    )
+    atoms = atoms * tuple(data["supercell"])
+    atoms.wrap()
+    return Atoms(atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True)
+
+
+@dataclass(frozen=True)
+class Gate:
+    """Verdict on a structure: measured numbers and, if it failed, the reasons."""
+
+    density_g_cm3: float
+    coordination: dict[str, float]
+    shortest_A: dict[str, float]
+    bond_spread_A: float
+    reasons: tuple[str, ...]
+
+    @property
+    def passed(self) -> bool:
+        return not self.reasons
+
+
+def examine(atoms: Atoms, criteria: Mapping[str, Any]) -> Gate:
+    """Measure density, coordination and shortest distances and hold them against `criteria`.
+
+    Parameters
+    ----------
+    criteria : the `glass` section of a material file: `density_g_cm3` and `coordination` ranges, `shortest_A` per
+        pair of elements, `cutoff_A` of a bond between unlike elements, least `bond_spread_A` of a disordered cell
+    """
+    from ase.neighborlist import neighbor_list
+
+    density = float(atoms.get_masses().sum() / atoms.get_volume() * AMU_PER_A3_IN_G_CM3)
+    symbols = np.array(atoms.get_chemical_symbols())
+    first, second, distance = neighbor_list("ijd", atoms, 3.0)
+    unlike = symbols[first] != symbols[second]
+    bonds = unlike & (distance < criteria["cutoff_A"])
+    counts = np.bincount(first[bonds], minlength=len(atoms))
+    reasons = []
+    low, high = criteria["density_g_cm3"]
+    if not low <= density <= high:
+        reasons.append(f"density {density:.2f} outside {low} to {high} g/cm3")
+    coordination = {}
+    for element, (low, high) in criteria["coordination"].items():
+        coordination[element] = float(counts[symbols == element].mean()) if np.any(symbols == element) else 0.0
+        if not low <= coordination[element] <= high:
+            reasons.append(f"coordination of {element} {coordination[element]:.2f} outside {low} to {high}")
+    shortest = {}
+    for pair, limit in criteria["shortest_A"].items():
+        a, b = pair.split("-")
+        here = distance[(symbols[first] == a) & (symbols[second] == b)]
+        shortest[pair] = float(here.min()) if len(here) else 3.0
+        if shortest[pair] < limit:
+            reasons.append(f"{pair} distance {shortest[pair]:.2f} below {limit} A")
+    spread = float(distance[bonds].std()) if bonds.any() else 0.0
+    if spread < criteria["bond_spread_A"]:
+        reasons.append(f"bond lengths spread by {spread:.3f} A only: crystalline")
+    return Gate(density, coordination, shortest, spread, tuple(reasons))
+
+
+def tersoff_table(parameters: Mapping[str, Any]) -> str:
+    """Tersoff parameters in the format of LAMMPS (and ASE), one line per triplet.
+
+    A pair's own parameters come from the mixing rules of Tersoff, PRB 39, 5566 (1989); `chi` scales the
+    attraction of unlike (and, if given, like) pairs.  The cutoff of a triplet i j k is that of i–k.
+    """
+    elements = [name for name in parameters if isinstance(parameters[name], Mapping) and "A" in parameters[name]]
+    chi = {frozenset(pair.split("-")): value for pair, value in parameters["chi"].items()}
+    lines = ["# m gamma lambda3 c d costheta0 n beta lambda2 B R D lambda1 A"]
+    for i, j, k in product(elements, repeat=3):
+        p, q, r = parameters[i], parameters[j], parameters[k]
+        inner, outer = np.sqrt(p["R"] * r["R"]), np.sqrt(p["S"] * r["S"])
+        attraction = np.sqrt(p["B"] * q["B"]) * chi.get(frozenset((i, j)), 1.0)
+        numbers = [3, 1, 0, p["c"], p["d"], p["h"], p["n"], p["beta"], (p["mu"] + q["mu"]) / 2, attraction]
+        numbers += [(inner + outer) / 2, (outer - inner) / 2]
+        numbers += [(p["lambda"] + q["lambda"]) / 2, np.sqrt(p["A"] * q["A"])]
+        lines.append(" ".join([i, j, k, *(f"{float(x):.10g}" for x in numbers)]))
+    return "\n".join(lines) + "\n"
+
+
+def tersoff_calculator(parameters: Mapping[str, Any]):
+    """The same potential as an ASE calculator (slow, but in-process: Hessians, checks on crystals)."""
+    from ase.calculators.tersoff import Tersoff, TersoffParameters
+
+    table = {}
+    for line in tersoff_table(parameters).splitlines()[1:]:
+        i, j, k, *numbers = line.split()
+        table[(i, j, k)] = TersoffParameters(*map(float, numbers))
+    return Tersoff(table)
+
+
+def random_structure(formula: Mapping[str, int], units: int, density_g_cm3: float, seed: int) -> Atoms:
+    """Formula units at random in a cube of the given density, no two atoms closer than 1.4 Å."""
+    symbols = [element for element, n in formula.items() for _ in range(n * units)]
+    atoms = Atoms(symbols, pbc=True)
+    edge = (atoms.get_masses().sum() * AMU_PER_A3_IN_G_CM3 / density_g_cm3) ** (1 / 3)
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 5]))
+    placed = np.empty((len(symbols), 3))
+    for k in range(len(placed)):
+        while True:
+            trial = rng.uniform(0, edge, 3)
+            apart = placed[:k] - trial
+            apart -= edge * np.round(apart / edge)
+            if not np.any(np.einsum("ij,ij->i", apart, apart) < START_DISTANCE_A**2):
+                placed[k] = trial
+                break
+    atoms.set_cell([edge] * 3)
+    atoms.positions = placed
+    return atoms
+
+
+def make_glass(
+    material: Mapping[str, Any],
+    settings: NitrideGlassSettings,
+    seed: int,
+    work: Path,
+    progress: Callable[[float, str], None] | None = None,
+) -> tuple[Atoms, list[dict[str, Any]]]:
+    """Melt and quench until a cell passes the gates.
+
+    Parameters
+    ----------
+    seed : of the structure; attempt k uses an own stream of it
+    work : a directory for LAMMPS
+
+    Returns
+    -------
+    The first cell that passes, or the last one tried, and one row per attempt with its numbers and verdict.
+    """
+    attempts: list[dict[str, Any]] = []
+    for attempt in range(settings.attempts):
+        if progress:
+            progress(attempt / settings.attempts, f"melt and quench, attempt {attempt + 1}")
+        own = int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
+        atoms = quench(material, settings, own, work)
+        verdict = examine(atoms, material["glass"])
+        attempts.append(
+            {
+                "attempt": attempt,
+                "density_g_cm3": verdict.density_g_cm3,
+                **{f"coordination_{e}": n for e, n in verdict.coordination.items()},
+                **{f"shortest_{p}_A": d for p, d in verdict.shortest_A.items()},
+                "bond_spread_A": verdict.bond_spread_A,
+                "status": "accepted" if verdict.passed else "rejected: " + "; ".join(verdict.reasons),
+            }
+        )
+        if verdict.passed:
+            break
+    return atoms, attempts
+
+
+def quench(material: Mapping[str, Any], settings: NitrideGlassSettings, seed: int, work: Path) -> Atoms:
+    """One melt and quench at constant volume, then energy minimisation (LAMMPS, `protocols/nitride.in`)."""
+    from atomistic.lammps import Atoms as LammpsAtoms
+    from atomistic.lammps import Workspace, read_data, run_lammps, write_data
+
+    elements = tuple(material["formula"])
+    start = random_structure(
+        material["formula"], settings.formula_units, material["glass"]["start_density_g_cm3"], seed
+    )
+    symbols = start.get_chemical_symbols()
+    types = np.array([elements.index(symbol) + 1 for symbol in symbols])
+    identity = {"seed": seed, "settings": settings.model_dump(), "tersoff": material["tersoff"]}
+    workspace = Workspace(work, identity, "nitride.in")
+    (workspace / "potential.tersoff").write_text(tersoff_table(material["tersoff"]), encoding="utf-8")
+    write_data(
+        workspace / "start.data",
+        LammpsAtoms(elements, types, start.positions, np.diag(start.cell.array)),
+        material["masses_u"],
+    )
+    steps_per_ps = 1000 / settings.timestep_fs
+    span = settings.melt_temperature_K - settings.final_temperature_K
+    run_lammps(
+        "nitride.in",
+        workspace,
+        {
+            "elements": " ".join(elements),
+            "seed": seed,
+            "timestep": settings.timestep_fs / 1000,
+            "melt": settings.melt_temperature_K,
+            "final": settings.final_temperature_K,
+            "melt_steps": round(settings.melt_ps * steps_per_ps),
+            "quench_steps": round(span / settings.quench_rate_K_ps * steps_per_ps),
+        },
+    )
+    result = read_data(workspace / "glass.data", elements)
+    workspace.remove()
+    return Atoms(
+        [elements[t - 1] for t in result.types], positions=result.positions_A, cell=np.diag(result.cell_A), pbc=True
+    )
+
+

@@ -1,0 +1,75 @@
+"""Sparse polynomial chaos fitted to scattered runs (least angle regression by OpenTURNS)."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.uncertainty.surrogate import Surrogate, basis_matrix
+
+Array = NDArray[np.float64]
+
+
+def sparse_chaos(
+    x: Array, y: Array, ranges: Array, degree: int, transform: str = "identity", hyperbolic: float = 0.7
+) -> Surrogate:
+    """Sparse Legendre expansion of the mean of y over the randomness that x does not explain.
+
+    Parameters
+    ----------
+    x : inputs of the runs, shape (m, n); values outside `ranges` are clipped to them.
+    y : outputs, shape (m,); runs with NaN (and, for `log`, without positive value) are left out.
+    ranges : shape (n, 2).
+    degree : highest total degree; terms of many inputs are thinned by the hyperbolic norm.
+    transform : log fits ln y, then scales the surface so that its mean over the runs is theirs (it would be
+        too low by the scatter that x does not explain).
+
+    Raises
+    ------
+    ValueError : fewer usable runs than twice the inputs.
+    """
+    import openturns as ot
+
+    usable = np.isfinite(y) & ((y > 0) | (transform == "identity"))
+    inputs = x.shape[1]
+    if usable.sum() < 2 * inputs:
+        raise ValueError(
+            f"{int(usable.sum())} usable runs for {inputs} inputs; at least {2 * inputs} are needed"
+        )
+    blank = Surrogate(ranges, np.zeros((1, inputs), int), np.zeros(1))
+    u = np.clip(blank.scaled(x[usable]), -1.0, 1.0)
+    target = np.log(y[usable]) if transform == "log" else y[usable]
+    # scaled, because LARS stops at absolute tolerances
+    centre, width = target.mean(), target.std() or 1.0
+
+    enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(inputs, hyperbolic)
+    basis = ot.OrthogonalProductPolynomialFactory([ot.LegendreFactory()] * inputs, enumerate_terms)
+    size = min(enumerate_terms.getBasisSizeFromTotalDegree(degree), max(2, int(0.8 * usable.sum())))
+    selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
+    chaos = ot.FunctionalChaosAlgorithm(
+        ot.Sample(u),
+        ot.Sample(((target - centre) / width)[:, None]),
+        ot.JointDistribution([ot.Uniform(-1, 1)] * inputs),
+        ot.FixedStrategy(basis, size),
+        ot.LeastSquaresStrategy(selection),
+    )
+    chaos.run()
+    chosen = [int(k) for k in chaos.getResult().getIndices()]
+    degrees = np.array([list(enumerate_terms(k)) for k in chosen], int).reshape(-1, inputs)
+    if not (degrees.sum(axis=1) == 0).any():
+        degrees = np.vstack([np.zeros((1, inputs), int), degrees])
+    return refit(u, target, ranges, degrees, transform)
+
+
+def refit(u: Array, target: Array, ranges: Array, degrees: NDArray[np.int_], transform: str) -> Surrogate:
+    """Least-squares coefficients of given terms.
+
+    Parameters
+    ----------
+    u : points in [-1, 1]^n, shape (m, n).
+    target : y, or ln y for `log`.
+    """
+    matrix = basis_matrix(u, degrees)
+    coefficients = np.linalg.lstsq(matrix, target, rcond=None)[0]
+    if transform == "log":
+        shift = np.log(np.exp(target).mean() / np.exp(matrix @ coefficients).mean())
+        coefficients = coefficients + np.where(degrees.sum(axis=1) == 0, shift, 0.0)
+    return Surrogate(ranges, degrees, coefficients, transform)

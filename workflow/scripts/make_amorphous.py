@@ -1,0 +1,21 @@
+"""Melt and quench one amorphous cell.  In: material file.  Out: elastic/quenched/NAME.xyz (Å), NAME.csv (attempts)."""
+
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+from atomistic.settings import NitrideGlassSettings
+from atomistic.structures import make_glass
+from workflow.job import job
+from workflow.results import write_csv, write_text
+from workflow.structure_files import structure_text
+
+with job(snakemake) as run:
+    material = yaml.safe_load(Path(snakemake.input.material).read_text(encoding="utf-8"))
+    settings = NitrideGlassSettings(**snakemake.params.settings["glass"])
+    number = int(snakemake.wildcards.amorphous[1:])
+    seed = int(np.random.SeedSequence([settings.seed, number]).generate_state(1)[0])
+    atoms, attempts = make_glass(material, settings, seed, Path(snakemake.params.work), run.progress)
+    write_csv(snakemake.output.attempts, [{"structure": snakemake.wildcards.amorphous, **row} for row in attempts])
+    write_text(snakemake.output.structure, structure_text(atoms))

@@ -1,0 +1,30 @@
+"""E(V) of one structure.  In: elastic/structures/NAME.xyz.  Out: elastic/scans/NAME_XC_IONS.csv (Å3, eV)."""
+
+from dataclasses import asdict
+from pathlib import Path
+
+from atomistic.elastic import make_calculator, relax_ions, scan_volumes
+from atomistic.settings import DftSettings, RelaxationSettings
+from workflow.job import job
+from workflow.results import write_csv
+from workflow.structure_files import ScfStore, read_structure
+
+with job(snakemake) as run:
+    settings = snakemake.params.settings
+    relaxation = RelaxationSettings(**settings["relaxation"])
+    dft = DftSettings(**settings["dft"])
+    relaxed = snakemake.wildcards.ions == "relaxed"
+    if relaxed:
+        dft = relaxation.tight(dft)
+    store = ScfStore(Path(snakemake.params.store))
+    atoms = read_structure(snakemake.input.structure)
+    largest = atoms.cell.array * (1 + max(settings["strains"]))
+    calculator = make_calculator(dft, snakemake.wildcards.xc, largest, store)
+
+    def relax(trial):
+        relax_ions(trial, settings["relaxed_force_eV_A"], 4 * relaxation.max_steps)
+
+    points = scan_volumes(atoms, calculator, settings["strains"], relax if relaxed else None, run.progress)
+    name = {key: snakemake.wildcards[key] for key in ("structure", "xc", "ions")}
+    write_csv(snakemake.output.points, [{**name, "atoms": len(atoms), **asdict(point)} for point in points])
+    store.remove()
