@@ -467,12 +467,12 @@ class LawSettings(Settings):
     """Fit of the compact force-separation law (docs/law.md)."""
 
     contact_definition: Literal["first_contact", "force_fraction", "free_fit"] = Field(
-        "first_contact",
+        "force_fraction",
         description="what d_c is: where the first (on opening the last) asperity touches; where the "
         "repulsion reaches `force_fraction` of its maximum; or fitted to attraction and repulsion together",
     )
     force_fraction: float = Field(
-        0.01,
+        0.03,
         gt=0,
         lt=0.5,
         description="share of the largest repulsion that counts as contact",

@@ -88,8 +88,9 @@ def test_degeneracy_shifting_contact_moves_the_prefactor_by_the_exponential():
 def test_contact_is_the_separation_at_first_touch():
     separation, repulsive, _ = curve(points=371)
     step = separation[1] - separation[0]
-    assert contact_separation(separation, repulsive, LawSettings()) == pytest.approx(32.0, abs=step)
-    assert contact_separation(separation, repulsive, LawSettings(), 31.5) == 31.5
+    first = LawSettings(contact_definition="first_contact")
+    assert contact_separation(separation, repulsive, first) == pytest.approx(32.0, abs=step)
+    assert contact_separation(separation, repulsive, first, 31.5) == 31.5
 
 
 def test_contact_by_share_of_the_largest_force():
@@ -125,7 +126,7 @@ def test_no_contact_gives_no_numbers():
 
 
 def test_few_points_give_no_numbers_but_contact():
-    fit = fit_branch([8.0, 9.0, 10.0], [5.0, 1.0, 0.0], [-3.0, -2.0, -1.0], AREA, 0.215)
+    fit = fit_branch([8.0, 9.0, 10.0], [5.0, 1.0, 0.0], [-3.0, -2.0, -1.0], AREA, 0.215, 10.0)
     assert fit.status == "few_points"
     assert fit.d_c_nm == 10.0
     assert np.isnan([fit.C_r_GPa, fit.rho_r_nm]).all()

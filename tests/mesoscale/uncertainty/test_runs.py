@@ -39,7 +39,7 @@ def test_random_runs_can_be_cut_anywhere():
 def test_a_cycle_gives_eight_outputs():
     cycle = compute(CENTRE, 0, CONTACT)
     assert not isinstance(cycle, str)
-    outcome = fit_cycle(cycle, CENTRE["hamaker"], 1e6, LawSettings())
+    outcome = fit_cycle(cycle, CENTRE["hamaker"], 1e6, LawSettings(contact_definition="first_contact"))
     assert outcome.outputs.shape == (8,)
     assert outcome.closing.d_c_nm == pytest.approx(cycle.first_contact_nm)
     # a smooth closing: contact a few rms from the mean plane
