@@ -127,13 +127,13 @@ def run_cycle(
     approach = _approach(contact)
     closing = trace(contact, settings.force_steps, plastic, stop_force=force)
     last = closing.rows[-1]
-    if plastic and last.force > 0:
+    if contact.changed_sites > 0 and last.force > 0:
         contact.lift()
         departure = _approach(contact)
         path = trace(contact, settings.force_steps, False, last.force, stop_separation=last.separation)
         # the last row of the way down is the state in which closing ended
         opening = [last._replace(sweeps=0), *path.rows[-2::-1]]
-    else:
+    else:  # nothing flowed: the way back is the way there
         departure = approach
         opening = [row._replace(sweeps=0) for row in closing.rows[::-1]]
     return Cycle(
