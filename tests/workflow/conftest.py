@@ -77,6 +77,12 @@ class Workflow:
                 process.wait()
 
 
+@pytest.fixture(scope="session")
+def make_workflow():
+    """The class itself, for fixtures and tests that run several workflows."""
+    return Workflow
+
+
 @pytest.fixture
 def workflow_in(tmp_path):
     """A workflow with an empty folder for its results."""
