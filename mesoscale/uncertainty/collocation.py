@@ -85,7 +85,7 @@ def _interpolation(inputs: int, level: int) -> _Interpolation:
         for i, j in combinations(range(inputs), 2):
             degrees += [s * eye[i] + t * eye[j] for s, t in product((1, 2), repeat=2)]
     terms = np.array(degrees)
-    return _Interpolation(terms, np.linalg.inv(basis_matrix(nodes(inputs, level), terms)))
+    return _Interpolation(terms, np.asarray(np.linalg.inv(basis_matrix(nodes(inputs, level), terms)), float))
 
 
 def interpolating_surface(y: Array, ranges: Array, level: int, transform: str = "identity") -> Surrogate:

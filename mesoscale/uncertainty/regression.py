@@ -68,7 +68,7 @@ def refit(u: Array, target: Array, ranges: Array, degrees: NDArray[np.int_], tra
     target : y, or ln y for `log`.
     """
     matrix = basis_matrix(u, degrees)
-    coefficients = np.linalg.lstsq(matrix, target, rcond=None)[0]
+    coefficients = np.asarray(np.linalg.lstsq(matrix, target, rcond=None)[0], float)
     if transform == "log":
         shift = np.log(np.exp(target).mean() / np.exp(matrix @ coefficients).mean())
         coefficients = coefficients + np.where(degrees.sum(axis=1) == 0, shift, 0.0)
