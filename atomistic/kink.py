@@ -1,15 +1,15 @@
 """Change of slope in a stress curve, with its significance under correlated noise.
 
 The paper reads hardness off where the slope of contact stress against contact length drops.  A hinge fits
-noise as well, so a kink counts only if a smooth curve with noise of the same size and correlation would rarely
-gain as much from a hinge.
+noise as well, so a kink counts only if a smooth curve with noise of the same size and correlation would
+rarely gain as much from a hinge.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-SIGNIFICANCE = 0.05
+SIGNIFICANCE = 0.02
 SIMULATIONS = 400
 
 
@@ -37,8 +37,8 @@ def find_kink(x: np.ndarray, y: np.ndarray, min_points: int, seed: int = 0) -> K
     Notes
     -----
     Least squares over all hinge positions.  The null distribution of the gain over a straight line comes from
-    smooth elastic loading (`_smooth_loading`) with first-order autoregressive noise fitted to the residuals of the hinge, and so does the interval of y.
-    Required: slope before > 0, slope after < half of it, p < 0.05.
+    smooth elastic loading (`_smooth_loading`) with first-order autoregressive noise fitted to the residuals
+    of the hinge; so does the interval of y.  Required: slope before > 0, slope after < half of it, p < 0.02.
     """
     hinges = _hinge_positions(x, min_points)
     if len(hinges) == 0:
@@ -72,9 +72,9 @@ def find_kink(x: np.ndarray, y: np.ndarray, min_points: int, seed: int = 0) -> K
 
 
 def _smooth_loading(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """The elastic curve nearest to the data: offset + scale x^n, n from 0.7 to 1 (straight, as for a sphere)."""
+    """The elastic curve nearest to the data: offset + scale x^n, n from 0.6 to 1 (straight: a sphere)."""
     fits = []
-    for exponent in (0.7, 0.8, 0.9, 1.0):
+    for exponent in (0.6, 0.7, 0.8, 0.9, 1.0):
         design = np.column_stack([np.ones_like(x), np.sign(x) * np.abs(x) ** exponent])
         curve = design @ np.linalg.lstsq(design, y, rcond=None)[0]
         fits.append((float(np.sum((y - curve) ** 2)), exponent, curve))

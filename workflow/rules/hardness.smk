@@ -101,3 +101,67 @@ rule fit_hardness:
         settings={key: HARDNESS[key] for key in ("fit", "energy_scales")},
     script:
         "../scripts/fit_hardness.py"
+
+
+from atomistic.variations import VARIATIONS, smallest_run
+
+ACCURACY.append(f"{RESULTS}/accuracy/hardness.csv")
+STABILITY.append(f"{RESULTS}/stability/hardness.csv")
+SMALLEST = smallest_run(SCENE.hardness)
+
+
+rule vary_closing:
+    message:
+        "close asperity {wildcards.run} with {wildcards.variation}"
+    input:
+        potential=POTENTIAL,
+        glass=f"{RESULTS}/hardness/glass/{SMALLEST.seed}.data",
+    output:
+        curve=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.csv",
+        witness=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.witness.csv",
+        snapshots=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.snapshots.csv",
+        summary=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.json",
+    wildcard_constraints:
+        variation="|".join(VARIATIONS),
+    log:
+        f"{RESULTS}/logs/vary_closing_{{variation}}_{{run}}.log",
+    params:
+        settings=lambda wildcards: {
+            "material": HARDNESS["material"],
+            "area": HARDNESS["area"],
+            "closing": VARIATIONS[wildcards.variation].closing(SCENE.hardness).model_dump(),
+        },
+        asperity=SMALLEST.asperity.model_dump(),
+        work=f"{RESULTS}/work/vary_{{variation}}_{{run}}",
+    script:
+        "../scripts/run_closing.py"
+
+
+rule compare_closings:
+    message:
+        "compare the hardness of varied closing runs"
+    input:
+        summaries=[f"{RESULTS}/accuracy/hardness/{name}/{SMALLEST.name}.json" for name in VARIATIONS],
+    output:
+        table=f"{RESULTS}/accuracy/hardness.csv",
+    log:
+        f"{RESULTS}/logs/compare_closings.log",
+    params:
+        settings=HARDNESS,
+    script:
+        "../scripts/compare_closings.py"
+
+
+rule check_hardness_stability:
+    message:
+        "check the molecular dynamics in hard cases"
+    input:
+        potentials=[str(path) for path in sorted((CONFIG / "potentials").glob("*.yaml"))],
+    output:
+        table=f"{RESULTS}/stability/hardness.csv",
+    log:
+        f"{RESULTS}/logs/check_hardness_stability.log",
+    params:
+        work=f"{RESULTS}/work/stability_hardness",
+    script:
+        "../scripts/check_hardness_stability.py"

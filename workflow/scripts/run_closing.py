@@ -38,6 +38,7 @@ with job(snakemake) as run:
             **closing.summary,
             "wall_s": time.perf_counter() - started,
             "lammps_cpu_s": lammps.ru_utime + lammps.ru_stime,
+            "peak_rss_MB": lammps.ru_maxrss / 1024,
             "python_cpu_s": time.process_time() - cpu,
         },
         run.provenance,
