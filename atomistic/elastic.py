@@ -164,12 +164,16 @@ def model_hessian(atoms: Atoms, calculator: Calculator, floor_eV_A2: float = 3.0
 
 @dataclass(frozen=True)
 class Relaxation:
-    """What the relaxation of a glass did: ionic steps, largest force left, whether that met the goal, energy gained."""
+    """What the relaxation of a glass did: ionic steps, largest force left, whether that met the goal, energy gained.
+
+    `failure` says why a calculation failed; the ions are then those of the quenched glass.
+    """
 
     steps: int
     force_left_eV_A: float
     converged: bool
     energy_gained_eV: float
+    failure: str = ""
 
 
 def relax_glass(
@@ -183,11 +187,15 @@ def relax_glass(
     if settings.max_steps == 0:
         return current, Relaxation(0, float("nan"), False, 0.0)
     current.calc = calculator
-    before = current.get_potential_energy()
     if progress:
         progress(0.0, f"relaxing ions, at most {settings.max_steps} steps")
-    steps, left, converged = relax_ions(current, settings.force_eV_A, settings.max_steps)
-    gained = float(before - current.get_potential_energy())
+    try:
+        before = current.get_potential_energy()
+        steps, left, converged = relax_ions(current, settings.force_eV_A, settings.max_steps)
+        gained = float(before - current.get_potential_energy())
+    except CalculationFailed as error:
+        # the E(V) scan of this structure will meet the same trouble and name the strains; the others go on
+        return strained(atoms, 0.0), Relaxation(0, float("nan"), False, float("nan"), f"relaxation: {error}")
     return strained(current, 0.0), Relaxation(steps, left, converged, gained)
 
 

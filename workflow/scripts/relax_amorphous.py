@@ -28,7 +28,10 @@ with job(snakemake) as run:
         **{f"coordination_{element}": value for element, value in verdict.coordination.items()},
         "bond_spread_A": verdict.bond_spread_A,
         "relaxation": asdict(done),
-        "gate": {"passed": verdict.passed, "reasons": list(verdict.reasons)},
+        "gate": {
+            "passed": verdict.passed and not done.failure,
+            "reasons": [*verdict.reasons, *filter(None, [done.failure])],
+        },
     }
     write_text(snakemake.output.structure, structure_text(atoms))
     write_json(snakemake.output.report, report, run.provenance)
