@@ -1,0 +1,55 @@
+"""Crystals, the gates of a glass, and the Tersoff parameters checked on a crystal."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from atomistic.errors import InputError
+from atomistic.structures import crystal, examine, random_structure, tersoff_calculator, tersoff_table
+
+MATERIALS = Path(__file__).parents[2] / "config" / "materials"
+NITRIDE = yaml.safe_load((MATERIALS / "silicon_nitride.yaml").read_text(encoding="utf-8"))
+
+
+def test_beta_silicon_nitride_has_its_density_and_coordination_but_is_no_glass():
+    beta = crystal(NITRIDE, "beta")
+    verdict = examine(beta, NITRIDE["glass"])
+    assert len(beta) == 28
+    assert verdict.density_g_cm3 == pytest.approx(3.19, abs=0.01)
+    assert verdict.coordination == {"Si": 4.0, "N": 3.0}
+    assert any("crystalline" in reason for reason in verdict.reasons)
+
+
+def test_collapsed_and_exploded_cells_fail_the_gate():
+    beta = crystal(NITRIDE, "beta")
+    for scale in (0.7, 1.4):
+        cell = beta.copy()
+        cell.set_cell(beta.cell.array * scale, scale_atoms=True)
+        assert any("density" in reason for reason in examine(cell, NITRIDE["glass"]).reasons)
+
+
+def test_unknown_crystal_is_one_line():
+    with pytest.raises(InputError, match="no crystal 'gamma'"):
+        crystal(NITRIDE, "gamma")
+
+
+def test_tersoff_parameters_hold_beta_together_at_its_known_lattice_constants():
+    from ase.filters import FrechetCellFilter
+    from ase.optimize import BFGS
+
+    beta = crystal(NITRIDE, "beta")
+    beta.calc = tersoff_calculator(NITRIDE["tersoff"])
+    BFGS(FrechetCellFilter(beta), logfile=None).run(fmax=0.05, steps=60)
+    a, _, c = beta.cell.lengths()
+    assert a == pytest.approx(7.40, abs=0.02)  # of this potential; experiment 7.608
+    assert c / 2 == pytest.approx(2.94, abs=0.02)
+    assert len(tersoff_table(NITRIDE["tersoff"]).splitlines()) == 9
+
+
+def test_random_start_is_reproducible_and_not_overlapping():
+    a, b = (random_structure({"Si": 3, "N": 4}, 2, 3.1, 7) for _ in range(2))
+    assert np.array_equal(a.positions, b.positions)
+    distances = a.get_all_distances(mic=True)[np.triu_indices(len(a), 1)]
+    assert distances.min() >= 1.4
