@@ -24,7 +24,7 @@ def answer(results: Results) -> dict[str, Any]:
         samples = results.csv("uq/samples.csv")
         content["table"] = _law_table(rows, samples)
         content["cards"] += _law_cards(rows)
-    if results.has("uq/sensitivity.csv"):
+    if results.has("uq/sensitivity.csv") and ranking(results.csv("uq/sensitivity.csv"), "d_c_nm"):
         content["cards"].append(_cause_card(results.csv("uq/sensitivity.csv")))
     if results.has("device/switch.json"):
         content["cards"].append(_switch_card(results.json("device/switch.json")))
