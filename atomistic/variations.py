@@ -36,14 +36,12 @@ VARIATIONS = {
     variation.name: variation
     for variation in (
         Variation(DEFAULT, "", 1),
-        Variation("speed_half", "speed_m_s", 0.5),
         Variation("speed_double", "speed_m_s", 2),
         Variation("speed_fourfold", "speed_m_s", 4),
         Variation("timestep_half", "timestep_fs", 0.5),
         Variation("wall_stiffness_fourfold", "wall_stiffness_eV_A3", 4),
         Variation("temperature_tenth", "temperature_K", 0.1),
         Variation("base_larger", "base_nm", 1.5),
-        Variation("anneal_longer", "anneal_ps", 3),
     )
 }
 
