@@ -96,11 +96,11 @@ def _uncertainty(root: Path) -> None:
                 "mean": value,
                 "dev": abs(value) / 2,
                 "centre": value,
-                "q05": value / 2,
+                "surface_q05": value / 2,
             }
             | {
-                "q50": value,
-                "q95": 2 * value,
+                "surface_q50": value,
+                "surface_q95": 2 * value,
                 "paper_mean": value,
                 "paper_dev": abs(value) / 3,
                 "seed_share": 0.1,
