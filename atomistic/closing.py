@@ -220,9 +220,7 @@ def _curve(
     def areas(depth_A: float) -> np.ndarray:
         return np.array(
             [
-                contact_area(
-                    near[step][near[step][:, 4] > -depth_A, 2:4], cell, area.disc_A, area.grid_A, peak
-                )
+                contact_area(near[step][near[step][:, 4] > -depth_A, 2:4], cell, area.disc_A, area.grid_A, peak)
                 for step in steps
             ]
         )
@@ -254,9 +252,7 @@ def _curve(
                 "contact_stress_GPa": push / contact * EV_A3_GPA if contact > 0 else float("nan"),
                 "temperature_K": float(np.mean(temperature[part])),
                 "energy_drift_meV_per_atom": 1000 * float(np.mean(gained[part])) / atoms,
-                "contact_atoms": float(
-                    np.mean([np.sum(near[step][:, 4] > -area.depth_A) for step in steps[part]])
-                ),
+                "contact_atoms": float(np.mean([np.sum(near[step][:, 4] > -area.depth_A) for step in steps[part]])),
                 "atoms": atoms,
                 **{
                     f"contact_area_nm2_depth_{depth:g}A": float(np.mean(values[part])) / 100
@@ -290,8 +286,7 @@ def _witness(
     kinds = [elements.index(ion) + 1 for ion in cations(material, potential)]
     cutoff = REFERENCES[material].cutoff_A
     bonds = [
-        (_bonds(frame, kinds, NEAR * cutoff, cell_A), _bonds(frame, kinds, FAR * cutoff, cell_A))
-        for _, frame in frames
+        (_bonds(frame, kinds, NEAR * cutoff, cell_A), _bonds(frame, kinds, FAR * cutoff, cell_A)) for _, frame in frames
     ]
     top = _mean_top(frames[0][1])
     rows = []

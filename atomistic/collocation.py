@@ -69,9 +69,7 @@ def atom_orbitals(cell: "Cell", precision: float | None = None) -> list[AtomOrbi
         for shell in shells:
             l = cell.bas_angular(shell)
             if l > 2:
-                raise NotImplementedError(
-                    f"angular momentum {l} of {cell.atom_symbol(atom)}; s, p and d are supported"
-                )
+                raise NotImplementedError(f"angular momentum {l} of {cell.atom_symbol(atom)}; s, p and d are supported")
             where = np.searchsorted(exponents, cell.bas_exp(shell))
             for k, column in enumerate(cell._libcint_ctr_coeff(shell).T):
                 row = np.zeros(len(exponents))
@@ -86,9 +84,7 @@ def atom_orbitals(cell: "Cell", precision: float | None = None) -> list[AtomOrbi
         large = np.nonzero(size > precision)[0]
         radius = float(radii[min(large[-1] + 1, len(radii) - 1)]) if len(large) else 0.5
         atoms.append(
-            AtomOrbitals(
-                coordinates[atom], exponents, np.array(angular), contraction, np.array(first), radius
-            )
+            AtomOrbitals(coordinates[atom], exponents, np.array(angular), contraction, np.array(first), radius)
         )
     return atoms
 
@@ -118,9 +114,7 @@ def pulay_force(
         atom.first - atom.first.min(),
         atom.radius,
     )
-    return _contract_gradient(
-        potential_density, lattice, np.array(mesh), *_arguments(relative, lattice, mesh)
-    )
+    return _contract_gradient(potential_density, lattice, np.array(mesh), *_arguments(relative, lattice, mesh))
 
 
 def _arguments(atom: AtomOrbitals, lattice: np.ndarray, mesh: tuple[int, int, int]):
@@ -270,9 +264,7 @@ def _harmonic_times(out, l, m, x, y, z, f, n):
 
 
 @numba.njit(cache=True, fastmath={"contract", "reassoc"}, error_model="numpy")
-def _contract_gradient(
-    field, lattice, mesh, centre, exponents, angular, contraction, first, radius, low, high
-):
+def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contraction, first, radius, low, high):
     n_radial, n_primitives = contraction.shape
     longest = high[2] - low[2] + 2
     gaussians = np.empty((n_primitives, longest))
@@ -329,12 +321,8 @@ def _contract_gradient(
                             + D1 * (2.0 * z[k] * z[k] - x[k] * x[k] - y[k] * y[k]) * a2[k]
                             + D2 * (x[k] * x[k] - y[k] * y[k]) * a4[k]
                         )
-                        gx += f[k] * (
-                            D0 * (y[k] * a0[k] + z[k] * a3[k]) + 2.0 * x[k] * (D2 * a4[k] - D1 * a2[k])
-                        )
-                        gy += f[k] * (
-                            D0 * (x[k] * a0[k] + z[k] * a1[k]) - 2.0 * y[k] * (D2 * a4[k] + D1 * a2[k])
-                        )
+                        gx += f[k] * (D0 * (y[k] * a0[k] + z[k] * a3[k]) + 2.0 * x[k] * (D2 * a4[k] - D1 * a2[k]))
+                        gy += f[k] * (D0 * (x[k] * a0[k] + z[k] * a1[k]) - 2.0 * y[k] * (D2 * a4[k] + D1 * a2[k]))
                         gz += f[k] * (D0 * (y[k] * a1[k] + x[k] * a3[k]) + 4.0 * D1 * z[k] * a2[k])
             for k in range(n):
                 gx += along[k] * x[k]

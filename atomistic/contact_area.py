@@ -27,10 +27,7 @@ def contact_area(
     centre_A : middle of the contact; the grid is rolled so that the contact does not wrap around, where holes
         would stay open.
     """
-    return (
-        float(np.sum(contact_map(touching_A, cell_A, disc_A, grid_A, centre_A)))
-        * _spacing(cell_A, grid_A).prod()
-    )
+    return float(np.sum(contact_map(touching_A, cell_A, disc_A, grid_A, centre_A))) * _spacing(cell_A, grid_A).prod()
 
 
 def contact_map(
@@ -47,9 +44,7 @@ def contact_map(
     if len(touching_A) == 0:
         return marked
     reach = np.ceil(disc_A / spacing).astype(int)
-    offset = np.stack(np.meshgrid(*(np.arange(-r, r + 1) for r in reach), indexing="ij"), axis=-1).reshape(
-        -1, 2
-    )
+    offset = np.stack(np.meshgrid(*(np.arange(-r, r + 1) for r in reach), indexing="ij"), axis=-1).reshape(-1, 2)
     shifted = touching_A - np.asarray(centre_A) + np.asarray(cell_A) / 2
     nearest = np.floor(shifted / spacing).astype(int)
     cells = nearest[:, None, :] + offset[None]

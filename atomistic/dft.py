@@ -139,9 +139,7 @@ class PyscfGamma(Calculator):
         mf.conv_tol = p.tolerance_Ha
         mf.conv_tol_grad = 10 * np.sqrt(p.tolerance_Ha)
         mf.max_cycle = p.max_cycles
-        mf.conv_check = (
-            False  # the extra cycle after convergence would change the energy by less than the tolerance
-        )
+        mf.conv_check = False  # the extra cycle after convergence would change the energy by less than the tolerance
         if p.numerics == "cached-grid":
             from atomistic.gamma_scf import CachedGrid
 
@@ -151,10 +149,8 @@ class PyscfGamma(Calculator):
         else:
             # PySCF would build all four-index integrals if they fitted into memory (minutes): keep to FFTs
             fft = mf.with_df.get_jk
-            mf.get_jk = (
-                lambda cell=None, dm=None, hermi=1, kpt=None, kpts_band=None, with_j=True, with_k=False, **_: (
-                    fft(dm, hermi, kpt, kpts_band, with_j, False)
-                )
+            mf.get_jk = lambda cell=None, dm=None, hermi=1, kpt=None, kpts_band=None, with_j=True, with_k=False, **_: (
+                fft(dm, hermi, kpt, kpts_band, with_j, False)
             )
         energy = mf.kernel(self._guess(mf))
         converged = bool(mf.converged) and bool(np.isfinite(energy))

@@ -15,18 +15,27 @@ import numpy as np
 from ase import Atoms
 from ase.calculators.calculator import CalculationFailed, Calculator
 
-from atomistic.equation_of_state import MIN_POINTS, fit_equation_of_state
 from atomistic.dft import PyscfGamma, Store, commensurate_mesh
+from atomistic.equation_of_state import MIN_POINTS, fit_equation_of_state
 from atomistic.errors import InputError
 from atomistic.settings import DftSettings, ElasticSettings, RelaxationSettings
 
 Progress = Callable[[float, str], None]
 ENGINES_OF_ASE = ("espresso", "vasp", "abinit", "cp2k", "gpaw", "siesta")
-FORBIDDEN_PARAMETERS = ("command", "profile", "binary", "executable")  # a scene must not be able to start programs
+FORBIDDEN_PARAMETERS = (
+    "command",
+    "profile",
+    "binary",
+    "executable",
+)  # a scene must not be able to start programs
 
 
 def make_calculator(
-    dft: DftSettings, xc: str, largest_cell: np.ndarray | None = None, store: Store | None = None, cutoff_Ha=None
+    dft: DftSettings,
+    xc: str,
+    largest_cell: np.ndarray | None = None,
+    store: Store | None = None,
+    cutoff_Ha=None,
 ) -> Calculator:
     """The DFT engine of the settings.
 
@@ -115,9 +124,7 @@ def scan_volumes(
             energy = float(trial.get_potential_energy())
         except (CalculationFailed, NotImplementedError, np.linalg.LinAlgError, FloatingPointError) as error:
             converged, detail = False, f"strain {strain:+.3f}: {error}"
-        points.append(
-            Point(strain, float(trial.get_volume()), energy, converged, time.perf_counter() - start, detail)
-        )
+        points.append(Point(strain, float(trial.get_volume()), energy, converged, time.perf_counter() - start, detail))
     return sorted(points, key=lambda point: point.strain)
 
 
@@ -210,7 +217,13 @@ def fit_scan(scan: Sequence[Mapping[str, str]]) -> dict[str, Any]:
     empty = ("B_GPa", "B_prime", "V0_A3", "B_vinet_GPa", "residual_meV")
     if len(good) < MIN_POINTS:
         flags = [f"{len(good)} of {len(scan)} strains converged, {MIN_POINTS} are needed", *failed]
-        return {**result, **dict.fromkeys(empty), "points": len(good), "flags": "; ".join(flags), "failed": ""}
+        return {
+            **result,
+            **dict.fromkeys(empty),
+            "points": len(good),
+            "flags": "; ".join(flags),
+            "failed": "",
+        }
     fit = fit_equation_of_state([float(r["volume_A3"]) for r in good], [float(r["energy_eV"]) for r in good])
     return {
         **result,
@@ -258,11 +271,20 @@ def functional_shift(moduli: Sequence[Modulus], ions: str) -> dict[str, Any]:
     mean = float(differences.mean())
     std = float(differences.std(ddof=1)) if n > 1 else float("nan")
     half = float(t.ppf(0.975, n - 1) * std / np.sqrt(n)) if n > 1 else float("nan")
-    return {"mean_GPa": mean, "std_GPa": std, "interval_95_GPa": [mean - half, mean + half], "structures": both}
+    return {
+        "mean_GPa": mean,
+        "std_GPa": std,
+        "interval_95_GPa": [mean - half, mean + half],
+        "structures": both,
+    }
 
 
 def variance_shares(
-    B_GPa: Sequence[float], shift_GPa: float, nu: tuple[float, float], other_E: tuple[float, float], other_nu: float
+    B_GPa: Sequence[float],
+    shift_GPa: float,
+    nu: tuple[float, float],
+    other_E: tuple[float, float],
+    other_nu: float,
 ) -> dict[str, Any]:
     """Mean, standard deviation and first-order and total shares of the variance of E*, without sampling error.
 
@@ -278,7 +300,12 @@ def variance_shares(
         0.5 * (nu[0] + nu[1]) + 0.5 * (nu[1] - nu[0]) * nodes_nu,
         other_E[0] + other_E[1] * nodes_E,
     ]
-    weights = [np.full(len(values[0]), 1 / len(values[0])), np.full(2, 0.5), weights_nu / 2, weights_E / weights_E.sum()]
+    weights = [
+        np.full(len(values[0]), 1 / len(values[0])),
+        np.full(2, 0.5),
+        weights_nu / 2,
+        weights_E / weights_E.sum(),
+    ]
     B, f, n, E = np.meshgrid(*values, indexing="ij")
     grid = plane_strain_modulus(B + f, n, E, other_nu)
     weight = np.einsum("i,j,k,l->ijkl", *weights)
@@ -342,13 +369,27 @@ def effective_modulus(
         },
         "relaxed_over_clamped": _ratio(moduli),
         "LDA_minus_GGA": shift,
-        "poisson_ratio": {"distribution": "uniform", "a": settings.poisson_ratio[0], "b": settings.poisson_ratio[1]},
-        "counter_body": {"name": counter_body["name"], "E_GPa": other_E[0], "E_std_GPa": other_E[1], "nu": other_nu},
+        "poisson_ratio": {
+            "distribution": "uniform",
+            "a": settings.poisson_ratio[0],
+            "b": settings.poisson_ratio[1],
+        },
+        "counter_body": {
+            "name": counter_body["name"],
+            "E_GPa": other_E[0],
+            "E_std_GPa": other_E[1],
+            "nu": other_nu,
+        },
         "paper": PAPER,
     }
     nan = float("nan")
     if not used:
-        summary |= {"mean_GPa": nan, "std_GPa": nan, "inputs": {}, "gate": {"passed": False, "reasons": reasons}}
+        summary |= {
+            "mean_GPa": nan,
+            "std_GPa": nan,
+            "inputs": {},
+            "gate": {"passed": False, "reasons": reasons},
+        }
         return summary, {name: np.empty(0) for name in ("e_star_GPa", "B_GPa", "nu", "counter_E_GPa", "xc")}
     delta = shift["mean_GPa"] if shift["structures"] else 0.0
     B = np.array([m.B_GPa for m in used])
@@ -363,9 +404,7 @@ def effective_modulus(
     quantiles = (0.025, 0.16, 0.5, 0.84, 0.975)
     summary["quantiles_GPa"] = dict(zip(map(str, quantiles), np.quantile(e_star, quantiles).tolist(), strict=True))
     summary["standard_error_of_mean_GPa"] = _standard_error(B, delta, settings, other_E, other_nu)
-    summary["inputs"] = {
-        "e_star": {"distribution": "normal", "a": summary["mean_GPa"], "b": summary["std_GPa"]}
-    }
+    summary["inputs"] = {"e_star": {"distribution": "normal", "a": summary["mean_GPa"], "b": summary["std_GPa"]}}
     summary["gate"] = {"passed": not reasons, "reasons": reasons}
     return summary, {"e_star_GPa": e_star, "B_GPa": B_samples, "nu": nu, "counter_E_GPa": E, "xc": lda}
 

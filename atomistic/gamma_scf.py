@@ -64,9 +64,7 @@ class CachedGrid(MultiGridNumInt2):
 
     # -- Fourier helpers: half spectrum of real fields
     def _to_grid(self, spectrum: np.ndarray) -> np.ndarray:
-        return scipy.fft.irfftn(spectrum, s=tuple(self.mesh), axes=(-3, -2, -1)).reshape(
-            *spectrum.shape[:-3], -1
-        )
+        return scipy.fft.irfftn(spectrum, s=tuple(self.mesh), axes=(-3, -2, -1)).reshape(*spectrum.shape[:-3], -1)
 
     def _spectrum(self, field: np.ndarray) -> np.ndarray:
         return scipy.fft.rfftn(field.reshape(*field.shape[:-1], *self.mesh), axes=(-3, -2, -1))
@@ -210,9 +208,7 @@ class CachedGrid(MultiGridNumInt2):
             a, b = slices[atom, 2:]
             gradient[atom] += 2 * np.einsum("xuv,uv->x", kinetic[:, a:b], np.asarray(dm)[a:b])
             gradient[atom] -= 2 * np.einsum("xuv,uv->x", overlap[:, a:b], energy_weighted[a:b])
-            gradient[atom] -= 2 * pulay_force(
-                self.atoms[atom], self.lattice, tuple(self.mesh), factor[a:b] @ waves
-            )
+            gradient[atom] -= 2 * pulay_force(self.atoms[atom], self.lattice, tuple(self.mesh), factor[a:b] @ waves)
             form = self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
             product = (form * spectrum.conj()).imag * twice
             gradient[atom] += np.einsum("xijk,ijk->x", self.wave_vectors[1], product) / self.points
@@ -231,9 +227,7 @@ def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
     radius, n, c = pseudo[1:4]
     c = list(c[:n]) + [0.0] * (4 - n)
     x2 = g2 * radius**2
-    polynomial = (
-        c[0] + c[1] * (3 - x2) + c[2] * (15 - 10 * x2 + x2**2) + c[3] * (105 - 105 * x2 + 21 * x2**2 - x2**3)
-    )
+    polynomial = c[0] + c[1] * (3 - x2) + c[2] * (15 - 10 * x2 + x2**2) + c[3] * (105 - 105 * x2 + 21 * x2**2 - x2**3)
     gauss = np.exp(-0.5 * x2)
     coulomb = np.divide(
         -4 * np.pi * charge * gauss, g2, out=np.full_like(g2, 2 * np.pi * charge * radius**2), where=g2 > 0

@@ -58,9 +58,7 @@ def random_start(material: str, potential: Potential, settings: GlassSettings, s
     units = max(1, round(settings.atoms / sum(formula.values())))
     elements = tuple(formula)
     counts = [units * count for count in formula.values()]
-    mass_g = (
-        sum(n * potential.species[ion].mass_u for n, ion in zip(counts, elements, strict=True)) / AVOGADRO
-    )
+    mass_g = sum(n * potential.species[ion].mass_u for n, ion in zip(counts, elements, strict=True)) / AVOGADRO
     length = (mass_g / REFERENCES[material].density_g_cm3 * 1e24) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 1]))
     placed = np.empty((sum(counts), 3))
@@ -83,9 +81,7 @@ def _formula(material: str, potential: Potential) -> Mapping[str, int]:
             "choose another potential or material"
         )
     if material not in REFERENCES:
-        raise InputError(
-            f"material {material}: no reference values of its glass; known are {', '.join(REFERENCES)}"
-        )
+        raise InputError(f"material {material}: no reference values of its glass; known are {', '.join(REFERENCES)}")
     return potential.materials[material]
 
 
@@ -168,8 +164,7 @@ def schedule(settings: GlassSettings) -> list[dict]:
         {"ensemble": "nvt", "from": melt, "to": melt, "steps": steps(0.7 * settings.melt_ps)},
     ]
     segments += [
-        {"ensemble": "npt", "from": high, "to": low, "steps": steps(quench_ps / parts)}
-        for high, low in pairwise(ramp)
+        {"ensemble": "npt", "from": high, "to": low, "steps": steps(quench_ps / parts)} for high, low in pairwise(ramp)
     ]
     return [*segments, {"ensemble": "npt", "from": end, "to": end, "steps": steps(settings.rest_ps)}]
 

@@ -107,9 +107,7 @@ def find_hardness(
     facts |= {
         "onset_displacement_nm": onset,
         "onset_length_nm": float(np.interp(onset, travel, length)),
-        "exchanges_after": float(
-            np.mean([row["new_exchanges"] for row in witness if row["displacement_nm"] >= onset])
-        ),
+        "exchanges_after": float(np.mean([row["new_exchanges"] for row in witness if row["displacement_nm"] >= onset])),
         "lowering_nm": float(last["lowering_nm"]),
     }
     if np.sum(beyond) < settings.min_points:
@@ -143,9 +141,7 @@ def _first_stretch(mask: np.ndarray) -> np.ndarray:
     return np.isin(np.arange(len(mask)), np.arange(start, end))
 
 
-def _kink(
-    length: np.ndarray, stress: np.ndarray, fraction: np.ndarray, settings: YieldSettings
-) -> dict[str, float]:
+def _kink(length: np.ndarray, stress: np.ndarray, fraction: np.ndarray, settings: YieldSettings) -> dict[str, float]:
     """The paper's change of slope, in the window of lengths in which stress is judged."""
     use = np.isfinite(stress) & (length >= settings.min_length_nm) & (fraction <= settings.max_area_fraction)
     kink = find_kink(length[use], stress[use], settings.min_points)

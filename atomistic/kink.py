@@ -62,13 +62,10 @@ def find_kink(x: np.ndarray, y: np.ndarray, min_points: int, seed: int = 0) -> K
     again = designs[k] @ np.array([offset, before, change])
     best_again, _ = _best(again[:, None] + noise, bases, line)
     heights = [
-        np.linalg.lstsq(designs[m], again + noise[:, j], rcond=None)[0][0]
-        for j, m in enumerate(best_again.tolist())
+        np.linalg.lstsq(designs[m], again + noise[:, j], rcond=None)[0][0] for j, m in enumerate(best_again.tolist())
     ]
     low, high = np.quantile(heights, [0.16, 0.84])
-    return Kink(
-        float(hinges[k]), float(offset), float(low), float(high), float(before), float(after), p_value
-    )
+    return Kink(float(hinges[k]), float(offset), float(low), float(high), float(before), float(after), p_value)
 
 
 def _smooth_loading(x: np.ndarray, y: np.ndarray) -> np.ndarray:

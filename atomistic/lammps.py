@@ -56,17 +56,13 @@ def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) ->
         f"{len(atoms.elements)} atom types",
         "",
     ]
-    lines += [
-        f"0 {length!r} {axis}lo {axis}hi" for axis, length in zip("xyz", atoms.cell_A.tolist(), strict=True)
-    ]
+    lines += [f"0 {length!r} {axis}lo {axis}hi" for axis, length in zip("xyz", atoms.cell_A.tolist(), strict=True)]
     lines += ["", "Masses", ""]
     lines += [f"{k} {masses_u[element]} # {element}" for k, element in enumerate(atoms.elements, 1)]
     lines += ["", "Atoms # atomic", ""]
     lines += [
         f"{k} {kind} {x!r} {y!r} {z!r}"
-        for k, (kind, (x, y, z)) in enumerate(
-            zip(atoms.types.tolist(), atoms.positions_A.tolist(), strict=True), 1
-        )
+        for k, (kind, (x, y, z)) in enumerate(zip(atoms.types.tolist(), atoms.positions_A.tolist(), strict=True), 1)
     ]
     if atoms.velocities_A_ps is not None:
         lines += ["", "Velocities", ""]
@@ -89,11 +85,7 @@ def read_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
         elif fields:
             sections[title].append(fields)
     low, high = np.array(
-        [
-            [float(fields[0]), float(fields[1])]
-            for fields in sections[""]
-            if fields[-1] in ("xhi", "yhi", "zhi")
-        ]
+        [[float(fields[0]), float(fields[1])] for fields in sections[""] if fields[-1] in ("xhi", "yhi", "zhi")]
     ).T
     table = np.array([[float(value) for value in fields[:5]] for fields in sections["Atoms"]])
     order = np.argsort(table[:, 0])
@@ -139,9 +131,7 @@ class Workspace:
 
     def __init__(self, path: str | Path, identity: Mapping[str, object], script: str) -> None:
         self.path = Path(path)
-        text = json.dumps(identity, sort_keys=True, default=str) + (PROTOCOLS / script).read_text(
-            encoding="utf-8"
-        )
+        text = json.dumps(identity, sort_keys=True, default=str) + (PROTOCOLS / script).read_text(encoding="utf-8")
         fingerprint = hashlib.sha256(text.encode()).hexdigest()
         mark = self.path / "fingerprint"
         if not mark.exists() or mark.read_text(encoding="utf-8") != fingerprint:

@@ -74,9 +74,7 @@ class Pair(Settings):
     """All short-range terms between two species."""
 
     species: tuple[str, str]
-    terms: tuple[Annotated[Morse | Power | Buckingham, Field(discriminator="term")], ...] = Field(
-        min_length=1
-    )
+    terms: tuple[Annotated[Morse | Power | Buckingham, Field(discriminator="term")], ...] = Field(min_length=1)
 
 
 class Species(_Sourced):
@@ -160,9 +158,7 @@ class Potential(Settings):
             energy, force = self.energy_and_force(first, second, r)
             lines.write(f"\n{first}_{second}\n")
             lines.write(f"N {TABLE_POINTS} RSQ {TABLE_START_A} {self.cutoff_A}\n\n")
-            rows = np.column_stack(
-                [np.arange(1, TABLE_POINTS + 1), r, energy_scale * energy, energy_scale * force]
-            )
+            rows = np.column_stack([np.arange(1, TABLE_POINTS + 1), r, energy_scale * energy, energy_scale * force])
             np.savetxt(lines, rows, fmt="%d %.12g %.12g %.12g")
         return lines.getvalue()
 
@@ -220,9 +216,7 @@ def _check(path: Path, potential: Potential) -> None:
             raise InputError(f"{path}: material {name} names a species that is not listed under `species`")
         charge = sum(count * potential.species[ion].charge_e for ion, count in formula.items())
         if abs(charge) > 1e-9:
-            raise InputError(
-                f"{path}: material {name} has charge {charge:+g} e per formula unit; it must be neutral"
-            )
+            raise InputError(f"{path}: material {name} has charge {charge:+g} e per formula unit; it must be neutral")
     r = np.linspace(TABLE_START_A, CORE_RADIUS_A, 200)
     for first, second in combinations_with_replacement(potential.species, 2):
         _, force = potential.energy_and_force(first, second, r)

@@ -25,9 +25,7 @@ class ClosingRun:
 def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
     """Every asperity x seed x energy scale of the settings."""
     return [
-        ClosingRun(
-            f"{asperity.name}_seed{seed}_{SCALE_NAMES.get(scale, f'x{scale:g}')}", asperity, seed, scale
-        )
+        ClosingRun(f"{asperity.name}_seed{seed}_{SCALE_NAMES.get(scale, f'x{scale:g}')}", asperity, seed, scale)
         for asperity in settings.asperities
         for seed in settings.seeds
         for scale in settings.energy_scales

@@ -15,26 +15,24 @@ class GlassSettings(Settings):
     """Melt and quench of a periodic glass cell."""
 
     atoms: int = Field(
-        690, ge=100, le=2_000_000, description="atoms of the cell, about", json_schema_extra={"unit": "1"}
+        default=690, ge=100, le=2_000_000, description="atoms of the cell, about", json_schema_extra={"unit": "1"}
     )
     melt_temperature_K: float = Field(
-        4000, ge=1500, le=12000, description="temperature of the melt", json_schema_extra={"unit": "K"}
+        default=4000, ge=1500, le=12000, description="temperature of the melt", json_schema_extra={"unit": "K"}
     )
-    melt_ps: float = Field(
-        8, gt=0, le=10_000, description="time in the melt", json_schema_extra={"unit": "ps"}
-    )
+    melt_ps: float = Field(default=8, gt=0, le=10_000, description="time in the melt", json_schema_extra={"unit": "ps"})
     quench_rate_K_ps: float = Field(
-        50, gt=0, le=2000, description="cooling rate at zero pressure", json_schema_extra={"unit": "K/ps"}
+        default=50, gt=0, le=2000, description="cooling rate at zero pressure", json_schema_extra={"unit": "K/ps"}
     )
     final_temperature_K: float = Field(
-        300, ge=10, le=1000, description="temperature of the glass", json_schema_extra={"unit": "K"}
+        default=300, ge=10, le=1000, description="temperature of the glass", json_schema_extra={"unit": "K"}
     )
     rest_ps: float = Field(
-        4, gt=0, le=10_000, description="rest after the quench", json_schema_extra={"unit": "ps"}
+        default=4, gt=0, le=10_000, description="rest after the quench", json_schema_extra={"unit": "ps"}
     )
-    timestep_fs: float = Field(2, ge=0.1, le=4, description="time step", json_schema_extra={"unit": "fs"})
+    timestep_fs: float = Field(default=2, ge=0.1, le=4, description="time step", json_schema_extra={"unit": "fs"})
     segment_steps: int = Field(
-        5000,
+        default=5000,
         ge=100,
         le=1_000_000,
         description="a killed quench loses at most this many steps",
@@ -59,104 +57,100 @@ class ClosingSettings(Settings):
     """Closing of an asperity against a flat."""
 
     protocol: Literal["flat"] = Field(
-        "flat", description="flat: rigid, frictionless, repulsive plane that moves at constant speed"
+        default="flat", description="flat: rigid, frictionless, repulsive plane that moves at constant speed"
     )
-    speed_m_s: float = Field(
-        50, gt=0, le=1000, description="closing speed", json_schema_extra={"unit": "m/s"}
-    )
-    timestep_fs: float = Field(2, ge=0.1, le=4, description="time step", json_schema_extra={"unit": "fs"})
-    temperature_K: float = Field(
-        300, ge=1, le=1500, description="temperature", json_schema_extra={"unit": "K"}
-    )
+    speed_m_s: float = Field(default=50, gt=0, le=1000, description="closing speed", json_schema_extra={"unit": "m/s"})
+    timestep_fs: float = Field(default=2, ge=0.1, le=4, description="time step", json_schema_extra={"unit": "fs"})
+    temperature_K: float = Field(default=300, ge=1, le=1500, description="temperature", json_schema_extra={"unit": "K"})
     anneal_temperature_K: float = Field(
-        1000,
+        default=1000,
         ge=1,
         le=3000,
         description="temperature at which the cut surface is annealed (times the energy scale)",
         json_schema_extra={"unit": "K"},
     )
     anneal_ps: float = Field(
-        5,
+        default=5,
         gt=0,
         le=10_000,
         description="time of the anneal and again of the cooling",
         json_schema_extra={"unit": "ps"},
     )
     base_nm: float = Field(
-        2.6,
+        default=2.6,
         ge=1,
         le=100,
         description="thickness from the frozen bottom to the mean height",
         json_schema_extra={"unit": "nm"},
     )
     frozen_nm: float = Field(
-        0.5, gt=0, le=10, description="thickness of the frozen bottom", json_schema_extra={"unit": "nm"}
+        default=0.5, gt=0, le=10, description="thickness of the frozen bottom", json_schema_extra={"unit": "nm"}
     )
     thermostat_nm: float = Field(
-        0.7,
+        default=0.7,
         gt=0,
         le=10,
         description="thickness of the thermostat layer above it",
         json_schema_extra={"unit": "nm"},
     )
     wall_stiffness_eV_A3: float = Field(
-        10,
+        default=10,
         gt=0,
         le=1000,
         description="force constant K of the plane (times the energy scale)",
         json_schema_extra={"unit": "eV/A^3"},
     )
     approach_nm: float = Field(
-        0.3,
+        default=0.3,
         ge=0.3,
         le=5,
         description="clearance at the start; single atoms stand up to 0.25 nm above the surface",
         json_schema_extra={"unit": "nm"},
     )
     depth_over_amplitude: float = Field(
-        1.5, gt=0, le=2, description="travel below the top, in amplitudes", json_schema_extra={"unit": "1"}
+        default=1.5, gt=0, le=2, description="travel below the top, in amplitudes", json_schema_extra={"unit": "1"}
     )
     segment_nm: float = Field(
-        0.1,
+        default=0.1,
         gt=0,
         le=1,
         description="travel between restart files and relaxed snapshots: what a killed run loses at most",
         json_schema_extra={"unit": "nm"},
     )
     processes: int = Field(
-        1, ge=1, le=4096, description="MPI processes of one closing run", json_schema_extra={"unit": "1"}
+        default=1, ge=1, le=4096, description="MPI processes of one closing run", json_schema_extra={"unit": "1"}
     )
-    launcher: str = Field("mpirun", description="command that starts several MPI processes (gets -np N)")
+    launcher: str = Field(default="mpirun", description="command that starts several MPI processes (gets -np N)")
 
 
 class AreaSettings(Settings):
     """Contact area: discs of the atoms near the plane, projected on a grid, holes filled."""
 
     depth_A: float = Field(
-        0.5,
+        default=0.5,
         gt=0,
         le=2,
         description="atoms nearer than this to the plane, or beyond it, touch",
         json_schema_extra={"unit": "A"},
     )
     other_depths_A: tuple[Annotated[float, Field(gt=0, le=2)], ...] = Field(
-        (0.25, 1.0, 1.5),
+        default=(0.25, 1.0, 1.5),
         description="further depths for which the area is reported, to show what the definition does",
         json_schema_extra={"unit": "A"},
     )
     disc_A: float = Field(
-        1.5, gt=0, le=4, description="radius of an atom's disc", json_schema_extra={"unit": "A"}
+        default=1.5, gt=0, le=4, description="radius of an atom's disc", json_schema_extra={"unit": "A"}
     )
-    grid_A: float = Field(0.5, ge=0.05, le=2, description="grid spacing", json_schema_extra={"unit": "A"})
+    grid_A: float = Field(default=0.5, ge=0.05, le=2, description="grid spacing", json_schema_extra={"unit": "A"})
     travel_A: float = Field(
-        0.25,
+        default=0.25,
         gt=0,
         le=5,
         description="travel over which area and force are averaged",
         json_schema_extra={"unit": "A"},
     )
     snapshots: int = Field(
-        5, ge=1, le=100, description="snapshots per average", json_schema_extra={"unit": "1"}
+        default=5, ge=1, le=100, description="snapshots per average", json_schema_extra={"unit": "1"}
     )
 
 
@@ -164,56 +158,56 @@ class YieldSettings(Settings):
     """What counts as yield, fixed before any fit."""
 
     min_length_nm: float = Field(
-        1.75,
+        default=1.75,
         gt=0,
         le=20,
         description="contact length from which stress is judged",
         json_schema_extra={"unit": "nm"},
     )
     max_area_fraction: float = Field(
-        0.4,
+        default=0.4,
         gt=0,
         le=1,
         description="contact area over cell area up to which stress is judged",
         json_schema_extra={"unit": "1"},
     )
     min_exchanges: int = Field(
-        5,
+        default=5,
         ge=1,
         le=1000,
         description="changed cation-oxygen bonds above the background that witness plasticity",
         json_schema_extra={"unit": "1"},
     )
     min_lowering_A: float = Field(
-        0.5,
+        default=0.5,
         ge=0,
         le=10,
         description="lasting lowering of the top that witnesses plasticity",
         json_schema_extra={"unit": "A"},
     )
     min_points: int = Field(
-        4,
+        default=4,
         ge=3,
         le=100,
         description="averages beyond the onset (and each side of a kink)",
         json_schema_extra={"unit": "1"},
     )
     max_exponent: float = Field(
-        0.5,
+        default=0.5,
         gt=0,
         le=2,
         description="largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic",
         json_schema_extra={"unit": "1"},
     )
     max_drift_meV_atom_ps: float = Field(
-        0.2,
+        default=0.2,
         gt=0,
         le=100,
         description="largest drift of the conserved energy",
         json_schema_extra={"unit": "meV/ps"},
     )
     max_warming_K: float = Field(
-        150, gt=0, le=2000, description="largest rise of temperature", json_schema_extra={"unit": "K"}
+        default=150, gt=0, le=2000, description="largest rise of temperature", json_schema_extra={"unit": "K"}
     )
 
 
@@ -221,45 +215,45 @@ class FitSettings(Settings):
     """Fit of H(A) = H_macro + H' A^-0.25."""
 
     h_macro: Literal["literature", "free"] = Field(
-        "literature",
+        default="literature",
         description="literature: H_macro from h_macro_GPa, H' from the points; free: both from the points",
     )
     h_macro_GPa: tuple[float, float] = Field(
-        (0.7, 3.2),
+        default=(0.7, 3.2),
         description="literature range of H_macro (Kim et al. 2013, Table 1)",
         json_schema_extra={"unit": "GPa"},
     )
     min_points: int = Field(
-        6, ge=2, le=1000, description="defended points needed", json_schema_extra={"unit": "1"}
+        default=6, ge=2, le=1000, description="defended points needed", json_schema_extra={"unit": "1"}
     )
     min_share: float = Field(
-        0.5,
+        default=0.5,
         ge=0,
         le=1,
         description="share of runs that must give a defended point",
         json_schema_extra={"unit": "1"},
     )
     bootstrap: int = Field(
-        2000, ge=100, le=100_000, description="bootstrap samples", json_schema_extra={"unit": "1"}
+        default=2000, ge=100, le=100_000, description="bootstrap samples", json_schema_extra={"unit": "1"}
     )
 
 
 class HardnessSettings(Settings):
     """Size-dependent hardness from molecular dynamics (docs/hardness.md)."""
 
-    potential: str = Field("pmmcs", description="name of a file in config/potentials, or a path")
-    material: Literal["SiO2", "TiO2"] = Field("SiO2", description="oxide of the asperity")
+    potential: str = Field(default="pmmcs", description="name of a file in config/potentials, or a path")
+    material: Literal["SiO2", "TiO2"] = Field(default="SiO2", description="oxide of the asperity")
     energy_scales: tuple[Annotated[float, Field(gt=0, le=2)], ...] = Field(
-        (1.0, 0.5),
+        default=(1.0, 0.5),
         min_length=1,
         description="factors on all energies; 0.5 is the model-form twin",
         json_schema_extra={"unit": "1"},
     )
     seeds: tuple[Annotated[int, Field(ge=0, le=1_000_000)], ...] = Field(
-        (1, 2), min_length=1, description="seeds of the glasses"
+        default=(1, 2), min_length=1, description="seeds of the glasses"
     )
     asperities: tuple[AsperitySettings, ...] = Field(
-        (
+        default=(
             AsperitySettings(name="small", tiles=2, amplitude_nm=0.43),
             AsperitySettings(name="medium", tiles=3, amplitude_nm=0.64),
             AsperitySettings(name="large", tiles=4, amplitude_nm=0.86),
@@ -278,27 +272,25 @@ class NitrideGlassSettings(Settings):
     """Melt and quench of a small amorphous Si3N4 cell (Tersoff potential, constant volume)."""
 
     structures: int = Field(
-        8, ge=1, le=1000, description="amorphous structures of the ensemble", json_schema_extra={"unit": "1"}
+        default=8, ge=1, le=1000, description="amorphous structures of the ensemble", json_schema_extra={"unit": "1"}
     )
     formula_units: int = Field(
-        4, ge=2, le=64, description="formula units of 7 atoms per cell", json_schema_extra={"unit": "1"}
+        default=4, ge=2, le=64, description="formula units of 7 atoms per cell", json_schema_extra={"unit": "1"}
     )
-    seed: int = Field(1, ge=0, le=1_000_000, description="seed of the ensemble")
+    seed: int = Field(default=1, ge=0, le=1_000_000, description="seed of the ensemble")
     melt_temperature_K: float = Field(
-        5000, ge=1500, le=12000, description="temperature of the melt", json_schema_extra={"unit": "K"}
+        default=5000, ge=1500, le=12000, description="temperature of the melt", json_schema_extra={"unit": "K"}
     )
-    melt_ps: float = Field(
-        5, gt=0, le=10_000, description="time in the melt", json_schema_extra={"unit": "ps"}
-    )
+    melt_ps: float = Field(default=5, gt=0, le=10_000, description="time in the melt", json_schema_extra={"unit": "ps"})
     quench_rate_K_ps: float = Field(
-        50, gt=0, le=5000, description="cooling rate", json_schema_extra={"unit": "K/ps"}
+        default=50, gt=0, le=5000, description="cooling rate", json_schema_extra={"unit": "K/ps"}
     )
     final_temperature_K: float = Field(
-        300, ge=10, le=1000, description="end of the quench", json_schema_extra={"unit": "K"}
+        default=300, ge=10, le=1000, description="end of the quench", json_schema_extra={"unit": "K"}
     )
-    timestep_fs: float = Field(0.5, ge=0.1, le=1, description="time step", json_schema_extra={"unit": "fs"})
+    timestep_fs: float = Field(default=0.5, ge=0.1, le=1, description="time step", json_schema_extra={"unit": "fs"})
     attempts: int = Field(
-        6,
+        default=6,
         ge=1,
         le=100,
         description="quenches per structure until one passes the gates",
@@ -310,34 +302,34 @@ class DftSettings(Settings):
     """Engine and numerical parameters of the density functional calculations."""
 
     engine: Literal["pyscf", "espresso", "vasp", "abinit", "cp2k", "gpaw", "siesta"] = Field(
-        "pyscf",
+        default="pyscf",
         description="pyscf (built in), or an ASE calculator configured in your own ASE configuration file",
     )
     parameters: dict[str, str | float | int | bool | dict[str, str | float | int | bool]] = Field(
-        {}, description="keyword parameters of an ASE calculator other than pyscf; no commands"
+        default={}, description="keyword parameters of an ASE calculator other than pyscf; no commands"
     )
     numerics: Literal["cached-grid", "multigrid", "fftdf"] = Field(
-        "cached-grid", description="how PySCF's potential is evaluated: ours (fast), or one of its own"
+        default="cached-grid", description="how PySCF's potential is evaluated: ours (fast), or one of its own"
     )
     basis: str = Field(
-        "gth-dzvp-molopt-sr", pattern=r"^[a-z0-9-]+$", description="GTH basis set by PySCF's name"
+        default="gth-dzvp-molopt-sr", pattern=r"^[a-z0-9-]+$", description="GTH basis set by PySCF's name"
     )
     cutoff_Ha: float = Field(
-        100,
+        default=100,
         ge=20,
         le=1000,
         description="plane-wave cutoff of the density",
         json_schema_extra={"unit": "hartree"},
     )
     tolerance_Ha: float = Field(
-        1e-6,
+        default=1e-6,
         gt=0,
         le=1e-3,
         description="SCF convergence of the energy per cell",
         json_schema_extra={"unit": "hartree"},
     )
     max_cycles: int = Field(
-        50, ge=1, le=1000, description="SCF cycles before giving up", json_schema_extra={"unit": "1"}
+        default=50, ge=1, le=1000, description="SCF cycles before giving up", json_schema_extra={"unit": "1"}
     )
 
 
@@ -345,19 +337,29 @@ class RelaxationSettings(Settings):
     """Relaxation of a glass by DFT before its E(V) scan: positions, and the edge of the cube."""
 
     basis: str = Field(
-        "gth-szv-molopt-sr", pattern=r"^[a-z0-9-]+$", description="GTH basis set during relaxation, by PySCF's name"
+        default="gth-szv-molopt-sr",
+        pattern=r"^[a-z0-9-]+$",
+        description="GTH basis set during relaxation, by PySCF's name",
     )
     cutoff_Ha: float = Field(
-        60, ge=20, le=1000, description="plane-wave cutoff during relaxation", json_schema_extra={"unit": "hartree"}
+        default=60,
+        ge=20,
+        le=1000,
+        description="plane-wave cutoff during relaxation",
+        json_schema_extra={"unit": "hartree"},
     )
     tolerance_Ha: float = Field(
-        1e-8, gt=0, le=1e-3, description="SCF convergence where forces are needed", json_schema_extra={"unit": "hartree"}
+        default=1e-8,
+        gt=0,
+        le=1e-3,
+        description="SCF convergence where forces are needed",
+        json_schema_extra={"unit": "hartree"},
     )
     force_eV_A: float = Field(
-        0.2, gt=0, le=5, description="largest force left on an atom", json_schema_extra={"unit": "eV/A"}
+        default=0.2, gt=0, le=5, description="largest force left on an atom", json_schema_extra={"unit": "eV/A"}
     )
     max_steps: int = Field(
-        15, ge=0, le=500, description="ionic steps; 0 keeps the cheap potential's geometry",
+        default=15, ge=0, le=500, description="ionic steps; 0 keeps the cheap potential's geometry",
         json_schema_extra={"unit": "1"},
     )  # fmt: skip
 
@@ -376,58 +378,58 @@ class ElasticSettings(Settings):
     """Effective modulus E* from density functional theory (docs/elastic.md)."""
 
     material: str = Field(
-        "silicon_nitride",
+        default="silicon_nitride",
         pattern=r"^[A-Za-z0-9_-]+$",
         description="file in config/materials: the computed body",
     )
     counter_body: str = Field(
-        "titanium",
+        default="titanium",
         pattern=r"^[A-Za-z0-9_-]+$",
         description="file in config/materials: the other body, from experiment",
     )
     crystals: tuple[str, ...] = Field(
-        ("beta",), description="crystals of the material scanned beside the glass, to anchor the engine"
+        default=("beta",), description="crystals of the material scanned beside the glass, to anchor the engine"
     )
     strains: tuple[Annotated[float, Field(gt=-0.2, lt=0.2)], ...] = Field(
-        (-0.03, -0.015, 0.0, 0.015, 0.03),
+        default=(-0.03, -0.015, 0.0, 0.015, 0.03),
         min_length=5,
         description="linear isotropic strains of an E(V) scan; at least five",
         json_schema_extra={"unit": "1"},
     )
     lda_structures: int = Field(
-        4, ge=0, le=1000, description="glasses also computed with LDA", json_schema_extra={"unit": "1"}
+        default=4, ge=0, le=1000, description="glasses also computed with LDA", json_schema_extra={"unit": "1"}
     )
     relaxed_structures: int = Field(
-        2, ge=0, le=1000, description="glasses also computed with ions relaxed at every strain",
+        default=2, ge=0, le=1000, description="glasses also computed with ions relaxed at every strain",
         json_schema_extra={"unit": "1"},
     )  # fmt: skip
     relaxed_force_eV_A: float = Field(
-        0.1,
+        default=0.1,
         gt=0,
         le=5,
         description="largest force left when ions relax at a strain",
         json_schema_extra={"unit": "eV/A"},
     )
     ions: Literal["clamped", "relaxed"] = Field(
-        "clamped",
+        default="clamped",
         description="which bulk moduli go into E* (the paper's scaling of all positions is 'clamped')",
     )
     poisson_ratio: tuple[float, float] = Field(
-        (0.15, 0.25),
+        default=(0.15, 0.25),
         description="range of the glass's Poisson ratio (Kim et al. 2013)",
         json_schema_extra={"unit": "1"},
     )
     min_structures: int = Field(
-        4,
+        default=4,
         ge=2,
         le=1000,
         description="trusted bulk moduli below which E* fails its gate",
         json_schema_extra={"unit": "1"},
     )
     samples: int = Field(
-        20_000, ge=100, le=10_000_000, description="samples of E*", json_schema_extra={"unit": "1"}
+        default=20_000, ge=100, le=10_000_000, description="samples of E*", json_schema_extra={"unit": "1"}
     )
-    seed: int = Field(1, ge=0, le=1_000_000, description="seed of the samples of E*")
+    seed: int = Field(default=1, ge=0, le=1_000_000, description="seed of the samples of E*")
     glass: NitrideGlassSettings = NitrideGlassSettings()
     dft: DftSettings = DftSettings()
     relaxation: RelaxationSettings = RelaxationSettings()
@@ -436,9 +438,7 @@ class ElasticSettings(Settings):
     @classmethod
     def _stable_solid(cls, value: tuple[float, float]) -> tuple[float, float]:
         if not -1 < value[0] < value[1] < 0.5:
-            raise ValueError(
-                "two increasing numbers between -1 and 0.5: at 0.5 a solid has no finite E = 3B(1-2ν)"
-            )
+            raise ValueError("two increasing numbers between -1 and 0.5: at 0.5 a solid has no finite E = 3B(1-2ν)")
         return value
 
     @field_validator("strains")

@@ -29,18 +29,12 @@ def fit_size_effect(points: Sequence[Point], glasses: Sequence[Mapping], setting
     """
     fit = settings.fit
     used = [point for point in points if point["status"] == "yield"]
-    refused = [
-        {"run": point["run"], "status": point["status"]} for point in points if point["status"] != "yield"
-    ]
+    refused = [{"run": point["run"], "status": point["status"]} for point in points if point["status"] != "yield"]
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
     if len(used) < fit.min_points:
-        reasons.append(
-            f"{len(used)} of {len(points)} runs gave a defended hardness, {fit.min_points} are needed"
-        )
+        reasons.append(f"{len(used)} of {len(points)} runs gave a defended hardness, {fit.min_points} are needed")
     elif len(used) < fit.min_share * len(points):
-        reasons.append(
-            f"only {len(used)} of {len(points)} runs gave a defended hardness (gate {fit.min_share:.0%})"
-        )
+        reasons.append(f"only {len(used)} of {len(points)} runs gave a defended hardness (gate {fit.min_share:.0%})")
     scales = {float(point["energy_scale"]) for point in used}
     if missing := sorted(set(settings.energy_scales) - scales):
         reasons.append(f"no defended hardness at energy scale {', '.join(f'{scale:g}' for scale in missing)}")
@@ -74,9 +68,7 @@ def fit_size_effect(points: Sequence[Point], glasses: Sequence[Mapping], setting
     result["H_prime_GPa_nm0.5"] = _summary(h_prime)
     result["curve"] = band(h_macro, h_prime)
     if result["inputs"]["h_prime"]["a"] <= 0 or result["inputs"]["h_macro"]["a"] <= 0:
-        reasons.append(
-            "the fit allows a hardness that falls with decreasing size or is negative: not identifiable"
-        )
+        reasons.append("the fit allows a hardness that falls with decreasing size or is negative: not identifiable")
     result["gate"] = {"passed": not reasons, "reasons": reasons}
     return result
 
@@ -159,13 +151,10 @@ def scale_ratios(points: Sequence[Point]) -> list[dict]:
             continue
         rng = _rng(14)
         means = [
-            np.mean(hardness)
-            + rng.normal(size=2000) * np.sqrt(np.mean(spread**2) / len(hardness) + _scatter(hardness))
+            np.mean(hardness) + rng.normal(size=2000) * np.sqrt(np.mean(spread**2) / len(hardness) + _scatter(hardness))
             for hardness, spread, _, _ in groups
         ]
-        rows.append(
-            {"asperity": asperity, "scales": [scales[0], scales[-1]], **_summary(means[0] / means[1])}
-        )
+        rows.append({"asperity": asperity, "scales": [scales[0], scales[-1]], **_summary(means[0] / means[1])})
     return rows
 
 

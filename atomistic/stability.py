@@ -27,9 +27,7 @@ def free_motion(
     shutil.rmtree(work, ignore_errors=True)
     workspace = Workspace(work, {}, "nve.in")
     write_forcefield(workspace, potential, atoms.elements, energy_scale)
-    write_data(
-        workspace / "start.data", atoms, {ion: potential.species[ion].mass_u for ion in atoms.elements}
-    )
+    write_data(workspace / "start.data", atoms, {ion: potential.species[ion].mass_u for ion in atoms.elements})
     every = max(1, steps // 50)
     variables = {
         "data": "start.data",
@@ -48,9 +46,7 @@ def heated(atoms: Atoms, potential: Potential, temperature_K: float) -> Atoms:
     """The same atoms with Maxwell velocities."""
     rng = np.random.default_rng(np.random.SeedSequence([17]))
     masses = np.array([potential.species[ion].mass_u for ion in atoms.elements])[atoms.types - 1]
-    velocities = (
-        rng.normal(size=(len(atoms), 3)) * np.sqrt(8.617333e-5 * temperature_K / (KE_EV * masses))[:, None]
-    )
+    velocities = rng.normal(size=(len(atoms), 3)) * np.sqrt(8.617333e-5 * temperature_K / (KE_EV * masses))[:, None]
     momentum = np.sum(velocities * masses[:, None], axis=0) / np.sum(masses)
     return replace(atoms, velocities_A_ps=velocities - momentum)
 

@@ -233,7 +233,8 @@ def quench(material: Mapping[str, Any], settings: NitrideGlassSettings, seed: in
     result = read_data(workspace / "glass.data", elements)
     workspace.remove()
     return Atoms(
-        [elements[t - 1] for t in result.types], positions=result.positions_A, cell=np.diag(result.cell_A), pbc=True
+        [elements[t - 1] for t in result.types],
+        positions=result.positions_A,
+        cell=np.diag(result.cell_A),
+        pbc=True,
     )
-
-

@@ -78,11 +78,7 @@ def compare(
     rows = []
     for name, hardness in found.items():
         variation, fact = VARIATIONS[name], facts[name]
-        value = (
-            getattr(variation.closing(settings), variation.key)
-            if variation.key
-            else settings.closing.speed_m_s
-        )
+        value = getattr(variation.closing(settings), variation.key) if variation.key else settings.closing.speed_m_s
         rows.append(
             {
                 **_row(name, variation.key or "speed_m_s", value, hardness.hardness_GPa, reference),

@@ -201,11 +201,7 @@ def fit_branch(
 
     fit = LawFit(float(d_c_nm), C_a, C_r, rho, covariance, residual)
     if at_bound:
-        why = (
-            "the curve is a straight line, only C_r/rho_r is determined"
-            if at_bound > 0
-            else "a step at the end"
-        )
+        why = "the curve is a straight line, only C_r/rho_r is determined" if at_bound > 0 else "a step at the end"
         return _without_repulsion(fit, f"not_identifiable: {why}")
     relative_error = np.sqrt(np.diag(covariance)[1:]) / np.array([C_r, rho])
     if not np.all(relative_error < settings.max_relative_error):
@@ -241,9 +237,7 @@ def _fit_attraction(
     return C_a, variance, float(np.sqrt(np.mean(misfit**2)))
 
 
-def _repulsion_window(
-    h: Array, repulsive: Array, d_c: float, settings: LawSettings
-) -> tuple[Array, Array, Array]:
+def _repulsion_window(h: Array, repulsive: Array, d_c: float, settings: LawSettings) -> tuple[Array, Array, Array]:
     """Separations, repulsion and weights on the even grid between the smallest separation and d_c."""
     grid = np.linspace(h.min(), d_c, settings.points, endpoint=False)
     values = np.interp(grid, h, repulsive)
@@ -282,9 +276,7 @@ def _best_rho(depth: Array, f: Array, weights: Array, settings: LawSettings) -> 
     return float(np.exp((left + right) / 2)), 0
 
 
-def _covariance(
-    depth: Array, f: Array, weights: Array, C_r: float, rho: float, C_a_var: float, points: int
-) -> Array:
+def _covariance(depth: Array, f: Array, weights: Array, C_r: float, rho: float, C_a_var: float, points: int) -> Array:
     """Covariance of (C_a, C_r, rho_r) from the misfit, as if `points` of the curve were independent."""
     covariance = np.zeros((3, 3))
     covariance[0, 0] = C_a_var

@@ -66,9 +66,7 @@ def write_text(path: str | Path, content: str) -> None:
     write_bytes(path, content.encode())
 
 
-def write_csv(
-    path: str | Path, rows: Iterable[Mapping[str, Any]], columns: Sequence[str] | None = None
-) -> None:
+def write_csv(path: str | Path, rows: Iterable[Mapping[str, Any]], columns: Sequence[str] | None = None) -> None:
     """Write rows as CSV; floats keep every digit, so that reading gives back the same number.
 
     Parameters
@@ -105,9 +103,7 @@ def read_csv(path: str | Path) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
-def write_json(
-    path: str | Path, data: Mapping[str, Any], provenance: Mapping[str, Any] | None = None
-) -> None:
+def write_json(path: str | Path, data: Mapping[str, Any], provenance: Mapping[str, Any] | None = None) -> None:
     """Write a JSON result file; NaN and infinities become null, arrays become lists."""
     content = dict(data)
     if provenance is not None:

@@ -133,9 +133,7 @@ def clear(asperities):
 
 
 @njit(cache=True)
-def touch(
-    asperities, heights, n, level, spacing, eight, order, start, stop, changed, changed_sites, changed_count
-):
+def touch(asperities, heights, n, level, spacing, eight, order, start, stop, changed, changed_sites, changed_count):
     """Bring all sites below ``level`` into contact.
 
     Looks at ``order[start:stop]``, the sites whose original height lies between the last level and
@@ -375,8 +373,6 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, wor
         actives = 0
         for k in range(waiting):
             if asperities.label[work.seeds[k]] == -1:
-                work.active[actives] = grow(
-                    asperities, heights, n, level, spacing, mechanics.eight, work.seeds[k]
-                )
+                work.active[actives] = grow(asperities, heights, n, level, spacing, mechanics.eight, work.seeds[k])
                 actives += 1
     return rule.max_sweeps, False

@@ -18,9 +18,7 @@ def nominal_cycles(
     Named by model for figure 4 (`settings.nominal_force_nN`), and ``load_<F>`` for figure 11
     (`settings.nominal_loads_nN`, with the model of the settings). One surface for all.
     """
-    plan = [
-        (model, settings.model_copy(update={"model": model}), settings.nominal_force_nN) for model in MODELS
-    ]
+    plan = [(model, settings.model_copy(update={"model": model}), settings.nominal_force_nN) for model in MODELS]
     plan += [(f"load_{force:.12g}", settings, force) for force in settings.nominal_loads_nN]
     for done, (name, chosen, force) in enumerate(plan):
         yield name, chosen, force, run_cycle(inputs, chosen, settings.nominal_seed, force)

@@ -24,9 +24,7 @@ TABLE_1 = {
     "rms": (2.0, 15.0),
 }
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
-CHECKS = (
-    "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow settled"
-)
+CHECKS = "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow settled"
 
 
 @dataclass(frozen=True)
@@ -149,9 +147,7 @@ def judge(case: Case, settings: ContactSettings) -> tuple[list[str], str]:
         flags: dict[str, Any] = {}
         for number in range(case.cycles):
             cycle = run_cycle(case.inputs, chosen, 1, heights=heights, keep_surface=True)
-            broken += [
-                f"cycle {number + 1}: {words}" for words in violations(cycle, case.inputs, chosen, heights)
-            ]
+            broken += [f"cycle {number + 1}: {words}" for words in violations(cycle, case.inputs, chosen, heights)]
             losses.append(dissipated_energy(cycle))
             heights, flags = cycle.heights, cycle.flags
     except InputError as error:

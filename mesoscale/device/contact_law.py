@@ -40,9 +40,7 @@ def onset_nm(law: Law) -> Array:
 
 def scale_adhesion(law: Law, factor: float) -> Law:
     """The law with both attractive terms multiplied by `factor`; 0 leaves the repulsion alone."""
-    return replace(
-        law, hamaker=np.asarray(law.hamaker) * factor, C_a_GPa_nm=np.asarray(law.C_a_GPa_nm) * factor
-    )
+    return replace(law, hamaker=np.asarray(law.hamaker) * factor, C_a_GPa_nm=np.asarray(law.C_a_GPa_nm) * factor)
 
 
 def samples_of(law: Law) -> int:
@@ -80,9 +78,7 @@ def physical(law: Law) -> NDArray[np.bool_]:
 def law_from_columns(columns: Mapping[str, Any], branch: str, rho_a_nm: float, shield_nm: float) -> Law:
     """Law of one branch from columns named `<branch>_<parameter>` and `hamaker`."""
     values = {name: np.asarray(columns[f"{branch}_{name}"], dtype=float) for name in PARAMETERS}
-    return Law(
-        **values, hamaker=np.asarray(columns["hamaker"], dtype=float), rho_a_nm=rho_a_nm, shield_nm=shield_nm
-    )
+    return Law(**values, hamaker=np.asarray(columns["hamaker"], dtype=float), rho_a_nm=rho_a_nm, shield_nm=shield_nm)
 
 
 def _map(law: Law, function: Callable[[Array], Array]) -> Law:

@@ -17,9 +17,7 @@ TABLE_COLUMNS = ("branch", "gap_nm", "pressure_GPa", "derivative_GPa_nm", *QUANT
 MAX_EXPONENT = 300.0  # keeps a simulator's wild Newton steps within the range of doubles
 
 
-def law_table(
-    nominal: Mapping[str, Law], samples: Mapping[str, Law], points: int = 301
-) -> Iterator[dict[str, Any]]:
+def law_table(nominal: Mapping[str, Law], samples: Mapping[str, Law], points: int = 301) -> Iterator[dict[str, Any]]:
     """Rows of device/law.csv: the nominal pressure and its spread over the samples, branch by branch.
 
     Parameters
@@ -34,8 +32,7 @@ def law_table(
         # the kinks are among the points, so that a table's user meets them exactly
         gaps = np.unique(np.concatenate([np.linspace(deepest, onset, points - far.size - 1), [contact], far]))
         quantiles = [
-            np.quantile(pressure_GPa(gap, many), list(QUANTILE_COLUMNS.values()))
-            for gap in gaps[:, None, None]
+            np.quantile(pressure_GPa(gap, many), list(QUANTILE_COLUMNS.values())) for gap in gaps[:, None, None]
         ]
         for gap, pressure, derivative, spread in zip(
             gaps, pressure_GPa(gaps, law), slope_GPa_nm(gaps, law), quantiles, strict=True
@@ -150,9 +147,7 @@ endmodule
 
 def _instance_parameters(nominal: Mapping[str, Law]) -> dict[str, float]:
     parameters = {
-        f"{name}_{branch}": float(getattr(nominal[branch], name))
-        for branch in BRANCHES
-        for name in PARAMETERS
+        f"{name}_{branch}": float(getattr(nominal[branch], name)) for branch in BRANCHES for name in PARAMETERS
     }
     closing = nominal["closing"]
     return parameters | {

@@ -158,9 +158,7 @@ def study_switch(
             "down_rough": describe(rough_capacitance_F(switch, kept.hold_nm[down], rms[down]) * 1e15),
         },
         "checks": _checks(switch, samples, states),
-        "warnings": _warnings(
-            settings, states, extrapolates, float(np.nanmedian(hold_MPa)), law_pressure_MPa
-        ),
+        "warnings": _warnings(settings, states, extrapolates, float(np.nanmedian(hold_MPa)), law_pressure_MPa),
     }
     return results, states
 
@@ -218,10 +216,7 @@ def _mean_of(rows: Sequence[Mapping[str, str]], rho_a_nm: float, shield_nm: floa
 
 
 def _nominal_json(samples: LawSamples) -> dict[str, dict[str, float]]:
-    return {
-        branch: {name: float(getattr(law, name)) for name in SAMPLED}
-        for branch, law in samples.nominal.items()
-    }
+    return {branch: {name: float(getattr(law, name)) for name in SAMPLED} for branch, law in samples.nominal.items()}
 
 
 def _named_columns(branch: str, law: Law) -> dict[str, np.ndarray]:

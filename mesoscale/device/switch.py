@@ -111,9 +111,7 @@ class SwitchStates:
     hold_pressure_GPa: np.ndarray
 
 
-def solve_switch(
-    switch: Switch, closing: Law, opening: Law, hold_voltage_V: float | None = None
-) -> SwitchStates:
+def solve_switch(switch: Switch, closing: Law, opening: Law, hold_voltage_V: float | None = None) -> SwitchStates:
     """Follow the closing law down and the opening law up for every sample of the law.
 
     Parameters
@@ -155,9 +153,7 @@ def _separations(switch: Switch, law: Law, inner: int = 160, outer: int = 120) -
     return np.sort(grid, axis=1)
 
 
-def _solve_block(
-    switch: Switch, closing: Law, opening: Law, hold_voltage_V: float | None
-) -> tuple[np.ndarray, ...]:
+def _solve_block(switch: Switch, closing: Law, opening: Law, hold_voltage_V: float | None) -> tuple[np.ndarray, ...]:
     down, up = column(closing), column(opening)
     # pull-in: the highest point of W above the contact, on the way down
     grid = _separations(switch, closing)

@@ -54,9 +54,7 @@ def accuracy_rows(
         some = truth.model_copy(update={"small_scans": small, "large_scans": large})
         cases.append(("scans", small + large, some, settings))
     for flat in FLAT_SHARES:  # steep, because side lobes of the window cover steep spectra first
-        few = truth.model_copy(
-            update={"small_scans": 2, "large_scans": 2, "slope": 3.8, "tip_radius_nm": 1.0}
-        )
+        few = truth.model_copy(update={"small_scans": 2, "large_scans": 2, "slope": 3.8, "tip_radius_nm": 1.0})
         cases.append(("flat share of window", flat, few, settings.model_copy(update={"tip_radius_nm": 1.0})))
     for tip in (0.0, 2.0, 5.0, 10.0, 20.0):
         few = truth.model_copy(update={"small_scans": 2, "large_scans": 2, "tip_radius_nm": tip})
@@ -74,10 +72,7 @@ def _case(
     errors: dict[str, list[float]] = {name: [] for name in known}
     wall, cpu = [], []
     for repeat in range(repeats):
-        scans = [
-            item.scan
-            for item in synthetic_scans(truth.model_copy(update={"seed": truth.seed + 1000 * repeat}))
-        ]
+        scans = [item.scan for item in synthetic_scans(truth.model_copy(update={"seed": truth.seed + 1000 * repeat}))]
         started, busy = time.perf_counter(), time.process_time()
         found = _estimates(scans, settings, value if knob == "flat share of window" else None)
         wall.append(time.perf_counter() - started)
@@ -108,9 +103,7 @@ def _estimates(scans: list[Scan], settings: TopographySettings, flat: float | No
         spectra = []
         for scan in scans:
             heights = clean(scan, settings).heights_nm
-            spectrum = radial_spectrum(
-                heights, scan.lengths_nm, 25, settings.section_fraction, flat, skip_lines=True
-            )
+            spectrum = radial_spectrum(heights, scan.lengths_nm, 25, settings.section_fraction, flat, skip_lines=True)
             spectra.append(trusted_range(scan.name, spectrum, settings.tip_radius_nm))
     result = analyse(spectra, settings)
     return {name: estimate.value for name, estimate in result.estimates.items()}

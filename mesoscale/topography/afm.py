@@ -11,9 +11,7 @@ from mesoscale.settings import SyntheticScanSettings
 from mesoscale.topography.model import RoughSpectrum
 from mesoscale.topography.scan import Scan
 
-PERIOD = (
-    1.25  # side of the periodic surface over side of the scan cut from it, so that scans are not periodic
-)
+PERIOD = 1.25  # side of the periodic surface over side of the scan cut from it, so that scans are not periodic
 ALIASES = 12  # images of the spectrum folded back by coarse pixels
 TIP_STEP_NM = 5.0  # the tip meets the surface on pixels this fine, or twice as fine as the scan's
 
@@ -44,9 +42,7 @@ def synthetic_scans(settings: SyntheticScanSettings) -> Iterator[SyntheticScan]:
             yield SyntheticScan(measure(surface, length, settings, rng, name), truth)
 
 
-def surface_patch(
-    truth: RoughSpectrum, pixels: int, length_nm: float, rng: np.random.Generator
-) -> np.ndarray:
+def surface_patch(truth: RoughSpectrum, pixels: int, length_nm: float, rng: np.random.Generator) -> np.ndarray:
     """Heights (pixels, pixels) in nm of a Gaussian surface sampled at points, not periodic.
 
     The spectrum is folded at the Nyquist wave vector as point sampling folds it, so that a coarse scan of a

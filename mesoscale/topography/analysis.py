@@ -53,9 +53,7 @@ def analyse_scan(scan: Scan, settings: TopographySettings) -> ScanAnalysis:
     cleaned = clean(scan, settings)
     heights, lengths = cleaned.heights_nm, cleaned.lengths_nm
     sections, fraction = settings.sections, settings.section_fraction
-    spectrum = radial_spectrum(
-        heights, lengths, min(sections, HANN_SECTIONS), fraction, flat=0.0, skip_lines=True
-    )
+    spectrum = radial_spectrum(heights, lengths, min(sections, HANN_SECTIONS), fraction, flat=0.0, skip_lines=True)
     flat = radial_spectrum(heights, lengths, sections, fraction, settings.window_flat)
     profile_q, profile_psd = profile_spectrum(heights, lengths)
     lag, correlation = autocorrelation(heights, lengths)
@@ -97,9 +95,7 @@ def pooled_curve(spectra: Sequence[Spectrum]) -> dict[str, np.ndarray]:
     }
 
 
-def fit_curves(
-    topography: Topography, lowest_q: float, truth: RoughSpectrum | None = None
-) -> Mapping[str, np.ndarray]:
+def fit_curves(topography: Topography, lowest_q: float, truth: RoughSpectrum | None = None) -> Mapping[str, np.ndarray]:
     """The fits of figure 10 on a common grid of q (1/nm), C in nm^4; bounds are those of the line fits."""
     q = np.geomspace(lowest_q, max(topography.cutoff, 2 * lowest_q), CURVE_POINTS)
     curves = {"q": q}

@@ -148,9 +148,7 @@ def past_the_blur(spectra: Sequence[TrustedSpectrum], q0: float) -> list[Trusted
     it is large, and mixes plateau and power law.
     """
     return [
-        replace(item, low=max(item.low, SMALL_BLUR_SHELL * item.spectrum.spacing))
-        if item.low > q0 / 2
-        else item
+        replace(item, low=max(item.low, SMALL_BLUR_SHELL * item.spectrum.spacing)) if item.low > q0 / 2 else item
         for item in spectra
     ]
 
@@ -335,9 +333,7 @@ def single_scans(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit) -> t
             knee = _lowest(lambda at, d=data, a=level: _deviance(d, at, fitted.slope, 0.0, a)[0], log_q0, 1.0)
             knees.append(float(np.exp(knee)))
         if item.high > 2.2 * max(fitted.q0, item.low):
-            slopes.append(
-                _lowest(lambda at, d=data, a=level: _deviance(d, log_q0, at, 0.0, a)[0], fitted.slope, 2.0)
-            )
+            slopes.append(_lowest(lambda at, d=data, a=level: _deviance(d, log_q0, at, 0.0, a)[0], fitted.slope, 2.0))
     return np.array(knees), np.array(slopes)
 
 

@@ -80,9 +80,7 @@ def points(spectra: Sequence[TrustedSpectrum], q0: float = np.inf, slope: float 
         if not ok.any():
             continue
         log_q, log_c = np.log(item.spectrum.q[ok]), np.log(item.corrected_psd()[ok])
-        log_c = log_c - np.where(
-            item.spectrum.q[ok] > q0, blur(slope, item.spectrum.q[ok] / item.spectrum.spacing), 0
-        )
+        log_c = log_c - np.where(item.spectrum.q[ok] > q0, blur(slope, item.spectrum.q[ok] / item.spectrum.spacing), 0)
         modes = item.spectrum.modes[ok]
         bins = np.floor(log_q / np.log(10) * BINS_PER_DECADE).astype(int)
         for b in np.unique(bins):

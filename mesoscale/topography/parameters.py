@@ -91,18 +91,14 @@ def _doubts(
 ) -> tuple[str, ...]:
     """Why the parameters are not identifiable or not to be trusted, in words with numbers."""
     if fitted is None:
-        return (
-            "not identifiable: too few wave vectors between the scan's size and what the instrument resolves",
-        )
+        return ("not identifiable: too few wave vectors between the scan's size and what the instrument resolves",)
     reasons = []
     highest = max(item.high for item in spectra)
     lowest = min(item.low for item in spectra)
     if fitted.power_gain < MIN_GAIN or fitted.slope < 0.5:
         reasons.append("not identifiable: no power law, the spectrum is flat (noise, or pixels too coarse)")
     if fitted.plateau_gain < MIN_GAIN or fitted.q0 < 1.2 * lowest:
-        reasons.append(
-            f"q0 is not identifiable: no plateau down to {lowest:.2g} /nm; add scans of a larger area"
-        )
+        reasons.append(f"q0 is not identifiable: no plateau down to {lowest:.2g} /nm; add scans of a larger area")
     if highest < MIN_SPAN * fitted.q0:
         reasons.append(
             f"slope is not identifiable: the trusted range ends at {highest:.2g} /nm, less than "
@@ -127,9 +123,7 @@ def _likelihood_estimates(
     spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, cutoff: float, settings: TopographySettings
 ) -> dict[str, Estimate]:
     centre = np.array([np.log(fitted.plateau), np.log(fitted.q0), fitted.slope])
-    error = np.minimum(
-        np.sqrt(np.diag(fitted.covariance)), 10.0
-    )  # unidentified: a factor of e^10 is wide enough
+    error = np.minimum(np.sqrt(np.diag(fitted.covariance)), 10.0)  # unidentified: a factor of e^10 is wide enough
     reach = _normal_quantile(settings.confidence)
     q0_interval = tuple(np.exp(centre[1] + reach * error[1] * np.array([-1, 1])))
     slope_interval = tuple(centre[2] + reach * error[2] * np.array([-1, 1]))
@@ -138,9 +132,7 @@ def _likelihood_estimates(
         return 0.5 * float(np.log(mean_square(np.exp(at[0]), np.exp(at[1]), at[2], cutoff)))
 
     step = 1e-4
-    gradient = np.array(
-        [(log_rms(centre + step * e) - log_rms(centre - step * e)) / (2 * step) for e in np.eye(3)]
-    )
+    gradient = np.array([(log_rms(centre + step * e) - log_rms(centre - step * e)) / (2 * step) for e in np.eye(3)])
     rms_error = min(float(np.sqrt(gradient @ fitted.covariance @ gradient)), 10.0)
     rms = float(np.exp(log_rms(centre)))
     if fitted.amplitude_sd > 0:  # the typical place is then the mean of few: Student's distribution
@@ -172,9 +164,7 @@ def _separate_estimates(
     def estimate(values: np.ndarray, errors: np.ndarray, log: bool) -> Estimate:
         middle = float(np.exp(np.mean(np.log(values)))) if log else float(np.mean(values))
         reach = _normal_quantile(settings.confidence) * errors
-        low, high = (
-            (values * np.exp(-reach), values * np.exp(reach)) if log else (values - reach, values + reach)
-        )
+        low, high = (values * np.exp(-reach), values * np.exp(reach)) if log else (values - reach, values + reach)
         around = (float(low.min()), float(high.max()))
         return Estimate(middle, around, around)
 
@@ -214,17 +204,13 @@ def _line_estimates(
     ]
     return _with_hurst(
         q0=Estimate(fitted.q0, intervals[0], _union(intervals[0], [fitted.q0, fitted.departure])),
-        slope=Estimate(
-            fitted.slope, intervals[1], _union(intervals[1], [fitted.slope_low, fitted.slope_high])
-        ),
+        slope=Estimate(fitted.slope, intervals[1], _union(intervals[1], [fitted.slope_low, fitted.slope_high])),
         rms=Estimate(fitted.rms(cutoff), intervals[2], _union(intervals[2], level)),
         settings=settings,
     )
 
 
-def _with_hurst(
-    q0: Estimate, slope: Estimate, rms: Estimate, settings: TopographySettings
-) -> dict[str, Estimate]:
+def _with_hurst(q0: Estimate, slope: Estimate, rms: Estimate, settings: TopographySettings) -> dict[str, Estimate]:
     def convert(pair: tuple[float, float]) -> tuple[float, float]:
         low, high = (hurst_from_slope(value, settings.convention) for value in pair)
         return low, high

@@ -93,9 +93,7 @@ def _height_channel(path: Path, channels: list[Any], wanted: str | None) -> tupl
     if wanted is not None:
         heights = [c for c in heights if str(c.name) == wanted]
         if not heights:
-            raise InputError(
-                f"{path}: no height channel {wanted!r} (topography.channel); the file has: {names}"
-            )
+            raise InputError(f"{path}: no height channel {wanted!r} (topography.channel); the file has: {names}")
     if not heights:
         raise InputError(f"{path}: no height channel in this file; save the topography channel too")
     if len({str(c.name) for c in heights}) > 1:
@@ -110,9 +108,7 @@ def _scan(path: Path, name: str, info: Any, note: str) -> Scan:
     if info.dim != 2 or (grid is not None and len(grid) != 2):
         raise InputError(f"{path}: not a two-dimensional map; give a scan, not a line profile")
     if sizes is None or len(sizes) != 2 or not all(np.isfinite(s) and s > 0 for s in sizes):
-        raise InputError(
-            f"{path}: has no physical size; save it in a format that carries size and unit (.gwy)"
-        )
+        raise InputError(f"{path}: has no physical size; save it in a format that carries size and unit (.gwy)")
     if not unit:
         raise InputError(f"{path}: has no length unit; save it in a format that carries size and unit (.gwy)")
     if grid is not None and int(np.prod(grid)) > MAX_PIXELS:
@@ -120,22 +116,16 @@ def _scan(path: Path, name: str, info: Any, note: str) -> Scan:
     try:
         topography = info.topography()
     except Exception as error:
-        raise InputError(
-            f"{path}: heights cannot be read ({_first_line(error)}); is the file complete?"
-        ) from None
+        raise InputError(f"{path}: heights cannot be read ({_first_line(error)}); is the file complete?") from None
     if not getattr(topography, "is_uniform", True):
         raise InputError(f"{path}: points are not on a regular grid; give a scan on a grid")
     try:
         topography = topography.to_unit("nm")
     except Exception:
-        raise InputError(
-            f"{path}: unit {unit!r} is not a length; save heights and size in nm, um or m"
-        ) from None
+        raise InputError(f"{path}: unit {unit!r} is not a length; save heights and size in nm, um or m") from None
     heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
     if min(heights.shape) < MIN_SIDE:
-        raise InputError(
-            f"{path}: {heights.shape[0]} x {heights.shape[1]} pixels; at least {MIN_SIDE} a side"
-        )
+        raise InputError(f"{path}: {heights.shape[0]} x {heights.shape[1]} pixels; at least {MIN_SIDE} a side")
     lengths = tuple(float(s) for s in topography.physical_sizes)
     steps = (f"read channel {info.name}", note) if note else (f"read channel {info.name}",)
     return Scan(heights, (lengths[0], lengths[1]), name, steps)

@@ -91,7 +91,5 @@ def summary(rows: list[dict[str, Any]], method: str) -> dict[str, float]:
     result: dict[str, float] = {"sets": len(mine)}
     for name in TOLERANCE:
         for kind in ("within", "covered"):
-            result[f"{name}_{kind}"] = sum(bool(row.get(f"{name}_{kind}", False)) for row in mine) / max(
-                len(mine), 1
-            )
+            result[f"{name}_{kind}"] = sum(bool(row.get(f"{name}_{kind}", False)) for row in mine) / max(len(mine), 1)
     return result

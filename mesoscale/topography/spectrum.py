@@ -37,9 +37,7 @@ class Spectrum:
 def power_spectrum(heights: np.ndarray, lengths_nm: tuple[float, float]) -> np.ndarray:
     """Equation 8 without window: C(qx, qy) in nm^4 of heights (nx, ny) in nm, in FFT order."""
     nx, ny = heights.shape
-    amplitude = (
-        lengths_nm[0] * lengths_nm[1] / (2 * np.pi * nx * ny) * np.asarray(scipy.fft.fft2(heights))
-    )  # eq. 7
+    amplitude = lengths_nm[0] * lengths_nm[1] / (2 * np.pi * nx * ny) * np.asarray(scipy.fft.fft2(heights))  # eq. 7
     return np.abs(amplitude) ** 2 / (lengths_nm[0] * lengths_nm[1])
 
 
@@ -93,9 +91,7 @@ def radial_spectrum(
     xs, ys = section_starts(nx, mx, per_side), section_starts(ny, my, per_side)
     wx, wy = flat_window(mx, flat), flat_window(my, flat)
     window = np.outer(wx, wy).astype(np.float32)
-    data = np.ascontiguousarray(
-        heights, dtype=np.float32
-    )  # 7 digits; spectra span fewer (docs/topography.md)
+    data = np.ascontiguousarray(heights, dtype=np.float32)  # 7 digits; spectra span fewer (docs/topography.md)
     total = np.zeros((mx, my // 2 + 1))
     for x in xs:
         for y in ys:

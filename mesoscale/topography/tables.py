@@ -119,9 +119,7 @@ def parameters(
                 hurst_from_slope(value, settings.convention) for value in (line.slope_low, line.slope_high)
             ],
             "rms_nm": line.rms(topography.cutoff),
-            "rms_bounds_nm": [
-                float(np.sqrt(level * scale)) for level in (line.plateau_low, line.plateau_high)
-            ],
+            "rms_bounds_nm": [float(np.sqrt(level * scale)) for level in (line.plateau_low, line.plateau_high)],
             "hurst_profile": hurst_from_slope(line.slope, "profile"),
             "hurst_areal": hurst_from_slope(line.slope, "areal"),
         }

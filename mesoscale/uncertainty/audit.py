@@ -99,9 +99,7 @@ def rank(
         usable = complete.sum(axis=0)
         with np.errstate(invalid="ignore", divide="ignore"):
             average = np.where(complete[:, None], surfaces, 0.0).sum(axis=0) / usable
-            scatter = np.sqrt(
-                np.where(complete[:, None], (surfaces - average) ** 2, 0.0).sum(axis=0) / (usable - 1)
-            )
+            scatter = np.sqrt(np.where(complete[:, None], (surfaces - average) ** 2, 0.0).sum(axis=0) / (usable - 1))
         best = min(
             (_distance(average, short, table.names, two, three), label)
             for label, (two, three) in enumerate(zip(tables2, tables3, strict=True))

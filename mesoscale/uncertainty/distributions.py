@@ -113,10 +113,7 @@ def correlation_matrix(names: list[str], pairs: dict[tuple[str, str], float]) ->
     for (first, second), rank in pairs.items():
         i, j = names.index(first), names.index(second)
         matrix[i, j] = matrix[j, i] = rank
-    if (
-        np.linalg.eigvalsh(2 * np.sin(np.pi / 6 * matrix) * (1 - np.eye(len(names))) + np.eye(len(names)))[0]
-        <= 0
-    ):
+    if np.linalg.eigvalsh(2 * np.sin(np.pi / 6 * matrix) * (1 - np.eye(len(names))) + np.eye(len(names)))[0] <= 0:
         raise InputError(
             f"inputs.correlations: {', '.join(f'{a}-{b} {r:g}' for (a, b), r in pairs.items())} contradict "
             "one another (not positive definite); make them weaker"

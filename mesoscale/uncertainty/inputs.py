@@ -82,10 +82,7 @@ def _literature(name: str, row: InputRow) -> Distribution:
 
 def _distribution(entry: Mapping[str, Any], where: str) -> Distribution:
     numbers = {key: float(entry[key]) for key in ("a", "b", "low", "high") if entry.get(key) is not None}
-    if (
-        entry.get("distribution") not in ("uniform", "normal", "truncated_normal", "fixed")
-        or "a" not in numbers
-    ):
+    if entry.get("distribution") not in ("uniform", "normal", "truncated_normal", "fixed") or "a" not in numbers:
         raise InputError(
             f"{where}: distribution {entry.get('distribution')} with {numbers} is not usable; "
             "accepted: uniform, normal (a, b), truncated_normal (a, b, low, high), fixed (a)"
@@ -103,9 +100,7 @@ def _from_stage(name: str, origin: str, content: Mapping[str, Any], source: str)
         )
     entry = content.get("inputs", {}).get(name)
     if entry is None:
-        raise InputError(
-            f"{source}: holds no inputs.{name}; set inputs.{name}.origin to literature with a and b"
-        )
+        raise InputError(f"{source}: holds no inputs.{name}; set inputs.{name}.origin to literature with a and b")
     return entry
 
 
@@ -115,17 +110,11 @@ def _read_samples(name: str, file: str) -> np.ndarray:
         with path.open(newline="", encoding="utf-8") as stream:
             values = np.array([float(line[name]) for line in csv.DictReader(stream)])
     except OSError as error:
-        raise InputError(
-            f"inputs.{name}.file = {file}: cannot be read ({error.strerror}); give a CSV file"
-        ) from None
+        raise InputError(f"inputs.{name}.file = {file}: cannot be read ({error.strerror}); give a CSV file") from None
     except (KeyError, TypeError, ValueError):
-        raise InputError(
-            f"inputs.{name}.file = {file}: needs a column {name} with one number a row"
-        ) from None
+        raise InputError(f"inputs.{name}.file = {file}: needs a column {name} with one number a row") from None
     if values.size < 2 or not np.isfinite(values).all():
-        raise InputError(
-            f"inputs.{name}.file = {file}: {values.size} samples; at least 2, all finite, are needed"
-        )
+        raise InputError(f"inputs.{name}.file = {file}: {values.size} samples; at least 2, all finite, are needed")
     return np.sort(values)
 
 
@@ -145,9 +134,7 @@ def to_rows(table: InputTable) -> list[dict[str, Any]]:
     for k, row in enumerate(table.rows):
         given = row.distribution
         partners = {table.names[j]: table.correlation[k, j] for j in range(k) if table.correlation[k, j]}
-        finite = {
-            key: value for key in ("a", "b", "low", "high") if np.isfinite(value := getattr(given, key))
-        }
+        finite = {key: value for key in ("a", "b", "low", "high") if np.isfinite(value := getattr(given, key))}
         # samples travel inside the table, so that inputs.csv alone defines the inputs in use
         kind = given.kind if given.kind != "samples" else "samples " + json.dumps(given.values.tolist())
         rows.append(

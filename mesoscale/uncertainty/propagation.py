@@ -92,9 +92,7 @@ def exported_surfaces(
     return surfaces
 
 
-def _regression(
-    x: Array, y: Array, ranges: Array, transform: str, settings: UncertaintySettings
-) -> Surrogate | None:
+def _regression(x: Array, y: Array, ranges: Array, transform: str, settings: UncertaintySettings) -> Surrogate | None:
     from mesoscale.uncertainty.regression import sparse_chaos
 
     try:
@@ -149,9 +147,7 @@ def propagate(
         seed_share = np.where(used > 1, within / (within + between), np.nan)
     nothing = np.empty((0, len(ranges))), np.empty((0, len(SURFACES)))
     surfaces = exported_surfaces(nodes, direct or nothing, ranges, settings)
-    outputs = np.stack(
-        [surface(samples) if surface else np.full(len(samples), np.nan) for surface in surfaces], axis=1
-    )
+    outputs = np.stack([surface(samples) if surface else np.full(len(samples), np.nan) for surface in surfaces], axis=1)
     return Propagation(samples, outputs, surfaces, by_seed, seed_share)
 
 
@@ -182,10 +178,7 @@ def output_rows(
         complete = np.isfinite(result.by_seed[:, 0, k])
         mean, dev = (_center_and_scatter(result.by_seed[complete, j, k]) for j in (0, 1))
         centre = _center_and_scatter(y[complete, 0, k])
-        effects = [
-            np.sqrt((elementary_effects(line, inputs) ** 2).sum() / 12)
-            for line in first_level[complete, :, k]
-        ]
+        effects = [np.sqrt((elementary_effects(line, inputs) ** 2).sum() / 12) for line in first_level[complete, :, k]]
         quantiles = np.quantile(propagated[:, k], [0.05, 0.5, 0.95])
         name = short_name(output)
         reference = paper.get(name, (np.nan, np.nan))
@@ -258,18 +251,14 @@ def surrogate_json(
         if surface is None:
             continue
         branch, _, parameter = name.partition("_")
-        scatter = (
-            np.nanmean(np.nanstd(nodes.values[:, :, k], axis=0, ddof=1)) if len(nodes.seeds) > 1 else np.nan
-        )
+        scatter = np.nanmean(np.nanstd(nodes.values[:, :, k], axis=0, ddof=1)) if len(nodes.seeds) > 1 else np.nan
         outputs.append(
             {
                 "name": name,
                 "unit": OUTPUT_UNITS[k],
                 **to_json(surface),
                 "residual_std": float(scatter),
-                "paper_mean": paper.get(short_name(parameter), (np.nan,))[0]
-                if branch == "closing"
-                else np.nan,
+                "paper_mean": paper.get(short_name(parameter), (np.nan,))[0] if branch == "closing" else np.nan,
             }
         )
     return {

@@ -31,9 +31,7 @@ def sparse_chaos(
     usable = np.isfinite(y) & ((y > 0) | (transform == "identity"))
     inputs = x.shape[1]
     if usable.sum() < 2 * inputs:
-        raise ValueError(
-            f"{int(usable.sum())} usable runs for {inputs} inputs; at least {2 * inputs} are needed"
-        )
+        raise ValueError(f"{int(usable.sum())} usable runs for {inputs} inputs; at least {2 * inputs} are needed")
     blank = Surrogate(ranges, np.zeros((1, inputs), int), np.zeros(1))
     u = np.clip(blank.scaled(x[usable]), -1.0, 1.0)
     target = np.log(y[usable]) if transform == "log" else y[usable]

@@ -98,9 +98,7 @@ def random_runs(table: InputTable, settings: UncertaintySettings, first: int, la
     ]
 
 
-def contact_of(
-    values: Mapping[str, float], settings: ContactSettings
-) -> tuple[ContactInputs, ContactSettings]:
+def contact_of(values: Mapping[str, float], settings: ContactSettings) -> tuple[ContactInputs, ContactSettings]:
     """Contact inputs, and settings with the optional eighth input (the attraction's gap cutoff) put in."""
     named = dict(values)
     cutoff = named.pop("gap_cutoff", None)

@@ -76,9 +76,7 @@ def to_json(surrogate: Surrogate) -> dict[str, Any]:
         "transform": surrogate.transform,
         "terms": [
             {"degrees": degrees, "coefficient": coefficient}
-            for degrees, coefficient in zip(
-                surrogate.degrees.tolist(), surrogate.coefficients.tolist(), strict=True
-            )
+            for degrees, coefficient in zip(surrogate.degrees.tolist(), surrogate.coefficients.tolist(), strict=True)
         ],
     }
 

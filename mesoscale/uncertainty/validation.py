@@ -51,9 +51,7 @@ def held_out_predictions(
     for fold in range(5):
         rest, held = folds != fold, folds == fold
         again = exported_surfaces(nodes, (x[rest], y[rest]), ranges, settings)
-        predicted[held] = np.stack(
-            [s(x[held]) if s else np.full(int(held.sum()), np.nan) for s in again], axis=1
-        )
+        predicted[held] = np.stack([s(x[held]) if s else np.full(int(held.sum()), np.nan) for s in again], axis=1)
     return predicted
 
 

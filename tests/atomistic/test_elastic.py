@@ -7,7 +7,13 @@ from ase.calculators.calculator import CalculationFailed
 from ase.calculators.emt import EMT
 
 from atomistic.elastic import (
-    Modulus, effective_modulus, fit_scan, make_calculator, plane_strain_modulus, scan_volumes, variance_shares,
+    Modulus,
+    effective_modulus,
+    fit_scan,
+    make_calculator,
+    plane_strain_modulus,
+    scan_volumes,
+    variance_shares,
 )  # fmt: skip
 from atomistic.errors import InputError
 from atomistic.settings import DftSettings, ElasticSettings
@@ -45,7 +51,10 @@ def test_shares_of_an_additive_case_add_to_one_and_agree_with_samples():
     rng = np.random.default_rng(1)
     n = 200_000
     samples = plane_strain_modulus(
-        rng.choice(B, n) + shift * rng.integers(0, 2, n), rng.uniform(0.15, 0.25, n), rng.normal(116, 3, n), 0.32
+        rng.choice(B, n) + shift * rng.integers(0, 2, n),
+        rng.uniform(0.15, 0.25, n),
+        rng.normal(116, 3, n),
+        0.32,
     )
     assert exact["mean_GPa"] == pytest.approx(samples.mean(), abs=5 * samples.std() / np.sqrt(n))
     assert exact["std_GPa"] == pytest.approx(samples.std(), rel=0.02)

@@ -25,9 +25,7 @@ def noise(rng, sigma, correlation):
 def test_false_alarms_on_straight_curves(sigma, correlation):
     """At most 5 %; 200 curves, so the bound is that plus two standard errors."""
     rng = np.random.default_rng(3)
-    found = [
-        find_kink(LENGTH, 4 * LENGTH - 2 + noise(rng, sigma, correlation), 4, seed=k) for k in range(200)
-    ]
+    found = [find_kink(LENGTH, 4 * LENGTH - 2 + noise(rng, sigma, correlation), 4, seed=k) for k in range(200)]
     assert np.mean([kink is not None for kink in found]) <= 0.05 + 2 * np.sqrt(0.05 * 0.95 / 200)
 
 

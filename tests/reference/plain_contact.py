@@ -60,9 +60,7 @@ def curvature(h: np.ndarray, spacing: float) -> np.ndarray:
     return total / 2
 
 
-def asperities(
-    h: np.ndarray, separation: float, inputs: ContactInputs, settings: ContactSettings
-) -> list[Asperity]:
+def asperities(h: np.ndarray, separation: float, inputs: ContactInputs, settings: ContactSettings) -> list[Asperity]:
     """All asperities in contact at a separation, with eq. 3 and eq. 4."""
     spacing = settings.length_nm / len(h)
     p = {"paper": 2 / 3, "hertz": 4 / 3}[settings.prefactor]
@@ -171,7 +169,5 @@ def walk(h, separations, inputs: ContactInputs, settings: ContactSettings):
     for separation in separations:
         if settings.model == "plastic":
             h, _, _ = settle(h, separation, inputs, settings)
-        forces.append(
-            (repulsion(h, separation, inputs, settings), attraction(h, separation, inputs, settings))
-        )
+        forces.append((repulsion(h, separation, inputs, settings), attraction(h, separation, inputs, settings)))
     return np.array(forces), h

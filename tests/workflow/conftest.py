@@ -33,7 +33,11 @@ class Workflow:
     def run(self, scene: str, *targets: str, options: tuple[str, ...] = ()) -> subprocess.CompletedProcess[str]:
         """Run to the end."""
         return subprocess.run(
-            self._command(scene, targets, options), env=self.environment, capture_output=True, text=True, check=False
+            self._command(scene, targets, options),
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            check=False,
         )
 
     def planned(self, scene: str, *targets: str) -> dict[str, int]:

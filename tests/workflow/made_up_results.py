@@ -64,9 +64,7 @@ def _curves(root: Path) -> None:
                 "attractive_nN": Dataset(-0.05 * force, "nN", "attraction", ("point",)),
             }
     contact = {"length_nm": 1000.0, "pixels": 128, "convention": "profile", "flow_pair": "wide"}
-    write_h5(
-        root / "curves/nominal.h5", groups, {"cell_area_nm2": 1e6, "contact": contact}, PROVENANCE, facts
-    )
+    write_h5(root / "curves/nominal.h5", groups, {"cell_area_nm2": 1e6, "contact": contact}, PROVENANCE, facts)
     rows = [
         {"run": 0, "node": 0, "seed": 0, "branch": branch, **law, "status": "ok", "hamaker": 0.215}
         for branch, law in (("closing", LAW), ("opening", OPENED))
@@ -193,9 +191,7 @@ def _hardness(root: Path) -> None:
         "method": "literature",
         "gate": {"passed": False, "reasons": ["only 2 of 9 runs <gave> a hardness"]},
         "H_macro_GPa": {"median": 1.9, "low": 1.1, "high": 2.8},
-        "curve": [
-            {"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9} for x in (2.0, 10.0)
-        ],
+        "curve": [{"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9} for x in (2.0, 10.0)],
     }
     write_json(root / "hardness/fit.json", fit, PROVENANCE)
 
@@ -258,6 +254,4 @@ def _topography(root: Path) -> None:
     write_h5(root / "topography/spectra.h5", groups, {"synthetic": True}, PROVENANCE, facts)
     estimates = {"q0": {"value": 0.02, "interval": [0.015, 0.025], "scatter": [0.01, 0.03], "unit": "1/nm"}}
     content = {"synthetic": True, "convention": "profile", "estimates": estimates, "truth": {"q0": 0.021}}
-    write_json(
-        root / "topography/parameters.json", {**content, "gate": {"passed": True, "reasons": []}}, PROVENANCE
-    )
+    write_json(root / "topography/parameters.json", {**content, "gate": {"passed": True, "reasons": []}}, PROVENANCE)

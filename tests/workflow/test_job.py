@@ -12,7 +12,11 @@ from workflow.job import failures, job
 @pytest.fixture
 def snakemake(tmp_path):
     return SimpleNamespace(
-        rule="analyse_scan", wildcards={"scan": "a"}, input=[], params={"settings": {}}, log=[str(tmp_path / "logs/a.log")]
+        rule="analyse_scan",
+        wildcards={"scan": "a"},
+        input=[],
+        params={"settings": {}},
+        log=[str(tmp_path / "logs/a.log")],
     )
 
 

@@ -7,7 +7,16 @@ import stat
 import numpy as np
 import pytest
 
-from workflow.results import Dataset, atomic_path, read_csv, read_h5, read_json, write_csv, write_h5, write_json
+from workflow.results import (
+    Dataset,
+    atomic_path,
+    read_csv,
+    read_h5,
+    read_json,
+    write_csv,
+    write_h5,
+    write_json,
+)
 
 
 def test_a_writer_that_fails_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -63,7 +72,11 @@ def test_h5_is_documented_and_reproducible(tmp_path):
     force = Dataset(np.arange(3.0), "nN", "repulsive force", ("step",))
     for name in ("a.h5", "b.h5"):
         write_h5(
-            tmp_path / name, {"plastic/closing": {"force": force}}, {"seed": 1}, {}, {"plastic": {"model": "plastic"}}
+            tmp_path / name,
+            {"plastic/closing": {"force": force}},
+            {"seed": 1},
+            {},
+            {"plastic": {"model": "plastic"}},
         )
     groups, attributes, group_attributes = read_h5(tmp_path / "a.h5")
     np.testing.assert_array_equal(groups["plastic/closing"]["force"], [0, 1, 2])

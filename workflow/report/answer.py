@@ -100,9 +100,7 @@ def _law_table(rows: dict[str, Row], samples: list[Row]) -> Table:
             low, high = np.quantile(values, [0.05, 0.95])
             cells.append(f"{show(values.mean())} [{show(low)}, {show(high)}]")
         paper = rows[name]
-        cells.append(
-            f"{show(number(paper['paper_mean']) * factor)} ± {show(number(paper['paper_dev']) * factor)}"
-        )
+        cells.append(f"{show(number(paper['paper_mean']) * factor)} ± {show(number(paper['paper_dev']) * factor)}")
         lines.append(cells)
     return Table(
         "The force–separation law: mean and 5 to 95 % interval over all uncertain inputs",

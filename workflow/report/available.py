@@ -42,9 +42,7 @@ class Results:
         return read_json(self.root / name)
 
     @cache  # noqa: B019
-    def h5(
-        self, name: str
-    ) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
+    def h5(self, name: str) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
         """Groups, root attributes and group attributes of an HDF5 file."""
         return read_h5(self.root / name)
 

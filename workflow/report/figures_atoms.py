@@ -114,18 +114,14 @@ def elastic_distribution(results: Results) -> str | None:
         e_star = next((values for name, values in flat.items() if "e_star" in name.lower()), None)
         grid = np.linspace(min(75, mean - 4 * std), max(107, mean + 4 * std), 300)
         if e_star is not None and np.size(e_star) > 50:
-            other.hist(
-                np.ravel(e_star), bins=50, density=True, color=BLUE, alpha=0.5, label="here", linewidth=0
-            )
+            other.hist(np.ravel(e_star), bins=50, density=True, color=BLUE, alpha=0.5, label="here", linewidth=0)
         else:
             other.plot(grid, _normal(grid, mean, std), color=BLUE, label=f"here, {mean:.1f} ± {std:.1f} GPa")
         other.plot(grid, _normal(grid, 91.0, 3.8), "--", color=ORANGE, label="paper, 91 ± 3.8 GPa")
         other.set(xlabel="E* (GPa)", ylabel="density (1/GPa)", ylim=(0, None))
         other.legend(fontsize=8.5)
 
-    return draw(
-        "fig5", "Bulk moduli of the structures and the effective modulus", plot, (9.4, 3.7), columns=2
-    )
+    return draw("fig5", "Bulk moduli of the structures and the effective modulus", plot, (9.4, 3.7), columns=2)
 
 
 def energy_volume(results: Results) -> str | None:
@@ -175,9 +171,7 @@ def scans(results: Results) -> str | None:
             heights = _thin(groups[name]["heights"])
             size = float(facts[name]["length_x_nm"]) / 1e3
             limit = float(np.quantile(np.abs(heights), 0.995))
-            axis.imshow(
-                heights.T, origin="lower", extent=(0, size, 0, size), cmap="cividis", vmin=-limit, vmax=limit
-            )
+            axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), cmap="cividis", vmin=-limit, vmax=limit)
             rms = float(facts[name].get("rms_nm", np.nan))
             axis.set_title(f"{name.removeprefix('scans/')}: RMS {rms:.2f} nm", fontsize=9)
             axis.set_xlabel("µm", fontsize=8)

@@ -90,9 +90,7 @@ def nominal_loads(results: Results) -> str | None:
         axis.set_title("full range")
         axis.legend(title="largest load", fontsize=8, title_fontsize=8)
 
-    return draw(
-        "fig11", "Closing and opening curves up to several largest loads", plot, (9.4, 4.0), columns=2
-    )
+    return draw("fig11", "Closing and opening curves up to several largest loads", plot, (9.4, 4.0), columns=2)
 
 
 def law_band(results: Results) -> str:
@@ -107,18 +105,14 @@ def law_band(results: Results) -> str:
             gap = column(part, "gap_nm")
             low, high = (column(part, f"pressure_q{q}_GPa") * 1e3 for q in ("05", "95"))
             axis.fill_between(gap, low, high, color=color, alpha=0.16, linewidth=0)
-            axis.plot(
-                gap, column(part, "pressure_GPa") * 1e3, color=color, label=f"{branch}, at central inputs"
-            )
+            axis.plot(gap, column(part, "pressure_GPa") * 1e3, color=color, label=f"{branch}, at central inputs")
         axis.axhline(0, color=SOFT, linewidth=0.8)
         axis.set(xlim=(0, 80), ylim=(-0.2 * top, top), xlabel="mean separation (nm)")
         axis.set_ylabel("contact pressure (MPa)")
         axis.fill_between([], [], [], color=SOFT, alpha=0.3, label="5 to 95 % of the samples")
         axis.legend()
 
-    return draw(
-        "law", "Contact pressure against separation with the spread over uncertain inputs", plot, (6.4, 3.7)
-    )
+    return draw("law", "Contact pressure against separation with the spread over uncertain inputs", plot, (6.4, 3.7))
 
 
 def output_distributions(results: Results) -> str:
@@ -179,9 +173,7 @@ def sensitivity_bars(results: Results) -> str:
             axis.set_xlim(left=0)
         axes[0].legend(fontsize=8)
 
-    return draw(
-        "table3fig", "Elementary effects of each input on each output", plot, (9.8, 5.6), 4, 2, sharey=True
-    )
+    return draw("table3fig", "Elementary effects of each input on each output", plot, (9.8, 5.6), 4, 2, sharey=True)
 
 
 def switch_path(results: Results) -> str:
@@ -241,9 +233,7 @@ def release_distribution(results: Results) -> str:
         axis.set(xlabel="release voltage (V)", ylabel="share of samples per bin")
         axis.legend(fontsize=8.5)
         fraction = column(curve, "landed_fraction")
-        other.fill_between(
-            fraction, column(curve, "low"), column(curve, "high"), color=PURPLE, alpha=0.2, linewidth=0
-        )
+        other.fill_between(fraction, column(curve, "low"), column(curve, "high"), color=PURPLE, alpha=0.2, linewidth=0)
         other.plot(fraction, column(curve, "stiction_probability"), color=PURPLE)
         other.axvline(chosen, color=SOFT, linestyle=":")
         other.annotate("this scene ", (chosen, 0.97), ha="right", va="top", color=SOFT, fontsize=9)
@@ -267,9 +257,7 @@ def validation_points(results: Results) -> str | None:
         axis.axvline(1, color=SOFT, linewidth=0.8)
         axis.axvline(0, color=SKY, linewidth=0.8)
         labels = [OUTPUTS.get(row["output"], (row["output"],))[0] for row in rows]
-        axis.set(
-            yticks=places, ylim=(len(rows) - 0.5, -0.5), xlim=(-1.05, 1.05), xlabel="Q² on independent runs"
-        )
+        axis.set(yticks=places, ylim=(len(rows) - 0.5, -0.5), xlim=(-1.05, 1.05), xlabel="Q² on independent runs")
         axis.set_yticklabels(labels)
 
     return draw("validation", "Predictive quality of the response surfaces", plot, (5.2, 3.2))
@@ -278,9 +266,7 @@ def validation_points(results: Results) -> str | None:
 def law_pressure(h: np.ndarray, row: Row, hamaker: float, rho_a: float, shield: float) -> np.ndarray:
     """Total pressure of a fitted row (GPa), eqs 10 to 13."""
     d_c, C_a, C_r, rho_r = (number(row[key]) for key in ("d_c_nm", "C_a_GPa_nm", "C_r_GPa", "rho_r_nm"))
-    attraction = hamaker / (6 * np.pi * (np.maximum(h, 0) ** 3 + shield**3)) + C_a * np.maximum(
-        d_c + rho_a - h, 0
-    )
+    attraction = hamaker / (6 * np.pi * (np.maximum(h, 0) ** 3 + shield**3)) + C_a * np.maximum(d_c + rho_a - h, 0)
     return C_r * np.expm1(np.maximum(d_c - h, 0) / rho_r) - attraction
 
 

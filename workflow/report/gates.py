@@ -14,8 +14,7 @@ LIMITS = (
     "slope is about 4.4 at mean inputs, unphysical and set by the resolution; with areal (2H+2) it is 0.91.",
     "Time: no creep. The results hold for contacts shorter than the time over which asperities creep.",
     "No liquid films, no charging of the dielectric, no sliding.",
-    "The switch is a lumped plate on a spring; the landed fraction stands for all that a bowed or tilted "
-    "beam does.",
+    "The switch is a lumped plate on a spring; the landed fraction stands for all that a bowed or tilted beam does.",
 )
 
 
@@ -32,20 +31,14 @@ def gates(results: Results) -> list[Gate]:
             found.append(Gate(stage, bool(gate.get("passed")), tuple(gate.get("reasons", ()))))
     if results.has("curves/nominal.h5"):
         facts = results.h5("curves/nominal.h5")[2]
-        bad = [
-            name for name, each in facts.items() if "/" not in name and not bool(each.get("converged", True))
-        ]
-        found.append(
-            Gate("curves", not bad, tuple(f"{name}: some load steps did not converge" for name in bad))
-        )
+        bad = [name for name, each in facts.items() if "/" not in name and not bool(each.get("converged", True))]
+        found.append(Gate("curves", not bad, tuple(f"{name}: some load steps did not converge" for name in bad)))
     if results.has("law/parameters.csv"):
         found.append(_law_gate(results.csv("law/parameters.csv")))
     if results.has("device/switch.json"):
         switch = results.json("device/switch.json")
         errors = switch["checks"].items()
-        off = [
-            f"{name.replace('_', ' ')} {show(value)}" for name, value in errors if not number(value) < 1e-6
-        ]
+        off = [f"{name.replace('_', ' ')} {show(value)}" for name, value in errors if not number(value) < 1e-6]
         found.append(Gate("device", not off, (*off, *switch["warnings"])))
     return found
 
@@ -56,8 +49,6 @@ def _law_gate(rows: list[Row]) -> Gate:
         status = row.get("status", "ok").partition(":")[0]
         counts[status] = counts.get(status, 0) + 1
     bad = {status: count for status, count in counts.items() if status != "ok"}
-    reasons = [
-        f"{count} of {len(rows)} fits: {status.replace('_', ' ')}" for status, count in sorted(bad.items())
-    ]
+    reasons = [f"{count} of {len(rows)} fits: {status.replace('_', ' ')}" for status, count in sorted(bad.items())]
     missing = sum(count for status, count in bad.items() if status != "poor_fit")
     return Gate("law", missing <= 0.05 * len(rows), reasons)

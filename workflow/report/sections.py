@@ -69,8 +69,7 @@ def hardness(results: Results) -> Section:
     )
     section.add(
         atoms.contact_stress(results),
-        "Contact stress against contact length of every closing run; diamonds mark the hardness of runs that "
-        "yielded.",
+        "Contact stress against contact length of every closing run; diamonds mark the hardness of runs that yielded.",
         "Figure 7",
     )
     section.add(
@@ -152,9 +151,7 @@ def topography(results: Results) -> Section:
         + f"The Hurst exponent follows the convention `{found.get('convention', 'profile')}`.",
         SYNTHETIC if synthetic else _used(results, "topography"),
     )
-    section.add(
-        atoms.scans(results), "Height maps after levelling, in nm about their mean.", "Figure 9", wide=True
-    )
+    section.add(atoms.scans(results), "Height maps after levelling, in nm about their mean.", "Figure 9", wide=True)
     section.add(
         atoms.spectra(results),
         "Power spectra of all scans, pooled, with the fits behind q₀, Hurst exponent and RMS.",
@@ -272,8 +269,7 @@ def uncertainty(results: Results) -> Section:
     if results.has("uq/validation.csv"):
         section.add(
             contact.validation_points(results),
-            "How well the response surfaces predict independent runs: 1 is perfect, 0 no better than the "
-            "mean.",
+            "How well the response surfaces predict independent runs: 1 is perfect, 0 no better than the mean.",
         )
         section.files.append("uq/validation.csv")
     section.files += ["uq/outputs.csv", "uq/samples.csv", "uq/surrogate.json"]
@@ -331,8 +327,7 @@ def device(results: Results) -> Section:
     )
     section.add(
         contact.release_distribution(results),
-        "Left: release voltage over the samples of the law. Right: probability that the switch stays "
-        "closed at 0 V.",
+        "Left: release voltage over the samples of the law. Right: probability that the switch stays closed at 0 V.",
         wide=True,
     )
     section.add(
@@ -340,9 +335,7 @@ def device(results: Results) -> Section:
         "Voltage at which the switch is in balance, from the law at central inputs.",
         wide=True,
     )
-    section.blocks.append(
-        Table("The switch", ("quantity", "with adhesion", "without adhesion"), _switch_lines(found))
-    )
+    section.blocks.append(Table("The switch", ("quantity", "with adhesion", "without adhesion"), _switch_lines(found)))
     section.notes += [
         f"{found['samples']['dropped']} of {found['samples']['dropped'] + found['samples']['used']} "
         "samples of the law were left out because their repulsion or adhesion had the wrong sign (a "
@@ -372,9 +365,7 @@ def studies(results: Results) -> list[Section]:
         sections.append(section)
     stability = results.matching("stability/", ".csv")
     if stability:
-        section = Section(
-            "stability", "Stability", "Unusual inputs and what the code does with them.", COMPUTED
-        )
+        section = Section("stability", "Stability", "Unusual inputs and what the code does with them.", COMPUTED)
         for name in stability:
             keys = ("case", "description", "checks", "passed", "detail", "wall_s")
             lines = [[_cell(row.get(key, "")) for key in keys] for row in results.csv(name)]
@@ -433,11 +424,7 @@ def _pair(pair: Any) -> str:
 def _used(results: Results, stage: str) -> str:
     """Whether an input of this scene really comes from the stage."""
     rows = results.csv("inputs.csv") if results.has("inputs.csv") else []
-    return (
-        COMPUTED
-        if any(row["origin"] == stage for row in rows)
-        else f"{COMPUTED}, not used: inputs are {LITERATURE}"
-    )
+    return COMPUTED if any(row["origin"] == stage for row in rows) else f"{COMPUTED}, not used: inputs are {LITERATURE}"
 
 
 def _range(row: Row, name: str) -> str:

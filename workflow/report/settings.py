@@ -9,6 +9,6 @@ class ReportSettings(Settings):
     """The page report.html (docs/report.md)."""
 
     studies: bool = Field(
-        False,
+        default=False,
         description="also run the accuracy and stability studies of all stages and show their tables",
     )

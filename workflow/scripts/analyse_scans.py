@@ -31,9 +31,7 @@ with job(snakemake) as run:
             "profile_q": Dataset(result.profile_q, "1/nm", "wave vector along scan lines", ("profile_q",)),
             "profile_psd": Dataset(result.profile_psd, "nm^3", "spectrum along scan lines", ("profile_q",)),
             "lag": Dataset(result.lag_nm, "nm", "distance along scan lines", ("lag",)),
-            "autocorrelation": Dataset(
-                result.autocorrelation_nm2, "nm^2", "height autocorrelation", ("lag",)
-            ),
+            "autocorrelation": Dataset(result.autocorrelation_nm2, "nm^2", "height autocorrelation", ("lag",)),
             "heights": Dataset(thumbnail(cleaned.heights_nm), "nm", "cleaned heights, thinned", ("x", "y")),
         }
         attributes[name] = {

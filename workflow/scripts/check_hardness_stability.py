@@ -9,6 +9,4 @@ from workflow.results import write_csv
 
 with job(snakemake) as run:
     potentials = [load_potential(path) for path in snakemake.input.potentials]
-    write_csv(
-        snakemake.output.table, stability_rows(potentials, Path(snakemake.params.work), run.progress), COLUMNS
-    )
+    write_csv(snakemake.output.table, stability_rows(potentials, Path(snakemake.params.work), run.progress), COLUMNS)

@@ -34,7 +34,9 @@ with job(snakemake) as run:
                 "bond_spread_A": report["bond_spread_A"],
                 **report["relaxation"],
                 "quenches": len(read_csv(attempts)),
-                "status": "accepted" if report["gate"]["passed"] else "rejected: " + "; ".join(report["gate"]["reasons"]),
+                "status": "accepted"
+                if report["gate"]["passed"]
+                else "rejected: " + "; ".join(report["gate"]["reasons"]),
             }
             for report, attempts in zip(reports, snakemake.input.attempts, strict=True)
         ],

@@ -23,9 +23,7 @@ COLUMNS = {
 with job(snakemake) as run:
     contact = ContactSettings(**snakemake.params.contact)
     uncertainty = UncertaintySettings(**snakemake.params.uncertainty)
-    runs = collocation_runs(
-        from_rows(read_csv(snakemake.input.inputs)), uncertainty, *snakemake.params.bounds
-    )
+    runs = collocation_runs(from_rows(read_csv(snakemake.input.inputs)), uncertainty, *snakemake.params.bounds)
     groups, attributes = {}, {}
     for item, cycle in compute_all(runs, contact, run.progress):
         name = f"run_{item.index:04d}"

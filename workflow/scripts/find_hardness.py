@@ -19,9 +19,7 @@ with job(snakemake) as run:
             for path in (curve_path, witness_path)
         )
         facts = read_json(summary_path)
-        found = find_hardness(
-            curve, witness, facts["wavelength_nm"] ** 2, settings.closing, settings.plasticity
-        )
+        found = find_hardness(curve, witness, facts["wavelength_nm"] ** 2, settings.closing, settings.plasticity)
         rows.append(
             {
                 "run": facts["run"],

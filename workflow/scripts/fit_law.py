@@ -20,8 +20,7 @@ with job(snakemake) as run:
             head = {key: facts[key] for key in ("run", "node", "seed")}
             values = {key: facts[key] for key in names}
             rows += [
-                {**head, **row, **values}
-                for row in fit_stored(curves, name, facts, root["cell_area_nm2"], settings)
+                {**head, **row, **values} for row in fit_stored(curves, name, facts, root["cell_area_nm2"], settings)
             ]
         run.progress((done + 1) / len(snakemake.input.chunks), "curves fitted")
     rows.sort(key=lambda row: row["run"])

@@ -18,9 +18,7 @@ with job(snakemake) as run:
     potential = load_potential(snakemake.input.potential)
     seed = int(snakemake.wildcards.glass)
     started = time.perf_counter()
-    glass = make_glass(
-        settings.material, potential, settings.glass, seed, Path(snakemake.params.work), run.progress
-    )
+    glass = make_glass(settings.material, potential, settings.glass, seed, Path(snakemake.params.work), run.progress)
     properties = glass_properties(settings.material, potential, glass)
     with atomic_path(snakemake.output.atoms) as path:
         write_data(path, glass, {ion: potential.species[ion].mass_u for ion in glass.elements})

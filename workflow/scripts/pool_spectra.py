@@ -54,9 +54,7 @@ with job(snakemake) as run:
             "q": Dataset(data["q"], "1/nm", "wave vector", ("q",)),
             "psd": Dataset(data["psd"], "nm^4", "isotropic spectrum, Hann window", ("q",)),
             "flat_q": Dataset(data["flat_q"], "1/nm", "wave vector", ("flat_q",)),
-            "flat_psd": Dataset(
-                data["flat_psd"], "nm^4", "isotropic spectrum, nearly flat window", ("flat_q",)
-            ),
+            "flat_psd": Dataset(data["flat_psd"], "nm^4", "isotropic spectrum, nearly flat window", ("flat_q",)),
             "profile_q": Dataset(data["profile_q"], "1/nm", "wave vector along scan lines", ("profile_q",)),
             "profile_psd": Dataset(data["profile_psd"], "nm^3", "spectrum along scan lines", ("profile_q",)),
             "lag": Dataset(data["lag"], "nm", "distance along scan lines", ("lag",)),

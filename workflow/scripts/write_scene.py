@@ -10,7 +10,9 @@ from workflow.scene import ROOT
 
 with job(snakemake) as run:
     commit = subprocess.run(
-        ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=40"], capture_output=True, text=True
+        ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=40"],
+        capture_output=True,
+        text=True,
     )
     record = {
         "scene": snakemake.params.scene,

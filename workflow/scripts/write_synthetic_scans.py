@@ -14,9 +14,7 @@ from workflow.results import atomic_path, write_json
 with job(snakemake) as run:
     settings = SyntheticScanSettings(**snakemake.params.settings)
     truths = {}
-    for number, (path, item) in enumerate(
-        zip(snakemake.output.scans, synthetic_scans(settings), strict=True)
-    ):
+    for number, (path, item) in enumerate(zip(snakemake.output.scans, synthetic_scans(settings), strict=True)):
         with atomic_path(path) as temporary:
             write_gwy(temporary, item.scan)
         truths[Path(path).stem] = {"rms_nm": item.truth.rms_nm, "plateau_nm4": item.truth.plateau}

@@ -51,9 +51,7 @@ def test_greenwood_williamson_with_exponential_heights():
     tip = sphere_tip(cell, spacing, radius)
     summits = -sigma * np.log((np.arange(cells**2) + 0.5) / cells**2)
     np.random.default_rng(0).shuffle(summits)
-    heights = np.kron(np.ones((cells, cells)), tip) - np.kron(
-        summits.reshape(cells, cells), np.ones((cell, cell))
-    )
+    heights = np.kron(np.ones((cells, cells)), tip) - np.kron(summits.reshape(cells, cells), np.ones((cell, cell)))
     settings = settings_for(pixels, spacing, prefactor="hertz")
     force, _, asperities, *_ = Contact(heights, INPUTS, settings).move_to(separation, False)
     theory = np.sqrt(np.pi) * cells**2 * 91.0 * np.sqrt(radius) * sigma**1.5 * np.exp(-separation / sigma)

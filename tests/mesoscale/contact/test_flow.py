@@ -49,9 +49,7 @@ def test_no_asperity_is_left_above_its_hardness():
     left = plain_contact.asperities(contact.heights.reshape(128, 128), separation, INPUTS, settings)
     assert len(left) > 3
     for asperity in left:
-        assert asperity.elastic_force <= asperity.hardness * asperity.area * (1 + settings.flow_tolerance) * (
-            1 + 1e-9
-        )
+        assert asperity.elastic_force <= asperity.hardness * asperity.area * (1 + settings.flow_tolerance) * (1 + 1e-9)
 
 
 def test_the_return_mapping_is_the_limit_of_small_increments():

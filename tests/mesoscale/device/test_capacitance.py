@@ -12,9 +12,7 @@ SWITCH = switch_from_settings(DeviceSettings())
 
 def test_without_roughness_it_is_the_plate():
     s = np.array([5.0, 30.0, 3490.0])
-    np.testing.assert_allclose(
-        rough_capacitance_F(SWITCH, s, np.zeros(3)), SWITCH.capacitance_F(s), rtol=1e-12
-    )
+    np.testing.assert_allclose(rough_capacitance_F(SWITCH, s, np.zeros(3)), SWITCH.capacitance_F(s), rtol=1e-12)
 
 
 def test_roughness_raises_it_by_its_second_moment():

@@ -21,15 +21,11 @@ def test_scaled_adhesion_leaves_the_repulsion():
     s = np.linspace(0, 60, 61)
     attraction, repulsion = pressure(s, LAW)
     np.testing.assert_allclose(pressure_GPa(s, scale_adhesion(LAW, 0)), repulsion, rtol=1e-15)
-    np.testing.assert_allclose(
-        pressure_GPa(s, scale_adhesion(LAW, 0.1)), repulsion + 0.1 * attraction, rtol=1e-12
-    )
+    np.testing.assert_allclose(pressure_GPa(s, scale_adhesion(LAW, 0.1)), repulsion + 0.1 * attraction, rtol=1e-12)
 
 
 def test_unphysical_samples_are_found():
-    law = Law(
-        np.full(4, 30.0), 1e-4, np.array([1e-4, -1e-4, 1e-4, np.nan]), np.array([2, 2, 0, 2]), hamaker=0.2
-    )
+    law = Law(np.full(4, 30.0), 1e-4, np.array([1e-4, -1e-4, 1e-4, np.nan]), np.array([2, 2, 0, 2]), hamaker=0.2)
     assert samples_of(law) == 4
     assert physical(law).tolist() == [True, False, False, False]
     assert samples_of(LAW) == 1

@@ -21,9 +21,7 @@ NOMINAL = {
 def test_table_holds_both_branches_with_their_kinks_and_ordered_quantiles():
     rng = np.random.default_rng(1)
     samples = {
-        branch: Law(
-            law.d_c_nm + rng.normal(0, 3, 200), law.C_a_GPa_nm, law.C_r_GPa, law.rho_r_nm, hamaker=0.2
-        )
+        branch: Law(law.d_c_nm + rng.normal(0, 3, 200), law.C_a_GPa_nm, law.C_r_GPa, law.rho_r_nm, hamaker=0.2)
         for branch, law in NOMINAL.items()
     }
     rows = list(law_table(NOMINAL, samples))
@@ -35,21 +33,15 @@ def test_table_holds_both_branches_with_their_kinks_and_ordered_quantiles():
         assert law.d_c_nm in gaps
         assert law.d_c_nm + law.rho_a_nm in gaps
         assert [row["pressure_GPa"] for row in of_branch] == pressure_GPa(gaps, law).tolist()
-        assert all(
-            row["pressure_q05_GPa"] <= row["pressure_q50_GPa"] <= row["pressure_q95_GPa"] for row in of_branch
-        )
+        assert all(row["pressure_q05_GPa"] <= row["pressure_q50_GPa"] <= row["pressure_q95_GPa"] for row in of_branch)
 
 
-@pytest.mark.skipif(
-    shutil.which("ngspice") is None, reason="ngspice is not installed (Debian package ngspice)"
-)
+@pytest.mark.skipif(shutil.which("ngspice") is None, reason="ngspice is not installed (Debian package ngspice)")
 def test_ngspice_reproduces_the_law(tmp_path):
     (tmp_path / "law.sub").write_text(spice_subcircuit(NOMINAL, AREA))
     deck = spice_testbench("law.sub", "out.txt", np.arange(0.0, 120.0, 0.25))
     (tmp_path / "deck.cir").write_text(deck)
-    done = subprocess.run(
-        ["ngspice", "-b", "deck.cir"], cwd=tmp_path, capture_output=True, text=True, timeout=60
-    )
+    done = subprocess.run(["ngspice", "-b", "deck.cir"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stdout + done.stderr
     separation, *forces = np.loadtxt(tmp_path / "out.txt").T
     assert separation.size >= 480
@@ -57,9 +49,7 @@ def test_ngspice_reproduces_the_law(tmp_path):
         np.testing.assert_allclose(force, AREA * pressure_GPa(separation, NOMINAL[branch]), rtol=1e-6)
 
 
-@pytest.mark.skipif(
-    shutil.which("ngspice") is None, reason="ngspice is not installed (Debian package ngspice)"
-)
+@pytest.mark.skipif(shutil.which("ngspice") is None, reason="ngspice is not installed (Debian package ngspice)")
 def test_spice_instance_parameters_replace_the_defaults(tmp_path):
     (tmp_path / "law.sub").write_text(spice_subcircuit(NOMINAL, AREA))
     other = Law(20.0, 3e-4, 1e-4, 2.0, hamaker=0.25)
@@ -86,11 +76,7 @@ def test_openvaf_compiles_the_module_and_gives_force_and_stiffness(tmp_path):
     for opening, branch in enumerate(BRANCHES):
         law = NOMINAL[branch]
         for separation in (0.5, 12.0, 29.3, 33.1, 80.0):
-            values = {
-                f"{name}_{each}": float(getattr(NOMINAL[each], name))
-                for each in BRANCHES
-                for name in PARAMETERS
-            }
+            values = {f"{name}_{each}": float(getattr(NOMINAL[each], name)) for each in BRANCHES for name in PARAMETERS}
             values |= {"hamaker": 0.215, "rho_a_nm": 2.0, "shield_nm": 2.0, "mfactor": 1.0}
             values |= {"area_nm2": AREA, "landed": 1.0, "adhesion": 1.0, "opening": float(opening)}
             residuals, jacobian = module.run_init_eval({**values, "V(s,ref)": separation * 1e-9})

@@ -60,9 +60,7 @@ def test_release_is_a_state_of_balance_at_which_stability_ends():
     switch = beam(landed_fraction=0.005)
     states = solve_switch(switch, CLOSING, OPENING)
     s, volts = states.release_nm[0], states.release_V[0]
-    electrostatic = (
-        VACUUM_PERMITTIVITY * switch.area_m2 * volts**2 / 2 / ((s + switch.dielectric_nm) * NM) ** 2
-    )
+    electrostatic = VACUUM_PERMITTIVITY * switch.area_m2 * volts**2 / 2 / ((s + switch.dielectric_nm) * NM) ** 2
     assert switch.net_force_N(s, OPENING) == pytest.approx(electrostatic, rel=1e-9)
     around = switch.voltage_squared(s + np.array([-1e-3, 0, 1e-3]), OPENING)
     assert around[1] <= around[0]

@@ -39,9 +39,7 @@ def test_recovers_truth_through_tip_noise_tilt_and_drift(method):
 
 
 def test_places_of_different_roughness_widen_the_range_of_rms_only():
-    varied = analyse(
-        spectra(TRUTH.model_copy(update={"rms_variation": 0.5, "small_scans": 5})), TopographySettings()
-    )
+    varied = analyse(spectra(TRUTH.model_copy(update={"rms_variation": 0.5, "small_scans": 5})), TopographySettings())
     low, high = varied.estimates["rms"].scatter
     assert high / low > 1.5
     assert varied.likelihood is not None

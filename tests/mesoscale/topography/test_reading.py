@@ -122,9 +122,7 @@ def test_too_many_holes_are_refused():
 
 
 @pytest.mark.skipif(not AFM.is_dir(), reason="real scans are not shipped")
-@pytest.mark.parametrize(
-    ("name", "length", "rms"), [("example_ps.tiff", 1000.0, 3.93), ("di-6.di", 10000.0, 16.85)]
-)
+@pytest.mark.parametrize(("name", "length", "rms"), [("example_ps.tiff", 1000.0, 3.93), ("di-6.di", 10000.0, 16.85)])
 def test_real_scans_are_read_in_nanometres(name, length, rms):
     scan = read_scan(AFM / name)
     assert scan.lengths_nm == pytest.approx((length, length))

@@ -46,8 +46,7 @@ def test_modes_tell_the_scatter_of_the_spectrum():
     """The variance of a shell's mean over many surfaces is C^2 over its number of modes."""
     rng = np.random.default_rng(2)
     shells = [
-        radial_spectrum(rng.standard_normal((96, 96)), (96.0, 96.0), 9, 0.75, 0.0, skip_lines=True)
-        for _ in range(150)
+        radial_spectrum(rng.standard_normal((96, 96)), (96.0, 96.0), 9, 0.75, 0.0, skip_lines=True) for _ in range(150)
     ]
     # broad bands, because a window makes neighbouring shells move together
     modes = shells[0].modes
@@ -69,9 +68,7 @@ def test_hann_window_returns_steep_slopes(slope):
     heights = surface_patch(truth, 512, 1000.0, np.random.default_rng(3))
     spectrum = radial_spectrum(heights, (1000.0, 1000.0), 25, 0.75, 0.0, skip_lines=True)
     used = (spectrum.q > 0.08) & (spectrum.q < 1.2)
-    measured = -np.polyfit(
-        np.log(spectrum.q[used]), np.log(spectrum.psd[used]), 1, w=np.sqrt(spectrum.modes[used])
-    )[0]
+    measured = -np.polyfit(np.log(spectrum.q[used]), np.log(spectrum.psd[used]), 1, w=np.sqrt(spectrum.modes[used]))[0]
     assert measured == pytest.approx(slope, abs=0.03)
 
 

@@ -13,14 +13,10 @@ from mesoscale.uncertainty.collocation import (
 )
 from mesoscale.uncertainty.surrogate import from_json, legendre, to_json, uniform_moments
 
-RANGES = np.array(
-    [[0.18, 0.25], [78.5, 103.5], [0.7, 3.2], [1.95, 14.8], [0.015, 0.035], [0.5, 1.0], [2, 15]]
-)
+RANGES = np.array([[0.18, 0.25], [78.5, 103.5], [0.7, 3.2], [1.95, 14.8], [0.015, 0.035], [0.5, 1.0], [2, 15]])
 
 
-@pytest.mark.parametrize(
-    ("inputs", "level", "count"), [(7, 1, 15), (6, 1, 13), (7, 2, 113), (1, 2, 5), (12, 2, 313)]
-)
+@pytest.mark.parametrize(("inputs", "level", "count"), [(7, 1, 15), (6, 1, 13), (7, 2, 113), (1, 2, 5), (12, 2, 313)])
 def test_number_of_distinct_nodes(inputs, level, count):
     grid = nodes(inputs, level)
     assert len(grid) == node_count(inputs, level) == count

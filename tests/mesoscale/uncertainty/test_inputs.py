@@ -27,9 +27,7 @@ def stages(passed=True):
     return {
         "hardness": {
             "gate": gate,
-            "inputs": {
-                "h_prime": {"distribution": "uniform", "a": 5.8, "b": 15.0, "correlation": {"h_macro": -0.4}}
-            },
+            "inputs": {"h_prime": {"distribution": "uniform", "a": 5.8, "b": 15.0, "correlation": {"h_macro": -0.4}}},
         },
         "elastic": {
             "gate": {"passed": True, "reasons": []},

@@ -34,8 +34,7 @@ SETTINGS = UncertaintySettings(surface="linear", samples=2000, bootstrap=50, sob
 
 def uniform_table(inputs=3, correlation=None):
     rows = tuple(
-        UncertainInput(f"x{k}", "1", Distribution("uniform", 0.0, 1.0), "literature", "")
-        for k in range(inputs)
+        UncertainInput(f"x{k}", "1", Distribution("uniform", 0.0, 1.0), "literature", "") for k in range(inputs)
     )
     return InputTable(rows, np.eye(inputs) if correlation is None else correlation)
 

@@ -1,0 +1,24 @@
+"""Settings of the mesoscale stages, a module each: every key with its default, unit and accepted range."""
+
+from mesoscale.settings.base import Settings
+from mesoscale.settings.contact import ContactSettings
+from mesoscale.settings.device import DeviceSettings
+from mesoscale.settings.inputs import STAGE_OF_INPUT, TABLE_1, Correlation, InputRow, InputsSettings
+from mesoscale.settings.law import LawSettings
+from mesoscale.settings.topography import SyntheticScanSettings, TopographySettings
+from mesoscale.settings.uncertainty import UncertaintySettings
+
+__all__ = [
+    "STAGE_OF_INPUT",
+    "TABLE_1",
+    "ContactSettings",
+    "Correlation",
+    "DeviceSettings",
+    "InputRow",
+    "InputsSettings",
+    "LawSettings",
+    "Settings",
+    "SyntheticScanSettings",
+    "TopographySettings",
+    "UncertaintySettings",
+]

@@ -1,0 +1,95 @@
+"""Settings of the switch."""
+
+from pydantic import Field
+
+from mesoscale.settings.base import Settings
+
+
+class DeviceSettings(Settings):
+    """Switch driven by the force-separation law (docs/device.md).
+
+    The defaults are the published fixed-fixed beam of the PRISM capacitive switch.
+    """
+
+    length_um: float = Field(
+        default=510.0, gt=0, le=1e5, description="length of the fixed-fixed beam", json_schema_extra={"unit": "um"}
+    )
+    width_um: float = Field(
+        default=123.0, gt=0, le=1e5, description="width of the beam", json_schema_extra={"unit": "um"}
+    )
+    thickness_um: float = Field(
+        default=4.0, gt=0, le=1e3, description="thickness of the beam", json_schema_extra={"unit": "um"}
+    )
+    gap_um: float = Field(
+        default=3.49,
+        gt=0.01,
+        le=1e3,
+        description="distance from the beam at rest to the mean plane of the dielectric",
+        json_schema_extra={"unit": "um"},
+    )
+    youngs_modulus_GPa: float = Field(
+        default=89.3, gt=0, le=2000, description="Young's modulus of the beam", json_schema_extra={"unit": "GPa"}
+    )
+    poisson_ratio: float = Field(
+        default=0.3, ge=0, lt=0.5, description="Poisson's ratio of the beam", json_schema_extra={"unit": "1"}
+    )
+    residual_stress_MPa: float = Field(
+        default=0.0,
+        ge=0,
+        le=2000,
+        description="tensile residual stress of the beam; stiffens it",
+        json_schema_extra={"unit": "MPa"},
+    )
+    spring_N_per_m: float | None = Field(
+        default=None,
+        gt=0,
+        le=1e6,
+        description="stiffness of a parallel-plate switch; null computes it from the beam",
+        json_schema_extra={"unit": "N/m"},
+    )
+    electrode_um2: float | None = Field(
+        default=None,
+        gt=0,
+        le=1e9,
+        description="electrode area; null is the whole beam, length times width",
+        json_schema_extra={"unit": "um^2"},
+    )
+    dielectric_nm: float = Field(
+        default=200.0, ge=0, le=1e5, description="thickness of the dielectric", json_schema_extra={"unit": "nm"}
+    )
+    permittivity: float = Field(
+        default=7.9,
+        ge=1,
+        le=1e5,
+        description="relative permittivity of the dielectric",
+        json_schema_extra={"unit": "1"},
+    )
+    landed_fraction: float = Field(
+        default=0.01,
+        ge=0,
+        le=1,
+        description="share of the electrode area that meets the dielectric as in the law; a bowed or "
+        "tilted beam lands on little of it",
+        json_schema_extra={"unit": "1"},
+    )
+    adhesion_scale: float = Field(
+        default=1.0,
+        ge=0,
+        le=10,
+        description="factor on the attraction of the law; 0.1 brings it near measured dry adhesion",
+        json_schema_extra={"unit": "1"},
+    )
+    hold_voltage_V: float | None = Field(
+        default=None,
+        gt=0,
+        le=1e5,
+        description="voltage of the closed switch; null is its own pull-in voltage",
+        json_schema_extra={"unit": "V"},
+    )
+    samples: int = Field(
+        default=4000,
+        ge=10,
+        le=1_000_000,
+        description="samples of the law taken from the propagation of uncertainty",
+        json_schema_extra={"unit": "1"},
+    )

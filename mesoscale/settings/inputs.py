@@ -1,0 +1,121 @@
+"""Settings of the uncertain inputs."""
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from mesoscale.settings.base import Settings
+
+
+class InputRow(Settings):
+    """One uncertain input: where its distribution comes from and, for literature, what it is."""
+
+    origin: Literal["literature", "hardness", "elastic", "topography"] = Field(
+        default="literature", description="where the distribution comes from: this file, or the result of that stage"
+    )
+    distribution: Literal["uniform", "normal", "truncated_normal", "samples", "fixed"] = Field(
+        default="uniform",
+        description="form of a literature distribution: uniform a..b; normal with mean a and deviation b; "
+        "the same truncated to low..high; samples read from `file`; fixed at a",
+    )
+    a: float | None = Field(default=None, description="lower end, mean, or fixed value, in the input's unit")
+    b: float | None = Field(default=None, description="upper end or standard deviation, in the input's unit")
+    low: float | None = Field(default=None, description="lower truncation of truncated_normal")
+    high: float | None = Field(default=None, description="upper truncation of truncated_normal")
+    file: str | None = Field(default=None, description="CSV with one sample a row in a column named like the input")
+    source: str = Field(default="", description="where the literature values come from, shown in the report")
+
+    @model_validator(mode="after")
+    def _complete(self) -> "InputRow":
+        given = {key for key in ("a", "b", "low", "high", "file") if getattr(self, key) is not None}
+        if self.origin != "literature":
+            if given:
+                raise ValueError(f"origin {self.origin} takes no {', '.join(sorted(given))}; that stage gives them")
+            return self
+        wanted = {
+            "uniform": {"a", "b"},
+            "normal": {"a", "b"},
+            "truncated_normal": {"a", "b", "low", "high"},
+            "samples": {"file"},
+            "fixed": {"a"},
+        }[self.distribution]
+        if given != wanted:
+            raise ValueError(f"distribution {self.distribution} takes exactly {', '.join(sorted(wanted))}")
+        if self.distribution == "uniform" and not (self.a or 0.0) <= (self.b or 0.0):
+            raise ValueError(f"uniform from a = {self.a} to b = {self.b}: a must not exceed b")
+        if "normal" in self.distribution and not (self.b or 0.0) >= 0:
+            raise ValueError(f"deviation b = {self.b} must be >= 0")
+        if self.distribution == "truncated_normal" and not (self.low or 0.0) < (self.high or 0.0):
+            raise ValueError(f"truncation {self.low} .. {self.high}: low must lie below high")
+        return self
+
+
+class Correlation(Settings):
+    """Dependence of two inputs."""
+
+    first: str = Field(description="name of an input")
+    second: str = Field(description="name of another input")
+    rank: float = Field(gt=-1, lt=1, description="Spearman's rank correlation of the two")
+
+
+TABLE_1 = "Kim et al. (2013), Table 1"
+
+
+class InputsSettings(Settings):
+    """Origin and distribution of the uncertain inputs (docs/uncertainty.md)."""
+
+    hamaker: InputRow = Field(
+        default=InputRow(a=0.18, b=0.25, source=TABLE_1), description="Hamaker constant (1e-18 J)"
+    )
+    e_star: InputRow = Field(default=InputRow(origin="elastic"), description="effective elastic modulus E* (GPa)")
+    h_macro: InputRow = Field(
+        default=InputRow(a=0.7, b=3.2, source=TABLE_1), description="hardness of large asperities H_macro (GPa)"
+    )
+    h_prime: InputRow = Field(
+        default=InputRow(origin="hardness"), description="size effect of hardness H' (GPa nm^0.5)"
+    )
+    q0: InputRow = Field(default=InputRow(origin="topography"), description="roll-off wave vector (1/nm)")
+    hurst: InputRow = Field(default=InputRow(origin="topography"), description="Hurst exponent (1)")
+    rms: InputRow = Field(default=InputRow(origin="topography"), description="RMS roughness (nm)")
+    gap_cutoff: InputRow | None = Field(
+        default=None, description="optional eighth input: smallest gap of the attraction D0 (nm)"
+    )
+    correlations: tuple[Correlation, ...] = Field(
+        default=(), description="rank correlations between inputs, besides those that a stage reports itself"
+    )
+
+    @model_validator(mode="after")
+    def _known_names(self) -> "InputsSettings":
+        names = list(self.rows())
+        for pair in self.correlations:
+            for name in (pair.first, pair.second):
+                if name not in names:
+                    raise ValueError(f"correlations: unknown input {name}; accepted: {', '.join(names)}")
+            if pair.first == pair.second:
+                raise ValueError(f"correlations: {pair.first} with itself; name two inputs")
+        for name, row in self.rows().items():
+            if name in ("hamaker", "h_macro", "gap_cutoff") and row.origin != "literature":
+                raise ValueError(f"{name}: no stage computes it; origin must be literature")
+            if row.origin != "literature" and row.origin != STAGE_OF_INPUT[name]:
+                raise ValueError(f"{name}: origin {row.origin}; accepted: literature, {STAGE_OF_INPUT[name]}")
+        return self
+
+    def rows(self) -> dict[str, InputRow]:
+        """The inputs in use, by name."""
+        named = {name: getattr(self, name) for name in (*STAGE_OF_INPUT, "gap_cutoff")}
+        return {name: row for name, row in named.items() if row is not None}
+
+    def origins(self) -> set[str]:
+        """Where the inputs come from; cheap, so that a workflow can decide which stages to run."""
+        return {row.origin for row in self.rows().values()}
+
+
+STAGE_OF_INPUT = {
+    "hamaker": "literature",
+    "e_star": "elastic",
+    "h_macro": "literature",
+    "h_prime": "hardness",
+    "q0": "topography",
+    "hurst": "topography",
+    "rms": "topography",
+}

@@ -1,0 +1,181 @@
+"""Settings of the topography stage."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from mesoscale.settings.base import Settings
+
+
+class SyntheticScanSettings(Settings):
+    """Synthetic AFM scans with known truth, used when no scans are given (docs/topography.md)."""
+
+    seed: int = Field(default=1, ge=0, description="seed of surfaces and artefacts", json_schema_extra={"unit": "1"})
+    small_scans: int = Field(
+        default=8, ge=0, le=100, description="number of small scans", json_schema_extra={"unit": "1"}
+    )
+    small_length_nm: float = Field(
+        default=1000.0, gt=0, le=1e6, description="side of a small scan", json_schema_extra={"unit": "nm"}
+    )
+    large_scans: int = Field(
+        default=3, ge=0, le=100, description="number of large scans", json_schema_extra={"unit": "1"}
+    )
+    large_length_nm: float = Field(
+        default=10000.0, gt=0, le=1e6, description="side of a large scan", json_schema_extra={"unit": "nm"}
+    )
+    pixels: int = Field(
+        default=1024, ge=32, le=8192, description="pixels per side of a scan", json_schema_extra={"unit": "1"}
+    )
+    q0: float = Field(
+        default=0.025,
+        gt=0,
+        le=10,
+        description="true roll-off wave vector (middle of the paper's range)",
+        json_schema_extra={"unit": "1/nm"},
+    )
+    q1: float = Field(
+        default=3.2, gt=0, le=100, description="true end of the power law", json_schema_extra={"unit": "1/nm"}
+    )
+    slope: float = Field(
+        default=2.84,
+        gt=0.5,
+        le=6,
+        description="true fall of the two-dimensional spectrum, C ~ q^-slope (the paper's H 0.92 as 2H+1)",
+        json_schema_extra={"unit": "1"},
+    )
+    rms_nm: float = Field(
+        default=6.0, gt=0, le=1e4, description="true RMS height of a typical place", json_schema_extra={"unit": "nm"}
+    )
+    rms_variation: float = Field(
+        default=0.4,
+        ge=0,
+        le=2,
+        description="standard deviation of ln(RMS) from place to place; the paper's scans span 1.8 to 14 nm",
+        json_schema_extra={"unit": "1"},
+    )
+    tip_radius_nm: float = Field(
+        default=5.0, ge=0, le=1000, description="radius of the paraboloidal tip", json_schema_extra={"unit": "nm"}
+    )
+    noise_nm: float = Field(
+        default=0.03, ge=0, le=100, description="white detector noise per pixel", json_schema_extra={"unit": "nm"}
+    )
+    line_noise_nm: float = Field(
+        default=0.3, ge=0, le=1000, description="random offset of each scan line", json_schema_extra={"unit": "nm"}
+    )
+    tilt_deg: float = Field(
+        default=0.5, ge=0, le=45, description="largest tilt of sample to scanner", json_schema_extra={"unit": "deg"}
+    )
+    drift_nm: float = Field(
+        default=5.0, ge=0, le=1e4, description="slow vertical drift over a scan", json_schema_extra={"unit": "nm"}
+    )
+    step_nm: float = Field(
+        default=0.01, ge=0, le=100, description="height of one digital step", json_schema_extra={"unit": "nm"}
+    )
+
+
+class TopographySettings(Settings):
+    """AFM scans to spectrum and roughness parameters (docs/topography.md)."""
+
+    scans: tuple[str, ...] = Field(
+        default=(),
+        max_length=200,
+        description="AFM files of your own (any format of SurfaceTopography), relative to the working "
+        "directory; empty: synthetic scans with known truth",
+    )
+    channel: str | None = Field(
+        default=None,
+        description="name of the height channel; null takes the only one (or the first of trace and retrace)",
+    )
+    tip_radius_nm: float = Field(
+        default=5.0,
+        ge=0,
+        le=1000,
+        description="radius of the AFM tip, bounds the range of wave vectors that is trusted; 0: no bound",
+        json_schema_extra={"unit": "nm"},
+    )
+    detrend: Literal["none", "plane", "quadratic"] = Field(
+        default="plane", description="what is subtracted from each scan as tilt and scanner bow"
+    )
+    line_alignment: Literal["none", "median"] = Field(
+        default="median", description="what is subtracted from each scan line"
+    )
+    spike_threshold: float = Field(
+        default=12.0,
+        ge=0,
+        le=1e6,
+        description="pixels that differ from the median of their neighbours by more than this many robust "
+        "standard deviations are replaced by it; 0 keeps all",
+        json_schema_extra={"unit": "1"},
+    )
+    max_missing: float = Field(
+        default=0.05,
+        ge=0,
+        le=0.5,
+        description="largest share of missing pixels that is filled from neighbours; above, the scan is refused",
+        json_schema_extra={"unit": "1"},
+    )
+    sections: int = Field(
+        default=100,
+        ge=1,
+        le=10000,
+        description="overlapping sections per scan (a square number)",
+        json_schema_extra={"unit": "1"},
+    )
+    section_fraction: float = Field(
+        default=0.75,
+        ge=0.1,
+        le=1,
+        description="side of a section over side of its scan",
+        json_schema_extra={"unit": "1"},
+    )
+    window_flat: float = Field(
+        default=0.99,
+        ge=0,
+        le=1,
+        description="flat share of the window of the paper's procedure",
+        json_schema_extra={"unit": "1"},
+    )
+    method: Literal["likelihood", "lines"] = Field(
+        default="likelihood",
+        description="estimate that feeds the inputs: maximum likelihood, or the paper's line fits made precise",
+    )
+    ranges: Literal["scatter", "interval"] = Field(
+        default="scatter",
+        description="range that feeds the inputs: scatter between scans (as the paper), or the confidence "
+        "interval of the typical value",
+    )
+    confidence: float = Field(
+        default=0.9,
+        ge=0.5,
+        le=0.999,
+        description="level of the confidence intervals",
+        json_schema_extra={"unit": "1"},
+    )
+    convention: Literal["profile", "areal"] = Field(
+        default="profile",
+        description="how H follows from the slope of the two-dimensional spectrum: profile 2H+1 (the paper), "
+        "areal 2H+2; contact.convention must be the same",
+    )
+    on_doubt: Literal["stop", "warn"] = Field(
+        default="stop",
+        description="what happens to parameters that the scans do not determine well: stop before they are "
+        "used, or warn in the report and use them",
+    )
+    study_repeats: int = Field(
+        default=3,
+        ge=1,
+        le=1000,
+        description="surfaces per point of error against run time",
+        json_schema_extra={"unit": "1"},
+    )
+    study_sets: int = Field(
+        default=10,
+        ge=1,
+        le=10000,
+        description="sets of scans with random truth and artefacts in the recovery study",
+        json_schema_extra={"unit": "1"},
+    )
+    scans_per_job: int = Field(
+        default=6, ge=1, le=200, description="scans analysed by one job", json_schema_extra={"unit": "1"}
+    )
+    synthetic: SyntheticScanSettings = SyntheticScanSettings()
