@@ -25,18 +25,10 @@ except SceneError as error:
 
 RESULTS = f"results/{SCENE.name}"
 
-if workflow.is_main_process and not workflow.dryrun:
-    # two runs of one scene would overwrite each other; the system frees this lock even after SIGKILL
-    try:
-        Path(RESULTS).mkdir(parents=True, exist_ok=True)
-        run_lock = open(f"{RESULTS}/.lock", "w")
-        fcntl.flock(run_lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        print(f"ERROR {RESULTS}: another run of this scene is working here; wait for it or stop it", file=sys.stderr)
-        sys.exit(1)
-    except OSError as error:
-        print(f"ERROR {RESULTS}: cannot write ({error.strerror}); run in a folder you may write to", file=sys.stderr)
-        sys.exit(1)
+writable = next(folder for folder in (Path(RESULTS), *Path(RESULTS).parents) if folder.exists())
+if not (writable.is_dir() and os.access(writable, os.W_OK)):
+    print(f"ERROR {RESULTS}: cannot write to {writable}; run in a folder you may write to", file=sys.stderr)
+    sys.exit(1)
 
 CONFIG = ROOT / "config"  # data files that ship with the project
 STARTED = time.time()
@@ -82,6 +74,18 @@ rule accuracy:
 rule stability:
     input:
         STABILITY,
+
+
+onstart:
+    # two runs of one scene would overwrite each other; the system frees this lock even after SIGKILL
+    global run_lock
+    try:
+        Path(RESULTS).mkdir(parents=True, exist_ok=True)
+        run_lock = open(f"{RESULTS}/.lock", "w")
+        fcntl.flock(run_lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        print(f"ERROR {RESULTS}: another run of this scene is working here; wait for it or stop it", file=sys.stderr)
+        sys.exit(1)
 
 
 onsuccess:

@@ -148,26 +148,25 @@ def write_h5(
     """
     import h5py
 
-    with atomic_path(path) as temporary:
-        # libver and track_times: the same content gives the same bytes
-        with h5py.File(temporary, "w", libver="latest") as file:
-            for group_name, datasets in groups.items():
-                group = file.require_group(group_name)
-                for name, dataset in datasets.items():
-                    values = np.asarray(dataset.values)
-                    if values.ndim != len(dataset.dims):
-                        raise ValueError(f"{path}: {group_name}/{name} has {values.ndim} axes, not {dataset.dims}")
-                    options = {"compression": "gzip", "shuffle": True} if values.size > 4096 else {}
-                    stored = group.create_dataset(name, data=values, track_times=False, **options)
-                    stored.attrs["units"] = dataset.unit
-                    stored.attrs["long_name"] = dataset.long_name
-                    for axis, dim in enumerate(dataset.dims):
-                        stored.dims[axis].label = dim
-            for group_name, values in (group_attributes or {}).items():
-                file.require_group(group_name).attrs.update(_attributes(values))
-            file.attrs.update(_attributes(attributes))
-            file.attrs.update(_attributes({"schema_version": SCHEMA_VERSION, **provenance}))
-            file.attrs["complete"] = True
+    # libver and track_times: the same content gives the same bytes
+    with atomic_path(path) as temporary, h5py.File(temporary, "w", libver="latest") as file:
+        for group_name, datasets in groups.items():
+            group = file.require_group(group_name)
+            for name, dataset in datasets.items():
+                values = np.asarray(dataset.values)
+                if values.ndim != len(dataset.dims):
+                    raise ValueError(f"{path}: {group_name}/{name} has {values.ndim} axes, not {dataset.dims}")
+                options = {"compression": "gzip", "shuffle": True} if values.size > 4096 else {}
+                stored = group.create_dataset(name, data=values, track_times=False, **options)
+                stored.attrs["units"] = dataset.unit
+                stored.attrs["long_name"] = dataset.long_name
+                for axis, dim in enumerate(dataset.dims):
+                    stored.dims[axis].label = dim
+        for group_name, values in (group_attributes or {}).items():
+            file.require_group(group_name).attrs.update(_attributes(values))
+        file.attrs.update(_attributes(attributes))
+        file.attrs.update(_attributes({"schema_version": SCHEMA_VERSION, **provenance}))
+        file.attrs["complete"] = True
 
 
 def _attributes(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -199,8 +199,8 @@ def accepted_values(field: FieldInfo) -> str:
             bounds.append(f"at least {item.min_length} entries")
         if isinstance(item, MaxLen):
             bounds.append(f"at most {item.max_length} entries")
-        if getattr(item, "pattern", None):
-            bounds.append(f"of the form {item.pattern}")
+        if pattern := getattr(item, "pattern", None):
+            bounds.append(f"of the form {pattern}")
     extra = field.json_schema_extra
     unit = extra.get("unit") if isinstance(extra, dict) else None
     if unit and unit != "1":

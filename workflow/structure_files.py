@@ -49,7 +49,7 @@ class ScfStore(MutableMapping[str, dict[str, np.ndarray]]):
 
     def __setitem__(self, key: str, value: dict[str, np.ndarray]) -> None:
         with atomic_path(self._file(key)) as temporary, temporary.open("wb") as stream:
-            np.savez(stream, **value)
+            np.savez(stream, allow_pickle=False, **value)
 
     def __delitem__(self, key: str) -> None:
         self._file(key).unlink()

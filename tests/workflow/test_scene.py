@@ -67,10 +67,10 @@ def test_every_mistake_is_told_at_once(tmp_path):
 
 
 def test_an_unknown_scene_lists_the_known_ones():
-    with pytest.raises(SceneError, match="unknown scene; accepted: ci, .*paper"):
+    with pytest.raises(SceneError, match=r"unknown scene; accepted: ci, .*paper"):
         load_scene("papre")
 
 
 def test_a_missing_scene_file_is_named():
-    with pytest.raises(SceneError, match="nowhere.yaml: no such file"):
+    with pytest.raises(SceneError, match=r"nowhere\.yaml: no such file"):
         load_scene("nowhere.yaml")
