@@ -1,0 +1,28 @@
+"""Settings of the atomistic stages, a module each: every key with its default, unit and accepted range."""
+
+from atomistic.settings.base import Settings
+from atomistic.settings.elastic import DftSettings, ElasticSettings, NitrideGlassSettings, RelaxationSettings
+from atomistic.settings.hardness import (
+    AreaSettings,
+    AsperitySettings,
+    ClosingSettings,
+    FitSettings,
+    GlassSettings,
+    HardnessSettings,
+    YieldSettings,
+)
+
+__all__ = [
+    "AreaSettings",
+    "AsperitySettings",
+    "ClosingSettings",
+    "DftSettings",
+    "ElasticSettings",
+    "FitSettings",
+    "GlassSettings",
+    "HardnessSettings",
+    "NitrideGlassSettings",
+    "RelaxationSettings",
+    "Settings",
+    "YieldSettings",
+]

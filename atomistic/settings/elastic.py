@@ -1,0 +1,188 @@
+"""Effective modulus E* from density functional theory (docs/elastic.md)."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, field_validator
+
+from atomistic.settings.base import Settings
+
+
+class NitrideGlassSettings(Settings):
+    """Melt and quench of a small amorphous Si3N4 cell (Tersoff potential, constant volume)."""
+
+    structures: int = Field(
+        default=8, ge=1, le=1000, description="amorphous structures of the ensemble", json_schema_extra={"unit": "1"}
+    )
+    formula_units: int = Field(
+        default=4, ge=2, le=64, description="formula units of 7 atoms per cell", json_schema_extra={"unit": "1"}
+    )
+    seed: int = Field(default=1, ge=0, le=1_000_000, description="seed of the ensemble")
+    melt_temperature_K: float = Field(
+        default=5000, ge=1500, le=12000, description="temperature of the melt", json_schema_extra={"unit": "K"}
+    )
+    melt_ps: float = Field(default=5, gt=0, le=10_000, description="time in the melt", json_schema_extra={"unit": "ps"})
+    quench_rate_K_ps: float = Field(
+        default=50, gt=0, le=5000, description="cooling rate", json_schema_extra={"unit": "K/ps"}
+    )
+    final_temperature_K: float = Field(
+        default=300, ge=10, le=1000, description="end of the quench", json_schema_extra={"unit": "K"}
+    )
+    timestep_fs: float = Field(default=0.5, ge=0.1, le=1, description="time step", json_schema_extra={"unit": "fs"})
+    attempts: int = Field(
+        default=6,
+        ge=1,
+        le=100,
+        description="quenches per structure until one passes the gates",
+        json_schema_extra={"unit": "1"},
+    )
+
+
+class DftSettings(Settings):
+    """Engine and numerical parameters of the density functional calculations."""
+
+    engine: Literal["pyscf", "espresso", "vasp", "abinit", "cp2k", "gpaw", "siesta"] = Field(
+        default="pyscf",
+        description="pyscf (built in), or an ASE calculator configured in your own ASE configuration file",
+    )
+    parameters: dict[str, str | float | int | bool | dict[str, str | float | int | bool]] = Field(
+        default={}, description="keyword parameters of an ASE calculator other than pyscf; no commands"
+    )
+    numerics: Literal["cached-grid", "multigrid", "fftdf"] = Field(
+        default="cached-grid", description="how PySCF's potential is evaluated: ours (fast), or one of its own"
+    )
+    basis: str = Field(
+        default="gth-dzvp-molopt-sr", pattern=r"^[a-z0-9-]+$", description="GTH basis set by PySCF's name"
+    )
+    cutoff_Ha: float = Field(
+        default=100,
+        ge=20,
+        le=1000,
+        description="plane-wave cutoff of the density",
+        json_schema_extra={"unit": "hartree"},
+    )
+    tolerance_Ha: float = Field(
+        default=1e-6,
+        gt=0,
+        le=1e-3,
+        description="SCF convergence of the energy per cell",
+        json_schema_extra={"unit": "hartree"},
+    )
+    max_cycles: int = Field(
+        default=50, ge=1, le=1000, description="SCF cycles before giving up", json_schema_extra={"unit": "1"}
+    )
+
+
+class RelaxationSettings(Settings):
+    """Relaxation of a glass by DFT before its E(V) scan: positions, and the edge of the cube."""
+
+    basis: str = Field(
+        default="gth-szv-molopt-sr",
+        pattern=r"^[a-z0-9-]+$",
+        description="GTH basis set during relaxation, by PySCF's name",
+    )
+    cutoff_Ha: float = Field(
+        default=60,
+        ge=20,
+        le=1000,
+        description="plane-wave cutoff during relaxation",
+        json_schema_extra={"unit": "hartree"},
+    )
+    tolerance_Ha: float = Field(
+        default=1e-8,
+        gt=0,
+        le=1e-3,
+        description="SCF convergence where forces are needed",
+        json_schema_extra={"unit": "hartree"},
+    )
+    force_eV_A: float = Field(
+        default=0.2, gt=0, le=5, description="largest force left on an atom", json_schema_extra={"unit": "eV/A"}
+    )
+    max_steps: int = Field(
+        default=15, ge=0, le=500, description="ionic steps; 0 keeps the cheap potential's geometry",
+        json_schema_extra={"unit": "1"},
+    )  # fmt: skip
+
+    def applied_to(self, dft: DftSettings) -> DftSettings:
+        """The engine with the cheaper parameters of the relaxation."""
+        return dft.model_copy(
+            update={"basis": self.basis, "cutoff_Ha": self.cutoff_Ha, "tolerance_Ha": self.tolerance_Ha}
+        )
+
+    def tight(self, dft: DftSettings) -> DftSettings:
+        """The engine at full quality, converged tightly enough for forces."""
+        return dft.model_copy(update={"tolerance_Ha": min(self.tolerance_Ha, dft.tolerance_Ha)})
+
+
+class ElasticSettings(Settings):
+    """Effective modulus E* from density functional theory (docs/elastic.md)."""
+
+    material: str = Field(
+        default="silicon_nitride",
+        pattern=r"^[A-Za-z0-9_-]+$",
+        description="file in config/materials: the computed body",
+    )
+    counter_body: str = Field(
+        default="titanium",
+        pattern=r"^[A-Za-z0-9_-]+$",
+        description="file in config/materials: the other body, from experiment",
+    )
+    crystals: tuple[str, ...] = Field(
+        default=("beta",), description="crystals of the material scanned beside the glass, to anchor the engine"
+    )
+    strains: tuple[Annotated[float, Field(gt=-0.2, lt=0.2)], ...] = Field(
+        default=(-0.03, -0.015, 0.0, 0.015, 0.03),
+        min_length=5,
+        description="linear isotropic strains of an E(V) scan; at least five",
+        json_schema_extra={"unit": "1"},
+    )
+    lda_structures: int = Field(
+        default=4, ge=0, le=1000, description="glasses also computed with LDA", json_schema_extra={"unit": "1"}
+    )
+    relaxed_structures: int = Field(
+        default=2, ge=0, le=1000, description="glasses also computed with ions relaxed at every strain",
+        json_schema_extra={"unit": "1"},
+    )  # fmt: skip
+    relaxed_force_eV_A: float = Field(
+        default=0.1,
+        gt=0,
+        le=5,
+        description="largest force left when ions relax at a strain",
+        json_schema_extra={"unit": "eV/A"},
+    )
+    ions: Literal["clamped", "relaxed"] = Field(
+        default="clamped",
+        description="which bulk moduli go into E* (the paper's scaling of all positions is 'clamped')",
+    )
+    poisson_ratio: tuple[float, float] = Field(
+        default=(0.15, 0.25),
+        description="range of the glass's Poisson ratio (Kim et al. 2013)",
+        json_schema_extra={"unit": "1"},
+    )
+    min_structures: int = Field(
+        default=4,
+        ge=2,
+        le=1000,
+        description="trusted bulk moduli below which E* fails its gate",
+        json_schema_extra={"unit": "1"},
+    )
+    samples: int = Field(
+        default=20_000, ge=100, le=10_000_000, description="samples of E*", json_schema_extra={"unit": "1"}
+    )
+    seed: int = Field(default=1, ge=0, le=1_000_000, description="seed of the samples of E*")
+    glass: NitrideGlassSettings = NitrideGlassSettings()
+    dft: DftSettings = DftSettings()
+    relaxation: RelaxationSettings = RelaxationSettings()
+
+    @field_validator("poisson_ratio")
+    @classmethod
+    def _stable_solid(cls, value: tuple[float, float]) -> tuple[float, float]:
+        if not -1 < value[0] < value[1] < 0.5:
+            raise ValueError("two increasing numbers between -1 and 0.5: at 0.5 a solid has no finite E = 3B(1-2ν)")
+        return value
+
+    @field_validator("strains")
+    @classmethod
+    def _different(cls, value: tuple[float, ...]) -> tuple[float, ...]:
+        if len(set(value)) != len(value):
+            raise ValueError("strains must differ from each other")
+        return value
