@@ -28,7 +28,7 @@ class Workflow:
         self.environment = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache")}
 
     def _command(self, scene: str, targets: tuple[str, ...], options: tuple[str, ...]) -> list[str]:
-        return [*SNAKEMAKE, "--directory", str(self.folder), *options, *targets, "--config", f"scene={scene}"]
+        return [*SNAKEMAKE, "--directory", str(self.folder), *targets, *options, "--config", f"scene={scene}"]
 
     def run(self, scene: str, *targets: str, options: tuple[str, ...] = ()) -> subprocess.CompletedProcess[str]:
         """Run to the end."""

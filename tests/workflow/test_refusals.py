@@ -2,8 +2,6 @@
 
 import fcntl
 
-import pytest
-
 
 def errors(done):
     return [line for line in (done.stdout + done.stderr).splitlines() if line.startswith("ERROR")]
@@ -44,8 +42,3 @@ def test_two_runs_of_one_scene(workflow_in):
     assert done.returncode != 0
     (line,) = errors(done)
     assert "another run of this scene" in line
-
-
-@pytest.mark.parametrize("scene", ["ci", "paper", "reduced", "full"])
-def test_every_shipped_scene_plans(workflow_in, scene):
-    assert workflow_in.planned(scene)

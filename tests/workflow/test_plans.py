@@ -1,0 +1,59 @@
+"""What a scene schedules: everything it needs and nothing else."""
+
+from functools import cache
+
+import pytest
+
+HARDNESS = {"make_glass", "run_closing", "find_hardness", "fit_hardness"}
+ELASTIC = {"make_amorphous", "make_crystal", "relax_amorphous", "scan_volumes", "fit_bulk_moduli", "combine_e_star"}
+TOPOGRAPHY = {"write_synthetic_scans", "analyse_scans", "pool_spectra"}
+MESOSCALE = {"collect_inputs", "compute_nominal", "compute_runs", "fit_law", "propagate_uncertainty"}
+REPORT = {"rank_sensitivity", "solve_switch", "export_law", "render_report"}
+
+LITERATURE = """
+inputs:
+  e_star: {origin: literature, distribution: normal, a: 91, b: 3.8}
+  h_prime: {origin: literature, a: 1.95, b: 14.8}
+"""
+
+
+@pytest.fixture(scope="module")
+def plan(make_workflow, tmp_path_factory):
+    """Names of the rules that a scene would run from nothing, by scene and target."""
+    workflow = make_workflow(tmp_path_factory.mktemp("plans"))
+
+    @cache
+    def rules(scene: str, *targets: str) -> set[str]:
+        if scene == "literature":
+            path = workflow.folder / "literature.yaml"
+            path.write_text(LITERATURE)
+            scene = str(path)
+        return set(workflow.planned(scene, *targets))
+
+    return rules
+
+
+@pytest.mark.parametrize("scene", ["ci", "reduced", "full"])
+def test_these_scenes_run_from_atoms_and_scans_to_the_report(plan, scene):
+    assert plan(scene) >= HARDNESS | ELASTIC | TOPOGRAPHY | MESOSCALE | REPORT
+
+
+def test_scene_paper_runs_no_atomistic_and_no_afm_job(plan):
+    assert not (HARDNESS | ELASTIC | TOPOGRAPHY) & plan("paper")
+    assert plan("paper") >= MESOSCALE | REPORT
+
+
+def test_an_input_from_literature_schedules_no_job_that_would_compute_it(plan):
+    assert not (HARDNESS | ELASTIC) & plan("literature")
+    assert plan("literature") >= TOPOGRAPHY | MESOSCALE | REPORT
+
+
+def test_a_target_runs_its_stage_and_what_that_needs(plan):
+    rules = plan("paper", "law")
+    assert {"collect_inputs", "compute_runs", "fit_law"} <= rules
+    assert not REPORT & rules
+
+
+def test_studies_run_only_where_they_are_asked_for(plan):
+    for scene in ("ci", "paper", "reduced", "full"):
+        assert not [rule for rule in plan(scene) if rule.endswith(("accuracy", "stability", "audit"))]
