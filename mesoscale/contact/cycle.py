@@ -1,6 +1,7 @@
 """One closing-opening cycle of a rough contact: the entry point of the mesoscale model."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
@@ -77,6 +78,7 @@ def run_cycle(
     max_force_nN: float | None = None,
     heights: np.ndarray | None = None,
     keep_surface: bool = False,
+    hold: "Callable[[Contact, Row], list[Row]] | None" = None,
 ) -> Cycle:
     """Close a rough surface onto a flat up to a force, and open it again.
 
@@ -93,6 +95,9 @@ def run_cycle(
         earlier cycle; it is not changed. Contact is at its minima.
     keep_surface
         Return the surface as it is after the cycle.
+    hold
+        What happens between closing and opening (`mesoscale.contact.history`): takes the contact and its
+        last row, returns the rows that follow at the end of the closing branch.
 
     Raises
     ------
@@ -126,6 +131,8 @@ def run_cycle(
     first_contact = contact.touching_separation
     approach = _approach(contact)
     closing = trace(contact, settings.force_steps, plastic, stop_force=force)
+    if hold is not None:
+        closing.rows += hold(contact, closing.rows[-1])
     last = closing.rows[-1]
     if contact.changed_sites > 0 and last.force > 0:
         contact.lift()

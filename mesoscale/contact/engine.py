@@ -256,7 +256,7 @@ def trace(
         moved = contact.move_to(target, with_flow)
         if moved.force > final * (1.0 + contact.FORCE_TOLERANCE):
             contact.back()
-            target = _solve_force(contact, separation, target, force, moved.force, final, with_flow, smallest)
+            target = solve_force(contact, separation, target, force, moved.force, final, with_flow, smallest)
             accept(target, contact.move_to(target, with_flow))
             break
         rise = moved.force - force
@@ -272,7 +272,7 @@ def trace(
     return path
 
 
-def _solve_force(contact, start, beyond, low_force, high_force, wanted, with_flow, smallest) -> float:
+def solve_force(contact, start, beyond, low_force, high_force, wanted, with_flow, smallest) -> float:
     """Separation at which the force is the wanted one: regula falsi (Illinois), each trial from ``start``."""
     high, low = start, beyond  # force below, above the wanted one
     f_high, f_low = low_force - wanted, high_force - wanted
