@@ -14,7 +14,7 @@ run: setup
 	@$(RUN) snakemake --workflow-profile workflow/profiles/local $(TARGET) --config scene="$(SCENE)"
 
 test: setup
-	$(RUN) pytest
+	$(RUN) pytest --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 
 bench: setup
 	$(RUN) python -m benchmarks

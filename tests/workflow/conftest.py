@@ -20,6 +20,11 @@ SNAKEMAKE = [
 ]
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Start the longest tests first, so that the others run beside them."""
+    items.sort(key=lambda item: "test_end_to_end" not in item.nodeid)
+
+
 class Workflow:
     """Snakemake on this checkout's Snakefile, with its results in `folder`."""
 

@@ -1,0 +1,130 @@
+"""Scene `ci`, real codes from melt to report: complete, reproducible, resumable.
+
+One run is left alone; a second is killed with SIGKILL once in each stage and resumed. Both must end with the
+same results.
+"""
+
+import csv
+import json
+import re
+import shutil
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+# one job of each stage; its log is opened when it starts, so killing at its first sight interrupts that very job
+STAGES = {
+    "hardness": "run_closing",
+    "elastic": "scan_volumes",
+    "topography": "analyse_scans",
+    "inputs": "collect_inputs",
+    "curves": "compute_nominal",
+    "law": "compute_runs",
+    "uq": "propagate_uncertainty",
+    "sensitivity": "rank_sensitivity",
+    "device": "solve_switch",
+    "report": "render_report",
+}
+MEASURED = re.compile(r"wall|cpu_s|peak_rss|seconds|_s$")  # machine time is no result
+RESULTS = (
+    "scene.yaml",
+    "hardness/points.csv",
+    "hardness/fit.json",
+    "elastic/points.csv",
+    "elastic/bulk_moduli.csv",
+    "elastic/e_star.json",
+    "elastic/e_star.h5",
+    "topography/spectra.h5",
+    "topography/parameters.json",
+    "inputs.csv",
+    "curves/nominal.h5",
+    "law/parameters.csv",
+    "uq/outputs.csv",
+    "uq/sensitivity.csv",
+    "uq/surrogate.json",
+    "uq/validation.csv",
+    "report.html",
+)
+
+
+@pytest.fixture(scope="module")
+def finished(make_workflow, tmp_path_factory):
+    """Scene `ci`, run once without interruption."""
+    workflow = make_workflow(tmp_path_factory.mktemp("finished"))
+    done = workflow.run("ci")
+    assert done.returncode == 0, done.stdout + done.stderr
+    return workflow
+
+
+def datasets(file: h5py.File) -> dict[str, h5py.Dataset]:
+    """Every dataset of a file by its path in it."""
+    found = {}
+    file.visititems(lambda name, item: found.update({name: item}) if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def content(path: Path):
+    """A result file without the machine times in it."""
+    if path.suffix == ".csv":
+        with path.open(newline="", encoding="utf-8") as stream:
+            rows = list(csv.DictReader(stream))
+        return [{key: value for key, value in row.items() if not MEASURED.search(key)} for row in rows]
+    if path.suffix == ".json":
+        return without_times(json.loads(path.read_text(encoding="utf-8")))
+    if path.suffix == ".h5":
+        with h5py.File(path) as file:
+            return {name: item[()].tobytes() for name, item in datasets(file).items()}
+    return path.read_bytes()
+
+
+def without_times(value):
+    if isinstance(value, dict):
+        return {key: without_times(item) for key, item in value.items() if not MEASURED.search(key)}
+    return [without_times(item) for item in value] if isinstance(value, list) else value
+
+
+def test_every_promised_result_is_there(finished):
+    missing = [name for name in RESULTS if not (finished.folder / "results/ci" / name).is_file()]
+    assert not missing
+
+
+def test_every_h5_file_is_complete_and_has_units(finished):
+    for path in (finished.folder / "results/ci").rglob("*.h5"):
+        with h5py.File(path) as file:
+            assert file.attrs["complete"], path
+            unlabelled = [name for name, item in datasets(file).items() if "units" not in item.attrs]
+            assert not unlabelled, path
+
+
+def test_a_second_run_has_nothing_to_do(finished):
+    assert finished.planned("ci") == {}
+
+
+def test_a_deleted_stage_is_made_again_with_what_depends_on_it(finished):
+    path = finished.folder / "results/ci/law/parameters.csv"
+    kept = path.with_suffix(".kept")
+    shutil.copy2(path, kept)
+    path.unlink()
+    try:
+        planned = finished.planned("ci")
+    finally:
+        kept.replace(path)
+    assert {"fit_law", "propagate_uncertainty", "render_report"} <= set(planned)
+    assert not {"compute_runs", "run_closing", "scan_volumes", "analyse_scans"} & set(planned)
+
+
+def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_workflow, tmp_path):
+    workflow = make_workflow(tmp_path)
+    logs = tmp_path / "results/ci/logs"
+    for job in STAGES.values():
+        if not list(logs.glob(f"{job}*.log")):  # a run killed in another stage may have come this far
+            assert workflow.kill_when("ci", lambda job=job: bool(list(logs.glob(f"{job}*.log")))), job
+    done = workflow.run("ci")
+    assert done.returncode == 0, done.stdout + done.stderr
+    for name in RESULTS:
+        if name in ("scene.yaml", "report.html"):
+            continue
+        first, second = (content(folder / "results/ci" / name) for folder in (finished.folder, tmp_path))
+        np.testing.assert_equal(second, first, err_msg=name)
