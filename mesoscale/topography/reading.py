@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
+from mesoscale.topography.light_readers import light_reader
 from mesoscale.topography.scan import Scan
 
 REFUSED_FORMATS = frozenset({"npy", "npz"})  # NumPy files hold no physical size and may hold pickles
@@ -36,27 +37,43 @@ def read_scan(path: str | Path, name: str | None = None, channel: str | None = N
     path = Path(path)
     if not path.is_file():
         raise InputError(f"{path}: no such scan; correct topography.scans in the scene")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # readers warn of metadata that nothing here uses
-        reader = _open(path)
-        try:
-            info, note = _height_channel(path, list(reader.channels), channel)
-            return _scan(path, name or path.stem, info, note)
-        finally:
-            close = getattr(reader, "close", None)
-            if close:
-                close()
-
-
-def _open(path: Path) -> Any:
-    from SurfaceTopography.IO import readers
-    from SurfaceTopography.IO.Reader import MagicMatch
-
     try:
         with path.open("rb") as stream:
             start = stream.read(MAGIC_BYTES)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); make the file readable") from None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # readers warn of metadata that nothing here uses
+        with light_reader(path) as light:
+            reader = _opened(light, path)
+            if reader is not None:
+                return _read(reader, path, name, channel)
+        return _read(_open(path, start), path, name, channel)
+
+
+def _opened(reader: type[Any] | None, path: Path) -> Any:
+    """The file in a reader; None where it is of another format than its suffix says."""
+    try:
+        return reader(str(path)) if reader else None
+    except Exception:  # readers of foreign formats fail in many ways
+        return None
+
+
+def _read(reader: Any, path: Path, name: str | None, channel: str | None) -> Scan:
+    try:
+        info, note = _height_channel(path, list(reader.channels), channel)
+        return _scan(path, name or path.stem, info, note)
+    finally:
+        close = getattr(reader, "close", None)
+        if close:
+            close()
+
+
+def _open(path: Path, start: bytes) -> Any:
+    """The file in the first of all readers that understands it."""
+    from SurfaceTopography.IO import readers
+    from SurfaceTopography.IO.Reader import MagicMatch
+
     reasons = []
     for reader in readers:
         match = reader.can_read(start)
