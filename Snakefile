@@ -47,13 +47,6 @@ def needed(stage):
     return stage in SCENE.stages()
 
 
-rule all:
-    default_target: True
-    input:
-        f"{RESULTS}/report.html",
-        f"{RESULTS}/scene.yaml",
-
-
 include: "workflow/rules/scene.smk"
 include: "workflow/rules/hardness.smk"
 include: "workflow/rules/elastic.smk"
@@ -63,7 +56,18 @@ include: "workflow/rules/curves.smk"
 include: "workflow/rules/law.smk"
 include: "workflow/rules/uncertainty.smk"
 include: "workflow/rules/device.smk"
+include: "workflow/rules/history.smk"
+include: "workflow/rules/coupling.smk"
 include: "workflow/rules/report.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        f"{RESULTS}/report.html",
+        # named too, so that what was deleted is made again although the report is there
+        report_inputs(),
+        rules.fit_law.input,
 
 
 rule accuracy:
