@@ -12,7 +12,7 @@ stated definition (`contact_separation`), and C_r and rho_r are fitted given d_c
 """
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -207,16 +207,12 @@ def fit_branch(
     if not np.all(relative_error < settings.max_relative_error):
         return _without_repulsion(fit, "not_identifiable: relative error of C_r or rho_r above the gate")
     if residual > settings.max_residual:
-        return _with_status(fit, "poor_fit")
+        return replace(fit, status="poor_fit")
     return fit
 
 
-def _with_status(fit: LawFit, status: str) -> LawFit:
-    return LawFit(*fit.parameters.tolist(), fit.covariance, fit.residual, status)
-
-
 def _without_repulsion(fit: LawFit, status: str) -> LawFit:
-    return LawFit(fit.d_c_nm, fit.C_a_GPa_nm, np.nan, np.nan, fit.covariance, fit.residual, status)
+    return replace(fit, C_r_GPa=np.nan, rho_r_nm=np.nan, status=status)
 
 
 def _fit_attraction(

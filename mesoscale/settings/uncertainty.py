@@ -31,14 +31,14 @@ class UncertaintySettings(Settings):
         description="central share of an unbounded distribution that the nodes span",
         json_schema_extra={"unit": "1"},
     )
-    chunk_runs: int = Field(default=60, ge=1, le=100000, description="contact cycles per job and file")
+    chunk_runs: int = Field(default=50, ge=1, le=100000, description="contact cycles per job and file")
     samples: int = Field(default=10000, ge=10, le=10**7, description="samples of the inputs sent through the surface")
     sample_seed: int = Field(default=1, ge=0, le=2**31, description="seed of those samples")
     sobol_samples: int = Field(
         default=2048, ge=64, le=10**6, description="size of each of the n + 2 samples behind the Sobol' indices"
     )
     audit_seeds: int = Field(
-        default=4, ge=1, le=1000, description="surfaces per reading of the reproduction audit (target `audit`)"
+        default=20, ge=1, le=1000, description="surfaces per reading of the reproduction audit (target `audit`)"
     )
     audit_readings: tuple[str, ...] = Field(
         default=(),
@@ -54,5 +54,23 @@ class UncertaintySettings(Settings):
         ge=0,
         le=10**6,
         description="independent cycles, each with its own inputs and surface: they train the regression "
-        "surface and validate all of them; 10000 or more make a brute-force reference",
+        "surface and validate all of them",
+    )
+    morris_trajectories: int = Field(
+        default=24,
+        ge=2,
+        le=10000,
+        description="trajectories of Morris' elementary effects, through the surface and, in the study, the engine",
+    )
+    study_runs: int = Field(
+        default=800,
+        ge=100,
+        le=10**6,
+        description="direct runs that are the truth of the study of surfaces (target `work_precision`)",
+    )
+    study_replicates: int = Field(
+        default=150,
+        ge=10,
+        le=10**6,
+        description="direct runs repeated on another surface each: the surface's share of the variance",
     )

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty.chunks import CHOICES
 from mesoscale.uncertainty.collocation import elementary_effects, level1_surface
+from mesoscale.uncertainty.designs import Run
 from mesoscale.uncertainty.distributions import InputTable
 from mesoscale.uncertainty.paper_tables import short_name
-from mesoscale.uncertainty.runs import OUTPUTS, Run, compute_all, fit_cycle
+from mesoscale.uncertainty.runs import OUTPUTS, compute_all, fit_cycle
 
 Array = NDArray[np.float64]
 
@@ -95,7 +96,7 @@ def rank(
         y = _arrange(chosen)
         surfaces = _moments(y, ranges)
         # mean, deviation, mu*: averages over the seeds that have all nodes
-        complete = np.isfinite(surfaces).all(axis=(1,))
+        complete = np.asarray(np.isfinite(surfaces).all(axis=1))
         usable = complete.sum(axis=0)
         with np.errstate(invalid="ignore", divide="ignore"):
             average = np.where(complete[:, None], surfaces, 0.0).sum(axis=0) / usable

@@ -36,6 +36,11 @@ def chunk_bounds(runs: int, chunk_runs: int) -> dict[str, tuple[int, int]]:
     return {f"{k:03d}": (start, min(start + chunk_runs, runs)) for k, start in enumerate(starts)}
 
 
+def full_chunks(runs: int, chunk_runs: int) -> dict[str, tuple[int, int]]:
+    """As `chunk_bounds`, the last chunk filled up, so that more runs leave every chunk as it is."""
+    return chunk_bounds(-(-runs // chunk_runs) * chunk_runs, chunk_runs)
+
+
 def contact_readings() -> list[str]:
     """Names of all readings of the contact model that can be computed, values joined by dots.
 

@@ -81,7 +81,9 @@ def _literature(name: str, row: InputRow) -> Distribution:
 
 
 def _distribution(entry: Mapping[str, Any], where: str) -> Distribution:
-    numbers = {key: float(entry[key]) for key in ("a", "b", "low", "high") if entry.get(key) is not None}
+    numbers: dict[str, Any] = {
+        key: float(entry[key]) for key in ("a", "b", "low", "high") if entry.get(key) is not None
+    }
     if entry.get("distribution") not in ("uniform", "normal", "truncated_normal", "fixed") or "a" not in numbers:
         raise InputError(
             f"{where}: distribution {entry.get('distribution')} with {numbers} is not usable; "
@@ -156,7 +158,7 @@ def from_rows(rows: Iterable[Mapping[str, str]]) -> InputTable:
     inputs, pairs = [], {}
     for row in rows:
         kind, _, samples = row["distribution"].partition(" ")
-        numbers = {key: float(row[key]) for key in ("a", "b", "low", "high") if row.get(key)}
+        numbers: dict[str, Any] = {key: float(row[key]) for key in ("a", "b", "low", "high") if row.get(key)}
         values = np.array(json.loads(samples)) if samples else np.empty(0)
         inputs.append(
             UncertainInput(
@@ -170,3 +172,8 @@ def from_rows(rows: Iterable[Mapping[str, str]]) -> InputTable:
         for other, rank in json.loads(row.get("correlation") or "{}").items():
             pairs[row["parameter"], other] = rank
     return InputTable(tuple(inputs), correlation_matrix([row.name for row in inputs], pairs))
+
+
+def medians(rows: Iterable[Mapping[str, str]]) -> dict[str, float]:
+    """Central inputs by name (the means, where a distribution is symmetric) from the rows of inputs.csv."""
+    return {row.name: float(row.distribution.quantile(0.5)) for row in from_rows(rows).rows}

@@ -14,7 +14,8 @@ from mesoscale.uncertainty.collocation import elementary_effects, interpolating_
 from mesoscale.uncertainty.distributions import InputTable
 from mesoscale.uncertainty.paper_tables import short_name
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
-from mesoscale.uncertainty.surrogate import Surrogate, to_json
+from mesoscale.uncertainty.scatter import with_scatter
+from mesoscale.uncertainty.surrogate import Surrogate, evaluate, to_json
 
 Array = NDArray[np.float64]
 
@@ -109,12 +110,20 @@ class Propagation:
     """Samples of the inputs, shape (m, n)."""
     outputs: Array
     """Closing and opening parameters of every sample through the exported surfaces, shape (m, 8)."""
+    cells: Array
+    """The same of single cells, with the scatter from one surface to the next; NaN without direct runs."""
     surfaces: list[Surrogate | None]
     """One per SURFACES; None where no seed has all nodes."""
     by_seed: Array
     """Mean and deviation of the eight outputs of Table 2 of every seed's own surface, shape (seeds, 2, 8)."""
-    seed_share: Array
-    """Share of the variance of each output of Table 2 that is scatter between seeds, shape (8,)."""
+    variances: Array
+    """Var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear surfaces, shape (2, 8)."""
+
+    @property
+    def seed_share(self) -> Array:
+        """Share of the variance of each output of Table 2 that is scatter between seeds, shape (8,)."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return self.variances[1] / self.variances.sum(axis=0)
 
 
 def propagate(
@@ -144,11 +153,12 @@ def propagate(
         mean = total / used
         within = np.maximum(total_squares / used - mean**2, 0).mean(axis=0) * used / (used - 1)
         between = np.maximum(mean.var(axis=0) - within / used, 0)
-        seed_share = np.where(used > 1, within / (within + between), np.nan)
-    nothing = np.empty((0, len(ranges))), np.empty((0, len(SURFACES)))
-    surfaces = exported_surfaces(nodes, direct or nothing, ranges, settings)
-    outputs = np.stack([surface(samples) if surface else np.full(len(samples), np.nan) for surface in surfaces], axis=1)
-    return Propagation(samples, outputs, surfaces, by_seed, seed_share)
+        variances = np.where(used > 1, np.stack([between, within]), np.nan)
+    known = direct or (np.empty((0, len(ranges))), np.empty((0, len(SURFACES))))
+    surfaces = exported_surfaces(nodes, known, ranges, settings)
+    outputs = evaluate(surfaces, samples)
+    cells = with_scatter(outputs, surfaces, known, settings.surface == "regression", settings.sample_seed)
+    return Propagation(samples, outputs, cells, surfaces, by_seed, variances)
 
 
 def _linear(y: Array, ranges: Array, samples: Array) -> Array:
@@ -167,11 +177,12 @@ def output_rows(
 ) -> list[dict[str, Any]]:
     """Rows of uq/outputs.csv: Table 2 beside the paper's, differences in units of the scatter of seeds.
 
-    mean and dev are the paper's method; surface_* are those of the exported surfaces.
+    mean and dev are the paper's method; surface_* are those of the exported surfaces, that is of the mean over
+    surfaces' randomness; cell_* those of single cells.
     """
     y = nodes.paper_outputs
     inputs = result.samples.shape[1]
-    propagated = to_paper_outputs(result.outputs)
+    propagated, cells = to_paper_outputs(result.outputs), to_paper_outputs(result.cells)
     rows = []
     for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
         first_level = y[:, : 2 * inputs + 1]
@@ -180,6 +191,7 @@ def output_rows(
         centre = _center_and_scatter(y[complete, 0, k])
         effects = [np.sqrt((elementary_effects(line, inputs) ** 2).sum() / 12) for line in first_level[complete, :, k]]
         quantiles = np.quantile(propagated[:, k], [0.05, 0.5, 0.95])
+        cell_quantiles = np.quantile(cells[:, k], [0.05, 0.5, 0.95])
         name = short_name(output)
         reference = paper.get(name, (np.nan, np.nan))
         exchanged = paper_exchanged.get(name, (np.nan, np.nan))
@@ -197,6 +209,8 @@ def output_rows(
                 "dev_difference_in_seed_sd": (dev[0] - reference[1]) / dev[1] if dev[1] else np.nan,
                 "paper_mean_exchanged": exchanged[0],
                 "paper_dev_exchanged": exchanged[1],
+                "mean_difference_in_seed_sd_exchanged": (mean[0] - exchanged[0]) / mean[1] if mean[1] else np.nan,
+                "dev_difference_in_seed_sd_exchanged": (dev[0] - exchanged[1]) / dev[1] if dev[1] else np.nan,
                 "centre": centre[0],
                 "centre_seed_sd": centre[1],
                 "surface_mean": propagated[:, k].mean(),
@@ -204,8 +218,14 @@ def output_rows(
                 "surface_q05": quantiles[0],
                 "surface_q50": quantiles[1],
                 "surface_q95": quantiles[2],
+                "cell_dev": cells[:, k].std(),
+                "cell_q05": cell_quantiles[0],
+                "cell_q50": cell_quantiles[1],
+                "cell_q95": cell_quantiles[2],
                 "dev_from_mu_star": float(np.mean(effects)) if effects else np.nan,
                 "seed_share": result.seed_share[k],
+                "variance_of_mean": result.variances[0, k],
+                "mean_of_variance": result.variances[1, k],
                 "seeds_used": int(complete.sum()),
                 "seeds": len(nodes.seeds),
                 "runs": y.shape[0] * y.shape[1],

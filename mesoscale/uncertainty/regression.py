@@ -38,23 +38,44 @@ def sparse_chaos(
     # scaled, because LARS stops at absolute tolerances
     centre, width = target.mean(), target.std() or 1.0
 
-    enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(inputs, hyperbolic)
-    basis = ot.OrthogonalProductPolynomialFactory([ot.LegendreFactory()] * inputs, enumerate_terms)
+    # an input that does not vary has no terms, and would make the least squares singular
+    varying = np.flatnonzero(np.ptp(u, axis=0) > 0)
+    if not len(varying):
+        return Surrogate(ranges, np.zeros((1, inputs), int), np.array([centre]), transform)
+    enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(len(varying), hyperbolic)
+    basis = ot.OrthogonalProductPolynomialFactory([ot.LegendreFactory()] * len(varying), enumerate_terms)
     size = min(enumerate_terms.getBasisSizeFromTotalDegree(degree), max(2, int(0.8 * usable.sum())))
     selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
     chaos = ot.FunctionalChaosAlgorithm(
-        ot.Sample(u),
+        ot.Sample(u[:, varying]),
         ot.Sample(((target - centre) / width)[:, None]),
-        ot.JointDistribution([ot.Uniform(-1, 1)] * inputs),
+        ot.JointDistribution([ot.Uniform(-1, 1)] * len(varying)),
         ot.FixedStrategy(basis, size),
         ot.LeastSquaresStrategy(selection),
     )
     chaos.run()
     chosen = [int(k) for k in chaos.getResult().getIndices()]
-    degrees = np.array([list(enumerate_terms(k)) for k in chosen], int).reshape(-1, inputs)
+    degrees = np.zeros((len(chosen), inputs), int)
+    degrees[:, varying] = np.array([list(enumerate_terms(k)) for k in chosen], int).reshape(-1, len(varying))
     if not (degrees.sum(axis=1) == 0).any():
         degrees = np.vstack([np.zeros((1, inputs), int), degrees])
     return refit(u, target, ranges, degrees, transform)
+
+
+def full_chaos(
+    x: Array, y: Array, ranges: Array, degree: int, transform: str = "identity", hyperbolic: float = 0.7
+) -> Surrogate:
+    """As `sparse_chaos` with all terms kept: for many more runs than terms."""
+    import openturns as ot
+
+    usable = np.isfinite(y) & ((y > 0) | (transform == "identity"))
+    inputs = x.shape[1]
+    enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(inputs, hyperbolic)
+    terms = range(enumerate_terms.getBasisSizeFromTotalDegree(degree))
+    degrees = np.array([list(enumerate_terms(k)) for k in terms], int).reshape(-1, inputs)
+    blank = Surrogate(ranges, degrees[:1], np.zeros(1))
+    u = np.clip(blank.scaled(x[usable]), -1.0, 1.0)
+    return refit(u, np.log(y[usable]) if transform == "log" else y[usable], ranges, degrees, transform)
 
 
 def refit(u: Array, target: Array, ranges: Array, degrees: NDArray[np.int_], transform: str) -> Surrogate:

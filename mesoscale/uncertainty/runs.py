@@ -1,5 +1,6 @@
 """Runs of the contact model: which inputs and seed each has, computing them, and their eight outputs."""
 
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,10 +11,8 @@ from numpy.typing import NDArray
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.errors import InputError
 from mesoscale.law import PARAMETERS, LawFit, contact_separation, fit_branch, row_of
-from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
-from mesoscale.uncertainty.chunks import collocation_level
-from mesoscale.uncertainty.collocation import nodes, to_values
-from mesoscale.uncertainty.distributions import InputTable
+from mesoscale.settings import ContactSettings, LawSettings
+from mesoscale.uncertainty.designs import Run
 
 Array = NDArray[np.float64]
 
@@ -24,18 +23,6 @@ OUTPUT_UNITS = ("nm", "GPa/nm", "GPa", "nm") * 2
 
 TOUCH = {"closing": "first_contact_nm", "opening": "last_contact_nm"}
 """Attribute of a stored curve with the exact separation of first (last) contact, by branch."""
-
-
-@dataclass(frozen=True)
-class Run:
-    """One cycle to compute."""
-
-    index: int
-    node: int
-    """Node of the collocation grid."""
-    seed: int
-    values: dict[str, float]
-    """Inputs by name."""
 
 
 @dataclass(frozen=True)
@@ -54,48 +41,7 @@ class Outcome:
         return np.concatenate([closing, opening - closing])
 
 
-FIRST_RANDOM_SEED = 1_000_000
-"""Surfaces of the brute-force sample are other ones than those of the collocation."""
 NO_FIT = LawFit(np.nan, np.nan, np.nan, np.nan, status="no_curve")
-
-
-def collocation_runs(table: InputTable, settings: UncertaintySettings, first: int, last: int) -> list[Run]:
-    """Runs first .. last-1 of the collocation: all nodes of one seed, then all of the next.
-
-    The list grows at its end as seeds are added, so that what is computed stays valid.
-    """
-    grid = nodes(len(table.rows), collocation_level(settings))
-    values = to_values(grid, table.ranges(settings.central_share))
-    return [
-        Run(
-            index,
-            index % len(grid),
-            settings.first_seed + index // len(grid),
-            dict(zip(table.names, values[index % len(grid)].tolist(), strict=True)),
-        )
-        for index in range(first, last)
-    ]
-
-
-def random_runs(table: InputTable, settings: UncertaintySettings, first: int, last: int) -> list[Run]:
-    """Runs first .. last-1 of the brute-force sample: every run has its own inputs and its own surface.
-
-    Run i depends on i alone, so that adding runs keeps the old ones.
-    """
-    units = [
-        np.random.default_rng(np.random.SeedSequence([settings.sample_seed, index])).random(len(table.rows))
-        for index in range(first, last)
-    ]
-    values = table.transform(np.array(units))
-    return [
-        Run(
-            index,
-            -1,
-            settings.first_seed + FIRST_RANDOM_SEED + index,
-            dict(zip(table.names, row.tolist(), strict=True)),
-        )
-        for index, row in zip(range(first, last), values, strict=True)
-    ]
 
 
 def contact_of(values: Mapping[str, float], settings: ContactSettings) -> tuple[ContactInputs, ContactSettings]:
@@ -174,18 +120,23 @@ def compute_rows(
     law: LawSettings,
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[dict[str, float | int | str]]:
-    """Compute runs and fit the law to each: one row per run with inputs, seed and parameters."""
+    """Compute runs and fit the law to each: one row per run with inputs, seed, parameters and cost."""
+    before = time.process_time()
     for run, cycle in compute_all(runs, contact, progress):
+        touch: float | str = ""
         if isinstance(cycle, str):
             outcome = Outcome(NO_FIT, NO_FIT, cycle)
         else:
             outcome = fit_cycle(cycle, run.values["hamaker"], contact.length_nm**2, law)
+            touch = cycle.first_contact_nm
         row: dict[str, float | int | str] = {"run": run.index, "seed": run.seed, **run.values}
         for branch, fit in (("closing", outcome.closing), ("opening", outcome.opening)):
             for name, value in zip(PARAMETERS, fit.parameters.tolist(), strict=True):
                 row[f"{branch}_{name}"] = value if np.isfinite(value) else ""
             row[f"{branch}_status"] = fit.status
-        yield {**row, "curve_status": outcome.status}
+        after = time.process_time()
+        yield {**row, "first_contact_nm": touch, "curve_status": outcome.status, "cpu_s": after - before}
+        before = after
 
 
 def fit_stored(

@@ -1,19 +1,21 @@
 """Which input matters: elementary effects (the paper's Table 3) and Sobol' indices with intervals."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.settings import UncertaintySettings
-from mesoscale.uncertainty.collocation import elementary_effects
+from mesoscale.uncertainty.collocation import elementary_effects, to_values
 from mesoscale.uncertainty.distributions import InputTable
+from mesoscale.uncertainty.morris import Effects, trajectory_effects, trajectory_points
 from mesoscale.uncertainty.paper_tables import short_name
 from mesoscale.uncertainty.propagation import NodeOutputs, exported_surfaces, to_paper_outputs
 from mesoscale.uncertainty.regression import refit
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
-from mesoscale.uncertainty.surrogate import Surrogate
+from mesoscale.uncertainty.surrogate import Surrogate, evaluate
 
 Array = NDArray[np.float64]
 
@@ -70,15 +72,18 @@ def sensitivity_rows(
 ) -> list[dict[str, Any]]:
     """Rows of uq/sensitivity.csv: every output with every input.
 
-    mu* is the mean over seeds of every seed's own value on the nodes of level 1, beside its scatter. Sobol'
+    mu* is the mean over seeds of every seed's own value on the nodes of level 1 (the paper's one star), beside
+    its scatter; morris_* are those of many trajectories through the exported surfaces. Sobol'
     indices are those of the exported surfaces, that is of the mean over surfaces' randomness; their intervals
-    (5 to 95 %) come from resampling the seeds, or the direct runs if the surfaces are fitted to these.
+    (5 to 95 %) come from resampling the samples behind them together with the seeds, or with the direct runs if
+    the surfaces are fitted to these.
     """
     y = nodes.paper_outputs
     ranges = table.ranges(settings.central_share)
     inputs = len(table.rows)
     direct = direct or (np.empty((0, inputs)), np.empty((0, 8)))
     first, total = index_intervals(nodes, direct, table, settings)
+    through_surface = surface_effects(exported_surfaces(nodes, direct, ranges, settings), table, settings)
     rows = []
     for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
         lines = y[:, : 2 * len(ranges) + 1, k]
@@ -86,15 +91,25 @@ def sensitivity_rows(
         effects = np.array([elementary_effects(line, inputs) for line in lines]).reshape(-1, inputs)
         name = short_name(output)
         for i, row in enumerate(table.rows):
+            mu_star = effects[:, i].mean() if len(effects) else np.nan
+            scatter = effects[:, i].std(ddof=1) if len(effects) > 1 else np.nan
+            argued = paper.get(name, {}).get(row.name, np.nan)
+            printed = paper_as_printed.get(name, {}).get(row.name, np.nan)
             rows.append(
                 {
                     "output": output,
                     "input": row.name,
                     "unit": unit,
-                    "mu_star": effects[:, i].mean() if len(effects) else np.nan,
-                    "mu_star_seed_sd": effects[:, i].std(ddof=1) if len(effects) > 1 else np.nan,
-                    "paper_mu_star": paper.get(name, {}).get(row.name, np.nan),
-                    "paper_mu_star_as_printed": paper_as_printed.get(name, {}).get(row.name, np.nan),
+                    "mu_star": mu_star,
+                    "mu_star_seed_sd": scatter,
+                    "paper_mu_star": argued,
+                    "paper_mu_star_as_printed": printed,
+                    "difference_in_seed_sd": (mu_star - argued) / scatter if scatter else np.nan,
+                    "difference_in_seed_sd_as_printed": (mu_star - printed) / scatter if scatter else np.nan,
+                    "morris_mu_star": through_surface[k].mu_star[i],
+                    "morris_mu_star_low": through_surface[k].mu_star[i] - through_surface[k].half_width[i],
+                    "morris_mu_star_high": through_surface[k].mu_star[i] + through_surface[k].half_width[i],
+                    "morris_sigma": through_surface[k].sigma[i],
                     "sobol_first": first[0, k, i],
                     "sobol_first_low": first[1, k, i],
                     "sobol_first_high": first[2, k, i],
@@ -108,32 +123,37 @@ def sensitivity_rows(
     return rows
 
 
+def surface_effects(
+    surfaces: Sequence[Surrogate | None], table: InputTable, settings: UncertaintySettings
+) -> list[Effects]:
+    """Morris' elementary effects of the eight outputs through surfaces, over the inputs' ranges."""
+    inputs = len(table.rows)
+    points = trajectory_points(inputs, settings.morris_trajectories, settings.sample_seed)
+    x = to_values(2 * points.reshape(-1, inputs) - 1, table.ranges(settings.central_share))
+    y = to_paper_outputs(evaluate(surfaces, x)).reshape(*points.shape[:2], 8)
+    return [trajectory_effects(points, y[:, :, k], settings.sample_seed) for k in range(8)]
+
+
 def index_intervals(
     nodes: NodeOutputs, direct: tuple[Array, Array], table: InputTable, settings: UncertaintySettings
 ) -> tuple[Array, Array]:
     """First-order and total indices of the eight outputs: estimate, lower and upper end, shape (3, 8, n)."""
     ranges = table.ranges(settings.central_share)
     points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
-    count, inputs = points.shape[1:]
-    flat = points.reshape(-1, inputs)
     rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB0]))
-
-    def indices(surfaces: Sequence[Surrogate | None]) -> Array:
-        y = np.stack([s(flat) if s else np.full(len(flat), np.nan) for s in surfaces], axis=1)
-        y = to_paper_outputs(y).reshape(inputs + 2, count, 8)
-        return np.stack([sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(8)], axis=1)
-
     surfaces = exported_surfaces(nodes, direct, ranges, settings)
-    estimate = indices(surfaces)
+    estimate = surface_indices(points, surfaces)
     resampled = []
     for _ in range(settings.sobol_bootstrap):
+        # other samples as well: heavy tails make the estimators themselves uncertain
+        again = partial(surface_indices, points[:, rng.integers(points.shape[1], size=points.shape[1])])
         if settings.surface == "regression":
             picks = rng.integers(len(direct[0]), size=len(direct[0])) if len(direct[0]) else np.empty(0, int)
-            resampled.append(indices(_refitted(surfaces, direct[0][picks], direct[1][picks])))
+            resampled.append(again(_refitted(surfaces, direct[0][picks], direct[1][picks])))
         elif len(nodes.seeds) > 1:
             chosen = rng.integers(len(nodes.seeds), size=len(nodes.seeds))
-            again = NodeOutputs(nodes.seeds, nodes.values[chosen])
-            resampled.append(indices(exported_surfaces(again, direct, ranges, settings)))
+            others = NodeOutputs(nodes.seeds, nodes.values[chosen])
+            resampled.append(again(exported_surfaces(others, direct, ranges, settings)))
     ends = np.full((2, *estimate.shape), np.nan)
     if resampled:
         draws = np.array(resampled)
@@ -141,6 +161,18 @@ def index_intervals(
         ends[:, known] = np.quantile(draws[:, known], [0.05, 0.95], axis=0)
     first, total = (np.stack([estimate[j], ends[0, j], ends[1, j]]) for j in (0, 1))
     return first, total
+
+
+def surface_indices(points: Array, surfaces: Sequence[Surrogate | None]) -> Array:
+    """First-order and total indices of the eight outputs by surfaces, shape (2, 8, n).
+
+    Parameters
+    ----------
+    points : of `pick_freeze`, shape (n + 2, count, n).
+    """
+    inputs = points.shape[2]
+    y = to_paper_outputs(evaluate(surfaces, points.reshape(-1, inputs))).reshape(inputs + 2, -1, 8)
+    return np.stack([sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(8)], axis=1)
 
 
 def _refitted(surfaces: Sequence[Surrogate | None], x: Array, y: Array) -> list[Surrogate | None]:

@@ -1,6 +1,6 @@
 """Response surfaces in Legendre polynomials: evaluate, moments, Sobol' indices, plain JSON."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -60,6 +60,11 @@ class Surrogate:
         """Output at inputs x of shape (m, n)."""
         total = basis_matrix(self.scaled(np.atleast_2d(x)), self.degrees) @ self.coefficients
         return np.exp(total) if self.transform == "log" else total
+
+
+def evaluate(surfaces: Sequence[Surrogate | None], x: Array) -> Array:
+    """Surfaces at inputs x (m, n), shape (m, surfaces); NaN where there is no surface."""
+    return np.stack([surface(x) if surface else np.full(len(x), np.nan) for surface in surfaces], axis=1)
 
 
 def uniform_moments(surrogate: Surrogate) -> tuple[float, float]:

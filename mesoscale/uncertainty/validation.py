@@ -1,7 +1,7 @@
 """Response surfaces against direct cycles: bias of mean and deviation, errors, Q²."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -16,16 +16,17 @@ from mesoscale.uncertainty.propagation import (
     exported_surfaces,
     to_paper_outputs,
 )
+from mesoscale.uncertainty.reference import STATISTICS
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
-from mesoscale.uncertainty.surrogate import Surrogate
+from mesoscale.uncertainty.surrogate import Surrogate, evaluate
 
 Array = NDArray[np.float64]
 Surfaces = Sequence[Surrogate | None]
 
 
-def read_direct_runs(rows: Iterable[Mapping[str, str]], names: Sequence[str]) -> tuple[Array, Array]:
-    """Inputs (m, n), and closing and opening parameters (m, 8; NaN where missing), of direct runs."""
-    rows = list(rows)
+def read_direct_runs(rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int) -> tuple[Array, Array]:
+    """Inputs (m, n), and closing and opening parameters (m, 8; NaN where missing), of the first `count` runs."""
+    rows = list(islice(rows, count))
     inputs = np.array([[float(row[name]) for name in names] for row in rows]).reshape(len(rows), len(names))
     outputs = np.array([[float(row[name]) if row[name] else np.nan for name in SURFACES] for row in rows])
     return inputs, outputs.reshape(len(rows), len(SURFACES))
@@ -45,13 +46,13 @@ def held_out_predictions(
     """
     x, y = direct
     if settings.surface != "regression":
-        return np.stack([s(x) if s else np.full(len(x), np.nan) for s in surfaces], axis=1)
+        return evaluate(surfaces, x)
     predicted = np.full_like(y, np.nan)
     folds = np.arange(len(x)) % 5
     for fold in range(5):
         rest, held = folds != fold, folds == fold
         again = exported_surfaces(nodes, (x[rest], y[rest]), ranges, settings)
-        predicted[held] = np.stack([s(x[held]) if s else np.full(int(held.sum()), np.nan) for s in again], axis=1)
+        predicted[held] = evaluate(again, x[held])
     return predicted
 
 
@@ -71,17 +72,18 @@ def validation_rows(
     Notes
     -----
     `*_direct` are the truth up to sampling, with bootstrap intervals (5 to 95 %) over the direct runs;
-    `*_linear` the paper's method; `*_surface` the exported surface. Every direct run has its own surface, so
-    `q2` (1 - mean squared error / variance of the runs) includes the scatter between surfaces and cannot
-    reach 1.
+    `*_linear` the paper's method; `*_surface` the exported surface with the scatter of single cells. Every
+    direct run has its own surface, so `q2` (1 - mean squared error / variance of the runs) includes the scatter
+    between surfaces and cannot reach 1.
     """
     outputs = direct[1]
     ranges = table.ranges(settings.central_share)
+    cells = np.where(np.isfinite(result.cells), result.cells, result.outputs)
     predicted = to_paper_outputs(held_out_predictions(direct, nodes, result.surfaces, ranges, settings))
     linear_settings = settings.model_copy(update={"surface": "linear"})
     linear_surfaces = exported_surfaces(nodes, direct, ranges, linear_settings)
     linear = to_paper_outputs(held_out_predictions(direct, nodes, linear_surfaces, ranges, linear_settings))
-    truth, samples = to_paper_outputs(outputs), to_paper_outputs(result.outputs)
+    truth, samples = to_paper_outputs(outputs), to_paper_outputs(cells)
     rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB1]))
     rows = []
     for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
@@ -116,23 +118,12 @@ def validation_rows(
     return rows
 
 
-STATISTICS: dict[str, Callable[..., Any]] = {
-    "mean": np.mean,
-    "dev": partial(np.std, ddof=1),
-    "q05": partial(np.quantile, q=0.05),
-    "q50": partial(np.quantile, q=0.5),
-    "q95": partial(np.quantile, q=0.95),
-}
 VALIDATION_COLUMNS = (
     "output",
     "unit",
     "runs",
     "missing",
-    *(
-        f"{name}_{kind}"
-        for name in ("mean", "dev", "q05", "q50", "q95")
-        for kind in ("direct", "direct_low", "direct_high", "surface")
-    ),
+    *(f"{name}_{kind}" for name in STATISTICS for kind in ("direct", "direct_low", "direct_high", "surface")),
     "mean_linear",
     "dev_linear",
     "rmse",

@@ -1,6 +1,9 @@
-from mesoscale.uncertainty.chunks import chunk_bounds, default_readings
+from mesoscale.uncertainty.chunks import default_readings, full_chunks
 
-DIRECT_CHUNKS = chunk_bounds(SCENE.uncertainty.direct_runs, SCENE.uncertainty.chunk_runs)
+
+def direct_files(design, runs, name="chunk"):
+    """Result files of the first `runs` runs of a design; more runs add files and leave these as they are."""
+    return [f"{RESULTS}/uq/{design}/{name}_{chunk}.csv" for chunk in full_chunks(runs, SCENE.uncertainty.chunk_runs)]
 
 
 rule uq:
@@ -17,18 +20,23 @@ rule sensitivity:
 
 rule compute_direct_runs:
     message:
-        "compute direct contact cycles, chunk {wildcards.chunk}" + f" of {len(DIRECT_CHUNKS)}"
+        "compute contact cycles of design {wildcards.design}, chunk {wildcards.chunk}"
     input:
         inputs=f"{RESULTS}/inputs.csv",
     output:
-        f"{RESULTS}/uq/direct/chunk_{{chunk}}.csv",
+        runs=f"{RESULTS}/uq/{{design}}/chunk_{{chunk}}.csv",
+        timing=f"{RESULTS}/uq/{{design}}/timing_{{chunk}}.csv",
     log:
-        f"{RESULTS}/logs/compute_direct_runs_{{chunk}}.log",
+        f"{RESULTS}/logs/compute_direct_runs_{{design}}_{{chunk}}.log",
     params:
         contact=settings("contact"),
         law=settings("law"),
         uncertainty=RUN_SETTINGS,
-        bounds=lambda wildcards: DIRECT_CHUNKS[wildcards.chunk],
+        bounds=lambda wildcards: [
+            (int(wildcards.chunk) + shift) * SCENE.uncertainty.chunk_runs for shift in (0, 1)
+        ],
+    wildcard_constraints:
+        design="direct|replicate|morris",
     threads: 1
     script:
         "../scripts/compute_direct_runs.py"
@@ -40,11 +48,13 @@ rule propagate_uncertainty:
     input:
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
-        direct=[f"{RESULTS}/uq/direct/chunk_{chunk}.csv" for chunk in DIRECT_CHUNKS],
+        direct=direct_files("direct", SCENE.uncertainty.direct_runs),
         table1=str(CONFIG / "paper" / "table1.csv"),
         table2=str(CONFIG / "paper" / "table2.csv"),
+        table3=str(CONFIG / "paper" / "table3.csv"),
     output:
         outputs=f"{RESULTS}/uq/outputs.csv",
+        ratios=f"{RESULTS}/uq/ratios.csv",
         surrogate=f"{RESULTS}/uq/surrogate.json",
         samples=f"{RESULTS}/uq/samples.csv",
         validation=f"{RESULTS}/uq/validation.csv",
@@ -64,7 +74,7 @@ rule rank_sensitivity:
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
         outputs=f"{RESULTS}/uq/outputs.csv",
-        direct=[f"{RESULTS}/uq/direct/chunk_{chunk}.csv" for chunk in DIRECT_CHUNKS],
+        direct=direct_files("direct", SCENE.uncertainty.direct_runs),
         table3=str(CONFIG / "paper" / "table3.csv"),
     output:
         f"{RESULTS}/uq/sensitivity.csv",
@@ -120,3 +130,71 @@ rule rank_readings:
         central_share=SCENE.uncertainty.central_share,
     script:
         "../scripts/rank_readings.py"
+
+
+rule brute_force:
+    input:
+        f"{RESULTS}/uq/overhead.csv",
+
+
+rule measure_overhead:
+    message:
+        "compare the time of the engine with the time of the jobs"
+    input:
+        runs=direct_files("direct", SCENE.uncertainty.study_runs),
+        timing=direct_files("direct", SCENE.uncertainty.study_runs, "timing"),
+    output:
+        f"{RESULTS}/uq/overhead.csv",
+    log:
+        f"{RESULTS}/logs/measure_overhead.log",
+    params:
+        cores=workflow.cores,
+    script:
+        "../scripts/measure_overhead.py"
+
+
+rule work_precision:
+    input:
+        f"{RESULTS}/accuracy/uncertainty.csv",
+
+
+rule study_surfaces:
+    message:
+        "set the response surfaces against direct runs"
+    input:
+        inputs=f"{RESULTS}/inputs.csv",
+        parameters=f"{RESULTS}/law/parameters.csv",
+        direct=direct_files("direct", SCENE.uncertainty.study_runs),
+        timing=direct_files("direct", SCENE.uncertainty.study_runs, "timing"),
+        replicate=direct_files("replicate", SCENE.uncertainty.study_replicates),
+        morris=direct_files("morris", SCENE.uncertainty.morris_trajectories * (len(SCENE.inputs.rows()) + 1)),
+        table3=str(CONFIG / "paper" / "table3.csv"),
+    output:
+        precision=f"{RESULTS}/uq/work_precision.csv",
+        bias=f"{RESULTS}/uq/bias.csv",
+        indices=f"{RESULTS}/uq/indices.csv",
+        morris=f"{RESULTS}/uq/morris.csv",
+        accuracy=f"{RESULTS}/accuracy/uncertainty.csv",
+    log:
+        f"{RESULTS}/logs/study_surfaces.log",
+    params:
+        settings=settings("uncertainty"),
+    script:
+        "../scripts/study_surfaces.py"
+
+
+ACCURACY.append(f"{RESULTS}/accuracy/uncertainty.csv")
+
+
+rule study_uncertainty_stability:
+    message:
+        "study the propagation in unusual cases"
+    output:
+        f"{RESULTS}/stability/uncertainty.csv",
+    log:
+        f"{RESULTS}/logs/study_uncertainty_stability.log",
+    script:
+        "../scripts/study_uncertainty_stability.py"
+
+
+STABILITY.append(f"{RESULTS}/stability/uncertainty.csv")

@@ -6,8 +6,8 @@ In: inputs.csv.  Out: audit/runs/READING_SEED.csv.
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
 from mesoscale.uncertainty.audit import AUDIT_COLUMNS, audit_rows
 from mesoscale.uncertainty.chunks import node_count
+from mesoscale.uncertainty.designs import collocation_runs
 from mesoscale.uncertainty.inputs import from_rows
-from mesoscale.uncertainty.runs import collocation_runs
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 

@@ -1,21 +1,41 @@
-"""Compute a chunk of direct contact cycles, each with its own inputs and surface, and keep their law.
+"""Compute a chunk of direct contact cycles of a design and keep their law.
 
-In: inputs.csv.  Out: uq/direct/chunk_NNN.csv (inputs, seed, parameters of both branches, statuses).
+In: inputs.csv.  Out: uq/DESIGN/chunk_NNN.csv (inputs, seed, parameters of both branches, statuses),
+uq/DESIGN/timing_NNN.csv (what the job and the engine in it took).
 """
 
+import resource
+import time
+
+import psutil
+
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
+from mesoscale.uncertainty.designs import DESIGNS
 from mesoscale.uncertainty.inputs import from_rows
-from mesoscale.uncertainty.runs import compute_rows, random_runs
+from mesoscale.uncertainty.runs import compute_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 
 with job(snakemake) as run:
-    runs = random_runs(
+    runs = DESIGNS[snakemake.wildcards.design](
         from_rows(read_csv(snakemake.input.inputs)),
         UncertaintySettings(**snakemake.params.uncertainty),
         *snakemake.params.bounds,
     )
-    rows = compute_rows(
-        runs, ContactSettings(**snakemake.params.contact), LawSettings(**snakemake.params.law), run.progress
+    rows = list(
+        compute_rows(
+            runs, ContactSettings(**snakemake.params.contact), LawSettings(**snakemake.params.law), run.progress
+        )
     )
-    write_csv(snakemake.output[0], rows)
+    # apart from the results, which are the same for the same seeds
+    seconds = [float(row.pop("cpu_s")) for row in rows]
+    write_csv(snakemake.output.runs, rows)
+    later = seconds[1:] or seconds  # the first cycle also loads the engine
+    timing = {
+        "cycles": len(rows),
+        "engine_cpu_s": len(rows) * sum(later) / len(later),
+        "job_started_s": psutil.Process().create_time(),
+        "job_ended_s": time.time(),
+        "peak_rss_MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+    }
+    write_csv(snakemake.output.timing, [timing])

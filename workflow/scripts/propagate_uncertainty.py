@@ -1,15 +1,17 @@
 """Propagate the inputs' uncertainty through the response surfaces and validate these.
 
-In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, the paper's Tables 1 and 2.
-Out: uq/outputs.csv (Table 2), uq/surrogate.json, uq/samples.csv, uq/validation.csv (nm, GPa/nm, GPa).
+In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, the paper's Tables 1 to 3.
+Out: uq/outputs.csv (Table 2), uq/ratios.csv, uq/surrogate.json, uq/samples.csv, uq/validation.csv (nm, GPa/nm, GPa).
 """
 
 import numpy as np
 
 from mesoscale.settings import LawSettings, UncertaintySettings
 from mesoscale.uncertainty.inputs import from_rows
-from mesoscale.uncertainty.paper_tables import table2
+from mesoscale.uncertainty.paper_tables import table2, table3
 from mesoscale.uncertainty.propagation import SURFACES, output_rows, propagate, read_nodes, surrogate_json
+from mesoscale.uncertainty.ratios import COLUMNS as RATIO_COLUMNS
+from mesoscale.uncertainty.ratios import ratio_rows
 from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, read_direct_runs, validation_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv, write_json
@@ -23,10 +25,14 @@ with job(snakemake) as run:
     paper = table2(paper_rows)
     symbols = {row["parameter"]: row["symbol"] for row in read_csv(snakemake.input.table1)}
 
-    direct = read_direct_runs((row for path in snakemake.input.direct for row in read_csv(path)), table.names)
+    direct = read_direct_runs(
+        (row for path in snakemake.input.direct for row in read_csv(path)), table.names, settings.direct_runs
+    )
 
     result = propagate(nodes, table, settings, direct)
     write_csv(snakemake.output.outputs, output_rows(nodes, result, paper, table2(paper_rows, exchanged=True)))
+    ratios = ratio_rows(nodes, result, table, settings.central_share, paper, table3(read_csv(snakemake.input.table3)))
+    write_csv(snakemake.output.ratios, ratios, RATIO_COLUMNS)
     constants = {"rho_a_nm": law.rho_a_nm, "alpha_nm": law.shield_nm}
     write_json(
         snakemake.output.surrogate,

@@ -17,15 +17,18 @@ from workflow.job import job
 from workflow.results import read_csv, write_csv
 
 with job(snakemake) as run:
+    settings = UncertaintySettings(**snakemake.params.settings)
     table = from_rows(read_csv(snakemake.input.inputs))
     paper = read_csv(snakemake.input.table3)
     rows = sensitivity_rows(
         read_nodes(read_csv(snakemake.input.parameters)),
         table,
-        UncertaintySettings(**snakemake.params.settings),
+        settings,
         np.array([float(row["seed_share"] or "nan") for row in read_csv(snakemake.input.outputs)]),
         table3(paper),
         table3(paper, as_printed=True),
-        read_direct_runs((row for path in snakemake.input.direct for row in read_csv(path)), table.names),
+        read_direct_runs(
+            (row for path in snakemake.input.direct for row in read_csv(path)), table.names, settings.direct_runs
+        ),
     )
     write_csv(snakemake.output[0], rows)

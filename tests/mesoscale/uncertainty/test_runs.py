@@ -5,17 +5,10 @@ import pytest
 
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
 from mesoscale.uncertainty import runs as runs_module
+from mesoscale.uncertainty.designs import Run, collocation_runs, random_runs
 from mesoscale.uncertainty.inputs import collect
 from mesoscale.uncertainty.propagation import SURFACES
-from mesoscale.uncertainty.runs import (
-    collocation_runs,
-    compute,
-    compute_all,
-    compute_rows,
-    contact_of,
-    fit_cycle,
-    random_runs,
-)
+from mesoscale.uncertainty.runs import compute, compute_all, compute_rows, contact_of, fit_cycle
 from workflow.scene import load_scene
 
 PAPER = collect(load_scene("paper").inputs, {}, {}, 0.999)
@@ -53,7 +46,7 @@ def test_rough_surfaces_touch_at_separations_in_proportion_to_rms():
 
 
 def test_a_failing_engine_is_reported_and_leaves_no_numbers():
-    rows = list(compute_rows([runs_module.Run(0, -1, 1, {**CENTRE, "e_star": -1.0})], CONTACT, LawSettings()))
+    rows = list(compute_rows([Run(0, -1, 1, {**CENTRE, "e_star": -1.0})], CONTACT, LawSettings()))
     assert rows[0]["curve_status"].startswith("failed: InputError")
     assert all(rows[0][name] == "" for name in SURFACES)
 
@@ -61,7 +54,7 @@ def test_a_failing_engine_is_reported_and_leaves_no_numbers():
 def test_equal_inputs_are_computed_once(monkeypatch):
     calls = []
     monkeypatch.setattr(runs_module, "compute", lambda *args: calls.append(args) or "failed: test")
-    same = [runs_module.Run(k, k, 0, CENTRE) for k in range(5)]
+    same = [Run(k, k, 0, CENTRE) for k in range(5)]
     assert len(list(compute_all(same, CONTACT))) == 5
     assert len(calls) == 1
 

@@ -1,0 +1,8 @@
+"""Unusual inputs, failing runs and awkward outputs of the propagation.  Out: stability/uncertainty.csv."""
+
+from mesoscale.uncertainty.stability import COLUMNS, stability_rows
+from workflow.job import job
+from workflow.results import write_csv
+
+with job(snakemake) as run:
+    write_csv(snakemake.output[0], list(stability_rows(run.progress)), COLUMNS)
