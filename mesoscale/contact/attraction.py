@@ -18,7 +18,7 @@ def bin_heights(heights, lowest, width, moments):
     last = moments.shape[0] - 1
     for site in range(heights.size):
         x = (heights[site] - lowest) / width
-        b = min(int(x), last)
+        b = max(0, min(int(x), last))
         t = (x - b - 0.5) * width
         moments[b, 0] += 1.0
         moments[b, 1] += t
@@ -33,7 +33,7 @@ def take_out(originals, start, stop, lowest, width, moments):
     last = moments.shape[0] - 1
     for k in range(start, stop):
         x = (originals[k] - lowest) / width
-        b = min(int(x), last)
+        b = max(0, min(int(x), last))
         t = (x - b - 0.5) * width
         moments[b, 0] -= 1.0
         moments[b, 1] -= t

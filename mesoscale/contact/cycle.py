@@ -108,18 +108,9 @@ def run_cycle(
 
     plastic = settings.model == "plastic"
     if heights is None:
-        from mesoscale.topography.synthesis import synthesize
+        from mesoscale.contact.surface import random_surface
 
-        surface = synthesize(
-            settings.pixels,
-            settings.length_nm,
-            inputs.q0,
-            inputs.hurst,
-            inputs.rms,
-            seed,
-            settings.convention,
-            settings.q1_per_nm,
-        )
+        surface = random_surface(inputs, settings, seed)
     else:
         surface = _checked(heights)
         if plastic:
@@ -134,8 +125,9 @@ def run_cycle(
     if hold is not None:
         closing.rows += hold(contact, closing.rows[-1])
     last = closing.rows[-1]
-    if contact.changed_sites > 0 and last.force > 0:
-        contact.lift()
+    changed = contact.changed_sites
+    if changed > 0 and last.force > 0:
+        contact.adopt_changes()
         departure = _approach(contact)
         path = trace(contact, settings.force_steps, False, last.force, stop_separation=last.separation)
         # the last row of the way down is the state in which closing ended
@@ -155,7 +147,7 @@ def run_cycle(
             "largest_load": closing.load,
             "radius_bound_events": closing.bounds,
             "repeated_steps": closing.repeated,
-            "changed_sites": contact.changed_sites,
+            "changed_sites": changed,
         },
         converged=closing.reached and closing.unconverged == 0,
         heights=surface if keep_surface else None,

@@ -183,20 +183,42 @@ class Contact:
         kernels.clear(self.asperities)
         self.pointer = 0
 
+    def adopt_changes(self) -> None:
+        """Leave contact and take the surface as flow has left it for the original one.
+
+        From then on the sites that have flowed are sorted and binned like all others.
+        """
+        self.lift()
+        count = int(self.changes.used[0])
+        sites = self.changes.sites[:count]
+        values = self.heights[sites]
+        if self.attracts:
+            self._take_out_changed()
+            attraction.bin_heights(values, self.lowest, self.bin_width, self.moments)
+            self.taken_out = 0
+        kept = self.changed[self.order] == 0
+        order, order_heights = self.order[kept], self.order_heights[kept]
+        low = np.flatnonzero(values < self.sorted_to)
+        low = low[np.argsort(values[low])]
+        places = np.searchsorted(order_heights, values[low])
+        self.order = np.insert(order, places, sites[low])
+        self.order_heights = np.insert(order_heights, places, values[low])
+        self.changed[sites] = 0
+        self.changes.used[0] = 0
+
+    def _take_out_changed(self) -> None:
+        """Have the histogram hold the unchanged sites only."""
+        attraction.take_out(
+            self.changes.original, self.taken_out, self.changes.used[0], self.lowest, self.bin_width, self.moments
+        )
+        self.taken_out = int(self.changes.used[0])
+
     def attraction(self, separation: float) -> float:
         """Attractive force in nN, negative (eq. 1); 0 without a pass over anything if A_H = 0."""
         if not self.attracts:
             return 0.0
         if self.changes.used[0] > self.taken_out:
-            attraction.take_out(
-                self.changes.original,
-                self.taken_out,
-                self.changes.used[0],
-                self.lowest,
-                self.bin_width,
-                self.moments,
-            )
-            self.taken_out = int(self.changes.used[0])
+            self._take_out_changed()
         near = max(attraction.NEAR_BINS * self.bin_width, 2.0 * self.cutoff)
         self._sort_to(min(near - separation + 2.0 * self.bin_width, self.highest))
         return -self.strength * attraction.inverse_cubes(
@@ -256,8 +278,9 @@ def trace(
         moved = contact.move_to(target, with_flow)
         if moved.force > final * (1.0 + contact.FORCE_TOLERANCE):
             contact.back()
-            target = solve_force(contact, separation, target, force, moved.force, final, with_flow, smallest)
-            accept(target, contact.move_to(target, with_flow))
+            target, moved = solve_force(contact, separation, target, force, moved.force, final, with_flow, smallest)
+            if target < separation:
+                accept(target, moved)
             break
         rise = moved.force - force
         wanted = min(final / steps, max(0.3 * force, 0.02 * final / steps))
@@ -272,31 +295,48 @@ def trace(
     return path
 
 
-def solve_force(contact, start, beyond, low_force, high_force, wanted, with_flow, smallest) -> float:
-    """Separation at which the force is the wanted one: regula falsi (Illinois), each trial from ``start``."""
+def solve_force(
+    contact: Contact,
+    start: float,
+    beyond: float,
+    start_force: float,
+    beyond_force: float,
+    wanted: float,
+    with_flow: bool,
+    smallest: float,
+) -> tuple[float, State]:
+    """Bring the flat down to where the force is the wanted one; returns the separation and what led there.
+
+    Regula falsi (Illinois) between ``start``, the last separation, and ``beyond``, where the force is too large.
+    Trials below the wanted force are steps of the path, those above it are undone. Where the force jumps over
+    the wanted one, the closer side is taken.
+    """
     high, low = start, beyond  # force below, above the wanted one
-    f_high, f_low = low_force - wanted, high_force - wanted
-    best, best_miss = (high, -f_high) if -f_high < f_low else (low, f_low)
-    side = 0
+    short, excess = wanted - start_force, beyond_force - wanted
+    weight_high = weight_low = 1.0
+    sweeps, settled, last_side = 0, True, 0
+    moved: State | None = None  # what led to `high`, while the contact is there
     for trial in range(60):
         if high - low <= smallest:
             break
-        secant = (high * f_low - low * f_high) / (f_low - f_high)
-        middle = 0.5 * (high + low) if trial % 4 == 3 else secant
-        miss = contact.move_to(middle, with_flow).force - wanted
-        contact.back()
-        if abs(miss) < best_miss:
-            best, best_miss = middle, abs(miss)
-        if abs(miss) <= 0.5 * contact.FORCE_TOLERANCE * wanted:
-            break
-        if miss > 0:
-            low, f_low = middle, miss
-            if side == 1:
-                f_high *= 0.5
-            side = 1
+        share = short * weight_high / (short * weight_high + excess * weight_low) if trial % 4 < 3 else 0.5
+        middle = high + share * (low - high)
+        state = contact.move_to(middle, with_flow)
+        reached = abs(state.force - wanted) <= 0.5 * contact.FORCE_TOLERANCE * wanted
+        if reached or state.force < wanted:
+            sweeps, settled = sweeps + state.sweeps, settled and state.settled
+            high, short, moved = middle, wanted - state.force, state
+            if reached:
+                break
+            weight_high, weight_low = 1.0, weight_low * 0.5 if last_side == 1 else weight_low
+            last_side = 1
         else:
-            high, f_high = middle, miss
-            if side == -1:
-                f_low *= 0.5
-            side = -1
-    return best
+            contact.back()
+            low, excess, moved = middle, state.force - wanted, None
+            weight_low, weight_high = 1.0, weight_high * 0.5 if last_side == -1 else weight_high
+            last_side = -1
+    if moved is None or abs(short) > excess:
+        high = high if abs(short) <= excess else low
+        moved = contact.move_to(high, with_flow)
+        sweeps, settled = sweeps + moved.sweeps, settled and moved.settled
+    return high, moved._replace(sweeps=sweeps, settled=settled)

@@ -14,22 +14,15 @@ from numba import njit
 REACH = 3.0  # a flow ends 3 s2 away from the peak, at 1 % of the second Gaussian's amplitude
 
 
-@njit(cache=True)
-def site_curvature(heights, n, site, spacing):
+@njit(cache=True, inline="always")
+def site_curvature(height, north, south, west, east, spacing):
     """Mean of the two profile curvatures at a site, 1/nm; positive at a minimum (eq. 2 as corrected)."""
-    row = site // n
-    col = site - row * n
-    north = heights[site - n if row > 0 else site + n * (n - 1)]
-    south = heights[site + n if row < n - 1 else site - n * (n - 1)]
-    west = heights[site - 1 if col > 0 else site + n - 1]
-    east = heights[site + 1 if col < n - 1 else site - n + 1]
-    twice = 2.0 * heights[site]
     slope_x = (east - west) / (2.0 * spacing)
     slope_y = (south - north) / (2.0 * spacing)
     fx = 1.0 + slope_x * slope_x
     fy = 1.0 + slope_y * slope_y
-    kx = (east + west - twice) / (fx * np.sqrt(fx))
-    ky = (south + north - twice) / (fy * np.sqrt(fy))
+    kx = (east + west - 2.0 * height) / (fx * np.sqrt(fx))
+    ky = (south + north - 2.0 * height) / (fy * np.sqrt(fy))
     return 0.5 * (kx + ky) / (spacing * spacing)
 
 
@@ -37,50 +30,53 @@ def site_curvature(heights, n, site, spacing):
 def grow(asperities, heights, n, level, spacing, eight, seed):
     """Make the asperity that contains the touching site ``seed``; returns its number."""
     label, arena = asperities.label, asperities.arena
+    firsts, counts = asperities.first, asperities.sites
     number = asperities.used[0]
+    mine = np.int32(number + 1)
     start = asperities.used[1]
     end = start
     arena[end] = seed
-    label[seed] = number + 1
+    label[seed] = mine
     end += 1
     here = start
     peak = seed
     lowest = heights[seed]
     curvature = 0.0
+    around = np.empty(8, np.int64)
+    neighbours = 8 if eight else 4
     while here < end:
-        site = arena[here]
+        site = np.int64(arena[here])
         here += 1
         height = heights[site]
         if height < lowest or (height == lowest and site < peak):
             lowest = height
             peak = site
-        curvature += site_curvature(heights, n, site, spacing)
         row = site // n
         col = site - row * n
-        for dr in range(-1, 2):
-            r = row + dr
-            if r < 0:
-                r += n
-            elif r >= n:
-                r -= n
-            for dc in range(-1, 2):
-                if (dr == 0 and dc == 0) or (not eight and dr != 0 and dc != 0):
-                    continue
-                c = col + dc
-                if c < 0:
-                    c += n
-                elif c >= n:
-                    c -= n
-                other = r * n + c
-                if heights[other] < level and label[other] != number + 1:
-                    owner = label[other]
-                    if owner > 0:
-                        kill(asperities, owner - 1)
-                    label[other] = number + 1
+        north = site - n if row > 0 else site + n * (n - 1)
+        south = site + n if row < n - 1 else site - n * (n - 1)
+        west = -1 if col > 0 else n - 1
+        east = 1 if col < n - 1 else 1 - n
+        around[0], around[1], around[2], around[3] = north, south, site + west, site + east
+        around[4], around[5], around[6], around[7] = north + west, north + east, south + west, south + east
+        curvature += site_curvature(
+            height, heights[north], heights[south], heights[site + west], heights[site + east], spacing
+        )
+        for k in range(neighbours):
+            other = np.uint64(around[k])
+            if heights[other] < level:
+                owner = label[other]
+                if owner != mine:
+                    if owner > 0:  # an asperity of its own so far: free its sites
+                        first = firsts[owner - 1]
+                        for place in range(first, first + counts[owner - 1]):
+                            label[arena[place]] = 0
+                        counts[owner - 1] = 0
+                    label[other] = mine
                     arena[end] = other
                     end += 1
-    asperities.first[number] = start
-    asperities.sites[number] = end - start
+    firsts[number] = start
+    counts[number] = end - start
     asperities.peak[number] = peak
     asperities.lowest[number] = lowest
     asperities.curvature[number] = curvature
@@ -219,58 +215,73 @@ def undo(heights, changes):
 
 
 @njit(cache=True)
-def _gaussian(width, half, spacing):
-    """Values at -half .. half sites, and their sum."""
-    values = np.empty(2 * half + 1)
-    total = 0.0
-    for k in range(2 * half + 1):
-        x = (k - half) * spacing / width
-        values[k] = np.exp(-0.5 * x * x)
-        total += values[k]
-    return values, total
+def _gaussian(width, half, spacing, values):
+    """Fill in the values at -half .. half sites; returns their sum."""
+    values[half] = 1.0
+    total = 1.0
+    for k in range(1, half + 1):
+        x = k * spacing / width
+        value = np.exp(-0.5 * x * x)
+        values[half - k] = value
+        values[half + k] = value
+        total += 2.0 * value
+    return total
 
 
 @njit(cache=True)
-def _add_flow(heights, n, spacing, peak, amplitude, narrow, ratio, at_peak, changes):
+def _add_flow(heights, n, spacing, peak, amplitude, narrow, ratio, at_peak, changes, g1, g2):
     """Add amplitude * (G1 - c G2) around a peak, with c such that the sum over the grid is zero.
 
-    ``at_peak``: scale so that the peak moves by exactly the amplitude. Returns the patch's half-width.
+    ``at_peak``: scale so that the peak moves by exactly the amplitude. ``g1``, ``g2``: room for the two
+    Gaussians. Returns the patch's half-width.
     """
     wide = ratio * narrow
     half = min(int(np.ceil(REACH * wide / spacing)), (n - 1) // 2)
-    g1, sum1 = _gaussian(narrow, half, spacing)
-    g2, sum2 = _gaussian(wide, half, spacing)
-    balance = (sum1 / sum2) ** 2
+    balance = (_gaussian(narrow, half, spacing, g1) / _gaussian(wide, half, spacing, g2)) ** 2
     if at_peak:
         amplitude /= 1.0 - balance
-    width = 2 * half + 1
-    step = changes.used[2]
+    # bare arrays and unsigned numbers: no counting of references, no check for indices below zero
+    changed, sites, original = changes.changed, changes.sites, changes.original
+    journal, before, stamp = changes.journal, changes.before, changes.stamp
+    step = np.int32(changes.used[2])
     recorded = changes.used[1]
     known = changes.used[0]
-    top = peak // n - half + n
-    left = (peak % n - half + n) % n
+    width = 2 * half + 1
+    top = peak // n - half
+    left = peak % n - half
+    if left < 0:
+        left += n
     before_edge = min(width, n - left)
     for k in range(width):
-        start = ((top + k) % n) * n
+        row = top + k
+        if row < 0:
+            row += n
+        elif row >= n:
+            row -= n
         f1 = amplitude * g1[k]
         f2 = amplitude * balance * g2[k]
         for part in range(2):  # columns up to the cell's edge, then those wrapped around it
-            first, last = (0, before_edge) if part == 0 else (before_edge, width)
-            origin = start + left if part == 0 else start - before_edge
-            for m in range(first, last):
-                site = origin + m
-                if changes.stamp[site] != step:
-                    changes.stamp[site] = step
-                    changes.journal[recorded] = site
-                    changes.before[recorded] = heights[site]
-                    recorded += 1
-                    if changes.changed[site] == 0:
-                        changes.changed[site] = 1
-                        changes.sites[known] = site
-                        changes.original[known] = heights[site]
-                        known += 1
-            for m in range(first, last):
-                heights[origin + m] += f1 * g1[m] - f2 * g2[m]
+            origin = np.uint64(row * n + (left if part == 0 else 0))
+            offset = np.uint64(0 if part == 0 else before_edge)
+            count = np.uint64(before_edge if part == 0 else width - before_edge)
+            unknown = 0
+            for m in range(count):
+                unknown += stamp[origin + m] != step
+            if unknown > 0:
+                for m in range(count):
+                    site = origin + m
+                    if stamp[site] != step:
+                        stamp[site] = step
+                        journal[recorded] = site
+                        before[recorded] = heights[site]
+                        recorded += 1
+                        if changed[site] == 0:
+                            changed[site] = 1
+                            sites[known] = site
+                            original[known] = heights[site]
+                            known += 1
+            for m in range(count):
+                heights[origin + m] += f1 * g1[offset + m] - f2 * g2[offset + m]
     changes.used[1] = recorded
     changes.used[0] = known
     return half
@@ -282,32 +293,46 @@ def _release(heights, n, level, peak, reach, asperities, seeds, waiting):
 
     A waiting site has label -1. Returns the number of waiting sites.
     """
-    label = asperities.label
+    label, arena, firsts, counts = asperities.label, asperities.arena, asperities.first, asperities.sites
     width = 2 * reach + 1
-    top = peak // n - reach + n
-    left = (peak % n - reach + n) % n
+    top = peak // n - reach
+    left = peak % n - reach
+    if left < 0:
+        left += n
     before_edge = min(width, n - left)
     for k in range(width):
-        start = ((top + k) % n) * n
-        for m in range(width):
-            site = start + left + m if m < before_edge else start + m - before_edge
-            owner = label[site]
-            if owner > 0:
-                first = asperities.first[owner - 1]
-                last = first + asperities.sites[owner - 1]
-                asperities.sites[owner - 1] = 0
-                for place in range(first, last):
-                    member = asperities.arena[place]
-                    if heights[member] < level:
-                        label[member] = -1
-                        seeds[waiting] = member
-                        waiting += 1
-                    else:
-                        label[member] = 0
-            elif owner == 0 and heights[site] < level:
-                label[site] = -1
-                seeds[waiting] = site
-                waiting += 1
+        row = top + k
+        if row < 0:
+            row += n
+        elif row >= n:
+            row -= n
+        for part in range(2):
+            origin = np.uint64(row * n + (left if part == 0 else 0))
+            count = np.uint64(before_edge if part == 0 else width - before_edge)
+            found = 0
+            for m in range(count):
+                found += (label[origin + m] > 0) | ((label[origin + m] == 0) & (heights[origin + m] < level))
+            if found == 0:
+                continue
+            for m in range(count):
+                site = origin + m
+                owner = label[site]
+                if owner > 0:
+                    first = firsts[owner - 1]
+                    last = first + counts[owner - 1]
+                    counts[owner - 1] = 0
+                    for place in range(first, last):
+                        member = arena[place]
+                        if heights[member] < level:
+                            label[member] = -1
+                            seeds[waiting] = member
+                            waiting += 1
+                        else:
+                            label[member] = 0
+                elif owner == 0 and heights[site] < level:
+                    label[site] = -1
+                    seeds[waiting] = site
+                    waiting += 1
     return waiting
 
 
@@ -364,6 +389,8 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, wor
                 rule.ratio,
                 not rule.fixed,
                 changes,
+                work.narrow,
+                work.wide,
             )
         waiting = 0
         for k in range(flows):

@@ -90,6 +90,8 @@ class Workspace(NamedTuple):
     width: np.ndarray  # float64: s1, nm
     half: np.ndarray  # int32: half-width of the patch in sites
     seeds: np.ndarray  # int32: sites waiting to be joined to asperities
+    narrow: np.ndarray  # float64: values of a flow's narrow Gaussian
+    wide: np.ndarray  # float64: values of its wide Gaussian
 
 
 def workspace(sites: int) -> Workspace:
@@ -101,4 +103,6 @@ def workspace(sites: int) -> Workspace:
         np.empty(sites),
         np.empty(sites, np.int32),
         np.empty(sites, np.int32),
+        np.empty(sites),
+        np.empty(sites),
     )
