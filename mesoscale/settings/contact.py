@@ -5,6 +5,7 @@ from typing import Literal
 from pydantic import Field
 
 from mesoscale.settings.base import Settings
+from mesoscale.settings.surface import SurfaceSettings
 
 
 class ContactSettings(Settings):
@@ -43,6 +44,7 @@ class ContactSettings(Settings):
         description="short-wave cut-off of the spectrum; null: the grid's Nyquist limit",
         json_schema_extra={"unit": "1/nm"},
     )
+    surface: SurfaceSettings = SurfaceSettings()
     gap_cutoff_nm: float = Field(
         default=0.165,
         gt=0,

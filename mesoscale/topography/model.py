@@ -1,11 +1,15 @@
 """The spectrum of equation 9: a plateau up to q0, a power law up to q1, nothing beyond."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
+from mesoscale.errors import InputError
+
 Convention = Literal["profile", "areal"]
+FINE_POINTS = 2001  # of the integral over a table
 OFFSET = {"profile": 1.0, "areal": 2.0}  # slope = 2 H + offset of the two-dimensional spectrum
 
 
@@ -55,6 +59,43 @@ class RoughSpectrum:
         """RMS gradient of the heights; above about 1 a single-valued height map is hard to believe."""
         gradient = self.q0**4 / 4 + self.q0**self.slope * _power_integral(3 - self.slope, self.q0, self.q1)
         return float(np.sqrt(2 * np.pi * self.plateau * gradient))
+
+
+class SpectrumTable:
+    """A spectrum given by points, for instance a measured one: straight between them in log q and log C.
+
+    Below the first point it stays at the first value, above the last it is zero.
+
+    Parameters
+    ----------
+    q, psd : (m,) wave vectors (1/nm) and C (nm^4), at least two points of positive values in rising order of q.
+    """
+
+    def __init__(self, q: Sequence[float] | np.ndarray, psd: Sequence[float] | np.ndarray):
+        self.q, self.values = np.asarray(q, dtype=float), np.asarray(psd, dtype=float)
+        if self.q.ndim != 1 or len(self.q) < 2 or self.q.shape != self.values.shape:
+            raise InputError(
+                "spectrum: accepted are two lists of one length, q (1/nm) and C (nm^4), of two values or more"
+            )
+        finite = np.isfinite(self.q).all() and np.isfinite(self.values).all()
+        if not finite or self.q[0] <= 0 or np.any(np.diff(self.q) <= 0) or np.any(self.values <= 0):
+            raise InputError("spectrum: accepted are positive finite values with q in rising order")
+
+    def psd(self, q: np.ndarray) -> np.ndarray:
+        """C(q) in nm^4 at wave vectors q (any shape) in 1/nm."""
+        known = np.log(np.maximum(q, self.q[0]))
+        values = np.exp(np.interp(known, np.log(self.q), np.log(self.values)))
+        return np.where(q <= self.q[-1], values, 0.0)
+
+    def scaled(self, rms_nm: float, q1: float) -> "SpectrumTable":
+        """The same shape for an RMS height that the integral of 2 pi q C(q) from zero to q1 gives."""
+        low, high = self.q[0], min(q1, self.q[-1])
+        square = np.pi * self.values[0] * min(low, q1) ** 2
+        if high > low:
+            inside = self.q[self.q < high]
+            q = np.unique(np.concatenate([inside, np.geomspace(low, high, FINE_POINTS)]))
+            square += np.trapezoid(2 * np.pi * q * self.psd(q), q)
+        return SpectrumTable(self.q, self.values * rms_nm**2 / square)
 
 
 def mean_square(plateau: float, q0: float, slope: float, q1: float) -> float:

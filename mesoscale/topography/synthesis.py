@@ -1,28 +1,21 @@
-"""Random rough surfaces with the spectrum of the paper's eq. 9.
+"""Random rough surfaces with the spectrum of the paper's eq. 9, or with any isotropic spectrum.
 
 The noise is drawn in Fourier space, shell by shell from long to short waves: a seed gives the same
 long waves whatever the parameters *and* whatever the grid, so that parameter changes and grid
 refinements can be compared on one and the same surface (common random numbers).
 """
 
-from typing import Literal
+from collections.abc import Callable
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 from scipy import fft
 
 from mesoscale.errors import InputError
+from mesoscale.topography.model import Convention, slope_from_hurst
 
-Convention = Literal["profile", "areal"]
-
-
-def spectral_slope(hurst: float, convention: Convention) -> float:
-    """Fall-off s of the two-dimensional PSD, C(q) ~ q^-s, for a Hurst exponent.
-
-    ``profile``: s = 2H + 1, the paper's eq. 9 (the slope of a one-dimensional profile, used on the
-    two-dimensional spectrum); ``areal``: s = 2H + 2, the slope of an isotropic surface.
-    """
-    return 2.0 * hurst + (1.0 if convention == "profile" else 2.0)
+Array = NDArray[np.float64]
 
 
 def synthesize(
@@ -34,7 +27,7 @@ def synthesize(
     seed: int,
     convention: Convention = "profile",
     q1: float | None = None,
-) -> np.ndarray:
+) -> Array:
     """Periodic Gaussian surface with plateau, roll-off, power law and cut-off (section 4, eq. 9).
 
     Parameters
@@ -44,7 +37,7 @@ def synthesize(
     q0, q1
         Roll-off and cut-off wave vectors in 1/nm; ``q1=None`` is the grid's Nyquist limit.
     hurst, convention
-        Exponent and how it is read, see `spectral_slope`.
+        Exponent and how it is read, see `model.slope_from_hurst`.
     rms
         Root-mean-square height in nm; met exactly by every realisation.
     seed
@@ -54,8 +47,39 @@ def synthesize(
     -------
     heights : (pixels, pixels) array in nm, mean zero.
     """
+    squared, step = _squared_waves(pixels, length_nm, q1)
+    amplitude = np.empty(len(squared) + 1)
+    amplitude[0] = 0.0
+    # (q/q0)^(-s/2) for q > q0, as exp/log: NumPy has fast vector code for these but not for power
+    decay = np.log(squared * (step / q0) ** 2)
+    np.exp(
+        np.minimum(decay, np.inf, out=decay).clip(min=0.0) * (-0.25 * slope_from_hurst(hurst, convention)),
+        out=amplitude[1:],
+    )
+    return _filtered_noise(pixels, amplitude, rms, seed)
+
+
+def synthesize_spectrum(
+    pixels: int, length_nm: float, psd: Callable[[Array], Array], rms: float, seed: int, q1: float | None = None
+) -> Array:
+    """Periodic Gaussian surface with the shape of any isotropic spectrum C(q), nm^4 at q in 1/nm.
+
+    `RoughSpectrum.psd` and `SpectrumTable.psd` are such functions, their sum the spectrum of two rough surfaces.
+    The rest is as in `synthesize`; the same seed gives the same noise.
+    """
+    squared, step = _squared_waves(pixels, length_nm, q1)
+    amplitude = np.concatenate([[0.0], np.sqrt(psd(step * np.sqrt(squared)))])
+    if not np.isfinite(amplitude).all() or not amplitude.any():
+        raise InputError(
+            f"the spectrum has no power on a surface of {length_nm:g} nm with {pixels} pixels a side; accepted are "
+            f"spectra that reach between {step:g} and {np.pi * pixels / length_nm:g} 1/nm"
+        )
+    return _filtered_noise(pixels, amplitude, rms, seed)
+
+
+def _squared_waves(pixels: int, length_nm: float, q1: float | None) -> tuple[Array, float]:
+    """Squared wave numbers 1, 2, ... up to the cut-off, and the wave vector of wave number 1 (1/nm)."""
     step = 2.0 * np.pi / length_nm
-    highest = (pixels - 1) // 2
     cutoff = np.inf if q1 is None else q1
     cutoff = min(cutoff, np.pi * pixels / length_nm)
     last = int(np.floor((cutoff / step) ** 2 * (1.0 + 1e-12)))
@@ -64,15 +88,12 @@ def synthesize(
             f"q1 = {cutoff:g} 1/nm leaves no wave on a surface of {length_nm:g} nm; "
             f"accepted: at least {step:g} 1/nm; raise q1 or length_nm"
         )
-    squared = np.arange(1, last + 1, dtype=float)
-    amplitude = np.empty(last + 1)
-    amplitude[0] = 0.0
-    # (q/q0)^(-s/2) for q > q0, as exp/log: NumPy has fast vector code for these but not for power
-    decay = np.log(squared * (step / q0) ** 2)
-    np.exp(
-        np.minimum(decay, np.inf, out=decay).clip(min=0.0) * (-0.25 * spectral_slope(hurst, convention)),
-        out=amplitude[1:],
-    )
+    return np.arange(1, last + 1, dtype=float), step
+
+
+def _filtered_noise(pixels: int, amplitude: Array, rms: float, seed: int) -> Array:
+    """The surface whose waves of squared wave number n have noise times `amplitude[n]`, scaled to `rms`."""
+    highest = (pixels - 1) // 2
     modes = 2 * highest * (highest + 1)
     normals = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed))).standard_normal(2 * modes)
     spectrum = np.zeros((pixels, pixels // 2 + 1), dtype=complex)

@@ -1,0 +1,45 @@
+"""The rough surface that a contact cycle starts from."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mesoscale.settings import ContactSettings
+
+if TYPE_CHECKING:
+    from mesoscale.contact.cycle import ContactInputs
+
+
+def random_surface(inputs: "ContactInputs", settings: ContactSettings, seed: int) -> np.ndarray:
+    """Heights (pixels, pixels) in nm by the inputs' q0, hurst and rms and by `settings.surface`.
+
+    Contact is at the minima of the heights, so a surface of positive skewness (tall peaks) has deep minima here.
+    The sum of two independent Gaussian surfaces is a Gaussian surface with the sum of their spectra.
+    """
+    from mesoscale.topography.model import RoughSpectrum, SpectrumTable, slope_from_hurst
+    from mesoscale.topography.synthesis import synthesize, synthesize_spectrum
+
+    pixels, length, q1, wanted = settings.pixels, settings.length_nm, settings.q1_per_nm, settings.surface
+    other = wanted.counterface
+    if wanted.spectrum is None and other is None:
+        heights = synthesize(pixels, length, inputs.q0, inputs.hurst, inputs.rms, seed, settings.convention, q1)
+    else:
+        cutoff = min(q1 or math.inf, math.pi * pixels / length)
+
+        def rough(rms: float, q0: float, hurst: float) -> RoughSpectrum:
+            return RoughSpectrum.from_rms(rms, q0, slope_from_hurst(hurst, settings.convention), cutoff)
+
+        if wanted.spectrum is None:
+            spectra = [rough(inputs.rms, inputs.q0, inputs.hurst).psd]
+        else:
+            spectra = [SpectrumTable(wanted.spectrum.q, wanted.spectrum.psd).scaled(inputs.rms, cutoff).psd]
+        if other is not None:
+            spectra.append(rough(other.rms_nm, other.q0, other.hurst).psd)
+        rms = math.hypot(inputs.rms, other.rms_nm if other else 0.0)
+        heights = synthesize_spectrum(pixels, length, lambda q: np.sum([c(q) for c in spectra], axis=0), rms, seed, q1)
+    if (wanted.skewness, wanted.kurtosis) != (0.0, 3.0):
+        from mesoscale.topography.distribution import with_moments
+
+        heights = -with_moments(-heights, wanted.skewness, wanted.kurtosis)
+    return heights

@@ -1,0 +1,62 @@
+"""Settings of the contacting surface beyond q0, Hurst exponent and RMS of Table 1."""
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from mesoscale.settings.base import Settings
+
+Positive = Annotated[float, Field(gt=0, le=1e12)]
+
+
+class CounterfaceSettings(Settings):
+    """A second rough surface: the flat meets the sum of both spectra, the effective roughness."""
+
+    q0: float = Field(gt=0, le=10, description="its roll-off wave vector", json_schema_extra={"unit": "1/nm"})
+    hurst: float = Field(
+        gt=0, le=2, description="its Hurst exponent, in contact.convention", json_schema_extra={"unit": "1"}
+    )
+    rms_nm: float = Field(gt=0, le=1e4, description="its RMS height", json_schema_extra={"unit": "nm"})
+
+
+class SpectrumSettings(Settings):
+    """A spectrum by points instead of the form of eq. 9; only its shape counts, the RMS is that of Table 1."""
+
+    q: tuple[Positive, ...] = Field(
+        min_length=2, max_length=10000, description="wave vectors in rising order", json_schema_extra={"unit": "1/nm"}
+    )
+    psd: tuple[Positive, ...] = Field(
+        min_length=2,
+        max_length=10000,
+        description="C at these, of the two-dimensional spectrum",
+        json_schema_extra={"unit": "nm^4"},
+    )
+
+    @model_validator(mode="after")
+    def _a_function(self) -> "SpectrumSettings":
+        if len(self.psd) != len(self.q):
+            raise ValueError(f"psd has {len(self.psd)} values, q has {len(self.q)}; accepted are lists of one length")
+        if any(later <= earlier for earlier, later in zip(self.q, self.q[1:], strict=False)):
+            raise ValueError("q is not in rising order")
+        return self
+
+
+class SurfaceSettings(Settings):
+    """The contacting surface (docs/topography.md, Surfaces)."""
+
+    spectrum: SpectrumSettings | None = Field(
+        default=None, description="spectrum by points (q0 and hurst of Table 1 are then unused); null: eq. 9"
+    )
+    counterface: CounterfaceSettings | None = Field(
+        default=None, description="second rough surface; null: the counterface is flat"
+    )
+    skewness: float = Field(
+        default=0.0,
+        ge=-5,
+        le=5,
+        description="of the heights, peaks counted positive; 0 with kurtosis 3: normal distribution",
+        json_schema_extra={"unit": "1"},
+    )
+    kurtosis: float = Field(
+        default=3.0, ge=1, le=50, description="fourth standardised moment", json_schema_extra={"unit": "1"}
+    )
