@@ -1,6 +1,6 @@
 """How well the analysis returns known truth: sets of synthetic scans with random truth and artefacts."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -85,11 +85,12 @@ def recovery_rows(
             yield row
 
 
-def summary(rows: list[dict[str, Any]], method: str) -> dict[str, float]:
-    """Shares of sets within tolerance and covered, for one method; none is missed."""
+def summary(rows: Sequence[Mapping[str, Any]], method: str) -> dict[str, float]:
+    """Shares of sets within tolerance and covered, for one method; rows as made here or read from their table."""
     mine = [row for row in rows if row["method"] == method]
     result: dict[str, float] = {"sets": len(mine)}
     for name in TOLERANCE:
         for kind in ("within", "covered"):
-            result[f"{name}_{kind}"] = sum(bool(row.get(f"{name}_{kind}", False)) for row in mine) / max(len(mine), 1)
+            yes = sum(str(row.get(f"{name}_{kind}")).lower() == "true" for row in mine)
+            result[f"{name}_{kind}"] = yes / max(len(mine), 1)
     return result

@@ -250,8 +250,17 @@ def _topography(root: Path) -> None:
             "heights": Dataset(heights, "nm", "heights", ("x", "y")),
         },
     }
-    facts = {"scans/small_01": {"length_x_nm": 1000.0, "rms_nm": 3.0}}
+    facts = {"scans/small_01": {"length_x_nm": 1000.0, "rms_nm": 3.0, "trusted_low": 0.02, "trusted_high": 0.5}}
     write_h5(root / "topography/spectra.h5", groups, {"synthetic": True}, PROVENANCE, facts)
-    estimates = {"q0": {"value": 0.02, "interval": [0.015, 0.025], "scatter": [0.01, 0.03], "unit": "1/nm"}}
-    content = {"synthetic": True, "convention": "profile", "estimates": estimates, "truth": {"q0": 0.021}}
+    truth = {"q0": 0.021, "slope": 2.8, "rms_nm": 3.1}
+    estimates = {
+        name: {"value": v, "interval": [0.9 * v, 1.1 * v], "scatter": [0.5 * v, 2 * v], "unit": unit}
+        for name, v, unit in (("q0", 0.02, "1/nm"), ("slope", 2.9, "1"), ("rms", 3.0, "nm"))
+    }
+    scan = {"name": "small_01", "rms_heights_nm": 2.9, "rms_spectrum_nm": 3.1, "true_rms_nm": 3.0}
+    content = {"synthetic": True, "convention": "profile", "estimates": estimates, "truth": truth, "scans": [scan]}
+    row = {"set": 0, "method": "likelihood"}
+    for name, v in (("q0", 0.02), ("slope", 2.9), ("rms", 3.0)):
+        row.update({f"{name}_true": v, name: 1.01 * v, f"{name}_low": 0.9 * v, f"{name}_high": 1.1 * v})
+    write_csv(root / "topography/recovery.csv", [row])
     write_json(root / "topography/parameters.json", {**content, "gate": {"passed": True, "reasons": []}}, PROVENANCE)

@@ -1,9 +1,9 @@
-"""Figures of the stages that feed the contact: hardness, elasticity, topography."""
+"""Figures of the atomistic stages: hardness and elasticity."""
 
 import numpy as np
 
 from workflow.report.available import Results, Row, column, number
-from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SERIES, SKY, SOFT, draw
+from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SERIES, SOFT, draw
 
 SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE, "s")}
 PAPER_HARDNESS = ((3.0, 10.0), (15.0, 2.0))  # nm, GPa: "~10 GPa at 3 nm, ~2 GPa at 15 nm" in the paper's text
@@ -154,79 +154,6 @@ def energy_volume(results: Results) -> str | None:
     return draw("energy", "Energy against strain of every structure", plot, (5.6, 3.6))
 
 
-def scans(results: Results) -> str | None:
-    """Figure 9: height maps of the scans."""
-    groups, _, facts = results.h5("topography/spectra.h5")
-    names = [name for name in sorted(groups) if name.startswith("scans/") and "heights" in groups[name]]
-    if not names:
-        return None
-    # one of each size first, then more up to six
-    names.sort(key=lambda name: (float(facts[name].get("length_x_nm", 0)), name))
-    shown = names if len(names) <= 6 else names[:3] + names[-3:]
-    columns = min(3, len(shown))
-    rows = -(-len(shown) // columns)
-
-    def plot(*axes):
-        for axis, name in zip(axes, shown, strict=False):
-            heights = _thin(groups[name]["heights"])
-            size = float(facts[name]["length_x_nm"]) / 1e3
-            limit = float(np.quantile(np.abs(heights), 0.995))
-            axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), cmap="cividis", vmin=-limit, vmax=limit)
-            rms = float(facts[name].get("rms_nm", np.nan))
-            axis.set_title(f"{name.removeprefix('scans/')}: RMS {rms:.2f} nm", fontsize=9)
-            axis.set_xlabel("µm", fontsize=8)
-            axis.grid(False)
-        for axis in axes[len(shown) :]:
-            axis.set_visible(False)
-
-    return draw("fig9", "Height maps of the scans", plot, (8.4, 2.9 * rows), columns, rows)
-
-
-def spectra(results: Results) -> str | None:
-    """Figure 10: spectra of all scans, pooled spectrum, fits, and the truth of synthetic scans."""
-    groups, attributes, _ = results.h5("topography/spectra.h5")
-    names = [name for name in groups if name.startswith("scans/")]
-    if not names:
-        return None
-    styles = {
-        "likelihood": ("fit of eq. 9 (maximum likelihood)", BLUE, "-"),
-        "lines": ("line fits as in the paper", GREEN, "-"),
-        "shallow_bound": ("bounding slopes", RED, "--"),
-        "steep_bound": (None, RED, "--"),
-        "plateau_low": ("bounding plateaus", PURPLE, ":"),
-        "plateau_high": (None, PURPLE, ":"),
-        "truth": ("truth of the synthetic surface", INK, "--"),
-    }
-
-    def plot(axis):
-        lowest, highest = np.inf, 0.0
-        for name in sorted(names):
-            q, psd = groups[name]["q"], groups[name]["psd"]
-            use = psd > 0
-            axis.loglog(q[use], psd[use], color=SKY, linewidth=0.7, alpha=0.8)
-            lowest, highest = min(lowest, psd[use].min()), max(highest, psd[use].max())
-        axis.plot(
-            [],
-            [],
-            color=SKY,
-            label=f"{len(names)} {'synthetic ' if attributes.get('synthetic') else ''}scans",
-        )
-        if "pooled" in groups:
-            axis.loglog(groups["pooled"]["q"], groups["pooled"]["psd"], color=ORANGE, label="pooled")
-        fits = groups.get("fits", {})
-        for name, (label, color, style) in styles.items():
-            if name in fits:
-                axis.loglog(fits["q"], fits[name], style, color=color, label=label, linewidth=1.3)
-        axis.set(
-            xlabel="wave vector q (1/nm)",
-            ylabel="PSD (nm⁴)",
-            ylim=(max(lowest, highest * 1e-12), 5 * highest),
-        )
-        axis.legend(fontsize=8)
-
-    return draw("fig10", "Power spectra of the scans with fits", plot, (7.0, 4.6))
-
-
 def _scale(point: Row) -> tuple[str, str, str]:
     return SCALES.get(_key(point), ("other energies", PURPLE, "^"))
 
@@ -238,8 +165,3 @@ def _key(point: Row) -> str:
 
 def _normal(x: np.ndarray, mean: float, std: float) -> np.ndarray:
     return np.exp(-(((x - mean) / std) ** 2) / 2) / (std * np.sqrt(2 * np.pi))
-
-
-def _thin(heights: np.ndarray, most: int = 160) -> np.ndarray:
-    step = max(1, -(-max(heights.shape) // most))
-    return heights[::step, ::step]

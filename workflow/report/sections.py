@@ -6,6 +6,7 @@ import numpy as np
 
 from workflow.report import figures_atoms as atoms
 from workflow.report import figures_contact as contact
+from workflow.report import figures_topography as scans
 from workflow.report.available import Results, Row, number, show
 from workflow.report.figures_contact import OUTPUTS, SYMBOLS
 from workflow.report.page import COMPUTED, LITERATURE, SYNTHETIC, Section, Table
@@ -151,11 +152,23 @@ def topography(results: Results) -> Section:
         + f"The Hurst exponent follows the convention `{found.get('convention', 'profile')}`.",
         SYNTHETIC if synthetic else _used(results, "topography"),
     )
-    section.add(atoms.scans(results), "Height maps after levelling, in nm about their mean.", "Figure 9", wide=True)
+    section.add(scans.scans(results), "Height maps after levelling, in nm about their mean.", "Figure 9", wide=True)
     section.add(
-        atoms.spectra(results),
-        "Power spectra of all scans, pooled, with the fits behind q₀, Hurst exponent and RMS.",
+        scans.spectra(results),
+        "Power spectra of all scans, pooled, with the fits behind q₀, Hurst exponent and RMS. The fits use the trusted "
+        "part; grey is what levelling, tip, noise or pixels disturb.",
         "Figure 10",
+    )
+    section.add(
+        scans.recovery(results),
+        "What the analysis returns of the synthetic scans' known truth. The interval of the typical RMS holds the "
+        "scatter from place to place: it is as wide as so few places make it. Heights miss what levelling took.",
+    )
+    section.add(
+        scans.recovered_sets(results),
+        f"Truth and {float(found.get('confidence', 0.9)):.0%} intervals of many sets of synthetic scans with random "
+        "truth and artefacts.",
+        wide=True,
     )
     paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20)", "rms": "1.82 to 14.17", "slope": "2.84"}
     truth = found.get("truth") or {}

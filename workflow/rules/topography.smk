@@ -93,7 +93,7 @@ rule pool_spectra:
 
 
 ACCURACY.append(f"{RESULTS}/accuracy/topography.csv")
-ACCURACY.append(f"{RESULTS}/accuracy/topography_recovery.csv")
+ACCURACY.append(f"{RESULTS}/topography/recovery.csv")
 STABILITY.append(f"{RESULTS}/stability/topography.csv")
 
 
@@ -110,17 +110,38 @@ rule measure_topography_accuracy:
         "../scripts/measure_topography_accuracy.py"
 
 
-rule measure_topography_recovery:
+SETS_PER_JOB = 5  # an interrupted study loses no more than these
+
+
+rule recover_topography:
     output:
-        f"{RESULTS}/accuracy/topography_recovery.csv",
+        temp(f"{RESULTS}/topography/recovery/sets_{{part}}.csv"),
     log:
-        f"{RESULTS}/logs/measure_topography_recovery.log",
+        f"{RESULTS}/logs/recover_topography_{{part}}.log",
     params:
         settings=settings("topography"),
+        first=lambda wildcards: int(wildcards.part) * SETS_PER_JOB,
+        sets=SETS_PER_JOB,
     message:
-        "recover known truth from synthetic scans with artefacts"
+        "recover known truth from synthetic scans with artefacts (part {wildcards.part})"
     script:
-        "../scripts/measure_topography_recovery.py"
+        "../scripts/recover_topography.py"
+
+
+rule collect_topography_recovery:
+    input:
+        expand(
+            f"{RESULTS}/topography/recovery/sets_{{part}}.csv",
+            part=[f"{k:03d}" for k in range(-(-TOPOGRAPHY.study_sets // SETS_PER_JOB))],
+        ),
+    output:
+        f"{RESULTS}/topography/recovery.csv",
+    log:
+        f"{RESULTS}/logs/collect_topography_recovery.log",
+    message:
+        "summarise how well known truth is recovered"
+    script:
+        "../scripts/collect_topography_recovery.py"
 
 
 rule check_topography_stability:

@@ -1,0 +1,140 @@
+"""Figures of the topography stage: scans, spectra, recovery of known truth."""
+
+import numpy as np
+
+from workflow.report.available import Results
+from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SKY, SOFT, draw
+
+
+def scans(results: Results) -> str | None:
+    """Figure 9: height maps of the scans."""
+    groups, _, facts = results.h5("topography/spectra.h5")
+    names = [name for name in sorted(groups) if name.startswith("scans/") and "heights" in groups[name]]
+    if not names:
+        return None
+    # one of each size first, then more up to six
+    names.sort(key=lambda name: (float(facts[name].get("length_x_nm", 0)), name))
+    shown = names if len(names) <= 6 else names[:3] + names[-3:]
+    columns = min(3, len(shown))
+    rows = -(-len(shown) // columns)
+
+    def plot(*axes):
+        for axis, name in zip(axes, shown, strict=False):
+            heights = _thin(groups[name]["heights"])
+            size = float(facts[name]["length_x_nm"]) / 1e3
+            limit = float(np.quantile(np.abs(heights), 0.995))
+            axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), cmap="cividis", vmin=-limit, vmax=limit)
+            rms = float(facts[name].get("rms_nm", np.nan))
+            axis.set_title(f"{name.removeprefix('scans/')}: RMS {rms:.2f} nm", fontsize=9)
+            axis.set_xlabel("µm", fontsize=8)
+            axis.grid(False)
+        for axis in axes[len(shown) :]:
+            axis.set_visible(False)
+
+    return draw("fig9", "Height maps of the scans", plot, (8.4, 2.9 * rows), columns, rows)
+
+
+def spectra(results: Results) -> str | None:
+    """Figure 10: spectra of all scans, pooled spectrum, fits, and the truth of synthetic scans."""
+    groups, attributes, facts = results.h5("topography/spectra.h5")
+    names = [name for name in groups if name.startswith("scans/")]
+    if not names:
+        return None
+    styles = {
+        "likelihood": ("fit of eq. 9 (maximum likelihood)", BLUE, "-"),
+        "lines": ("line fits as in the paper", GREEN, "-"),
+        "shallow_bound": ("bounding slopes", RED, "--"),
+        "steep_bound": (None, RED, "--"),
+        "plateau_low": ("bounding plateaus", PURPLE, ":"),
+        "plateau_high": (None, PURPLE, ":"),
+        "truth": ("truth of the typical synthetic place", INK, "--"),
+    }
+
+    def plot(axis):
+        lowest, highest = np.inf, 0.0
+        for name in sorted(names):
+            q, psd = groups[name]["q"], groups[name]["psd"]
+            low, high = (
+                float(facts[name].get(key, end)) for key, end in (("trusted_low", 0), ("trusted_high", np.inf))
+            )
+            trusted = (q >= low) & (q <= high)
+            axis.loglog(q, psd, color=SOFT, linewidth=0.5, alpha=0.6, zorder=1)
+            axis.loglog(q[trusted], psd[trusted], color=SKY, linewidth=0.9, alpha=0.7, zorder=2)
+            axis.plot(q[trusted][-1:], psd[trusted][-1:], "|", color=INK, markersize=7, zorder=4)
+            lowest, highest = min(lowest, psd[psd > 0].min()), max(highest, psd.max())
+        kind = "synthetic " if attributes.get("synthetic") else ""
+        axis.plot([], [], color=SKY, label=f"{len(names)} {kind}scans, trusted part")
+        axis.plot([], [], color=SOFT, linewidth=0.5, label="limited by levelling, tip, noise or pixels")
+        axis.plot([], [], "|", color=INK, label="where the instrument ends it")
+        if "pooled" in groups:
+            axis.loglog(groups["pooled"]["q"], groups["pooled"]["psd"], color=ORANGE, label="pooled")
+        fits = groups.get("fits", {})
+        for name, (label, color, style) in styles.items():
+            if name in fits:
+                axis.loglog(fits["q"], fits[name], style, color=color, label=label, linewidth=1.3)
+        axis.set(
+            xlabel="wave vector q (1/nm)",
+            ylabel="PSD (nm⁴)",
+            ylim=(max(lowest, highest * 1e-12), 5 * highest),
+        )
+        axis.legend(fontsize=8)
+
+    return draw("fig10", "Power spectra of the scans with fits", plot, (7.0, 4.6))
+
+
+def recovery(results: Results) -> str | None:
+    """Truth of the synthetic scans beside what the analysis found, with its intervals."""
+    found = results.json("topography/parameters.json")
+    truth, estimates = found.get("truth") or {}, found.get("estimates", {})
+    scans = [row for row in found.get("scans", []) if row.get("true_rms_nm") and row.get("rms_spectrum_nm")]
+    if not truth or not estimates or not scans:
+        return None
+    level = f"{float(found.get('confidence', 0.9)):.0%}"
+
+    def plot(common, places):
+        for place, name in enumerate(("q0", "slope", "rms")):
+            known = float(truth.get(name, truth.get(f"{name}_nm", np.nan)))
+            value, interval = (np.asarray(estimates[name][key], dtype=float) / known for key in ("value", "interval"))
+            error = np.abs(interval - value)[:, None]
+            common.errorbar([place], [value], error, fmt="o", color=BLUE, capsize=4)
+        common.axhline(1, color=INK, linewidth=0.8, linestyle="--")
+        common.set_xticks(range(3), ["q₀", "slope", "RMS of the\ntypical place"])
+        common.set(xlim=(-0.6, 2.6), ylabel=f"found / truth, {level} interval")
+        true, heights, spectrum = (
+            np.array([float(row[key]) for row in scans]) for key in ("true_rms_nm", "rms_heights_nm", "rms_spectrum_nm")
+        )
+        ends = [0.9 * true.min(), 1.1 * true.max()]
+        places.plot(ends, ends, "--", color=INK, linewidth=0.8)
+        places.plot(true, spectrum, "o", color=BLUE, label="from the spectrum")
+        places.plot(true, heights, "o", color=ORANGE, markerfacecolor="none", label="from the heights")
+        places.set(xlabel="true RMS of a place (nm)", ylabel="found (nm)")
+        places.legend(fontsize=8)
+
+    return draw("recovery", "Truth recovered from the synthetic scans", plot, (8.0, 3.6), 2)
+
+
+def recovered_sets(results: Results) -> str | None:
+    """Truth and estimates of many sets of synthetic scans with random truth and artefacts."""
+    if not results.has("topography/recovery.csv"):
+        return None
+    rows = [row for row in results.csv("topography/recovery.csv") if row["method"] == "likelihood"]
+
+    def plot(*axes):
+        for axis, (name, label) in zip(
+            axes, (("q0", "q₀ (1/nm)"), ("slope", "slope"), ("rms", "RMS (nm)")), strict=True
+        ):
+            have = [row for row in rows if row[name]]
+            true, value, low, high = (
+                np.array([float(row[name + end]) for row in have]) for end in ("_true", "", "_low", "_high")
+            )
+            axis.errorbar(true, value, [value - low, high - value], fmt="o", markersize=2.5, linewidth=0.8, color=BLUE)
+            ends = [true.min(), true.max()]
+            axis.plot(ends, ends, "--", color=INK, linewidth=0.8)
+            axis.set(xlabel=f"true {label}", ylabel=f"found {label}")
+
+    return draw("recovered_sets", "Truth recovered from many sets of scans", plot, (9.0, 3.2), 3)
+
+
+def _thin(heights: np.ndarray, most: int = 160) -> np.ndarray:
+    step = max(1, -(-max(heights.shape) // most))
+    return heights[::step, ::step]
