@@ -86,7 +86,7 @@ def to_json(surrogate: Surrogate) -> dict[str, Any]:
     }
 
 
-def from_json(output: Mapping[str, Any], inputs: list[Mapping[str, Any]]) -> Surrogate:
+def from_json(output: Mapping[str, Any], inputs: Sequence[Mapping[str, Any]]) -> Surrogate:
     """The surface of one entry of `outputs` in uq/surrogate.json."""
     return Surrogate(
         np.array([[row["low"], row["high"]] for row in inputs], float),

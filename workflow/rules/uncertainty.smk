@@ -198,3 +198,25 @@ rule study_uncertainty_stability:
 
 
 STABILITY.append(f"{RESULTS}/stability/uncertainty.csv")
+
+
+rule extremes:
+    input:
+        f"{RESULTS}/uq/extremes.csv",
+
+
+rule study_extremes:
+    message:
+        "study first contact and d_c on larger samples"
+    input:
+        inputs=f"{RESULTS}/inputs.csv",
+    output:
+        f"{RESULTS}/uq/extremes.csv",
+    log:
+        f"{RESULTS}/logs/study_extremes.log",
+    params:
+        contact=settings("contact"),
+        law=settings("law"),
+        central_share=SCENE.uncertainty.central_share,
+    script:
+        "../scripts/study_extremes.py"

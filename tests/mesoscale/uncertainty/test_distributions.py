@@ -49,7 +49,7 @@ def test_samples_carry_the_rank_correlation():
     )
     values = given.sample(40000, 1)
     ranks = values.argsort(axis=0).argsort(axis=0)
-    measured = np.corrcoef(ranks.T)
+    measured = np.asarray(np.corrcoef(ranks.T))
     # standard error of a correlation: 1/sqrt(40000) = 0.005
     assert measured[0, 1] == pytest.approx(-0.6, abs=0.02)
     assert abs(measured[0, 2]) < 0.02

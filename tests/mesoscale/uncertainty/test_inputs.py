@@ -8,7 +8,7 @@ import pytest
 from pydantic import ValidationError
 
 from mesoscale.errors import InputError
-from mesoscale.settings import InputRow, InputsSettings
+from mesoscale.settings import Correlation, InputRow, InputsSettings
 from mesoscale.uncertainty.inputs import UNITS, collect, from_rows, to_rows
 from workflow.scene import load_scene
 
@@ -137,6 +137,6 @@ def test_mistakes_in_a_row(row, message):
 
 def test_mistakes_across_rows():
     with pytest.raises(ValidationError, match="unknown input hardness"):
-        InputsSettings(correlations=[{"first": "rms", "second": "hardness", "rank": 0.3}])
+        InputsSettings(correlations=(Correlation(first="rms", second="hardness", rank=0.3),))
     with pytest.raises(ValidationError, match="q0: origin elastic"):
         InputsSettings(q0=InputRow(origin="elastic"))

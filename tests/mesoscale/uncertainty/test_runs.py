@@ -16,6 +16,12 @@ CONTACT = ContactSettings(pixels=64)
 CENTRE = collocation_runs(PAPER, UncertaintySettings(), 0, 1)[0].values
 
 
+def computed(values, seed):
+    cycle = compute(values, seed, CONTACT)
+    assert not isinstance(cycle, str), cycle
+    return cycle
+
+
 def test_runs_of_a_chunk_do_not_depend_on_the_number_of_seeds():
     few, many = UncertaintySettings(seeds=2), UncertaintySettings(seeds=20)
     assert collocation_runs(PAPER, few, 10, 30) == collocation_runs(PAPER, many, 10, 30)
@@ -30,8 +36,7 @@ def test_random_runs_can_be_cut_anywhere():
 
 
 def test_a_cycle_gives_eight_outputs():
-    cycle = compute(CENTRE, 0, CONTACT)
-    assert not isinstance(cycle, str)
+    cycle = computed(CENTRE, 0)
     outcome = fit_cycle(cycle, CENTRE["hamaker"], 1e6, LawSettings(contact_definition="first_contact"))
     assert outcome.outputs.shape == (8,)
     assert outcome.closing.d_c_nm == pytest.approx(cycle.first_contact_nm)
@@ -41,13 +46,13 @@ def test_a_cycle_gives_eight_outputs():
 
 def test_rough_surfaces_touch_at_separations_in_proportion_to_rms():
     """Common random numbers: the same surface, scaled."""
-    cycles = [compute({**CENTRE, "rms": rms}, 3, CONTACT) for rms in (4.0, 8.0)]
+    cycles = [computed({**CENTRE, "rms": rms}, 3) for rms in (4.0, 8.0)]
     assert cycles[1].first_contact_nm == pytest.approx(2 * cycles[0].first_contact_nm)
 
 
 def test_a_failing_engine_is_reported_and_leaves_no_numbers():
     rows = list(compute_rows([Run(0, -1, 1, {**CENTRE, "e_star": -1.0})], CONTACT, LawSettings()))
-    assert rows[0]["curve_status"].startswith("failed: InputError")
+    assert str(rows[0]["curve_status"]).startswith("failed: InputError")
     assert all(rows[0][name] == "" for name in SURFACES)
 
 
@@ -62,9 +67,7 @@ def test_equal_inputs_are_computed_once(monkeypatch):
 def test_the_eighth_input_reaches_the_engine():
     inputs, settings = contact_of({**CENTRE, "gap_cutoff": 0.3}, CONTACT)
     assert settings.gap_cutoff_nm == 0.3
-    near, far = (
-        fit_cycle(compute({**CENTRE, "gap_cutoff": d}, 0, CONTACT), 0.215, 1e6, LawSettings()) for d in (0.165, 0.3)
-    )
+    near, far = (fit_cycle(computed({**CENTRE, "gap_cutoff": d}, 0), 0.215, 1e6, LawSettings()) for d in (0.165, 0.3))
     assert near.closing.C_a_GPa_nm > far.closing.C_a_GPa_nm
     assert np.isclose(near.closing.rho_r_nm, far.closing.rho_r_nm)
     assert inputs.rms == CENTRE["rms"]

@@ -1,0 +1,20 @@
+"""First contact and d_c as the area of the sample grows, at the middle of the inputs.
+
+In: inputs.csv.  Out: uq/extremes.csv (nm).
+"""
+
+from mesoscale.settings import ContactSettings, LawSettings
+from mesoscale.uncertainty.extremes import COLUMNS, extreme_rows
+from mesoscale.uncertainty.inputs import from_rows
+from mesoscale.uncertainty.runs import contact_of
+from workflow.job import job
+from workflow.results import read_csv, write_csv
+
+with job(snakemake) as run:
+    table = from_rows(read_csv(snakemake.input.inputs))
+    middle = table.ranges(snakemake.params.central_share).mean(axis=1).tolist()
+    inputs, contact = contact_of(
+        dict(zip(table.names, middle, strict=True)), ContactSettings(**snakemake.params.contact)
+    )
+    rows = extreme_rows(inputs, contact, LawSettings(**snakemake.params.law), run.progress)
+    write_csv(snakemake.output[0], rows, COLUMNS)
