@@ -1,5 +1,6 @@
 """How runs are cut into jobs.  Imports nothing heavy: the workflow reads it to plan."""
 
+from collections.abc import Sequence
 from itertools import product
 
 from mesoscale.settings import UncertaintySettings
@@ -51,6 +52,11 @@ def contact_readings() -> list[str]:
     return [name for name in named if ".curvature.hertz." not in name]
 
 
-def default_readings() -> list[str]:
-    """Readings audited by default: touching sites attract, which alone meets the paper's C_a."""
-    return [name for name in contact_readings() if name.endswith(".true")]
+def audited_readings(names: Sequence[str]) -> list[str]:
+    """The readings to audit: those named, or `all`; by default those of the mean curvature with attracting sites.
+
+    R = A/(2 pi delta) and touching sites left out lie far from the tables (docs/data/all_readings.csv).
+    """
+    if list(names) == ["all"]:
+        return contact_readings()
+    return list(names) or [name for name in contact_readings() if name.endswith(".curvature.sites.true")]

@@ -1,4 +1,4 @@
-from mesoscale.uncertainty.chunks import default_readings, full_chunks
+from mesoscale.uncertainty.chunks import audited_readings, full_chunks
 
 
 def direct_files(design, runs, name="chunk"):
@@ -119,7 +119,7 @@ rule rank_readings:
         table3=str(CONFIG / "paper" / "table3.csv"),
         runs=[
             f"{RESULTS}/audit/runs/{reading}_{seed}.csv"
-            for reading in SCENE.uncertainty.audit_readings or default_readings()
+            for reading in audited_readings(SCENE.uncertainty.audit_readings)
             for seed in range(SCENE.uncertainty.audit_seeds)
         ],
     output:
