@@ -1,0 +1,93 @@
+"""Scans that cannot be used are refused in one line each, and what is finished stays."""
+
+import numpy as np
+import pytest
+
+from mesoscale.topography.reading import write_gwy
+from mesoscale.topography.scan import Scan
+
+MATERIAL = """
+inputs:
+  e_star: {origin: literature, distribution: normal, a: 91, b: 3.8, source: test}
+  h_prime: {origin: literature, a: 2, b: 15, source: test}
+"""
+
+
+def scene(folder, *scans, **topography):
+    """A scene whose roughness comes from these scans."""
+    path = folder / "mine.yaml"
+    keys = {"scans": f"[{', '.join(scans)}]", "scans_per_job": 1, **topography}
+    path.write_text("topography: {" + ", ".join(f"{key}: {value}" for key, value in keys.items()) + "}" + MATERIAL)
+    return str(path)
+
+
+def errors(done):
+    assert "Traceback" not in done.stderr
+    return sorted({line for line in (done.stdout + done.stderr).splitlines() if line.startswith("ERROR")})
+
+
+def rough(seed=0, pixels=64):
+    """Heights with a plateau and a power law."""
+    k = np.hypot(*np.meshgrid(np.fft.fftfreq(pixels), np.fft.fftfreq(pixels)))
+    noise = np.fft.fft2(np.random.default_rng(seed).standard_normal((pixels, pixels)))
+    return np.fft.ifft2(noise * np.maximum(k, 0.05) ** -1.5).real
+
+
+@pytest.fixture(scope="module")
+def refused(make_workflow, tmp_path_factory):
+    """One run over one good scan and one of each bad kind, each in a job of its own."""
+    from gwyfile.objects import GwyContainer, GwyDataField
+
+    folder = tmp_path_factory.mktemp("bad_scans")
+    good = folder / "good.gwy"
+    write_gwy(good, Scan(rough(), (1000.0, 1000.0), "good"))
+    (folder / "unreadable.gwy").write_bytes(good.read_bytes()[:3000])
+    np.savetxt(folder / "sizeless.txt", rough())
+    both = GwyContainer()
+    for number, title in enumerate(("Height", "ZSensor")):
+        both[f"/{number}/data/title"] = title
+        both[f"/{number}/data"] = GwyDataField(rough() * 1e-9, xreal=1e-6, yreal=1e-6, si_unit_xy="m", si_unit_z="m")
+    both.tofile(str(folder / "channels.gwy"))
+    names = ("good.gwy", "unreadable.gwy", "sizeless.txt", "channels.gwy")
+    workflow = make_workflow(folder)
+    done = workflow.run(scene(folder, *names), "topography", options=("--keep-going",))
+    return done, folder
+
+
+def test_each_bad_scan_gets_one_line(refused):
+    done, _ = refused
+    assert done.returncode != 0
+    assert len(errors(done)) == 3
+    text = "\n".join(errors(done))
+    assert "several height channels: Height, ZSensor; name one in topography.channel" in text
+    assert "sizeless.txt: has no physical size" in text
+    assert "unreadable.gwy: no reader understands this file" in text
+
+
+def test_a_mended_scan_is_read_and_finished_ones_are_not_read_again(refused, make_workflow):
+    _, folder = refused
+    finished, mended = (f"results/mine/topography/spectra/chunk_{number:03d}.h5" for number in (0, 1))
+    before = (folder / finished).stat().st_mtime_ns
+    write_gwy(folder / "unreadable.gwy", Scan(rough(1), (1000.0, 1000.0), "mended"))
+    done = make_workflow(folder).run(str(folder / "mine.yaml"), finished, mended)
+    assert done.returncode == 0, done.stderr
+    assert (folder / finished).stat().st_mtime_ns == before
+    assert (folder / mended).is_file()
+
+
+def test_a_missing_scan_is_named_before_anything_runs(workflow_in):
+    done = workflow_in.run(scene(workflow_in.folder, "nothing.gwy", "nowhere.ibw"), "topography")
+    assert done.returncode != 0
+    nothing, nowhere = errors(done)
+    assert "nothing.gwy: no such file" in nothing
+    assert "nowhere.ibw: no such file" in nowhere
+    assert not list(workflow_in.folder.glob("results/*/topography/**/*.h5"))
+
+
+def test_a_constant_scan_stops_where_its_numbers_would_be_used(workflow_in):
+    write_gwy(workflow_in.folder / "flat.gwy", Scan(np.zeros((64, 64)), (1000.0, 1000.0), "flat"))
+    done = workflow_in.run(scene(workflow_in.folder, "flat.gwy"), "results/mine/inputs.csv")
+    assert done.returncode != 0
+    (line,) = errors(done)
+    assert "not identifiable" in line
+    assert (workflow_in.folder / "results/mine/topography/parameters.json").is_file()
