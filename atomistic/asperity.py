@@ -1,4 +1,4 @@
-"""Asperities cut from a tiling of a glass cell (eq. 6 of Kim et al. 2013)."""
+"""Bodies cut from a tiling of a glass cell: asperities (eq. 6 of Kim et al. 2013), flats, and a pair of them."""
 
 from dataclasses import replace
 
@@ -73,3 +73,22 @@ def top_height(height: np.ndarray) -> float:
 def with_vacuum(atoms: Atoms, height_A: float) -> Atoms:
     """The same atoms in a cell of another height."""
     return replace(atoms, cell_A=np.array([*atoms.cell_A[:2], height_A]))
+
+
+def facing(lower: Atoms, upper: Atoms, gap_A: float) -> tuple[Atoms, float]:
+    """`upper` turned over and placed above `lower`, as one set of atoms with types of its own.
+
+    Returns
+    -------
+    atoms : those of `lower` first; elements and types of `upper` follow those of `lower`.
+    ceiling : height at which the (rigid) bottom of `upper` now lies, Å.
+    """
+    ceiling = top_height(lower.positions_A[:, 2]) + gap_A + top_height(upper.positions_A[:, 2])
+    turned = upper.positions_A * [1, 1, -1] + [0, 0, ceiling]
+    positions = np.concatenate([lower.positions_A, turned])
+    velocities = None
+    if lower.velocities_A_ps is not None and upper.velocities_A_ps is not None:
+        velocities = np.concatenate([lower.velocities_A_ps, upper.velocities_A_ps * [1, 1, -1]])
+    types = np.concatenate([lower.types, upper.types + len(lower.elements)])
+    cell = np.array([*lower.cell_A[:2], ceiling + VACUUM_A])
+    return Atoms(lower.elements + upper.elements, types, positions, cell, velocities), ceiling

@@ -51,7 +51,7 @@ def contact_map(
     distance = (cells + 0.5) * spacing - shifted[:, None, :]
     hit = cells[np.einsum("ijk,ijk->ij", distance, distance) <= disc_A**2]
     marked[hit[:, 0] % shape[0], hit[:, 1] % shape[1]] = True
-    return binary_fill_holes(marked)
+    return np.asarray(binary_fill_holes(marked), dtype=bool)
 
 
 def _spacing(cell_A: tuple[float, float], grid_A: float) -> np.ndarray:

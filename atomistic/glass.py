@@ -10,7 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from atomistic.errors import InputError
 from atomistic.lammps import Atoms, Progress, Workspace, read_data, run_lammps, write_data
@@ -52,14 +52,27 @@ def cations(material: str, potential: Potential) -> tuple[str, ...]:
     return tuple(ion for ion in potential.materials[material] if potential.species[ion].charge_e > 0)
 
 
-def random_start(material: str, potential: Potential, settings: GlassSettings, seed: int) -> Atoms:
-    """Ions at random places of a cube of the experimental density, no two nearer than 1.5 Å."""
+def random_start(
+    material: str, potential: Potential, settings: GlassSettings, seed: int, edge_A: float | None = None
+) -> Atoms:
+    """Ions at random places of a cube of the experimental density, no two nearer than 1.5 Å.
+
+    The number of atoms follows from `settings.atoms`, or from the edge of the cube where one is given.
+    """
     formula = _formula(material, potential)
-    units = max(1, round(settings.atoms / sum(formula.values())))
     elements = tuple(formula)
+    unit_g = sum(count * potential.species[ion].mass_u for ion, count in formula.items()) / AVOGADRO
+    units = max(
+        1,
+        round(
+            1e-24 * edge_A**3 * REFERENCES[material].density_g_cm3 / unit_g
+            if edge_A
+            else settings.atoms / sum(formula.values())
+        ),
+    )
     counts = [units * count for count in formula.values()]
     mass_g = sum(n * potential.species[ion].mass_u for n, ion in zip(counts, elements, strict=True)) / AVOGADRO
-    length = (mass_g / REFERENCES[material].density_g_cm3 * 1e24) ** (1 / 3)
+    length = edge_A or (mass_g / REFERENCES[material].density_g_cm3 * 1e24) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 1]))
     placed = np.empty((sum(counts), 3))
     for k in range(len(placed)):
@@ -86,14 +99,28 @@ def _formula(material: str, potential: Potential) -> Mapping[str, int]:
 
 
 def write_forcefield(
-    workspace: Workspace, potential: Potential, elements: tuple[str, ...], energy_scale: float
+    workspace: Workspace,
+    potential: Potential,
+    elements: tuple[str, ...],
+    energy_scale: float,
+    repulsive_from: int | None = None,
 ) -> None:
-    """Write the table and the commands that use it into a workspace (files `table` and `pairs`)."""
-    (workspace / "table").write_text(potential.table(elements, energy_scale), encoding="utf-8")
+    """Write the table and the commands that use it into a workspace (files `table` and `pairs`).
+
+    Parameters
+    ----------
+    elements : of each LAMMPS type; an element may stand for several types.
+    repulsive_from : types from this one on (counted from 1) belong to a second body that only repels the first.
+    """
+    species = tuple(dict.fromkeys(elements))
+    (workspace / "table").write_text(potential.table(species, energy_scale), encoding="utf-8")
     lines = ["pair_style table linear 4000"]
     for i, first in enumerate(elements, 1):
         for j, second in enumerate(elements[i - 1 :], i):
-            lines.append(f"pair_coeff {i} {j} table {first}_{second} {potential.cutoff_A}")
+            section = "_".join(sorted((first, second), key=species.index))
+            if repulsive_from is not None and i < repulsive_from <= j:
+                section = "contact"
+            lines.append(f"pair_coeff {i} {j} table {section} {potential.cutoff_A}")
     lines += ["neighbor 0.6 bin", "neigh_modify every 2 delay 0 check yes"]
     (workspace / "pairs").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
@@ -105,8 +132,14 @@ def make_glass(
     seed: int,
     work: Path,
     progress: Progress | None = None,
+    edge_A: float | None = None,
 ) -> Atoms:
-    """Melt a random start and quench it under zero pressure; resumes in `work` after a kill.
+    """Melt a random start and quench it; resumes in `work` after a kill.
+
+    Parameters
+    ----------
+    edge_A : edge of the cell, kept throughout, so that the glass tiles beside another one without strain;
+        None: the quench is at zero pressure and finds its own.
 
     Returns
     -------
@@ -118,14 +151,15 @@ def make_glass(
         "settings": settings.model_dump(),
         "seed": seed,
         "of": material,
+        "edge": edge_A,
     }
     workspace = Workspace(work, identity, "glass.in")
     masses = {ion: potential.species[ion].mass_u for ion in elements}
-    segments = schedule(settings)
+    segments = schedule(settings, fixed_volume=edge_A is not None)
     done = workspace.segments_done(len(segments))
     if not done:
         write_forcefield(workspace, potential, elements, 1.0)
-        write_data(workspace / "start.data", random_start(material, potential, settings, seed), masses)
+        write_data(workspace / "start.data", random_start(material, potential, settings, seed, edge_A), masses)
     total = sum(segment["steps"] for segment in segments)
 
     def on_step(step: int) -> None:
@@ -149,8 +183,9 @@ def make_glass(
     return glass
 
 
-def schedule(settings: GlassSettings) -> list[dict]:
-    """Segments of the melt (constant volume), the quench and the rest (both at zero pressure)."""
+def schedule(settings: GlassSettings, fixed_volume: bool = False) -> list[dict]:
+    """Segments of the melt (constant volume), the quench and the rest (at zero pressure, or fixed volume)."""
+    ensemble = "nvt" if fixed_volume else "npt"
 
     def steps(duration_ps: float) -> int:
         return max(1, round(1000 * duration_ps / settings.timestep_fs))
@@ -164,9 +199,10 @@ def schedule(settings: GlassSettings) -> list[dict]:
         {"ensemble": "nvt", "from": melt, "to": melt, "steps": steps(0.7 * settings.melt_ps)},
     ]
     segments += [
-        {"ensemble": "npt", "from": high, "to": low, "steps": steps(quench_ps / parts)} for high, low in pairwise(ramp)
+        {"ensemble": ensemble, "from": high, "to": low, "steps": steps(quench_ps / parts)}
+        for high, low in pairwise(ramp)
     ]
-    return [*segments, {"ensemble": "npt", "from": end, "to": end, "steps": steps(settings.rest_ps)}]
+    return [*segments, {"ensemble": ensemble, "from": end, "to": end, "steps": steps(settings.rest_ps)}]
 
 
 def glass_properties(material: str, potential: Potential, atoms: Atoms) -> dict:
@@ -175,7 +211,7 @@ def glass_properties(material: str, potential: Potential, atoms: Atoms) -> dict:
     mass_g = sum(atoms.count(ion) * potential.species[ion].mass_u for ion in atoms.elements) / AVOGADRO
     density = mass_g / (float(np.prod(atoms.cell_A)) * 1e-24)
     is_cation = np.isin(atoms.types, [atoms.elements.index(ion) + 1 for ion in cations(material, potential)])
-    tree = cKDTree(atoms.positions_A, boxsize=atoms.cell_A)
+    tree = KDTree(atoms.positions_A, boxsize=atoms.cell_A)
     close = tree.query_pairs(3.0, output_type="ndarray")
     mixed = close[is_cation[close[:, 0]] != is_cation[close[:, 1]]]
     distance = atoms.positions_A[mixed[:, 0]] - atoms.positions_A[mixed[:, 1]]

@@ -6,11 +6,14 @@ and a top that stays lower after unloading).  The change of slope (Kim et al. 20
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
+from scipy.special import bdtrc
 
 from atomistic.kink import find_kink
-from atomistic.settings import ClosingSettings, YieldSettings
+from atomistic.runs import geometry
+from atomistic.settings import ClosingSettings, HardnessSettings, YieldSettings
 
 Rows = Sequence[Mapping[str, float]]
 
@@ -32,6 +35,8 @@ class Hardness:
     onset_displacement_nm: float = float("nan")
     onset_length_nm: float = float("nan")
     exchanges_before: float = float("nan")
+    exchanges_at_onset: float = float("nan")
+    onset_p_value: float = float("nan")
     exchanges_after: float = float("nan")
     lowering_nm: float = float("nan")
     kink_length_nm: float = float("nan")
@@ -42,17 +47,28 @@ class Hardness:
     drift_meV_atom_ps: float = float("nan")
     warming_K: float = float("nan")
 
-    def row(self) -> dict[str, object]:
-        """As a row of points.csv."""
-        return asdict(self)
+
+@dataclass(frozen=True)
+class Onset:
+    """Where plasticity is first witnessed.
+
+    background : bond exchanges per snapshot before contact.
+    exchanges, p_value : those of the onset's snapshot, and the chance of as many without plasticity.
+    """
+
+    displacement_nm: float | None
+    background: float
+    exchanges: float = float("nan")
+    p_value: float = float("nan")
 
 
-def plastic_onset(witness: Rows, approach_nm: float, settings: YieldSettings) -> tuple[float | None, float]:
-    """Displacement at which plasticity is witnessed, and the background of bond exchanges per snapshot.
+def plastic_onset(witness: Rows, approach_nm: float, settings: YieldSettings) -> Onset:
+    """First witness of plasticity among the relaxed snapshots.
 
     The background is the mean number of new exchanges between the snapshots before contact.  The onset is the
     first snapshot with `min_exchanges` more new exchanges than the background and its two-sigma Poisson noise
-    allow, from which on the top stays `min_lowering_A` lower.
+    allow, from which on the top stays `min_lowering_A` lower.  Its p value is that of the exact test for two
+    Poisson counts (Przyborowski and Wilenski 1940), which knows that the background is an estimate.
     """
     displacement = np.array([row["displacement_nm"] for row in witness])
     new = np.array([row["new_exchanges"] for row in witness])
@@ -62,11 +78,20 @@ def plastic_onset(witness: Rows, approach_nm: float, settings: YieldSettings) ->
     limit = background + max(settings.min_exchanges, 2 * np.sqrt(background))
     lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= settings.min_lowering_A
     found = np.flatnonzero((new >= limit) & lasting & (displacement > approach_nm))
-    return (float(displacement[found[0]]) if len(found) else None), background
+    if len(found) == 0:
+        return Onset(None, background)
+    count, earlier, snapshots = int(new[found[0]]), int(np.sum(new[before])), int(np.sum(before))
+    p_value = float(bdtrc(count - 1, count + earlier, 1 / (1 + snapshots))) if snapshots else float("nan")
+    return Onset(float(displacement[found[0]]), background, float(count), p_value)
 
 
 def find_hardness(
-    curve: Rows, witness: Rows, cell_area_nm2: float, closing: ClosingSettings, settings: YieldSettings
+    curve: Rows,
+    witness: Rows,
+    cell_area_nm2: float,
+    closing: ClosingSettings,
+    settings: YieldSettings,
+    kink: bool = True,
 ) -> Hardness:
     """Hardness of a closing run.
 
@@ -74,6 +99,7 @@ def find_hardness(
     ----------
     curve, witness : rows of `Closing.curve` and `Closing.witness`.
     cell_area_nm2 : cross-section of the simulation cell.
+    kink : also look for the change of slope (most of the time this takes).
     """
     column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
     length, stress, travel = (
@@ -87,27 +113,31 @@ def find_hardness(
     warming = float(np.max(temperature) - np.mean(temperature[:4]))
     fraction = column["contact_area_nm2"] / cell_area_nm2
     window = _first_stretch((length >= settings.min_length_nm) & (fraction <= settings.max_area_fraction))
-    onset, background = plastic_onset(witness, closing.approach_nm, settings)
-    facts: dict[str, float] = {
+    onset = plastic_onset(witness, closing.approach_nm, settings)
+    facts: dict[str, Any] = {
         "drift_meV_atom_ps": drift,
         "warming_K": warming,
-        "exchanges_before": background,
+        "exchanges_before": onset.background,
     }
-    facts |= _kink(length, stress, fraction, settings)
+    if kink:
+        facts |= _kink(length, stress, fraction, settings)
     if drift > settings.max_drift_meV_atom_ps:
         return Hardness(f"rejected: energy drifts by {drift:.2g} meV per atom and ps", **facts)
     if warming > settings.max_warming_K:
         return Hardness(f"rejected: warms by {warming:.0f} K", **facts)
     if np.sum(window) < settings.min_points:
         return Hardness("rejected: contact too small for the window of lengths", **facts)
-    if onset is None:
+    start = onset.displacement_nm
+    if start is None:
         return Hardness("no_yield", **facts)
-    beyond = window & (travel >= onset)
+    beyond = window & (travel >= start)
     last = witness[-1]
     facts |= {
-        "onset_displacement_nm": onset,
-        "onset_length_nm": float(np.interp(onset, travel, length)),
-        "exchanges_after": float(np.mean([row["new_exchanges"] for row in witness if row["displacement_nm"] >= onset])),
+        "onset_displacement_nm": start,
+        "onset_length_nm": float(np.interp(start, travel, length)),
+        "exchanges_at_onset": onset.exchanges,
+        "onset_p_value": onset.p_value,
+        "exchanges_after": float(np.mean([row["new_exchanges"] for row in witness if row["displacement_nm"] >= start])),
         "lowering_nm": float(last["lowering_nm"]),
     }
     if np.sum(beyond) < settings.min_points:
@@ -130,6 +160,27 @@ def find_hardness(
     else:
         status = "yield"
     return Hardness(status, plateau_points=int(np.sum(beyond)), **facts)
+
+
+def point(curve: Rows, witness: Rows, facts: Mapping[str, Any], settings: HardnessSettings) -> dict[str, Any]:
+    """Row of points.csv of a run, given its summary `facts`."""
+    found = find_hardness(curve, witness, facts["wavelength_nm"] ** 2, settings.closing, settings.plasticity)
+    return {
+        "run": facts["run"],
+        "potential": settings.potential,
+        "energy_scale": facts["energy_scale"],
+        "geometry": geometry(settings.closing, facts["amplitude_nm"]),
+        "asperity": facts["asperity"],
+        "wavelength_nm": facts["wavelength_nm"],
+        "amplitude_nm": facts["amplitude_nm"],
+        "seed": facts["seed"],
+        "atoms": facts["atoms"],
+        **asdict(found),
+        "atom_steps": facts["atoms"] * facts["steps"],
+        "restart_steps": facts["restart_steps"],
+        "lammps_cpu_s": facts["lammps_cpu_s"],
+        "python_cpu_s": facts["python_cpu_s"],
+    }
 
 
 def _first_stretch(mask: np.ndarray) -> np.ndarray:

@@ -21,6 +21,8 @@ from atomistic.settings import Settings
 COULOMB_EV_A = 14.399645  # e^2 / (4 pi eps0), CODATA 2018
 TABLE_POINTS = 4000
 TABLE_START_A = 0.4  # atoms nearer than this stop LAMMPS
+CONTACT_A = 3.0  # atoms of two bodies nearer than this touch: about the O-O distance across an interface
+CONTACT_EV = 0.1  # strength of their repulsion where the interface does not adhere
 CORE_RADIUS_A = 0.9  # below this every pair must repel; the shortest bond (Si-O) is 1.6 A
 
 Confidence = Literal["high", "medium", "low"]
@@ -144,7 +146,9 @@ class Potential(Settings):
         return strength * (value - value_c + force_c * (r - r_c)), strength * (force - force_c)
 
     def table(self, elements: tuple[str, ...], energy_scale: float = 1.0) -> str:
-        """LAMMPS `pair_style table` file with a section A_B for every pair of `elements`.
+        """LAMMPS `pair_style table` file: a section A_B for every pair of `elements`, and `contact`.
+
+        `contact` is what remains between two bodies that do not adhere (`contact_energy_and_force`).
 
         Parameters
         ----------
@@ -154,13 +158,24 @@ class Potential(Settings):
         r = np.sqrt(np.linspace(TABLE_START_A**2, self.cutoff_A**2, TABLE_POINTS))
         lines = io.StringIO()
         lines.write(f"# {self.description}; energies x {energy_scale}; eV, Angstrom\n")
-        for first, second in combinations_with_replacement(elements, 2):
-            energy, force = self.energy_and_force(first, second, r)
-            lines.write(f"\n{first}_{second}\n")
+        sections = {
+            f"{first}_{second}": self.energy_and_force(first, second, r)
+            for first, second in combinations_with_replacement(elements, 2)
+        }
+        for name, (energy, force) in {**sections, "contact": contact_energy_and_force(r)}.items():
+            lines.write(f"\n{name}\n")
             lines.write(f"N {TABLE_POINTS} RSQ {TABLE_START_A} {self.cutoff_A}\n\n")
             rows = np.column_stack([np.arange(1, TABLE_POINTS + 1), r, energy_scale * energy, energy_scale * force])
             np.savetxt(lines, rows, fmt="%d %.12g %.12g %.12g")
         return lines.getvalue()
+
+
+def contact_energy_and_force(r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Repulsion (eV, eV/Å) of atoms of two bodies without adhesion: 12-6 cut at its minimum (WCA)."""
+    x = (CONTACT_A / r) ** 6
+    energy = CONTACT_EV * (x**2 - 2 * x + 1)
+    force = 12 * CONTACT_EV * (x**2 - x) / r
+    return np.where(r < CONTACT_A, energy, 0.0), np.where(r < CONTACT_A, force, 0.0)
 
 
 def load_potential(path: str | Path) -> Potential:

@@ -1,8 +1,9 @@
 """Which closing runs a scene asks for (imports nothing heavy: the workflow reads it)."""
 
 from dataclasses import dataclass
+from typing import Any
 
-from atomistic.settings import AsperitySettings, HardnessSettings
+from atomistic.settings import AsperitySettings, ClosingSettings, HardnessSettings
 
 SCALE_NAMES = {1.0: "full", 0.5: "halved"}
 
@@ -16,11 +17,6 @@ class ClosingRun:
     seed: int
     energy_scale: float
 
-    @property
-    def glass(self) -> int:
-        """Seed of the glass it is cut from."""
-        return self.seed
-
 
 def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
     """Every asperity x seed x energy scale of the settings."""
@@ -32,10 +28,25 @@ def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
     ]
 
 
-def run_named(name: str, settings: HardnessSettings) -> ClosingRun:
-    """The run of a name that `planned_runs` gave (its seed and energy scale need not be in `settings`)."""
-    asperity_name, seed, scale_name = name.split("_")
-    asperity = next(asperity for asperity in settings.asperities if asperity.name == asperity_name)
-    scales = {label: scale for scale, label in SCALE_NAMES.items()}
-    scale = scales[scale_name] if scale_name in scales else float(scale_name.removeprefix("x"))
-    return ClosingRun(name, asperity, int(seed.removeprefix("seed")), scale)
+def settings_of_run(run: ClosingRun, settings: HardnessSettings) -> dict[str, Any]:
+    """Settings that plan exactly this run, with only what it depends on, as plain values."""
+    return {
+        **settings.model_dump(mode="json", include={"material", "closing", "area"}),
+        "asperities": [run.asperity.model_dump()],
+        "seeds": [run.seed],
+        "energy_scales": [run.energy_scale],
+    }
+
+
+def needs_counter_glass(settings: HardnessSettings) -> bool:
+    """Is the counterface made of another oxide than the asperity?"""
+    closing = settings.closing
+    return closing.counterface in ("oxide", "asperity") and closing.counter_material != settings.material
+
+
+def geometry(closing: ClosingSettings, amplitude_nm: float) -> str:
+    """What is pressed against what, in words."""
+    words = f"{'asperity' if amplitude_nm else 'flat'}-{closing.counterface}"
+    if closing.counterface in ("oxide", "asperity"):
+        words += f" {closing.counter_material} {closing.interface}"
+    return words if closing.control == "speed" else f"{words}, force"

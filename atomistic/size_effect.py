@@ -199,8 +199,8 @@ def _summary(samples: np.ndarray) -> dict[str, float]:
 
 
 def _spearman(first: np.ndarray, second: np.ndarray) -> float:
-    ranks = [np.argsort(np.argsort(values, kind="stable"), kind="stable") for values in (first, second)]
-    return float(np.corrcoef(*ranks)[0, 1])
+    one, other = (np.argsort(np.argsort(values, kind="stable"), kind="stable") for values in (first, second))
+    return float(np.corrcoef(one, other)[0, 1])
 
 
 def _rng(stream: int) -> np.random.Generator:

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from atomistic.settings.base import Settings
 
@@ -46,14 +46,36 @@ class AsperitySettings(Settings):
         description="wavelength lambda in glass cells, so that nothing is strained",
         json_schema_extra={"unit": "1"},
     )
-    amplitude_nm: float = Field(gt=0, le=10, description="amplitude A", json_schema_extra={"unit": "nm"})
+    amplitude_nm: float = Field(
+        ge=0,
+        le=10,
+        description="amplitude A; 0 is a flat, for a spherical counterface",
+        json_schema_extra={"unit": "nm"},
+    )
 
 
 class ClosingSettings(Settings):
-    """Closing of an asperity against a flat."""
+    """Closing of an asperity against a counterface."""
 
-    protocol: Literal["flat"] = Field(
-        default="flat", description="flat: rigid, frictionless, repulsive plane that moves at constant speed"
+    counterface: Literal["flat", "sphere", "oxide", "asperity"] = Field(
+        default="flat",
+        description="flat, sphere: rigid, frictionless, repulsive, without atoms; "
+        "oxide, asperity: atoms of counter_material, flat or after eq. 6",
+    )
+    control: Literal["speed", "force"] = Field(
+        default="speed",
+        description="speed: constant closing speed; force: closing force raised in steps (Kim et al. 2013)",
+    )
+    interface: Literal["repulsive", "adhesive"] = Field(
+        default="repulsive",
+        description="atoms of a counterface of oxide: a short-range repulsion alone, or the potential itself",
+    )
+    counter_material: Literal["SiO2", "TiO2"] = Field(default="SiO2", description="oxide of the counterface")
+    counter_base_nm: float = Field(
+        default=2.5, ge=1, le=100, description="thickness of the oxide counterface", json_schema_extra={"unit": "nm"}
+    )
+    sphere_radius_nm: float = Field(
+        default=2, gt=0, le=1000, description="radius of the spherical counterface", json_schema_extra={"unit": "nm"}
     )
     speed_m_s: float = Field(default=50, gt=0, le=1000, description="closing speed", json_schema_extra={"unit": "m/s"})
     timestep_fs: float = Field(default=2, ge=0.1, le=4, description="time step", json_schema_extra={"unit": "fs"})
@@ -104,7 +126,49 @@ class ClosingSettings(Settings):
         json_schema_extra={"unit": "nm"},
     )
     depth_over_amplitude: float = Field(
-        default=1.5, gt=0, le=2, description="travel below the top, in amplitudes", json_schema_extra={"unit": "1"}
+        default=1.5,
+        gt=0,
+        le=2,
+        description="travel below the top, in amplitudes (in radii of a spherical counterface)",
+        json_schema_extra={"unit": "1"},
+    )
+    unload_nm: float = Field(
+        default=0,
+        ge=0,
+        le=10,
+        description="travel back at the closing speed, to confirm by dynamics what stays; 0: none",
+        json_schema_extra={"unit": "nm"},
+    )
+    force_step_MPa: float = Field(
+        default=20,
+        gt=0,
+        le=1000,
+        description="control force: rise of the nominal stress per step",
+        json_schema_extra={"unit": "MPa"},
+    )
+    dwell_ps: float = Field(
+        default=10, ge=0.1, le=1000, description="control force: time per step", json_schema_extra={"unit": "ps"}
+    )
+    max_stress_GPa: float = Field(
+        default=5,
+        gt=0,
+        le=50,
+        description="control force: nominal stress at the end",
+        json_schema_extra={"unit": "GPa"},
+    )
+    damping_ps: float = Field(
+        default=1,
+        gt=0,
+        le=1000,
+        description="control force: time in which the sample's motion as a whole is damped",
+        json_schema_extra={"unit": "ps"},
+    )
+    segment_force_steps: int = Field(
+        default=10,
+        ge=1,
+        le=10_000,
+        description="control force: steps of force between restart files and relaxed snapshots",
+        json_schema_extra={"unit": "1"},
     )
     segment_nm: float = Field(
         default=0.1,
@@ -126,7 +190,14 @@ class AreaSettings(Settings):
         default=0.5,
         gt=0,
         le=2,
-        description="atoms nearer than this to the plane, or beyond it, touch",
+        description="atoms nearer than this to the counterface, or beyond it, touch",
+        json_schema_extra={"unit": "A"},
+    )
+    touch_A: float = Field(
+        default=3,
+        gt=0,
+        le=5,
+        description="distance of two atoms that counts as 0 where the counterface is of atoms",
         json_schema_extra={"unit": "A"},
     )
     other_depths_A: tuple[Annotated[float, Field(gt=0, le=2)], ...] = Field(
@@ -262,3 +333,12 @@ class HardnessSettings(Settings):
     area: AreaSettings = AreaSettings()
     plasticity: YieldSettings = YieldSettings()
     fit: FitSettings = FitSettings()
+
+    @model_validator(mode="after")
+    def _something_to_press(self) -> "HardnessSettings":
+        if self.closing.counterface != "sphere" and (flat := [a.name for a in self.asperities if a.amplitude_nm == 0]):
+            raise ValueError(
+                f"asperities: {flat[0]} has amplitude 0: a flat against a {self.closing.counterface} has no contact "
+                "length; give an amplitude or set closing.counterface to sphere"
+            )
+        return self

@@ -16,17 +16,19 @@ from atomistic.errors import InputError
 from atomistic.glass import glass_properties, make_glass
 from atomistic.lammps import Atoms, Workspace, read_data, write_data
 from atomistic.potentials import load_potential
-from atomistic.runs import planned_runs, run_named
+from atomistic.runs import planned_runs, settings_of_run
 from atomistic.settings import GlassSettings, HardnessSettings
 from atomistic.stability import half_energy_identity, stability_rows
 
 PMMCS = Path(__file__).parents[2] / "config" / "potentials" / "pmmcs.yaml"
 GLASS = GlassSettings(atoms=150, melt_ps=1, quench_rate_K_ps=1000, rest_ps=1, segment_steps=300)
-SETTINGS = HardnessSettings(
-    seeds=[1],
-    asperities=[{"name": "tiny", "tiles": 2, "amplitude_nm": 0.2}],
-    glass=GLASS,
-    closing={"base_nm": 1.4, "speed_m_s": 200, "anneal_ps": 0.2},
+SETTINGS = HardnessSettings.model_validate(
+    {
+        "seeds": [1],
+        "asperities": [{"name": "tiny", "tiles": 2, "amplitude_nm": 0.2}],
+        "glass": GLASS.model_dump(),
+        "closing": {"base_nm": 1.4, "speed_m_s": 200, "anneal_ps": 0.2},
+    }
 )
 
 
@@ -174,11 +176,12 @@ def test_stability_study_passes(potential, tmp_path):
     assert [row["case"] for row in rows if not row["passed"]] == []
 
 
-def test_runs_have_names_that_lead_back_to_them():
+def test_settings_of_a_run_plan_just_that_run():
     settings = HardnessSettings()
     runs = planned_runs(settings)
     assert len(runs) == len({run.name for run in runs}) == 12
-    assert all(run_named(run.name, settings) == run for run in runs)
+    for run in runs:
+        assert planned_runs(HardnessSettings.model_validate(settings_of_run(run, settings))) == [run]
 
 
 def test_atoms_take():

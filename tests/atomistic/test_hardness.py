@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from atomistic.hardness import find_hardness, plastic_onset
-from atomistic.settings import ClosingSettings, YieldSettings
+from atomistic.hardness import find_hardness, plastic_onset, point
+from atomistic.settings import ClosingSettings, HardnessSettings, YieldSettings
 
 CLOSING, RULES = ClosingSettings(), YieldSettings()
 TRAVEL = np.arange(0.0125, 1.2, 0.025)
@@ -82,13 +82,43 @@ def test_gates():
 
 def test_background_of_bond_exchanges_is_measured_before_contact():
     """The halved energies flicker more: 20 exchanges per snapshot are then no witness, 40 are."""
-    onset, background = plastic_onset(witness(background=20, after=5), 0.35, RULES)
-    assert (onset, background) == (None, 20)
-    onset, _ = plastic_onset(witness(background=20, after=20), 0.35, RULES)
-    assert onset == pytest.approx(0.8)
+    onset = plastic_onset(witness(background=20, after=5), 0.35, RULES)
+    assert (onset.displacement_nm, onset.background) == (None, 20)
+    onset = plastic_onset(witness(background=20, after=20), 0.35, RULES)
+    assert onset.displacement_nm == pytest.approx(0.8)
+    assert onset.exchanges == 40
+    assert 0 < onset.p_value < 0.02
+
+
+def test_p_value_of_the_onset_is_that_of_two_poisson_counts():
+    """Equal rates: the p value is uniform or larger, so below 0.05 at most one time in twenty."""
+    rng = np.random.default_rng(0)
+    small, trials = 0, 0
+    for _ in range(3000):
+        counts = rng.poisson(8, 4)
+        rows = [
+            {"displacement_nm": 0.1 * (k + 1), "new_exchanges": new, "lowering_nm": 0.0 if k < 3 else 0.1}
+            for k, new in enumerate([0, *counts[:2], counts[2]])
+        ]
+        onset = plastic_onset(rows, 0.35, RULES)
+        trials += 1
+        small += onset.p_value < 0.05
+    assert small / trials < 0.05
 
 
 def test_a_lowering_that_recovers_is_no_onset():
     rows = witness()
     rows[-1]["lowering_nm"] = 0.0
-    assert plastic_onset(rows, 0.35, RULES)[0] is None
+    assert plastic_onset(rows, 0.35, RULES).displacement_nm is None
+
+
+def test_a_point_names_what_was_pressed_and_what_it_cost():
+    facts = {
+        "run": "r", "energy_scale": 1.0, "amplitude_nm": 0.4, "asperity": "small", "wavelength_nm": 6.0, "seed": 1,
+        "atoms": 100, "steps": 1000, "restart_steps": 250, "lammps_cpu_s": 9.0, "python_cpu_s": 0.1,
+    }  # fmt: skip
+    settings = HardnessSettings.model_validate({"closing": {"counterface": "oxide", "counter_material": "TiO2"}})
+    row = point(curve(plateau), witness(), facts, settings)
+    assert row["geometry"] == "asperity-oxide TiO2 repulsive"
+    assert row["status"] == "yield"
+    assert row["atom_steps"] == 100_000

@@ -29,7 +29,7 @@ def series(h_macro, h_prime, lengths=(2, 4, 8, 16), scales=(1.0, 0.5)):
 
 
 def test_free_fit_finds_both_parameters_of_a_wide_series():
-    settings = HardnessSettings(fit={"h_macro": "free"}, energy_scales=[1.0])
+    settings = HardnessSettings.model_validate({"fit": {"h_macro": "free"}, "energy_scales": [1.0]})
     result = fit_size_effect(series(2.0, 8.4, scales=(1.0,)) * 2, GLASS, settings)
     free = result["free_fit"]["scale_1"]
     assert free["H_macro_GPa"]["median"] == pytest.approx(2.0, abs=0.2)
@@ -40,7 +40,7 @@ def test_free_fit_finds_both_parameters_of_a_wide_series():
 
 
 def test_a_narrow_series_is_not_identifiable_and_says_so():
-    settings = HardnessSettings(fit={"h_macro": "free"})
+    settings = HardnessSettings.model_validate({"fit": {"h_macro": "free"}})
     rng = np.random.default_rng(0)
     points = [
         point(10 * scale + rng.normal(0, 0.5), 3 + 0.1 * k, scale, asperity=f"a{k}", spread=0.5)

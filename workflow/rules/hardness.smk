@@ -1,22 +1,35 @@
-from atomistic.runs import planned_runs
+from atomistic.errors import InputError
+from atomistic.runs import needs_counter_glass, planned_runs, settings_of_run
+from atomistic.study import load_study
+from atomistic.variations import VARIATIONS, smallest_run
 
 HARDNESS = settings("hardness")
-POTENTIAL = HARDNESS["potential"]
-if not POTENTIAL.endswith((".yaml", ".yml")):  # a name, not a path
-    POTENTIAL = str(CONFIG / "potentials" / f"{POTENTIAL}.yaml")
-if needed("hardness") and not Path(POTENTIAL).exists():
-    known = ", ".join(sorted(path.stem for path in (CONFIG / "potentials").glob("*.yaml")))
-    print(
-        f"ERROR {config.get('scene', 'reduced')}: hardness.potential: no file {POTENTIAL}; known potentials: {known}",
-        file=sys.stderr,
-    )
-    sys.exit(1)
+
+
+def potential_path(name):
+    """The file of a potential that is given by name or by path."""
+    path = name if name.endswith((".yaml", ".yml")) else str(CONFIG / "potentials" / f"{name}.yaml")
+    if needed("hardness") and not Path(path).exists():
+        known = ", ".join(sorted(file.stem for file in (CONFIG / "potentials").glob("*.yaml")))
+        scene = config.get("scene", "reduced")
+        print(f"ERROR {scene}: hardness.potential: no file {path}; known potentials: {known}", file=sys.stderr)
+        sys.exit(1)
+    return path
+
+
+POTENTIAL = potential_path(HARDNESS["potential"])
 CLOSINGS = {run.name: run for run in planned_runs(SCENE.hardness)}
+COUNTER_GLASS = needs_counter_glass(SCENE.hardness)
 
 
 def of_run(pattern):
     """The file of every closing run."""
     return [f"{RESULTS}/hardness/{pattern.format(run=run)}" for run in CLOSINGS]
+
+
+def of_counter(path):
+    """As a named input: the glass of the counterface, where that is of another oxide."""
+    return {"counter_glass": path} if COUNTER_GLASS else {}
 
 
 wildcard_constraints:
@@ -40,17 +53,38 @@ rule make_glass:
     log:
         f"{RESULTS}/logs/make_glass_{{glass}}.log",
     params:
-        settings={key: HARDNESS[key] for key in ("material", "glass")},
+        material=HARDNESS["material"],
+        glass=HARDNESS["glass"],
+        seed=lambda wildcards: wildcards.glass,
         work=f"{RESULTS}/work/glass_{{glass}}",
     priority: 100
     script:
         "../scripts/make_glass.py"
 
 
+use rule make_glass as make_counter_glass with:
+    message:
+        "melt and quench the counterface of glass {wildcards.glass}"
+    input:
+        potential=POTENTIAL,
+        beside=f"{RESULTS}/hardness/glass/{{glass}}.data",
+    output:
+        atoms=f"{RESULTS}/hardness/glass/{{glass}}_counter.data",
+        properties=f"{RESULTS}/hardness/glass/{{glass}}_counter.json",
+    log:
+        f"{RESULTS}/logs/make_counter_glass_{{glass}}.log",
+    params:
+        material=HARDNESS["closing"]["counter_material"],
+        glass=HARDNESS["glass"],
+        seed=lambda wildcards: wildcards.glass,
+        work=f"{RESULTS}/work/counter_glass_{{glass}}",
+
+
 rule run_closing:
     message:
         "close asperity {wildcards.run}"
     input:
+        unpack(lambda wildcards: of_counter(f"{RESULTS}/hardness/glass/{CLOSINGS[wildcards.run].seed}_counter.data")),
         potential=POTENTIAL,
         glass=lambda wildcards: f"{RESULTS}/hardness/glass/{CLOSINGS[wildcards.run].seed}.data",
     output:
@@ -61,8 +95,7 @@ rule run_closing:
     log:
         f"{RESULTS}/logs/run_closing_{{run}}.log",
     params:
-        settings={key: HARDNESS[key] for key in ("material", "closing", "area")},
-        asperity=lambda wildcards: CLOSINGS[wildcards.run].asperity.model_dump(),
+        settings=lambda wildcards: settings_of_run(CLOSINGS[wildcards.run], SCENE.hardness),
         work=f"{RESULTS}/work/closing_{{run}}",
     threads: HARDNESS["closing"]["processes"]
     priority: 90
@@ -82,7 +115,7 @@ rule find_hardness:
     log:
         f"{RESULTS}/logs/find_hardness.log",
     params:
-        settings={key: HARDNESS[key] for key in ("closing", "plasticity", "potential")},
+        settings=[{key: HARDNESS[key] for key in ("closing", "plasticity", "potential")}] * len(CLOSINGS),
     script:
         "../scripts/find_hardness.py"
 
@@ -103,9 +136,23 @@ rule fit_hardness:
         "../scripts/fit_hardness.py"
 
 
-from atomistic.variations import VARIATIONS, smallest_run
+rule plan_hardness:
+    message:
+        "estimate what the closing runs will cost"
+    output:
+        plan=f"{RESULTS}/hardness/plan.csv",
+    log:
+        f"{RESULTS}/logs/plan_hardness.log",
+    params:
+        settings=HARDNESS,
+    script:
+        "../scripts/plan_hardness.py"
+
+
+# One knob at a time: accuracy/hardness.csv
 
 ACCURACY.append(f"{RESULTS}/accuracy/hardness.csv")
+ACCURACY.append(f"{RESULTS}/accuracy/hardness_detection.csv")
 STABILITY.append(f"{RESULTS}/stability/hardness.csv")
 SMALLEST = smallest_run(SCENE.hardness)
 
@@ -114,6 +161,7 @@ rule vary_closing:
     message:
         "close asperity {wildcards.run} with {wildcards.variation}"
     input:
+        unpack(lambda wildcards: of_counter(f"{RESULTS}/hardness/glass/{SMALLEST.seed}_counter.data")),
         potential=POTENTIAL,
         glass=f"{RESULTS}/hardness/glass/{SMALLEST.seed}.data",
     output:
@@ -127,11 +175,9 @@ rule vary_closing:
         f"{RESULTS}/logs/vary_closing_{{variation}}_{{run}}.log",
     params:
         settings=lambda wildcards: {
-            "material": HARDNESS["material"],
-            "area": HARDNESS["area"],
+            **settings_of_run(SMALLEST, SCENE.hardness),
             "closing": VARIATIONS[wildcards.variation].closing(SCENE.hardness).model_dump(),
         },
-        asperity=SMALLEST.asperity.model_dump(),
         work=f"{RESULTS}/work/vary_{{variation}}_{{run}}",
     script:
         "../scripts/run_closing.py"
@@ -152,6 +198,23 @@ rule compare_closings:
         "../scripts/compare_closings.py"
 
 
+rule measure_detection:
+    message:
+        "measure how often yield is found where there is none, and missed where it is"
+    input:
+        curves=of_run("closing/{run}.csv"),
+        witnesses=of_run("witness/{run}.csv"),
+        points=f"{RESULTS}/hardness/points.csv",
+    output:
+        table=f"{RESULTS}/accuracy/hardness_detection.csv",
+    log:
+        f"{RESULTS}/logs/measure_detection.log",
+    params:
+        settings=HARDNESS,
+    script:
+        "../scripts/measure_detection.py"
+
+
 rule check_hardness_stability:
     message:
         "check the molecular dynamics in hard cases"
@@ -165,3 +228,114 @@ rule check_hardness_stability:
         work=f"{RESULTS}/work/stability_hardness",
     script:
         "../scripts/check_hardness_stability.py"
+
+
+# Single runs beyond a scene's own: study/hardness.csv
+
+STUDY_FILE = CONFIG / "studies" / "hardness.yaml"
+try:
+    STUDY = load_study(STUDY_FILE, SCENE.hardness)
+except InputError as error:
+    print(f"ERROR {error}", file=sys.stderr)
+    sys.exit(1)
+
+
+def study_settings(wildcards):
+    return STUDY[wildcards.case][1]
+
+
+def study_glass(case):
+    """The scene's own glass where the case needs no other."""
+    own = STUDY[case][1]
+    if all(getattr(own, key) == getattr(SCENE.hardness, key) for key in ("potential", "material", "glass")):
+        return f"{RESULTS}/hardness/glass/{own.seeds[0]}.data"
+    return f"{RESULTS}/study/glass/{case}.data"
+
+
+def study_inputs(wildcards):
+    files = {"glass": study_glass(wildcards.case), "potential": potential_path(study_settings(wildcards).potential)}
+    if needs_counter_glass(study_settings(wildcards)):
+        files["counter_glass"] = f"{RESULTS}/study/glass/{wildcards.case}_counter.data"
+    return files
+
+
+wildcard_constraints:
+    case="|".join(STUDY),
+
+
+rule hardness_study:
+    input:
+        f"{RESULTS}/study/hardness.csv",
+
+
+use rule make_glass as make_study_glass with:
+    message:
+        "melt and quench the glass of {wildcards.case}"
+    input:
+        potential=lambda wildcards: potential_path(study_settings(wildcards).potential),
+    output:
+        atoms=f"{RESULTS}/study/glass/{{case}}.data",
+        properties=f"{RESULTS}/study/glass/{{case}}.json",
+    log:
+        f"{RESULTS}/logs/make_study_glass_{{case}}.log",
+    params:
+        material=lambda wildcards: study_settings(wildcards).material,
+        glass=lambda wildcards: study_settings(wildcards).glass.model_dump(),
+        seed=lambda wildcards: study_settings(wildcards).seeds[0],
+        work=f"{RESULTS}/work/study_glass_{{case}}",
+
+
+use rule make_study_glass as make_study_counter_glass with:
+    message:
+        "melt and quench the counterface of {wildcards.case}"
+    input:
+        potential=lambda wildcards: potential_path(study_settings(wildcards).potential),
+        beside=lambda wildcards: study_glass(wildcards.case),
+    output:
+        atoms=f"{RESULTS}/study/glass/{{case}}_counter.data",
+        properties=f"{RESULTS}/study/glass/{{case}}_counter.json",
+    log:
+        f"{RESULTS}/logs/make_study_counter_glass_{{case}}.log",
+    params:
+        material=lambda wildcards: study_settings(wildcards).closing.counter_material,
+        glass=lambda wildcards: study_settings(wildcards).glass.model_dump(),
+        seed=lambda wildcards: study_settings(wildcards).seeds[0],
+        work=f"{RESULTS}/work/study_counter_glass_{{case}}",
+
+
+rule run_study_case:
+    message:
+        "close the asperity of {wildcards.case}"
+    input:
+        unpack(study_inputs),
+    output:
+        curve=f"{RESULTS}/study/hardness/{{case}}.csv",
+        witness=f"{RESULTS}/study/hardness/{{case}}.witness.csv",
+        snapshots=f"{RESULTS}/study/hardness/{{case}}.snapshots.csv",
+        summary=f"{RESULTS}/study/hardness/{{case}}.json",
+    log:
+        f"{RESULTS}/logs/run_study_case_{{case}}.log",
+    params:
+        settings=lambda wildcards: study_settings(wildcards).model_dump(),
+        work=f"{RESULTS}/work/study_{{case}}",
+    script:
+        "../scripts/run_closing.py"
+
+
+rule collect_hardness_study:
+    message:
+        "collect the study of hardness"
+    input:
+        study=STUDY_FILE,
+        curves=expand(f"{RESULTS}/study/hardness/{{case}}.csv", case=STUDY),
+        witnesses=expand(f"{RESULTS}/study/hardness/{{case}}.witness.csv", case=STUDY),
+        summaries=expand(f"{RESULTS}/study/hardness/{{case}}.json", case=STUDY),
+    output:
+        points=f"{RESULTS}/study/hardness.csv",
+    log:
+        f"{RESULTS}/logs/collect_hardness_study.log",
+    params:
+        settings=[own.model_dump() for _, own in STUDY.values()],
+        labels=[{"case": case.name, "about": case.about} for case, _ in STUDY.values()],
+    script:
+        "../scripts/find_hardness.py"

@@ -1,37 +1,27 @@
 """Hardness, or the reason why there is none, of each closing run.
 
-In:  closing/*.csv, witness/*.csv (GPa, nm), runs/*.json.  Out: points.csv.
+In:  curves, witnesses (GPa, nm) and summaries of the runs.  Out: points.csv.
 """
 
-from atomistic.hardness import find_hardness
+from itertools import zip_longest
+
+from atomistic.hardness import point
 from atomistic.settings import HardnessSettings
 from workflow.job import job
 from workflow.results import read_csv, read_json, write_csv
 
+
+def numbers(path):
+    return [{name: float(value or "nan") for name, value in row.items()} for row in read_csv(path)]
+
+
 with job(snakemake) as run:
-    settings = HardnessSettings(**snakemake.params.settings)
+    files = zip(snakemake.input.curves, snakemake.input.witnesses, snakemake.input.summaries, strict=True)
+    own_settings = [HardnessSettings.model_validate(values) for values in snakemake.params.settings]
     rows = []
-    for curve_path, witness_path, summary_path in zip(
-        snakemake.input.curves, snakemake.input.witnesses, snakemake.input.summaries, strict=True
+    for (curve, witness, summary), settings, label in zip_longest(
+        files, own_settings, snakemake.params.get("labels", []), fillvalue={}
     ):
-        curve, witness = (
-            [{name: float(value or "nan") for name, value in row.items()} for row in read_csv(path)]
-            for path in (curve_path, witness_path)
-        )
-        facts = read_json(summary_path)
-        found = find_hardness(curve, witness, facts["wavelength_nm"] ** 2, settings.closing, settings.plasticity)
-        rows.append(
-            {
-                "run": facts["run"],
-                "potential": settings.potential,
-                "energy_scale": facts["energy_scale"],
-                "geometry": f"asperity-{settings.closing.protocol}",
-                "asperity": facts["asperity"],
-                "wavelength_nm": facts["wavelength_nm"],
-                "amplitude_nm": facts["amplitude_nm"],
-                "seed": facts["seed"],
-                "atoms": facts["atoms"],
-                **found.row(),
-            }
-        )
+        row = point(numbers(curve), numbers(witness), read_json(summary), settings)
+        rows.append({**label, **row})
     write_csv(snakemake.output.points, rows)

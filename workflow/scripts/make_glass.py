@@ -1,25 +1,28 @@
 """Melt and quench one glass cell.
 
-In:  potential (YAML).  Out: glass/N.data (LAMMPS data file, Å), glass/N.json (density, coordination, gate).
+In:  potential (YAML); beside: data file of the glass whose edge it takes (counterfaces only).
+Out: glass (LAMMPS data file, Å), properties (density, coordination, gate).
 """
 
 import time
 from pathlib import Path
 
 from atomistic.glass import glass_properties, make_glass
-from atomistic.lammps import write_data
+from atomistic.lammps import read_data, write_data
 from atomistic.potentials import load_potential
-from atomistic.settings import HardnessSettings
+from atomistic.settings import GlassSettings
 from workflow.job import job
 from workflow.results import atomic_path, write_json
 
 with job(snakemake) as run:
-    settings = HardnessSettings(**snakemake.params.settings)
+    material, seed = snakemake.params.material, int(snakemake.params.seed)
+    settings = GlassSettings.model_validate(snakemake.params.glass)
     potential = load_potential(snakemake.input.potential)
-    seed = int(snakemake.wildcards.glass)
+    beside = snakemake.input.get("beside")
+    edge_A = float(read_data(beside, ()).cell_A[0]) if beside else None
     started = time.perf_counter()
-    glass = make_glass(settings.material, potential, settings.glass, seed, Path(snakemake.params.work), run.progress)
-    properties = glass_properties(settings.material, potential, glass)
+    glass = make_glass(material, potential, settings, seed, Path(snakemake.params.work), run.progress, edge_A)
+    properties = glass_properties(material, potential, glass)
     with atomic_path(snakemake.output.atoms) as path:
         write_data(path, glass, {ion: potential.species[ion].mass_u for ion in glass.elements})
     write_json(

@@ -1,7 +1,7 @@
-"""Close one asperity against the flat.
+"""Close one asperity against its counterface.
 
-In:  potential (YAML), glass/N.data.
-Out: closing/RUN.csv (GPa, nm), witness/RUN.csv (bond exchanges, nm), snapshots/RUN.csv (nm), runs/RUN.json.
+In:  potential (YAML), glass (LAMMPS data file), counter_glass where the counterface is of another oxide.
+Out: curve (GPa, nm), witness (bond exchanges, nm), snapshots (nm), unloading (GPa, nm; if asked for), summary.
 """
 
 import resource
@@ -11,18 +11,22 @@ from pathlib import Path
 from atomistic.closing import run_closing
 from atomistic.lammps import read_data
 from atomistic.potentials import load_potential
-from atomistic.runs import run_named
+from atomistic.runs import planned_runs
 from atomistic.settings import HardnessSettings
 from workflow.job import job
 from workflow.results import write_csv, write_json
 
 with job(snakemake) as run:
-    settings = HardnessSettings(**snakemake.params.settings, asperities=[snakemake.params.asperity])
+    settings = HardnessSettings.model_validate(snakemake.params.settings)
+    [closing_run] = planned_runs(settings)
     potential = load_potential(snakemake.input.potential)
-    closing_run = run_named(snakemake.wildcards.run, settings)
     glass = read_data(snakemake.input.glass, tuple(potential.materials[settings.material]))
+    counter = snakemake.input.get("counter_glass")
+    counter_glass = counter and read_data(counter, tuple(potential.materials[settings.closing.counter_material]))
     started, cpu = time.perf_counter(), time.process_time()
-    closing = run_closing(closing_run, glass, potential, settings, Path(snakemake.params.work), run.progress)
+    closing = run_closing(
+        closing_run, glass, potential, settings, Path(snakemake.params.work), run.progress, counter_glass or None
+    )
     lammps = resource.getrusage(resource.RUSAGE_CHILDREN)
     write_csv(snakemake.output.curve, closing.curve)
     write_csv(snakemake.output.witness, closing.witness)
@@ -36,6 +40,7 @@ with job(snakemake) as run:
             "seed": closing_run.seed,
             "amplitude_nm": closing_run.asperity.amplitude_nm,
             **closing.summary,
+            "unloading": closing.unloading,
             "wall_s": time.perf_counter() - started,
             "lammps_cpu_s": lammps.ru_utime + lammps.ru_stime,
             "peak_rss_MB": lammps.ru_maxrss / 1024,

@@ -1,0 +1,27 @@
+"""False and missed yield at the noise of the closing runs.
+
+In:  closing/*.csv, witness/*.csv (GPa, nm), points.csv.  Out: accuracy/hardness_detection.csv.
+"""
+
+import time
+
+from atomistic.detection import COLUMNS, detection_rows
+from atomistic.settings import HardnessSettings
+from workflow.job import job
+from workflow.results import read_csv, write_csv
+
+
+def numbers(path):
+    return [{name: float(value or "nan") for name, value in row.items()} for row in read_csv(path)]
+
+
+with job(snakemake) as run:
+    started, cpu = time.perf_counter(), time.process_time()
+    rows = detection_rows(
+        [numbers(path) for path in snakemake.input.curves],
+        [numbers(path) for path in snakemake.input.witnesses],
+        [float(point["wavelength_nm"]) ** 2 for point in read_csv(snakemake.input.points)],
+        HardnessSettings.model_validate(snakemake.params.settings),
+    )
+    cost = {"wall_s": time.perf_counter() - started, "cpu_s": time.process_time() - cpu}
+    write_csv(snakemake.output.table, [{**row, **cost} for row in rows], COLUMNS)
