@@ -9,7 +9,7 @@ import sys
 import time
 from pathlib import Path
 
-from workflow.job import failures
+from workflow.job import failures, file_checksum
 from workflow.scene import ROOT, SceneError, load_scene
 
 # one thread per process: the jobs themselves fill the cores, and results do not depend on their number

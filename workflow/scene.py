@@ -19,7 +19,9 @@ from pydantic.fields import FieldInfo
 from atomistic.settings import ElasticSettings, HardnessSettings
 from mesoscale.settings import (
     ContactSettings,
+    CouplingSettings,
     DeviceSettings,
+    HistorySettings,
     InputsSettings,
     LawSettings,
     Settings,
@@ -58,6 +60,8 @@ class Scene(Settings):
     law: LawSettings = LawSettings()
     uncertainty: UncertaintySettings = UncertaintySettings()
     device: DeviceSettings = DeviceSettings()
+    history: HistorySettings = HistorySettings()
+    coupling: CouplingSettings = CouplingSettings()
     report: ReportSettings = ReportSettings()
 
     def stages(self) -> set[str]:

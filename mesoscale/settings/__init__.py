@@ -2,7 +2,9 @@
 
 from mesoscale.settings.base import Settings
 from mesoscale.settings.contact import ContactSettings
+from mesoscale.settings.coupling import CouplingSettings
 from mesoscale.settings.device import DeviceSettings
+from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import STAGE_OF_INPUT, TABLE_1, Correlation, InputRow, InputsSettings
 from mesoscale.settings.law import LawSettings
 from mesoscale.settings.topography import SyntheticScanSettings, TopographySettings
@@ -13,7 +15,9 @@ __all__ = [
     "TABLE_1",
     "ContactSettings",
     "Correlation",
+    "CouplingSettings",
     "DeviceSettings",
+    "HistorySettings",
     "InputRow",
     "InputsSettings",
     "LawSettings",

@@ -82,7 +82,7 @@ def _switch_card(switch: dict[str, Any]) -> dict[str, str]:
     release = with_adhesion["release_V"]
     value = "all stuck" if not release["quantiles"] else f"{show(release['quantiles']['0.5'])} V"
     detail = (
-        f"median release voltage of the example switch ({show(without['release_V']['quantiles']['0.5'])} "
+        f"median of the samples that release, example switch ({show(without['release_V']['quantiles']['0.5'])} "
         f"V without adhesion); {stiction['value']:.0%} of the samples stick at a landed fraction of "
         f"{switch['switch']['landed_fraction']:g}"
     )

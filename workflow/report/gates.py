@@ -9,10 +9,12 @@ LIMITS = (
     "site. Stiction and release voltage inherit this; device.adhesion_scale: 0.1 shows the other end.",
     "True contact area: asperities are found by cutting the surface with a plane (bearing area), which "
     "overestimates the true area of contact.",
-    "Elastic coupling: each asperity is pressed on its own; its neighbours do not give way with it.",
+    "Elastic coupling: each asperity is pressed on its own; its neighbours do not give way with it. Scene "
+    "elastic_coupling measures what that costs.",
     "Surface slope: with the profile convention (the paper's 2H+1 on a two-dimensional spectrum) the RMS "
     "slope is about 4.4 at mean inputs, unphysical and set by the resolution; with areal (2H+2) it is 0.91.",
-    "Time: no creep. The results hold for contacts shorter than the time over which asperities creep.",
+    "Time: no creep, unless the scene asks for it (history). The results hold for contacts shorter than the time "
+    "over which asperities creep.",
     "No liquid films, no charging of the dielectric, no sliding.",
     "The switch is a lumped plate on a spring; the landed fraction stands for all that a bowed or tilted beam does.",
 )

@@ -8,8 +8,10 @@ from workflow.report import figures_atoms as atoms
 from workflow.report import figures_contact as contact
 from workflow.report import figures_topography as scans
 from workflow.report.available import Results, Row, number, show
+from workflow.report.beyond import coupling, history
 from workflow.report.figures_contact import OUTPUTS, SYMBOLS
 from workflow.report.page import COMPUTED, LITERATURE, SYNTHETIC, Section, Table
+from workflow.report.studies import studies
 
 
 def all_sections(results: Results) -> list[Section]:
@@ -23,6 +25,8 @@ def all_sections(results: Results) -> list[Section]:
         (("uq/outputs.csv", "uq/samples.csv"), uncertainty),
         (("uq/sensitivity.csv",), sensitivity),
         (("device/switch.json", "device/release.csv", "device/path.csv", "device/stiction.csv"), device),
+        (("history/cycles.csv", "history/dwell.csv", "history/curves.h5"), history),
+        (("coupling/comparison.csv",), coupling),
     )
     sections = [build(results) for needs, build in builders if results.has(*needs)]
     return sections + studies(results)
@@ -79,6 +83,11 @@ def hardness(results: Results) -> Section:
         "two values its text gives.",
         "Figure 8",
     )
+    section.add(
+        atoms.contact_pictures(results),
+        "A slice of 0.5 nm through a contact, relaxed without the counterface; dark: cations, light: oxygen.",
+        wide=True,
+    )
     lines = [
         (
             row["run"],
@@ -87,11 +96,16 @@ def hardness(results: Results) -> Section:
             show(row.get("wavelength_nm")),
             show(row.get("contact_length_nm")),
             _range(row, "hardness"),
+            " → ".join(show(row.get(key)) for key in ("exchanges_before", "exchanges_at_onset", "exchanges_after")),
+            show(row.get("onset_p_value")),
             row.get("status", ""),
         )
         for row in points
     ]
-    header = ("run", "energy scale", "geometry", "λ (nm)", "contact length (nm)", "hardness (GPa)", "status")
+    header = (
+        "run", "energy scale", "geometry", "λ (nm)", "contact length (nm)", "hardness (GPa)",
+        "bond exchanges per 0.1 nm: before → onset → after", "p of the onset", "status",
+    )  # fmt: skip
     section.blocks.append(Table("Every run and what became of it", header, lines))
     section.notes += _fit_notes(fit)
     section.files += ["hardness/points.csv", "hardness/fit.json"]
@@ -190,6 +204,21 @@ def topography(results: Results) -> Section:
         header = ("parameter", "unit", "estimate", "interval", "scatter of scans", "truth", "paper")
         section.blocks.append(Table("Roughness parameters", header, lines))
     section.files += ["topography/spectra.h5", "topography/parameters.json"]
+    if results.has("law/scans.csv"):
+        section.add(
+            scans.pressed(results),
+            "The contact closed on the scans themselves, on Gaussian surfaces with each scan's own spectrum, and on "
+            "Gaussian surfaces with the fitted power law up to the pixels; all with the grid and RMS of the scan.",
+            wide=True,
+        )
+        header = ("scan", "surface", "d_c (nm)", "C_a (GPa/nm)", "C_r (GPa)", "ρ_r (nm)", "fit")
+        keys = ("d_c_nm", "C_a_GPa_nm", "C_r_GPa", "rho_r_nm")
+        closing = [row for row in results.csv("law/scans.csv") if row["branch"] == "closing"]
+        lines = [
+            (row["scan"], row["surface"], *(show(number(row[key])) for key in keys), row["status"]) for row in closing
+        ]
+        section.blocks.append(Table("Law of the measured scans, closing", header, lines))
+        section.files += ["curves/scans.h5", "law/scans.csv"]
     return section
 
 
@@ -362,32 +391,6 @@ def device(results: Results) -> Section:
     return section
 
 
-def studies(results: Results) -> list[Section]:
-    """Error against run time, and stability, of all stages."""
-    sections = []
-    accuracy = results.matching("accuracy/", ".csv")
-    if accuracy:
-        section = Section(
-            "accuracy", "Error against run time", "What each knob costs and buys, for every stage.", COMPUTED
-        )
-        for name in accuracy:
-            keys = ("case", "knob", "value", "error", "error_metric", "reference", "wall_s")
-            lines = [[_cell(row.get(key, "")) for key in keys] for row in results.csv(name)]
-            section.blocks.append(Table(name.rpartition("/")[2].removesuffix(".csv"), keys, lines))
-            section.files.append(name)
-        sections.append(section)
-    stability = results.matching("stability/", ".csv")
-    if stability:
-        section = Section("stability", "Stability", "Unusual inputs and what the code does with them.", COMPUTED)
-        for name in stability:
-            keys = ("case", "description", "checks", "passed", "detail", "wall_s")
-            lines = [[_cell(row.get(key, "")) for key in keys] for row in results.csv(name)]
-            section.blocks.append(Table(name.rpartition("/")[2].removesuffix(".csv"), keys, lines))
-            section.files.append(name)
-        sections.append(section)
-    return sections
-
-
 def _switch_lines(found: dict[str, Any]) -> list[tuple[str, ...]]:
     cases = [found["with_adhesion"], found["without_adhesion"]]
 
@@ -472,8 +475,3 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
             f"[{show(ratio['low'])}, {show(ratio['high'])}]; 0.5 is expected."
         )
     return notes
-
-
-def _cell(text: str) -> str:
-    value = number(text)
-    return show(value) if np.isfinite(value) else text

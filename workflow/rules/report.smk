@@ -9,8 +9,21 @@ def report_inputs():
         files += [f"elastic/{name}" for name in ("points.csv", "bulk_moduli.csv", "e_star.json", "e_star.h5")]
     if needed("topography"):
         files += ["topography/spectra.h5", "topography/parameters.json"]
+    if SCENE.history.cycles > 0:
+        files += [f"history/{name}" for name in ("cycles.csv", "dwell.csv", "curves.h5")]
+    if SCENE.coupling.surfaces > 0:
+        files += ["coupling/comparison.csv"]
     studies = [*ACCURACY, *STABILITY] if SCENE.report.studies else []
     return [f"{RESULTS}/{name}" for name in files] + studies
+
+
+def studies_at_hand():
+    """Accuracy and stability tables that lie there already, with their checksums.
+
+    As parameters, not inputs: they are shown without being scheduled, and a new one renews the page.
+    """
+    found = [] if SCENE.report.studies else [*ACCURACY, *STABILITY]
+    return {name: file_checksum(name) for name in found if Path(name).is_file()}
 
 
 rule report:
@@ -31,5 +44,6 @@ rule render_report:
     params:
         root=RESULTS,
         scene=SCENE.name,
+        studies=studies_at_hand(),
     script:
         "../scripts/render_report.py"

@@ -9,14 +9,13 @@ from dataclasses import asdict
 from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.contact.nominal import nominal_cycles
 from mesoscale.settings import ContactSettings
-from mesoscale.uncertainty.inputs import from_rows
+from mesoscale.uncertainty.inputs import medians
 from mesoscale.uncertainty.runs import contact_of
 from workflow.job import job
 from workflow.results import Dataset, read_csv, write_h5
 
 with job(snakemake) as run:
-    table = from_rows(read_csv(snakemake.input.inputs))
-    middle = {row.name: float(row.distribution.quantile(0.5)) for row in table.rows}
+    middle = medians(read_csv(snakemake.input.inputs))
     inputs, settings = contact_of(middle, ContactSettings(**snakemake.params.settings))
     groups, attributes = {}, {}
     for name, chosen, force, cycle in nominal_cycles(inputs, settings, run.progress):

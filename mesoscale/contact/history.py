@@ -1,0 +1,149 @@
+"""Many cycles of one surface, each held at its largest force: shakedown and creep (docs/history.md).
+
+An asperity at its hardness H whose indentation is kept relaxes by Norton's law, dp/dt = -(H/t0) (p/H)^(m + 1),
+so that p = H (1 + m t/t0)^(-1/m). Every asperity is held to this envelope, or to the logarithmic one
+H / (1 + c ln(1 + t/t0)): the hardness of eq. 4 falls with the time under load, the asperities flow, and the flat
+sinks until it carries its force again. Closing and opening are fast: they meet the full hardness.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mesoscale.contact.cycle import ContactInputs, Cycle, run_cycle
+from mesoscale.contact.engine import Contact, Row, State, solve_force
+from mesoscale.errors import InputError
+from mesoscale.settings import ContactSettings, HistorySettings
+
+
+@dataclass(frozen=True)
+class HeldCycle:
+    """One cycle of a history."""
+
+    number: int  # counted from 1
+    cycle: Cycle
+    held_s: np.ndarray  # time under load since the first cycle at which the contact was solved, shape (k + 1,)
+    hold: list[Row] = field(repr=False)  # the contact at these times; separations from the mean plane
+    missed: int  # times at which the force could not be brought back exactly (it jumps)
+
+
+def hardness_factor(held_s: np.ndarray | float, settings: HistorySettings) -> np.ndarray:
+    """Share of the hardness that is left after a time under load."""
+    time = np.asarray(held_s, dtype=float) / settings.creep_time_s
+    if settings.creep == "power":
+        return (1.0 + settings.creep_exponent * time) ** (-1.0 / settings.creep_exponent)
+    if settings.creep == "logarithmic":
+        return 1.0 / (1.0 + settings.creep_strength * np.log1p(time))
+    return np.ones_like(time)
+
+
+def follow(
+    inputs: ContactInputs,
+    contact: ContactSettings,
+    settings: HistorySettings,
+    seed: int,
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[HeldCycle]:
+    """Close and open one surface again and again; each cycle starts from the surface that the last one left.
+
+    Raises
+    ------
+    InputError : the settings ask for a dwell that nothing fills, or for plastic cycles of an elastic model.
+    """
+    check(contact, settings)
+    heights = None
+    for number in range(1, settings.cycles + 1):
+        times = _times(settings, (number - 1) * settings.dwell_s)
+        hold = Hold(settings, times)
+        cycle = run_cycle(
+            inputs,
+            contact,
+            seed,
+            heights=heights,
+            keep_surface=True,
+            hold=hold if settings.dwell_s > 0 else None,
+        )
+        heights = cycle.heights
+        yield HeldCycle(number, cycle, times[: len(hold.rows)], hold.rows, hold.missed)
+        if progress is not None:
+            progress(number / settings.cycles, f"cycle {number}")
+
+
+def check(contact: ContactSettings, settings: HistorySettings) -> None:
+    """Refuse settings that contradict each other (InputError)."""
+    if settings.cycles == 0:
+        raise InputError("history.cycles = 0: no cycle is asked for; give a number of cycles in the scene")
+    if settings.dwell_s > 0 and settings.creep == "none":
+        raise InputError(
+            f"history.dwell_s = {settings.dwell_s:g} with history.creep = none: nothing would happen; choose "
+            "power or logarithmic, or dwell_s: 0"
+        )
+    if settings.creep != "none" and settings.dwell_s == 0:
+        raise InputError(f"history.creep = {settings.creep} with history.dwell_s = 0: give the time of each hold in s")
+    if contact.model != "plastic":
+        raise InputError(
+            f"contact.model = {contact.model} with history.cycles = {settings.cycles}: only plastic contacts have "
+            "a history; choose contact.model: plastic"
+        )
+
+
+@dataclass
+class Hold:
+    """Keeps the force of a contact while its hardness falls; what `run_cycle` calls between the branches."""
+
+    settings: HistorySettings
+    times: np.ndarray  # s under load; the first is the start of this hold
+    rows: list[Row] = field(default_factory=list)
+    missed: int = 0
+
+    def __call__(self, contact: Contact, last: Row) -> list[Row]:
+        """Rows of the contact at all times but the first, which is `last` itself."""
+        self.rows.append(_from_mean(contact, last))
+        fresh = contact.mechanics
+        found = []
+        row = last
+        for factor in hardness_factor(self.times[1:], self.settings):
+            contact.mechanics = fresh._replace(h_macro=fresh.h_macro * factor, h_prime=fresh.h_prime * factor)
+            row = self._sink(contact, row.separation, last.force)
+            found.append(row)
+            self.rows.append(_from_mean(contact, row))
+        contact.mechanics = fresh
+        return found
+
+    def _sink(self, contact: Contact, separation: float, force: float) -> Row:
+        """Let the asperities flow, then lower the flat until the force is back."""
+        moved = contact.move_to(separation, True)
+        sweeps = moved.sweeps
+        step = smallest = 1e-7 * max(contact.rms, contact.spacing)
+        while moved.force < force * (1.0 - contact.FORCE_TOLERANCE):
+            target = separation - step
+            trial = contact.move_to(target, True)
+            if trial.force > force * (1.0 + contact.FORCE_TOLERANCE):
+                contact.back()
+                separation, moved = solve_force(
+                    contact, separation, target, moved.force, trial.force, force, True, smallest
+                )
+                sweeps += moved.sweeps
+                self.missed += abs(moved.force - force) > 1e-3 * force
+                break
+            moved, separation = trial, target
+            sweeps += trial.sweeps
+            step *= 2.0
+        return _row(contact, separation, moved, sweeps)
+
+
+def _times(settings: HistorySettings, start_s: float) -> np.ndarray:
+    """Times of one hold, evenly in ln(1 + t/t0), the start included."""
+    end_s = start_s + settings.dwell_s
+    ends = np.log1p(np.array([start_s, end_s]) / settings.creep_time_s)
+    inner = np.linspace(ends[0], ends[1], settings.dwell_steps + 1)[1:-1]
+    return np.array([start_s, *settings.creep_time_s * np.expm1(inner), end_s])
+
+
+def _row(contact: Contact, separation: float, moved: State, sweeps: int) -> Row:
+    return Row(separation, moved.force, contact.attraction(separation), moved.sites, moved.asperities, sweeps)
+
+
+def _from_mean(contact: Contact, row: Row) -> Row:
+    return row._replace(separation=row.separation + contact.offset)

@@ -1,0 +1,99 @@
+"""What repeated closing and time under load do to the law and to the switch (docs/history.md)."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from mesoscale.contact.accuracy import dissipated_energy
+from mesoscale.contact.cycle import ContactInputs
+from mesoscale.contact.history import HeldCycle, follow, hardness_factor
+from mesoscale.device.contact_law import scale_adhesion
+from mesoscale.device.switch import solve_switch, switch_from_settings
+from mesoscale.law import PARAMETERS, Law, LawFit
+from mesoscale.settings import ContactSettings, DeviceSettings, HistorySettings, LawSettings
+from mesoscale.uncertainty.runs import fit_cycle
+
+DWELL_COLUMNS = ("seed", "cycle", "held_s", "hardness_factor", "separation_nm", "contact_area_nm2", "asperities")
+
+
+def follow_all(
+    inputs: ContactInputs,
+    contact: ContactSettings,
+    settings: HistorySettings,
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[tuple[int, HeldCycle]]:
+    """Seed and cycle of every surface in turn; the first is that of the nominal curves."""
+    for done in range(settings.seeds):
+        seed = contact.nominal_seed + done
+        for held in follow(inputs, contact, settings, seed):
+            yield seed, held
+            if progress is not None:
+                progress(
+                    (done + held.number / settings.cycles) / settings.seeds, f"surface {seed}, cycle {held.number}"
+                )
+
+
+def shown_cycles(settings: HistorySettings) -> set[int]:
+    """Cycles whose curves are kept: the first, the second, the last and a few between."""
+    return {1, min(2, settings.cycles), *np.geomspace(1, settings.cycles, 5).round().astype(int).tolist()}
+
+
+def cycle_row(
+    seed: int,
+    held: HeldCycle,
+    inputs: ContactInputs,
+    contact: ContactSettings,
+    law: LawSettings,
+    device: DeviceSettings,
+) -> dict[str, Any]:
+    """Row of history/cycles.csv: the cycle, the law of its opening, and the switch that follows it."""
+    cycle = held.cycle
+    fits = fit_cycle(cycle, inputs.hamaker, contact.length_nm**2, law)
+    release, critical = _release(fits.closing, fits.opening, inputs.hamaker, law, device)
+    return {
+        "seed": seed,
+        "cycle": held.number,
+        "held_s": float(held.held_s[-1]) if len(held.held_s) else 0.0,
+        "first_contact_nm": cycle.first_contact_nm,
+        "closed_nm": float(cycle.closing.separation_nm[-1]),
+        "last_contact_nm": cycle.last_contact_nm,
+        "contact_area_nm2": float(cycle.closing.contact_area_nm2[-1]),
+        "dissipated_nN_nm": dissipated_energy(cycle),
+        "pull_off_nN": -float((cycle.opening.repulsive_nN + cycle.opening.attractive_nN).min()),
+        **{f"opening_{name}": _number(getattr(fits.opening, name)) for name in PARAMETERS},
+        "opening_status": fits.opening.status,
+        "release_V": release,
+        "critical_landed_fraction": critical,
+        "converged": bool(cycle.converged and held.missed == 0),
+    }
+
+
+def dwell_rows(seed: int, held: HeldCycle, contact: ContactSettings, settings: HistorySettings) -> list[dict[str, Any]]:
+    """Rows of history/dwell.csv: the contact at each time of the hold."""
+    site = (contact.length_nm / contact.pixels) ** 2
+    factors = hardness_factor(held.held_s, settings)
+    values = [
+        (seed, held.number, float(time), float(factor), row.separation, row.sites * site, row.asperities)
+        for time, factor, row in zip(held.held_s, factors, held.hold, strict=True)
+    ]
+    return [dict(zip(DWELL_COLUMNS, line, strict=True)) for line in values]
+
+
+def _release(
+    closing: LawFit, opening: LawFit, hamaker: float, law: LawSettings, device: DeviceSettings
+) -> tuple[float | None, float | None]:
+    """Release voltage (0: stuck) and critical landed fraction; None where a branch has no law."""
+    laws = []
+    for fit in (closing, opening):
+        if not np.all(np.isfinite(fit.parameters)):
+            return None, None
+        values = dict(zip(PARAMETERS, map(float, fit.parameters), strict=True))
+        one = Law(**values, hamaker=hamaker, rho_a_nm=law.rho_a_nm, shield_nm=law.shield_nm)
+        laws.append(scale_adhesion(one, device.adhesion_scale))
+    states = solve_switch(switch_from_settings(device), laws[0], laws[1], device.hold_voltage_V)
+    return float(states.release_V[0]), float(states.critical_fraction[0])
+
+
+def _number(value: float) -> float | str:
+    return float(value) if np.isfinite(value) else ""

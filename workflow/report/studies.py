@@ -1,0 +1,131 @@
+"""Error against run time and stability of all stages, with the settings that they recommend."""
+
+import numpy as np
+
+from workflow.report.available import Results, Row, column, number, show
+from workflow.report.drawing import SERIES, draw
+from workflow.report.page import COMPUTED, Section, Table
+
+GOOD_ENOUGH = 0.01  # an error below this is not worth more time
+NEAR_BEST = 2.0  # nor is one within this factor of the best
+
+
+def studies(results: Results) -> list[Section]:
+    """The sections of the studies that exist."""
+    sections = []
+    accuracy = {_stage(name): results.csv(name) for name in results.matching("accuracy/", ".csv")}
+    if accuracy:
+        sections.append(_accuracy(accuracy))
+        sections[-1].files += results.matching("accuracy/", ".csv")
+    stability = {_stage(name): results.csv(name) for name in results.matching("stability/", ".csv")}
+    if stability:
+        sections.append(_stability(stability))
+        sections[-1].files += results.matching("stability/", ".csv")
+    return sections
+
+
+def _stage(name: str) -> str:
+    return name.rpartition("/")[2].removesuffix(".csv")
+
+
+def _accuracy(tables: dict[str, list[Row]]) -> Section:
+    section = Section(
+        "accuracy",
+        "Error against run time",
+        "What each numerical choice costs and buys. Recommended is the cheapest value whose largest error over all "
+        f"outputs is below {GOOD_ENOUGH:.0%} or within a factor {NEAR_BEST:g} of the best one tried.",
+        COMPUTED,
+    )
+    lines = [line for stage, rows in tables.items() for line in recommended(stage, rows)]
+    header = (
+        "stage",
+        "setting",
+        "recommended",
+        "its largest error",
+        "its time (s)",
+        "best error tried",
+        "at (s)",
+        "against",
+    )
+    section.blocks.append(Table("Recommended settings", header, lines, heads=2))
+    keys = ("case", "knob", "value", "error", "error_metric", "reference", "wall_s")
+    for stage, rows in tables.items():
+        section.add(error_against_time(stage, rows), f"{stage}: largest error over all outputs against run time.")
+        section.blocks.append(Table(stage, keys, [[_cell(row.get(key, "")) for key in keys] for row in rows]))
+    return section
+
+
+def _stability(tables: dict[str, list[Row]]) -> Section:
+    failed = [f"{stage}: {row['case']}" for stage, rows in tables.items() for row in rows if not _passed(row)]
+    total = sum(map(len, tables.values()))
+    section = Section(
+        "stability",
+        "Stability",
+        f"Unusual inputs and what the code does with them: {total - len(failed)} of {total} cases passed.",
+        COMPUTED,
+    )
+    if failed:
+        section.notes.append("Not passed: " + "; ".join(failed) + ".")
+    keys = ("case", "description", "checks", "passed", "detail", "wall_s")
+    for stage, rows in tables.items():
+        section.blocks.append(Table(stage, keys, [[_cell(row.get(key, "")) for key in keys] for row in rows]))
+    return section
+
+
+def curves(rows: list[Row]) -> dict[tuple[str, str], list[tuple[str, float, float]]]:
+    """By knob and reference: value, largest error over the cases, and time (s), cheapest first."""
+    groups: dict[tuple[str, str], dict[str, list[Row]]] = {}
+    for row in rows:
+        knob = groups.setdefault((row["knob"], row.get("reference", "")), {})
+        knob.setdefault(row["value"], []).append(row)
+    found = {}
+    for key, values in groups.items():
+        points = []
+        for value, part in values.items():
+            errors = column(part, "error")
+            if np.isfinite(errors).any():
+                points.append((value, float(np.nanmax(errors)), float(np.nanmean(column(part, "wall_s")))))
+        if points:
+            found[key] = sorted(points, key=lambda point: point[2])
+    return found
+
+
+def recommended(stage: str, rows: list[Row]) -> list[tuple[str, ...]]:
+    """One line per knob that was tried at more than one value."""
+    lines = []
+    for (knob, reference), points in curves(rows).items():
+        if len(points) < 2:
+            continue
+        best = min(points, key=lambda point: point[1])
+        limit = max(GOOD_ENOUGH, NEAR_BEST * best[1])
+        value, error, seconds = next(point for point in points if point[1] <= limit)
+        numbers = (show(error, 2), show(seconds, 2), show(best[1], 2), show(best[2], 2))
+        lines.append((stage, knob, _cell(value), *numbers, reference))
+    return lines
+
+
+def error_against_time(stage: str, rows: list[Row]) -> str | None:
+    """One line per knob."""
+    found = {key: points for key, points in curves(rows).items() if any(e > 0 and s > 0 for _, e, s in points)}
+    if not found:
+        return None
+
+    def plot(axis):
+        for number_, ((knob, _), points) in enumerate(found.items()):
+            shown = [(seconds, error) for _, error, seconds in points if error > 0 and seconds > 0]
+            style = "o-" if number_ < len(SERIES) else "s--"
+            axis.plot(*zip(*shown, strict=True), style, color=SERIES[number_ % len(SERIES)], markersize=4, label=knob)
+        axis.set(xscale="log", yscale="log", xlabel="run time (s)", ylabel="largest error")
+        axis.legend(fontsize=8)
+
+    return draw(f"accuracy-{stage}", f"Error against run time of stage {stage}, by setting", plot)
+
+
+def _passed(row: Row) -> bool:
+    return row.get("passed", "") in ("True", "1", "true")
+
+
+def _cell(text: str) -> str:
+    """A number shortened, whole numbers and words as they are."""
+    value = number(text)
+    return show(value) if np.isfinite(value) and not value.is_integer() else text.removesuffix(".0")

@@ -1,0 +1,25 @@
+# Repeated closing and creep; only in scenes with history.cycles > 0
+rule history:
+    input:
+        f"{RESULTS}/history/cycles.csv",
+
+
+rule follow_history:
+    message:
+        "close and open again and again"
+    input:
+        inputs=f"{RESULTS}/inputs.csv",
+    output:
+        cycles=f"{RESULTS}/history/cycles.csv",
+        dwell=f"{RESULTS}/history/dwell.csv",
+        curves=f"{RESULTS}/history/curves.h5",
+    log:
+        f"{RESULTS}/logs/follow_history.log",
+    params:
+        settings=settings("history"),
+        contact=settings("contact"),
+        law=settings("law"),
+        device=settings("device"),
+    threads: 1
+    script:
+        "../scripts/follow_history.py"

@@ -1,0 +1,17 @@
+"""Single asperities beside an elastic half-space at the medians of the inputs.
+
+In: inputs.csv.  Out: coupling/comparison.csv (nN, nm, nm^2).
+"""
+
+from mesoscale.contact.coupling import compare
+from mesoscale.settings import ContactSettings, CouplingSettings
+from mesoscale.uncertainty.inputs import medians
+from mesoscale.uncertainty.runs import contact_of
+from workflow.job import job
+from workflow.results import read_csv, write_csv
+
+with job(snakemake) as run:
+    settings = CouplingSettings(**snakemake.params.settings)
+    contact = ContactSettings(**snakemake.params.contact)
+    inputs, contact = contact_of(medians(read_csv(snakemake.input.inputs)), contact)
+    write_csv(snakemake.output[0], compare(inputs, contact, settings, run.progress))

@@ -1,0 +1,37 @@
+"""Close and open surfaces again and again at the medians of the inputs, held closed under creep if asked.
+
+In: inputs.csv.  Out: history/cycles.csv (nm, nN, V), history/dwell.csv (s, nm) and, of the first surface,
+history/curves.h5 (groups cycle_NNNN/closing|opening; nm, nN, nm^2).
+"""
+
+from dataclasses import asdict
+
+from mesoscale.contact.cycle import BRANCH_COLUMNS
+from mesoscale.device.lifetime import DWELL_COLUMNS, cycle_row, dwell_rows, follow_all, shown_cycles
+from mesoscale.settings import ContactSettings, DeviceSettings, HistorySettings, LawSettings
+from mesoscale.uncertainty.inputs import medians
+from mesoscale.uncertainty.runs import contact_of
+from workflow.job import job
+from workflow.results import Dataset, read_csv, write_csv, write_h5
+
+with job(snakemake) as run:
+    settings = HistorySettings(**snakemake.params.settings)
+    law, device = LawSettings(**snakemake.params.law), DeviceSettings(**snakemake.params.device)
+    contact = ContactSettings(**snakemake.params.contact)
+    inputs, contact = contact_of(medians(read_csv(snakemake.input.inputs)), contact)
+    cycles, dwell, groups, attributes = [], [], {}, {}
+    shown = shown_cycles(settings)
+    for seed, held in follow_all(inputs, contact, settings, run.progress):
+        cycles.append(cycle_row(seed, held, inputs, contact, law, device))
+        dwell += dwell_rows(seed, held, contact, settings)
+        if seed == contact.nominal_seed and held.number in shown:
+            name = f"cycle_{held.number:04d}"
+            attributes[name] = {"cycle": held.number, "seed": seed, **asdict(inputs)}
+            for branch in ("closing", "opening"):
+                groups[f"{name}/{branch}"] = {
+                    key: Dataset(values, *BRANCH_COLUMNS[key], ("point",))
+                    for key, values in asdict(getattr(held.cycle, branch)).items()
+                }
+    write_csv(snakemake.output.cycles, cycles)
+    write_csv(snakemake.output.dwell, dwell, DWELL_COLUMNS)
+    write_h5(snakemake.output.curves, groups, {"cell_area_nm2": contact.length_nm**2}, run.provenance, attributes)
