@@ -148,7 +148,7 @@ rule measure_overhead:
     log:
         f"{RESULTS}/logs/measure_overhead.log",
     params:
-        cores=workflow.cores,
+        cores=lambda wildcards: workflow.cores,  # known only where there is no cluster
     script:
         "../scripts/measure_overhead.py"
 
