@@ -104,6 +104,7 @@ def write_forcefield(
     elements: tuple[str, ...],
     energy_scale: float,
     repulsive_from: int | None = None,
+    long_range: bool = False,
 ) -> None:
     """Write the table and the commands that use it into a workspace (files `table` and `pairs`).
 
@@ -111,16 +112,20 @@ def write_forcefield(
     ----------
     elements : of each LAMMPS type; an element may stand for several types.
     repulsive_from : types from this one on (counted from 1) belong to a second body that only repels the first.
+    long_range : the tables leave the Coulomb sum to a `kspace_style`.
     """
     species = tuple(dict.fromkeys(elements))
-    (workspace / "table").write_text(potential.table(species, energy_scale), encoding="utf-8")
+    (workspace / "table").write_text(potential.table(species, energy_scale, not long_range), encoding="utf-8")
+    cutoff = potential.cutoff_A
     lines = ["pair_style table linear 4000"]
+    if long_range:
+        lines = [f"pair_style hybrid/overlay table linear 4000 coul/long {cutoff}", "pair_coeff * * coul/long"]
     for i, first in enumerate(elements, 1):
         for j, second in enumerate(elements[i - 1 :], i):
             section = "_".join(sorted((first, second), key=species.index))
             if repulsive_from is not None and i < repulsive_from <= j:
                 section = "contact"
-            lines.append(f"pair_coeff {i} {j} table {section} {potential.cutoff_A}")
+            lines.append(f"pair_coeff {i} {j} {'table ' * long_range}table {section} {cutoff}")
     lines += ["neighbor 0.6 bin", "neigh_modify every 2 delay 0 check yes"]
     (workspace / "pairs").write_text("\n".join(lines) + "\n", encoding="utf-8")
 

@@ -117,7 +117,9 @@ class Potential(Settings):
     def _terms(self) -> dict[frozenset[str], Pair]:
         return {frozenset(pair.species): pair for pair in self.pairs}
 
-    def energy_and_force(self, first: str, second: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def energy_and_force(
+        self, first: str, second: str, r: np.ndarray, coulomb: bool = True
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Energy (eV) and force (eV/Å, positive = repulsion) of a pair at distances `r` (Å).
 
         Short-range terms are shifted so that energy and force vanish at the cutoff, as the damped
@@ -125,7 +127,7 @@ class Potential(Settings):
         """
         r = np.asarray(r, dtype=float)
         r_c = np.array([self.cutoff_A])
-        energy, force = self._coulomb(first, second, r)
+        energy, force = self._coulomb(first, second, r) if coulomb else (np.zeros_like(r), np.zeros_like(r))
         for term in self._terms[frozenset((first, second))].terms:
             value, slope = term.energy_and_slope(r)
             value_c, slope_c = term.energy_and_slope(r_c)
@@ -145,7 +147,7 @@ class Potential(Settings):
         value_c, force_c = bare(np.array([r_c]))
         return strength * (value - value_c + force_c * (r - r_c)), strength * (force - force_c)
 
-    def table(self, elements: tuple[str, ...], energy_scale: float = 1.0) -> str:
+    def table(self, elements: tuple[str, ...], energy_scale: float = 1.0, coulomb: bool = True) -> str:
         """LAMMPS `pair_style table` file: a section A_B for every pair of `elements`, and `contact`.
 
         `contact` is what remains between two bodies that do not adhere (`contact_energy_and_force`).
@@ -154,12 +156,13 @@ class Potential(Settings):
         ----------
         elements : species in the order of their LAMMPS types.
         energy_scale : factor on every energy and force; 0.5 gives the twin with halved energies.
+        coulomb : False leaves the Coulomb sum to LAMMPS.
         """
         r = np.sqrt(np.linspace(TABLE_START_A**2, self.cutoff_A**2, TABLE_POINTS))
         lines = io.StringIO()
         lines.write(f"# {self.description}; energies x {energy_scale}; eV, Angstrom\n")
         sections = {
-            f"{first}_{second}": self.energy_and_force(first, second, r)
+            f"{first}_{second}": self.energy_and_force(first, second, r, coulomb)
             for first, second in combinations_with_replacement(elements, 2)
         }
         for name, (energy, force) in {**sections, "contact": contact_energy_and_force(r)}.items():

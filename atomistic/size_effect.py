@@ -43,6 +43,7 @@ def fit_size_effect(points: Sequence[Point], glasses: Sequence[Mapping], setting
         "points_used": len(used),
         "points_total": len(points),
         "points_rejected": refused,
+        "cost": _cost(points),
         "inputs": {},
         "gate": {"passed": False, "reasons": reasons},
     }
@@ -71,6 +72,14 @@ def fit_size_effect(points: Sequence[Point], glasses: Sequence[Mapping], setting
         reasons.append("the fit allows a hardness that falls with decreasing size or is negative: not identifiable")
     result["gate"] = {"passed": not reasons, "reasons": reasons}
     return result
+
+
+def _cost(points: Sequence[Point]) -> dict[str, float]:
+    """What the runs took, and the share of the Python around LAMMPS in it."""
+    total = {
+        key: sum(float(point[key]) for point in points) for key in ("atom_steps", "lammps_cpu_s", "python_cpu_s")
+    }
+    return {**total, "python_share": total["python_cpu_s"] / (total["lammps_cpu_s"] + total["python_cpu_s"])}
 
 
 def literature_samples(points: Sequence[Point], fit: FitSettings) -> tuple[np.ndarray, np.ndarray]:

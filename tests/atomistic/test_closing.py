@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from atomistic import stability
 from atomistic.closing import run_closing
 from atomistic.errors import InputError
 from atomistic.glass import glass_properties, make_glass
@@ -18,7 +19,7 @@ from atomistic.lammps import Atoms, Workspace, read_data, write_data
 from atomistic.potentials import load_potential
 from atomistic.runs import planned_runs, settings_of_run
 from atomistic.settings import GlassSettings, HardnessSettings
-from atomistic.stability import half_energy_identity, stability_rows
+from atomistic.stability import half_energy_identity
 
 PMMCS = Path(__file__).parents[2] / "config" / "potentials" / "pmmcs.yaml"
 GLASS = GlassSettings(atoms=150, melt_ps=1, quench_rate_K_ps=1000, rest_ps=1, segment_steps=300)
@@ -171,8 +172,12 @@ def test_half_energies_at_T_move_like_full_ones_at_2T(glass, potential, tmp_path
     assert passed, detail
 
 
-def test_stability_study_passes(potential, tmp_path):
-    rows = stability_rows([potential], tmp_path / "work")
+def test_stability_study_passes(potential, tmp_path, monkeypatch):
+    """All checks of a potential, and of those of a closing the overlapping start and the snap-in."""
+    of_closing = stability._of_closing
+    monkeypatch.setattr(stability, "_of_closing", lambda *given: of_closing(*given)[:2])
+    rows = stability.stability_rows([potential], tmp_path / "work")
+    assert {"overlapping_start", "snap_in", "coulomb_slab_pmmcs"} < {row["case"] for row in rows}
     assert [row["case"] for row in rows if not row["passed"]] == []
 
 

@@ -17,6 +17,9 @@ def point(hardness, length, scale=1.0, asperity="a", status="yield", spread=0.05
         "hardness_lo": str(hardness - spread),
         "hardness_hi": str(hardness + spread),
         "contact_length_nm": str(length),
+        "atom_steps": "1e6",
+        "lammps_cpu_s": "0.98",
+        "python_cpu_s": "0.02",
     }
 
 
@@ -37,6 +40,7 @@ def test_free_fit_finds_both_parameters_of_a_wide_series():
     assert free["identifiable"]
     assert result["gate"]["passed"]
     assert result["inputs"]["h_prime"]["correlation"]["h_macro"] < -0.5
+    assert result["cost"]["python_share"] == pytest.approx(0.02)
 
 
 def test_a_narrow_series_is_not_identifiable_and_says_so():

@@ -3,9 +3,10 @@
 import numpy as np
 
 from workflow.report.available import Results, Row, column, number
-from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SERIES, SOFT, draw
+from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SERIES, SKY, SOFT, draw
 
 SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE, "s")}
+SLICE_NM = 0.25  # half the thickness of a slice that is drawn
 PAPER_HARDNESS = ((3.0, 10.0), (15.0, 2.0))  # nm, GPa: "~10 GPa at 3 nm, ~2 GPa at 15 nm" in the paper's text
 
 
@@ -32,8 +33,15 @@ def contact_stress(results: Results) -> str | None:
             at, hardness = number(point.get("contact_length_nm")), number(point.get("hardness_GPa"))
             if point.get("status") == "yield" and np.isfinite(at):
                 axis.plot(at, hardness, "D", color=color, markeredgecolor=INK, markersize=6)
+                onset = number(point.get("onset_length_nm"))
+                if np.isfinite(onset):
+                    then = np.argmin(np.abs(length[use] - onset))
+                    axis.plot(
+                        length[use][then], stress[use][then], "o", color=color, markerfacecolor="none", markersize=6
+                    )
         for label, color, _ in SCALES.values():
             axis.plot([], [], color=color, label=label)
+        axis.plot([], [], "o", color=SOFT, markerfacecolor="none", label="onset of plastic flow")
         axis.plot([], [], "D", color=SOFT, label="hardness of the run")
         axis.set(
             xlabel="contact length √A (nm)",
@@ -58,7 +66,10 @@ def hardness_size(results: Results) -> str | None:
                 length, hardness = column(part, "contact_length_nm"), column(part, "hardness_GPa")
                 low, high = column(part, "hardness_lo"), column(part, "hardness_hi")
                 bars = np.nan_to_num(np.clip([hardness - low, high - hardness], 0, None))
-                axis.errorbar(length, hardness, yerr=bars, fmt=marker, color=color, label=label, capsize=3)
+                face = color if key == "1.0" else "none"
+                axis.errorbar(
+                    length, hardness, yerr=bars, fmt=marker, color=color, markerfacecolor=face, label=label, capsize=3
+                )
         if fit.get("curve"):
             length, low, high, middle = (
                 np.array([point[key] for point in fit["curve"]], dtype=float)
@@ -87,6 +98,43 @@ def hardness_size(results: Results) -> str | None:
         axis.legend(fontsize=8.5)
 
     return draw("fig8", "Hardness of single asperities against contact length", plot)
+
+
+def contact_pictures(results: Results) -> str | None:
+    """Slices through a contact before, at and after the onset of plastic flow, relaxed without the counterface."""
+    points = [
+        row
+        for row in results.csv("hardness/points.csv")
+        if row.get("status") == "yield" and all(results.has(path) for path in _pictures_of(row["run"]))
+    ]
+    if not points:
+        return None
+    # the fewest atoms show single bonds best
+    point = min(points, key=lambda row: (-number(row["energy_scale"]), number(row["wavelength_nm"])))
+    witness, snapshots = (results.csv(path) for path in _pictures_of(point["run"]))
+    travel, onset = column(witness, "displacement_nm"), number(point["onset_displacement_nm"])
+    chosen = (0, int(np.argmin(np.abs(travel - onset))), len(witness) - 1)
+    step, kind, x, y, z = (column(snapshots, name) for name in ("step", "type", "x_nm", "y_nm", "z_nm"))
+    thin = np.abs(y - number(point["wavelength_nm"]) / 4) < SLICE_NM
+    points_per_nm = 2 * 180 / number(point["wavelength_nm"])  # of a marker's diameter, on a panel 180 points wide
+
+    def plot(*axes):
+        for axis, k, title in zip(axes, chosen, ("before contact", "onset", "end"), strict=True):
+            at = thin & (step == float(witness[k]["step"]))
+            for species, radius_nm, color in ((2.0, 0.11, SKY), (1.0, 0.07, BLUE)):
+                part = at & (kind == species)
+                axis.scatter(x[part], z[part], s=(radius_nm * points_per_nm) ** 2, color=color, linewidths=0)
+            exchanged = int(number(witness[k]["exchanged_bonds"]))
+            axis.set_title(f"{title}: {travel[k]:.2f} nm, {exchanged} bonds exchanged", fontsize=9)
+            axis.set(xlabel="x (nm)", aspect="equal", ylim=(0, 1.05 * float(z.max())))
+            axis.grid(False)
+        axes[0].set_ylabel("z (nm)")
+
+    return draw("pictures", f"Slices through the contact of run {point['run']}", plot, (9.4, 3.2), columns=3)
+
+
+def _pictures_of(run: str) -> tuple[str, str]:
+    return f"hardness/witness/{run}.csv", f"hardness/snapshots/{run}.csv"
 
 
 def elastic_distribution(results: Results) -> str | None:
