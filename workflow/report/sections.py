@@ -74,7 +74,8 @@ def hardness(results: Results) -> Section:
     )
     section.add(
         atoms.contact_stress(results),
-        "Contact stress against contact length of every closing run; diamonds mark the hardness of runs that yielded.",
+        "Contact stress against contact length of every closing run. Circles: where plastic flow was first witnessed "
+        "by exchanged bonds; diamonds: the hardness of runs that yielded.",
         "Figure 7",
     )
     section.add(
@@ -473,5 +474,10 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
         notes.append(
             f"Halved over full energies, asperity {ratio['asperity']}: {show(ratio['median'])} "
             f"[{show(ratio['low'])}, {show(ratio['high'])}]; 0.5 is expected."
+        )
+    if cost := fit.get("cost"):
+        notes.append(
+            f"Molecular dynamics: {show(cost['atom_steps'])} atom-steps, {show(cost['lammps_cpu_s'] / 60)} minutes of "
+            f"CPU time; the Python around LAMMPS took {show(100 * cost['python_share'])} % of all."
         )
     return notes

@@ -4,7 +4,8 @@ def report_inputs():
     files += [f"uq/{name}" for name in ("outputs.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")]
     files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "path.csv", "law.csv")]
     if needed("hardness"):
-        files += ["hardness/points.csv", "hardness/fit.json", *(f"hardness/closing/{run}.csv" for run in CLOSINGS)]
+        files += ["hardness/points.csv", "hardness/fit.json"]
+        files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness", "snapshots") for run in CLOSINGS]
     if needed("elastic"):
         files += [f"elastic/{name}" for name in ("points.csv", "bulk_moduli.csv", "e_star.json", "e_star.h5")]
     if needed("topography"):
