@@ -66,6 +66,7 @@ def audit_rows(
 MISPRINT = 20.0
 """mu* of one input is at most sqrt(12) = 3.5 deviations of the linear surface; an entry of Table 3 beyond
 that many (delta_C_a, q0: 335.9) contradicts Table 2 under every labeling and is left out."""
+RESAMPLES = 200
 AUDIT_COLUMNS = ("contact", "law", "seed", "node", "converged", *OUTPUTS)
 
 
@@ -81,7 +82,7 @@ def rank(
     The distance of Table 2 is the root mean square, over outputs, of (mean - paper's mean)/paper's deviation
     and ln(deviation/paper's); that of Table 3 of (mu* - paper's)/(sqrt(12) paper's deviation) over outputs
     and inputs, without the entry that cannot be right (MISPRINT). Both use means over seeds; the smallest
-    over the labelings of the doubtful columns counts.
+    over the labelings of the doubtful columns counts. Intervals (5 to 95 %) come from resampling the seeds.
 
     Parameters
     ----------
@@ -90,23 +91,26 @@ def rank(
     ranges = table.ranges(central_share)
     inputs = len(table.rows)
     short = [short_name(output) for output in OUTPUTS]
+    rng = np.random.default_rng(np.random.SeedSequence([len(rows)]))
     ranked = []
     for contact, law in dict.fromkeys((row["contact"], row["law"]) for row in rows):
         chosen = [row for row in rows if (row["contact"], row["law"]) == (contact, law)]
         y = _arrange(chosen)
         surfaces = _moments(y, ranges)
         # mean, deviation, mu*: averages over the seeds that have all nodes
-        complete = np.asarray(np.isfinite(surfaces).all(axis=1))
-        usable = complete.sum(axis=0)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            average = np.where(complete[:, None], surfaces, 0.0).sum(axis=0) / usable
-            scatter = np.sqrt(np.where(complete[:, None], (surfaces - average) ** 2, 0.0).sum(axis=0) / (usable - 1))
+        average, scatter = _over_seeds(surfaces)
         best = min(
             (_distance(average, short, table.names, two, three), label)
             for label, (two, three) in enumerate(zip(tables2, tables3, strict=True))
         )
+        two, three = tables2[best[1]], tables3[best[1]]
+        resampled = [
+            _distance(_over_seeds(surfaces[rng.integers(len(y), size=len(y))])[0], short, table.names, two, three)[0]
+            for _ in range(RESAMPLES)
+        ]
+        low, high = np.nanquantile(resampled, [0.05, 0.95]) if np.isfinite(resampled).any() else (np.nan, np.nan)
         seeds = [
-            _distance(surfaces[s], short, table.names, tables2[best[1]], tables3[best[1]])[0]
+            _distance(surfaces[s], short, table.names, two, three)[0]
             for s in range(len(y))
             if np.isfinite(surfaces[s]).all()
         ]
@@ -115,6 +119,8 @@ def rank(
                 "contact": contact,
                 "law": law,
                 "distance": best[0][0],
+                "distance_low": low,
+                "distance_high": high,
                 "distance_one_seed_sd": float(np.std(seeds, ddof=1)) if len(seeds) > 1 else np.nan,
                 "distance_table2": best[0][1],
                 "distance_table3": best[0][2],
@@ -145,6 +151,16 @@ def _arrange(rows: Sequence[Mapping[str, str]]) -> Array:
         numbers = [float(row[name]) if row.get(name) else np.nan for name in OUTPUTS]
         y[seeds.index(int(row["seed"])), int(row["node"])] = numbers
     return y
+
+
+def _over_seeds(surfaces: Array) -> tuple[Array, Array]:
+    """Mean and standard deviation over the seeds that have all nodes of an output, shape (2 + n, 8)."""
+    complete = np.asarray(np.isfinite(surfaces).all(axis=1))
+    usable = complete.sum(axis=0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        average = np.where(complete[:, None], surfaces, 0.0).sum(axis=0) / usable
+        squares = np.where(complete[:, None], (surfaces - average) ** 2, 0.0).sum(axis=0)
+        return average, np.sqrt(squares / (usable - 1))
 
 
 def _moments(y: Array, ranges: Array) -> Array:
