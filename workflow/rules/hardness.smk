@@ -266,6 +266,7 @@ wildcard_constraints:
 rule hardness_study:
     input:
         f"{RESULTS}/study/hardness.csv",
+        f"{RESULTS}/study/size_effect.json",
 
 
 use rule make_glass as make_study_glass with:
@@ -339,3 +340,25 @@ rule collect_hardness_study:
         labels=[{"case": case.name, "about": case.about} for case, _ in STUDY.values()],
     script:
         "../scripts/find_hardness.py"
+
+
+rule fit_all_sizes:
+    message:
+        "fit the size effect to all runs"
+    input:
+        points=f"{RESULTS}/hardness/points.csv",
+        study=f"{RESULTS}/study/hardness.csv",
+    output:
+        fit=f"{RESULTS}/study/size_effect.json",
+    log:
+        f"{RESULTS}/logs/fit_all_sizes.log",
+    params:
+        settings={"fit": HARDNESS["fit"]},
+        cases=[
+            name
+            for name, (_, own) in STUDY.items()
+            if own.model_copy(update=dict.fromkeys(("asperities", "seeds", "energy_scales")))
+            == SCENE.hardness.model_copy(update=dict.fromkeys(("asperities", "seeds", "energy_scales")))
+        ],
+    script:
+        "../scripts/fit_all_sizes.py"
