@@ -33,10 +33,8 @@ def commensurate_mesh(cell: np.ndarray, cutoff_Ha: float) -> tuple[int, int, int
     """Smallest FFT-friendly mesh whose plane waves all reach `cutoff_Ha` in this cell (Å)."""
     from scipy.fft import next_fast_len
 
-    reciprocal = 2 * np.pi * np.linalg.inv(np.asarray(cell) / Bohr).T
     # the largest |G·a|/2π inside a sphere of radius G_max
     reach = np.sqrt(2 * cutoff_Ha) * np.linalg.norm(np.asarray(cell) / Bohr, axis=1) / (2 * np.pi)
-    del reciprocal
     n = [next_fast_len(2 * int(np.ceil(r)) + 1, real=True) for r in reach]
     return n[0], n[1], n[2]
 
@@ -96,6 +94,7 @@ class PyscfGamma(Calculator):
         self.orbitals: np.ndarray | None = None  # occupied, (basis functions, occupied)
         self.scf_runs = 0  # calculations really done, not taken from the store
         self.scf_cycles = 0
+        self.gap_eV = float("nan")  # of the last calculation
 
     def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes):
         super().calculate(atoms, properties, system_changes)
@@ -109,9 +108,10 @@ class PyscfGamma(Calculator):
             self.scf_runs += 1
         found = self.store[key]
         self.scf_cycles = int(found["cycles"])
+        self.gap_eV = float(found["gap_Ha"]) * Hartree
         self.orbitals = found["orbitals"] if bool(found["converged"]) else None
         if not bool(found["converged"]):
-            raise ScfNotConverged(f"SCF not converged in {p.max_cycles} cycles")
+            raise ScfNotConverged(f"SCF not converged in {p.max_cycles} cycles (gap {self.gap_eV:.2f} eV)")
         self.results = {"energy": float(found["energy_Ha"]) * Hartree}
         self.results["free_energy"] = self.results["energy"]
         if wanted == "forces":
@@ -154,12 +154,15 @@ class PyscfGamma(Calculator):
             )
         energy = mf.kernel(self._guess(mf))
         converged = bool(mf.converged) and bool(np.isfinite(energy))
-        occupied = np.asarray(mf.mo_coeff)[:, np.asarray(mf.mo_occ) > 0]
+        filled = np.asarray(mf.mo_occ) > 0
+        levels = np.asarray(mf.mo_energy)
+        occupied = np.asarray(mf.mo_coeff)[:, filled]
         found = {
             "energy_Ha": np.array(energy),
             "converged": np.array(converged),
             "cycles": np.array(mf.cycles),
             "orbitals": occupied,
+            "gap_Ha": np.array(levels[~filled].min() - levels[filled].max() if not filled.all() else np.inf),
         }
         if forces and converged:
             if p.numerics == "cached-grid":

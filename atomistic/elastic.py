@@ -18,7 +18,8 @@ from ase.calculators.calculator import CalculationFailed, Calculator
 from atomistic.dft import PyscfGamma, Store, commensurate_mesh
 from atomistic.equation_of_state import MIN_POINTS, fit_equation_of_state
 from atomistic.errors import InputError
-from atomistic.settings import DftSettings, ElasticSettings, RelaxationSettings
+from atomistic.relaxation import strained
+from atomistic.settings import DftSettings, ElasticSettings
 
 Progress = Callable[[float, str], None]
 ENGINES_OF_ASE = ("espresso", "vasp", "abinit", "cp2k", "gpaw", "siesta")
@@ -83,13 +84,6 @@ class Point:
     detail: str = ""
 
 
-def strained(atoms: Atoms, strain: float) -> Atoms:
-    """The structure under isotropic linear strain, ions keeping their fractional coordinates."""
-    result = Atoms(atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True)
-    result.set_cell(atoms.cell.array * (1 + strain), scale_atoms=True)
-    return result
-
-
 def scan_order(strains: Sequence[float]) -> list[float]:
     """Smallest strain first, then outwards: each calculation starts from a neighbour's orbitals."""
     return sorted(strains, key=lambda strain: (abs(strain), -strain))
@@ -104,106 +98,32 @@ def scan_volumes(
 ) -> list[Point]:
     """Energy of a structure at each isotropic strain.
 
-    A calculation that fails is reported in its point and the scan goes on.
+    A calculation that fails is reported in its point and the scan goes on.  Ions that relax start from where they came
+    to rest at the nearest strain.
 
     Parameters
     ----------
     relax : moves the ions of a strained structure (its calculator attached) to their minimum; None clamps them
     """
     points = []
+    rested = {0.0: atoms}
     for done, strain in enumerate(scan_order(strains)):
         if progress:
             progress(done / len(strains), f"strain {strain:+.3f}")
-        trial = strained(atoms, strain)
+        nearest = min(rested, key=lambda other: abs(other - strain))
+        trial = strained(rested[nearest], (1 + strain) / (1 + nearest) - 1)
         trial.calc = calculator
         start = time.perf_counter()
         energy, converged, detail = float("nan"), True, ""
         try:
             if relax is not None:
                 relax(trial)
+                rested[strain] = trial
             energy = float(trial.get_potential_energy())
         except (CalculationFailed, NotImplementedError, np.linalg.LinAlgError, FloatingPointError) as error:
             converged, detail = False, f"strain {strain:+.3f}: {error}"
         points.append(Point(strain, float(trial.get_volume()), energy, converged, time.perf_counter() - start, detail))
     return sorted(points, key=lambda point: point.strain)
-
-
-def relax_ions(
-    atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndarray | None = None
-) -> tuple[int, float, bool]:
-    """Quasi-Newton relaxation of the ions (BFGS), cell fixed.
-
-    Parameters
-    ----------
-    hessian : (3n, 3n) eV/Å², start of the BFGS update; a cheap potential's saves about half the steps
-
-    Returns
-    -------
-    steps, largest remaining force (eV/Å), whether it is below `force_eV_A`
-    """
-    from ase.optimize import BFGS
-
-    with BFGS(atoms, logfile=None, maxstep=0.15) as optimizer:
-        if hessian is not None:
-            optimizer.H0 = hessian
-        converged = bool(optimizer.run(fmax=force_eV_A, steps=max_steps))
-        left = float(np.linalg.norm(atoms.get_forces(), axis=1).max())
-        return int(optimizer.nsteps), left, converged
-
-
-def model_hessian(atoms: Atoms, calculator: Calculator, floor_eV_A2: float = 3.0) -> np.ndarray:
-    """Hessian of a cheap potential by central differences, made positive definite (eigenvalues ≥ floor)."""
-    trial = atoms.copy()
-    trial.calc = calculator
-    step, n = 0.005, 3 * len(atoms)
-    hessian = np.empty((n, n))
-    base = trial.positions.copy()
-    for k in range(n):
-        forces = []
-        for sign in (1, -1):
-            trial.positions = base
-            trial.positions.flat[k] += sign * step
-            forces.append(trial.get_forces().ravel())
-        hessian[k] = (forces[1] - forces[0]) / (2 * step)
-    values, vectors = np.linalg.eigh((hessian + hessian.T) / 2)
-    return (vectors * np.maximum(abs(values), floor_eV_A2)) @ vectors.T
-
-
-@dataclass(frozen=True)
-class Relaxation:
-    """What the relaxation of a glass did: ionic steps, largest force left, whether that met the goal, energy gained.
-
-    `failure` says why a calculation failed; the ions are then those of the quenched glass.
-    """
-
-    steps: int
-    force_left_eV_A: float
-    converged: bool
-    energy_gained_eV: float
-    failure: str = ""
-
-
-def relax_glass(
-    atoms: Atoms, calculator: Calculator, settings: RelaxationSettings, progress: Progress | None = None
-) -> tuple[Atoms, Relaxation]:
-    """Relax the ions of a glass in its cubic cell, for as many steps as the settings afford.
-
-    The cell keeps shape and size: its volume is found by the E(V) scan, stress anisotropy is left in it.
-    """
-    current = strained(atoms, 0.0)
-    if settings.max_steps == 0:
-        return current, Relaxation(0, float("nan"), False, 0.0)
-    current.calc = calculator
-    if progress:
-        progress(0.0, f"relaxing ions, at most {settings.max_steps} steps")
-    try:
-        before = current.get_potential_energy()
-        steps, left, converged = relax_ions(current, settings.force_eV_A, settings.max_steps)
-        gained = float(before - current.get_potential_energy())
-    except CalculationFailed as error:
-        # the E(V) scan of this structure will meet the same trouble and name the strains; the others go on
-        return strained(atoms, 0.0), Relaxation(0, float("nan"), False, float("nan"), f"relaxation: {error}")
-    return strained(current, 0.0), Relaxation(steps, left, converged, gained)
 
 
 def fit_scan(scan: Sequence[Mapping[str, str]]) -> dict[str, Any]:
@@ -280,7 +200,7 @@ def functional_shift(moduli: Sequence[Modulus], ions: str) -> dict[str, Any]:
 
 
 def variance_shares(
-    B_GPa: Sequence[float],
+    B_GPa: Sequence[float] | np.ndarray,
     shift_GPa: float,
     nu: tuple[float, float],
     other_E: tuple[float, float],

@@ -1,12 +1,12 @@
 """Structures for the elastic stage: crystals from data files, amorphous silicon nitride by melt and quench.
 
-Lengths in Å.  A glass cell is cubic.  It is melted and quenched at the density of experiment with a Tersoff
-potential in LAMMPS, minimised, and must then pass gates on density, coordination and shortest distances.
+Lengths in Å.  A glass cell is melted and quenched at the density of experiment with a Tersoff potential and soft
+cores in LAMMPS, minimised, and must then be a disordered network in which every atom has its valence.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import combinations_with_replacement, product
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +60,7 @@ class Gate:
     coordination: dict[str, float]
     shortest_A: dict[str, float]
     bond_spread_A: float
+    defects: int
     reasons: tuple[str, ...]
 
     @property
@@ -67,13 +68,15 @@ class Gate:
         return not self.reasons
 
 
-def examine(atoms: Atoms, criteria: Mapping[str, Any]) -> Gate:
+def examine(atoms: Atoms, criteria: Mapping[str, Any], perfect: bool = False) -> Gate:
     """Measure density, coordination and shortest distances and hold them against `criteria`.
 
     Parameters
     ----------
     criteria : the `glass` section of a material file: `density_g_cm3` and `coordination` ranges, `shortest_A` per
-        pair of elements, `cutoff_A` of a bond between unlike elements, least `bond_spread_A` of a disordered cell
+        pair of elements, `cutoff_A` of a bond between unlike elements, least `bond_spread_A` of a disordered cell,
+        `valence` of each element
+    perfect : also reject a cell in which any atom lacks or exceeds its valence
     """
     from ase.neighborlist import neighbor_list
 
@@ -99,10 +102,13 @@ def examine(atoms: Atoms, criteria: Mapping[str, Any]) -> Gate:
         shortest[pair] = float(here.min()) if len(here) else 3.0
         if shortest[pair] < limit:
             reasons.append(f"{pair} distance {shortest[pair]:.2f} below {limit} A")
+    defects = int(np.sum(counts != np.array([criteria["valence"][symbol] for symbol in symbols])))
+    if perfect and defects:
+        reasons.append(f"{defects} atoms without their valence")
     spread = float(distance[bonds].std()) if bonds.any() else 0.0
     if spread < criteria["bond_spread_A"]:
         reasons.append(f"bond lengths spread by {spread:.3f} A only: crystalline")
-    return Gate(density, coordination, shortest, spread, tuple(reasons))
+    return Gate(density, coordination, shortest, spread, defects, tuple(reasons))
 
 
 def tersoff_table(parameters: Mapping[str, Any]) -> str:
@@ -136,11 +142,24 @@ def tersoff_calculator(parameters: Mapping[str, Any]):
     return Tersoff(table)
 
 
-def random_structure(formula: Mapping[str, int], units: int, density_g_cm3: float, seed: int) -> Atoms:
-    """Formula units at random in a cube of the given density, no two atoms closer than 1.4 Å."""
+def core_commands(cores: Mapping[str, Any], elements: Sequence[str]) -> str:
+    """LAMMPS commands of the soft cores k (r_c − r)², every pair without one at zero."""
+    by_pair = {frozenset(pair.split("-")): core for pair, core in cores.items()}
+    lines = []
+    for i, j in combinations_with_replacement(range(len(elements)), 2):
+        core = by_pair.get(frozenset((elements[i], elements[j])), {"k_eV_A2": 0.0, "r_A": 1.0})
+        lines.append(f"pair_coeff {i + 1} {j + 1} harmonic/cut {core['k_eV_A2']} {core['r_A']}")
+    return "\n".join(lines) + "\n"
+
+
+def random_structure(
+    formula: Mapping[str, int], units: int, density_g_cm3: float, seed: int, edges: Sequence[float] = (1, 1, 1)
+) -> Atoms:
+    """Formula units at random in a box of the given density and ratio of edges, no two atoms closer than 1.4 Å."""
     symbols = [element for element, n in formula.items() for _ in range(n * units)]
     atoms = Atoms(symbols, pbc=True)
-    edge = (atoms.get_masses().sum() * AMU_PER_A3_IN_G_CM3 / density_g_cm3) ** (1 / 3)
+    shape = np.asarray(edges, float)
+    edge = shape * (atoms.get_masses().sum() * AMU_PER_A3_IN_G_CM3 / density_g_cm3 / shape.prod()) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 5]))
     placed = np.empty((len(symbols), 3))
     for k in range(len(placed)):
@@ -151,7 +170,7 @@ def random_structure(formula: Mapping[str, int], units: int, density_g_cm3: floa
             if not np.any(np.einsum("ij,ij->i", apart, apart) < START_DISTANCE_A**2):
                 placed[k] = trial
                 break
-    atoms.set_cell([edge] * 3)
+    atoms.set_cell(edge)
     atoms.positions = placed
     return atoms
 
@@ -175,12 +194,13 @@ def make_glass(
     The first cell that passes, or the last one tried, and one row per attempt with its numbers and verdict.
     """
     attempts: list[dict[str, Any]] = []
+    atoms = Atoms()
     for attempt in range(settings.attempts):
         if progress:
             progress(attempt / settings.attempts, f"melt and quench, attempt {attempt + 1}")
         own = int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
         atoms = quench(material, settings, own, work)
-        verdict = examine(atoms, material["glass"])
+        verdict = examine(atoms, material["glass"], perfect=True)
         attempts.append(
             {
                 "attempt": attempt,
@@ -188,6 +208,7 @@ def make_glass(
                 **{f"coordination_{e}": n for e, n in verdict.coordination.items()},
                 **{f"shortest_{p}_A": d for p, d in verdict.shortest_A.items()},
                 "bond_spread_A": verdict.bond_spread_A,
+                "defects": verdict.defects,
                 "status": "accepted" if verdict.passed else "rejected: " + "; ".join(verdict.reasons),
             }
         )
@@ -203,13 +224,23 @@ def quench(material: Mapping[str, Any], settings: NitrideGlassSettings, seed: in
 
     elements = tuple(material["formula"])
     start = random_structure(
-        material["formula"], settings.formula_units, material["glass"]["start_density_g_cm3"], seed
+        material["formula"],
+        settings.formula_units,
+        material["glass"]["start_density_g_cm3"],
+        seed,
+        material["glass"]["edges"],
     )
     symbols = start.get_chemical_symbols()
     types = np.array([elements.index(symbol) + 1 for symbol in symbols])
-    identity = {"seed": seed, "settings": settings.model_dump(), "tersoff": material["tersoff"]}
+    identity = {
+        "seed": seed,
+        "settings": settings.model_dump(),
+        "tersoff": material["tersoff"],
+        "cores": material["cores"],
+    }
     workspace = Workspace(work, identity, "nitride.in")
     (workspace / "potential.tersoff").write_text(tersoff_table(material["tersoff"]), encoding="utf-8")
+    (workspace / "cores.in").write_text(core_commands(material["cores"], elements), encoding="utf-8")
     write_data(
         workspace / "start.data",
         LammpsAtoms(elements, types, start.positions, np.diag(start.cell.array)),

@@ -146,3 +146,41 @@ rule combine_e_star:
         settings=ELASTIC,
     script:
         "../scripts/combine_e_star.py"
+
+
+ACCURACY.append(f"{RESULTS}/accuracy/elastic.csv")
+STABILITY.append(f"{RESULTS}/stability/elastic.csv")
+
+
+def ensemble(wildcards):
+    """The glasses' moduli, where this scene computes them: for the error against their number."""
+    if not needed("elastic"):
+        return {}
+    return {"moduli": f"{RESULTS}/elastic/bulk_moduli.csv", "points": f"{RESULTS}/elastic/points.csv"}
+
+
+rule measure_elastic_accuracy:
+    message:
+        "measure the error of the bulk modulus against run time"
+    input:
+        unpack(ensemble),
+        material=str(MATERIALS / "silicon_nitride.yaml"),
+    output:
+        table=f"{RESULTS}/accuracy/elastic.csv",
+    log:
+        f"{RESULTS}/logs/measure_elastic_accuracy.log",
+    script:
+        "../scripts/measure_elastic_accuracy.py"
+
+
+rule check_elastic_stability:
+    message:
+        "check the elastic stage in hard cases"
+    input:
+        material=str(MATERIALS / "silicon_nitride.yaml"),
+    output:
+        table=f"{RESULTS}/stability/elastic.csv",
+    log:
+        f"{RESULTS}/logs/check_elastic_stability.log",
+    script:
+        "../scripts/check_elastic_stability.py"

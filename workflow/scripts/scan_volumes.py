@@ -3,7 +3,8 @@
 from dataclasses import asdict
 from pathlib import Path
 
-from atomistic.elastic import make_calculator, relax_ions, scan_volumes
+from atomistic.elastic import make_calculator, scan_volumes
+from atomistic.relaxation import relax_ions
 from atomistic.settings import DftSettings, RelaxationSettings
 from workflow.job import job
 from workflow.results import write_csv
@@ -15,14 +16,14 @@ with job(snakemake) as run:
     dft = DftSettings(**settings["dft"])
     relaxed = snakemake.wildcards.ions == "relaxed"
     if relaxed:
-        dft = relaxation.tight(dft)
+        dft = relaxation.applied_to(dft)
     store = ScfStore(Path(snakemake.params.store))
     atoms = read_structure(snakemake.input.structure)
     largest = atoms.cell.array * (1 + max(settings["strains"]))
     calculator = make_calculator(dft, snakemake.wildcards.xc, largest, store)
 
     def relax(trial):
-        relax_ions(trial, settings["relaxed_force_eV_A"], 4 * relaxation.max_steps)
+        relax_ions(trial, settings["relaxed_force_eV_A"], relaxation.max_steps)
 
     points = scan_volumes(atoms, calculator, settings["strains"], relax if relaxed else None, run.progress)
     name = {key: snakemake.wildcards[key] for key in ("structure", "xc", "ions")}

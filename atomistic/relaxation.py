@@ -1,0 +1,101 @@
+"""Relaxation of the ions of a glass cell by density functional theory; eV and Å."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from ase import Atoms
+from ase.calculators.calculator import CalculationFailed, Calculator
+
+from atomistic.settings import RelaxationSettings
+
+Progress = Callable[[float, str], None]
+BOND_A = 2.3
+STRETCH_EV_A2, BEND_EV_A2, FLOOR_EV_A2 = 25.0, 4.0, 2.0  # of a Si-N bond, about; only the speed depends on them
+
+
+def strained(atoms: Atoms, strain: float) -> Atoms:
+    """The structure under isotropic linear strain, ions keeping their fractional coordinates."""
+    result = Atoms(atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True)
+    result.set_cell(atoms.cell.array * (1 + strain), scale_atoms=True)
+    return result
+
+
+def bond_hessian(atoms: Atoms) -> np.ndarray:
+    """Hessian of springs along and across every bond between unlike atoms, shape (3n, 3n), eV/Å²."""
+    from ase.neighborlist import neighbor_list
+
+    symbols = atoms.get_chemical_symbols()
+    hessian = FLOOR_EV_A2 * np.eye(3 * len(atoms))
+    for i, j, bond in zip(*neighbor_list("ijD", atoms, BOND_A), strict=True):
+        if symbols[i] != symbols[j]:
+            along = np.outer(bond, bond) / (bond @ bond)
+            spring = STRETCH_EV_A2 * along + BEND_EV_A2 * (np.eye(3) - along)
+            hessian[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] += spring
+            hessian[3 * i : 3 * i + 3, 3 * j : 3 * j + 3] -= spring
+    return hessian
+
+
+def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> tuple[int, float, bool]:
+    """Quasi-Newton relaxation of the ions (BFGS from springs on the bonds), cell fixed.
+
+    With ASE's own start, a multiple of the unit matrix, a cell takes about three times as many steps.
+
+    Returns
+    -------
+    steps, largest remaining force (eV/Å), whether it is below `force_eV_A`
+    """
+    from ase.optimize import BFGS
+
+    with BFGS(atoms, logfile=None, maxstep=0.15) as optimizer:
+        optimizer.H0 = bond_hessian(atoms)
+        converged = bool(optimizer.run(fmax=force_eV_A, steps=max_steps))
+        left = float(np.linalg.norm(atoms.get_forces(), axis=1).max())
+        return int(optimizer.nsteps), left, converged
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """What the relaxation of a glass did.
+
+    Attributes
+    ----------
+    steps : ionic steps
+    force_left_eV_A, converged : largest force left, and whether that met the goal
+    energy_gained_eV : below the quenched cell
+    gap_eV : between the highest occupied and the lowest empty level at the end; NaN if the engine does not tell
+    failure : why a calculation failed; the ions are then those of the quenched glass
+    """
+
+    steps: int
+    force_left_eV_A: float
+    converged: bool
+    energy_gained_eV: float
+    gap_eV: float
+    failure: str = ""
+
+
+def relax_glass(
+    atoms: Atoms, calculator: Calculator, settings: RelaxationSettings, progress: Progress | None = None
+) -> tuple[Atoms, Relaxation]:
+    """Relax the ions of a glass in its cell, for as many steps as the settings afford.
+
+    The cell keeps shape and size: its volume is found by the E(V) scan, stress anisotropy is left in it.
+    """
+    nan = float("nan")
+    current = strained(atoms, 0.0)
+    if settings.max_steps == 0:
+        return current, Relaxation(0, nan, False, 0.0, nan)
+    current.calc = calculator
+    if progress:
+        progress(0.0, f"relaxing ions, at most {settings.max_steps} steps")
+    try:
+        current.get_forces()  # asked for first, so that the energy comes from the same calculation
+        before = current.get_potential_energy()
+        steps, left, converged = relax_ions(current, settings.force_eV_A, settings.max_steps)
+        gained = float(before - current.get_potential_energy())
+    except CalculationFailed as error:
+        # the E(V) scan of this structure will meet the same trouble and name the strains; the others go on
+        return strained(atoms, 0.0), Relaxation(0, nan, False, nan, nan, f"relaxation: {error}")
+    gap = float(getattr(calculator, "gap_eV", nan))
+    return strained(current, 0.0), Relaxation(steps, left, converged, gained, gap)

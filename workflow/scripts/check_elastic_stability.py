@@ -1,0 +1,16 @@
+"""Elastic stage in hard cases.  In: material.  Out: stability/elastic.csv."""
+
+from pathlib import Path
+
+import yaml
+
+from atomistic.elastic_stability import COLUMNS, stability_rows
+from atomistic.structures import crystal
+from workflow.job import job
+from workflow.results import write_csv
+
+with job(snakemake) as run:
+    material = yaml.safe_load(Path(snakemake.input.material).read_text(encoding="utf-8"))
+    beta = {**material["crystals"]["beta"], "supercell": [1, 1, 1]}
+    cell = crystal({**material, "crystals": {"beta": beta}}, "beta")
+    write_csv(snakemake.output.table, stability_rows(cell, material["glass"], run.progress), COLUMNS)

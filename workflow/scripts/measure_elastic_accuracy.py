@@ -1,0 +1,26 @@
+"""Error of B against run time.  In: material; bulk moduli and points if there are any.  Out: accuracy/elastic.csv."""
+
+from pathlib import Path
+
+import yaml
+
+from atomistic.elastic_accuracy import COLUMNS, accuracy_rows, ensemble_rows
+from atomistic.structures import crystal
+from workflow.job import job
+from workflow.results import read_csv, write_csv
+
+with job(snakemake) as run:
+    material = yaml.safe_load(Path(snakemake.input.material).read_text(encoding="utf-8"))
+    crystals = material["crystals"]
+    small = crystal({**material, "crystals": {"beta": {**crystals["beta"], "supercell": [1, 1, 1]}}}, "beta")
+    rows = list(accuracy_rows(small, crystal(material, "beta"), run.progress))
+    if snakemake.input.get("moduli"):
+        clamped = [
+            row
+            for row in read_csv(snakemake.input.moduli)
+            if row["structure"] not in crystals and (row["xc"], row["ions"], row["flags"]) == ("GGA", "clamped", "")
+        ]
+        names = {row["structure"] for row in clamped}
+        cost = sum(float(p["wall_s"]) for p in read_csv(snakemake.input.points) if p["structure"] in names)
+        rows += ensemble_rows([float(row["B_GPa"]) for row in clamped], cost)
+    write_csv(snakemake.output.table, rows, COLUMNS)
