@@ -125,7 +125,11 @@ rule fit_hardness:
         "fit hardness against contact size"
     input:
         points=f"{RESULTS}/hardness/points.csv",
-        glasses=[f"{RESULTS}/hardness/glass/{seed}.json" for seed in dict.fromkeys(SCENE.hardness.seeds)],
+        glasses=[
+            f"{RESULTS}/hardness/glass/{seed}{body}.json"
+            for seed in dict.fromkeys(SCENE.hardness.seeds)
+            for body in ("", *(["_counter"] if COUNTER_GLASS else []))
+        ],
     output:
         fit=f"{RESULTS}/hardness/fit.json",
     log:
