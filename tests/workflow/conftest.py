@@ -15,8 +15,6 @@ SNAKEMAKE = [
     str(Path(sys.executable).with_name("snakemake")),
     "--snakefile",
     str(ROOT / "Snakefile"),
-    "--workflow-profile",
-    str(ROOT / "workflow/profiles/local"),
 ]
 
 
@@ -26,14 +24,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 class Workflow:
-    """Snakemake on this checkout's Snakefile, with its results in `folder`."""
+    """Snakemake on this checkout's Snakefile, with its results in `folder`; `profile` is local or slurm."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, profile: str = "local") -> None:
         self.folder = folder
+        self.profile = str(ROOT / "workflow/profiles" / profile)
         self.environment = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache")}
 
     def _command(self, scene: str, targets: tuple[str, ...], options: tuple[str, ...]) -> list[str]:
-        return [*SNAKEMAKE, "--directory", str(self.folder), *targets, *options, "--config", f"scene={scene}"]
+        places = ["--workflow-profile", self.profile, "--directory", str(self.folder)]
+        return [*SNAKEMAKE, *places, *targets, *options, "--config", f"scene={scene}"]
 
     def run(self, scene: str, *targets: str, options: tuple[str, ...] = ()) -> subprocess.CompletedProcess[str]:
         """Run to the end."""

@@ -1,0 +1,45 @@
+"""The cluster profile on a real Slurm: the same results as on one machine. `.ci/slurm` starts one where it can."""
+
+import importlib.util
+import shutil
+import subprocess
+
+import pytest
+
+TARGETS = ("inputs", "curves")
+SLURM = ("--seconds-between-status-checks", "2", "--latency-wait", "5")
+
+
+def answers():
+    """Does a Slurm controller answer here, with a node that takes jobs?"""
+    if shutil.which("sinfo") is None:
+        return False
+    done = subprocess.run(["sinfo", "-h", "-o", "%t"], capture_output=True, text=True, timeout=30, check=False)
+    return done.returncode == 0 and any(state in done.stdout for state in ("idle", "mix", "alloc"))
+
+
+pytestmark = [
+    pytest.mark.skipif(
+        importlib.util.find_spec("snakemake_executor_plugin_slurm") is None,
+        reason="the optional extra cluster is not installed",
+    ),
+]
+
+
+@pytest.mark.skipif(not answers(), reason="no Slurm answers here; .ci/slurm starts one on a machine for tests")
+def test_results_do_not_depend_on_where_a_job_ran(make_workflow, tmp_path):
+    files = ("inputs.csv", "curves/nominal.h5")
+    found = []
+    for place in ("local", "slurm"):
+        folder = tmp_path / place
+        folder.mkdir()
+        workflow = make_workflow(folder, profile=place)
+        done = workflow.run("ci", *TARGETS, options=SLURM if place == "slurm" else ())
+        assert done.returncode == 0, done.stdout + done.stderr
+        found.append([(folder / "results/ci" / name).read_bytes() for name in files])
+    assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("scene", ["ci", "paper", "reduced", "full"])
+def test_the_cluster_profile_plans_every_scene(make_workflow, tmp_path, scene):
+    assert make_workflow(tmp_path, profile="slurm").planned(scene)
