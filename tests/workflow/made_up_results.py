@@ -30,6 +30,9 @@ def write_all(root: Path) -> list[Path]:
     _hardness(root)
     _elastic(root)
     _topography(root)
+    _history(root)
+    _coupling(root)
+    _studies(root)
     return sorted(path for path in root.rglob("*") if path.is_file())
 
 
@@ -264,3 +267,65 @@ def _topography(root: Path) -> None:
         row.update({f"{name}_true": v, name: 1.01 * v, f"{name}_low": 0.9 * v, f"{name}_high": 1.1 * v})
     write_csv(root / "topography/recovery.csv", [row])
     write_json(root / "topography/parameters.json", {**content, "gate": {"passed": True, "reasons": []}}, PROVENANCE)
+
+
+def _history(root: Path) -> None:
+    cycles, dwell, groups, facts = [], [], {}, {}
+    for cycle in (1, 2):
+        row = {"seed": 1, "cycle": cycle, "held_s": 10.0 * cycle, "closed_nm": 25.0 - cycle, "last_contact_nm": 29.0}
+        row |= {"contact_area_nm2": 1e3, "dissipated_nN_nm": 1e4 / cycle**6, "pull_off_nN": 300.0}
+        cycles.append(row | {"release_V": 0.0, "critical_landed_fraction": 0.008, "converged": True})
+        for time in (0.0, 10.0):
+            held = {
+                "held_s": 10 * (cycle - 1) + time,
+                "hardness_factor": 0.9,
+                "separation_nm": 25.0 - cycle - time / 20,
+            }
+            dwell.append({"seed": 1, "cycle": cycle, **held, "contact_area_nm2": 1e3, "asperities": 100})
+        facts[f"cycle_{cycle:04d}"] = {"cycle": cycle, "seed": 1}
+        for branch in ("closing", "opening"):
+            h = np.linspace(20, 45, 30)
+            values = {"separation_nm": h, "repulsive_nN": np.where(h < 35, 7e3, 0.0), "attractive_nN": -100 + 0 * h}
+            groups[f"cycle_{cycle:04d}/{branch}"] = {
+                key: Dataset(value, "nN", "made up", ("point",)) for key, value in values.items()
+            }
+    write_csv(root / "history/cycles.csv", cycles)
+    write_csv(root / "history/dwell.csv", dwell)
+    write_h5(root / "history/curves.h5", groups, {"cell_area_nm2": 1e6}, PROVENANCE, facts)
+
+
+def _coupling(root: Path) -> None:
+    rows = [
+        {
+            "seed": seed,
+            "load_nN": load,
+            "prefactor": prefactor,
+            "separation_nm": 30 - np.log10(load),
+            "separation_coupled_nm": 29.5 - np.log10(load),
+            "contact_area_nm2": 2.0 * load,
+            "contact_area_coupled_nm2": load,
+            "force_ratio": 1.25,
+            "solver_error": 1e-9,
+            "solved": True,
+        }
+        for seed in (1, 2)
+        for load in (1e3, 1e4)
+        for prefactor in ("hertz", "paper")
+    ]
+    write_csv(root / "coupling/comparison.csv", rows)
+
+
+def _studies(root: Path) -> None:
+    rows = [
+        {"stage": "contact", "case": case, "knob": "force_steps", "value": steps, "error": worse / steps**2}
+        | {"error_metric": "relative", "reference": "320 force steps", "wall_s": 0.01 * steps}
+        for case, worse in (("d_c", 1.0), ("C_r", 3.0))
+        for steps in (5, 10, 20, 40)
+    ]
+    write_csv(root / "accuracy/contact.csv", rows)
+    cases = [
+        {"stage": "contact", "case": case, "description": "made up", "checks": "finite", "passed": passed}
+        | {"detail": "", "wall_s": 1.0}
+        for case, passed in (("flat", True), ("spikes", False))
+    ]
+    write_csv(root / "stability/contact.csv", cases)

@@ -14,9 +14,11 @@ from workflow.report.available import Results, show
 from workflow.report.drawing import draw
 from workflow.report.gates import gates
 from workflow.report.render import render
+from workflow.report.studies import recommended
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 SECTIONS = ("inputs", "hardness", "elastic", "topography", "curves", "uncertainty", "sensitivity", "device")
+ON_TOP = ("history", "coupling", "accuracy", "stability")
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +60,7 @@ def outline(page):
 
 
 def test_every_stage_has_its_section_and_every_figure_is_drawn(page):
-    for anchor in SECTIONS:
+    for anchor in (*SECTIONS, *ON_TOP):
         assert f'<section id="{anchor}"' in page
     for number in (4, 5, 7, 8, 9, 10, 11):
         assert f"Figure {number} of the paper" in page
@@ -112,6 +114,24 @@ def test_same_results_give_the_same_page(files, page):
 def test_synthetic_scans_and_unused_stages_are_named(page):
     assert '<span class="badge synthetic">' in page
     assert "they are no measurement" in page
+
+
+def test_studies_recommend_the_cheapest_good_setting(files):
+    root, paths = files
+    (line,) = recommended("contact", Results(root, paths).csv("accuracy/contact.csv"))
+    # the larger of both outputs' errors, 3/steps^2: 20 steps come below 1 %
+    assert line[:4] == ("contact", "force_steps", "20", "0.0075")
+
+
+def test_stability_tells_what_did_not_pass(page):
+    assert "1 of 2 cases passed" in page
+    assert "Not passed: contact: spikes." in page
+
+
+def test_history_and_coupling_say_their_answer(page):
+    assert "The last cycle loses 1.6 % of the energy that the first one lost" in page
+    assert "0.500 ± 0" in page
+    assert "1.25 ± 0" in page
 
 
 def test_figures_follow_the_page_colours():

@@ -13,19 +13,14 @@ NEAR_BEST = 2.0  # nor is one within this factor of the best
 def studies(results: Results) -> list[Section]:
     """The sections of the studies that exist."""
     sections = []
-    accuracy = {_stage(name): results.csv(name) for name in results.matching("accuracy/", ".csv")}
-    if accuracy:
-        sections.append(_accuracy(accuracy))
-        sections[-1].files += results.matching("accuracy/", ".csv")
-    stability = {_stage(name): results.csv(name) for name in results.matching("stability/", ".csv")}
-    if stability:
-        sections.append(_stability(stability))
-        sections[-1].files += results.matching("stability/", ".csv")
+    for folder, key, build in (("accuracy", "knob", _accuracy), ("stability", "passed", _stability)):
+        # a stage may keep tables of another kind beside them, which its own section shows
+        names = [name for name in results.matching(f"{folder}/", ".csv") if key in (results.csv(name) or [{}])[0]]
+        if names:
+            tables = {name.removeprefix(f"{folder}/").removesuffix(".csv"): results.csv(name) for name in names}
+            sections.append(build(tables))
+            sections[-1].files += names
     return sections
-
-
-def _stage(name: str) -> str:
-    return name.rpartition("/")[2].removesuffix(".csv")
 
 
 def _accuracy(tables: dict[str, list[Row]]) -> Section:

@@ -1,5 +1,7 @@
 """Repeated closing and creep: shakedown, relaxation laws, volume, and no trace where they are not asked for."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -54,7 +56,7 @@ def test_mean_pressure_follows_the_creep_law(crept):
 
 def test_time_under_load_adds_up_and_the_surface_keeps_its_volume(crept):
     assert [held.held_s[-1] for held in crept] == [1e4, 2e4, 3e4]
-    assert all(first.held_s[-1] == second.held_s[0] for first, second in zip(crept, crept[1:], strict=False))
+    assert all(first.held_s[-1] == second.held_s[0] for first, second in itertools.pairwise(crept))
     heights = crept[-1].cycle.heights
     assert abs(heights.mean()) < 1e-12 * np.abs(heights).mean()
 
