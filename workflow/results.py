@@ -103,6 +103,11 @@ def read_csv(path: str | Path) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
+def read_numbers(path: str | Path) -> list[dict[str, float]]:
+    """Read a CSV result file of numbers alone; an empty cell is NaN."""
+    return [{name: float(value or "nan") for name, value in row.items()} for row in read_csv(path)]
+
+
 def write_json(path: str | Path, data: Mapping[str, Any], provenance: Mapping[str, Any] | None = None) -> None:
     """Write a JSON result file; NaN and infinities become null, arrays become lists."""
     content = dict(data)

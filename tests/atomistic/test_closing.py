@@ -16,7 +16,6 @@ from atomistic.closing import run_closing
 from atomistic.errors import InputError
 from atomistic.glass import glass_properties, make_glass
 from atomistic.lammps import Atoms, Workspace, read_data, write_data
-from atomistic.potentials import load_potential
 from atomistic.runs import planned_runs, settings_of_run
 from atomistic.settings import GlassSettings, HardnessSettings
 from atomistic.stability import half_energy_identity
@@ -31,11 +30,6 @@ SETTINGS = HardnessSettings.model_validate(
         "closing": {"base_nm": 1.4, "speed_m_s": 200, "anneal_ps": 0.2},
     }
 )
-
-
-@pytest.fixture(scope="module")
-def potential():
-    return load_potential(PMMCS)
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,5 @@
 """Each counterface and each control, for real but tiny: what must hold whatever the size."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -11,11 +9,10 @@ from atomistic.cost import plan_rows
 from atomistic.errors import InputError
 from atomistic.glass import make_glass, random_start, write_forcefield
 from atomistic.lammps import Atoms, Workspace, read_data, run_lammps, write_data
-from atomistic.potentials import CONTACT_A, contact_energy_and_force, load_potential
+from atomistic.potentials import CONTACT_A, contact_energy_and_force
 from atomistic.runs import geometry, needs_counter_glass, planned_runs
 from atomistic.settings import GlassSettings, HardnessSettings
 
-PMMCS = Path(__file__).parents[2] / "config" / "potentials" / "pmmcs.yaml"
 GLASS = GlassSettings(atoms=120, melt_ps=0.5, quench_rate_K_ps=2000, rest_ps=0.3, segment_steps=2000)
 
 
@@ -30,11 +27,6 @@ def settings(amplitude_nm=0.2, **closing):
             "closing": {**quick, "anneal_ps": 0.1, "segment_nm": 0.3, **closing},
         }
     )
-
-
-@pytest.fixture(scope="module")
-def potential():
-    return load_potential(PMMCS)
 
 
 @pytest.fixture(scope="module")

@@ -8,18 +8,13 @@ from pathlib import Path
 from atomistic.settings import HardnessSettings
 from atomistic.variations import COLUMNS, compare
 from workflow.job import job
-from workflow.results import read_csv, read_json, write_csv
-
-
-def numbers(path):
-    return [{name: float(value or "nan") for name, value in row.items()} for row in read_csv(path)]
-
+from workflow.results import read_json, read_numbers, write_csv
 
 with job(snakemake) as run:
     paths = {Path(path).parent.name: Path(path) for path in snakemake.input.summaries}
     rows = compare(
-        {name: numbers(path.with_suffix(".csv")) for name, path in paths.items()},
-        {name: numbers(path.with_suffix(".witness.csv")) for name, path in paths.items()},
+        {name: read_numbers(path.with_suffix(".csv")) for name, path in paths.items()},
+        {name: read_numbers(path.with_suffix(".witness.csv")) for name, path in paths.items()},
         {name: read_json(path) for name, path in paths.items()},
         HardnessSettings(**snakemake.params.settings),
     )

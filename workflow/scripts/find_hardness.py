@@ -8,12 +8,7 @@ from itertools import zip_longest
 from atomistic.hardness import point
 from atomistic.settings import HardnessSettings
 from workflow.job import job
-from workflow.results import read_csv, read_json, write_csv
-
-
-def numbers(path):
-    return [{name: float(value or "nan") for name, value in row.items()} for row in read_csv(path)]
-
+from workflow.results import read_json, read_numbers, write_csv
 
 with job(snakemake) as run:
     files = zip(snakemake.input.curves, snakemake.input.witnesses, snakemake.input.summaries, strict=True)
@@ -22,6 +17,6 @@ with job(snakemake) as run:
     for (curve, witness, summary), settings, label in zip_longest(
         files, own_settings, snakemake.params.get("labels", []), fillvalue={}
     ):
-        row = point(numbers(curve), numbers(witness), read_json(summary), settings)
+        row = point(read_numbers(curve), read_numbers(witness), read_json(summary), settings)
         rows.append({**label, **row})
     write_csv(snakemake.output.points, rows)

@@ -8,18 +8,13 @@ import time
 from atomistic.detection import COLUMNS, detection_rows
 from atomistic.settings import HardnessSettings
 from workflow.job import job
-from workflow.results import read_csv, write_csv
-
-
-def numbers(path):
-    return [{name: float(value or "nan") for name, value in row.items()} for row in read_csv(path)]
-
+from workflow.results import read_csv, read_numbers, write_csv
 
 with job(snakemake) as run:
     started, cpu = time.perf_counter(), time.process_time()
     rows = detection_rows(
-        [numbers(path) for path in snakemake.input.curves],
-        [numbers(path) for path in snakemake.input.witnesses],
+        [read_numbers(path) for path in snakemake.input.curves],
+        [read_numbers(path) for path in snakemake.input.witnesses],
         [float(point["wavelength_nm"]) ** 2 for point in read_csv(snakemake.input.points)],
         HardnessSettings.model_validate(snakemake.params.settings),
     )
