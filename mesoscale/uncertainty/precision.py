@@ -82,7 +82,7 @@ def methods(nodes: NodeOutputs, runs: int, inputs: int, settings: UncertaintySet
     for degree in (1, 2, 3, 4):
         changed = settings.model_copy(update={"surface": "regression", "chaos_degree": degree})
         # the highest degree is dear to fit, and no better with few runs
-        most = min(runs // 2, 1600 if degree == 4 else 3200)
+        most = min(runs // 2, 800 if degree == 4 else 3200)
         for used in _doublings(SMALLEST_TRAINING, most):
             yield Method(f"regression, degree {degree}", used, changed, blocks=_blocks(runs, used))
     for used in _doublings(SMALLEST_TRAINING, runs // 2):
