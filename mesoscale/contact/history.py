@@ -49,7 +49,7 @@ def follow(
 
     Raises
     ------
-    InputError : the settings ask for a dwell that nothing fills, or for plastic cycles of an elastic model.
+    InputError : no cycle is asked for, or cycles of a model without history.
     """
     check(contact, settings)
     heights = None
@@ -71,16 +71,9 @@ def follow(
 
 
 def check(contact: ContactSettings, settings: HistorySettings) -> None:
-    """Refuse settings that contradict each other (InputError)."""
+    """Refuse what leads to no history (InputError)."""
     if settings.cycles == 0:
         raise InputError("history.cycles = 0: no cycle is asked for; give a number of cycles in the scene")
-    if settings.dwell_s > 0 and settings.creep == "none":
-        raise InputError(
-            f"history.dwell_s = {settings.dwell_s:g} with history.creep = none: nothing would happen; choose "
-            "power or logarithmic, or dwell_s: 0"
-        )
-    if settings.creep != "none" and settings.dwell_s == 0:
-        raise InputError(f"history.creep = {settings.creep} with history.dwell_s = 0: give the time of each hold in s")
     if contact.model != "plastic":
         raise InputError(
             f"contact.model = {contact.model} with history.cycles = {settings.cycles}: only plastic contacts have "

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from mesoscale.settings.base import Settings
 
@@ -57,3 +57,14 @@ class HistorySettings(Settings):
         description="c: share of the hardness lost per e-fold of time",
         json_schema_extra={"unit": "1"},
     )
+
+    @model_validator(mode="after")
+    def _a_dwell_needs_creep(self) -> "HistorySettings":
+        if self.dwell_s > 0 and self.creep == "none":
+            raise ValueError(
+                f"dwell_s = {self.dwell_s:g} with creep = none: nothing would happen; choose creep: power or "
+                "logarithmic, or dwell_s: 0"
+            )
+        if self.creep != "none" and self.dwell_s == 0:
+            raise ValueError(f"creep = {self.creep} with dwell_s = 0: give the time of each hold in s")
+        return self
