@@ -1,7 +1,7 @@
 def report_inputs():
     """Result files of exactly the stages that the scene needs; each has its section in the page."""
     files = ["scene.yaml", "inputs.csv", "curves/nominal.h5", "law/parameters.csv", "law/nominal.csv"]
-    files += [f"uq/{name}" for name in ("outputs.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")]
+    files += [f"uq/{name}" for name in ("outputs.csv", "ratios.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")]
     files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "path.csv", "law.csv")]
     if needed("hardness"):
         files += ["hardness/points.csv", "hardness/fit.json"]
@@ -10,6 +10,8 @@ def report_inputs():
         files += [f"elastic/{name}" for name in ("points.csv", "bulk_moduli.csv", "e_star.json", "e_star.h5")]
     if needed("topography"):
         files += ["topography/spectra.h5", "topography/parameters.json"]
+        if SCENE.topography.press_scans:
+            files += ["curves/scans.h5", "law/scans.csv"]
     if SCENE.history.cycles > 0:
         files += [f"history/{name}" for name in ("cycles.csv", "dwell.csv", "curves.h5")]
     if SCENE.coupling.surfaces > 0:
