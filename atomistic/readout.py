@@ -37,9 +37,9 @@ def read_curve(
     """Averages over `area.snapshots` samples of force, contact area and temperature, with the energy balance."""
     rows: dict[int, np.ndarray] = {}
     near: dict[int, np.ndarray] = {}
-    for n in segments:
-        rows |= {int(row[0]): row for row in read_averages(workspace / f"averages.{n}")}
-        near |= dict(read_dump(workspace / f"near.{n}"))
+    for n in segments:  # the last step of a segment may stand in the next one again: the first one counts
+        rows = {int(row[0]): row for row in read_averages(workspace / f"averages.{n}")} | rows
+        near = dict(read_dump(workspace / f"near.{n}")) | near
     steps = sorted(rows)
     touching = {step: _beyond(near[step], geometry) for step in steps}
     cell = (geometry.wavelength_A, geometry.wavelength_A)

@@ -1,5 +1,7 @@
 """Each counterface and each control, for real but tiny: what must hold whatever the size."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -7,12 +9,13 @@ from atomistic.asperity import STRAY_A, facing
 from atomistic.closing import clearance_A, plan_closing, run_closing
 from atomistic.cost import plan_rows
 from atomistic.errors import InputError
-from atomistic.glass import make_glass, random_start, write_forcefield
+from atomistic.glass import glass_properties, make_glass, random_start, write_forcefield
 from atomistic.lammps import Atoms, Workspace, read_data, run_lammps, write_data
-from atomistic.potentials import CONTACT_A, contact_energy_and_force
+from atomistic.potentials import CONTACT_A, contact_energy_and_force, load_potential
 from atomistic.runs import geometry, needs_counter_glass, planned_runs
 from atomistic.settings import GlassSettings, HardnessSettings
 
+POTENTIALS = Path(__file__).parents[2] / "config" / "potentials"
 GLASS = GlassSettings(atoms=120, melt_ps=0.5, quench_rate_K_ps=2000, rest_ps=0.3, segment_steps=2000)
 
 
@@ -168,3 +171,21 @@ def test_the_plan_counts_what_a_run_has(close):
     assert planned["steps"] == made["steps"]
     assert planned["restart_steps"] == made["restart_steps"]
     assert planned["atoms"] == pytest.approx(made["atoms"], rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "material", "coordination", "bond_A"),
+    [("teter", "SiO2", 4.0, 1.61), ("matsui_akaogi", "TiO2", 5.8, 1.93)],
+)
+def test_other_potentials_make_a_glass_and_close(name, material, coordination, bond_A, tmp_path):
+    """Coordination and bond of the glass as known for the potential; then the whole chain with it."""
+    other = load_potential(POTENTIALS / f"{name}.yaml")
+    own = HardnessSettings.model_validate({**settings().model_dump(), "potential": name, "material": material})
+    made = make_glass(material, other, own.glass, 1, tmp_path / "glass")
+    found = glass_properties(material, other, made)
+    assert found["cation_coordination"] == pytest.approx(coordination, rel=0.06)
+    assert found["bond_A"] == pytest.approx(bond_A, abs=0.05)
+    [planned] = planned_runs(own)
+    closing = run_closing(planned, made, other, own, tmp_path / "work")
+    assert closing.curve[-1]["force_nN"] > 1
+    assert np.abs(column(closing.curve, "energy_drift_meV_per_atom")).max() < 3
