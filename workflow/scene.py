@@ -8,8 +8,9 @@ import difflib
 import json
 import re
 import types
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, Literal, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import yaml
 from annotated_types import Ge, Gt, Le, Lt, MaxLen, MinLen
@@ -194,8 +195,21 @@ def accepted_values(field: FieldInfo) -> str:
     """What a settings field accepts, in words: type, choices, range, unit."""
     annotation = _strip_optional(field.annotation)
     words = _type_words(annotation)
+    extra = field.json_schema_extra
+    unit = extra.get("unit") if isinstance(extra, dict) else None
+    if unit and unit != "1":
+        words += f" in {unit}"
+    if bounds := _bounds(field.metadata):
+        # bounds of a list stand apart from those of its entries
+        words += f"{';' if get_origin(annotation) in (tuple, list) else ''} {bounds}"
+    if annotation is not field.annotation:
+        words += ", or null"
+    return words
+
+
+def _bounds(metadata: Iterable[Any]) -> str:
     bounds = []
-    for item in field.metadata:
+    for item in metadata:
         for kind, sign in ((Ge, ">="), (Gt, ">"), (Le, "<="), (Lt, "<")):
             if isinstance(item, kind):
                 bounds.append(f"{sign} {getattr(item, kind.__name__.lower()):g}")
@@ -205,19 +219,14 @@ def accepted_values(field: FieldInfo) -> str:
             bounds.append(f"at most {item.max_length} entries")
         if pattern := getattr(item, "pattern", None):
             bounds.append(f"of the form {pattern}")
-    extra = field.json_schema_extra
-    unit = extra.get("unit") if isinstance(extra, dict) else None
-    if unit and unit != "1":
-        words += f" in {unit}"
-    if bounds:
-        words += " " + ", ".join(bounds)
-    if annotation is not field.annotation:
-        words += ", or null"
-    return words
+    return ", ".join(bounds)
 
 
 def _type_words(annotation: Any) -> str:
     origin = get_origin(annotation)
+    if origin is Annotated:
+        inner, *extras = get_args(annotation)
+        return f"{_type_words(inner)} {_bounds(item for extra in extras for item in extra.metadata)}"
     if origin is Literal:
         return "one of " + ", ".join(str(choice) for choice in get_args(annotation))
     if origin in (tuple, list):

@@ -80,7 +80,7 @@ def test_page_is_self_contained_small_and_well_formed(page):
 
 def test_answer_comes_first(page):
     answer = page[page.index('id="answer"') : page.index('id="explorer"')]
-    for words in ("First contact", "Hysteresis", "Main cause of the spread", "RMS", "Release"):
+    for words in ("Contact begins at", "Hysteresis", "Main cause of the spread", "RMS", "Release"):
         assert words in answer
     assert page.index('id="answer"') < min(page.index(f'id="{anchor}"') for anchor in SECTIONS)
 

@@ -9,7 +9,7 @@ from workflow.report.figures_contact import OUTPUTS, SYMBOLS, law_band
 from workflow.report.page import Table
 
 MEANINGS = {
-    "d_c_nm": "mean separation at first contact",
+    "d_c_nm": "mean separation at initial contact",
     "C_a_GPa_nm": "adhesion per nm of approach",
     "C_r_GPa": "scale of the repulsion",
     "rho_r_nm": "decay length of the repulsion",
@@ -23,7 +23,7 @@ def answer(results: Results) -> dict[str, Any]:
         rows = {row["output"]: row for row in results.csv("uq/outputs.csv")}
         samples = results.csv("uq/samples.csv")
         content["table"] = _law_table(rows, samples)
-        content["cards"] += _law_cards(rows)
+        content["cards"] += _law_cards(rows, samples)
     if results.has("uq/sensitivity.csv") and ranking(results.csv("uq/sensitivity.csv"), "d_c_nm"):
         content["cards"].append(_cause_card(results.csv("uq/sensitivity.csv")))
     if results.has("device/switch.json"):
@@ -47,18 +47,19 @@ def ranking(rows: list[Row], output: str) -> list[tuple[str, float]]:
     return sorted(known, key=lambda pair: -pair[1])
 
 
-def _law_cards(rows: dict[str, Row]) -> list[dict[str, str]]:
+def _law_cards(rows: dict[str, Row], samples: list[Row]) -> list[dict[str, str]]:
+    closing, opening = (column(samples, f"{branch}_d_c_nm") for branch in ("closing", "opening"))
     d_c, delta = rows["d_c_nm"], rows["delta_d_c_nm"]
     return [
         {
-            "title": "First contact",
-            "value": f"{show(d_c['mean'])} nm",
-            "detail": f"5 to 95 %: {_interval(d_c)} nm; the paper has {show(d_c['paper_mean'])} ± "
+            "title": "Contact begins at",
+            "value": f"{show(np.nanmean(closing))} nm",
+            "detail": f"mean separation d_c; 5 to 95 %: {_interval(d_c)} nm; the paper has {show(d_c['paper_mean'])} ± "
             f"{show(d_c['paper_dev'])} nm",
         },
         {
             "title": "Hysteresis",
-            "value": f"{show(delta['mean'])} nm",
+            "value": f"{show(np.nanmean(opening - closing))} nm",
             "detail": f"shift of contact on opening; 5 to 95 %: {_interval(delta)} nm; the paper has "
             f"{show(delta['paper_mean'])} ± {show(delta['paper_dev'])} nm",
         },
@@ -68,7 +69,7 @@ def _law_cards(rows: dict[str, Row]) -> list[dict[str, str]]:
 def _cause_card(rows: list[Row]) -> dict[str, str]:
     ranked = ranking(rows, "d_c_nm")
     name, share = ranked[0]
-    words = f"{min(share, 1):.0%} of the variance of first contact"
+    words = f"{min(share, 1):.0%} of the variance of d_c"
     opening = ranking(rows, "delta_d_c_nm")
     if opening:
         pairs = [f"{SYMBOLS.get(key, key)} {min(part, 1):.0%}" for key, part in opening[:3]]
@@ -78,14 +79,19 @@ def _cause_card(rows: list[Row]) -> dict[str, str]:
 
 def _switch_card(switch: dict[str, Any]) -> dict[str, str]:
     with_adhesion, without = switch["with_adhesion"], switch["without_adhesion"]
-    stiction = with_adhesion["stiction_probability"]
-    release = with_adhesion["release_V"]
-    value = "all stuck" if not release["quantiles"] else f"{show(release['quantiles']['0.5'])} V"
-    detail = (
-        f"median of the samples that release, example switch ({show(without['release_V']['quantiles']['0.5'])} "
-        f"V without adhesion); {stiction['value']:.0%} of the samples stick at a landed fraction of "
-        f"{switch['switch']['landed_fraction']:g}"
-    )
+    stuck = with_adhesion["stiction_probability"]["value"]
+    fraction = f"{switch['switch']['landed_fraction']:g}"
+    release = with_adhesion["release_V"]["quantiles"]
+    free = f"{show(without['release_V']['quantiles']['0.5'])} V without adhesion"
+    if stuck >= 0.5 or not release:
+        value = f"{stuck:.0%} stick"
+        detail = f"of the samples of the example switch, at a landed fraction of {fraction}; "
+        detail += (
+            f"the others release at {show(release['0.5'])} V (median); {free}" if release else f"release at {free}"
+        )
+    else:
+        value = f"{show(release['0.5'])} V"
+        detail = f"median of the example switch; {free}; {stuck:.0%} stick at a landed fraction of {fraction}"
     return {"title": "Release", "value": value, "detail": detail}
 
 
