@@ -189,7 +189,27 @@ def _hardness(root: Path) -> None:
                 "hardness_GPa": 10 * scale,
                 "hardness_lo": 9 * scale,
                 "hardness_hi": 11 * scale,
+                "onset_displacement_nm": 0.2,
+                "onset_length_nm": 2.0,
+                "exchanges_before": 2,
+                "exchanges_at_onset": 11,
+                "exchanges_after": 30,
+                "onset_p_value": 0.001,
             }
+        )
+        steps = (100, 200, 300)
+        write_csv(
+            root / f"hardness/witness/{run}.csv",
+            [{"step": step, "displacement_nm": step / 1000, "exchanged_bonds": step // 10} for step in steps],
+        )
+        rng = np.random.default_rng(0)
+        write_csv(
+            root / f"hardness/snapshots/{run}.csv",
+            [
+                {"step": step, "type": 1 + k % 2, "x_nm": x, "y_nm": 1.4, "z_nm": z}
+                for step in steps
+                for k, (x, z) in enumerate(rng.uniform(0, 3, (12, 2)).tolist())
+            ],
         )
     write_csv(root / "hardness/points.csv", points)
     fit = {
@@ -197,6 +217,7 @@ def _hardness(root: Path) -> None:
         "gate": {"passed": False, "reasons": ["only 2 of 9 runs <gave> a hardness"]},
         "H_macro_GPa": {"median": 1.9, "low": 1.1, "high": 2.8},
         "curve": [{"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9} for x in (2.0, 10.0)],
+        "cost": {"atom_steps": 2e9, "lammps_cpu_s": 1500, "python_cpu_s": 30, "python_cpu_share": 0.02},
     }
     write_json(root / "hardness/fit.json", fit, PROVENANCE)
 

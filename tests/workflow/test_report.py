@@ -134,6 +134,13 @@ def test_history_and_coupling_say_their_answer(page):
     assert "1.25 ± 0" in page
 
 
+def test_hardness_shows_its_witness_and_what_it_cost(page):
+    assert "Slices through the contact of run small_1" in page
+    assert "onset: 0.20 nm, 20 bonds exchanged" in page
+    assert "2.00 → 11.0 → 30.0" in page
+    assert "the Python around LAMMPS took 2.00 % of all" in page
+
+
 def test_figures_follow_the_page_colours():
     svg = draw("one", "a line", lambda axis: axis.plot([0, 1], [0, 1], color="#020301"))
     assert "var(--series-1)" in svg
