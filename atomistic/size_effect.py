@@ -79,7 +79,7 @@ def _cost(points: Sequence[Point]) -> dict[str, float]:
     total = {
         key: sum(float(point[key]) for point in points) for key in ("atom_steps", "lammps_cpu_s", "python_cpu_s")
     }
-    return {**total, "python_share": total["python_cpu_s"] / (total["lammps_cpu_s"] + total["python_cpu_s"])}
+    return {**total, "python_cpu_share": total["python_cpu_s"] / (total["lammps_cpu_s"] + total["python_cpu_s"])}
 
 
 def literature_samples(points: Sequence[Point], fit: FitSettings) -> tuple[np.ndarray, np.ndarray]:

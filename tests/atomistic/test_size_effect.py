@@ -40,7 +40,7 @@ def test_free_fit_finds_both_parameters_of_a_wide_series():
     assert free["identifiable"]
     assert result["gate"]["passed"]
     assert result["inputs"]["h_prime"]["correlation"]["h_macro"] < -0.5
-    assert result["cost"]["python_share"] == pytest.approx(0.02)
+    assert result["cost"]["python_cpu_share"] == pytest.approx(0.02)
 
 
 def test_a_narrow_series_is_not_identifiable_and_says_so():

@@ -493,6 +493,6 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
     if cost := fit.get("cost"):
         notes.append(
             f"Molecular dynamics: {show(cost['atom_steps'])} atom-steps, {show(cost['lammps_cpu_s'] / 60)} minutes of "
-            f"CPU time; the Python around LAMMPS took {show(100 * cost['python_share'])} % of all."
+            f"CPU time; the Python around LAMMPS took {show(100 * cost['python_cpu_share'])} % of all."
         )
     return notes
