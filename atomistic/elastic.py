@@ -126,13 +126,19 @@ def scan_volumes(
     return sorted(points, key=lambda point: point.strain)
 
 
+def rejected_points(atoms: Atoms, strains: Sequence[float], reason: str) -> list[Point]:
+    """The scan of a structure that failed its gate: nothing computed, the reason in every point."""
+    volumes = [float(strained(atoms, strain).get_volume()) for strain in strains]
+    return [Point(s, v, float("nan"), False, 0.0, reason) for s, v in zip(strains, volumes, strict=True)]
+
+
 def fit_scan(scan: Sequence[Mapping[str, str]]) -> dict[str, Any]:
     """Row of `bulk_moduli.csv` from the rows of one scan: the fit, or why there is none.
 
     Points that did not converge are named in `flags`; with fewer than five left the structure is rejected.
     """
     good = [row for row in scan if row["converged"] == "True"]
-    failed = [row["detail"] for row in scan if row["converged"] != "True"]
+    failed = list(dict.fromkeys(row["detail"] for row in scan if row["converged"] != "True"))
     result: dict[str, Any] = {key: scan[0][key] for key in ("structure", "xc", "ions", "atoms")}
     empty = ("B_GPa", "B_prime", "V0_A3", "B_vinet_GPa", "residual_meV")
     if len(good) < MIN_POINTS:

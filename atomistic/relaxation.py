@@ -1,7 +1,7 @@
 """Relaxation of the ions of a glass cell by density functional theory; eV and Å."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from ase import Atoms
@@ -75,6 +75,9 @@ class Relaxation:
     failure: str = ""
 
 
+UNTOUCHED = Relaxation(0, float("nan"), False, 0.0, float("nan"))
+
+
 def relax_glass(
     atoms: Atoms, calculator: Calculator, settings: RelaxationSettings, progress: Progress | None = None
 ) -> tuple[Atoms, Relaxation]:
@@ -82,10 +85,9 @@ def relax_glass(
 
     The cell keeps shape and size: its volume is found by the E(V) scan, stress anisotropy is left in it.
     """
-    nan = float("nan")
     current = strained(atoms, 0.0)
     if settings.max_steps == 0:
-        return current, Relaxation(0, nan, False, 0.0, nan)
+        return current, UNTOUCHED
     current.calc = calculator
     if progress:
         progress(0.0, f"relaxing ions, at most {settings.max_steps} steps")
@@ -96,6 +98,6 @@ def relax_glass(
         gained = float(before - current.get_potential_energy())
     except CalculationFailed as error:
         # the E(V) scan of this structure will meet the same trouble and name the strains; the others go on
-        return strained(atoms, 0.0), Relaxation(0, nan, False, nan, nan, f"relaxation: {error}")
-    gap = float(getattr(calculator, "gap_eV", nan))
+        return strained(atoms, 0.0), replace(UNTOUCHED, failure=f"relaxation: {error}")
+    gap = float(getattr(calculator, "gap_eV", np.nan))
     return strained(current, 0.0), Relaxation(steps, left, converged, gained, gap)

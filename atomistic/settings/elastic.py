@@ -29,10 +29,10 @@ class NitrideGlassSettings(Settings):
     )
     timestep_fs: float = Field(default=1, ge=0.1, le=1, description="time step", json_schema_extra={"unit": "fs"})
     attempts: int = Field(
-        default=100,
+        default=300,
         ge=1,
         le=10_000,
-        description="quenches per structure until one passes the gates; about one in twenty does",
+        description="quenches per structure until one passes the gates; about one in thirty does",
         json_schema_extra={"unit": "1"},
     )
 

@@ -12,6 +12,7 @@ from atomistic.elastic import (
     fit_scan,
     make_calculator,
     plane_strain_modulus,
+    rejected_points,
     scan_volumes,
     variance_shares,
 )  # fmt: skip
@@ -87,3 +88,23 @@ def test_scene_cannot_name_a_program():
 def test_poisson_ratio_of_a_liquid_and_too_few_strains_are_refused(bad):
     with pytest.raises(ValueError, match=r"0\.5|at least 5"):
         ElasticSettings(**bad)
+
+
+def test_rejected_glass_costs_nothing_and_carries_its_reason():
+    points = rejected_points(bulk("Cu"), STRAINS, "6 atoms without their valence")
+    row = {"structure": "a08", "xc": "GGA", "ions": "clamped", "atoms": "28"}
+    fit = fit_scan([{**row, **{k: str(v) for k, v in vars(p).items()}} for p in points])
+    assert fit["B_GPa"] is None
+    assert fit["flags"].count("6 atoms without their valence") == 1
+
+
+def test_relaxed_scan_starts_from_the_nearest_strain():
+    """A relaxation that does nothing but mark the cell: later strains carry the mark, scaled."""
+
+    def mark(trial):
+        trial.positions[0] += 0.01 * trial.cell.array[0]
+
+    atoms = bulk("Cu", cubic=True)
+    seen = []
+    scan_volumes(atoms, EMT(), STRAINS, relax=lambda trial: (mark(trial), seen.append(trial.get_scaled_positions()[0])))
+    assert [round(float(s[0]), 6) for s in seen] == [0.01, 0.02, 0.02, 0.03, 0.03]

@@ -7,7 +7,14 @@ import pytest
 import yaml
 
 from atomistic.errors import InputError
-from atomistic.structures import crystal, examine, random_structure, tersoff_calculator, tersoff_table
+from atomistic.structures import (
+    core_commands,
+    crystal,
+    examine,
+    random_structure,
+    tersoff_calculator,
+    tersoff_table,
+)
 
 MATERIALS = Path(__file__).parents[2] / "config" / "materials"
 NITRIDE = yaml.safe_load((MATERIALS / "silicon_nitride.yaml").read_text(encoding="utf-8"))
@@ -53,3 +60,29 @@ def test_random_start_is_reproducible_and_not_overlapping():
     assert np.array_equal(a.positions, b.positions)
     distances = a.get_all_distances(mic=True)[np.triu_indices(len(a), 1)]
     assert distances.min() >= 1.4
+
+
+def test_a_missing_bond_fails_the_gate_of_a_quenched_cell_only():
+    beta = crystal(NITRIDE, "beta")
+    nitrogen = beta.symbols.indices()["N"][0]
+    beta.positions[nitrogen, 2] += 0.9
+    assert examine(beta, NITRIDE["glass"]).defects > 0
+    assert not any("valence" in reason for reason in examine(beta, NITRIDE["glass"]).reasons)
+    assert any("valence" in reason for reason in examine(beta, NITRIDE["glass"], perfect=True).reasons)
+
+
+def test_cores_leave_beta_untouched():
+    """They mend the glass; a crystal with no like atoms that near must not feel them (but for 0.1 Å)."""
+    beta = crystal(NITRIDE, "beta")
+    shortest = examine(beta, NITRIDE["glass"]).shortest_A
+    for pair, core in NITRIDE["cores"].items():
+        assert core["r_A"] < shortest[pair] + 0.1
+    assert core_commands(NITRIDE["cores"], ("Si", "N")).count("harmonic/cut") == 3
+    assert "1 2 harmonic/cut 0.0" in core_commands(NITRIDE["cores"], ("Si", "N"))
+
+
+def test_box_has_the_wanted_density_and_edges():
+    box = random_structure({"Si": 3, "N": 4}, 2, 3.1, 7, (0.8, 1.0, 1.25))
+    assert examine(box, NITRIDE["glass"]).density_g_cm3 == pytest.approx(3.1)
+    a, b, c = box.cell.lengths()
+    assert (a / b, c / b) == pytest.approx((0.8, 1.25))

@@ -3,11 +3,11 @@
 from dataclasses import asdict
 from pathlib import Path
 
-from atomistic.elastic import make_calculator, scan_volumes
+from atomistic.elastic import make_calculator, rejected_points, scan_volumes
 from atomistic.relaxation import relax_ions
 from atomistic.settings import DftSettings, RelaxationSettings
 from workflow.job import job
-from workflow.results import write_csv
+from workflow.results import read_json, write_csv
 from workflow.structure_files import ScfStore, read_structure
 
 with job(snakemake) as run:
@@ -25,7 +25,11 @@ with job(snakemake) as run:
     def relax(trial):
         relax_ions(trial, settings["relaxed_force_eV_A"], relaxation.max_steps)
 
-    points = scan_volumes(atoms, calculator, settings["strains"], relax if relaxed else None, run.progress)
+    gate = read_json(snakemake.input.report)["gate"] if snakemake.input.get("report") else {"passed": True}
+    if gate["passed"]:
+        points = scan_volumes(atoms, calculator, settings["strains"], relax if relaxed else None, run.progress)
+    else:
+        points = rejected_points(atoms, settings["strains"], "; ".join(gate["reasons"]))
     name = {key: snakemake.wildcards[key] for key in ("structure", "xc", "ions")}
     write_csv(snakemake.output.points, [{**name, "atoms": len(atoms), **asdict(point)} for point in points])
     store.remove()
