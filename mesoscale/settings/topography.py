@@ -161,6 +161,11 @@ class TopographySettings(Settings):
         description="what happens to parameters that the scans do not determine well: stop before they are "
         "used, or warn in the report and use them",
     )
+    press_scans: bool = Field(
+        default=False,
+        description="close the contact on the scans themselves too, beside random surfaces of their statistics",
+        json_schema_extra={"unit": "1"},
+    )
     study_repeats: int = Field(
         default=3,
         ge=1,

@@ -67,7 +67,9 @@ def spectra(results: Results) -> str | None:
         axis.plot([], [], color=SOFT, linewidth=0.5, label="limited by levelling, tip, noise or pixels")
         axis.plot([], [], "|", color=INK, label="where the instrument ends it")
         if "pooled" in groups:
-            axis.loglog(groups["pooled"]["q"], groups["pooled"]["psd"], color=ORANGE, label="pooled")
+            axis.loglog(
+                groups["pooled"]["q"], groups["pooled"]["psd"], color=ORANGE, label="pooled", linewidth=1.2, zorder=1.5
+            )
         fits = groups.get("fits", {})
         for name, (label, color, style) in styles.items():
             if name in fits:
@@ -111,6 +113,29 @@ def recovery(results: Results) -> str | None:
         places.legend(fontsize=8)
 
     return draw("recovery", "Truth recovered from the synthetic scans", plot, (8.0, 3.6), 2)
+
+
+def pressed(results: Results) -> str | None:
+    """Closing curves of the measured scans themselves and of random surfaces of their statistics."""
+    if not results.has("curves/scans.h5"):
+        return None
+    groups, _, facts = results.h5("curves/scans.h5")
+    scans = sorted({name.split("/")[0] for name in facts})[:3]
+    styles = {"measured": (BLUE, "-"), "own spectrum": (ORANGE, "--"), "eq. 9": (GREEN, ":")}
+
+    def plot(*axes):
+        for axis, scan in zip(axes, scans, strict=True):
+            for surface, (color, style) in styles.items():
+                name = f"{scan}/{surface}"
+                curve, area = groups[f"{name}/closing"], float(facts[name]["cell_area_nm2"])
+                touching = curve["repulsive_nN"] > 0
+                pressure = 1e3 * curve["repulsive_nN"][touching] / area  # MPa
+                axis.semilogy(curve["separation_nm"][touching], pressure, style, color=color, label=surface)
+            axis.set_title(f"{scan}: RMS {float(facts[f'{scan}/measured']['rms_nm']):.1f} nm", fontsize=9)
+            axis.set(xlabel="separation (nm)", ylabel="nominal pressure (MPa)")
+            axis.legend(fontsize=8)
+
+    return draw("pressed", "Closing on the measured scans", plot, (4.2 * len(scans), 3.4), len(scans))
 
 
 def recovered_sets(results: Results) -> str | None:

@@ -8,9 +8,11 @@ import pytest
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
 from mesoscale.topography.afm import synthetic_scans
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.model import hurst_from_slope, slope_from_hurst
+from mesoscale.topography.likelihood import TrustedSpectrum, blur
+from mesoscale.topography.model import RoughSpectrum, hurst_from_slope, slope_from_hurst
 from mesoscale.topography.parameters import analyse, inputs
 from mesoscale.topography.scan import Scan
+from mesoscale.topography.spectrum import Spectrum
 
 TRUTH = SyntheticScanSettings(pixels=512, small_scans=4, large_scans=2, rms_variation=0.0)
 
@@ -45,6 +47,35 @@ def test_places_of_different_roughness_widen_the_range_of_rms_only():
     assert varied.likelihood is not None
     assert varied.likelihood.amplitude_sd > 0.3
     assert varied.estimates["slope"].value == pytest.approx(TRUTH.slope, abs=0.2)
+
+
+def drawn_set(rng, sd):
+    """Trusted spectra of eight small and three large scans, drawn from Whittle's distribution about eq. 9.
+
+    The plateaus of the places are log-normal with standard deviation `sd` of ln RMS about 6 nm.
+    """
+    items = []
+    for number, (length, end) in enumerate([(750.0, 0.4)] * 8 + [(7500.0, 0.08)] * 3):
+        spacing = 2 * np.pi / length
+        shell = np.arange(1, int(end / spacing))
+        truth = RoughSpectrum.from_rms(6 * np.exp(sd * rng.standard_normal()), 0.025, 2.84, 3.2)
+        modes = 5.0 * shell  # some pi k waves in shell k, and a little more than one section's area
+        lift = np.where(spacing * shell > 0.025, np.exp(blur(2.84, shell)), 1.0)
+        psd = truth.psd(spacing * shell) * lift * rng.gamma(modes) / modes
+        spectrum = Spectrum(spacing * shell, psd, modes, spacing, 3.2)
+        items.append(TrustedSpectrum(str(number), spectrum, 2.5 * spacing, end, "noise", 0.0, truth.rms_nm))
+    return items
+
+
+def test_the_interval_of_the_typical_rms_covers_it_though_places_differ():
+    """Eleven places say little about the typical one; the 90 % interval says how little."""
+    rng = np.random.default_rng(5)
+    estimates = [analyse(drawn_set(rng, 0.4), TopographySettings()).estimates["rms"] for _ in range(20)]
+    covered = [estimate.interval[0] <= 6.0 <= estimate.interval[1] for estimate in estimates]
+    assert sum(covered) >= 15  # fewer of 20 happen once in 400 times at 90 %
+    assert not all(high / low > 2 for low, high in (estimate.interval for estimate in estimates))
+    errors = [np.log(estimate.value / 6.0) for estimate in estimates]
+    assert np.std(errors) == pytest.approx(0.4 / np.sqrt(11), rel=0.4)  # the scatter of the mean of eleven places
 
 
 def test_heights_and_spectrum_scale_together():

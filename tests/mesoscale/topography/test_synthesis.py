@@ -6,6 +6,7 @@ import pytest
 from mesoscale.errors import InputError
 from mesoscale.topography import synthesis
 from mesoscale.topography.model import slope_from_hurst
+from mesoscale.topography.spectrum import power_spectrum
 from mesoscale.topography.synthesis import synthesize
 
 
@@ -66,3 +67,17 @@ def test_the_spectrum_is_flat_to_the_roll_off_and_falls_with_the_stated_slope(co
 def test_a_spectrum_without_a_single_wave_is_refused():
     with pytest.raises(InputError, match=r"q1 = 0\.001"):
         synthesize(64, 1000.0, 0.025, 0.75, 8.5, 1, q1=0.001)
+
+
+@pytest.mark.parametrize("convention", ["profile", "areal"])
+@pytest.mark.parametrize("hurst", [0.5, 0.9])
+def test_one_surface_returns_its_slope_within_two_hundredths(hurst, convention):
+    pixels, length, q0 = 512, 1000.0, 0.025
+    heights = synthesize(pixels, length, q0, hurst, 8.5, 1, convention)
+    psd = power_spectrum(heights, (length, length))
+    k = np.fft.fftfreq(pixels, length / pixels) * 2 * np.pi
+    q = np.hypot(k[:, None], k[None, :])
+    inside = (q > 2 * q0) & (q < np.pi * pixels / length)
+    # the mean of ln C of single waves lies below ln of its mean by a constant, which leaves the slope alone
+    slope = np.polyfit(np.log(q[inside]), np.log(psd[inside]), 1)[0]
+    assert slope == pytest.approx(-slope_from_hurst(hurst, convention), abs=0.02)

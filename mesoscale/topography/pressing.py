@@ -1,0 +1,85 @@
+"""Measured scans as contacting surfaces, beside random ones of the same statistics."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import scipy.fft
+
+from mesoscale.errors import InputError
+from mesoscale.settings import ContactSettings, TopographySettings
+from mesoscale.topography.model import RoughSpectrum, SpectrumTable
+from mesoscale.topography.scan import Scan
+from mesoscale.topography.spectrum import radial_spectrum
+from mesoscale.topography.synthesis import synthesize_spectrum
+
+OBLONG = 0.01  # pixels that differ more in their sides do not fit the square grid of the contact
+SURFACES = {
+    "measured": "the scan itself",
+    "own spectrum": "a Gaussian surface with the scan's own spectrum: what its other statistics do",
+    "eq. 9": "a Gaussian surface with the fitted power law up to the pixels: what the microscope does not see",
+}
+
+
+def contacting_heights(scan: Scan) -> tuple[np.ndarray, float]:
+    """The largest centred square of a cleaned scan as the contact model wants it: heights (n, n) and side, nm.
+
+    The contact is at the minima of its heights and periodic, so the scan is turned upside down and made periodic.
+
+    Raises
+    ------
+    InputError : pixels that are not square.
+    """
+    px, py = scan.pixel_nm
+    if abs(px / py - 1) > OBLONG:
+        raise InputError(
+            f"{scan.name}: pixels of {px:.3g} nm x {py:.3g} nm; accepted are square pixels, "
+            "or switch topography.press_scans off"
+        )
+    nx, ny = scan.heights_nm.shape
+    n = min(nx, ny)
+    i, j = (nx - n) // 2, (ny - n) // 2
+    square = scan.heights_nm[i : i + n, j : j + n]
+    return -periodic_part(square - square.mean()), n * px
+
+
+def periodic_part(heights: np.ndarray) -> np.ndarray:
+    """Heights less the smoothest surface that has their jumps across the edges (doi:10.1007/s10851-010-0227-1).
+
+    What is left meets itself across the edges without a jump, and is nearly unchanged away from them.
+    """
+    nx, ny = heights.shape
+    jumps = np.zeros_like(heights)
+    jumps[0] += heights[-1] - heights[0]
+    jumps[-1] -= heights[-1] - heights[0]
+    jumps[:, 0] += heights[:, -1] - heights[:, 0]
+    jumps[:, -1] -= heights[:, -1] - heights[:, 0]
+    laplace = 2 * np.cos(2 * np.pi * np.fft.fftfreq(nx))[:, None] + 2 * np.cos(2 * np.pi * np.fft.rfftfreq(ny)) - 4
+    laplace[0, 0] = 1.0
+    smooth = np.asarray(scipy.fft.rfft2(jumps)) / laplace
+    smooth[0, 0] = 0.0
+    return heights - np.asarray(scipy.fft.irfft2(smooth, s=heights.shape))
+
+
+def surfaces(
+    scan: Scan, fitted: RoughSpectrum, settings: TopographySettings, contact: ContactSettings
+) -> Iterator[tuple[str, np.ndarray, ContactSettings, float]]:
+    """Surfaces to press: a key of `SURFACES`, heights (nm), contact settings and largest force (nN).
+
+    All have the scan's grid and RMS height, and carry the nominal pressure that the settings' largest force is.
+
+    Parameters
+    ----------
+    scan : cleaned.
+    fitted : eq. 9 of all scans, or of this one where they share no spectrum.
+    """
+    heights, side = contacting_heights(scan)
+    chosen = contact.model_copy(update={"pixels": len(heights), "length_nm": side})
+    force = contact.max_force_nN * (side / contact.length_nm) ** 2
+    rms, seed = float(np.std(heights)), contact.nominal_seed
+    yield "measured", heights, chosen, force
+    spectrum = radial_spectrum(heights, (side, side), settings.sections, settings.section_fraction, flat=0.0)
+    own = SpectrumTable(spectrum.q, spectrum.psd).psd
+    yield "own spectrum", synthesize_spectrum(len(heights), side, own, rms, seed), chosen, force
+    power_law = RoughSpectrum(fitted.plateau, fitted.q0, fitted.slope, math.inf).psd
+    yield "eq. 9", synthesize_spectrum(len(heights), side, power_law, rms, seed), chosen, force

@@ -1,0 +1,32 @@
+"""The example scene for a user's own scans, on two real ones that are not shipped."""
+
+from pathlib import Path
+
+import pytest
+
+from workflow.results import read_csv, read_h5, read_json
+
+ROOT = Path(__file__).resolve().parents[2]
+AFM = ROOT.parent / "shared" / "afm"
+SCANS = "scans/first.gwy, scans/second.ibw"
+
+
+@pytest.mark.skipif(not AFM.is_dir(), reason="real scans are not shipped")
+def test_real_scans_to_force_curves_with_one_command(workflow_in):
+    example = (ROOT / "config/scenes/own_scans.yaml").read_text()
+    assert SCANS in example
+    assert len(example.splitlines()) == 6
+    scene = workflow_in.folder / "mine.yaml"
+    scene.write_text(example.replace(SCANS, f"{AFM / 'example_ps.tiff'}, {AFM / 'di-6.di'}"))
+    done = workflow_in.run(str(scene), "press_scans", "curves")
+    assert done.returncode == 0, done.stderr
+    results = workflow_in.folder / "results/mine"
+    found = read_json(results / "topography/parameters.json")
+    assert [row["length_nm"] for row in found["scans"]] == pytest.approx([1000.0, 10000.0])
+    assert any("no plateau with a power law common" in reason for reason in found["gate"]["reasons"])  # grainy films
+    rows = {(row["scan"], row["surface"]): row for row in read_csv(results / "law/scans.csv")}
+    assert len(rows) == 6
+    assert all(0 < float(row["d_c_nm"]) < 100 and row["converged"] == "True" for row in rows.values())
+    groups, _, facts = read_h5(results / "curves/nominal.h5")
+    assert facts["load_7000"]["rms"] == pytest.approx(7.5, abs=2)  # the middle of both scans
+    assert (groups["load_7000/closing"]["repulsive_nN"][-1]) == pytest.approx(7000, rel=0.01)
