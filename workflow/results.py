@@ -5,6 +5,7 @@ existence of a result means that it is complete (a half-written HDF5 file opens 
 """
 
 import csv
+import io
 import json
 import os
 import tempfile
@@ -51,6 +52,9 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         with temporary.open("rb") as stream:
             os.fsync(stream.fileno())
         temporary.replace(path)
+    except OSError as error:
+        error.filename = error.filename or str(path)  # "disk full" alone would not say where
+        raise
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -153,8 +157,10 @@ def write_h5(
     """
     import h5py
 
+    # in memory first, because HDF5 floods the console where the disk is full;
     # libver and track_times: the same content gives the same bytes
-    with atomic_path(path) as temporary, h5py.File(temporary, "w", libver="latest") as file:
+    image = io.BytesIO()
+    with h5py.File(image, "w", libver="latest") as file:
         for group_name, datasets in groups.items():
             group = file.require_group(group_name)
             for name, dataset in datasets.items():
@@ -172,6 +178,7 @@ def write_h5(
         file.attrs.update(_attributes(attributes))
         file.attrs.update(_attributes({"schema_version": SCHEMA_VERSION, **provenance}))
         file.attrs["complete"] = True
+    write_bytes(path, image.getvalue())
 
 
 def _attributes(values: Mapping[str, Any]) -> dict[str, Any]:

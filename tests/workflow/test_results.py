@@ -1,6 +1,7 @@
 """Result files appear whole or not at all, and give back what was written."""
 
 import csv
+import errno
 import os
 import stat
 
@@ -32,6 +33,16 @@ def test_a_writer_that_fails_leaves_the_old_file_and_nothing_else(tmp_path):
         fail_half_way()
     assert path.read_text() == "old"
     assert os.listdir(tmp_path) == ["points.csv"]
+
+
+def test_a_full_disk_names_the_file(tmp_path):
+    def fill_the_disk():
+        with atomic_path(tmp_path / "curves.h5"):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    with pytest.raises(OSError, match=r"No space left on device: .*curves\.h5"):
+        fill_the_disk()
+    assert not os.listdir(tmp_path)
 
 
 def test_results_follow_the_umask(tmp_path):
