@@ -28,5 +28,5 @@ def test_real_scans_to_force_curves_with_one_command(workflow_in):
     assert len(rows) == 6
     assert all(0 < float(row["d_c_nm"]) < 100 and row["converged"] == "True" for row in rows.values())
     groups, _, facts = read_h5(results / "curves/nominal.h5")
-    assert facts["load_7000"]["rms"] == pytest.approx(7.5, abs=2)  # the middle of both scans
+    assert facts["load_7000"]["rms"] == pytest.approx(9.5, abs=1)  # middle of the range that both scans span
     assert (groups["load_7000/closing"]["repulsive_nN"][-1]) == pytest.approx(7000, rel=0.01)

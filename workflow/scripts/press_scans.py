@@ -14,8 +14,8 @@ from mesoscale.contact import run_cycle
 from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.law import row_of
 from mesoscale.settings import ContactSettings, LawSettings, TopographySettings
+from mesoscale.topography import likelihood
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.likelihood import fit
 from mesoscale.topography.model import RoughSpectrum
 from mesoscale.topography.parameters import MAX_MISFIT
 from mesoscale.topography.pressing import surfaces
@@ -39,7 +39,7 @@ with job(snakemake) as run:
     for number, path in enumerate(files):
         raw = read_scan(path, f"{number + 1:02d}_{Path(path).stem}", settings.channel)
         scan = clean(raw, settings)
-        alone = fit([trusted_scan(raw, settings)]) if fitted["misfit"] > MAX_MISFIT else None
+        alone = likelihood.fit([trusted_scan(raw, settings)]) if fitted["misfit"] > MAX_MISFIT else None
         spectrum = alone.spectrum(np.inf) if alone else common
         for surface, heights, chosen, force in surfaces(scan, spectrum, settings, contact):
             own = replace(inputs, rms=float(np.std(heights)))
