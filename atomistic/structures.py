@@ -28,6 +28,7 @@ def crystal(material: Mapping[str, Any], name: str) -> Atoms:
     InputError
         if the material has no such crystal
     """
+    from ase.build import make_supercell
     from ase.spacegroup import crystal as from_spacegroup
 
     known = material.get("crystals", {})
@@ -47,7 +48,7 @@ def crystal(material: Mapping[str, Any], name: str) -> Atoms:
         cellpar=data["cell"],
         primitive_cell=data.get("primitive", False),
     )
-    atoms = atoms * tuple(data["supercell"])
+    atoms = make_supercell(atoms, np.diag(data["supercell"]) if np.ndim(data["supercell"]) == 1 else data["supercell"])
     atoms.wrap()
     return Atoms(atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True)
 

@@ -86,3 +86,14 @@ def test_box_has_the_wanted_density_and_edges():
     assert examine(box, NITRIDE["glass"]).density_g_cm3 == pytest.approx(3.1)
     a, b, c = box.cell.lengths()
     assert (a / b, c / b) == pytest.approx((0.8, 1.25))
+
+
+def test_anchors_have_their_atoms_and_volume_per_formula():
+    counts = {}
+    for name, unit, volume in (("silicon", 2, 40.05), ("silicon_dioxide", 3, 23.31), ("silicon_nitride", 14, 145.9)):
+        material = yaml.safe_load((MATERIALS / f"{name}.yaml").read_text(encoding="utf-8"))
+        (anchor,) = material["crystals"]
+        atoms = crystal(material, anchor)
+        counts[anchor] = len(atoms)
+        assert atoms.get_volume() * unit / len(atoms) == pytest.approx(volume, rel=1e-3)
+    assert counts == {"silicon": 54, "stishovite": 24, "beta": 28}

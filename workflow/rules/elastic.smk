@@ -192,3 +192,43 @@ rule check_elastic_stability:
         f"{RESULTS}/logs/check_elastic_stability.log",
     script:
         "../scripts/check_elastic_stability.py"
+
+
+# Crystals with known moduli: accuracy/elastic_anchors.csv, ten minutes of one core; the committed copy is in docs/data
+
+ANCHORS = [f"{crystal}_{xc}" for crystal in ("beta", "silicon", "stishovite") for xc in ("GGA", "LDA")]
+
+
+rule anchors:
+    input:
+        f"{RESULTS}/accuracy/elastic_anchors.csv",
+
+
+rule compute_anchor:
+    message:
+        "E(V) of {wildcards.crystal} as an anchor, {wildcards.xc}"
+    input:
+        material=lambda wildcards: CRYSTALS[wildcards.crystal],
+    output:
+        points=f"{RESULTS}/accuracy/anchors/{{crystal}}_{{xc}}.csv",
+    log:
+        f"{RESULTS}/logs/compute_anchor_{{crystal}}_{{xc}}.log",
+    params:
+        settings=elastic_settings("strains", "dft"),
+        store=f"{RESULTS}/work/scf/anchor_{{crystal}}_{{xc}}",
+    script:
+        "../scripts/compute_anchor.py"
+
+
+rule compare_anchors:
+    message:
+        "compare the anchors with published values"
+    input:
+        points=[f"{RESULTS}/accuracy/anchors/{anchor}.csv" for anchor in ANCHORS],
+        materials=sorted(set(CRYSTALS.values())),
+    output:
+        table=f"{RESULTS}/accuracy/elastic_anchors.csv",
+    log:
+        f"{RESULTS}/logs/compare_anchors.log",
+    script:
+        "../scripts/compare_anchors.py"

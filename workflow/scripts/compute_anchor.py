@@ -1,0 +1,31 @@
+"""E(V) of one crystal with known moduli.  In: its material file.  Out: accuracy/anchors/CRYSTAL_XC.csv (Å3, eV, s)."""
+
+from dataclasses import asdict
+from pathlib import Path
+
+import yaml
+
+from atomistic.elastic import make_calculator, scan_volumes
+from atomistic.settings import DftSettings
+from atomistic.structures import crystal
+from workflow.job import job
+from workflow.results import write_csv
+from workflow.structure_files import ScfStore
+
+with job(snakemake) as run:
+    material = yaml.safe_load(Path(snakemake.input.material).read_text(encoding="utf-8"))
+    name, xc = snakemake.wildcards.crystal, snakemake.wildcards.xc
+    strains = snakemake.params.settings["strains"]
+    atoms = crystal(material, name)
+    store = ScfStore(Path(snakemake.params.store))
+    calculator = make_calculator(
+        DftSettings(**snakemake.params.settings["dft"]),
+        xc,
+        atoms.cell.array * (1 + max(strains)),
+        store,
+        material["crystals"][name].get("cutoff_Ha"),
+    )
+    points = scan_volumes(atoms, calculator, strains, progress=run.progress)
+    row = {"structure": name, "xc": xc, "ions": "clamped", "atoms": len(atoms)}
+    write_csv(snakemake.output.points, [{**row, **asdict(point)} for point in points])
+    store.remove()
