@@ -55,7 +55,8 @@ def contact_readings() -> list[str]:
 def audited_readings(names: Sequence[str]) -> list[str]:
     """The readings to audit: those named, or `all`; by default those of the mean curvature with attracting sites.
 
-    R = A/(2 pi delta) and touching sites left out lie far from the tables (docs/data/all_readings.csv).
+    R = A/(2 pi delta) with Hertz's area takes several times as long; config/studies/all_readings.yaml has all on a
+    coarse grid.
     """
     if list(names) == ["all"]:
         return contact_readings()
