@@ -163,6 +163,7 @@ window.addEventListener("error", (event) => failures.push(event.message));</scri
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium is installed (Debian package chromium)")
 def test_page_lives_in_a_real_browser(page, tmp_path):
+    assert CHROMIUM is not None
     path = tmp_path / "report.html"
     probe = f"<script>{PROBE.read_text()}</script></body>"
     path.write_text(page.replace("<style>", WATCH + "<style>", 1).replace("</body>", probe))
