@@ -67,16 +67,18 @@ def atom_orbitals(cell: "Cell", precision: float | None = None) -> list[AtomOrbi
         exponents = np.unique(np.concatenate([cell.bas_exp(shell) for shell in shells]))
         angular, first, rows = [], [], []
         for shell in shells:
-            l = cell.bas_angular(shell)
-            if l > 2:
-                raise NotImplementedError(f"angular momentum {l} of {cell.atom_symbol(atom)}; s, p and d are supported")
+            degree = cell.bas_angular(shell)
+            if degree > 2:
+                raise NotImplementedError(
+                    f"angular momentum {degree} of {cell.atom_symbol(atom)}; s, p and d are supported"
+                )
             where = np.searchsorted(exponents, cell.bas_exp(shell))
             for k, column in enumerate(cell._libcint_ctr_coeff(shell).T):
                 row = np.zeros(len(exponents))
                 np.add.at(row, where, column)
                 rows.append(row)
-                angular.append(l)
-                first.append(int(ao_loc[shell]) + k * (2 * l + 1))
+                angular.append(degree)
+                first.append(int(ao_loc[shell]) + k * (2 * degree + 1))
         contraction = np.array(rows)
         radii = np.linspace(0.5, 40.0, 1581)
         gaussians = np.exp(-np.outer(radii**2, exponents))
@@ -237,12 +239,12 @@ def _collocate_atom(values, lattice, mesh, centre, exponents, angular, contracti
 
 
 @numba.njit(cache=True, fastmath={"contract", "reassoc"}, error_model="numpy")
-def _harmonic_times(out, l, m, x, y, z, f, n):
+def _harmonic_times(out, degree, m, x, y, z, f, n):
     """out = S_lm(x, y, z) f, the real solid harmonic in PySCF's order (x, y, z; xy, yz, z², xz, x²-y²)."""
-    if l == 0:
+    if degree == 0:
         for k in range(n):
             out[k] = S0 * f[k]
-    elif l == 1:
+    elif degree == 1:
         axis = x if m == 0 else (y if m == 1 else z)
         for k in range(n):
             out[k] = P0 * axis[k] * f[k]

@@ -35,15 +35,15 @@ def commensurate_mesh(cell: np.ndarray, cutoff_Ha: float) -> tuple[int, int, int
 
     # the largest |G·a|/2π inside a sphere of radius G_max
     reach = np.sqrt(2 * cutoff_Ha) * np.linalg.norm(np.asarray(cell) / Bohr, axis=1) / (2 * np.pi)
-    n = [next_fast_len(2 * int(np.ceil(r)) + 1, real=True) for r in reach]
-    return n[0], n[1], n[2]
+    a, b, c = (int(next_fast_len(2 * int(np.ceil(r)) + 1, real=True) or 1) for r in reach)
+    return a, b, c
 
 
 def build_cell(atoms: Atoms, xc: str, basis: str, mesh: tuple[int, int, int], precision: float = 1e-8):
     """PySCF cell of an ASE structure; positions stay in the cell they were given in."""
     from pyscf.pbc import gto
 
-    cell = gto.Cell()
+    cell: Any = gto.Cell()  # PySCF declares its attributes as None
     cell.unit = "B"
     cell.a = atoms.cell.array / Bohr
     cell.atom = [(s, p / Bohr) for s, p in zip(atoms.get_chemical_symbols(), atoms.positions, strict=True)]
@@ -74,6 +74,8 @@ class PyscfGamma(Calculator):
     which halves the number of cycles.  The starting orbitals are part of the key in `store`, so a series that is
     interrupted and replayed gives the same numbers to the last bit.
     """
+
+    parameters: Any  # a dictionary with attributes (ASE)
 
     implemented_properties = ["energy", "forces"]  # noqa: RUF012 (ASE's interface)
     default_parameters: dict[str, Any] = {  # noqa: RUF012
@@ -112,8 +114,8 @@ class PyscfGamma(Calculator):
         self.orbitals = found["orbitals"] if bool(found["converged"]) else None
         if not bool(found["converged"]):
             raise ScfNotConverged(f"SCF not converged in {p.max_cycles} cycles (gap {self.gap_eV:.2f} eV)")
-        self.results = {"energy": float(found["energy_Ha"]) * Hartree}
-        self.results["free_energy"] = self.results["energy"]
+        energy = float(found["energy_Ha"]) * Hartree
+        self.results: dict[str, Any] = {"energy": energy, "free_energy": energy}
         if wanted == "forces":
             self.results["forces"] = found["forces"] * Hartree / Bohr
 
@@ -132,8 +134,9 @@ class PyscfGamma(Calculator):
         from pyscf.pbc import dft
 
         p = self.parameters
+        assert self.atoms is not None
         cell = build_cell(self.atoms, p.xc, p.basis, mesh)
-        mf = dft.RKS(cell)
+        mf: Any = dft.RKS(cell)
         mf.xc = FUNCTIONALS[p.xc][0]
         mf.verbose = 0
         mf.conv_tol = p.tolerance_Ha

@@ -67,7 +67,8 @@ def make_calculator(
     from ase.calculators.calculator import get_calculator_class
 
     try:
-        return get_calculator_class(dft.engine)(**dft.parameters)
+        parameters: dict[str, Any] = dict(dft.parameters)
+        return get_calculator_class(dft.engine)(**parameters)
     except Exception as error:
         raise InputError(f"elastic.dft.engine: ASE cannot set up {dft.engine}: {error}") from error
 

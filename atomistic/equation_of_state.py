@@ -125,7 +125,8 @@ def _minimum(coefficients: np.ndarray, centre: float, volume: np.ndarray) -> tup
         root.real for root in slope.roots() if abs(root.imag) < 1e-12 and root.real > 0 and slope.deriv()(root.real) > 0
     ]
     if not candidates:
-        return (float("nan"),) * 4
+        nan = float("nan")
+        return nan, nan, nan, nan
     middle = (np.mean([volume.min(), volume.max()]) / centre) ** (-2 / 3)
     x = min(candidates, key=lambda root: abs(root - middle))
     V = float(centre * x**-1.5)

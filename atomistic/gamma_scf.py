@@ -14,7 +14,7 @@ Because gradient and divergence are each other's negative adjoints on the grid, 
 discrete energy, and so are the forces.  Atomic units throughout.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.fft
@@ -23,12 +23,11 @@ from pyscf.pbc.dft.multigrid import MultiGridNumInt2
 from pyscf.pbc.gto import ewald_methods
 from pyscf.pbc.gto.pseudo import pp_int
 from pyscf.pbc.lib.kpts_helper import is_gamma_point
-from scipy.linalg.blas import ssyrk
+from scipy.linalg.blas import ssyrk  # pyright: ignore[reportAttributeAccessIssue]  (generated at run time)
 
 from atomistic.collocation import atom_orbitals, collocate, pulay_force
 
 if TYPE_CHECKING:
-    from pyscf.pbc.dft.rks import RKS
     from pyscf.pbc.gto import Cell
 
 BLOCK = 4096  # grid points per matrix product: a block of 364 orbitals stays in the cache
@@ -64,10 +63,11 @@ class CachedGrid(MultiGridNumInt2):
 
     # -- Fourier helpers: half spectrum of real fields
     def _to_grid(self, spectrum: np.ndarray) -> np.ndarray:
-        return scipy.fft.irfftn(spectrum, s=tuple(self.mesh), axes=(-3, -2, -1)).reshape(*spectrum.shape[:-3], -1)
+        field = np.asarray(scipy.fft.irfftn(spectrum, s=tuple(self.mesh), axes=(-3, -2, -1)))
+        return field.reshape(*spectrum.shape[:-3], -1)
 
     def _spectrum(self, field: np.ndarray) -> np.ndarray:
-        return scipy.fft.rfftn(field.reshape(*field.shape[:-1], *self.mesh), axes=(-3, -2, -1))
+        return np.asarray(scipy.fft.rfftn(field.reshape(*field.shape[:-1], *self.mesh), axes=(-3, -2, -1)))
 
     def _phase(self, position: np.ndarray) -> np.ndarray:
         """exp(-iG·R) on the half spectrum."""
@@ -87,7 +87,7 @@ class CachedGrid(MultiGridNumInt2):
         return self._to_grid(np.einsum("xijk,xijk->ijk", 1j * self.wave_vectors[0], self._spectrum(vector)))
 
     # -- density and potential
-    def occupied_orbitals(self, density_matrix: np.ndarray) -> np.ndarray:
+    def occupied_orbitals(self, density_matrix: Any) -> tuple[np.ndarray, np.ndarray]:
         """Factor F (orbitals, n) and signs s with D = F diag(s) Fᵀ; from the orbitals if the matrix carries them."""
         coefficients = getattr(density_matrix, "mo_coeff", None)
         if coefficients is not None:
@@ -181,7 +181,7 @@ class CachedGrid(MultiGridNumInt2):
         return self.density(dm)
 
     # -- forces
-    def forces(self, mf: "RKS", remove_net: bool = True) -> np.ndarray:
+    def forces(self, mf: Any, remove_net: bool = True) -> np.ndarray:
         """Forces of a converged calculation, shape (atoms, 3), hartree/bohr.
 
         Exact derivative of the discrete energy.  The grid breaks translation symmetry a little ("egg box"), so
@@ -210,7 +210,7 @@ class CachedGrid(MultiGridNumInt2):
             gradient[atom] -= 2 * np.einsum("xuv,uv->x", overlap[:, a:b], energy_weighted[a:b])
             gradient[atom] -= 2 * pulay_force(self.atoms[atom], self.lattice, tuple(self.mesh), factor[a:b] @ waves)
             form = self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
-            product = (form * spectrum.conj()).imag * twice
+            product = np.imag(form * spectrum.conj()) * twice
             gradient[atom] += np.einsum("xijk,ijk->x", self.wave_vectors[1], product) / self.points
         return -(gradient - gradient.mean(axis=0)) if remove_net else -gradient
 

@@ -1,5 +1,7 @@
 """The cached-grid Γ-point potential against PySCF's own FFTDF, and its forces against energy differences."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from ase.build import bulk
@@ -33,12 +35,12 @@ def test_energy_at_fixed_density_against_fftdf(xc, tolerance_Ha):
     from atomistic.gamma_scf import CachedGrid
 
     cell = build_cell(silicon(), xc, "gth-szv", MESH)
-    mf = dft.RKS(cell, xc=FUNCTIONALS[xc][0])
+    mf: Any = dft.RKS(cell, xc=FUNCTIONALS[xc][0])
     mf.verbose = 0
     mf._numint = CachedGrid(cell)
     energy = mf.kernel()
     dm = np.asarray(mf.make_rdm1())
-    other = dft.RKS(cell, xc=FUNCTIONALS[xc][0])
+    other: Any = dft.RKS(cell, xc=FUNCTIONALS[xc][0])
     other.grids.build()
     exc = numint.NumInt().nr_rks(cell, other.grids, other.xc, dm)[1]
     vj = other.with_df.get_jk(dm, with_k=False)[0]
