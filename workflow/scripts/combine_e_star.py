@@ -1,4 +1,4 @@
-"""Combine E*.  In: elastic/bulk_moduli.csv (GPa), counter body.  Out: elastic/e_star.json, e_star.h5, structures.csv."""
+"""Combine E*.  In: elastic/bulk_moduli.csv (GPa), counter body.  Out: e_star.json, e_star.h5, structures.csv."""
 
 import json
 from pathlib import Path

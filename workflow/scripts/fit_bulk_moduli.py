@@ -1,4 +1,4 @@
-"""Fit equations of state.  In: elastic/scans/*.csv.  Out: elastic/points.csv (Å3, eV), elastic/bulk_moduli.csv (GPa)."""
+"""Fit equations of state.  In: elastic/scans/*.csv.  Out: elastic/points.csv (Å3, eV), bulk_moduli.csv (GPa)."""
 
 from atomistic.elastic import fit_scan
 from workflow.job import job
