@@ -145,6 +145,7 @@ def run_cycle(
             "force_miss": abs(last.force - force) / force,
             "unconverged_steps": closing.unconverged,
             "largest_load": closing.load,
+            "full_contact": closing.full,
             "radius_bound_events": closing.bounds,
             "repeated_steps": closing.repeated,
             "changed_sites": changed,

@@ -4,6 +4,7 @@ Nothing here loops over the whole surface more often than needed: the sites are 
 bands as the flat comes down, asperities grow locally, and flow touches only its own patch.
 """
 
+import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -37,6 +38,7 @@ class Path:
     repeated: int = 0
     reached: bool = True  # the wanted end, up to a jump of the force
     load: float = 0.0  # largest force of an asperity over its yield force
+    full: bool = False  # every site has touched
 
 
 class State(NamedTuple):
@@ -70,7 +72,7 @@ class Contact:
         self.offset = float(self.heights.mean())
         self.lowest = float(self.heights.min())
         self.highest = float(self.heights.max())
-        self.rms = float(self.heights.std()) if settings.model != "plastic" or not inputs.rms else inputs.rms
+        self.rms = math.sqrt(max(float(self.heights @ self.heights) / self.heights.size - self.offset**2, 0.0))
         self.capped = settings.model == "nonlinear"
         self.mechanics = state.Mechanics(
             PREFACTOR[settings.prefactor] * inputs.e_star,
@@ -87,7 +89,7 @@ class Contact:
             settings.flow_width_nm,
             settings.flow_floor_pixels * self.spacing,
             WIDTH_RATIO[settings.flow_pair],
-            settings.flow_tolerance,
+            settings.flow_tolerance if settings.flow == "return" else 0.0,
             settings.max_sweeps,
         )
         self.asperities = state.no_asperities(self.heights.size)
@@ -269,6 +271,7 @@ def trace(
         path.bounds += moved.bounds
         path.unconverged += not moved.settled
         path.load = max(path.load, moved.load)
+        path.full |= moved.sites == contact.heights.size
 
     while separation > stop_separation and force < final * (1.0 - contact.FORCE_TOLERANCE):
         target = max(separation - step, stop_separation)

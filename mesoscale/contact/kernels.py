@@ -229,16 +229,16 @@ def _gaussian(width, half, spacing, values):
 
 
 @njit(cache=True)
-def _add_flow(heights, n, spacing, peak, amplitude, narrow, ratio, at_peak, changes, g1, g2):
+def _add_flow(heights, n, spacing, peak, amplitude, narrow, rule, changes, g1, g2):
     """Add amplitude * (G1 - c G2) around a peak, with c such that the sum over the grid is zero.
 
-    ``at_peak``: scale so that the peak moves by exactly the amplitude. ``g1``, ``g2``: room for the two
+    Return mapping: scaled so that the peak moves by exactly the amplitude. ``g1``, ``g2``: room for the two
     Gaussians. Returns the patch's half-width.
     """
-    wide = ratio * narrow
+    wide = rule.ratio * narrow
     half = min(int(np.ceil(REACH * wide / spacing)), (n - 1) // 2)
     balance = (_gaussian(narrow, half, spacing, g1) / _gaussian(wide, half, spacing, g2)) ** 2
-    if at_peak:
+    if not rule.fixed:
         amplitude /= 1.0 - balance
     # bare arrays and unsigned numbers: no counting of references, no check for indices below zero
     changed, sites, original = changes.changed, changes.sites, changes.original
@@ -337,9 +337,65 @@ def _release(heights, n, level, peak, reach, asperities, seeds, waiting):
 
 
 @njit(cache=True)
-def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, work):
-    """Let all yielding asperities flow, all at once, sweep after sweep, until none is above its hardness.
+def _find_yielding(heights, level, asperities, mechanics, rule, work, actives):
+    """List the asperities above their hardness by the site of their peak; returns how many.
 
+    None yields where every site touches: flow keeps the volume, and there is nowhere left to flow to.
+    """
+    found = 0
+    for k in range(actives):
+        number = work.active[k]
+        if asperities.sites[number] == 0 or asperities.sites[number] == heights.size:
+            continue
+        indentation, radius, area, _ = shape(asperities, number, level, mechanics)
+        force = mechanics.stiffness * np.sqrt(radius * indentation) * indentation
+        ceiling = hardness(area, mechanics) * area
+        if force <= ceiling * (1.0 + rule.tolerance):
+            continue
+        work.yielding[found] = number
+        work.peak[found] = asperities.peak[number]
+        # the indentation at which eq. 3 gives the limit, R and A unchanged
+        work.goal[found] = level - indentation * (ceiling / force) ** (2.0 / 3.0)
+        work.margin[found] = rule.tolerance * indentation / 3.0
+        # no wider than the contact itself (flattened tops have no curvature), no narrower than the floor
+        work.width[found] = max(rule.floor, min(np.sqrt(rule.width * radius), np.sqrt(area / np.pi)))
+        found += 1
+    return found
+
+
+@njit(cache=True)
+def _sites_to_raise(heights, asperities, number, goal, margin, work):
+    """List the sites of an asperity that lie below a height, the lowest first; returns how many.
+
+    Depths are compared in whole margins, and among equals the site's number decides: rounding does not.
+    """
+    first = asperities.first[number]
+    count = asperities.sites[number]
+    if count == 1:
+        work.low[0] = asperities.arena[first]
+        return 1
+    low = 0
+    for place in range(first, first + count):
+        if heights[asperities.arena[place]] < goal:
+            work.low[low] = asperities.arena[place]
+            low += 1
+    if low > 1:
+        sites = np.sort(work.low[:low])
+        values = np.empty(low)
+        for k in range(low):
+            values[k] = -np.floor((goal - heights[sites[k]]) / margin)
+        rank = np.argsort(values, kind="mergesort")  # keeps the order of the sites among equals
+        for k in range(low):
+            work.low[k] = sites[rank[k]]
+    return low
+
+
+@njit(cache=True)
+def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, work):
+    """Let all yielding asperities flow, sweep after sweep, until none is above its hardness.
+
+    Fixed increments: one at each peak. Return mapping: one asperity after the other, by the number of
+    their lowest sites, each has all its sites raised to its goal, the lowest first.
     Only asperities that flowed or whose sites or neighbours moved are looked at again.
 
     Returns the sweeps done and whether no asperity is left above its hardness.
@@ -350,53 +406,34 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, wor
             work.active[actives] = number
             actives += 1
     for sweeps in range(rule.max_sweeps + 1):
-        flows = 0
-        for k in range(actives):
-            number = work.active[k]
-            if asperities.sites[number] == 0:
-                continue
-            indentation, radius, area, _ = shape(asperities, number, level, mechanics)
-            force = mechanics.stiffness * np.sqrt(radius * indentation) * indentation
-            ceiling = hardness(area, mechanics) * area
-            if rule.fixed:
-                if force <= ceiling:
-                    continue
-                amplitude = rule.increment
-            else:
-                if force <= ceiling * (1.0 + rule.tolerance):
-                    continue
-                amplitude = indentation * (1.0 - (ceiling / force) ** (2.0 / 3.0))
-            # no wider than the contact itself (flattened tops have no curvature), no narrower than the floor
-            width = max(rule.floor, min(np.sqrt(rule.width * radius), np.sqrt(area / np.pi)))
-            work.peak[flows] = asperities.peak[number]
-            work.amplitude[flows] = amplitude
-            work.width[flows] = width
-            flows += 1
-        if flows == 0:
+        found = _find_yielding(heights, level, asperities, mechanics, rule, work, actives)
+        if found == 0:
             return sweeps, True
         if sweeps == rule.max_sweeps:
             return sweeps, False
-        if asperities.used[1] > 2 * heights.size or asperities.used[0] > heights.size:
-            compact(asperities)
-        for k in range(flows):
-            work.half[k] = _add_flow(
-                heights,
-                n,
-                spacing,
-                work.peak[k],
-                work.amplitude[k],
-                work.width[k],
-                rule.ratio,
-                not rule.fixed,
-                changes,
-                work.narrow,
-                work.wide,
-            )
+        flows = 0
+        for k in np.argsort(work.peak[:found]):
+            goal, margin = work.goal[k], work.margin[k]
+            low = 1
+            work.low[0] = work.peak[k]
+            if not rule.fixed:
+                low = _sites_to_raise(heights, asperities, work.yielding[k], goal - margin, margin, work)
+            for m in range(low):
+                site = work.low[m]
+                rise = rule.increment if rule.fixed else goal - heights[site]
+                if rise > margin:
+                    work.site[flows] = site
+                    work.half[flows] = _add_flow(
+                        heights, n, spacing, site, rise, work.width[k], rule, changes, work.narrow, work.wide
+                    )
+                    flows += 1
         waiting = 0
         for k in range(flows):
             # one ring more than the flow: a site's curvature sees its neighbours
             reach = min(work.half[k] + 1, (n - 1) // 2)
-            waiting = _release(heights, n, level, work.peak[k], reach, asperities, work.seeds, waiting)
+            waiting = _release(heights, n, level, work.site[k], reach, asperities, work.seeds, waiting)
+        if asperities.used[1] > 2 * heights.size or asperities.used[0] > heights.size:
+            compact(asperities)
         actives = 0
         for k in range(waiting):
             if asperities.label[work.seeds[k]] == -1:

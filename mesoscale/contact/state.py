@@ -85,10 +85,14 @@ class Workspace(NamedTuple):
     """Lists that a sweep fills anew; preallocated because growing arrays are slow in compiled loops."""
 
     active: np.ndarray  # int32: asperities to look at
-    peak: np.ndarray  # int32: where the flows of this sweep are
-    amplitude: np.ndarray  # float64: nm
+    yielding: np.ndarray  # int32: asperities above their hardness
+    peak: np.ndarray  # int32: their lowest sites
+    goal: np.ndarray  # float64: height to which flow raises their sites, nm
+    margin: np.ndarray  # float64: how far below a site may stay, nm
     width: np.ndarray  # float64: s1, nm
-    half: np.ndarray  # int32: half-width of the patch in sites
+    low: np.ndarray  # int32: sites of one asperity that are to be raised
+    site: np.ndarray  # int32: where the flows of this sweep are
+    half: np.ndarray  # int32: half-widths of their patches in sites
     seeds: np.ndarray  # int32: sites waiting to be joined to asperities
     narrow: np.ndarray  # float64: values of a flow's narrow Gaussian
     wide: np.ndarray  # float64: values of its wide Gaussian
@@ -99,8 +103,12 @@ def workspace(sites: int) -> Workspace:
     return Workspace(
         np.empty(2 * sites, np.int32),
         np.empty(sites, np.int32),
+        np.empty(sites, np.int32),
         np.empty(sites),
         np.empty(sites),
+        np.empty(sites),
+        np.empty(sites, np.int32),
+        np.empty(sites, np.int32),
         np.empty(sites, np.int32),
         np.empty(sites, np.int32),
         np.empty(sites),

@@ -112,11 +112,8 @@ def attraction(h, separation, inputs: ContactInputs, settings: ContactSettings) 
     return -inputs.hamaker * area / (6 * np.pi) * np.sum(gap**-3)
 
 
-def flow(h: np.ndarray, asperity: Asperity, amplitude: float, settings: ContactSettings):
-    """One flow: a narrow Gaussian up, a wide one down, no change of volume.
-
-    Returns the (periodic) patch of the grid it reaches, and the change of the heights there.
-    """
+def raise_site(h: np.ndarray, site: tuple[int, int], rise: float, asperity: Asperity, settings: ContactSettings):
+    """One flow, in place: a narrow Gaussian up, a wide one down, no change of volume on the periodic grid."""
     n = len(h)
     spacing = settings.length_nm / n
     contact = np.sqrt(asperity.area / np.pi)
@@ -125,41 +122,50 @@ def flow(h: np.ndarray, asperity: Asperity, amplitude: float, settings: ContactS
     s2 = s1 * {"paper": 3**0.25, "wide": 3.0}[settings.flow_pair]
     reach = min(int(np.ceil(3 * s2 / spacing)), (n - 1) // 2)
     offsets = np.arange(-reach, reach + 1)
-    patch = np.ix_(*((p + offsets) % n for p in asperity.peak))
+    patch = np.ix_(*((p + offsets) % n for p in site))
     squared = (offsets[:, None] ** 2 + offsets[None, :] ** 2) * spacing**2
     narrow = np.exp(-squared / (2 * s1**2))
     wide = np.exp(-squared / (2 * s2**2))
     change = narrow - wide * narrow.sum() / wide.sum()
     if settings.flow == "return":
         change = change / change[reach, reach]
-    return patch, amplitude * change
+    h[patch] += rise * change
 
 
 def settle(h, separation, inputs: ContactInputs, settings: ContactSettings) -> tuple[np.ndarray, int, bool]:
     """Let yielding asperities flow until none is above its hardness.
 
-    Returns the surface, the sweeps, and whether flow came to its end.
+    Returns the surface, the sweeps, and whether flow came to its end. Nothing flows where every site touches.
     """
+    h = h.copy()
+    returning = settings.flow == "return"
+    tolerance = settings.flow_tolerance if returning else 0.0
     for sweeps in range(settings.max_sweeps + 1):
-        tolerance = settings.flow_tolerance if settings.flow == "return" else 0.0
-        change = np.zeros_like(h)
-        yielding = 0
-        for a in asperities(h, separation, inputs, settings):
-            limit = a.hardness * a.area
-            if a.elastic_force <= limit * (1 + tolerance):
-                continue
-            yielding += 1
-            amplitude = settings.flow_increment_nm
-            if settings.flow == "return":
-                # the indentation at which eq. 3 would give the limit, R and A unchanged
-                amplitude = a.indentation * (1 - (limit / a.elastic_force) ** (2 / 3))
-            patch, moved = flow(h, a, amplitude, settings)
-            change[patch] += moved
-        if yielding == 0:
+        found = asperities(h, separation, inputs, settings)
+        limits = [a.hardness * a.area for a in found]
+        yielding = [
+            (a, limit)
+            for a, limit in zip(found, limits, strict=True)
+            if a.elastic_force > limit * (1 + tolerance) and a.sites.size < h.size
+        ]
+        if not yielding:
             return h, sweeps, True
         if sweeps == settings.max_sweeps:
             break
-        h = h + change
+        for a, limit in sorted(yielding, key=lambda pair: pair[0].peak):
+            if not returning:
+                raise_site(h, a.peak, settings.flow_increment_nm, a, settings)
+                continue
+            # to the indentation at which eq. 3 would give the limit, R and A unchanged
+            goal = -separation - a.indentation * (limit / a.elastic_force) ** (2 / 3)
+            margin = tolerance * a.indentation / 3
+            low = a.sites[h.ravel()[a.sites] < goal - margin]
+            # the lowest first; in whole margins, so that rounding does not decide between equals
+            depth = np.floor((goal - margin - h.ravel()[low]) / margin)
+            for site in low[np.lexsort((low, -depth))]:
+                place = divmod(int(site), len(h))
+                if h[place] < goal - margin:
+                    raise_site(h, place, goal - h[place], a, settings)
     return h, settings.max_sweeps, False
 
 

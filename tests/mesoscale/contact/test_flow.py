@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from mesoscale.contact import ContactInputs
+from mesoscale.contact import ContactInputs, run_cycle
 from mesoscale.contact.engine import Contact
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
@@ -98,3 +98,25 @@ def test_an_undone_move_leaves_no_trace():
     again = contact.move_to(-surface().min() - 2.0, True)
     assert again.force == pytest.approx(there.force, rel=1e-9)
     assert again[1:4] == there[1:4]
+
+
+def test_a_plateau_comes_down_in_a_few_sweeps():
+    """Raising the peak alone takes hundreds: on a flat top the next site carries when one is raised."""
+    x = np.arange(64) - 32.0
+    heights = np.maximum(x[:, None] ** 2 + x[None, :] ** 2, 80.0) / 40.0
+    soft = ContactInputs(**{**vars(INPUTS), "h_macro": 1.0, "h_prime": 2.0})
+    contact = Contact(heights, soft, ContactSettings(pixels=64, length_nm=64.0, max_sweeps=5000))
+    moved = contact.move_to(-2.6, True)
+    assert moved.settled
+    assert moved.sites > 100
+    assert moved.sweeps < 60
+
+
+def test_nothing_flows_where_every_site_touches():
+    """Flow keeps the volume: a full contact has nowhere to flow to and carries elastically, and says so."""
+    soft = ContactInputs(**{**vars(INPUTS), "h_macro": 1e-4, "h_prime": 0.0})
+    cycle = run_cycle(soft, settings_for(), 1, 10.0, heights=np.zeros((128, 128)))
+    assert cycle.flags["full_contact"]
+    assert cycle.flags["changed_sites"] == 0
+    assert cycle.flags["largest_load"] > 1.0
+    assert cycle.converged
