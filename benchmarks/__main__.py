@@ -1,6 +1,6 @@
 """Time a surface and a closing-opening cycle on several grids, side by side with others in one run.
 
-python -m benchmarks [--large] [--repeats 3] [--plain]      (one thread; docs/contact.md, Run time)
+python -m benchmarks [--large] [--repeats 3] [--plain] [--cycles 200]      (one thread each; docs/contact.md, Run time)
 """
 
 import argparse
@@ -9,6 +9,7 @@ import os
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # before any library starts its threads
 
 import importlib
+import multiprocessing
 import resource
 import statistics
 import time
@@ -18,11 +19,12 @@ from typing import Any
 import numpy as np
 from scipy import fft
 
-from mesoscale.contact import ContactInputs, Cycle, run_cycle
+from mesoscale.contact import Cycle, run_cycle
+from mesoscale.contact.draws import draw_inputs
+from mesoscale.contact.stability import MIDDLE
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
 
-MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
 SEED = 1
 
 
@@ -51,7 +53,7 @@ def surface(settings: ContactSettings) -> np.ndarray:
 def floor(pixels: int) -> np.ndarray:
     """What any random surface costs at least: a normal number per site and a transform there and back."""
     noise = np.random.default_rng(SEED).standard_normal((pixels, pixels))
-    return fft.irfft2(fft.rfft2(noise), s=noise.shape)
+    return np.asarray(fft.irfft2(np.asarray(fft.rfft2(noise)), s=noise.shape))
 
 
 def plain(heights: np.ndarray, cycle: Cycle, settings: ContactSettings) -> np.ndarray:
@@ -66,7 +68,7 @@ def plain(heights: np.ndarray, cycle: Cycle, settings: ContactSettings) -> np.nd
 
 def tamaas(heights: np.ndarray, settings: ContactSettings) -> float:
     """Contact area (nm^2) of an elastic half-space at the largest force, by tamaas."""
-    import tamaas as tm
+    import tamaas as tm  # pyright: ignore[reportMissingImports]  (optional extra)
 
     tm.set_log_level(tm.LogLevel.error)
     model = tm.Model(tm.model_type.basic_2d, [settings.length_nm] * 2, list(heights.shape))
@@ -78,8 +80,8 @@ def tamaas(heights: np.ndarray, settings: ContactSettings) -> float:
 
 def contact_mechanics(heights: np.ndarray, settings: ContactSettings) -> float:
     """The same by ContactMechanics."""
-    from ContactMechanics import PeriodicFFTElasticHalfSpace
-    from ContactMechanics.Factory import make_system
+    from ContactMechanics import PeriodicFFTElasticHalfSpace  # pyright: ignore[reportMissingImports]  (optional extra)
+    from ContactMechanics.Factory import make_system  # pyright: ignore[reportMissingImports]
     from SurfaceTopography import Topography
 
     size = (settings.length_nm,) * 2
@@ -95,11 +97,28 @@ def contact_mechanics(heights: np.ndarray, settings: ContactSettings) -> float:
 PEERS = {"tamaas": tamaas, "ContactMechanics": contact_mechanics}
 
 
+def one_of_many(number: int) -> float:
+    """Processor time (s) of a cycle at 1024 x 1024, surface included, of draw `number` from Table 1."""
+    start = time.process_time()
+    run_cycle(draw_inputs(number), ContactSettings(), number)
+    return time.process_time() - start
+
+
+def many(cycles: int, processes: int) -> tuple[float, float]:
+    """Wall time (s) of cycles of random draws spread over processes, start-up left out, and processor time of one."""
+    with multiprocessing.get_context("spawn").Pool(processes) as pool:
+        pool.map(one_of_many, range(2 * processes), chunksize=1)
+        start = time.perf_counter()
+        each = pool.map(one_of_many, range(cycles), chunksize=5)
+        return time.perf_counter() - start, statistics.mean(each)
+
+
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--large", action="store_true", help="also 4096 x 4096")
     parser.add_argument("--plain", action="store_true", help="the plain model at 1024 x 1024, too (minutes)")
+    parser.add_argument("--cycles", type=int, default=0, help="also this many cycles on two processes")
     parser.add_argument("--repeats", type=int, default=3, help="timings, of which the median is given")
     options = parser.parse_args()
     row = "{:>6} {:<34} {:>9} {:>9} {:>9}  {}".format
@@ -133,6 +152,10 @@ def main() -> None:
         found = np.concatenate((cycle.closing.repulsive_nN, cycle.opening.repulsive_nN))
         apart = np.abs(forces[:, 0] - found).max() / found.max()
         beside(pixels, "plain NumPy/SciPy, same points, once", seconds, f"forces differ by {apart:.0e}")
+    if options.cycles:
+        wall, each = many(options.cycles, 2)
+        note = f"{each:.3f} s of processor time each; 10,000 would take {wall / options.cycles / 6 * 1e3:.1f} min"
+        beside(1024, f"{options.cycles} draws of Table 1, 2 processes", wall, note)
     print("other codes: one elastic solve at the largest force. They solve the elastic coupling between")
     print("asperities that this model neglects, and have no plastic flow of asperities; no like for like.")
     for name, solve in PEERS.items():

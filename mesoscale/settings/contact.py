@@ -7,13 +7,15 @@ from pydantic import Field
 from mesoscale.settings.base import Settings
 from mesoscale.settings.surface import SurfaceSettings
 
+DRAWS_PER_CHUNK = 50
+
 
 class ContactSettings(Settings):
     """Mesoscale contact model (docs/contact.md)."""
 
     model: Literal["elastic", "nonlinear", "plastic"] = Field(
         default="plastic",
-        description="single asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the surface",
+        description="asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the surface",
         json_schema_extra={"unit": "1"},
     )
     pixels: int = Field(
@@ -167,3 +169,8 @@ class ContactSettings(Settings):
         description="random draws from Table 1 of the stability study, on three surfaces each",
         json_schema_extra={"unit": "1"},
     )
+
+    @property
+    def draw_chunks(self) -> int:
+        """Jobs that the random draws of the stability study are spread over."""
+        return -(-self.study_draws // DRAWS_PER_CHUNK)

@@ -33,11 +33,30 @@ rule study_contact_accuracy:
         "../scripts/study_contact_accuracy.py"
 
 
+rule draw_contacts:
+    message:
+        "close and open random draws of Table 1, chunk {wildcards.draws}"
+    output:
+        f"{RESULTS}/stability/contact_draws/chunk_{{draws}}.csv",
+    log:
+        f"{RESULTS}/logs/draw_contacts_{{draws}}.log",
+    params:
+        settings=settings("contact"),
+    wildcard_constraints:
+        draws="\\d+",
+    threads: 1
+    script:
+        "../scripts/draw_contacts.py"
+
+
 rule study_contact_stability:
     message:
         "study the contact model in stiff and extreme cases"
+    input:
+        draws=expand(rules.draw_contacts.output[0], draws=[f"{k:03d}" for k in range(SCENE.contact.draw_chunks)]),
     output:
-        f"{RESULTS}/stability/contact.csv",
+        table=f"{RESULTS}/stability/contact.csv",
+        draws=f"{RESULTS}/stability/contact_draws.csv",
     log:
         f"{RESULTS}/logs/study_contact_stability.log",
     params:

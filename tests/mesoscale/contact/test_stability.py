@@ -1,0 +1,36 @@
+from mesoscale.contact.draws import COLUMNS, draw_inputs, draw_rows
+from mesoscale.contact.stability import draws_by_grid, extreme_cases, judge, study_grid
+from mesoscale.settings import ContactSettings
+
+SMALL = ContactSettings(pixels=64, length_nm=62.5, max_force_nN=200.0, study_draws=51)
+
+
+def test_draws_are_the_same_whatever_the_chunk():
+    """Draw 50 is the only one of chunk 1; its inputs and its grid follow from its number alone."""
+    rows = list(draw_rows(1, SMALL))
+    assert [(row["draw"], row["seed"], row["pixels"]) for row in rows] == [(50, seed, 32) for seed in (1, 2, 3)]
+    assert all(row["hurst"] == round(draw_inputs(50).hurst, 6) for row in rows)
+    assert set(rows[0]) == set(COLUMNS)
+
+
+def test_no_extreme_load_or_height_is_left_out():
+    names = {case.name for case in extreme_cases(SMALL)}
+    assert {"1e+04 nN", "1e+05 nN", "1e+06 nN", "1e+07 nN", "nm x 1e-6", "nm x 1e6"} <= names
+
+
+def test_a_stiff_case_keeps_all_invariants():
+    cases = {case.name: case for case in extreme_cases(SMALL)}
+    assert judge(cases["E* x 1000"], SMALL)[0] == []
+
+
+def test_a_broken_draw_fails_its_row():
+    draw = {"draw": "7", "seed": "1", "pixels": "64", "steps": "50", "most_sweeps": "9", "wall_s": "0.1"}
+    draw |= {"radius_bound_events": "3", "repeated_steps": "0", "force_miss": "1e-9", "broken": "volume changed"}
+    (row,) = draws_by_grid([draw])
+    assert not row["passed"]
+    assert "draw 7 seed 1: volume changed" in row["detail"]
+
+
+def test_extreme_cases_keep_the_spacing_on_a_smaller_grid():
+    chosen = study_grid(ContactSettings(pixels=1024, length_nm=1000.0))
+    assert (chosen.pixels, chosen.length_nm) == (256, 250.0)
