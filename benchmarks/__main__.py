@@ -9,7 +9,6 @@ import os
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # before any library starts its threads
 
 import importlib
-import multiprocessing
 import resource
 import statistics
 import time
@@ -19,8 +18,8 @@ from typing import Any
 import numpy as np
 from scipy import fft
 
+from benchmarks.many import many
 from mesoscale.contact import Cycle, run_cycle
-from mesoscale.contact.draws import draw_inputs
 from mesoscale.contact.stability import MIDDLE
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
@@ -95,22 +94,6 @@ def contact_mechanics(heights: np.ndarray, settings: ContactSettings) -> float:
 
 
 PEERS = {"tamaas": tamaas, "ContactMechanics": contact_mechanics}
-
-
-def one_of_many(number: int) -> float:
-    """Processor time (s) of a cycle at 1024 x 1024, surface included, of draw `number` from Table 1."""
-    start = time.process_time()
-    run_cycle(draw_inputs(number), ContactSettings(), number)
-    return time.process_time() - start
-
-
-def many(cycles: int, processes: int) -> tuple[float, float]:
-    """Wall time (s) of cycles of random draws spread over processes, start-up left out, and processor time of one."""
-    with multiprocessing.get_context("spawn").Pool(processes) as pool:
-        pool.map(one_of_many, range(2 * processes), chunksize=1)
-        start = time.perf_counter()
-        each = pool.map(one_of_many, range(cycles), chunksize=5)
-        return time.perf_counter() - start, statistics.mean(each)
 
 
 def main() -> None:
