@@ -76,9 +76,7 @@ def fit_size_effect(points: Sequence[Point], glasses: Sequence[Mapping], setting
 
 def _cost(points: Sequence[Point]) -> dict[str, float]:
     """What the runs took, and the share of the Python around LAMMPS in it."""
-    total = {
-        key: sum(float(point[key]) for point in points) for key in ("atom_steps", "lammps_cpu_s", "python_cpu_s")
-    }
+    total = {key: sum(float(point[key]) for point in points) for key in ("atom_steps", "lammps_cpu_s", "python_cpu_s")}
     return {**total, "python_cpu_share": total["python_cpu_s"] / (total["lammps_cpu_s"] + total["python_cpu_s"])}
 
 
