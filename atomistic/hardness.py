@@ -1,7 +1,7 @@
 """Hardness of one closing run: plastic onset, plateau stress, and the reasons to refuse.
 
 Hardness is the mean contact stress of the plateau beyond a *witnessed* onset of plasticity (bonds exchanged
-and a top that stays lower after unloading).  The change of slope (Kim et al. 2013) is reported beside it.
+and a top that stays lower after unloading).
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from scipy.special import bdtrc
 
-from atomistic.kink import find_kink
 from atomistic.runs import geometry
 from atomistic.settings import ClosingSettings, HardnessSettings, YieldSettings
 
@@ -39,11 +38,6 @@ class Hardness:
     onset_p_value: float = float("nan")
     exchanges_after: float = float("nan")
     lowering_nm: float = float("nan")
-    kink_length_nm: float = float("nan")
-    kink_GPa: float = float("nan")
-    kink_lo: float = float("nan")
-    kink_hi: float = float("nan")
-    kink_p_value: float = float("nan")
     drift_meV_atom_ps: float = float("nan")
     warming_K: float = float("nan")
 
@@ -86,12 +80,7 @@ def plastic_onset(witness: Rows, approach_nm: float, settings: YieldSettings) ->
 
 
 def find_hardness(
-    curve: Rows,
-    witness: Rows,
-    cell_area_nm2: float,
-    closing: ClosingSettings,
-    settings: YieldSettings,
-    kink: bool = True,
+    curve: Rows, witness: Rows, cell_area_nm2: float, closing: ClosingSettings, settings: YieldSettings
 ) -> Hardness:
     """Hardness of a closing run.
 
@@ -99,7 +88,6 @@ def find_hardness(
     ----------
     curve, witness : rows of `Closing.curve` and `Closing.witness`.
     cell_area_nm2 : cross-section of the simulation cell.
-    kink : also look for the change of slope (most of the time this takes).
     """
     column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
     length, stress, travel = (
@@ -119,8 +107,6 @@ def find_hardness(
         "warming_K": warming,
         "exchanges_before": onset.background,
     }
-    if kink:
-        facts |= _kink(length, stress, fraction, settings)
     if drift > settings.max_drift_meV_atom_ps:
         return Hardness(f"rejected: energy drifts by {drift:.2g} meV per atom and ps", **facts)
     if warming > settings.max_warming_K:
@@ -190,21 +176,6 @@ def _first_stretch(mask: np.ndarray) -> np.ndarray:
     start = int(np.argmax(mask))
     end = start + int(np.argmin(np.append(mask[start:], False)))
     return np.isin(np.arange(len(mask)), np.arange(start, end))
-
-
-def _kink(length: np.ndarray, stress: np.ndarray, fraction: np.ndarray, settings: YieldSettings) -> dict[str, float]:
-    """The paper's change of slope, in the window of lengths in which stress is judged."""
-    use = np.isfinite(stress) & (length >= settings.min_length_nm) & (fraction <= settings.max_area_fraction)
-    kink = find_kink(length[use], stress[use], settings.min_points)
-    if kink is None:
-        return {}
-    return {
-        "kink_length_nm": kink.x,
-        "kink_GPa": kink.y,
-        "kink_lo": kink.low,
-        "kink_hi": kink.high,
-        "kink_p_value": kink.p_value,
-    }
 
 
 def _interval_of_mean(values: np.ndarray, block: int = 4, samples: int = 2000) -> tuple[float, float]:

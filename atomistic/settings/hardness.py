@@ -128,8 +128,9 @@ class ClosingSettings(Settings):
     depth_over_amplitude: float = Field(
         default=1.5,
         gt=0,
-        le=2,
-        description="travel below the top, in amplitudes (in radii of a spherical counterface)",
+        le=4,
+        description="travel below the top, in amplitudes (in radii of a spherical counterface); "
+        "two bodies that yield share it",
         json_schema_extra={"unit": "1"},
     )
     unload_nm: float = Field(
@@ -256,11 +257,11 @@ class YieldSettings(Settings):
         default=4,
         ge=3,
         le=100,
-        description="averages beyond the onset (and each side of a kink)",
+        description="averages beyond the onset",
         json_schema_extra={"unit": "1"},
     )
     max_exponent: float = Field(
-        default=0.5,
+        default=0.4,
         gt=0,
         le=2,
         description="largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic",

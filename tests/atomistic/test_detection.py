@@ -1,4 +1,4 @@
-"""The error rates are those of the detectors: no noise, no error; more noise, not fewer."""
+"""The error rates are those of the detector, and within their bounds at the noise of the runs of scene reduced."""
 
 import numpy as np
 import pytest
@@ -42,11 +42,10 @@ def test_a_curve_too_short_has_no_noise():
     assert noise_of(run(0.05)[0][:25], SETTINGS, 64.0) is None
 
 
-def test_rates_at_small_noise(monkeypatch):
-    monkeypatch.setattr(detection, "TRIALS", 30)
-    curve, witness = run(0.01, background=2)
+@pytest.mark.parametrize(("noise", "background"), [(0.01, 2), (0.057, 36)])
+def test_rates_keep_their_bounds(noise, background, monkeypatch):
+    monkeypatch.setattr(detection, "TRIALS", 100)
+    curve, witness = run(noise, background=background, seed=2)
     rows = detection_rows([curve], [witness], [64.0], SETTINGS)
     assert {row["knob"] for row in rows} == {"noise, median of the runs", "noise, largest of the runs"}
-    rate = {row["case"]: row["error"] for row in rows}
-    for case in ("elastic", "elastic_bent", "plateau", "plateau_without_broken_bonds", "kink_on_a_line"):
-        assert rate[case] <= 0.1, case
+    assert [row["case"] for row in rows if not row["passed"]] == []
