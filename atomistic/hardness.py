@@ -16,6 +16,11 @@ from atomistic.settings import ClosingSettings, HardnessSettings, YieldSettings
 
 Rows = Sequence[Mapping[str, float]]
 
+UNLOADED = (  # of a run with dynamic unloading: what stays, beside the snapshot relaxed before it
+    "snapshot_exchanged_bonds", "unloaded_exchanged_bonds", "snapshot_lowering_nm", "unloaded_lowering_nm",
+    "unloaded_force_nN",
+)  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Hardness:
@@ -166,6 +171,7 @@ def point(curve: Rows, witness: Rows, facts: Mapping[str, Any], settings: Hardne
         "restart_steps": facts["restart_steps"],
         "lammps_cpu_s": facts["lammps_cpu_s"],
         "python_cpu_s": facts["python_cpu_s"],
+        **{key: facts[key] for key in UNLOADED if key in facts},
     }
 
 

@@ -122,3 +122,6 @@ def test_a_point_names_what_was_pressed_and_what_it_cost():
     assert row["geometry"] == "asperity-oxide TiO2 repulsive"
     assert row["status"] == "yield"
     assert row["atom_steps"] == 100_000
+    assert "unloaded_exchanged_bonds" not in row
+    again = point(curve(plateau), witness(), {**facts, "unloaded_exchanged_bonds": 61}, settings)
+    assert again["unloaded_exchanged_bonds"] == 61

@@ -19,4 +19,4 @@ with job(snakemake) as run:
     ):
         row = point(read_numbers(curve), read_numbers(witness), read_json(summary), settings)
         rows.append({**label, **row})
-    write_csv(snakemake.output.points, rows)
+    write_csv(snakemake.output.points, rows, list(dict.fromkeys(key for row in rows for key in row)))
