@@ -6,8 +6,8 @@ the number of grid points jumps along E(V) and so does the energy.
 """
 
 import hashlib
-from collections.abc import MutableMapping
-from typing import Any
+from collections.abc import MutableMapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from ase import Atoms
@@ -23,6 +23,17 @@ NUMERICS = ("cached-grid", "multigrid", "fftdf")
 
 Store = MutableMapping[str, dict[str, np.ndarray]]
 """Finished calculations by key; the caller decides whether it lives in memory or on disk."""
+
+
+HISTORY = 5  # former solutions a start is extrapolated from
+GUESS_DAMPING = 1e-7  # of the weights' normal equations
+
+
+class Solution(NamedTuple):
+    """What the start of the next calculation needs of a finished one: overlap of the basis, occupied orbitals."""
+
+    overlap: np.ndarray
+    orbitals: np.ndarray
 
 
 class ScfNotConverged(CalculationFailed):
@@ -70,9 +81,9 @@ class PyscfGamma(Calculator):
     numerics : "cached-grid" (atomistic.gamma_scf), PySCF's own "multigrid" or "fftdf"
     store : finished calculations; one found there is not repeated
 
-    Each calculation starts from the occupied orbitals of the last one, made orthonormal in the new cell (Löwdin),
-    which halves the number of cycles.  The starting orbitals are part of the key in `store`, so a series that is
-    interrupted and replayed gives the same numbers to the last bit.
+    Each calculation starts from the occupied orbitals of the last ones, extrapolated to the new geometry
+    (`extrapolated_orbitals`), which saves more than half of the cycles.  They are part of the key in `store`, so a
+    series that is interrupted and replayed gives the same numbers to the last bit.
     """
 
     parameters: Any  # a dictionary with attributes (ASE)
@@ -93,7 +104,7 @@ class PyscfGamma(Calculator):
         if self.parameters.numerics not in NUMERICS:
             raise ValueError(f"numerics {self.parameters.numerics!r}; accepted: {', '.join(NUMERICS)}")
         self.store: Store = {} if store is None else store
-        self.orbitals: np.ndarray | None = None  # occupied, (basis functions, occupied)
+        self.history: list[Solution] = []  # the last ones that converged, oldest first
         self.scf_runs = 0  # calculations really done, not taken from the store
         self.scf_cycles = 0
         self.gap_eV = float("nan")  # of the last calculation
@@ -111,9 +122,10 @@ class PyscfGamma(Calculator):
         found = self.store[key]
         self.scf_cycles = int(found["cycles"])
         self.gap_eV = float(found["gap_Ha"]) * Hartree
-        self.orbitals = found["orbitals"] if bool(found["converged"]) else None
         if not bool(found["converged"]):
+            self.history = []
             raise ScfNotConverged(f"SCF not converged in {p.max_cycles} cycles (gap {self.gap_eV:.2f} eV)")
+        self.history = [*self.history, Solution(found["overlap"], found["orbitals"])][-HISTORY:]
         energy = float(found["energy_Ha"]) * Hartree
         self.results: dict[str, Any] = {"energy": energy, "free_energy": energy}
         if wanted == "forces":
@@ -126,8 +138,9 @@ class PyscfGamma(Calculator):
         assert self.atoms is not None
         digest = hashlib.sha256(repr((sorted(self.parameters.items()), tuple(mesh), wanted)).encode())
         digest.update(" ".join(self.atoms.get_chemical_symbols()).encode())
-        for array in (self.atoms.cell.array, self.atoms.positions, self.orbitals):
-            digest.update(b"none" if array is None else np.ascontiguousarray(array).tobytes())
+        before = [solution.orbitals for solution in self.history]
+        for array in (self.atoms.cell.array, self.atoms.positions, *before):
+            digest.update(np.ascontiguousarray(array).tobytes())
         return digest.hexdigest()[:32]
 
     def _solve(self, mesh, forces: bool) -> dict[str, np.ndarray]:
@@ -155,7 +168,9 @@ class PyscfGamma(Calculator):
             mf.get_jk = lambda cell=None, dm=None, hermi=1, kpt=None, kpts_band=None, with_j=True, with_k=False, **_: (
                 fft(dm, hermi, kpt, kpts_band, with_j, False)
             )
-        energy = mf.kernel(self._guess(mf))
+        overlap = np.asarray(mf.get_ovlp())
+        mf.get_ovlp = lambda *_: overlap  # asked for again and again
+        energy = mf.kernel(self._guess(mf.cell, overlap))
         converged = bool(mf.converged) and bool(np.isfinite(energy))
         filled = np.asarray(mf.mo_occ) > 0
         levels = np.asarray(mf.mo_energy)
@@ -165,6 +180,7 @@ class PyscfGamma(Calculator):
             "converged": np.array(converged),
             "cycles": np.array(mf.cycles),
             "orbitals": occupied,
+            "overlap": overlap,
             "gap_Ha": np.array(levels[~filled].min() - levels[filled].max() if not filled.all() else np.inf),
         }
         if forces and converged:
@@ -176,15 +192,36 @@ class PyscfGamma(Calculator):
                 raise NotImplementedError("forces with numerics 'fftdf'")
         return found
 
-    def _guess(self, mf) -> np.ndarray | None:
-        """Density matrix of the last orbitals, orthonormalised in this cell; None if there are none that fit."""
-        if self.orbitals is None or self.orbitals.shape != (mf.cell.nao, mf.cell.nelectron // 2):
-            return None
+    def _guess(self, cell, overlap: np.ndarray) -> np.ndarray | None:
+        """Density matrix of extrapolated orbitals; None if there are none that fit."""
         from pyscf import lib
 
-        c = self.orbitals
-        values, vectors = np.linalg.eigh(c.T @ mf.get_ovlp() @ c)
-        if values.min() < 1e-4:
-            return None
-        c = c @ (vectors / np.sqrt(values)) @ vectors.T
-        return lib.tag_array(2 * c @ c.T, mo_coeff=c, mo_occ=np.full(c.shape[1], 2.0))
+        shape = (cell.nao, cell.nelectron // 2)
+        c = extrapolated_orbitals([old for old in self.history if old.orbitals.shape == shape], overlap)
+        return None if c is None else lib.tag_array(2 * c @ c.T, mo_coeff=c, mo_occ=np.full(c.shape[1], 2.0))
+
+
+def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> np.ndarray | None:
+    """Occupied orbitals where the basis functions overlap as in `overlap`, orthonormal there; None without a history.
+
+    The overlap describes the geometry: the combination of former ones, with weights that add to one, which comes
+    nearest to it also combines the former orbitals, once each set is rotated onto the last one.  Along a line this is
+    polynomial extrapolation; after Polack et al., J. Chem. Theory Comput. 17, 6965 (2021).
+    """
+    if not history:
+        return None
+    *older, last = history
+    c = last.orbitals
+    if older:
+        known = np.stack([(old.overlap - last.overlap).ravel() for old in older])
+        gram = known @ known.T
+        gram += GUESS_DAMPING * np.trace(gram) * np.eye(len(older))
+        weights = np.linalg.lstsq(gram, known @ (overlap - last.overlap).ravel())[0]  # the same geometry twice: none
+        c = (1 - weights.sum()) * c
+        for weight, old in zip(weights, older, strict=True):
+            left, _, right = np.linalg.svd(old.orbitals.T @ old.overlap @ last.orbitals)
+            c = c + weight * old.orbitals @ (left @ right)
+    values, vectors = np.linalg.eigh(c.T @ overlap @ c)
+    if values.min() < 1e-4:
+        return None
+    return c @ (vectors / np.sqrt(values)) @ vectors.T

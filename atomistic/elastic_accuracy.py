@@ -18,10 +18,11 @@ COLUMNS = (
 )  # fmt: skip
 BASE: dict[str, Any] = {"basis": "gth-dzvp-molopt-sr", "cutoff_Ha": 60.0, "tolerance_Ha": 1e-6, "max_cycles": 40}
 STRAINS = (-0.03, -0.015, 0.0, 0.015, 0.03)
-DENSE = tuple(np.linspace(-0.05, 0.05, 11).round(3).tolist())
-CUTOFFS_HA = (40.0, 60.0, 80.0, 120.0)
+DENSE = tuple(np.linspace(-0.06, 0.06, 13).round(3).tolist())
+CUTOFFS_HA = (40.0, 60.0, 80.0, 100.0, 140.0)
 TOLERANCES_HA = (1e-3, 1e-4, 1e-6, 1e-8)
-RANGES = (0.01, 0.02, 0.03, 0.04, 0.05)
+RANGES = (0.02, 0.04, 0.06)  # five of the dense strains each
+COUNTS = (5, 7, 13)  # over the whole range
 METRIC = "relative error of B"
 
 
@@ -107,7 +108,7 @@ def accuracy_rows(cell: Atoms, double_cell: Atoms, progress: Progress | None = N
         chosen = sorted(points, key=lambda p: min(abs(p.strain - reach * x) for x in (-1, -0.5, 0, 0.5, 1)))[:5]
         share = {**cost, "wall_s": round(sum(p.wall_s for p in chosen), 2), "cpu_s": None}
         yield row("strain_range", reach, modulus(chosen), reference, f"{len(DENSE)} strains", share)
-    for count in (5, 7, 11):
+    for count in COUNTS:
         positions = np.linspace(0, len(DENSE) - 1, count).round().astype(int)
         chosen = [points[k] for k in positions]
         share = {**cost, "wall_s": round(sum(p.wall_s for p in chosen), 2), "cpu_s": None}

@@ -65,8 +65,8 @@ def unconverged(cell: Atoms) -> Verdict:
 
 
 def minimum_outside(cell: Atoms) -> Verdict:
-    """A scan of a stretched cell only: V0 lies outside and the fit is flagged."""
-    fit = _scan(cell, (0.06, 0.07, 0.08, 0.09, 0.1), basis=SMALL)
+    """A scan of a compressed cell only: V0 lies outside and the fit is flagged."""
+    fit = _scan(cell, (-0.1, -0.09, -0.08, -0.07, -0.06), basis=SMALL)
     return "outside" in fit["flags"] or "no minimum" in fit["flags"], fit["flags"] or "not flagged"
 
 

@@ -14,6 +14,7 @@ Because gradient and divergence are each other's negative adjoints on the grid, 
 discrete energy, and so are the forces.  Atomic units throughout.
 """
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -107,31 +108,32 @@ class CachedGrid(MultiGridNumInt2):
             rho[start : start + BLOCK] = np.einsum("ig,ig,i->g", waves, waves, sign)
         return rho
 
+    @cached_property
+    def overlap(self) -> np.ndarray:
+        """Σ_r w φ_µ φ_ν, shape (orbitals, orbitals): the overlap as the grid sees it."""
+        return self._weighted_products(np.full(self.points, self.weight))
+
     def matrix(self, potential: np.ndarray) -> np.ndarray:
         """Σ_r w φ_µ v φ_ν, shape (orbitals, orbitals).
 
-        Grid points of either sign of v make a symmetric rank-k update each: half the work of a product.  Products
-        of a block run in single precision and are summed in double: the energy is stationary in the orbitals, so
-        it feels this error (1e-6 hartree per element) only squared.
+        As v_max S − Σ_r w φ_µ (v_max − v) φ_ν, with the grid's overlap S: all weights have one sign, and a symmetric
+        rank-k update does half the work of a product.  Products of a block run in single precision and are summed in
+        double: the energy is stationary in the orbitals and feels this error (1e-6 hartree per element) only squared.
         """
+        top = float(potential.max())
+        return top * self.overlap - self._weighted_products(self.weight * (top - potential))
+
+    def _weighted_products(self, weights: np.ndarray) -> np.ndarray:
+        """Σ_r φ_µ weight φ_ν for weights ≥ 0."""
         n = len(self.orbitals)
         total = np.zeros((n, n), order="F")
-        root = np.sqrt(self.weight * abs(potential)).astype(np.float32)
-        negative = potential < 0
-        major = -1.0 if 2 * np.count_nonzero(negative) > self.points else 1.0
-        rest = np.flatnonzero(~negative if major < 0 else negative)
-        root_major = root.copy()
-        root_major[rest] = 0.0
+        root = np.sqrt(weights).astype(np.float32)
         block = np.empty((n, BLOCK), dtype=np.float32)
         for start in range(0, self.points, BLOCK):
             here = slice(start, min(start + BLOCK, self.points))
             part = block[:, : here.stop - start]
-            np.multiply(self.orbitals[:, here], root_major[here], out=part, casting="same_kind")
-            total += major * ssyrk(1.0, part.T, trans=1)
-        for start in range(0, len(rest), BLOCK):
-            points = rest[start : start + BLOCK]
-            part = self.orbitals[:, points].astype(np.float32) * root[points]
-            total -= major * ssyrk(1.0, part.T, trans=1)
+            np.multiply(self.orbitals[:, here], root[here], out=part, casting="same_kind")
+            total += ssyrk(1.0, part.T, trans=1)
         return np.triu(total) + np.triu(total, 1).T
 
     def exchange_correlation(self, xc_code: str, rho: np.ndarray) -> tuple[float, np.ndarray]:

@@ -1,7 +1,8 @@
 """Relaxation of the ions of a glass cell by density functional theory; eV and Å."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from ase import Atoms
@@ -36,22 +37,57 @@ def bond_hessian(atoms: Atoms) -> np.ndarray:
     return hessian
 
 
-def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> tuple[int, float, bool]:
-    """Quasi-Newton relaxation of the ions (BFGS from springs on the bonds), cell fixed.
+class Rest(NamedTuple):
+    """Where a relaxation of ions ended.
 
-    With ASE's own start, a multiple of the unit matrix, a cell takes about three times as many steps.
+    Attributes
+    ----------
+    steps : ionic steps
+    force_left_eV_A, converged : largest force left, and whether it is below the goal
+    hessian_eV_A2 : (3n, 3n), as the optimiser has it in the end
+    depth_eV : how far the minimum lies below, by that Hessian and the forces left
+    """
 
-    Returns
-    -------
-    steps, largest remaining force (eV/Å), whether it is below `force_eV_A`
+    steps: int
+    force_left_eV_A: float
+    converged: bool
+    hessian_eV_A2: np.ndarray
+    depth_eV: float
+
+
+def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndarray | None = None) -> Rest:
+    """Quasi-Newton relaxation of the ions (BFGS), cell fixed.
+
+    Parameters
+    ----------
+    hessian : to start from, eV/Å²; None is a spring on every bond.  With ASE's own start, a multiple of the unit
+        matrix, a cell takes about three times as many steps
     """
     from ase.optimize import BFGS
 
     with BFGS(atoms, logfile=None, maxstep=0.15) as optimizer:
-        optimizer.H0 = bond_hessian(atoms)
+        optimizer.H0 = bond_hessian(atoms) if hessian is None else hessian
         converged = bool(optimizer.run(fmax=force_eV_A, steps=max_steps))
-        left = float(np.linalg.norm(atoms.get_forces(), axis=1).max())
-        return int(optimizer.nsteps), left, converged
+        forces = atoms.get_forces()
+        final = np.asarray(optimizer.H0)
+        if optimizer.state is not None:
+            optimizer.update(atoms.positions.ravel(), forces.ravel(), optimizer.pos0, optimizer.forces0)
+            final = np.asarray(optimizer.H)
+        curvature, modes = np.linalg.eigh(final)
+        depth = 0.5 * float(np.sum((modes.T @ forces.ravel()) ** 2 / np.maximum(abs(curvature), FLOOR_EV_A2)))
+        return Rest(int(optimizer.nsteps), float(np.linalg.norm(forces, axis=1).max()), converged, final, depth)
+
+
+def extrapolated_ions(rested: Mapping[float, Atoms], strain: float) -> Atoms:
+    """Start of a relaxation at `strain`: along the line through the two nearest strains where ions came to rest."""
+    first, *others = sorted(rested, key=lambda known: abs(known - strain))
+    start = strained(rested[first], (1 + strain) / (1 + first) - 1)
+    if others:
+        moved = rested[first].get_scaled_positions(wrap=False) - rested[others[0]].get_scaled_positions(wrap=False)
+        start.set_scaled_positions(
+            start.get_scaled_positions(wrap=False) + moved * (strain - first) / (first - others[0])
+        )
+    return start
 
 
 @dataclass(frozen=True)
@@ -94,10 +130,10 @@ def relax_glass(
     try:
         current.get_forces()  # asked for first, so that the energy comes from the same calculation
         before = current.get_potential_energy()
-        steps, left, converged = relax_ions(current, settings.force_eV_A, settings.max_steps)
+        rest = relax_ions(current, settings.force_eV_A, settings.max_steps)
         gained = float(before - current.get_potential_energy())
     except CalculationFailed as error:
         # the E(V) scan of this structure will meet the same trouble and name the strains; the others go on
         return strained(atoms, 0.0), replace(UNTOUCHED, failure=f"relaxation: {error}")
     gap = float(getattr(calculator, "gap_eV", np.nan))
-    return strained(current, 0.0), Relaxation(steps, left, converged, gained, gap)
+    return strained(current, 0.0), Relaxation(rest.steps, rest.force_left_eV_A, rest.converged, gained, gap)

@@ -134,6 +134,13 @@ class ElasticSettings(Settings):
     lda_structures: int = Field(
         default=4, ge=0, le=1000, description="glasses also computed with LDA", json_schema_extra={"unit": "1"}
     )
+    lda_centre: float = Field(
+        default=-0.012,
+        gt=-0.1,
+        lt=0.1,
+        description="strain about which LDA is scanned: its volume is some 4 % smaller than that of GGA",
+        json_schema_extra={"unit": "1"},
+    )
     relaxed_structures: int = Field(
         default=2, ge=0, le=1000, description="glasses also computed with ions relaxed at every strain",
         json_schema_extra={"unit": "1"},

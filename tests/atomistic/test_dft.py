@@ -7,7 +7,7 @@ import pytest
 from ase.build import bulk
 
 from atomistic.collocation import atom_orbitals, collocate
-from atomistic.dft import FUNCTIONALS, PyscfGamma, ScfNotConverged, build_cell
+from atomistic.dft import FUNCTIONALS, PyscfGamma, ScfNotConverged, Solution, build_cell, extrapolated_orbitals
 
 MESH = (24, 24, 24)
 
@@ -81,3 +81,24 @@ def test_unconverged_scf_is_an_error_not_an_energy():
     atoms.calc = PyscfGamma(basis="gth-szv", mesh=MESH, max_cycles=1)
     with pytest.raises(ScfNotConverged, match="not converged in 1 cycles"):
         atoms.get_potential_energy()
+
+
+def test_orbitals_along_a_line_are_extrapolated_as_a_polynomial():
+    """Rotating orbitals in a basis whose overlap changes: the start comes nearer with every former point."""
+
+    def solution(t):
+        overlap = np.eye(6) + 0.2 * np.outer(*2 * [np.cos(np.arange(6) + t)])
+        raw = np.array([[np.cos(t * k / 2), np.sin(t * (5 - k) / 2 + k)] for k in range(6)])
+        values, vectors = np.linalg.eigh(raw.T @ overlap @ raw)
+        return Solution(overlap, raw @ (vectors / np.sqrt(values)) @ vectors.T)
+
+    goal = solution(0.4)
+    density = goal.orbitals @ goal.orbitals.T
+    errors = []
+    for count in (1, 2, 3):
+        start = extrapolated_orbitals([solution(t) for t in (0.25, 0.3, 0.35)[-count:]], goal.overlap)
+        assert start is not None
+        assert np.allclose(start.T @ goal.overlap @ start, np.eye(2))
+        errors.append(np.linalg.norm(start @ start.T - density))
+    assert errors[0] > 2 * errors[1] > 4 * errors[2]
+    assert extrapolated_orbitals([], goal.overlap) is None

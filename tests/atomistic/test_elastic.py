@@ -17,6 +17,7 @@ from atomistic.elastic import (
     variance_shares,
 )  # fmt: skip
 from atomistic.errors import InputError
+from atomistic.relaxation import Rest
 from atomistic.settings import DftSettings, ElasticSettings
 
 STRAINS = (-0.03, -0.015, 0.0, 0.015, 0.03)
@@ -99,14 +100,20 @@ def test_rejected_glass_costs_nothing_and_carries_its_reason():
     assert fit["flags"].count("6 atoms without their valence") == 1
 
 
-def test_relaxed_scan_starts_from_the_nearest_strain():
-    """A relaxation that does nothing but mark the cell: later strains carry the mark, scaled."""
+def test_relaxed_scan_starts_on_the_line_through_its_neighbours():
+    """Ions whose rest moves along with the strain: from the third strain on they start where they will rest."""
 
-    def mark(trial):
-        trial.positions[0] += 0.01 * trial.cell.array[0]
-        seen.append(trial.get_scaled_positions()[0])
+    def settle(trial, hessian):
+        started.append(trial.get_scaled_positions()[0, 0])
+        hessians.append(hessian)
+        strain = trial.cell.array[0, 0] / atoms.cell.array[0, 0] - 1
+        trial.positions[0, 0] = (0.1 + strain) * trial.cell.array[0, 0]
+        return Rest(1, 0.05, True, np.eye(12) * len(hessians), 0.002)
 
     atoms = bulk("Cu", cubic=True)
-    seen = []
-    scan_volumes(atoms, EMT(), STRAINS, relax=mark)
-    assert [round(float(s[0]), 6) for s in seen] == [0.01, 0.02, 0.02, 0.03, 0.03]
+    started, hessians = [], []
+    points = scan_volumes(atoms, EMT(), STRAINS, relax=settle)
+    assert started == pytest.approx([0.0, 0.1, 0.085, 0.13, 0.07])
+    assert hessians[0] is None
+    assert [h[0, 0] for h in hessians[1:]] == [1, 2, 3, 4]  # each from the Hessian of the one before
+    assert all("0.05 eV/A left, minimum 2.0 meV below" in point.detail for point in points)

@@ -32,10 +32,18 @@ def test_springs_hold_every_atom_and_feel_no_translation_but_the_floor(shaken):
 
 def test_ions_come_to_rest_in_few_steps(shaken):
     assert np.linalg.norm(shaken.get_forces(), axis=1).max() > 2
-    steps, left, converged = relax_ions(shaken, 0.2, 15)
-    assert converged
-    assert left < 0.2
-    assert steps <= 10
+    rest = relax_ions(shaken, 0.2, 15)
+    assert rest.converged
+    assert rest.force_left_eV_A < 0.2
+    assert rest.steps <= 10
+
+
+def test_forces_left_tell_how_far_below_the_minimum_is(shaken):
+    rest = relax_ions(shaken, 0.3, 15)
+    above = shaken.get_potential_energy()
+    again = relax_ions(shaken, 1e-4, 100, rest.hessian_eV_A2)
+    assert above - shaken.get_potential_energy() == pytest.approx(rest.depth_eV, rel=0.3)
+    assert again.converged
 
 
 def test_a_failed_calculation_leaves_the_glass_as_it_was_and_says_why(shaken):

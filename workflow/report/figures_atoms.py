@@ -1,5 +1,7 @@
 """Figures of the atomistic stages: hardness and elasticity."""
 
+from itertools import cycle
+
 import numpy as np
 
 from workflow.report.available import Results, Row, column, number
@@ -144,18 +146,22 @@ def elastic_distribution(results: Results) -> str | None:
     names = sorted({(row["xc"], row.get("ions", "")) for row in rows})
     samples = results.h5("elastic/e_star.h5")[0] if results.has("elastic/e_star.h5") else {}
     flat = {name: values for group in samples.values() for name, values in group.items()}
+    glasses = {*summary.get("structures_used", []), *(kept["structure"] for kept in summary.get("kept_out", []))}
+    trusted = [row for row in rows if not row.get("flags") and np.isfinite(number(row.get("B_GPa")))]
 
     def plot(axis, other):
-        every = column(rows, "B_GPa")
-        every = every[np.isfinite(every)]
+        every = column(trusted, "B_GPa")
         bins = np.linspace(every.min() - 5, every.max() + 5, 12) if every.size else np.linspace(0, 1, 2)
-        colors = {name: SERIES[i % len(SERIES)] for i, name in enumerate(names)}
-        for xc, ions in names:
-            part = column([row for row in rows if (row["xc"], row.get("ions", "")) == (xc, ions)], "B_GPa")
+        for (xc, ions), color in zip(names, cycle(SERIES), strict=False):
+            kind = [row for row in trusted if (row["xc"], row.get("ions", "")) == (xc, ions)]
             label = f"{xc.upper()}, {ions} ions" if ions else xc.upper()
-            part = part[np.isfinite(part)]
+            part = column([row for row in kind if row["structure"] in glasses], "B_GPa")
             if part.size:
-                axis.hist(part, bins=bins, color=colors[xc, ions], alpha=0.5, label=label, linewidth=0)
+                axis.hist(part, bins=bins, color=color, alpha=0.5, label=label, linewidth=0)
+            for row in kind:
+                if row["structure"] not in glasses:
+                    crystal = f"{row['structure']} crystal, {xc.upper()}"
+                    axis.axvline(number(row["B_GPa"]), color=color, linestyle="--", label=crystal)
         axis.set(xlabel="bulk modulus B (GPa)", ylabel="structures")
         axis.legend(fontsize=8.5)
         mean, std = number(summary.get("mean_GPa")), number(summary.get("std_GPa"))

@@ -75,7 +75,7 @@ def elastic(results: Results) -> Section:
     )
     section.add(
         atoms.elastic_distribution(results),
-        "Left: bulk moduli of the structures. Right: the modulus E* of the contact, variability and "
+        "Left: bulk moduli of the glasses; dashed: a crystal. Right: the modulus E* of the contact, variability and "
         "model-form error included.",
         "Figure 5",
         wide=True,
@@ -96,6 +96,7 @@ def elastic(results: Results) -> Section:
     ]
     header = ("structure", "functional", "ions", "B (GPa)", "B′", "V₀ (Å³)", "flags")
     section.blocks.append(Table("Equation of state of every structure", header, lines))
+    section.notes += summary.get("notes", [])
     section.files += ["elastic/points.csv", "elastic/bulk_moduli.csv", "elastic/e_star.json"]
     return section
 

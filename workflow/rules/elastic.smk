@@ -115,7 +115,7 @@ rule scan_volumes:
     log:
         f"{RESULTS}/logs/scan_volumes_{{structure}}_{{xc}}_{{ions}}.log",
     params:
-        settings=elastic_settings("strains", "relaxed_force_eV_A", "relaxation", "dft"),
+        settings=elastic_settings("strains", "lda_centre", "relaxed_force_eV_A", "relaxation", "dft"),
         store=f"{RESULTS}/work/scf/{{structure}}_{{xc}}_{{ions}}",
     priority: 80
     script:

@@ -4,7 +4,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from atomistic.elastic import make_calculator, rejected_points, scan_volumes
-from atomistic.relaxation import relax_ions
+from atomistic.relaxation import relax_ions, strained
 from atomistic.settings import DftSettings, RelaxationSettings
 from workflow.job import job
 from workflow.results import read_json, write_csv
@@ -19,11 +19,13 @@ with job(snakemake) as run:
         dft = relaxation.applied_to(dft)
     store = ScfStore(Path(snakemake.params.store))
     atoms = read_structure(snakemake.input.structure)
+    if snakemake.wildcards.xc == "LDA":
+        atoms = strained(atoms, settings["lda_centre"])
     largest = atoms.cell.array * (1 + max(settings["strains"]))
     calculator = make_calculator(dft, snakemake.wildcards.xc, largest, store)
 
-    def relax(trial):
-        relax_ions(trial, settings["relaxed_force_eV_A"], relaxation.max_steps)
+    def relax(trial, hessian):
+        return relax_ions(trial, settings["relaxed_force_eV_A"], relaxation.max_steps, hessian)
 
     gate = read_json(snakemake.input.report)["gate"] if snakemake.input.get("report") else {"passed": True}
     if gate["passed"]:
