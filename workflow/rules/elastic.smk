@@ -86,6 +86,7 @@ rule relax_amorphous:
     output:
         structure=f"{RESULTS}/elastic/structures/{{amorphous}}.xyz",
         report=f"{RESULTS}/elastic/structures/{{amorphous}}.json",
+        orbitals=f"{RESULTS}/elastic/structures/{{amorphous}}.h5",
     log:
         f"{RESULTS}/logs/relax_amorphous_{{amorphous}}.log",
     params:
@@ -96,18 +97,19 @@ rule relax_amorphous:
         "../scripts/relax_amorphous.py"
 
 
-def report_of_glass(wildcards):
-    """Verdict on a glass; a crystal needs none."""
+def relaxed_glass(wildcards):
+    """Verdict on a glass, and its orbitals to start from; a crystal has neither."""
     if wildcards.structure in CRYSTALS:
         return {}
-    return {"report": f"{RESULTS}/elastic/structures/{wildcards.structure}.json"}
+    stem = f"{RESULTS}/elastic/structures/{wildcards.structure}"
+    return {"report": f"{stem}.json", "orbitals": f"{stem}.h5"}
 
 
 rule scan_volumes:
     message:
         "E(V) of {wildcards.structure}, {wildcards.xc}, ions {wildcards.ions}"
     input:
-        unpack(report_of_glass),
+        unpack(relaxed_glass),
         structure=f"{RESULTS}/elastic/structures/{{structure}}.xyz",
         material=MATERIAL,
     output:

@@ -1,4 +1,4 @@
-"""Relax one amorphous cell by DFT.  In: elastic/quenched/NAME.xyz.  Out: elastic/structures/NAME.xyz, NAME.json."""
+"""Relax one amorphous cell by DFT.  In: elastic/quenched/NAME.xyz.  Out: elastic/structures/NAME.{xyz,json,h5}."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -11,7 +11,7 @@ from atomistic.settings import DftSettings, RelaxationSettings
 from atomistic.structures import examine
 from workflow.job import job
 from workflow.results import write_json, write_text
-from workflow.structure_files import ScfStore, read_structure, structure_text
+from workflow.structure_files import ScfStore, read_structure, structure_text, write_orbitals
 
 with job(snakemake) as run:
     material = yaml.safe_load(Path(snakemake.input.material).read_text(encoding="utf-8"))
@@ -20,6 +20,7 @@ with job(snakemake) as run:
     store = ScfStore(Path(snakemake.params.store))
     quenched = read_structure(snakemake.input.structure)
     verdict = examine(quenched, material["glass"], perfect=True)
+    calculator = None
     if verdict.passed:
         calculator = make_calculator(relaxation.applied_to(dft), "GGA", quenched.cell.array * 1.02, store)
         atoms, done = relax_glass(quenched, calculator, relaxation, progress=run.progress)
@@ -39,5 +40,6 @@ with job(snakemake) as run:
         "gate": {"passed": not reasons, "reasons": reasons},
     }
     write_text(snakemake.output.structure, structure_text(atoms))
+    write_orbitals(snakemake.output.orbitals, calculator, run.provenance)
     write_json(snakemake.output.report, report, run.provenance)
     store.remove()

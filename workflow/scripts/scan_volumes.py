@@ -8,7 +8,7 @@ from atomistic.relaxation import relax_ions, strained
 from atomistic.settings import DftSettings, RelaxationSettings
 from workflow.job import job
 from workflow.results import read_json, write_csv
-from workflow.structure_files import ScfStore, read_structure
+from workflow.structure_files import ScfStore, read_structure, start_from
 
 with job(snakemake) as run:
     settings = snakemake.params.settings
@@ -29,6 +29,8 @@ with job(snakemake) as run:
 
     gate = read_json(snakemake.input.report)["gate"] if snakemake.input.get("report") else {"passed": True}
     if gate["passed"]:
+        if snakemake.input.get("orbitals"):
+            start_from(calculator, snakemake.input.orbitals)
         points = scan_volumes(atoms, calculator, settings["strains"], relax if relaxed else None, run.progress)
     else:
         points = rejected_points(atoms, settings["strains"], "; ".join(gate["reasons"]))
