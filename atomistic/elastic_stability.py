@@ -20,6 +20,7 @@ Verdict = tuple[bool, str]
 COLUMNS = ("stage", "case", "description", "checks", "passed", "detail", "wall_s")
 CUTOFF_HA = 50.0
 SMALL = "gth-szv-molopt-sr"
+SMALL_STRAIN = 0.06  # of the experimental cell: about where that basis has its minimum
 MAX_WIDE = 0.03  # of B: what five more per cent of strain may change
 
 
@@ -34,6 +35,7 @@ def _scan(atoms: Atoms, strains, xc: str = "GGA", **parameters: Any) -> dict[str
 
 def wide_strain(cell: Atoms) -> Verdict:
     """Same B from ±10 % as from ±5 % linear strain, and no flag but that of the two forms."""
+    cell = strained(cell, SMALL_STRAIN)
     narrow = _scan(cell, (-0.05, -0.025, 0.0, 0.025, 0.05), basis=SMALL)
     wide = _scan(cell, (-0.1, -0.05, -0.025, 0.0, 0.025, 0.05, 0.1), basis=SMALL)
     change = wide["B_GPa"] / narrow["B_GPa"] - 1

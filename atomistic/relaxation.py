@@ -65,7 +65,16 @@ def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndar
     """
     from ase.optimize import BFGS
 
-    with BFGS(atoms, logfile=None, maxstep=0.15) as optimizer:
+    class Cautious(BFGS):
+        """BFGS whose soft directions are never taken for flat ones: no step overshoots along them."""
+
+        def update(self, pos, forces, pos0, forces0):
+            super().update(pos, forces, pos0, forces0)
+            assert self.state is not None
+            curvature, modes = np.linalg.eigh(self.state.hessian)
+            self.state.hessian = modes * np.maximum(abs(curvature), FLOOR_EV_A2) @ modes.T
+
+    with Cautious(atoms, logfile=None, maxstep=0.15) as optimizer:
         optimizer.H0 = bond_hessian(atoms) if hessian is None else hessian
         converged = bool(optimizer.run(fmax=force_eV_A, steps=max_steps))
         forces = atoms.get_forces()
@@ -73,8 +82,7 @@ def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndar
         if optimizer.state is not None:
             optimizer.update(atoms.positions.ravel(), forces.ravel(), optimizer.pos0, optimizer.forces0)
             final = np.asarray(optimizer.H)
-        curvature, modes = np.linalg.eigh(final)
-        depth = 0.5 * float(np.sum((modes.T @ forces.ravel()) ** 2 / np.maximum(abs(curvature), FLOOR_EV_A2)))
+        depth = 0.5 * float(forces.ravel() @ np.linalg.solve(final, forces.ravel()))
         return Rest(int(optimizer.nsteps), float(np.linalg.norm(forces, axis=1).max()), converged, final, depth)
 
 

@@ -163,6 +163,8 @@ def elastic_distribution(results: Results) -> str | None:
                     crystal = f"{row['structure']} crystal, {xc.upper()}"
                     axis.axvline(number(row["B_GPa"]), color=color, linestyle="--", label=crystal)
         axis.set(xlabel="bulk modulus B (GPa)", ylabel="structures")
+        axis.set_ylim(0, 1.7 * axis.get_ylim()[1])  # room for the legend
+        axis.yaxis.get_major_locator().set_params(integer=True)
         axis.legend(fontsize=8.5)
         mean, std = number(summary.get("mean_GPa")), number(summary.get("std_GPa"))
         e_star = next((values for name, values in flat.items() if "e_star" in name.lower()), None)
