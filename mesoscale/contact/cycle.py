@@ -89,7 +89,8 @@ def run_cycle(
     seed
         Noise of the surface: the same seed gives the same noise whatever the inputs and the grid.
     max_force_nN
-        Repulsive force at which closing ends; default `settings.max_force_nN`.
+        Repulsive force at which closing ends; default `settings.max_force_nN`. A plastic contact ends closing at
+        0.8 H(L^2) L^2 if this is less, where the whole cell is one contact, and is not converged.
     heights
         (N, N) surface in nm to use instead of a random one, for instance `Cycle.heights` of an
         earlier cycle; it is not changed. Contact is at its minima.
@@ -121,7 +122,8 @@ def run_cycle(
     contact = Contact(surface, inputs, settings)
     first_contact = contact.touching_separation
     approach = _approach(contact)
-    closing = trace(contact, settings.force_steps, plastic, stop_force=force)
+    closing = trace(contact, settings.force_steps, plastic, stop_force=min(force, contact.capacity))
+    reached = closing.reached and force <= contact.capacity
     if hold is not None:
         closing.rows += hold(contact, closing.rows[-1])
     last = closing.rows[-1]
@@ -141,7 +143,7 @@ def run_cycle(
         first_contact_nm=first_contact + contact.offset,
         last_contact_nm=(opening[-1].separation if last.force > 0 else first_contact) + contact.offset,
         flags={
-            "force_reached": closing.reached,
+            "force_reached": reached,
             "force_miss": abs(last.force - force) / force,
             "unconverged_steps": closing.unconverged,
             "largest_load": closing.load,
@@ -150,7 +152,7 @@ def run_cycle(
             "repeated_steps": closing.repeated,
             "changed_sites": changed,
         },
-        converged=closing.reached and closing.unconverged == 0,
+        converged=reached and closing.unconverged == 0,
         heights=surface if keep_surface else None,
     )
 

@@ -106,24 +106,25 @@ class Hold:
 
     def _sink(self, contact: Contact, separation: float, force: float) -> Row:
         """Let the asperities flow, then lower the flat until the force is back."""
-        moved = contact.move_to(separation, True)
-        sweeps = moved.sweeps
+        path = [(separation, contact.move_to(separation, True))]
+
+        def accept(target: float, moved: State) -> None:
+            path.append((target, moved))
+
         step = smallest = 1e-7 * max(contact.rms, contact.spacing)
-        while moved.force < force * (1.0 - contact.FORCE_TOLERANCE):
+        while path[-1][1].force < force * (1.0 - contact.FORCE_TOLERANCE):
+            separation, moved = path[-1]
             target = separation - step
             trial = contact.move_to(target, True)
             if trial.force > force * (1.0 + contact.FORCE_TOLERANCE):
                 contact.back()
-                separation, moved = solve_force(
-                    contact, separation, target, moved.force, trial.force, force, True, smallest
-                )
-                sweeps += moved.sweeps
-                self.missed += abs(moved.force - force) > 1e-3 * force
+                solve_force(contact, separation, target, moved.force, trial.force, force, True, smallest, accept)
                 break
-            moved, separation = trial, target
-            sweeps += trial.sweeps
+            accept(target, trial)
             step *= 2.0
-        return _row(contact, separation, moved, sweeps)
+        separation, moved = path[-1]
+        self.missed += abs(moved.force - force) > 1e-3 * force
+        return _row(contact, separation, moved, sum(state.sweeps for _, state in path))
 
 
 def _times(settings: HistorySettings, start_s: float) -> np.ndarray:

@@ -211,6 +211,9 @@ def undo(heights, changes):
     """Take back the flow of this step."""
     for k in range(changes.used[1]):
         heights[changes.journal[k]] = changes.before[k]
+    for k in range(changes.used[3], changes.used[0]):
+        changes.changed[changes.sites[k]] = 0
+    changes.used[0] = changes.used[3]
     changes.used[1] = 0
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.contact.accuracy import dissipated_energy
+from mesoscale.contact.accuracy import dissipated_energy, work
 from mesoscale.contact.cycle import ContactInputs, Cycle, run_cycle
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings
@@ -29,7 +29,7 @@ class Case:
     heights: np.ndarray | None = None
     cycles: int = 1
     refused: bool = False
-    fills: bool = False  # ends in full contact
+    too_much: bool = False  # a load that the hardness of the whole surface does not carry
 
 
 def violations(
@@ -57,14 +57,14 @@ def violations(
         or closing.attractive_nN[-1] != opening.attractive_nN[0]
     ):
         found.append("opening does not start where closing ended")
-    spent = -float(np.trapezoid(closing.repulsive_nN, closing.separation_nm))
-    if dissipated_energy(cycle) < -1e-9 * spent:
-        found.append(f"energy gained: {-dissipated_energy(cycle) / spent:.2g} of the work")
+    spent, _ = work(closing)
+    lost, uncertainty = dissipated_energy(cycle)
+    if lost < -uncertainty - 1e-9 * spent:
+        found.append(f"energy gained: {-lost / spent:.2g} of the work, known to {uncertainty / spent:.1g}")
     if cycle.flags["unconverged_steps"]:
         found.append(f"{cycle.flags['unconverged_steps']} steps did not settle")
     limit = 1.0 + (settings.flow_tolerance if settings.flow == "return" else 0.0)
-    yields = settings.model == "plastic" and not cycle.flags["full_contact"]  # nothing flows in full contact
-    if yields and float(cycle.flags["largest_load"]) > limit * (1 + 1e-12):
+    if settings.model == "plastic" and float(cycle.flags["largest_load"]) > limit * (1 + 1e-12):
         found.append(f"an asperity at {cycle.flags['largest_load']:.4g} of its hardness")
     if start is not None and cycle.heights is not None:
         moved = np.abs(cycle.heights - start).sum()
@@ -115,11 +115,8 @@ def extreme_cases(settings: ContactSettings) -> list[Case]:
     ]
     for force in (1e4, 1e5, 1e6):
         cases.append(Case(f"{force:.0e} nN", "load on 1 um^2", changes={"max_force_nN": force * share}))
-    # more than the hardness of the whole cell carries (2.2e6 nN on 1 um^2): on larger grids it takes many minutes
-    small = {"pixels": min(n, 64), "length_nm": spacing * min(n, 64)}
-    words = "load on 1 um^2, more than its hardness carries; at most 64 pixels"
-    load = 1e7 * (small["length_nm"] / 1000.0) ** 2
-    cases.append(Case("1e+07 nN", words, changes={**small, "max_force_nN": load}, fills=True))
+    words = "load on 1 um^2, more than hardness carries: closing ends before, and says so"
+    cases.append(Case("1e+07 nN", words, changes={"max_force_nN": 1e7 * share}, too_much=True))
     for pair in ("paper", "wide"):
         for flow in ("increment", "return"):
             words = f"flow {flow}, pair {pair}"
@@ -146,16 +143,14 @@ def judge(case: Case, settings: ContactSettings) -> tuple[list[str], str]:
         for number in range(case.cycles):
             cycle = run_cycle(case.inputs, chosen, 1, heights=heights, keep_surface=True)
             broken += [f"cycle {number + 1}: {words}" for words in violations(cycle, case.inputs, chosen, heights)]
-            losses.append(dissipated_energy(cycle))
+            losses.append(dissipated_energy(cycle)[0])
             heights, flags = cycle.heights, cycle.flags
     except InputError as error:
         return ([] if case.refused else [f"refused: {error}"]), str(error)
     if case.refused:
         return ["accepted"], ""
-    if not flags["force_reached"]:
-        broken.append("force not reached")
-    if case.fills and not flags["full_contact"]:
-        broken.append("no full contact")
+    if flags["force_reached"] == case.too_much:
+        broken.append("force reached, though hardness cannot carry it" if case.too_much else "force not reached")
     if case.cycles > 1 and losses[-1] > 0.05 * losses[0]:
         broken.append("no shakedown")
     detail = (

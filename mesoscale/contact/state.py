@@ -65,7 +65,7 @@ class Changes(NamedTuple):
     journal: np.ndarray  # (N^2,) int32: sites changed in this step
     before: np.ndarray  # (N^2,) float64: their heights before it
     stamp: np.ndarray  # (N^2,) int32: last step in which a site changed
-    used: np.ndarray  # (3,) int64: changed sites, journal entries, number of this step
+    used: np.ndarray  # (4,) int64: changed sites, journal entries, number of this step, changed sites before it
 
 
 def no_changes(sites: int) -> Changes:
@@ -77,7 +77,7 @@ def no_changes(sites: int) -> Changes:
         np.empty(sites, np.int32),
         np.empty(sites),
         np.zeros(sites, np.int32),
-        np.zeros(3, np.int64),
+        np.zeros(4, np.int64),
     )
 
 

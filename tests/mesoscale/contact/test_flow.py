@@ -112,11 +112,31 @@ def test_a_plateau_comes_down_in_a_few_sweeps():
     assert moved.sweeps < 60
 
 
-def test_nothing_flows_where_every_site_touches():
-    """Flow keeps the volume: a full contact has nowhere to flow to and carries elastically, and says so."""
+def test_closing_ends_before_the_whole_cell_is_one_contact():
+    """0.8 H A of the cell is 1250 nN; what was asked for is not reached, and the cycle says so."""
+    soft = ContactInputs(**{**vars(INPUTS), "h_macro": 0.1, "h_prime": 0.0})
+    cycle = run_cycle(soft, settings_for(), 1, 10000.0)
+    assert cycle.closing.repulsive_nN[-1] == pytest.approx(0.08 * 125.0**2, rel=0.02)
+    assert not cycle.flags["force_reached"]
+    assert not cycle.converged
+    assert cycle.flags["unconverged_steps"] == 0
+
+
+def test_a_plateau_as_wide_as_the_cell_carries_up_to_its_hardness():
+    """Flow keeps the volume: where every site touches there is nowhere to flow to, and closing ends."""
     soft = ContactInputs(**{**vars(INPUTS), "h_macro": 1e-4, "h_prime": 0.0})
     cycle = run_cycle(soft, settings_for(), 1, 10.0, heights=np.zeros((128, 128)))
     assert cycle.flags["full_contact"]
     assert cycle.flags["changed_sites"] == 0
-    assert cycle.flags["largest_load"] > 1.0
-    assert cycle.converged
+    assert cycle.flags["largest_load"] < 1.0 + 1e-3
+    assert not cycle.converged
+
+
+def test_an_undone_flow_counts_no_site_as_changed():
+    heights = surface()
+    contact = Contact(heights, INPUTS, settings_for())
+    contact.move_to(-surface().min() - 2.0, True)
+    assert contact.changed_sites > 0
+    contact.back()
+    assert contact.changed_sites == 0
+    assert not contact.changed.any()
