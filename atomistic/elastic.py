@@ -8,7 +8,7 @@ ions find their minimum at each strain, which is what a slow experiment does.  A
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -111,13 +111,17 @@ def scan_volumes(
     relax : moves the ions of a strained structure (its calculator attached) to their minimum, from a Hessian if there
         is one; None clamps them
     """
-    points = []
+    points: dict[float, Point] = {}
     rested: dict[float, Atoms] = {}
     hessian: np.ndarray | None = None
-    for done, strain in enumerate(scan_order(strains)):
+    order = scan_order(strains)
+    if relax is not None:
+        order.append(order[0])  # the first to come to rest did so without neighbours: once more, between them
+    for done, strain in enumerate(order):
         if progress:
-            progress(done / len(strains), f"strain {strain:+.3f}")
-        trial = extrapolated_ions(rested or {0.0: atoms}, strain)
+            progress(done / len(order), f"strain {strain:+.3f}")
+        others = {known: ions for known, ions in rested.items() if known != strain}
+        trial = extrapolated_ions(others or {0.0: atoms}, strain)
         trial.calc = calculator
         start = time.perf_counter()
         energy, converged, detail = float("nan"), True, ""
@@ -132,8 +136,11 @@ def scan_volumes(
             energy = float(trial.get_potential_energy()) - below
         except (CalculationFailed, NotImplementedError, np.linalg.LinAlgError, FloatingPointError) as error:
             converged, detail = False, f"strain {strain:+.3f}: {error}"
-        points.append(Point(strain, float(trial.get_volume()), energy, converged, time.perf_counter() - start, detail))
-    return sorted(points, key=lambda point: point.strain)
+        point = Point(strain, float(trial.get_volume()), energy, converged, time.perf_counter() - start, detail)
+        before = points.get(strain, point)
+        lower = before if before.energy_eV < energy or not converged else point
+        points[strain] = replace(lower, wall_s=point.wall_s + (before.wall_s if before is not point else 0.0))
+    return [points[strain] for strain in sorted(points)]
 
 
 def rejected_points(atoms: Atoms, strains: Sequence[float], reason: str) -> list[Point]:

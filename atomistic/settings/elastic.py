@@ -146,7 +146,7 @@ class ElasticSettings(Settings):
         json_schema_extra={"unit": "1"},
     )  # fmt: skip
     relaxed_force_eV_A: float = Field(
-        default=0.3,
+        default=0.15,
         gt=0,
         le=5,
         description="largest force left when ions relax at a strain",

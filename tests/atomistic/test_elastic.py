@@ -101,7 +101,10 @@ def test_rejected_glass_costs_nothing_and_carries_its_reason():
 
 
 def test_relaxed_scan_starts_on_the_line_through_its_neighbours():
-    """Ions whose rest moves along with the strain: from the third strain on they start where they will rest."""
+    """Ions whose rest moves along with the strain: from the third on they start where they will rest.
+
+    The first strain comes once more, between its neighbours.
+    """
 
     def settle(trial, hessian):
         started.append(trial.get_scaled_positions()[0, 0])
@@ -113,7 +116,8 @@ def test_relaxed_scan_starts_on_the_line_through_its_neighbours():
     atoms = bulk("Cu", cubic=True)
     started, hessians = [], []
     points = scan_volumes(atoms, EMT(), STRAINS, relax=settle)
-    assert started == pytest.approx([0.0, 0.1, 0.085, 0.13, 0.07])
+    assert started == pytest.approx([0.0, 0.1, 0.085, 0.13, 0.07, 0.1])
     assert hessians[0] is None
-    assert [h[0, 0] for h in hessians[1:]] == [1, 2, 3, 4]  # each from the Hessian of the one before
+    assert [h[0, 0] for h in hessians[1:]] == [1, 2, 3, 4, 5]  # each from the Hessian of the one before
+    assert [point.strain for point in points] == list(STRAINS)
     assert all("0.05 eV/A left, minimum 2.0 meV below" in point.detail for point in points)
