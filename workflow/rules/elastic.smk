@@ -124,6 +124,15 @@ rule scan_volumes:
         "../scripts/scan_volumes.py"
 
 
+use rule scan_volumes as scan_relaxed_volumes with:  # the longest jobs first
+    output:
+        points=f"{RESULTS}/elastic/scans/{{structure}}_{{xc}}_{{ions,relaxed}}.csv",
+    priority: 95
+
+
+ruleorder: scan_relaxed_volumes > scan_volumes
+
+
 rule fit_bulk_moduli:
     message:
         "fit equations of state"
