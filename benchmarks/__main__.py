@@ -90,7 +90,7 @@ def contact_mechanics(heights: np.ndarray, settings: ContactSettings) -> float:
         surface=Topography(-heights, size, periodic=True),
     )
     result = system.minimize_proxy(external_force=settings.max_force_nN)
-    return float((-result.jac > 0).mean()) * settings.length_nm**2
+    return float((result.jac > 0).mean()) * settings.length_nm**2
 
 
 PEERS = {"tamaas": tamaas, "ContactMechanics": contact_mechanics}

@@ -31,7 +31,7 @@ class UncertaintySettings(Settings):
         description="central share of an unbounded distribution that the nodes span",
         json_schema_extra={"unit": "1"},
     )
-    chunk_runs: int = Field(default=50, ge=1, le=100000, description="contact cycles per job and file")
+    chunk_runs: int = Field(default=100, ge=1, le=100000, description="contact cycles per job and file")
     samples: int = Field(default=10000, ge=10, le=10**7, description="samples of the inputs sent through the surface")
     sample_seed: int = Field(default=1, ge=0, le=2**31, description="seed of those samples")
     sobol_samples: int = Field(
@@ -50,7 +50,7 @@ class UncertaintySettings(Settings):
     )
     bootstrap: int = Field(default=200, ge=20, le=100000, description="resamplings for intervals")
     direct_runs: int = Field(
-        default=200,
+        default=800,
         ge=0,
         le=10**6,
         description="independent cycles, each with its own inputs and surface: they train the regression "
@@ -63,7 +63,7 @@ class UncertaintySettings(Settings):
         description="trajectories of Morris' elementary effects, through the surface and, in the study, the engine",
     )
     study_runs: int = Field(
-        default=800,
+        default=1600,
         ge=100,
         le=10**6,
         description="direct runs that are the truth of the study of surfaces (target `work_precision`)",
