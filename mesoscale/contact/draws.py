@@ -9,6 +9,7 @@ import numpy as np
 
 from mesoscale.contact.cycle import ContactInputs, run_cycle
 from mesoscale.contact.stability import violations
+from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import DRAWS_PER_CHUNK
 
@@ -57,8 +58,9 @@ def draw_rows(
         chosen = settings.model_copy(update={"pixels": grids[number % 4]})
         for seed in SEEDS:
             start = time.perf_counter()
-            cycle = run_cycle(inputs, chosen, seed)
-            broken = violations(cycle, inputs, chosen)
+            heights = random_surface(inputs, chosen, seed)
+            cycle = run_cycle(inputs, chosen, seed, heights=heights, keep_surface=True)
+            broken = violations(cycle, inputs, chosen, heights)
             if not cycle.flags["force_reached"]:
                 broken.append("force not reached")
             yield {
