@@ -98,7 +98,7 @@ def index_rows(
                 off = surface[0, k, i] - brute.value[k, i]
                 row[f"{kind}_difference"] = off
                 inside = brute.low[k, i] <= surface[0, k, i] <= brute.high[k, i]
-                row[f"{kind}_agrees"] = bool(inside or abs(off) <= TOLERANCE)
+                row[f"{kind}_agrees"] = bool(inside or abs(off) <= TOLERANCE) if np.isfinite(off) else ""
             rows.append(row)
     return rows
 
