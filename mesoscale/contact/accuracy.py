@@ -124,7 +124,10 @@ def _outputs(
 
 
 def cycle_outputs(cycle: Cycle, inputs: ContactInputs, settings: ContactSettings) -> list[float]:
-    """The numbers OUTPUTS of one cycle: law of the closing branch (1 % contact), end of closing, energy."""
+    """The numbers OUTPUTS of one cycle: law of the closing branch, end of closing, energy.
+
+    d_c is taken at 3 % of the force: first contact does not depend on the path, and would hide its error.
+    """
     closing = cycle.closing
     law = LawSettings(contact_definition="force_fraction")
     d_c = contact_separation(closing.separation_nm, closing.repulsive_nN, law)

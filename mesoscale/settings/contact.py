@@ -36,8 +36,9 @@ class ContactSettings(Settings):
         json_schema_extra={"unit": "nN"},
     )
     convention: Literal["profile", "areal"] = Field(
-        default="profile",
-        description="slope of the two-dimensional PSD: -(2H+1), the paper's, or -(2H+2), an isotropic surface's",
+        default="areal",
+        description="slope of the two-dimensional PSD: -(2H+1), as the paper prints it, or -(2H+2), an isotropic "
+        "surface's",
         json_schema_extra={"unit": "1"},
     )
     q1_per_nm: float | None = Field(
@@ -55,12 +56,12 @@ class ContactSettings(Settings):
         json_schema_extra={"unit": "nm"},
     )
     touching_attracts: bool = Field(
-        default=True,
+        default=False,
         description="whether sites in contact attract (with the gap D0) or are left out of eq. 1",
         json_schema_extra={"unit": "1"},
     )
     prefactor: Literal["paper", "hertz"] = Field(
-        default="paper", description="p of eq. 3: 2/3 as printed, or Hertz's 4/3", json_schema_extra={"unit": "1"}
+        default="hertz", description="p of eq. 3: 2/3 as printed, or Hertz's 4/3", json_schema_extra={"unit": "1"}
     )
     radius: Literal["curvature", "truncation"] = Field(
         default="curvature",

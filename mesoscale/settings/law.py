@@ -11,7 +11,7 @@ class LawSettings(Settings):
     """Fit of the compact force-separation law (docs/law.md)."""
 
     contact_definition: Literal["first_contact", "force_fraction", "free_fit"] = Field(
-        default="force_fraction",
+        default="first_contact",
         description="what d_c is: where the first (on opening the last) asperity touches; where the "
         "repulsion reaches `force_fraction` of its maximum; or fitted to attraction and repulsion together",
     )

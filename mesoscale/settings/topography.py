@@ -152,9 +152,9 @@ class TopographySettings(Settings):
         json_schema_extra={"unit": "1"},
     )
     convention: Literal["profile", "areal"] = Field(
-        default="profile",
-        description="how H follows from the slope of the two-dimensional spectrum: profile 2H+1 (the paper), "
-        "areal 2H+2; contact.convention must be the same",
+        default="areal",
+        description="how H follows from the slope of the two-dimensional spectrum: profile 2H+1 (as the paper "
+        "prints it), areal 2H+2; contact.convention must be the same",
     )
     on_doubt: Literal["stop", "warn"] = Field(
         default="stop",

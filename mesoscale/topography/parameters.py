@@ -10,7 +10,7 @@ from mesoscale.settings import TopographySettings
 from mesoscale.topography import likelihood, lines
 from mesoscale.topography.likelihood import LikelihoodFit, TrustedSpectrum
 from mesoscale.topography.lines import LineFit
-from mesoscale.topography.model import hurst_from_slope, mean_square
+from mesoscale.topography.model import Convention, hurst_from_slope, mean_square
 
 MAX_MISFIT = 0.3  # RMS logarithmic residual of pooled bins above which equation 9 does not describe them
 MIN_GAIN = 12.0  # improvement of 2 ln L that a plateau or a power law must bring
@@ -111,8 +111,9 @@ def _doubts(
         )
     hurst = hurst_from_slope(fitted.slope, settings.convention)
     if not 0 < hurst < 1:
-        other = hurst_from_slope(fitted.slope, "areal")
-        hint = " (with topography.convention and contact.convention: areal it is in)" if 0 < other < 1 else ""
+        other: Convention = "profile" if settings.convention == "areal" else "areal"
+        inside = 0 < hurst_from_slope(fitted.slope, other) < 1
+        hint = f" (with topography.convention and contact.convention: {other} it is in)" if inside else ""
         reasons.append(f"H = {hurst:.2f} is outside 0 ... 1 in convention {settings.convention}{hint}")
     if settings.method == "lines" and line_fit is None:
         reasons.append("not identifiable by line fits: no plateau followed by a power law")

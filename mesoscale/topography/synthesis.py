@@ -25,7 +25,7 @@ def synthesize(
     hurst: float,
     rms: float,
     seed: int,
-    convention: Convention = "profile",
+    convention: Convention = "areal",
     q1: float | None = None,
 ) -> Array:
     """Periodic Gaussian surface with plateau, roll-off, power law and cut-off (section 4, eq. 9).

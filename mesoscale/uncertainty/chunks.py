@@ -53,11 +53,10 @@ def contact_readings() -> list[str]:
 
 
 def audited_readings(names: Sequence[str]) -> list[str]:
-    """The readings to audit: those named, or `all`; by default those of the mean curvature with attracting sites.
+    """The readings to audit: those named, or `all`; by default those of the mean curvature.
 
-    R = A/(2 pi delta) with Hertz's area takes several times as long; config/studies/all_readings.yaml has all on a
-    coarse grid.
+    R = A/(2 pi delta) with Hertz's area takes several times as long; config/studies/all_readings.yaml has all.
     """
     if list(names) == ["all"]:
         return contact_readings()
-    return list(names) or [name for name in contact_readings() if name.endswith(".curvature.sites.true")]
+    return list(names) or [name for name in contact_readings() if ".curvature." in name]

@@ -1,8 +1,8 @@
-"""What a pad of many square micrometres sees: first contact and d_c as the sample's area grows.
+"""What a pad of many square micrometres sees: both definitions of d_c as the sample's area grows.
 
 First contact is an extreme value. Over n cells pressed together by a rigid plane it is the largest of n; if a
-cell's own follows Gumbel's distribution, its mean grows as beta ln n. d_c by a share of the largest force is no
-extreme value: the cells' forces add up at a common separation.
+cell's own follows Gumbel's distribution, its mean grows as beta ln n. The separation at a share of the largest
+force is no extreme value: the cells' forces add up at a common separation.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -39,12 +39,13 @@ def extreme_rows(
     law: LawSettings,
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[dict[str, Any]]:
-    """Rows of uq/extremes.csv: first contact and d_c on closing, by area and method.
+    """Rows of uq/extremes.csv: first contact and the separation at `law.force_fraction` on closing, by area and method.
 
     `cells`: n of the independent cells pressed together; `gumbel`: the law fitted to single cells; `direct`: one
     surface of that area with the same spectrum, pixels and pressure. Intervals are 90 %, of the mean.
     `difference_nm` is that of `direct` from `cells`.
     """
+    law = law.model_copy(update={"contact_definition": "force_fraction"})
     total = CELLS + sum(side**2 * count for side, count in DIRECT.items())
     cycles = []
     for k in range(CELLS):
@@ -65,7 +66,7 @@ def extreme_rows(
         picks = [rng.choice(CELLS, n, replace=False) for _ in range(GROUPS)]
         for quantity, values in (
             ("first contact", np.array([touches[chosen].max() for chosen in picks])),
-            ("d_c", np.array([_pressed_together([cycles[k] for k in chosen], contact, law) for chosen in picks])),
+            ("share of force", np.array([_pressed([cycles[k] for k in chosen], contact, law) for chosen in picks])),
         ):
             # groups share cells: what is independent is CELLS / n of them
             error = stdtrit(CELLS / n - 1, 0.95) * values.std(ddof=1) / np.sqrt(CELLS / n)
@@ -79,15 +80,15 @@ def extreme_rows(
             update={"length_nm": side * contact.length_nm, "pixels": side * contact.pixels}
             | {"max_force_nN": n * contact.max_force_nN}
         )
-        touching, d_c = [], []
+        touching, loaded = [], []
         for k in range(count):
             cycle = run_cycle(inputs, whole, FIRST_SEED + CELLS + k)
             touching.append(cycle.first_contact_nm)
-            d_c.append(_d_c(cycle.closing.separation_nm, cycle.closing.repulsive_nN, law, cycle.first_contact_nm))
+            loaded.append(contact_separation(cycle.closing.separation_nm, cycle.closing.repulsive_nN, law))
             done += n
             if progress:
                 progress(done / total, f"surface of {side} x {side} cells")
-        for quantity, values in (("first contact", np.array(touching)), ("d_c", np.array(d_c))):
+        for quantity, values in (("first contact", np.array(touching)), ("share of force", np.array(loaded))):
             error = stdtrit(count - 1, 0.95) * values.std(ddof=1) / np.sqrt(count)
             ends = values.mean() + np.array([-error, error])
             row = _row(quantity, n, "direct", values.mean(), ends, values.std(ddof=1), count)
@@ -104,8 +105,8 @@ def _gumbel(values: Array) -> tuple[float, float]:
     return float(values.mean() - EULER * width), float(width)
 
 
-def _pressed_together(cycles: Sequence[Cycle], contact: ContactSettings, law: LawSettings) -> float:
-    """d_c of cells under one rigid plane, closed to the mean force of `contact`."""
+def _pressed(cycles: Sequence[Cycle], contact: ContactSettings, law: LawSettings) -> float:
+    """Separation at a share of the force of cells under one rigid plane, closed to the mean force of `contact`."""
     highest = max(float(cycle.closing.separation_nm.max()) for cycle in cycles)
     lowest = max(float(cycle.closing.separation_nm.min()) for cycle in cycles)
     h = np.linspace(highest, lowest, 2000)
@@ -113,8 +114,4 @@ def _pressed_together(cycles: Sequence[Cycle], contact: ContactSettings, law: La
     for cycle in cycles:
         force += np.interp(h, cycle.closing.separation_nm[::-1], cycle.closing.repulsive_nN[::-1])
     reached = force <= len(cycles) * contact.max_force_nN
-    return _d_c(h[reached], force[reached], law, max(cycle.first_contact_nm for cycle in cycles))
-
-
-def _d_c(separation_nm: Array, repulsive_nN: Array, law: LawSettings, touch_nm: float) -> float:
-    return contact_separation(separation_nm, repulsive_nN, law, touch_nm)
+    return contact_separation(h[reached], force[reached], law)

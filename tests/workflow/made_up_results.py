@@ -66,7 +66,7 @@ def _curves(root: Path) -> None:
                 "repulsive_nN": Dataset(force, "nN", "repulsion", ("point",)),
                 "attractive_nN": Dataset(-0.05 * force, "nN", "attraction", ("point",)),
             }
-    contact = {"length_nm": 1000.0, "pixels": 128, "convention": "profile", "flow_pair": "wide"}
+    contact = {"length_nm": 1000.0, "pixels": 128, "convention": "areal", "flow_pair": "wide"}
     write_h5(root / "curves/nominal.h5", groups, {"cell_area_nm2": 1e6, "contact": contact}, PROVENANCE, facts)
     rows = [
         {"run": 0, "node": 0, "seed": 0, "branch": branch, **law, "status": "ok", "hamaker": 0.215}
@@ -286,7 +286,7 @@ def _topography(root: Path) -> None:
         for name, v, unit in (("q0", 0.02, "1/nm"), ("slope", 2.9, "1"), ("rms", 3.0, "nm"))
     }
     scan = {"name": "small_01", "rms_heights_nm": 2.9, "rms_spectrum_nm": 3.1, "true_rms_nm": 3.0}
-    content = {"synthetic": True, "convention": "profile", "estimates": estimates, "truth": truth, "scans": [scan]}
+    content = {"synthetic": True, "convention": "areal", "estimates": estimates, "truth": truth, "scans": [scan]}
     row = {"set": 0, "method": "likelihood"}
     for name, v in (("q0", 0.02), ("slope", 2.9), ("rms", 3.0)):
         row.update({f"{name}_true": v, name: 1.01 * v, f"{name}_low": 0.9 * v, f"{name}_high": 1.1 * v})

@@ -48,7 +48,7 @@ def test_an_exponent_without_a_point_is_a_number(tmp_path):
         ("contact: 3", ["contact = 3", "a mapping"]),
         ("compute: [stiffness]", ["compute", "hardness, elastic, topography"]),
         ("name: ../../etc", ["name", "of the form"]),
-        ("topography: {convention: areal}", ["topography.convention = areal", "make them equal"]),
+        ("topography: {convention: profile}", ["topography.convention = profile", "make them equal"]),
         ("- a", ["a scene is a mapping"]),
         ("a: [", ["not valid YAML"]),
         ("contact: {pixels: 256, pixels: 512}", ["'pixels' stands twice"]),

@@ -158,8 +158,8 @@ def uncertainty(results: Results) -> Section:
         section.blocks.append(Table("Numbers per RMS roughness", header, ratios))
         section.files.append("uq/ratios.csv")
         section.notes.append(
-            "The definition of d_c (settings law.contact_definition and law.force_fraction) was chosen by its nearness "
-            "to the paper's Tables 2 and 3, so that the agreement of d_c is partly built in."
+            "The readings of the contact model and the definition of d_c were chosen by their nearness to the paper's "
+            "Tables 2 and 3 (reproduction audit), so that part of the agreement is built in."
         )
     if results.has("uq/validation.csv"):
         section.add(

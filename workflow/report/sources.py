@@ -115,7 +115,7 @@ def topography(results: Results) -> Section:
             if synthetic
             else "Spectra of the measured scans. "
         )
-        + f"The Hurst exponent follows the convention `{found.get('convention', 'profile')}`.",
+        + f"The Hurst exponent follows the convention `{found['convention']}`.",
         SYNTHETIC if synthetic else _used(results, "topography"),
     )
     section.add(scans.scans(results), "Height maps after levelling, in nm about their mean.", "Figure 9", wide=True)

@@ -14,8 +14,8 @@ READINGS = {
     "default": {},
     "paper": {"flow": "increment", "flow_pair": "paper", "flow_floor_pixels": 0, "max_sweeps": 50},
     "wide increments": {"flow": "increment", "flow_pair": "wide"},
-    "truncation": {"radius": "truncation", "area": "hertz", "prefactor": "hertz", "max_sweeps": 60},
-    "areal": {"convention": "areal", "neighbours": 4, "touching_attracts": False, "gap_cutoff_nm": 0.3},
+    "truncation": {"radius": "truncation", "area": "hertz", "gap_cutoff_nm": 0.3, "max_sweeps": 60},
+    "as printed": {"convention": "profile", "prefactor": "paper", "touching_attracts": True, "neighbours": 4},
 }
 
 

@@ -78,8 +78,8 @@ def test_moving_down_in_steps_finds_the_same_asperities_as_at_once():
 
 
 def test_the_bound_on_the_radius_is_a_rigid_punch_of_the_asperity_area():
-    """A flat has no curvature; its force is E* a delta (times p / (2/3)), not infinite."""
+    """A flat has no curvature; its force is that of a rigid punch, 2 E* a delta, not infinite."""
     flat = Contact(np.zeros((32, 32)), INPUTS, settings_for(32, 1.0))
     force, sites, _, bounds, *_ = flat.move_to(-0.1, False)
     assert (sites, bounds) == (1024, 1)
-    assert force == pytest.approx(91.0 * np.sqrt(sites / np.pi) * 0.1, rel=1e-9)
+    assert force == pytest.approx(2 * 91.0 * np.sqrt(sites / np.pi) * 0.1, rel=1e-9)

@@ -28,11 +28,14 @@ def test_gaussian_heights_far_away_follow_the_asymptotic_series():
 
 
 @pytest.mark.parametrize("bins", [64, 4096])
-def test_the_histogram_agrees_with_the_sum_over_all_sites(bins):
+@pytest.mark.parametrize("touching", [True, False])
+def test_the_histogram_agrees_with_the_sum_over_all_sites(bins, touching):
     heights = synthesize(128, 1000.0, 0.05, 0.75, 8.5, 5)
-    contact = Contact(heights, INPUTS, ContactSettings(pixels=128, model="elastic", gap_bins=bins))
+    settings = ContactSettings(pixels=128, model="elastic", gap_bins=bins, touching_attracts=touching)
+    contact = Contact(heights, INPUTS, settings)
     for separation in (60.0, 35.0, 20.0, 0.0):
-        gap = np.maximum(heights + separation, 0.165)
+        gap = heights + separation
+        gap = np.maximum(gap if touching else gap[gap >= 0], 0.165)
         exact = -0.215 * (1000 / 128) ** 2 / (6 * np.pi) * np.sum(gap**-3.0)
         # next term of the expansion: (w / 2 g)^5 with g > 100 w, so the number of bins does not matter
         assert contact.attraction(separation) == pytest.approx(exact, rel=1e-11)

@@ -15,7 +15,8 @@ def settings_for(**changes) -> ContactSettings:
 
 
 def surface(seed: int = 3) -> np.ndarray:
-    return synthesize(128, 125.0, 0.05, 0.75, 4.0, seed)
+    """Rough down to its pixels, so that many asperities flow."""
+    return synthesize(128, 125.0, 0.05, 0.75, 4.0, seed, "profile")
 
 
 def walk_down(contact: Contact, lowest: float, depth: float, steps: int = 25) -> list:

@@ -39,7 +39,7 @@ def bands(heights):
 def test_points_of_eq_9_give_the_surface_of_eq_9():
     """The noise is the same, and a power law is straight between its points."""
     q = np.array([0.01, 0.05, 10.0])
-    psd = RoughSpectrum.from_rms(1.0, 0.05, slope_from_hurst(0.75, "profile"), 20.0).psd(q)
+    psd = RoughSpectrum.from_rms(1.0, 0.05, slope_from_hurst(0.75, "areal"), 20.0).psd(q)
     by_points = random_surface(INPUTS, settings(spectrum={"q": q.tolist(), "psd": psd.tolist()}), 3)
     np.testing.assert_allclose(by_points, random_surface(INPUTS, settings(), 3), atol=1e-9)
 
@@ -71,8 +71,8 @@ def test_two_rough_surfaces_have_the_sum_of_their_spectra():
     both = random_surface(INPUTS, settings(counterface=other), 5)
     assert np.sqrt(np.mean(both**2)) == pytest.approx(5.0, rel=1e-12)  # 4 and 3 nm
     q, psd = bands(both)
-    own = RoughSpectrum.from_rms(4.0, 0.05, 2.5, np.pi * PIXELS / LENGTH)
-    second = RoughSpectrum.from_rms(3.0, 0.3, 2.0, np.pi * PIXELS / LENGTH)
+    own = RoughSpectrum.from_rms(4.0, 0.05, 3.5, np.pi * PIXELS / LENGTH)
+    second = RoughSpectrum.from_rms(3.0, 0.3, 3.0, np.pi * PIXELS / LENGTH)
     expected = own.psd(q) + second.psd(q)
     assert np.log(psd / expected) == pytest.approx(0, abs=0.3)  # some 50 waves in the longest band
     assert second.psd(q)[-1] > own.psd(q)[-1]  # where the second is the rougher, it decides

@@ -76,6 +76,6 @@ def test_readings_become_settings():
     settings = with_reading("areal.paper.hertz.truncation.sites.false", ContactSettings())
     assert (settings.convention, settings.flow_pair, settings.prefactor) == ("areal", "paper", "hertz")
     assert (settings.radius, settings.area, settings.touching_attracts) == ("truncation", "sites", False)
-    assert len(audited_readings(())) == 8
+    assert len(audited_readings(())) == 16
     assert audited_readings(("all",)) == contact_readings()
     assert set(LAW_READINGS) >= {"first_contact", "force_0.03", "free_fit"}

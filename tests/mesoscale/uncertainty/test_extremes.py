@@ -1,4 +1,4 @@
-"""First contact grows with the area, d_c by a share of the force much less."""
+"""First contact grows with the area, the separation at a share of the force much less."""
 
 import pytest
 
@@ -16,5 +16,5 @@ def test_extremes_of_small_surfaces(monkeypatch):
     # Gumbel's ln 4 in units of a scatter of 2 to 4 nm, known to 20 % from 24 cells
     assert 1.0 < growth < 6.0
     assert found["first contact", 4, "gumbel"] == pytest.approx(found["first contact", 4, "cells"], abs=1.5)
-    assert abs(found["d_c", 4, "cells"] - found["d_c", 1, "cells"]) < growth
-    assert found["first contact", 4, "direct"] > found["d_c", 4, "direct"]
+    assert abs(found["share of force", 4, "cells"] - found["share of force", 1, "cells"]) < growth
+    assert found["first contact", 4, "direct"] > found["share of force", 4, "direct"]

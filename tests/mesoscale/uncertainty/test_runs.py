@@ -67,7 +67,7 @@ def test_equal_inputs_are_computed_once(monkeypatch):
 def test_the_eighth_input_reaches_the_engine():
     inputs, settings = contact_of({**CENTRE, "gap_cutoff": 0.3}, CONTACT)
     assert settings.gap_cutoff_nm == 0.3
-    near, far = (fit_cycle(computed({**CENTRE, "gap_cutoff": d}, 0), 0.215, 1e6, LawSettings()) for d in (0.165, 0.3))
+    near, far = (fit_cycle(computed({**CENTRE, "gap_cutoff": d}, 1), 0.215, 1e6, LawSettings()) for d in (0.165, 0.3))
     assert near.closing.C_a_GPa_nm > far.closing.C_a_GPa_nm
     assert np.isclose(near.closing.rho_r_nm, far.closing.rho_r_nm)
     assert inputs.rms == CENTRE["rms"]
