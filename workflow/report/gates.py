@@ -4,15 +4,20 @@ from workflow.report.available import Results, Row, number, show
 from workflow.report.page import Gate
 
 LIMITS = (
-    "Adhesion: the law's attraction is at least ten times the measured dry adhesion of such surfaces "
-    "(300 µJ/m² and more against 5 to 30 µJ/m²), because it acts at a gap of 0.165 nm on every touching "
-    "site. Stiction and release voltage inherit this; device.adhesion_scale: 0.1 shows the other end.",
+    "Adhesion: the law's attraction is several times the measured dry adhesion of such surfaces (C_a ρ_a²/2 is "
+    "about 80 µJ/m² at the middle of the paper's Table 1 and 250 on average over it; measured are 5 to 30 µJ/m²), "
+    "because it acts down to gaps of 0.165 nm beside every contact. Stiction and release voltage inherit this; "
+    "device.adhesion_scale: 0.1 shows the other end.",
     "True contact area: asperities are found by cutting the surface with a plane (bearing area), which "
     "overestimates the true area of contact.",
     "Elastic coupling: each asperity is pressed on its own; its neighbours do not give way with it. Scene "
     "elastic_coupling measures what that costs.",
-    "Surface slope: with the profile convention (the paper's 2H+1 on a two-dimensional spectrum) the RMS "
-    "slope is about 4.4 at mean inputs, unphysical and set by the resolution; with areal (2H+2) it is 0.91.",
+    "Surface slope: the RMS slope is set by the shortest waves that the grid resolves. It is 0.91 at the paper's "
+    "mean inputs, and would be 4.4, unphysical, with the profile convention (the paper's 2H+1 on a "
+    "two-dimensional spectrum).",
+    "Few asperities: at the paper's mean inputs four to forty of them carry a square micrometre, and C_r and ρ_r "
+    "differ much from one surface to the next. d_c by first contact is an extreme value and grows with the area; "
+    "a law for a whole pad takes law.contact_definition: force_fraction.",
     "Time: no creep, unless the scene asks for it (history). The results hold for contacts shorter than the time "
     "over which asperities creep.",
     "No liquid films, no charging of the dielectric, no sliding.",
