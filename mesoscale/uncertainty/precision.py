@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.distributions import InputTable
-from mesoscale.uncertainty.propagation import NodeOutputs, exported_surfaces, to_paper_outputs
+from mesoscale.uncertainty.propagation import NodeOutputs, exported_surfaces, output_surfaces, to_paper_outputs
 from mesoscale.uncertainty.reference import STATISTICS, Reference, each, explained_by
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
 from mesoscale.uncertainty.scatter import with_scatter
@@ -122,6 +122,7 @@ def run_method(method: Method, direct: Direct, table: InputTable) -> list[Found]
         nodes = method.nodes[repeat] if method.nodes else NodeOutputs([], np.empty((0, 0, 8)))
         known = (x[training], y[training]) if method.blocks else nothing
         surfaces = exported_surfaces(nodes, known, ranges, settings)
+        of_outputs = output_surfaces(surfaces, known, ranges, settings)
         fit_s = time.process_time() - before
         outputs = evaluate(surfaces, samples)
         values, cells = to_paper_outputs(outputs), to_paper_outputs(outputs)
@@ -129,7 +130,7 @@ def run_method(method: Method, direct: Direct, table: InputTable) -> list[Found]
             cells = to_paper_outputs(with_scatter(outputs, surfaces, known, True, settings.sample_seed))
         errors = to_paper_outputs(evaluate(surfaces, x[unseen])) - truth
         q2 = 1 - np.nanmean(errors**2, axis=0) / np.nanvar(truth, axis=0)
-        found.append(Found(_statistics(values, cells), surface_indices(points, surfaces)[0], q2, fit_s))
+        found.append(Found(_statistics(values, cells), surface_indices(points, of_outputs)[0], q2, fit_s))
     return found
 
 

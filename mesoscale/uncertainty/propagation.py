@@ -1,6 +1,6 @@
 """From the law at the nodes to the distribution of its parameters (the paper's Table 2)."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -91,6 +91,36 @@ def exported_surfaces(
         else:
             surfaces.append(interpolating_surface(average, ranges, collocation_level(settings), transform))
     return surfaces
+
+
+@dataclass(frozen=True)
+class Change:
+    """Opening minus closing surface of a parameter."""
+
+    closing: Surrogate
+    opening: Surrogate
+
+    def __call__(self, x: Array) -> Array:
+        """Change at inputs x of shape (m, n)."""
+        return self.opening(x) - self.closing(x)
+
+
+def output_surfaces(
+    exported: Sequence[Surrogate | None], direct: tuple[Array, Array], ranges: Array, settings: UncertaintySettings
+) -> list[Surrogate | Change | None]:
+    """Surfaces of the eight outputs of Table 2, behind indices and elementary effects, from the exported ones.
+
+    By regression a change on opening has a surface of its own: as a small difference of two large numbers it would
+    inherit the errors of both (docs/uncertainty.md).
+    """
+    changes: list[Surrogate | Change | None] = []
+    for k, (closing, opening) in enumerate(zip(exported[:4], exported[4:], strict=True)):
+        if settings.surface == "regression":
+            change = direct[1][:, 4 + k] - direct[1][:, k]
+            changes.append(_regression(direct[0], change, ranges, "identity", settings))
+        else:
+            changes.append(Change(closing, opening) if closing and opening else None)
+    return [*exported[:4], *changes]
 
 
 def _regression(x: Array, y: Array, ranges: Array, transform: str, settings: UncertaintySettings) -> Surrogate | None:

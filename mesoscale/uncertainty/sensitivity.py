@@ -12,7 +12,13 @@ from mesoscale.uncertainty.collocation import elementary_effects, to_values
 from mesoscale.uncertainty.distributions import InputTable
 from mesoscale.uncertainty.morris import Effects, trajectory_effects, trajectory_points
 from mesoscale.uncertainty.paper_tables import short_name
-from mesoscale.uncertainty.propagation import NodeOutputs, exported_surfaces, to_paper_outputs
+from mesoscale.uncertainty.propagation import (
+    Change,
+    NodeOutputs,
+    exported_surfaces,
+    output_surfaces,
+    to_paper_outputs,
+)
 from mesoscale.uncertainty.regression import refit
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
 from mesoscale.uncertainty.surrogate import Surrogate, evaluate
@@ -83,7 +89,8 @@ def sensitivity_rows(
     inputs = len(table.rows)
     direct = direct or (np.empty((0, inputs)), np.empty((0, 8)))
     first, total = index_intervals(nodes, direct, table, settings)
-    through_surface = surface_effects(exported_surfaces(nodes, direct, ranges, settings), table, settings)
+    surfaces = output_surfaces(exported_surfaces(nodes, direct, ranges, settings), direct, ranges, settings)
+    through_surface = surface_effects(surfaces, table, settings)
     rows = []
     for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
         lines = y[:, : 2 * len(ranges) + 1, k]
@@ -124,13 +131,13 @@ def sensitivity_rows(
 
 
 def surface_effects(
-    surfaces: Sequence[Surrogate | None], table: InputTable, settings: UncertaintySettings
+    surfaces: Sequence[Surrogate | Change | None], table: InputTable, settings: UncertaintySettings
 ) -> list[Effects]:
-    """Morris' elementary effects of the eight outputs through surfaces, over the inputs' ranges."""
+    """Morris' elementary effects of the eight outputs through their surfaces, over the inputs' ranges."""
     inputs = len(table.rows)
     points = trajectory_points(inputs, settings.morris_trajectories, settings.sample_seed)
     x = to_values(2 * points.reshape(-1, inputs) - 1, table.ranges(settings.central_share))
-    y = to_paper_outputs(evaluate(surfaces, x)).reshape(*points.shape[:2], 8)
+    y = evaluate(surfaces, x).reshape(*points.shape[:2], 8)
     return [trajectory_effects(points, y[:, :, k], settings.sample_seed) for k in range(8)]
 
 
@@ -141,19 +148,21 @@ def index_intervals(
     ranges = table.ranges(settings.central_share)
     points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
     rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB0]))
-    surfaces = exported_surfaces(nodes, direct, ranges, settings)
+    surfaces = output_surfaces(exported_surfaces(nodes, direct, ranges, settings), direct, ranges, settings)
     estimate = surface_indices(points, surfaces)
+    outputs = to_paper_outputs(direct[1])
     resampled = []
     for _ in range(settings.sobol_bootstrap):
         # other samples as well: heavy tails make the estimators themselves uncertain
         again = partial(surface_indices, points[:, rng.integers(points.shape[1], size=points.shape[1])])
         if settings.surface == "regression":
             picks = rng.integers(len(direct[0]), size=len(direct[0])) if len(direct[0]) else np.empty(0, int)
-            resampled.append(again(_refitted(surfaces, direct[0][picks], direct[1][picks])))
+            resampled.append(again(_refitted(surfaces, direct[0][picks], outputs[picks])))
         elif len(nodes.seeds) > 1:
             chosen = rng.integers(len(nodes.seeds), size=len(nodes.seeds))
             others = NodeOutputs(nodes.seeds, nodes.values[chosen])
-            resampled.append(again(exported_surfaces(others, direct, ranges, settings)))
+            exported = exported_surfaces(others, direct, ranges, settings)
+            resampled.append(again(output_surfaces(exported, direct, ranges, settings)))
     ends = np.full((2, *estimate.shape), np.nan)
     if resampled:
         draws = np.array(resampled)
@@ -163,23 +172,23 @@ def index_intervals(
     return first, total
 
 
-def surface_indices(points: Array, surfaces: Sequence[Surrogate | None]) -> Array:
-    """First-order and total indices of the eight outputs by surfaces, shape (2, 8, n).
+def surface_indices(points: Array, surfaces: Sequence[Surrogate | Change | None]) -> Array:
+    """First-order and total indices of the eight outputs by their surfaces, shape (2, 8, n).
 
     Parameters
     ----------
     points : of `pick_freeze`, shape (n + 2, count, n).
     """
     inputs = points.shape[2]
-    y = to_paper_outputs(evaluate(surfaces, points.reshape(-1, inputs))).reshape(inputs + 2, -1, 8)
+    y = evaluate(surfaces, points.reshape(-1, inputs)).reshape(inputs + 2, -1, 8)
     return np.stack([sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(8)], axis=1)
 
 
-def _refitted(surfaces: Sequence[Surrogate | None], x: Array, y: Array) -> list[Surrogate | None]:
+def _refitted(surfaces: Sequence[Surrogate | Change | None], x: Array, y: Array) -> list[Surrogate | None]:
     """The regression surfaces with their terms kept and their coefficients fitted to other runs."""
     again: list[Surrogate | None] = []
     for k, surface in enumerate(surfaces):
-        if surface is None:
+        if not isinstance(surface, Surrogate):
             again.append(None)
             continue
         usable = np.isfinite(y[:, k]) & ((y[:, k] > 0) | (surface.transform == "identity"))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.distributions import InputTable
 from mesoscale.uncertainty.morris import trajectory_effects, trajectory_points
-from mesoscale.uncertainty.propagation import SURFACES, NodeOutputs, propagate, to_paper_outputs, transform_of
+from mesoscale.uncertainty.propagation import NodeOutputs, propagate, to_paper_outputs
 from mesoscale.uncertainty.reference import TWO_SIDED_90, Estimate, Reference, jackknife
 from mesoscale.uncertainty.regression import full_chaos
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
@@ -108,12 +108,13 @@ def _total_of_all(direct: Direct, table: InputTable, settings: UncertaintySettin
     x, y = direct
     ranges = table.ranges(settings.central_share)
     points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
-    smooth = settings.model_copy(update={"surface": "regression"})
+    outputs = to_paper_outputs(y)
+    transforms = ["identity", "log", "log", "log", *["identity"] * 4]  # as `output_surfaces`
 
     def indices(chosen: NDArray[np.int_]) -> Array:
         surfaces = [
-            full_chaos(x[chosen], y[chosen, k], ranges, DEGREE_OF_ALL, transform_of(k, smooth))
-            for k in range(len(SURFACES))
+            full_chaos(x[chosen], outputs[chosen, k], ranges, DEGREE_OF_ALL, transform)
+            for k, transform in enumerate(transforms)
         ]
         return surface_indices(points, surfaces)[1]
 

@@ -1,6 +1,6 @@
 """Response surfaces in Legendre polynomials: evaluate, moments, Sobol' indices, plain JSON."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,7 +62,7 @@ class Surrogate:
         return np.exp(total) if self.transform == "log" else total
 
 
-def evaluate(surfaces: Sequence[Surrogate | None], x: Array) -> Array:
+def evaluate(surfaces: Sequence[Callable[[Array], Array] | None], x: Array) -> Array:
     """Surfaces at inputs x (m, n), shape (m, surfaces); NaN where there is no surface."""
     return np.stack([surface(x) if surface else np.full(len(x), np.nan) for surface in surfaces], axis=1)
 

@@ -264,6 +264,20 @@ def test_regression_recovers_the_mean_over_noise_and_reports_intervals():
     assert first["sobol_first_low"] < 9 / 14 < first["sobol_first_high"] + 0.02
 
 
+def test_a_small_change_of_a_large_output_has_the_indices_of_the_change():
+    """Closing falls over two decades with x0 and scatters by 30 %; the change on opening depends on x1 and x2 alone."""
+    table = uniform_table()
+    x = table.sample(800, 7)
+    scatter = np.random.default_rng(3).lognormal(0, 0.3, 800)
+    closing = 10 * np.exp(-5 * x[:, 0]) * scatter
+    opening = closing + 1 + x @ [0.0, 1.0, 2.0]
+    direct = (x, np.stack([closing] * 4 + [opening] * 4, axis=1))
+    settings = SETTINGS.model_copy(update={"surface": "regression", "sobol_bootstrap": 0})
+    rows = sensitivity_rows(linear_nodes(table, [1, 2, 3]), table, settings, np.zeros(8), {}, {}, direct)
+    found = [row["sobol_first"] for row in rows if row["output"] == "delta_C_a_GPa_nm"]
+    assert found == pytest.approx([0.0, 0.2, 0.8], abs=0.02)
+
+
 def test_too_few_runs_give_no_regression_surface():
     table = uniform_table()
     settings = SETTINGS.model_copy(update={"surface": "regression"})
