@@ -66,7 +66,7 @@ def _curves(root: Path) -> None:
                 "repulsive_nN": Dataset(force, "nN", "repulsion", ("point",)),
                 "attractive_nN": Dataset(-0.05 * force, "nN", "attraction", ("point",)),
             }
-    contact = {"length_nm": 1000.0, "pixels": 128, "convention": "areal", "flow_pair": "wide"}
+    contact = {"length_nm": 1000.0, "pixels": 128, "convention": "areal", "touching_attracts": False}
     write_h5(root / "curves/nominal.h5", groups, {"cell_area_nm2": 1e6, "contact": contact}, PROVENANCE, facts)
     rows = [
         {"run": 0, "node": 0, "seed": 0, "branch": branch, **law, "status": "ok", "hamaker": 0.215}

@@ -87,11 +87,14 @@ def curves(results: Results) -> Section:
         "prefactor": "Hertz prefactor",
         "radius": "asperity radius",
         "area": "contact area",
+        "touching_attracts": "sites in contact attract",
         "flow": "flow rule",
         "flow_pair": "pair of Gaussians",
         "gap_cutoff_nm": "smallest gap of the attraction (nm)",
     }
-    used = [(label, str(reading[key])) for key, label in words.items() if key in reading]
+    values = {key: reading[key] for key in words if key in reading}
+    plain = {key: ("no", "yes")[value] if isinstance(value, bool) else str(value) for key, value in values.items()}
+    used = [(words[key], value) for key, value in plain.items()]
     if used:
         section.blocks.append(Table("Readings of the paper in use", ("reading", "value"), used))
     section.files += ["curves/nominal.h5", "law/nominal.csv"]
