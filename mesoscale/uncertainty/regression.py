@@ -13,6 +13,8 @@ def sparse_chaos(
 ) -> Surrogate:
     """Sparse Legendre expansion of the mean of y over the randomness that x does not explain.
 
+    Linear terms of all inputs are kept, if the runs allow it; those of higher degree are selected.
+
     Parameters
     ----------
     x : inputs of the runs, shape (m, n); values outside `ranges` are clipped to them.
@@ -44,7 +46,8 @@ def sparse_chaos(
         return Surrogate(ranges, np.zeros((1, inputs), int), np.array([centre]), transform)
     enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(len(varying), hyperbolic)
     basis = ot.OrthogonalProductPolynomialFactory([ot.LegendreFactory()] * len(varying), enumerate_terms)
-    size = min(enumerate_terms.getBasisSizeFromTotalDegree(degree), max(2, int(0.8 * usable.sum())))
+    most = max(2, int(0.8 * usable.sum()))
+    size = min(enumerate_terms.getBasisSizeFromTotalDegree(degree), most)
     selection = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
     chaos = ot.FunctionalChaosAlgorithm(
         ot.Sample(u[:, varying]),
@@ -57,9 +60,12 @@ def sparse_chaos(
     chosen = [int(k) for k in chaos.getResult().getIndices()]
     degrees = np.zeros((len(chosen), inputs), int)
     degrees[:, varying] = np.array([list(enumerate_terms(k)) for k in chosen], int).reshape(-1, len(varying))
-    if not (degrees.sum(axis=1) == 0).any():
-        degrees = np.vstack([np.zeros((1, inputs), int), degrees])
-    return refit(u, target, ranges, degrees, transform)
+    # an input that the selection left out would have an index of zero with an interval of no width
+    kept = [np.zeros(inputs, int), *np.eye(inputs, dtype=int)[varying]]
+    missing = [term for term in kept if not (degrees == term).all(axis=1).any()]
+    if missing and len(degrees) + len(missing) > most:
+        missing = [term for term in missing if not term.any()]  # few runs: the constant alone
+    return refit(u, target, ranges, np.vstack([*missing, degrees]), transform)
 
 
 def full_chaos(

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mesoscale.settings import ContactSettings
+from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty.audit import LAW_READINGS, MISPRINT, rank, with_reading
 from mesoscale.uncertainty.chunks import audited_readings, contact_readings
 from mesoscale.uncertainty.collocation import nodes
@@ -79,3 +79,14 @@ def test_readings_become_settings():
     assert len(audited_readings(())) == 16
     assert audited_readings(("all",)) == contact_readings()
     assert set(LAW_READINGS) >= {"first_contact", "force_0.03", "free_fit"}
+
+
+def test_the_default_is_the_reading_that_the_audit_puts_first():
+    with (PAPER.parents[1] / "docs" / "data" / "audit.csv").open(newline="") as stream:
+        first = next(csv.DictReader(stream))
+    for contact, law in (
+        (ContactSettings(), LawSettings()),
+        (load_scene("paper").contact, load_scene("paper").law),
+    ):
+        assert with_reading(first["contact"], contact) == contact
+        assert law.model_copy(update=LAW_READINGS[first["law"]]) == law

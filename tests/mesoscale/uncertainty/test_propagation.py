@@ -278,6 +278,19 @@ def test_a_small_change_of_a_large_output_has_the_indices_of_the_change():
     assert found == pytest.approx([0.0, 0.2, 0.8], abs=0.02)
 
 
+def test_an_input_without_effect_has_an_index_near_zero_with_an_interval():
+    table = uniform_table()
+    x = table.sample(400, 8)
+    noisy = (x @ [1.0, 2.0, 0.0])[:, None] + np.random.default_rng(4).normal(5, 0.5, (400, 8))
+    settings = SETTINGS.model_copy(update={"surface": "regression", "sobol_bootstrap": 20})
+    rows = sensitivity_rows(linear_nodes(table, [1, 2, 0]), table, settings, np.zeros(8), {}, {}, (x, noisy))
+    for row in rows[:12]:  # the four closing parameters; here nothing changes on opening
+        assert row["sobol_total_high"] > row["sobol_total_low"]
+        if row["input"] == "x2":
+            # the slope's variance by chance is 12 * 0.25 / 400, squares to 0.0015 of the others' 1 + 4; tail of chi^2
+            assert 0 < row["sobol_total"] < 0.03
+
+
 def test_too_few_runs_give_no_regression_surface():
     table = uniform_table()
     settings = SETTINGS.model_copy(update={"surface": "regression"})
