@@ -16,8 +16,8 @@ LIMITS = (
     "mean inputs, and would be 4.4, unphysical, with the profile convention (the paper's 2H+1 on a "
     "two-dimensional spectrum).",
     "Few asperities: at the paper's mean inputs four to forty of them carry a square micrometre, and C_r and ρ_r "
-    "differ much from one surface to the next. d_c by first contact is an extreme value and grows with the area; "
-    "a law for a whole pad takes law.contact_definition: force_fraction.",
+    "differ much from one surface to the next. First contact is an extreme value: a pad of many square micrometres "
+    "begins to touch at a larger separation than one of them (target extremes).",
     "Time: no creep, unless the scene asks for it (history). The results hold for contacts shorter than the time "
     "over which asperities creep.",
     "No liquid films, no charging of the dielectric, no sliding.",
