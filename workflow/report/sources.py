@@ -136,7 +136,7 @@ def topography(results: Results) -> Section:
         "truth and artefacts.",
         wide=True,
     )
-    paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20)", "rms": "1.82 to 14.17", "slope": "2.84"}
+    paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20) by 2H + 1", "rms": "1.82 to 14.17", "slope": "2.84"}
     truth = found.get("truth") or {}
     lines = []
     for name, estimate in found.get("estimates", {}).items():
