@@ -93,6 +93,10 @@ def exported_surfaces(
     return surfaces
 
 
+OUTPUT_TRANSFORMS = ("identity", "log", "log", "log", *["identity"] * 4)
+"""Transforms of the regressions of the eight outputs of Table 2: closing as exported, changes of any sign."""
+
+
 @dataclass(frozen=True)
 class Change:
     """Opening minus closing surface of a parameter."""
@@ -117,7 +121,7 @@ def output_surfaces(
     for k, (closing, opening) in enumerate(zip(exported[:4], exported[4:], strict=True)):
         if settings.surface == "regression":
             change = direct[1][:, 4 + k] - direct[1][:, k]
-            changes.append(_regression(direct[0], change, ranges, "identity", settings))
+            changes.append(_regression(direct[0], change, ranges, OUTPUT_TRANSFORMS[4 + k], settings))
         else:
             changes.append(Change(closing, opening) if closing and opening else None)
     return [*exported[:4], *changes]

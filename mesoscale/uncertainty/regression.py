@@ -63,7 +63,7 @@ def sparse_chaos(
     # an input that the selection left out would have an index of zero with an interval of no width
     kept = [np.zeros(inputs, int), *np.eye(inputs, dtype=int)[varying]]
     missing = [term for term in kept if not (degrees == term).all(axis=1).any()]
-    if missing and len(degrees) + len(missing) > most:
+    if len(degrees) + len(missing) > most:
         missing = [term for term in missing if not term.any()]  # few runs: the constant alone
     return refit(u, target, ranges, np.vstack([*missing, degrees]), transform)
 

@@ -88,8 +88,8 @@ def sensitivity_rows(
     ranges = table.ranges(settings.central_share)
     inputs = len(table.rows)
     direct = direct or (np.empty((0, inputs)), np.empty((0, 8)))
-    first, total = index_intervals(nodes, direct, table, settings)
     surfaces = output_surfaces(exported_surfaces(nodes, direct, ranges, settings), direct, ranges, settings)
+    first, total = index_intervals(surfaces, nodes, direct, table, settings)
     through_surface = surface_effects(surfaces, table, settings)
     rows = []
     for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
@@ -142,13 +142,21 @@ def surface_effects(
 
 
 def index_intervals(
-    nodes: NodeOutputs, direct: tuple[Array, Array], table: InputTable, settings: UncertaintySettings
+    surfaces: Sequence[Surrogate | Change | None],
+    nodes: NodeOutputs,
+    direct: tuple[Array, Array],
+    table: InputTable,
+    settings: UncertaintySettings,
 ) -> tuple[Array, Array]:
-    """First-order and total indices of the eight outputs: estimate, lower and upper end, shape (3, 8, n)."""
+    """First-order and total indices of the eight outputs: estimate, lower and upper end, shape (3, 8, n).
+
+    Parameters
+    ----------
+    surfaces : of the eight outputs; what they come from, `nodes` or `direct`, is resampled for the ends.
+    """
     ranges = table.ranges(settings.central_share)
     points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
     rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB0]))
-    surfaces = output_surfaces(exported_surfaces(nodes, direct, ranges, settings), direct, ranges, settings)
     estimate = surface_indices(points, surfaces)
     outputs = to_paper_outputs(direct[1])
     resampled = []

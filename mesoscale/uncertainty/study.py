@@ -9,7 +9,14 @@ from numpy.typing import NDArray
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.distributions import InputTable
 from mesoscale.uncertainty.morris import trajectory_effects, trajectory_points
-from mesoscale.uncertainty.propagation import NodeOutputs, propagate, to_paper_outputs
+from mesoscale.uncertainty.propagation import (
+    OUTPUT_TRANSFORMS,
+    NodeOutputs,
+    exported_surfaces,
+    output_surfaces,
+    propagate,
+    to_paper_outputs,
+)
 from mesoscale.uncertainty.reference import TWO_SIDED_90, Estimate, Reference, jackknife
 from mesoscale.uncertainty.regression import full_chaos
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
@@ -85,7 +92,9 @@ def index_rows(
     First-order ones are compared with those of the runs themselves; total ones with a surface of all terms to
     degree 4 fitted to all runs, because scattered runs alone do not give them.
     """
-    first, total = index_intervals(nodes, _training(direct, settings), table, settings)
+    training, ranges = _training(direct, settings), table.ranges(settings.central_share)
+    surfaces = output_surfaces(exported_surfaces(nodes, training, ranges, settings), training, ranges, settings)
+    first, total = index_intervals(surfaces, nodes, training, table, settings)
     of_all = _total_of_all(direct, table, settings)
     rows = []
     for k, output in enumerate(OUTPUTS):
@@ -109,12 +118,11 @@ def _total_of_all(direct: Direct, table: InputTable, settings: UncertaintySettin
     ranges = table.ranges(settings.central_share)
     points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
     outputs = to_paper_outputs(y)
-    transforms = ["identity", "log", "log", "log", *["identity"] * 4]  # as `output_surfaces`
 
     def indices(chosen: NDArray[np.int_]) -> Array:
         surfaces = [
             full_chaos(x[chosen], outputs[chosen, k], ranges, DEGREE_OF_ALL, transform)
-            for k, transform in enumerate(transforms)
+            for k, transform in enumerate(OUTPUT_TRANSFORMS)
         ]
         return surface_indices(points, surfaces)[1]
 

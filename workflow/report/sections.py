@@ -92,9 +92,11 @@ def curves(results: Results) -> Section:
         "flow_pair": "pair of Gaussians",
         "gap_cutoff_nm": "smallest gap of the attraction (nm)",
     }
-    values = {key: reading[key] for key in words if key in reading}
-    plain = {key: ("no", "yes")[value] if isinstance(value, bool) else str(value) for key, value in values.items()}
-    used = [(words[key], value) for key, value in plain.items()]
+    used = [
+        (label, ("no", "yes")[value] if isinstance(value := reading[key], bool) else str(value))
+        for key, label in words.items()
+        if key in reading
+    ]
     if used:
         section.blocks.append(Table("Readings of the paper in use", ("reading", "value"), used))
     section.files += ["curves/nominal.h5", "law/nominal.csv"]

@@ -11,9 +11,8 @@ from mesoscale.contact.stability import MIDDLE, violations
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings, HistorySettings
 
-CONTACT = ContactSettings(
-    pixels=128, convention="profile"
-)  # smoother surfaces have fewer asperities, whose merging jumps
+# smoother surfaces have fewer asperities, and the force jumps where they merge
+CONTACT = ContactSettings(pixels=128, convention="profile")
 CREEP = HistorySettings(cycles=3, creep="power", dwell_s=1e4, creep_exponent=20, dwell_steps=6)
 
 
