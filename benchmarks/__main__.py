@@ -20,7 +20,7 @@ from scipy import fft
 
 from benchmarks.many import many
 from mesoscale.contact import Cycle, run_cycle
-from mesoscale.contact.stability import MIDDLE
+from mesoscale.contact.studies.stability import MIDDLE
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
 

@@ -22,10 +22,10 @@ import yaml
 from ase import Atoms
 from ase.units import Hartree
 
-from atomistic.dft import FUNCTIONALS, PyscfGamma, Solution, build_cell, commensurate_mesh
-from atomistic.equation_of_state import fit_equation_of_state
-from atomistic.relaxation import strained
-from atomistic.structures import crystal
+from atomistic.elastic.dft import FUNCTIONALS, PyscfGamma, Solution, build_cell, commensurate_mesh
+from atomistic.elastic.equation_of_state import fit_equation_of_state
+from atomistic.elastic.networks import crystal
+from atomistic.elastic.relaxation import strained
 
 STRAINS = (0.0, 0.015, -0.015, 0.03, -0.03)  # in the order of the elastic stage
 BASIS = "gth-dzvp-molopt-sr"
@@ -83,7 +83,7 @@ def difference_to_fftdf(cell: Atoms, xc: str, cutoff_Ha: float) -> float:
     from pyscf.pbc import dft
     from pyscf.pbc.dft import numint
 
-    from atomistic.gamma_scf import CachedGrid
+    from atomistic.elastic.gamma_scf import CachedGrid
 
     pyscf_cell = build_cell(cell, xc, "gth-szv-molopt-sr", commensurate_mesh(cell.cell.array, cutoff_Ha))
     mf: Any = dft.RKS(pyscf_cell, xc=FUNCTIONALS[xc][0])

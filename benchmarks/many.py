@@ -5,7 +5,7 @@ import statistics
 import time
 
 from mesoscale.contact import run_cycle
-from mesoscale.contact.draws import draw_inputs
+from mesoscale.contact.studies.draws import draw_inputs
 from mesoscale.settings import ContactSettings
 
 

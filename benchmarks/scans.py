@@ -14,14 +14,14 @@ import time
 from pathlib import Path
 
 from mesoscale.settings import SyntheticScanSettings
-from mesoscale.topography.afm import synthetic_scans
-from mesoscale.topography.reading import write_gwy
+from mesoscale.topography.loading import write_gwy
+from mesoscale.topography.synthetic_scans import synthetic_scans
 
 SPECTRA = """
 import sys
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.reading import read_scan
+from mesoscale.topography.loading import read_scan
 settings = TopographySettings()
 spectra = [trusted_scan(read_scan(path), settings) for path in sys.argv[2:]]
 if sys.argv[1] == "fit":

@@ -10,7 +10,7 @@ import numpy as np
 from ase import Atoms
 from ase.calculators.calculator import Calculator
 
-from atomistic.dft import PyscfGamma, Solution
+from atomistic.elastic.dft import PyscfGamma, Solution
 from workflow.results import Dataset, atomic_path, read_h5, write_h5
 
 

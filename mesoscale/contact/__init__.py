@@ -1,5 +1,6 @@
 """Contact of a rough surface with a flat: asperities, plastic flow, attraction (docs/contact.md)."""
 
-from mesoscale.contact.cycle import Branch, ContactInputs, Cycle, run_cycle
+from mesoscale.contact.cycle import Branch, Cycle, run_cycle
+from mesoscale.inputs.contact import ContactInputs
 
 __all__ = ["Branch", "ContactInputs", "Cycle", "run_cycle"]

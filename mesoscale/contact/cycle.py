@@ -2,37 +2,17 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mesoscale.errors import InputError
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
 if TYPE_CHECKING:
     from mesoscale.contact.engine import Contact, Row
-
-
-@dataclass(frozen=True)
-class ContactInputs:
-    """The seven inputs of Table 1."""
-
-    hamaker: float  # aJ = 1e-18 J = nN nm
-    e_star: float  # GPa
-    h_macro: float  # GPa
-    h_prime: float  # GPa nm^0.5
-    q0: float  # 1/nm
-    hurst: float  # 1
-    rms: float  # nm
-
-    def __post_init__(self):
-        positive = {"e_star", "q0", "hurst"}
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not math.isfinite(value) or value < 0 or (value == 0 and field.name in positive):
-                bound = "> 0" if field.name in positive else ">= 0"
-                raise InputError(f"{field.name} = {value}: accepted are finite numbers {bound}")
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Iterator
 
-from mesoscale.contact.cycle import ContactInputs, Cycle, run_cycle
+from mesoscale.contact.cycle import Cycle, run_cycle
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
 MODELS = ("elastic", "nonlinear", "plastic")

@@ -1,23 +1,20 @@
 """The rough surface that a contact cycle starts from."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
-if TYPE_CHECKING:
-    from mesoscale.contact.cycle import ContactInputs
 
-
-def random_surface(inputs: "ContactInputs", settings: ContactSettings, seed: int) -> np.ndarray:
+def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) -> np.ndarray:
     """Heights (pixels, pixels) in nm by the inputs' q0, hurst and rms and by `settings.surface`.
 
     Contact is at the minima of the heights, so a surface of positive skewness (tall peaks) has deep minima here.
     The sum of two independent Gaussian surfaces is a Gaussian surface with the sum of their spectra.
     """
-    from mesoscale.topography.model import RoughSpectrum, SpectrumTable, slope_from_hurst
+    from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable, slope_from_hurst
     from mesoscale.topography.synthesis import synthesize, synthesize_spectrum
 
     pixels, length, q1, wanted = settings.pixels, settings.length_nm, settings.q1_per_nm, settings.surface
@@ -39,7 +36,7 @@ def random_surface(inputs: "ContactInputs", settings: ContactSettings, seed: int
         rms = math.hypot(inputs.rms, other.rms_nm if other else 0.0)
         heights = synthesize_spectrum(pixels, length, lambda q: np.sum([c(q) for c in spectra], axis=0), rms, seed, q1)
     if (wanted.skewness, wanted.kurtosis) != (0.0, 3.0):
-        from mesoscale.topography.distribution import with_moments
+        from mesoscale.topography.synthesis import with_moments
 
         heights = -with_moments(-heights, wanted.skewness, wanted.kurtosis)
     return heights

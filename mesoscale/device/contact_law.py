@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesoscale.law import PARAMETERS, Law, pressure
+from mesoscale.law.compact import PARAMETERS, Law, pressure
 
 Array = NDArray[np.float64]
 

@@ -5,14 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.contact.accuracy import dissipated_energy
-from mesoscale.contact.cycle import ContactInputs
+from mesoscale.contact.energy import dissipated_energy
 from mesoscale.contact.history import HeldCycle, follow, hardness_factor
 from mesoscale.device.contact_law import scale_adhesion
 from mesoscale.device.switch import solve_switch, switch_from_settings
-from mesoscale.law import PARAMETERS, Law, LawFit
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.law.branches import fit_cycle
+from mesoscale.law.compact import PARAMETERS, Law
+from mesoscale.law.fit import LawFit
 from mesoscale.settings import ContactSettings, DeviceSettings, HistorySettings, LawSettings
-from mesoscale.uncertainty.runs import fit_cycle
 
 DWELL_COLUMNS = ("seed", "cycle", "held_s", "hardness_factor", "separation_nm", "contact_area_nm2", "asperities")
 

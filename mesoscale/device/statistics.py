@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, Switch, SwitchStates
-from mesoscale.law import Law
+from mesoscale.law.compact import Law
 
 QUANTILES = (0.05, 0.16, 0.25, 0.5, 0.75, 0.84, 0.95)
 Z_95 = 1.959963984540054

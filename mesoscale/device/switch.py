@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesoscale.device.contact_law import column, flat, onset_nm, pressure_GPa, samples_of, take
-from mesoscale.law import Law
+from mesoscale.law.compact import Law
 from mesoscale.settings import DeviceSettings
 
 VACUUM_PERMITTIVITY = 8.8541878128e-12  # F/m, CODATA 2018

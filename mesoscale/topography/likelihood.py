@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.topography.model import RoughSpectrum, mean_square
+from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
 from mesoscale.topography.spectrum import Spectrum
 
 DISCREPANCY = 0.04  # relative error of C that no averaging removes: rest of tip, noise and window corrections

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography import likelihood, lines
+from mesoscale.topography import likelihood, line_fits
 from mesoscale.topography.likelihood import LikelihoodFit, TrustedSpectrum
-from mesoscale.topography.lines import LineFit
-from mesoscale.topography.model import Convention, hurst_from_slope, mean_square
+from mesoscale.topography.line_fits import LineFit
+from mesoscale.topography.roughness_spectrum import Convention, hurst_from_slope, mean_square
 
 MAX_MISFIT = 0.3  # RMS logarithmic residual of pooled bins above which equation 9 does not describe them
 MIN_GAIN = 12.0  # improvement of 2 ln L that a plateau or a power law must bring
@@ -59,7 +59,7 @@ def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) ->
     if fitted is not None:
         spectra = likelihood.past_the_blur(spectra, fitted.q0)
         fitted = likelihood.fit(spectra) or fitted
-    line_fit = lines.fit_lines(spectra)
+    line_fit = line_fits.fit_lines(spectra)
     reasons = _doubts(spectra, fitted, line_fit, settings)
     estimates: dict[str, Estimate] = {}
     if fitted is not None and fitted.misfit > MAX_MISFIT:
@@ -186,7 +186,7 @@ def _line_estimates(
     values = np.array([np.log(fitted.q0), fitted.slope, np.log(fitted.rms(cutoff))])
     left_out = []
     for k in range(len(spectra)):
-        other = lines.fit_lines([item for i, item in enumerate(spectra) if i != k])
+        other = line_fits.fit_lines([item for i, item in enumerate(spectra) if i != k])
         if other is not None:
             left_out.append([np.log(other.q0), other.slope, np.log(other.rms(cutoff))])
     n = len(left_out)

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mesoscale.inputs.distributions import InputTable
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.chunks import collocation_level
 from mesoscale.uncertainty.collocation import nodes, to_values
-from mesoscale.uncertainty.distributions import InputTable
 
 FIRST_RANDOM_SEED = 1_000_000
 """Surfaces of the direct runs are other ones than those of the collocation."""

@@ -7,15 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.law import PARAMETERS
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.law.compact import PARAMETERS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.chunks import collocation_level
 from mesoscale.uncertainty.collocation import elementary_effects, interpolating_surface, level1_surface
-from mesoscale.uncertainty.distributions import InputTable
-from mesoscale.uncertainty.paper_tables import short_name
-from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
-from mesoscale.uncertainty.scatter import with_scatter
-from mesoscale.uncertainty.surrogate import Surrogate, evaluate, to_json
+from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS, short_name
+from mesoscale.uncertainty.surrogate import Surrogate, evaluate, to_json, with_scatter
 
 Array = NDArray[np.float64]
 

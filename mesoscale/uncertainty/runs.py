@@ -2,15 +2,15 @@
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.contact import ContactInputs, Cycle, run_cycle
+from mesoscale.contact import Cycle, run_cycle
 from mesoscale.errors import InputError
-from mesoscale.law import PARAMETERS, LawFit, contact_separation, fit_branch, row_of
+from mesoscale.inputs.contact import contact_of
+from mesoscale.law.branches import NO_FIT, Outcome, fit_cycle
+from mesoscale.law.compact import PARAMETERS
 from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty.designs import Run
 
@@ -21,36 +21,12 @@ OUTPUTS = (*PARAMETERS, *(f"delta_{name}" for name in PARAMETERS))
 OUTPUT_UNITS = ("nm", "GPa/nm", "GPa", "nm") * 2
 
 
-TOUCH = {"closing": "first_contact_nm", "opening": "last_contact_nm"}
-"""Attribute of a stored curve with the exact separation of first (last) contact, by branch."""
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What one cycle gave."""
-
-    closing: LawFit
-    opening: LawFit
-    status: str = "ok"
-    """`ok`, `unconverged`, or `failed: why`."""
-
-    @property
-    def outputs(self) -> Array:
-        """The eight outputs in the order of OUTPUTS; NaN where a fit is missing."""
-        closing, opening = self.closing.parameters, self.opening.parameters
-        return np.concatenate([closing, opening - closing])
-
-
-NO_FIT = LawFit(np.nan, np.nan, np.nan, np.nan, status="no_curve")
-
-
-def contact_of(values: Mapping[str, float], settings: ContactSettings) -> tuple[ContactInputs, ContactSettings]:
-    """Contact inputs, and settings with the optional eighth input (the attraction's gap cutoff) put in."""
-    named = dict(values)
-    cutoff = named.pop("gap_cutoff", None)
-    if cutoff is not None:
-        settings = settings.model_copy(update={"gap_cutoff_nm": cutoff})
-    return ContactInputs(**named), settings
+def short_name(output: str) -> str:
+    """`delta_C_a_GPa_nm` to `delta_C_a`, the name in the paper's tables."""
+    for suffix in ("_GPa_nm", "_GPa", "_nm"):
+        if output.endswith(suffix):
+            return output.removesuffix(suffix)
+    return output
 
 
 def compute(values: Mapping[str, float], seed: int, settings: ContactSettings) -> Cycle | str:
@@ -60,43 +36,6 @@ def compute(values: Mapping[str, float], seed: int, settings: ContactSettings) -
         return run_cycle(inputs, settings, seed)
     except (InputError, ArithmeticError, ValueError, MemoryError) as error:
         return f"failed: {type(error).__name__}: {' '.join(str(error).split())}"
-
-
-def fit_cycle(cycle: Cycle, hamaker: float, cell_area_nm2: float, settings: LawSettings) -> Outcome:
-    """The law fitted to both branches of a cycle."""
-    fits = []
-    for branch, touch in (
-        (cycle.closing, cycle.first_contact_nm),
-        (cycle.opening, getattr(cycle, "last_contact_nm", None)),
-    ):
-        fits.append(
-            fit_curve(
-                branch.separation_nm,
-                branch.repulsive_nN,
-                branch.attractive_nN,
-                cell_area_nm2,
-                hamaker,
-                touch,
-                settings,
-            )
-        )
-    return Outcome(fits[0], fits[1], "ok" if cycle.converged else "unconverged")
-
-
-def fit_curve(
-    separation_nm: Array,
-    repulsive_nN: Array,
-    attractive_nN: Array,
-    cell_area_nm2: float,
-    hamaker: float,
-    touch_nm: float | None,
-    settings: LawSettings,
-) -> LawFit:
-    """The law fitted to one branch, d_c taken from the curve as the settings define it."""
-    d_c = None
-    if settings.contact_definition != "free_fit":
-        d_c = contact_separation(separation_nm, repulsive_nN, settings, touch_nm)
-    return fit_branch(separation_nm, repulsive_nN, attractive_nN, cell_area_nm2, hamaker, d_c, settings)
 
 
 def compute_all(
@@ -137,33 +76,3 @@ def compute_rows(
         after = time.process_time()
         yield {**row, "first_contact_nm": touch, "curve_status": outcome.status, "cpu_s": after - before}
         before = after
-
-
-def fit_stored(
-    curves: Mapping[str, Mapping[str, Array]],
-    name: str,
-    facts: Mapping[str, Any],
-    cell_area_nm2: float,
-    settings: LawSettings,
-) -> Iterator[dict[str, Any]]:
-    """Rows of law/*.csv for both branches of a stored curve.
-
-    Parameters
-    ----------
-    curves : datasets by group `<name>/closing` and `<name>/opening`; a missing group gives a row without fit.
-    facts : the curve's attributes: hamaker, first_contact_nm, last_contact_nm, status.
-    """
-    for branch, touch in TOUCH.items():
-        fit = NO_FIT
-        if f"{name}/{branch}" in curves:
-            curve = curves[f"{name}/{branch}"]
-            fit = fit_curve(
-                curve["separation_nm"],
-                curve["repulsive_nN"],
-                curve["attractive_nN"],
-                cell_area_nm2,
-                float(facts["hamaker"]),
-                facts.get(touch),
-                settings,
-            )
-        yield {"branch": branch, **row_of(fit), "curve_status": facts.get("status", "")}

@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.inputs.distributions import InputTable
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import elementary_effects, to_values
-from mesoscale.uncertainty.distributions import InputTable
 from mesoscale.uncertainty.morris import Effects, trajectory_effects, trajectory_points
-from mesoscale.uncertainty.paper_tables import short_name
 from mesoscale.uncertainty.propagation import (
     Change,
     NodeOutputs,
@@ -20,7 +19,7 @@ from mesoscale.uncertainty.propagation import (
     to_paper_outputs,
 )
 from mesoscale.uncertainty.regression import refit
-from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
+from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS, short_name
 from mesoscale.uncertainty.surrogate import Surrogate, evaluate
 
 Array = NDArray[np.float64]

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.inputs.distributions import InputTable
 from mesoscale.settings import UncertaintySettings
-from mesoscale.uncertainty.distributions import InputTable
 from mesoscale.uncertainty.propagation import (
     SURFACES,
     NodeOutputs,

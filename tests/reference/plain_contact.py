@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from mesoscale.contact import ContactInputs
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
 

@@ -151,8 +151,8 @@ def _uncertainty(root: Path) -> None:
 
 
 def _device(root: Path) -> None:
+    from mesoscale.device.behaviour import read_samples, state_rows, stiction_rows, study_switch, switch_path
     from mesoscale.device.export import TABLE_COLUMNS, law_table
-    from mesoscale.device.study import read_samples, state_rows, stiction_rows, study_switch, switch_path
     from mesoscale.settings import DeviceSettings
     from workflow.results import read_csv
 

@@ -4,9 +4,9 @@ import tracemalloc
 
 import pytest
 
+from mesoscale.inputs.table import collect
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
 from mesoscale.uncertainty.designs import random_runs
-from mesoscale.uncertainty.inputs import collect
 from mesoscale.uncertainty.runs import compute_rows
 from workflow.scene import load_scene
 

@@ -3,7 +3,7 @@
 import numpy as np
 from ase.calculators.emt import EMT
 
-from atomistic.dft import PyscfGamma, Solution
+from atomistic.elastic.dft import PyscfGamma, Solution
 from workflow.structure_files import start_from, write_orbitals
 
 

@@ -1,7 +1,7 @@
 from atomistic.errors import InputError
-from atomistic.runs import needs_counter_glass, planned_runs, settings_of_run
-from atomistic.study import load_study
-from atomistic.variations import VARIATIONS, smallest_run
+from atomistic.hardness.runs import needs_counter_glass, planned_runs, settings_of_run
+from atomistic.hardness.studies.cases import load_study
+from atomistic.hardness.studies.variations import VARIATIONS, smallest_run
 
 HARDNESS = settings("hardness")
 

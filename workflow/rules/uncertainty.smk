@@ -1,4 +1,5 @@
-from mesoscale.uncertainty.chunks import audited_readings, full_chunks
+from mesoscale.uncertainty.chunks import full_chunks
+from mesoscale.uncertainty.studies.readings import audited_readings
 
 
 def direct_files(design, runs, name="chunk"):

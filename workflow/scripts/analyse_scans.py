@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import analyse_scan, thumbnail
-from mesoscale.topography.reading import read_scan
+from mesoscale.topography.loading import read_scan
 from workflow.job import file_checksum, job
 from workflow.results import Dataset, write_h5
 

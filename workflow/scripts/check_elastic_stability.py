@@ -4,8 +4,8 @@ from pathlib import Path
 
 import yaml
 
-from atomistic.elastic_stability import COLUMNS, stability_rows
-from atomistic.structures import crystal
+from atomistic.elastic.networks import crystal
+from atomistic.elastic.studies.stability import COLUMNS, stability_rows
 from workflow.job import job
 from workflow.results import write_csv
 

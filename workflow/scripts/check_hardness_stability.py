@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from atomistic.hardness.studies.stability import COLUMNS, stability_rows
 from atomistic.potentials import load_potential
-from atomistic.stability import COLUMNS, stability_rows
 from workflow.job import job
 from workflow.results import write_csv
 

@@ -4,7 +4,7 @@ In: nothing.  Out: stability/topography.csv.
 """
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.stability import COLUMNS, stability_rows
+from mesoscale.topography.studies.stability import COLUMNS, stability_rows
 from workflow.job import job
 from workflow.results import write_csv
 

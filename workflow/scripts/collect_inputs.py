@@ -4,8 +4,8 @@ In: hardness/fit.json, elastic/e_star.json, topography/parameters.json (those th
 Out: inputs.csv.
 """
 
+from mesoscale.inputs.table import COLUMNS, collect, to_rows
 from mesoscale.settings import InputsSettings
-from mesoscale.uncertainty.inputs import COLUMNS, collect, to_rows
 from workflow.job import job
 from workflow.results import read_json, write_csv
 

@@ -3,7 +3,7 @@
 In: topography/recovery/sets_*.csv.  Out: topography/recovery.csv (one row per set and method).
 """
 
-from mesoscale.topography.recovery import COLUMNS, summary
+from mesoscale.topography.studies.recovery import COLUMNS, summary
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 

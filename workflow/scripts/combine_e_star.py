@@ -5,7 +5,7 @@ from pathlib import Path
 
 import yaml
 
-from atomistic.elastic import Modulus, effective_modulus
+from atomistic.elastic.moduli import Modulus, effective_modulus
 from atomistic.settings import ElasticSettings
 from workflow.job import job
 from workflow.results import Dataset, read_csv, write_csv, write_h5, write_json

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import yaml
 
-from atomistic.elastic import fit_scan
+from atomistic.elastic.energy_scans import fit_scan
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 

@@ -5,8 +5,8 @@ In:  accuracy/hardness/VARIATION/RUN.{csv,witness.csv,json}.  Out: accuracy/hard
 
 from pathlib import Path
 
+from atomistic.hardness.studies.variations import COLUMNS, compare
 from atomistic.settings import HardnessSettings
-from atomistic.variations import COLUMNS, compare
 from workflow.job import job
 from workflow.results import read_json, read_numbers, write_csv
 

@@ -3,10 +3,10 @@
 In: inputs.csv.  Out: coupling/comparison.csv (nN, nm, nm^2).
 """
 
-from mesoscale.contact.coupling import compare
+from mesoscale.contact.studies.half_space import compare
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.table import medians
 from mesoscale.settings import ContactSettings, CouplingSettings
-from mesoscale.uncertainty.inputs import medians
-from mesoscale.uncertainty.runs import contact_of
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import yaml
 
-from atomistic.elastic import make_calculator, scan_volumes
+from atomistic.elastic.energy_scans import make_calculator, scan_volumes
+from atomistic.elastic.networks import crystal
 from atomistic.settings import DftSettings
-from atomistic.structures import crystal
 from workflow.job import job
 from workflow.results import write_csv
 from workflow.structure_files import ScfStore

@@ -3,11 +3,11 @@
 In: inputs.csv.  Out: audit/runs/READING_SEED.csv.
 """
 
+from mesoscale.inputs.table import from_rows
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
-from mesoscale.uncertainty.audit import AUDIT_COLUMNS, audit_rows
 from mesoscale.uncertainty.chunks import node_count
 from mesoscale.uncertainty.designs import collocation_runs
-from mesoscale.uncertainty.inputs import from_rows
+from mesoscale.uncertainty.studies.audit import AUDIT_COLUMNS, audit_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 

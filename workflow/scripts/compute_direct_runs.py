@@ -9,9 +9,9 @@ import time
 
 import psutil
 
+from mesoscale.inputs.table import from_rows
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
 from mesoscale.uncertainty.designs import DESIGNS
-from mesoscale.uncertainty.inputs import from_rows
 from mesoscale.uncertainty.runs import compute_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv

@@ -8,9 +8,9 @@ from dataclasses import asdict
 
 from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.contact.nominal import nominal_cycles
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.table import medians
 from mesoscale.settings import ContactSettings
-from mesoscale.uncertainty.inputs import medians
-from mesoscale.uncertainty.runs import contact_of
 from workflow.job import job
 from workflow.results import Dataset, read_csv, write_h5
 

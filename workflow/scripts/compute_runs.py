@@ -5,9 +5,9 @@ In: inputs.csv.  Out: curves/runs/chunk_NNN.h5 (groups run_NNNN/closing and run_
 
 from dataclasses import fields
 
+from mesoscale.inputs.table import from_rows
 from mesoscale.settings import ContactSettings, UncertaintySettings
 from mesoscale.uncertainty.designs import collocation_runs
-from mesoscale.uncertainty.inputs import from_rows
 from mesoscale.uncertainty.runs import compute_all
 from workflow.job import job
 from workflow.results import Dataset, read_csv, write_h5

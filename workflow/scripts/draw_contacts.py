@@ -1,6 +1,6 @@
 """Random draws of Table 1 on three surfaces each, judged by invariants.  Out: stability/contact_draws/chunk_*.csv."""
 
-from mesoscale.contact.draws import COLUMNS, draw_rows
+from mesoscale.contact.studies.draws import COLUMNS, draw_rows
 from mesoscale.settings import ContactSettings
 from workflow.job import job
 from workflow.results import write_csv

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mesoscale.device.behaviour import read_samples, samples_json
 from mesoscale.device.export import (
     TABLE_COLUMNS,
     law_table,
@@ -15,7 +16,6 @@ from mesoscale.device.export import (
     spice_testbench,
     verilog_module,
 )
-from mesoscale.device.study import read_samples, samples_json
 from mesoscale.settings import DeviceSettings, LawSettings
 from workflow.job import job
 from workflow.results import read_csv, write_csv, write_json, write_text

@@ -5,7 +5,7 @@ In:  curves, witnesses (GPa, nm) and summaries of the runs.  Out: points.csv.
 
 from itertools import zip_longest
 
-from atomistic.hardness import point
+from atomistic.hardness.plateau import point
 from atomistic.settings import HardnessSettings
 from workflow.job import job
 from workflow.results import read_json, read_numbers, write_csv

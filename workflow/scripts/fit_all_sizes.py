@@ -3,8 +3,8 @@
 In:  hardness/points.csv, study/hardness.csv (GPa, nm).  Out: size_effect.json (n of H ~ L^-n, free fit).
 """
 
+from atomistic.hardness.size_effect import free_fit, size_exponents
 from atomistic.settings import HardnessSettings
-from atomistic.size_effect import free_fit, size_exponents
 from workflow.job import job
 from workflow.results import read_csv, write_json
 

@@ -1,6 +1,6 @@
 """Fit equations of state.  In: elastic/scans/*.csv.  Out: elastic/points.csv (Å3, eV), bulk_moduli.csv (GPa)."""
 
-from atomistic.elastic import fit_scan
+from atomistic.elastic.energy_scans import fit_scan
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 

@@ -3,8 +3,8 @@
 In:  points.csv (GPa, nm), glass/*.json.  Out: fit.json (H_macro in GPa, H' in GPa nm^0.5, gate).
 """
 
+from atomistic.hardness.size_effect import fit_size_effect
 from atomistic.settings import HardnessSettings
-from atomistic.size_effect import fit_size_effect
 from workflow.job import job
 from workflow.results import read_csv, read_json, write_json
 

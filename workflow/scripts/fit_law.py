@@ -3,9 +3,9 @@
 In: inputs.csv, curves/runs/chunk_NNN.h5 (nm, nN).  Out: law/parameters.csv, one row per run and branch.
 """
 
+from mesoscale.inputs.table import from_rows
+from mesoscale.law.branches import fit_stored
 from mesoscale.settings import LawSettings
-from mesoscale.uncertainty.inputs import from_rows
-from mesoscale.uncertainty.runs import fit_stored
 from workflow.job import job
 from workflow.results import read_csv, read_h5, write_csv
 

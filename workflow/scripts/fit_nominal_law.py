@@ -3,8 +3,8 @@
 In: curves/nominal.h5 (nm, nN).  Out: law/nominal.csv, one row per curve and branch.
 """
 
+from mesoscale.law.branches import fit_stored
 from mesoscale.settings import LawSettings
-from mesoscale.uncertainty.runs import fit_stored
 from workflow.job import job
 from workflow.results import read_h5, write_csv
 

@@ -8,9 +8,9 @@ from dataclasses import asdict
 
 from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.device.lifetime import DWELL_COLUMNS, cycle_row, dwell_rows, follow_all, shown_cycles
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.table import medians
 from mesoscale.settings import ContactSettings, DeviceSettings, HistorySettings, LawSettings
-from mesoscale.uncertainty.inputs import medians
-from mesoscale.uncertainty.runs import contact_of
 from workflow.job import job
 from workflow.results import Dataset, read_csv, write_csv, write_h5
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import yaml
 
+from atomistic.elastic.networks import make_glass
 from atomistic.settings import NitrideGlassSettings
-from atomistic.structures import make_glass
 from workflow.job import job
 from workflow.results import write_csv, write_text
 from workflow.structure_files import structure_text

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import yaml
 
-from atomistic.structures import crystal
+from atomistic.elastic.networks import crystal
 from workflow.job import job
 from workflow.results import write_text
 from workflow.structure_files import structure_text

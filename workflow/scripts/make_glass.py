@@ -7,7 +7,7 @@ Out: glass (LAMMPS data file, Å), properties (density, coordination, gate).
 import time
 from pathlib import Path
 
-from atomistic.glass import glass_properties, make_glass
+from atomistic.hardness.glass import glass_properties, make_glass
 from atomistic.lammps import read_data, write_data
 from atomistic.potentials import load_potential
 from atomistic.settings import GlassSettings

@@ -5,7 +5,7 @@ In:  closing/*.csv, witness/*.csv (GPa, nm), points.csv.  Out: accuracy/hardness
 
 import time
 
-from atomistic.detection import COLUMNS, detection_rows
+from atomistic.hardness.studies.detection import COLUMNS, detection_rows
 from atomistic.settings import HardnessSettings
 from workflow.job import job
 from workflow.results import read_csv, read_numbers, write_csv

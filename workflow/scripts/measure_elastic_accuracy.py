@@ -4,8 +4,8 @@ from pathlib import Path
 
 import yaml
 
-from atomistic.elastic_accuracy import COLUMNS, accuracy_rows, ensemble_rows
-from atomistic.structures import crystal
+from atomistic.elastic.networks import crystal
+from atomistic.elastic.studies.accuracy import COLUMNS, accuracy_rows, ensemble_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 

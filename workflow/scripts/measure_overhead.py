@@ -3,7 +3,7 @@
 In: uq/direct/timing_NNN.csv.  Out: uq/overhead.csv (one row).
 """
 
-from mesoscale.uncertainty.overhead import workload
+from mesoscale.uncertainty.studies.overhead import workload
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 

@@ -4,7 +4,7 @@ In: nothing (synthetic scans with known truth).  Out: accuracy/topography.csv.
 """
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.accuracy import COLUMNS, accuracy_rows
+from mesoscale.topography.studies.accuracy import COLUMNS, accuracy_rows
 from workflow.job import job
 from workflow.results import write_csv
 

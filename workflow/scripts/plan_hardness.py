@@ -1,6 +1,6 @@
 """What the closing runs of a scene will cost.  Out: plan.csv."""
 
-from atomistic.cost import plan_rows
+from atomistic.hardness.cost import plan_rows
 from atomistic.settings import HardnessSettings
 from workflow.job import job
 from workflow.results import write_csv

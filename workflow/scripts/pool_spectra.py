@@ -5,11 +5,10 @@ Out: topography/spectra.h5 (figures 9 and 10), topography/parameters.json (1/nm,
 """
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.analysis import fit_curves, pooled_curve, trusted
-from mesoscale.topography.model import RoughSpectrum
+from mesoscale.topography.analysis import CURVES, fit_curves, parameters, pooled_curve, scan_rows, trusted
 from mesoscale.topography.parameters import analyse
+from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import Spectrum
-from mesoscale.topography.tables import CURVES, parameters, scan_rows
 from workflow.job import job
 from workflow.results import Dataset, read_h5, read_json, write_h5, write_json
 

@@ -12,17 +12,18 @@ import numpy as np
 
 from mesoscale.contact import run_cycle
 from mesoscale.contact.cycle import BRANCH_COLUMNS
-from mesoscale.law import row_of
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.table import from_rows
+from mesoscale.law.branches import fit_cycle
+from mesoscale.law.fit import row_of
 from mesoscale.settings import ContactSettings, LawSettings, TopographySettings
 from mesoscale.topography import likelihood
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.model import RoughSpectrum
+from mesoscale.topography.cleaning import clean
+from mesoscale.topography.loading import read_scan
 from mesoscale.topography.parameters import MAX_MISFIT
 from mesoscale.topography.pressing import surfaces
-from mesoscale.topography.reading import read_scan
-from mesoscale.topography.scan import clean
-from mesoscale.uncertainty.inputs import from_rows
-from mesoscale.uncertainty.runs import contact_of, fit_cycle
+from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from workflow.job import job
 from workflow.results import Dataset, read_csv, read_json, write_csv, write_h5
 

@@ -5,13 +5,12 @@ Out: uq/outputs.csv (Table 2), uq/ratios.csv, uq/surrogate.json, uq/samples.csv,
 """
 
 import numpy as np
-
-from mesoscale.settings import LawSettings, UncertaintySettings
-from mesoscale.uncertainty.inputs import from_rows
-from mesoscale.uncertainty.paper_tables import table2, table3
-from mesoscale.uncertainty.propagation import SURFACES, output_rows, propagate, read_nodes, surrogate_json
 from mesoscale.uncertainty.ratios import COLUMNS as RATIO_COLUMNS
-from mesoscale.uncertainty.ratios import ratio_rows
+
+from mesoscale.inputs.table import from_rows
+from mesoscale.settings import LawSettings, UncertaintySettings
+from mesoscale.uncertainty.paper_tables import ratio_rows, table2, table3
+from mesoscale.uncertainty.propagation import SURFACES, output_rows, propagate, read_nodes, surrogate_json
 from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, read_direct_runs, validation_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv, write_json

@@ -3,9 +3,9 @@
 In: inputs.csv, audit/runs/*.csv, the paper's Tables 2 and 3.  Out: audit/ranking.csv.
 """
 
-from mesoscale.uncertainty.audit import rank
-from mesoscale.uncertainty.inputs import from_rows
+from mesoscale.inputs.table import from_rows
 from mesoscale.uncertainty.paper_tables import table2, table3
+from mesoscale.uncertainty.studies.audit import rank
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 

@@ -7,8 +7,8 @@ Out: uq/sensitivity.csv.
 
 import numpy as np
 
+from mesoscale.inputs.table import from_rows
 from mesoscale.settings import UncertaintySettings
-from mesoscale.uncertainty.inputs import from_rows
 from mesoscale.uncertainty.paper_tables import table3
 from mesoscale.uncertainty.propagation import read_nodes
 from mesoscale.uncertainty.sensitivity import sensitivity_rows

@@ -4,7 +4,7 @@ In: nothing.  Out: topography/recovery/sets_*.csv (1/nm, 1, nm; one row per set 
 """
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.recovery import COLUMNS, recovery_rows
+from mesoscale.topography.studies.recovery import COLUMNS, recovery_rows
 from workflow.job import job
 from workflow.results import write_csv
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import yaml
 
-from atomistic.elastic import make_calculator
-from atomistic.relaxation import UNTOUCHED, relax_glass
+from atomistic.elastic.energy_scans import make_calculator
+from atomistic.elastic.networks import examine
+from atomistic.elastic.relaxation import UNTOUCHED, relax_glass
 from atomistic.settings import DftSettings, RelaxationSettings
-from atomistic.structures import examine
 from workflow.job import job
 from workflow.results import write_json, write_text
 from workflow.structure_files import ScfStore, read_structure, structure_text, write_orbitals

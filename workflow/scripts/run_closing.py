@@ -8,10 +8,10 @@ import resource
 import time
 from pathlib import Path
 
-from atomistic.closing import run_closing
+from atomistic.hardness.closing import run_closing
+from atomistic.hardness.runs import planned_runs
 from atomistic.lammps import read_data
 from atomistic.potentials import load_potential
-from atomistic.runs import planned_runs
 from atomistic.settings import HardnessSettings
 from workflow.job import job
 from workflow.results import write_csv, write_json

@@ -3,8 +3,8 @@
 from dataclasses import asdict
 from pathlib import Path
 
-from atomistic.elastic import make_calculator, rejected_points, scan_volumes
-from atomistic.relaxation import relax_ions, strained
+from atomistic.elastic.energy_scans import make_calculator, rejected_points, scan_volumes
+from atomistic.elastic.relaxation import relax_ions, strained
 from atomistic.settings import DftSettings, RelaxationSettings
 from workflow.job import job
 from workflow.results import read_json, write_csv

@@ -4,7 +4,7 @@ In: uq/samples.csv, law/parameters.csv (nm, GPa/nm, GPa).
 Out: device/switch.json (V, nm, fF), device/release.csv, device/stiction.csv, device/path.csv.
 """
 
-from mesoscale.device.study import read_samples, state_rows, stiction_rows, study_switch, switch_path
+from mesoscale.device.behaviour import read_samples, state_rows, stiction_rows, study_switch, switch_path
 from mesoscale.settings import DeviceSettings, LawSettings
 from workflow.job import job
 from workflow.results import read_csv, write_csv, write_json

@@ -1,7 +1,7 @@
 """Error of the contact curve against run time, one numerical knob at a time.  Out: accuracy/contact.csv."""
 
-from mesoscale.contact.accuracy import COLUMNS, accuracy_rows
-from mesoscale.contact.stability import MIDDLE
+from mesoscale.contact.studies.accuracy import COLUMNS, accuracy_rows
+from mesoscale.contact.studies.stability import MIDDLE
 from mesoscale.settings import ContactSettings
 from workflow.job import job
 from workflow.results import write_csv

@@ -3,8 +3,8 @@
 In: stability/contact_draws/chunk_*.csv.  Out: stability/contact.csv, stability/contact_draws.csv (all draws).
 """
 
-from mesoscale.contact import draws
-from mesoscale.contact.stability import COLUMNS, stability_rows
+from mesoscale.contact.studies import draws
+from mesoscale.contact.studies.stability import COLUMNS, stability_rows
 from mesoscale.settings import ContactSettings
 from workflow.job import job
 from workflow.results import read_csv, write_csv

@@ -3,10 +3,10 @@
 In: inputs.csv.  Out: uq/extremes.csv (nm).
 """
 
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.table import from_rows
 from mesoscale.settings import ContactSettings, LawSettings
-from mesoscale.uncertainty.extremes import COLUMNS, extreme_rows
-from mesoscale.uncertainty.inputs import from_rows
-from mesoscale.uncertainty.runs import contact_of
+from mesoscale.uncertainty.studies.extremes import COLUMNS, extreme_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 

@@ -8,15 +8,15 @@ import resource
 
 import numpy as np
 
+from mesoscale.inputs.table import from_rows
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import elementary_effects
-from mesoscale.uncertainty.inputs import from_rows
-from mesoscale.uncertainty.paper_tables import short_name, table3
-from mesoscale.uncertainty.precision import accuracy_rows, precision_rows
+from mesoscale.uncertainty.paper_tables import table3
 from mesoscale.uncertainty.propagation import read_nodes
 from mesoscale.uncertainty.reference import reference
-from mesoscale.uncertainty.runs import OUTPUTS
-from mesoscale.uncertainty.study import bias_rows, index_rows, morris_rows
+from mesoscale.uncertainty.runs import OUTPUTS, short_name
+from mesoscale.uncertainty.studies.brute_force import bias_rows, index_rows, morris_rows
+from mesoscale.uncertainty.studies.precision import accuracy_rows, precision_rows
 from mesoscale.uncertainty.validation import read_direct_runs
 from workflow.job import job
 from workflow.results import read_csv, write_csv

@@ -1,6 +1,6 @@
 """Unusual inputs, failing runs and awkward outputs of the propagation.  Out: stability/uncertainty.csv."""
 
-from mesoscale.uncertainty.stability import COLUMNS, stability_rows
+from mesoscale.uncertainty.studies.stability import COLUMNS, stability_rows
 from workflow.job import job
 from workflow.results import write_csv
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from mesoscale.contact import ContactInputs
 from mesoscale.contact.engine import Contact
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
 from tests.reference import plain_contact

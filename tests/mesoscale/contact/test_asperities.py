@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from mesoscale.contact import ContactInputs
 from mesoscale.contact.engine import Contact
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
 INPUTS = ContactInputs(hamaker=0.0, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)

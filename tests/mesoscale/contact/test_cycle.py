@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
-from mesoscale.contact import ContactInputs, attraction, engine, run_cycle
+from mesoscale.contact import attraction, engine, run_cycle
 from mesoscale.errors import InputError
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
 

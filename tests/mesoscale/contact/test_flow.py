@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
-from mesoscale.contact import ContactInputs, run_cycle
+from mesoscale.contact import run_cycle
 from mesoscale.contact.engine import Contact
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
 from tests.reference import plain_contact

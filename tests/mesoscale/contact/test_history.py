@@ -7,7 +7,7 @@ import pytest
 from pydantic import ValidationError
 
 from mesoscale.contact.history import follow, hardness_factor
-from mesoscale.contact.stability import MIDDLE, violations
+from mesoscale.contact.studies.stability import MIDDLE, violations
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings, HistorySettings
 

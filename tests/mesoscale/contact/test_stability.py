@@ -1,6 +1,6 @@
 from mesoscale.contact import run_cycle
-from mesoscale.contact.draws import COLUMNS, draw_inputs, draw_rows
-from mesoscale.contact.stability import draws_by_grid, extreme_cases, judge, study_grid, violations
+from mesoscale.contact.studies.draws import COLUMNS, draw_inputs, draw_rows
+from mesoscale.contact.studies.stability import draws_by_grid, extreme_cases, judge, study_grid, violations
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
 

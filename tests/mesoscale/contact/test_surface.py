@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from mesoscale.contact import ContactInputs, run_cycle
+from mesoscale.contact import run_cycle
 from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
-from mesoscale.topography.model import RoughSpectrum, SpectrumTable, slope_from_hurst
+from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable, slope_from_hurst
 from mesoscale.topography.spectrum import power_spectrum
 
 INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.05, hurst=0.75, rms=4.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesoscale.device.contact_law import physical, pressure_GPa, samples_of, scale_adhesion, slope_GPa_nm
-from mesoscale.law import Law, pressure
+from mesoscale.law.compact import Law, pressure
 
 LAW = Law(31.8, 15.1e-5, 6.4e-4, 3.31, hamaker=0.215)
 

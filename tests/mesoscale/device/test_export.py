@@ -9,7 +9,7 @@ import pytest
 
 from mesoscale.device.contact_law import BRANCHES, pressure_GPa, slope_GPa_nm
 from mesoscale.device.export import law_table, spice_subcircuit, spice_testbench, verilog_module
-from mesoscale.law import PARAMETERS, Law
+from mesoscale.law.compact import PARAMETERS, Law
 
 AREA = 1e6
 NOMINAL = {

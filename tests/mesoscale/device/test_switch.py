@@ -14,7 +14,7 @@ from mesoscale.device.switch import (
     solve_switch,
     switch_from_settings,
 )
-from mesoscale.law import Law
+from mesoscale.law.compact import Law
 from mesoscale.settings import DeviceSettings
 
 CLOSING = Law(31.8, 15.1e-5, 6.4e-4, 3.31, hamaker=0.215)  # means of the paper's Table 2

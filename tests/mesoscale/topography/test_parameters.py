@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
-from mesoscale.topography.afm import synthetic_scans
 from mesoscale.topography.analysis import trusted_scan
+from mesoscale.topography.cleaning import Scan
 from mesoscale.topography.likelihood import TrustedSpectrum, blur
-from mesoscale.topography.model import RoughSpectrum, hurst_from_slope, slope_from_hurst
 from mesoscale.topography.parameters import analyse, inputs
-from mesoscale.topography.scan import Scan
+from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, slope_from_hurst
 from mesoscale.topography.spectrum import Spectrum
+from mesoscale.topography.synthetic_scans import synthetic_scans
 
 TRUTH = SyntheticScanSettings(pixels=512, small_scans=4, large_scans=2, rms_variation=0.0)
 

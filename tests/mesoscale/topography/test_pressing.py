@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from mesoscale.contact import ContactInputs, run_cycle
+from mesoscale.contact import run_cycle
 from mesoscale.errors import InputError
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings, TopographySettings
-from mesoscale.topography.model import RoughSpectrum
+from mesoscale.topography.cleaning import Scan
 from mesoscale.topography.pressing import SURFACES, contacting_heights, periodic_part, surfaces
-from mesoscale.topography.scan import Scan
+from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.synthesis import synthesize
 
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from mesoscale.topography.afm import surface_patch
-from mesoscale.topography.model import RoughSpectrum
+from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import (
     autocorrelation,
     flat_window,
@@ -13,6 +12,7 @@ from mesoscale.topography.spectrum import (
     radial_spectrum,
     section_pixels,
 )
+from mesoscale.topography.synthetic_scans import surface_patch
 
 
 def test_parseval_holds_to_round_off():

@@ -3,7 +3,7 @@
 import pytest
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.stability import CASES, check
+from mesoscale.topography.studies.stability import CASES, check
 
 SLOW = {"4096"}  # a minute; part of `snakemake stability`
 

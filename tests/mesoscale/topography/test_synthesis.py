@@ -5,7 +5,7 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.topography import synthesis
-from mesoscale.topography.model import slope_from_hurst
+from mesoscale.topography.roughness_spectrum import slope_from_hurst
 from mesoscale.topography.spectrum import power_spectrum
 from mesoscale.topography.synthesis import synthesize
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesoscale.topography.likelihood import trusted_range
-from mesoscale.topography.model import RoughSpectrum
+from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import Spectrum
 
 SPACING, NYQUIST = 2 * np.pi / 750, np.pi * 1024 / 1000

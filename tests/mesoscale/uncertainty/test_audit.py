@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mesoscale.inputs.table import collect
 from mesoscale.settings import ContactSettings, LawSettings
-from mesoscale.uncertainty.audit import LAW_READINGS, MISPRINT, rank, with_reading
-from mesoscale.uncertainty.chunks import audited_readings, contact_readings
 from mesoscale.uncertainty.collocation import nodes
-from mesoscale.uncertainty.inputs import collect
-from mesoscale.uncertainty.paper_tables import short_name, table2, table3
-from mesoscale.uncertainty.runs import OUTPUTS
+from mesoscale.uncertainty.paper_tables import table2, table3
+from mesoscale.uncertainty.runs import OUTPUTS, short_name
+from mesoscale.uncertainty.studies.audit import LAW_READINGS, MISPRINT, rank, with_reading
+from mesoscale.uncertainty.studies.readings import audited_readings, contact_readings
 from workflow.scene import load_scene
 
 PAPER = Path(__file__).parents[3] / "config" / "paper"

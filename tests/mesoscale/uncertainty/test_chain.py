@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from mesoscale.inputs.table import collect
 from mesoscale.settings import ContactSettings, InputRow, LawSettings, UncertaintySettings
 from mesoscale.uncertainty.designs import collocation_runs, random_runs
-from mesoscale.uncertainty.inputs import collect
 from mesoscale.uncertainty.propagation import NodeOutputs, propagate
 from mesoscale.uncertainty.runs import compute_rows
 from mesoscale.uncertainty.sensitivity import sensitivity_rows

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from mesoscale.inputs.table import collect
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.chunks import full_chunks
 from mesoscale.uncertainty.designs import DESIGNS, morris_runs, random_runs, replicate_runs
-from mesoscale.uncertainty.inputs import collect
 from mesoscale.uncertainty.morris import trajectory_effects, trajectory_points
-from mesoscale.uncertainty.overhead import workload
+from mesoscale.uncertainty.studies.overhead import workload
 from workflow.scene import load_scene
 
 PAPER = collect(load_scene("paper").inputs, {}, {}, 0.999)

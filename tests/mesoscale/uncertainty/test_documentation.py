@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mesoscale.inputs.table import collect
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import nodes, to_values
-from mesoscale.uncertainty.inputs import collect
 from mesoscale.uncertainty.propagation import SURFACES, NodeOutputs, propagate, surrogate_json
 from workflow.results import write_json
 from workflow.scene import load_scene

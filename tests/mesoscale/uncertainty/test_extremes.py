@@ -2,9 +2,9 @@
 
 import pytest
 
-from mesoscale.contact.stability import MIDDLE
+from mesoscale.contact.studies.stability import MIDDLE
 from mesoscale.settings import ContactSettings, LawSettings
-from mesoscale.uncertainty import extremes
+from mesoscale.uncertainty.studies import extremes
 
 
 def test_extremes_of_small_surfaces(monkeypatch):

@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mesoscale.law import PARAMETERS
-from mesoscale.settings import UncertaintySettings
-from mesoscale.uncertainty.collocation import nodes, to_values
-from mesoscale.uncertainty.distributions import (
+from mesoscale.inputs.distributions import (
     Distribution,
     InputTable,
     UncertainInput,
     correlation_matrix,
 )
+from mesoscale.law.compact import PARAMETERS
+from mesoscale.settings import UncertaintySettings
+from mesoscale.uncertainty.collocation import nodes, to_values
 from mesoscale.uncertainty.paper_tables import table2, table3
 from mesoscale.uncertainty.propagation import (
     NodeOutputs,

@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 
+from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import nodes, to_values
-from mesoscale.uncertainty.distributions import Distribution, InputTable, UncertainInput
-from mesoscale.uncertainty.precision import accuracy_rows, precision_rows
 from mesoscale.uncertainty.propagation import NodeOutputs
 from mesoscale.uncertainty.reference import GROUPS, explained_by, jackknife, reference
-from mesoscale.uncertainty.scatter import with_scatter
-from mesoscale.uncertainty.study import bias_rows, index_rows
-from mesoscale.uncertainty.surrogate import Surrogate
+from mesoscale.uncertainty.studies.brute_force import bias_rows, index_rows
+from mesoscale.uncertainty.studies.precision import accuracy_rows, precision_rows
+from mesoscale.uncertainty.surrogate import Surrogate, with_scatter
 
 SLOPES = np.array([1.0, 2.0, 3.0])
 NOISE = 0.5

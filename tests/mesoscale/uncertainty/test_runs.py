@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.table import collect
+from mesoscale.law.branches import fit_cycle
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
 from mesoscale.uncertainty import runs as runs_module
 from mesoscale.uncertainty.designs import Run, collocation_runs, random_runs
-from mesoscale.uncertainty.inputs import collect
 from mesoscale.uncertainty.propagation import SURFACES
-from mesoscale.uncertainty.runs import compute, compute_all, compute_rows, contact_of, fit_cycle
+from mesoscale.uncertainty.runs import compute, compute_all, compute_rows
 from workflow.scene import load_scene
 
 PAPER = collect(load_scene("paper").inputs, {}, {}, 0.999)

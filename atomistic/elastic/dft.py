@@ -1,0 +1,227 @@
+"""Periodic density functional theory behind ASE's calculator interface: PySCF at the Γ point of a supercell.
+
+Energies in eV, lengths in Å, forces in eV/Å outside; PySCF's atomic units inside.  Pseudopotentials are GTH, the
+basis a short-ranged MOLOPT one.  The real-space mesh can be held fixed while the cell is strained: without that
+the number of grid points jumps along E(V) and so does the energy.
+"""
+
+import hashlib
+from collections.abc import MutableMapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from ase import Atoms
+from ase.calculators.calculator import CalculationFailed, Calculator, all_changes
+from ase.units import Bohr, Hartree
+
+FUNCTIONALS = {
+    # name: (PySCF functional, GTH pseudopotential generated with it)
+    "GGA": ("pbe", "gth-pbe"),
+    "LDA": ("lda_xc_teter93", "gth-pade"),
+}
+NUMERICS = ("cached-grid", "multigrid", "fftdf")
+
+Store = MutableMapping[str, dict[str, np.ndarray]]
+"""Finished calculations by key; the caller decides whether it lives in memory or on disk."""
+
+
+HISTORY = 5  # former solutions a start is extrapolated from
+GUESS_DAMPING = 1e-7  # of the weights' normal equations
+
+
+class Solution(NamedTuple):
+    """What the start of the next calculation needs of a finished one: overlap of the basis, occupied orbitals."""
+
+    overlap: np.ndarray
+    orbitals: np.ndarray
+
+
+class ScfNotConverged(CalculationFailed):
+    """The self-consistent field did not converge (or ended in something that is not a number)."""
+
+
+def commensurate_mesh(cell: np.ndarray, cutoff_Ha: float) -> tuple[int, int, int]:
+    """Smallest FFT-friendly mesh whose plane waves all reach `cutoff_Ha` in this cell (Å)."""
+    from scipy.fft import next_fast_len
+
+    # the largest |G·a|/2π inside a sphere of radius G_max
+    reach = np.sqrt(2 * cutoff_Ha) * np.linalg.norm(np.asarray(cell) / Bohr, axis=1) / (2 * np.pi)
+    a, b, c = (int(next_fast_len(2 * int(np.ceil(r)) + 1, real=True) or 1) for r in reach)
+    return a, b, c
+
+
+def build_cell(atoms: Atoms, xc: str, basis: str, mesh: tuple[int, int, int], precision: float = 1e-8):
+    """PySCF cell of an ASE structure; positions stay in the cell they were given in."""
+    from pyscf.pbc import gto
+
+    cell: Any = gto.Cell()  # PySCF declares its attributes as None
+    cell.unit = "B"
+    cell.a = atoms.cell.array / Bohr
+    cell.atom = [(s, p / Bohr) for s, p in zip(atoms.get_chemical_symbols(), atoms.positions, strict=True)]
+    cell.basis = basis
+    cell.pseudo = FUNCTIONALS[xc][1]
+    cell.precision = precision
+    cell.mesh = list(mesh)
+    cell.verbose = 0
+    cell.build(dump_input=False, parse_arg=False)
+    return cell
+
+
+class PyscfGamma(Calculator):
+    """ASE calculator: closed-shell Kohn–Sham DFT of a supercell at its Γ point.
+
+    Parameters
+    ----------
+    xc : "GGA" (PBE) or "LDA" (Teter–Padé, the functional of the GTH-PADE pseudopotentials)
+    basis : PySCF's name of a GTH basis
+    cutoff_Ha : plane-wave cutoff of the density mesh, hartree
+    mesh : grid points along each lattice vector; None takes it from `cutoff_Ha` and the cell at hand
+    tolerance_Ha : SCF convergence of the energy per cell, hartree
+    max_cycles : SCF cycles before giving up
+    numerics : "cached-grid" (atomistic.elastic.gamma_scf), PySCF's own "multigrid" or "fftdf"
+    store : finished calculations; one found there is not repeated
+
+    Each calculation starts from the occupied orbitals of the last ones, extrapolated to the new geometry
+    (`extrapolated_orbitals`), which saves more than half of the cycles.  They are part of the key in `store`, so a
+    series that is interrupted and replayed gives the same numbers to the last bit.
+    """
+
+    parameters: Any  # a dictionary with attributes (ASE)
+
+    implemented_properties = ["energy", "forces"]  # noqa: RUF012 (ASE's interface)
+    default_parameters: dict[str, Any] = {  # noqa: RUF012
+        "xc": "GGA",
+        "basis": "gth-dzvp-molopt-sr",
+        "cutoff_Ha": 100.0,
+        "mesh": None,
+        "tolerance_Ha": 1e-7,
+        "max_cycles": 60,
+        "numerics": "cached-grid",
+    }
+
+    def __init__(self, store: Store | None = None, **parameters):
+        super().__init__(**parameters)
+        if self.parameters.numerics not in NUMERICS:
+            raise ValueError(f"numerics {self.parameters.numerics!r}; accepted: {', '.join(NUMERICS)}")
+        self.store: Store = {} if store is None else store
+        self.history: list[Solution] = []  # the last ones that converged, oldest first
+        self.scf_runs = 0  # calculations really done, not taken from the store
+        self.scf_cycles = 0
+        self.gap_eV = float("nan")  # of the last calculation
+
+    def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes):
+        super().calculate(atoms, properties, system_changes)
+        assert self.atoms is not None
+        p = self.parameters
+        mesh = p.mesh or commensurate_mesh(self.atoms.cell.array, p.cutoff_Ha)
+        wanted = "forces" if "forces" in properties else "energy"
+        key = self._key(mesh, wanted)
+        if key not in self.store:
+            self.store[key] = self._solve(mesh, wanted == "forces")
+            self.scf_runs += 1
+        found = self.store[key]
+        self.scf_cycles = int(found["cycles"])
+        self.gap_eV = float(found["gap_Ha"]) * Hartree
+        if not bool(found["converged"]):
+            self.history = []
+            raise ScfNotConverged(f"SCF not converged in {p.max_cycles} cycles (gap {self.gap_eV:.2f} eV)")
+        self.history = [*self.history, Solution(found["overlap"], found["orbitals"])][-HISTORY:]
+        energy = float(found["energy_Ha"]) * Hartree
+        self.results: dict[str, Any] = {"energy": energy, "free_energy": energy}
+        if wanted == "forces":
+            self.results["forces"] = found["forces"] * Hartree / Bohr
+
+    def check_state(self, atoms, tol=1e-15):
+        return super().check_state(atoms, tol=tol)
+
+    def _key(self, mesh, wanted: str) -> str:
+        assert self.atoms is not None
+        digest = hashlib.sha256(repr((sorted(self.parameters.items()), tuple(mesh), wanted)).encode())
+        digest.update(" ".join(self.atoms.get_chemical_symbols()).encode())
+        before = [solution.orbitals for solution in self.history]
+        for array in (self.atoms.cell.array, self.atoms.positions, *before):
+            digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()[:32]
+
+    def _solve(self, mesh, forces: bool) -> dict[str, np.ndarray]:
+        from pyscf.pbc import dft
+
+        p = self.parameters
+        assert self.atoms is not None
+        cell = build_cell(self.atoms, p.xc, p.basis, mesh)
+        mf: Any = dft.RKS(cell)
+        mf.xc = FUNCTIONALS[p.xc][0]
+        mf.verbose = 0
+        mf.conv_tol = p.tolerance_Ha
+        mf.conv_tol_grad = 10 * np.sqrt(p.tolerance_Ha)
+        mf.max_cycle = p.max_cycles
+        mf.conv_check = False  # the extra cycle after convergence would change the energy by less than the tolerance
+        if p.numerics == "cached-grid":
+            from atomistic.elastic.gamma_scf import CachedGrid
+
+            mf._numint = CachedGrid(cell)
+        elif p.numerics == "multigrid":
+            mf = mf.multigrid_numint()
+        else:
+            # PySCF would build all four-index integrals if they fitted into memory (minutes): keep to FFTs
+            fft = mf.with_df.get_jk
+            mf.get_jk = lambda cell=None, dm=None, hermi=1, kpt=None, kpts_band=None, with_j=True, with_k=False, **_: (
+                fft(dm, hermi, kpt, kpts_band, with_j, False)
+            )
+        overlap = np.asarray(mf.get_ovlp())
+        mf.get_ovlp = lambda *_: overlap  # asked for again and again
+        energy = mf.kernel(self._guess(mf.cell, overlap))
+        converged = bool(mf.converged) and bool(np.isfinite(energy))
+        filled = np.asarray(mf.mo_occ) > 0
+        levels = np.asarray(mf.mo_energy)
+        occupied = np.asarray(mf.mo_coeff)[:, filled]
+        found = {
+            "energy_Ha": np.array(energy),
+            "converged": np.array(converged),
+            "cycles": np.array(mf.cycles),
+            "orbitals": occupied,
+            "overlap": overlap,
+            "gap_Ha": np.array(levels[~filled].min() - levels[filled].max() if not filled.all() else np.inf),
+        }
+        if forces and converged:
+            if p.numerics == "cached-grid":
+                found["forces"] = mf._numint.forces(mf)
+            elif p.numerics == "multigrid":
+                found["forces"] = -mf.nuc_grad_method().kernel()
+            else:
+                raise NotImplementedError("forces with numerics 'fftdf'")
+        return found
+
+    def _guess(self, cell, overlap: np.ndarray) -> np.ndarray | None:
+        """Density matrix of extrapolated orbitals; None if there are none that fit."""
+        from pyscf import lib
+
+        shape = (cell.nao, cell.nelectron // 2)
+        c = extrapolated_orbitals([old for old in self.history if old.orbitals.shape == shape], overlap)
+        return None if c is None else lib.tag_array(2 * c @ c.T, mo_coeff=c, mo_occ=np.full(c.shape[1], 2.0))
+
+
+def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> np.ndarray | None:
+    """Occupied orbitals where the basis functions overlap as in `overlap`, orthonormal there; None without a history.
+
+    The overlap describes the geometry: the combination of former ones, with weights that add to one, which comes
+    nearest to it also combines the former orbitals, once each set is rotated onto the last one.  Along a line this is
+    polynomial extrapolation; after Polack et al., J. Chem. Theory Comput. 17, 6965 (2021).
+    """
+    if not history:
+        return None
+    *older, last = history
+    c = last.orbitals
+    if older:
+        known = np.stack([(old.overlap - last.overlap).ravel() for old in older])
+        gram = known @ known.T
+        gram += GUESS_DAMPING * np.trace(gram) * np.eye(len(older))
+        weights = np.linalg.lstsq(gram, known @ (overlap - last.overlap).ravel())[0]  # the same geometry twice: none
+        c = (1 - weights.sum()) * c
+        for weight, old in zip(weights, older, strict=True):
+            left, _, right = np.linalg.svd(old.orbitals.T @ old.overlap @ last.orbitals)
+            c = c + weight * old.orbitals @ (left @ right)
+    values, vectors = np.linalg.eigh(c.T @ overlap @ c)
+    if values.min() < 1e-4:
+        return None
+    return c @ (vectors / np.sqrt(values)) @ vectors.T

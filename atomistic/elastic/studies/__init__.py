@@ -1,0 +1,1 @@
+"""How far E* can be trusted: error against run time and hard cases."""

@@ -1,0 +1,42 @@
+"""What closing runs will cost, before they are run: atoms, steps, core-hours."""
+
+from atomistic.hardness.closing import plan_closing
+from atomistic.hardness.runs import planned_runs
+from atomistic.settings import HardnessSettings
+
+ATOMS_PER_NM3 = {"SiO2": 70.0, "TiO2": 86.0}  # of quenched glass (2.33 and 3.8 g/cm^3)
+MEAN_HEIGHT = -0.405  # of eq. 6, in amplitudes: the mean of min(sin, sin) is -4/pi^2
+ATOM_STEPS_PER_CORE_SECOND = 1.0e6  # measured, tabulated pair potential (docs/hardness.md)
+
+
+def plan_rows(settings: HardnessSettings) -> list[dict[str, float | str]]:
+    """One row per closing run, and their sum in the last.
+
+    `restart_steps` is what a killed run loses at most.
+    """
+    rows: list[dict[str, float | str]] = []
+    edge_nm = (settings.glass.atoms / ATOMS_PER_NM3[settings.material]) ** (1 / 3)
+    for run in planned_runs(settings):
+        plan, closing = plan_closing(settings, run.asperity), settings.closing
+        wavelength, amplitude = run.asperity.tiles * edge_nm, run.asperity.amplitude_nm
+        atoms = ATOMS_PER_NM3[settings.material] * wavelength**2 * (closing.base_nm + MEAN_HEIGHT * amplitude)
+        if closing.counterface in ("oxide", "asperity"):
+            own = amplitude if closing.counterface == "asperity" else 0
+            thickness = closing.counter_base_nm + MEAN_HEIGHT * own
+            atoms += ATOMS_PER_NM3[closing.counter_material] * wavelength**2 * thickness
+        seconds = atoms * plan.total_steps / ATOM_STEPS_PER_CORE_SECOND
+        rows.append(
+            {
+                "run": run.name,
+                "wavelength_nm": wavelength,
+                "atoms": round(atoms),
+                "steps": plan.total_steps,
+                "restart_steps": plan.segment_steps,
+                "atom_steps": atoms * plan.total_steps,
+                "core_hours": seconds / 3600,
+                "hours": seconds / 3600 / closing.processes,
+                "processes": closing.processes,
+            }
+        )
+    total = {key: sum(float(row[key]) for row in rows) for key in ("atom_steps", "core_hours")}
+    return [*rows, {"run": "all", **total}]

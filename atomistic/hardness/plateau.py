@@ -1,0 +1,194 @@
+"""Hardness of one closing run: plastic onset, plateau stress, and the reasons to refuse.
+
+Hardness is the mean contact stress of the plateau beyond a *witnessed* onset of plasticity (bonds exchanged
+and a top that stays lower after unloading).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from scipy.special import bdtrc
+
+from atomistic.hardness.runs import geometry
+from atomistic.settings import ClosingSettings, HardnessSettings, YieldSettings
+
+Rows = Sequence[Mapping[str, float]]
+
+UNLOADED = (  # of a run with dynamic unloading: what stays, beside the snapshot relaxed before it
+    "snapshot_exchanged_bonds", "unloaded_exchanged_bonds", "snapshot_lowering_nm", "unloaded_lowering_nm",
+    "unloaded_force_nN",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Hardness:
+    """What a run says about hardness; stresses in GPa, lengths in nm, NaN where there is nothing to say."""
+
+    status: str  # yield, no_yield, or "rejected: why"
+    contact_length_nm: float = float("nan")
+    contact_area_nm2: float = float("nan")
+    hardness_GPa: float = float("nan")
+    hardness_lo: float = float("nan")
+    hardness_hi: float = float("nan")
+    length_min_nm: float = float("nan")
+    length_max_nm: float = float("nan")
+    plateau_exponent: float = float("nan")
+    plateau_points: int = 0
+    onset_displacement_nm: float = float("nan")
+    onset_length_nm: float = float("nan")
+    exchanges_before: float = float("nan")
+    exchanges_at_onset: float = float("nan")
+    onset_p_value: float = float("nan")
+    exchanges_after: float = float("nan")
+    lowering_nm: float = float("nan")
+    drift_meV_atom_ps: float = float("nan")
+    warming_K: float = float("nan")
+
+
+@dataclass(frozen=True)
+class Onset:
+    """Where plasticity is first witnessed.
+
+    background : bond exchanges per snapshot before contact.
+    exchanges, p_value : those of the onset's snapshot, and the chance of as many without plasticity.
+    """
+
+    displacement_nm: float | None
+    background: float
+    exchanges: float = float("nan")
+    p_value: float = float("nan")
+
+
+def plastic_onset(witness: Rows, approach_nm: float, settings: YieldSettings) -> Onset:
+    """First witness of plasticity among the relaxed snapshots.
+
+    The background is the mean number of new exchanges between the snapshots before contact.  The onset is the
+    first snapshot with `min_exchanges` more new exchanges than the background and its two-sigma Poisson noise
+    allow, from which on the top stays `min_lowering_A` lower.  Its p value is that of the exact test for two
+    Poisson counts (Przyborowski and Wilenski 1940), which knows that the background is an estimate.
+    """
+    displacement = np.array([row["displacement_nm"] for row in witness])
+    new = np.array([row["new_exchanges"] for row in witness])
+    lowering = 10 * np.array([row["lowering_nm"] for row in witness])
+    before = (displacement <= approach_nm) & (np.arange(len(witness)) > 0)
+    background = float(np.mean(new[before])) if np.any(before) else 0.0
+    limit = background + max(settings.min_exchanges, 2 * np.sqrt(background))
+    lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= settings.min_lowering_A
+    found = np.flatnonzero((new >= limit) & lasting & (displacement > approach_nm))
+    if len(found) == 0:
+        return Onset(None, background)
+    count, earlier, snapshots = int(new[found[0]]), int(np.sum(new[before])), int(np.sum(before))
+    p_value = float(bdtrc(count - 1, count + earlier, 1 / (1 + snapshots))) if snapshots else float("nan")
+    return Onset(float(displacement[found[0]]), background, float(count), p_value)
+
+
+def find_hardness(
+    curve: Rows, witness: Rows, cell_area_nm2: float, closing: ClosingSettings, settings: YieldSettings
+) -> Hardness:
+    """Hardness of a closing run.
+
+    Parameters
+    ----------
+    curve, witness : rows of `Closing.curve` and `Closing.witness`.
+    cell_area_nm2 : cross-section of the simulation cell.
+    """
+    column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
+    length, stress, travel = (
+        column["contact_length_nm"],
+        column["contact_stress_GPa"],
+        column["displacement_nm"],
+    )
+    elapsed_ps = (column["step"][-1] - column["step"][0]) * closing.timestep_fs / 1000
+    drift = float(np.max(np.abs(column["energy_drift_meV_per_atom"])) / elapsed_ps)
+    temperature = column["temperature_K"]
+    warming = float(np.max(temperature) - np.mean(temperature[:4]))
+    fraction = column["contact_area_nm2"] / cell_area_nm2
+    window = _first_stretch((length >= settings.min_length_nm) & (fraction <= settings.max_area_fraction))
+    onset = plastic_onset(witness, closing.approach_nm, settings)
+    facts: dict[str, Any] = {
+        "drift_meV_atom_ps": drift,
+        "warming_K": warming,
+        "exchanges_before": onset.background,
+    }
+    if drift > settings.max_drift_meV_atom_ps:
+        return Hardness(f"rejected: energy drifts by {drift:.2g} meV per atom and ps", **facts)
+    if warming > settings.max_warming_K:
+        return Hardness(f"rejected: warms by {warming:.0f} K", **facts)
+    if np.sum(window) < settings.min_points:
+        return Hardness("rejected: contact too small for the window of lengths", **facts)
+    start = onset.displacement_nm
+    if start is None:
+        return Hardness("no_yield", **facts)
+    beyond = window & (travel >= start)
+    last = witness[-1]
+    facts |= {
+        "onset_displacement_nm": start,
+        "onset_length_nm": float(np.interp(start, travel, length)),
+        "exchanges_at_onset": onset.exchanges,
+        "onset_p_value": onset.p_value,
+        "exchanges_after": float(np.mean([row["new_exchanges"] for row in witness if row["displacement_nm"] >= start])),
+        "lowering_nm": float(last["lowering_nm"]),
+    }
+    if np.sum(beyond) < settings.min_points:
+        return Hardness("rejected: too few averages between onset and the end of the window", **facts)
+    plateau, lengths = stress[beyond], length[beyond]
+    exponent = float(np.polyfit(np.log(lengths), np.log(plateau), 1)[0])
+    low, high = _interval_of_mean(plateau)
+    facts |= {
+        "contact_length_nm": float(np.mean(lengths)),
+        "contact_area_nm2": float(np.mean(lengths) ** 2),
+        "hardness_GPa": float(np.mean(plateau)),
+        "hardness_lo": low,
+        "hardness_hi": high,
+        "length_min_nm": float(np.min(lengths)),
+        "length_max_nm": float(np.max(lengths)),
+        "plateau_exponent": exponent,
+    }
+    if exponent > settings.max_exponent:
+        status = f"rejected: stress still rises as length^{exponent:.2f} beyond the onset"
+    else:
+        status = "yield"
+    return Hardness(status, plateau_points=int(np.sum(beyond)), **facts)
+
+
+def point(curve: Rows, witness: Rows, facts: Mapping[str, Any], settings: HardnessSettings) -> dict[str, Any]:
+    """Row of points.csv of a run, given its summary `facts`."""
+    found = find_hardness(curve, witness, facts["wavelength_nm"] ** 2, settings.closing, settings.plasticity)
+    return {
+        "run": facts["run"],
+        "potential": settings.potential,
+        "energy_scale": facts["energy_scale"],
+        "geometry": geometry(settings.closing, facts["amplitude_nm"]),
+        "asperity": facts["asperity"],
+        "wavelength_nm": facts["wavelength_nm"],
+        "amplitude_nm": facts["amplitude_nm"],
+        "seed": facts["seed"],
+        "atoms": facts["atoms"],
+        **asdict(found),
+        "atom_steps": facts["atoms"] * facts["steps"],
+        "restart_steps": facts["restart_steps"],
+        "lammps_cpu_s": facts["lammps_cpu_s"],
+        "python_cpu_s": facts["python_cpu_s"],
+        **{key: facts[key] for key in UNLOADED if key in facts},
+    }
+
+
+def _first_stretch(mask: np.ndarray) -> np.ndarray:
+    """The mask up to its first end: what comes back after the window was left is not used."""
+    if not np.any(mask):
+        return mask
+    start = int(np.argmax(mask))
+    end = start + int(np.argmin(np.append(mask[start:], False)))
+    return np.isin(np.arange(len(mask)), np.arange(start, end))
+
+
+def _interval_of_mean(values: np.ndarray, block: int = 4, samples: int = 2000) -> tuple[float, float]:
+    """68 % interval of the mean by a circular block bootstrap (neighbouring averages are correlated)."""
+    count = len(values)
+    rng = np.random.default_rng(np.random.SeedSequence([count, 8]))
+    starts = rng.integers(0, count, (samples, -(-count // block)))
+    order = (starts[:, :, None] + np.arange(min(block, count))) % count
+    low, high = np.quantile(values[order].reshape(samples, -1).mean(axis=1), [0.16, 0.84])
+    return float(low), float(high)

@@ -1,0 +1,134 @@
+"""What hardness depends on besides the asperity: one knob at a time on the smallest closing run."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from atomistic.hardness.plateau import Rows, find_hardness
+from atomistic.hardness.runs import ClosingRun, planned_runs
+from atomistic.settings import ClosingSettings, HardnessSettings
+
+DEFAULT = "default"
+COLUMNS = (
+    "stage", "case", "knob", "value", "error", "error_metric", "reference", "wall_s", "cpu_s", "peak_rss_MB",
+    "hardness_GPa", "hardness_lo", "hardness_hi", "status", "atom_steps",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Variation:
+    """A changed key of `closing`."""
+
+    name: str
+    key: str
+    factor: float
+
+    def closing(self, settings: HardnessSettings) -> ClosingSettings:
+        """The closing settings with the key changed."""
+        if not self.key:
+            return settings.closing
+        value = getattr(settings.closing, self.key) * self.factor
+        return settings.closing.model_copy(update={self.key: value})
+
+
+VARIATIONS = {
+    variation.name: variation
+    for variation in (
+        Variation(DEFAULT, "", 1),
+        Variation("speed_double", "speed_m_s", 2),
+        Variation("speed_fourfold", "speed_m_s", 4),
+        Variation("timestep_half", "timestep_fs", 0.5),
+        Variation("wall_stiffness_fourfold", "wall_stiffness_eV_A3", 4),
+        Variation("temperature_tenth", "temperature_K", 0.1),
+        Variation("base_larger", "base_nm", 1.5),
+    )
+}
+
+
+def smallest_run(settings: HardnessSettings) -> ClosingRun:
+    """The cheapest run of a scene at its highest energy scale."""
+    return min(
+        planned_runs(settings),
+        key=lambda run: (run.asperity.tiles, run.asperity.amplitude_nm, -run.energy_scale),
+    )
+
+
+def compare(
+    curves: Mapping[str, Rows],
+    witnesses: Mapping[str, Rows],
+    facts: Mapping[str, Mapping],
+    settings: HardnessSettings,
+) -> list[dict]:
+    """Rows of accuracy/hardness.csv: plateau stress of each variation against the default's.
+
+    The scatter of a single run (`hardness_lo`, `hardness_hi`) limits what a difference means.
+    """
+    found = {
+        name: find_hardness(
+            curves[name],
+            witnesses[name],
+            facts[name]["wavelength_nm"] ** 2,
+            VARIATIONS[name].closing(settings),
+            settings.plasticity,
+        )
+        for name in curves
+    }
+    reference = found[DEFAULT].hardness_GPa
+    rows = []
+    for name, hardness in found.items():
+        variation, fact = VARIATIONS[name], facts[name]
+        value = getattr(variation.closing(settings), variation.key) if variation.key else settings.closing.speed_m_s
+        rows.append(
+            {
+                **_row(name, variation.key or "speed_m_s", value, hardness.hardness_GPa, reference),
+                "wall_s": fact["wall_s"],
+                "cpu_s": fact["lammps_cpu_s"] + fact["python_cpu_s"],
+                "peak_rss_MB": fact.get("peak_rss_MB"),
+                "hardness_lo": hardness.hardness_lo,
+                "hardness_hi": hardness.hardness_hi,
+                "status": hardness.status,
+                "atom_steps": fact["atoms"] * fact["steps"],
+            }
+        )
+    rows += _area_definitions(
+        curves[DEFAULT], found[DEFAULT].onset_displacement_nm, settings, reference, facts[DEFAULT]
+    )
+    return rows
+
+
+def _area_definitions(
+    curve: Rows, onset_nm: float, settings: HardnessSettings, reference: float, facts: Mapping
+) -> Sequence[dict]:
+    """The same run and the same averages with the area of other depths."""
+    column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
+    window = (
+        (column["displacement_nm"] >= onset_nm)
+        & (column["contact_length_nm"] >= settings.plasticity.min_length_nm)
+        & (column["contact_area_nm2"] <= settings.plasticity.max_area_fraction * facts["wavelength_nm"] ** 2)
+    )
+    rows = []
+    for name in column:
+        if name.startswith("contact_area_nm2_depth_") and np.any(window):
+            depth = float(name.removeprefix("contact_area_nm2_depth_").removesuffix("A"))
+            stress = float(np.mean(column["force_nN"][window] / column[name][window]))
+            rows.append(
+                {
+                    **_row(f"area_depth_{depth:g}A", "area.depth_A", depth, stress, reference),
+                    "status": "yield",
+                }
+            )
+    return rows
+
+
+def _row(case: str, knob: str, value: float, hardness: float, reference: float) -> dict:
+    return {
+        "stage": "hardness",
+        "case": case,
+        "knob": knob,
+        "value": value,
+        "error": hardness / reference - 1,
+        "error_metric": "relative difference of the plateau stress",
+        "reference": DEFAULT,
+        "hardness_GPa": hardness,
+    }

@@ -1,0 +1,153 @@
+"""Error of the curve against the run time of a cycle, one numerical knob at a time."""
+
+import resource
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from mesoscale.contact.cycle import Cycle, run_cycle
+from mesoscale.contact.energy import dissipated_energy
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.law.fit import contact_separation, fit_branch
+from mesoscale.settings import ContactSettings, LawSettings
+
+COLUMNS = (
+    "stage",
+    "case",
+    "knob",
+    "value",
+    "error",
+    "error_metric",
+    "reference",
+    "wall_s",
+    "cpu_s",
+    "peak_rss_MB",
+)
+OUTPUTS = (
+    "d_c",
+    "C_a",
+    "C_r",
+    "rho_r",
+    "separation at full load",
+    "attraction at full load",
+    "dissipated energy",
+)
+METRIC = "mean relative deviation over surfaces (lengths: relative to rms)"
+
+Case = tuple[str, Any, dict[str, Any]]  # knob, value, changed settings
+
+
+def studies(settings: ContactSettings) -> Iterator[tuple[str, dict[str, Any], list[Case]]]:
+    """Yield for each study its reference in words, the reference's settings and the cases.
+
+    The grid study keeps the cut-off of its coarsest grid, so that all grids show the same surface.
+    """
+    steps = (5, 10, 20, 40, 80)
+    yield "320 force steps", {"force_steps": 320}, [("force_steps", n, {"force_steps": n}) for n in steps]
+
+    tolerances = (0.1, 0.03, 0.01, 1e-3, 1e-4)
+    yield (
+        "tolerance 1e-5",
+        {"flow_tolerance": 1e-5, "max_sweeps": 5000},
+        [("flow_tolerance", t, {"flow_tolerance": t, "max_sweeps": 5000}) for t in tolerances],
+    )
+
+    increments = (0.3, 0.1, 0.03, 0.01)
+    small = {"flow": "increment", "max_sweeps": 100000}
+    yield (
+        "increments of 0.003 nm",
+        {**small, "flow_increment_nm": 0.003},
+        [
+            *(("flow_increment_nm", a, {**small, "flow_increment_nm": a}) for a in increments),
+            ("return mapping", settings.flow_tolerance, {"flow": "return"}),
+        ],
+    )
+
+    bins = (16, 64, 256, 1024, 4096)
+    yield "65536 bins", {"gap_bins": 65536}, [("gap_bins", b, {"gap_bins": b}) for b in bins]
+
+    grids = [max(settings.pixels * k // 8, 32) for k in (2, 4, 8)]
+    cutoff = np.pi * grids[0] / settings.length_nm
+    finest = 2 * settings.pixels
+    yield (
+        f"{finest} pixels, cut-off {cutoff:.3g} 1/nm",
+        {"pixels": finest, "q1_per_nm": cutoff},
+        [("pixels", n, {"pixels": n, "q1_per_nm": cutoff}) for n in sorted(set(grids))],
+    )
+
+
+def accuracy_rows(
+    inputs: ContactInputs,
+    settings: ContactSettings,
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[dict[str, Any]]:
+    """Rows of accuracy/contact.csv, over `settings.study_seeds` surfaces."""
+    plan = list(studies(settings))
+    total = sum(len(cases) + 1 for _, _, cases in plan)
+    done = 0
+    for words, reference_changes, cases in plan:
+        reference, _, _ = _outputs(inputs, settings, reference_changes)
+        done += 1
+        for knob, value, changes in cases:
+            found, wall, cpu = _outputs(inputs, settings, changes)
+            done += 1
+            if progress is not None:
+                progress(done / total, f"{knob} {value}")
+            scale = np.abs(reference)
+            scale[:, [OUTPUTS.index("d_c"), OUTPUTS.index("separation at full load")]] = inputs.rms
+            errors = np.nanmean(np.abs(found - reference) / scale, axis=0)
+            for output, error in zip(OUTPUTS, errors, strict=True):
+                yield {
+                    "stage": "contact",
+                    "case": output,
+                    "knob": knob,
+                    "value": value,
+                    "error": float(error),
+                    "error_metric": METRIC,
+                    "reference": words,
+                    "wall_s": round(wall, 4),
+                    "cpu_s": round(cpu, 4),
+                    "peak_rss_MB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
+                }
+
+
+def _outputs(
+    inputs: ContactInputs, settings: ContactSettings, changes: dict[str, Any]
+) -> tuple[np.ndarray, float, float]:
+    """OUTPUTS for each surface, shape (seeds, outputs), and mean wall and processor time of a cycle (s)."""
+    chosen = settings.model_copy(update=changes)
+    wall, cpu = time.perf_counter(), time.process_time()
+    cycles = [run_cycle(inputs, chosen, seed) for seed in range(1, settings.study_seeds + 1)]
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    values = np.array([cycle_outputs(cycle, inputs, chosen) for cycle in cycles])
+    return values, wall / len(cycles), cpu / len(cycles)
+
+
+def cycle_outputs(cycle: Cycle, inputs: ContactInputs, settings: ContactSettings) -> list[float]:
+    """The numbers OUTPUTS of one cycle: law of the closing branch, end of closing, energy.
+
+    d_c is taken at 3 % of the force: first contact does not depend on the path, and would hide its error.
+    """
+    closing = cycle.closing
+    law = LawSettings(contact_definition="force_fraction")
+    d_c = contact_separation(closing.separation_nm, closing.repulsive_nN, law)
+    fit = fit_branch(
+        closing.separation_nm,
+        closing.repulsive_nN,
+        closing.attractive_nN,
+        settings.length_nm**2,
+        inputs.hamaker,
+        d_c,
+        law,
+    )
+    return [
+        d_c,
+        fit.C_a_GPa_nm,
+        fit.C_r_GPa,
+        fit.rho_r_nm,
+        closing.separation_nm[-1],
+        closing.attractive_nN[-1],
+        dissipated_energy(cycle)[0],
+    ]

@@ -1,0 +1,227 @@
+"""Stiff and extreme cases of the contact model, each judged by physical invariants."""
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from mesoscale.contact.cycle import Cycle, run_cycle
+from mesoscale.contact.energy import dissipated_energy, work
+from mesoscale.errors import InputError
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.settings import ContactSettings
+from mesoscale.topography.synthesis import synthesize
+
+COLUMNS = ("stage", "case", "description", "checks", "passed", "detail", "wall_s")
+MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
+FINER = 16  # force steps of the path that judges a gain of energy, over those of the cycle
+CHECKS = "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow settled"
+
+
+@dataclass(frozen=True)
+class Case:
+    """One extreme case."""
+
+    name: str
+    description: str
+    inputs: ContactInputs = MIDDLE
+    changes: dict[str, Any] = field(default_factory=dict)
+    heights: np.ndarray | None = None
+    cycles: int = 1
+    refused: bool = False
+    too_much: bool = False  # a load that the hardness of the whole surface does not carry
+
+
+def violations(
+    cycle: Cycle, inputs: ContactInputs, settings: ContactSettings, start: np.ndarray | None = None
+) -> list[str]:
+    """Which physical invariants a cycle breaks; empty if none.
+
+    ``start``: the surface before the cycle, for the check of volume (needs `Cycle.heights`), and to judge a gain of
+    energy on a finer path: the error of a sum over few points is unknown where asperities merge and the force jumps.
+    """
+    found = []
+    closing, opening = cycle.closing, cycle.opening
+    if not all(np.isfinite(array).all() for branch in (closing, opening) for array in vars(branch).values()):
+        return ["not finite"]
+    if (np.diff(closing.separation_nm) > 0).any() or (np.diff(opening.separation_nm) < 0).any():
+        found.append("separations not ordered")
+    if closing.repulsive_nN.min() < 0 or opening.repulsive_nN.min() < 0:
+        found.append("repulsion negative")
+    if max(closing.attractive_nN.max(), opening.attractive_nN.max()) > 0:
+        found.append("attraction positive")
+    if inputs.hamaker == 0 and closing.attractive_nN.any():
+        found.append("attraction without A_H")
+    if (
+        closing.repulsive_nN[-1] != opening.repulsive_nN[0]
+        or closing.separation_nm[-1] != opening.separation_nm[0]
+        or closing.attractive_nN[-1] != opening.attractive_nN[0]
+    ):
+        found.append("opening does not start where closing ended")
+    gain, known = _energy_gain(cycle)
+    if gain > known and start is not None:
+        finer = settings.model_copy(update={"force_steps": FINER * settings.force_steps})
+        gain, known = _energy_gain(run_cycle(inputs, finer, 0, heights=start))
+    if gain > known:
+        found.append(f"energy gained: {gain:.2g} of the work, known to {known:.1g}")
+    if cycle.flags["unconverged_steps"]:
+        found.append(f"{cycle.flags['unconverged_steps']} steps did not settle")
+    limit = 1.0 + (settings.flow_tolerance if settings.flow == "return" else 0.0)
+    if settings.model == "plastic" and float(cycle.flags["largest_load"]) > limit * (1 + 1e-12):
+        found.append(f"an asperity at {cycle.flags['largest_load']:.4g} of its hardness")
+    if start is not None and cycle.heights is not None:
+        moved = np.abs(cycle.heights - start).sum()
+        if abs(np.sum(cycle.heights - start)) > 1e-12 * (moved + np.abs(start).sum()):
+            found.append("volume changed")
+    return found
+
+
+def _energy_gain(cycle: Cycle) -> tuple[float, float]:
+    """Energy gained over a cycle and its uncertainty, as shares of the work of closing."""
+    spent, _ = work(cycle.closing)
+    lost, uncertainty = dissipated_energy(cycle)
+    return (-lost / spent, uncertainty / spent + 1e-9) if spent > 0 else (-lost, uncertainty)
+
+
+def extreme_cases(settings: ContactSettings) -> list[Case]:
+    """The cases at the grid of the settings; surfaces that are not random are made here."""
+    n = settings.pixels
+    spacing = settings.length_nm / n
+    x = (np.arange(n) - n // 2) * spacing
+    bowl = (x[:, None] ** 2 + x[None, :] ** 2) / settings.length_nm
+    rough = synthesize(n, settings.length_nm, 0.025, 0.75, 8.5, 1)
+    share = (settings.length_nm / 1000.0) ** 2  # loads as on 1 um^2
+    with_ = lambda **change: replace(MIDDLE, **change)  # noqa: E731
+    cases = [
+        Case("middle of Table 1", "the paper's mean inputs"),
+        Case("E* x 1000", "stiff: yields at once", with_(e_star=91e3)),
+        Case("E* / 1000", "soft: never yields", with_(e_star=0.091)),
+        Case("hard", "H = 1e9 GPa: elastic", with_(h_macro=1e9)),
+        Case(
+            "no hardness",
+            "H = 1e-6 GPa: flows without carrying",
+            with_(h_macro=1e-6, h_prime=0.0),
+            {"max_force_nN": 1e-3 * share},
+        ),
+        Case("rms 0.01 nm", "nearly flat", with_(rms=0.01)),
+        Case("rms 200 nm", "spikes", with_(rms=200.0)),
+        Case("H 0.01", "slope -2.02", with_(hurst=0.01)),
+        Case("H 0.99", "smoothest of Table 1", with_(hurst=0.99)),
+        Case("profile", "slope -(2H+1): rough down to its pixels", changes={"convention": "profile"}),
+        Case("profile, H 0.01", "slope -1.02", with_(hurst=0.01), {"convention": "profile"}),
+        Case("one-pixel asperities", "white noise", heights=np.random.default_rng(1).normal(0, 5, (n, n))),
+        Case("flat", "all sites touch at once", heights=np.zeros((n, n))),
+        Case("giant asperity", "one paraboloid as wide as the cell", heights=bowl),
+        Case("A_H = 0", "no attraction", with_(hamaker=0.0)),
+        Case("A_H x 100", "strong attraction", with_(hamaker=21.5)),
+        Case("gap cut-off 1e-6 nm", "eq. 1 near its singularity", changes={"gap_cutoff_nm": 1e-6}),
+        Case("touching sites attract", "reading of eq. 1", changes={"touching_attracts": True}),
+        Case("p = 2/3", "reading of eq. 3", changes={"prefactor": "paper"}),
+        Case("nm x 1e-6", "heights of picometres and less", heights=1e-6 * rough),
+        Case("nm x 1e6", "heights of millimetres on a grid of nanometres", heights=1e6 * rough),
+        Case("nm x 100", "heights of micrometres on a grid of nanometres", heights=100 * rough),
+        Case("20 cycles", "shakedown: the last cycle is elastic", cycles=20),
+        Case("not square", "refused in one line", heights=np.zeros((n, n + 1)), refused=True),
+        Case("not finite", "refused in one line", heights=np.full((n, n), np.inf), refused=True),
+    ]
+    for force in (1e4, 1e5, 1e6):
+        cases.append(Case(f"{force:.0e} nN", "load on 1 um^2", changes={"max_force_nN": force * share}))
+    words = "load on 1 um^2, more than hardness carries: closing ends before, and says so"
+    cases.append(Case("1e+07 nN", words, changes={"max_force_nN": 1e7 * share}, too_much=True))
+    for pair in ("paper", "wide"):
+        for flow in ("increment", "return"):
+            words = f"flow {flow}, pair {pair}"
+            cases.append(Case(words, "readings of flow", changes={"flow": flow, "flow_pair": pair}))
+    for model in ("elastic", "nonlinear"):
+        cases.append(Case(model, "single asperities without flow", changes={"model": model}))
+    return cases
+
+
+def judge(case: Case, settings: ContactSettings) -> tuple[list[str], str]:
+    """Run a case; returns broken invariants and what else is worth knowing."""
+    share = (settings.length_nm / 1000.0) ** 2
+    chosen = settings.model_copy(update={"max_force_nN": 7000.0 * share, **case.changes})
+    try:
+        heights = case.heights
+        if heights is None:
+            i = case.inputs
+            heights = synthesize(
+                chosen.pixels, chosen.length_nm, i.q0, i.hurst, i.rms, 1, chosen.convention, chosen.q1_per_nm
+            )
+        broken: list[str] = []
+        losses: list[float] = []
+        flags: dict[str, Any] = {}
+        for number in range(case.cycles):
+            cycle = run_cycle(case.inputs, chosen, 1, heights=heights, keep_surface=True)
+            broken += [f"cycle {number + 1}: {words}" for words in violations(cycle, case.inputs, chosen, heights)]
+            losses.append(dissipated_energy(cycle)[0])
+            heights, flags = cycle.heights, cycle.flags
+    except InputError as error:
+        return ([] if case.refused else [f"refused: {error}"]), str(error)
+    if case.refused:
+        return ["accepted"], ""
+    if flags["force_reached"] == case.too_much:
+        broken.append("force reached, though hardness cannot carry it" if case.too_much else "force not reached")
+    if case.cycles > 1 and losses[-1] > 0.05 * losses[0]:
+        broken.append("no shakedown")
+    detail = (
+        f"force miss {flags['force_miss']:.1e}, bounds on R {flags['radius_bound_events']}, "
+        f"repeated steps {flags['repeated_steps']}, loss of last to first cycle {losses[-1] / losses[0]:.2g}"
+        if losses[0] > 0
+        else f"force miss {flags['force_miss']:.1e}, no loss"
+    )
+    return broken, detail
+
+
+def stability_rows(
+    settings: ContactSettings,
+    draws: Sequence[Mapping[str, str]],
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[dict[str, Any]]:
+    """Rows of stability/contact.csv: the extreme cases, and the random draws (rows of `draws.draw_rows`) by grid."""
+    chosen = study_grid(settings)
+    cases = extreme_cases(chosen)
+    for number, case in enumerate(cases):
+        start = time.perf_counter()
+        broken, detail = judge(case, chosen)
+        yield _row(case.name, case.description, broken, detail, time.perf_counter() - start)
+        if progress is not None:
+            progress((number + 1) / len(cases), case.name)
+    yield from draws_by_grid(draws)
+
+
+def draws_by_grid(draws: Sequence[Mapping[str, str]]) -> Iterator[dict[str, Any]]:
+    """A row of stability/contact.csv for each grid on which random draws were made."""
+    for pixels in sorted({int(row["pixels"]) for row in draws}):
+        rows = [row for row in draws if int(row["pixels"]) == pixels]
+        broken = [f"draw {row['draw']} seed {row['seed']}: {row['broken']}" for row in rows if row["broken"]]
+        detail = (
+            f"{len(broken)} of {len(rows)} cycles break an invariant; {sum(int(row['steps']) for row in rows)} steps, "
+            f"at most {max(int(row['most_sweeps']) for row in rows)} sweeps in one; "
+            f"bounds on R {sum(int(row['radius_bound_events']) for row in rows)}, "
+            f"repeated steps {sum(int(row['repeated_steps']) for row in rows)}, "
+            f"largest force miss {max(float(row['force_miss']) for row in rows):.1e}"
+        )
+        words = f"{len({row['draw'] for row in rows})} draws from Table 1, {len(rows)} cycles"
+        wall_s = sum(float(row["wall_s"]) for row in rows)
+        yield _row(f"random draws, {pixels} pixels", words, broken, detail, wall_s)
+
+
+def study_grid(settings: ContactSettings) -> ContactSettings:
+    """At most 256 pixels a side of the same spacing: extreme cases cost more than usual ones."""
+    pixels = min(settings.pixels, 256)
+    return settings.model_copy(update={"pixels": pixels, "length_nm": settings.length_nm * pixels / settings.pixels})
+
+
+def _row(name: str, description: str, broken: list[str], detail: str, wall_s: float) -> dict[str, Any]:
+    return {
+        "stage": "contact",
+        "case": name,
+        "description": description,
+        "checks": CHECKS,
+        "passed": not broken,
+        "detail": "; ".join([*broken[:5], detail]),
+        "wall_s": round(wall_s, 3),
+    }

@@ -1,0 +1,179 @@
+"""The table of uncertain inputs in use (the paper's Table 1): each row from literature or from a stage."""
+
+import csv
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mesoscale.errors import InputError
+from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
+from mesoscale.settings import InputRow, InputsSettings
+
+UNITS = {
+    "hamaker": "1e-18 J",
+    "e_star": "GPa",
+    "h_macro": "GPa",
+    "h_prime": "GPa nm^0.5",
+    "q0": "1/nm",
+    "hurst": "1",
+    "rms": "nm",
+    "gap_cutoff": "nm",
+}
+BOUNDS = {
+    "hamaker": (0.0, np.inf),
+    "e_star": (0.0, np.inf),
+    "h_macro": (0.0, np.inf),
+    "h_prime": (0.0, np.inf),
+    "q0": (0.0, np.inf),
+    "hurst": (0.0, 2.0),
+    "rms": (0.0, np.inf),
+    "gap_cutoff": (0.0, np.inf),
+}
+"""Physical bounds of the inputs; a range that crosses them is refused."""
+
+COLUMNS = ("parameter", "unit", "distribution", "a", "b", "low", "high", "correlation", "origin", "file")
+
+
+def collect(
+    settings: InputsSettings,
+    stages: Mapping[str, Mapping[str, Any]],
+    files: Mapping[str, str],
+    central_share: float,
+) -> InputTable:
+    """The inputs in use.
+
+    Parameters
+    ----------
+    settings : origin of each row, and the distributions of the literature rows.
+    stages : content of the result file of each stage that a row wants: `inputs` (by name: distribution, a, b
+        and perhaps low, high, correlation) and `gate` (`passed`, `reasons`).
+    files : name of that file, for messages and the table.
+    central_share : see `UncertaintySettings.central_share`; ranges are checked over it.
+
+    Raises
+    ------
+    InputError : a stage's gate failed, a stage lacks an input, or a range crosses a physical bound.
+    """
+    rows, pairs = [], {(pair.first, pair.second): pair.rank for pair in settings.correlations}
+    for name, row in settings.rows().items():
+        if row.origin == "literature":
+            given, source = _literature(name, row), row.source or "scene"
+        else:
+            source = files[row.origin]
+            entry = _from_stage(name, row.origin, stages[row.origin], source)
+            given = _distribution(entry, f"{source}: inputs.{name}")
+            for other, rank in entry.get("correlation", {}).items():
+                if other in settings.rows():
+                    pairs.setdefault((name, other), float(rank))
+        _check_range(name, given, source, central_share)
+        rows.append(UncertainInput(name, UNITS[name], given, row.origin, source))
+    names = [row.name for row in rows]
+    return InputTable(tuple(rows), correlation_matrix(names, pairs))
+
+
+def _literature(name: str, row: InputRow) -> Distribution:
+    if row.distribution == "samples":
+        return Distribution("samples", values=_read_samples(name, row.file or ""))
+    return _distribution(row.model_dump(), f"inputs.{name}")
+
+
+def _distribution(entry: Mapping[str, Any], where: str) -> Distribution:
+    numbers: dict[str, Any] = {
+        key: float(entry[key]) for key in ("a", "b", "low", "high") if entry.get(key) is not None
+    }
+    if entry.get("distribution") not in ("uniform", "normal", "truncated_normal", "fixed") or "a" not in numbers:
+        raise InputError(
+            f"{where}: distribution {entry.get('distribution')} with {numbers} is not usable; "
+            "accepted: uniform, normal (a, b), truncated_normal (a, b, low, high), fixed (a)"
+        )
+    return Distribution(str(entry["distribution"]), **numbers)
+
+
+def _from_stage(name: str, origin: str, content: Mapping[str, Any], source: str) -> Mapping[str, Any]:
+    gate = content.get("gate", {})
+    if not gate.get("passed", False):
+        reasons = "; ".join(gate.get("reasons", [])) or "no reason given"
+        raise InputError(
+            f"{source}: its gate failed ({reasons}), so {name} cannot be taken from {origin}; "
+            f"improve that stage's settings or set inputs.{name}.origin to literature with a and b"
+        )
+    entry = content.get("inputs", {}).get(name)
+    if entry is None:
+        raise InputError(f"{source}: holds no inputs.{name}; set inputs.{name}.origin to literature with a and b")
+    return entry
+
+
+def _read_samples(name: str, file: str) -> np.ndarray:
+    path = Path(file)
+    try:
+        with path.open(newline="", encoding="utf-8") as stream:
+            values = np.array([float(line[name]) for line in csv.DictReader(stream)])
+    except OSError as error:
+        raise InputError(f"inputs.{name}.file = {file}: cannot be read ({error.strerror}); give a CSV file") from None
+    except (KeyError, TypeError, ValueError):
+        raise InputError(f"inputs.{name}.file = {file}: needs a column {name} with one number a row") from None
+    if values.size < 2 or not np.isfinite(values).all():
+        raise InputError(f"inputs.{name}.file = {file}: {values.size} samples; at least 2, all finite, are needed")
+    return np.sort(values)
+
+
+def _check_range(name: str, given: Distribution, source: str, central_share: float) -> None:
+    low, high = given.span(central_share)
+    least, most = BOUNDS[name]
+    if not (np.isfinite([low, high]).all() and least <= low <= high <= most):
+        raise InputError(
+            f"{source}: {name} spans {low:g} .. {high:g} {UNITS[name]}; accepted is "
+            f"{least:g} .. {most:g}: narrow or truncate its distribution"
+        )
+
+
+def to_rows(table: InputTable) -> list[dict[str, Any]]:
+    """The table as rows of inputs.csv."""
+    rows = []
+    for k, row in enumerate(table.rows):
+        given = row.distribution
+        partners = {table.names[j]: table.correlation[k, j] for j in range(k) if table.correlation[k, j]}
+        finite = {key: value for key in ("a", "b", "low", "high") if np.isfinite(value := getattr(given, key))}
+        # samples travel inside the table, so that inputs.csv alone defines the inputs in use
+        kind = given.kind if given.kind != "samples" else "samples " + json.dumps(given.values.tolist())
+        rows.append(
+            {
+                "parameter": row.name,
+                "unit": row.unit,
+                "distribution": kind,
+                **finite,
+                "correlation": json.dumps(partners) if partners else "",
+                "origin": row.origin,
+                "file": row.source,
+            }
+        )
+    return rows
+
+
+def from_rows(rows: Iterable[Mapping[str, str]]) -> InputTable:
+    """The table from the rows of inputs.csv."""
+    inputs, pairs = [], {}
+    for row in rows:
+        kind, _, samples = row["distribution"].partition(" ")
+        numbers: dict[str, Any] = {key: float(row[key]) for key in ("a", "b", "low", "high") if row.get(key)}
+        values = np.array(json.loads(samples)) if samples else np.empty(0)
+        inputs.append(
+            UncertainInput(
+                row["parameter"],
+                row["unit"],
+                Distribution(kind, **numbers, values=values),
+                row["origin"],
+                row["file"],
+            )
+        )
+        for other, rank in json.loads(row.get("correlation") or "{}").items():
+            pairs[row["parameter"], other] = rank
+    return InputTable(tuple(inputs), correlation_matrix([row.name for row in inputs], pairs))
+
+
+def medians(rows: Iterable[Mapping[str, str]]) -> dict[str, float]:
+    """Central inputs by name (the means, where a distribution is symmetric) from the rows of inputs.csv."""
+    return {row.name: float(row.distribution.quantile(0.5)) for row in from_rows(rows).rows}

@@ -1,0 +1,1 @@
+"""The compact force-separation law, its fit and its error (docs/law.md)."""

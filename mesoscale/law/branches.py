@@ -1,0 +1,103 @@
+"""The law fitted to both branches of a cycle, computed just now or stored in a file."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.contact import Cycle
+from mesoscale.law.fit import LawFit, contact_separation, fit_branch, row_of
+from mesoscale.settings import LawSettings
+
+Array = NDArray[np.float64]
+
+TOUCH = {"closing": "first_contact_nm", "opening": "last_contact_nm"}
+"""Attribute of a stored curve with the exact separation of first (last) contact, by branch."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What one cycle gave."""
+
+    closing: LawFit
+    opening: LawFit
+    status: str = "ok"
+    """`ok`, `unconverged`, or `failed: why`."""
+
+    @property
+    def outputs(self) -> Array:
+        """The eight outputs in the order of OUTPUTS; NaN where a fit is missing."""
+        closing, opening = self.closing.parameters, self.opening.parameters
+        return np.concatenate([closing, opening - closing])
+
+
+NO_FIT = LawFit(np.nan, np.nan, np.nan, np.nan, status="no_curve")
+
+
+def fit_cycle(cycle: Cycle, hamaker: float, cell_area_nm2: float, settings: LawSettings) -> Outcome:
+    """The law fitted to both branches of a cycle."""
+    fits = []
+    for branch, touch in (
+        (cycle.closing, cycle.first_contact_nm),
+        (cycle.opening, getattr(cycle, "last_contact_nm", None)),
+    ):
+        fits.append(
+            fit_curve(
+                branch.separation_nm,
+                branch.repulsive_nN,
+                branch.attractive_nN,
+                cell_area_nm2,
+                hamaker,
+                touch,
+                settings,
+            )
+        )
+    return Outcome(fits[0], fits[1], "ok" if cycle.converged else "unconverged")
+
+
+def fit_curve(
+    separation_nm: Array,
+    repulsive_nN: Array,
+    attractive_nN: Array,
+    cell_area_nm2: float,
+    hamaker: float,
+    touch_nm: float | None,
+    settings: LawSettings,
+) -> LawFit:
+    """The law fitted to one branch, d_c taken from the curve as the settings define it."""
+    d_c = None
+    if settings.contact_definition != "free_fit":
+        d_c = contact_separation(separation_nm, repulsive_nN, settings, touch_nm)
+    return fit_branch(separation_nm, repulsive_nN, attractive_nN, cell_area_nm2, hamaker, d_c, settings)
+
+
+def fit_stored(
+    curves: Mapping[str, Mapping[str, Array]],
+    name: str,
+    facts: Mapping[str, Any],
+    cell_area_nm2: float,
+    settings: LawSettings,
+) -> Iterator[dict[str, Any]]:
+    """Rows of law/*.csv for both branches of a stored curve.
+
+    Parameters
+    ----------
+    curves : datasets by group `<name>/closing` and `<name>/opening`; a missing group gives a row without fit.
+    facts : the curve's attributes: hamaker, first_contact_nm, last_contact_nm, status.
+    """
+    for branch, touch in TOUCH.items():
+        fit = NO_FIT
+        if f"{name}/{branch}" in curves:
+            curve = curves[f"{name}/{branch}"]
+            fit = fit_curve(
+                curve["separation_nm"],
+                curve["repulsive_nN"],
+                curve["attractive_nN"],
+                cell_area_nm2,
+                float(facts["hamaker"]),
+                facts.get(touch),
+                settings,
+            )
+        yield {"branch": branch, **row_of(fit), "curve_status": facts.get("status", "")}

@@ -1,0 +1,272 @@
+"""Fit of the compact law to one branch of a curve.
+
+d_c, C_r and rho_r are nearly degenerate in eq. 13: shifting d_c by x multiplies C_r by exp(-x / rho_r) and
+leaves the curve almost as it is. So d_c is not fitted beside the other two but *taken from the curve* by a
+stated definition (`contact_separation`), and C_r and rho_r are fitted given d_c.
+"""
+
+import json
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesoscale.errors import InputError
+from mesoscale.law.compact import PARAMETERS, shielded_hamaker
+from mesoscale.settings import LawSettings
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LawFit:
+    """The law fitted to one branch; parameters that the curve does not determine are NaN."""
+
+    d_c_nm: float
+    C_a_GPa_nm: float
+    C_r_GPa: float
+    rho_r_nm: float
+    covariance: Array = field(default_factory=lambda: np.full((3, 3), np.nan))
+    """Covariance of (C_a_GPa_nm, C_r_GPa, rho_r_nm), d_c given, shape (3, 3)."""
+    residual: float = np.nan
+    """Root mean square misfit of attraction and repulsion over the window, relative to the largest
+    repulsive force (1)."""
+    status: str = "ok"
+    """`ok`, or why numbers are missing or doubtful."""
+
+    @property
+    def parameters(self) -> Array:
+        """The four numbers in the order of PARAMETERS."""
+        return np.array([self.d_c_nm, self.C_a_GPa_nm, self.C_r_GPa, self.rho_r_nm])
+
+
+def contact_separation(
+    separation_nm: Array, repulsive_nN: Array, settings: LawSettings, first_contact_nm: float | None = None
+) -> float:
+    """The separation d_c at initial contact (for an opening branch: at last contact), NaN without contact.
+
+    Parameters
+    ----------
+    separation_nm, repulsive_nN : one branch in any order, shape (n,).
+    first_contact_nm : the engine's exact separation of first contact, if it is known for this branch.
+
+    Notes
+    -----
+    `first_contact`: where the first (last) asperity touches; an extreme value of the surface, which grows
+    with the sample area. `force_fraction`: where the repulsion reaches a fraction of its maximum, linear
+    between points; less noisy, smaller by about rho_r ln(...). `free_fit` needs `fit_branch`.
+    """
+    order = np.argsort(separation_nm)[::-1]
+    h, f = np.asarray(separation_nm, float)[order], np.asarray(repulsive_nN, float)[order]
+    touching = np.flatnonzero(f > 0)
+    if touching.size == 0:
+        return np.nan
+    first = touching[0]
+    if settings.contact_definition == "force_fraction":
+        target = settings.force_fraction * f.max()
+        index = int(np.flatnonzero(f >= target)[0])
+        if index == 0:
+            return float(h[0])
+        share = (target - f[index - 1]) / (f[index] - f[index - 1])
+        return float(h[index - 1] + share * (h[index] - h[index - 1]))
+    if first_contact_nm is not None and np.isfinite(first_contact_nm):
+        return float(first_contact_nm)
+    return float(h[first - 1] if first > 0 else h[first])
+
+
+def fit_branch(
+    separation_nm: ArrayLike,
+    repulsive_nN: ArrayLike,
+    attractive_nN: ArrayLike,
+    cell_area_nm2: float,
+    hamaker: float,
+    d_c_nm: float | None = None,
+    settings: LawSettings | None = None,
+) -> LawFit:
+    """Fit the law to one branch of a force-separation curve.
+
+    The branch is resampled evenly in separation over [smallest separation, d_c] for the repulsion and
+    [smallest separation, d_c + rho_a] for the attraction, so that the engine's choice of steps carries no
+    weight. C_a follows linearly. For C_r and rho_r, C_r is eliminated (it is linear given rho_r) and the
+    misfit minimised over rho_r alone, which cannot run away along the degenerate valley.
+
+    Parameters
+    ----------
+    separation_nm, repulsive_nN, attractive_nN : the branch, shape (n,), any order; attraction negative.
+    cell_area_nm2 : area of the cell.
+    hamaker : Hamaker constant (1e-18 J).
+    d_c_nm : separation at contact; None takes it from the curve by `settings.contact_definition`.
+    settings : windows, weights and gates of the fit.
+
+    Returns
+    -------
+    LawFit : with status `ok`, `no_contact`, `few_points`, `not_identifiable: why` or `poor_fit`. Only `ok`
+        and `poor_fit` carry C_r and rho_r.
+
+    Raises
+    ------
+    InputError : arrays of unequal length or not finite.
+    """
+    settings = settings or LawSettings()
+    h, repulsive, attractive = (np.asarray(x, float) for x in (separation_nm, repulsive_nN, attractive_nN))
+    if not (h.ndim == 1 and h.shape == repulsive.shape == attractive.shape):
+        raise InputError(
+            f"law fit: separation and forces have shapes {h.shape}, {repulsive.shape}, "
+            f"{attractive.shape}; one value of each per point is needed"
+        )
+    if not all(np.isfinite(x).all() for x in (h, repulsive, attractive)):
+        raise InputError("law fit: separation or force is not finite; the curve was not computed properly")
+    order = np.argsort(h, kind="stable")
+    h, repulsive, attractive = h[order], repulsive[order] / cell_area_nm2, attractive[order] / cell_area_nm2
+
+    if d_c_nm is None and settings.contact_definition == "free_fit":
+        d_c_nm = _free_contact_separation(h, repulsive, attractive, hamaker, settings)
+    elif d_c_nm is None:
+        d_c_nm = contact_separation(h, repulsive, settings)
+    if not np.isfinite(d_c_nm) or repulsive.max(initial=0.0) <= 0:
+        return LawFit(np.nan, np.nan, np.nan, np.nan, status="no_contact")
+    inside = (h < d_c_nm) & (repulsive > 0)
+    if inside.sum() < settings.min_points:
+        return LawFit(d_c_nm, np.nan, np.nan, np.nan, status="few_points")
+    scale = repulsive.max()
+
+    C_a, C_a_var, misfit_a = _fit_attraction(h, attractive, d_c_nm, hamaker, settings)
+    h_r, f_r, weights = _repulsion_window(h, repulsive, d_c_nm, settings)
+    depth = d_c_nm - h_r
+    rho, at_bound = _best_rho(depth, f_r, weights, settings)
+    C_r, misfit_r = _prefactor(depth, f_r, weights, np.array([rho]))
+    C_r, misfit_r = float(C_r[0]), float(misfit_r[0])
+    covariance = _covariance(depth, f_r, weights, C_r, rho, C_a_var, points=min(int(inside.sum()), len(h_r)))
+    residual = float(np.sqrt(np.mean((f_r - C_r * np.expm1(depth / rho)) ** 2) + misfit_a**2) / scale)
+
+    fit = LawFit(float(d_c_nm), C_a, C_r, rho, covariance, residual)
+    if at_bound:
+        why = "the curve is a straight line, only C_r/rho_r is determined" if at_bound > 0 else "a step at the end"
+        return _without_repulsion(fit, f"not_identifiable: {why}")
+    relative_error = np.sqrt(np.diag(covariance)[1:]) / np.array([C_r, rho])
+    if not np.all(relative_error < settings.max_relative_error):
+        return _without_repulsion(fit, "not_identifiable: relative error of C_r or rho_r above the gate")
+    if residual > settings.max_residual:
+        return replace(fit, status="poor_fit")
+    return fit
+
+
+def _without_repulsion(fit: LawFit, status: str) -> LawFit:
+    return replace(fit, C_r_GPa=np.nan, rho_r_nm=np.nan, status=status)
+
+
+def _fit_attraction(
+    h: Array, attractive: Array, d_c: float, hamaker: float, settings: LawSettings
+) -> tuple[float, float, float]:
+    """C_a (GPa/nm), its variance and the rms misfit (GPa); NaN without a point below the kink."""
+    kink = d_c + settings.rho_a_nm
+    top = min(kink, h.max())
+    if top <= h.min():
+        return np.nan, np.nan, 0.0
+    grid = np.linspace(h.min(), top, settings.points)
+    excess = shielded_hamaker(grid, hamaker, settings.shield_nm) - np.interp(grid, h, attractive)
+    arm = np.maximum(kink - grid, 0.0)
+    C_a = float(arm @ excess / (arm @ arm))
+    misfit = excess - C_a * arm
+    points = max(2, min(settings.points, int((h <= top).sum())))
+    variance = float(np.mean(misfit**2) * len(grid) / (points - 1) / (arm @ arm))
+    return C_a, variance, float(np.sqrt(np.mean(misfit**2)))
+
+
+def _repulsion_window(h: Array, repulsive: Array, d_c: float, settings: LawSettings) -> tuple[Array, Array, Array]:
+    """Separations, repulsion and weights on the even grid between the smallest separation and d_c."""
+    grid = np.linspace(h.min(), d_c, settings.points, endpoint=False)
+    values = np.interp(grid, h, repulsive)
+    if settings.weights == "uniform":
+        return grid, values, np.ones_like(grid)
+    # relative weights, with a floor where single asperities decide
+    return grid, values, repulsive.max() / (values + settings.relative_floor * repulsive.max())
+
+
+def _prefactor(depth: Array, f: Array, weights: Array, rho: Array) -> tuple[Array, Array]:
+    """Best C_r for each rho (shape (k,)) and the weighted sum of squares left."""
+    # dividing by the largest value keeps exp finite for any rho
+    basis = np.expm1(depth / rho[:, None])
+    largest = basis.max(axis=1, keepdims=True)
+    basis = weights * (basis / largest)
+    target = weights * f
+    amplitude = np.maximum(basis @ target, 0.0) / np.einsum("ij,ij->i", basis, basis)
+    misfit = ((target - amplitude[:, None] * basis) ** 2).sum(axis=1)
+    return amplitude / largest[:, 0], misfit
+
+
+def _best_rho(depth: Array, f: Array, weights: Array, settings: LawSettings) -> tuple[float, int]:
+    """rho_r of least misfit, and -1 or +1 if it lies at the lower or upper end of the accepted range."""
+    span = depth.max()
+    low, high = np.log(span / settings.max_depth_ratio), np.log(span / settings.min_depth_ratio)
+    grid = np.linspace(low, high, 48)
+    misfit = _prefactor(depth, f, weights, np.exp(grid))[1]
+    best = int(np.argmin(misfit))
+    if best in (0, len(grid) - 1):
+        return float(np.exp(grid[best])), -1 if best == 0 else 1
+    left, right = grid[best - 1], grid[best + 1]
+    for _ in range(9):  # each round shrinks the bracket 5-fold: 2e6 in all
+        trial = np.linspace(left, right, 11)
+        k = int(np.argmin(_prefactor(depth, f, weights, np.exp(trial))[1]))
+        left, right = trial[max(k - 1, 0)], trial[min(k + 1, 10)]
+    return float(np.exp((left + right) / 2)), 0
+
+
+def _covariance(depth: Array, f: Array, weights: Array, C_r: float, rho: float, C_a_var: float, points: int) -> Array:
+    """Covariance of (C_a, C_r, rho_r) from the misfit, as if `points` of the curve were independent."""
+    covariance = np.zeros((3, 3))
+    covariance[0, 0] = C_a_var
+    growth = np.expm1(depth / rho)
+    jacobian = weights[:, None] * np.stack([growth, -C_r * (growth + 1) * depth / rho**2], axis=1)
+    misfit = weights * (f - C_r * growth)
+    variance = float(misfit @ misfit) / max(points - 2, 1)
+    # scaled columns: C_r and rho differ by many orders of magnitude
+    norms = np.linalg.norm(jacobian, axis=0)
+    if not np.all(norms > 0):
+        return np.full((3, 3), np.nan)
+    inverse = np.linalg.pinv((jacobian / norms).T @ (jacobian / norms))
+    covariance[1:, 1:] = variance * inverse / np.outer(norms, norms)
+    return covariance
+
+
+def _free_contact_separation(
+    h: Array, repulsive: Array, attractive: Array, hamaker: float, settings: LawSettings
+) -> float:
+    """d_c as a fit parameter shared by both forces: least total misfit, between mid-curve and first contact.
+
+    The attraction's kink at d_c + rho_a is what breaks the degeneracy of the repulsion.
+    """
+    touching = h[repulsive > 0]
+    if touching.size < settings.min_points:
+        return np.nan
+    left, right = float(touching.min()) + 1e-3 * float(np.ptp(touching)), float(touching.max())
+
+    def total_misfit(d_c: float) -> float:
+        _, _, misfit_a = _fit_attraction(h, attractive, d_c, hamaker, settings)
+        # the same window for every trial d_c, else the shortest window wins
+        grid = np.linspace(h.min(), touching.max(), settings.points)
+        f = np.interp(grid, h, repulsive)
+        depth = np.maximum(d_c - grid, 0.0)
+        weights = np.ones_like(grid)
+        rho, _ = _best_rho(depth, f, weights, settings)
+        misfit_r = _prefactor(depth, f, weights, np.array([rho]))[1][0] / len(grid)
+        return misfit_r + misfit_a**2
+
+    trials = np.linspace(left, right, 25)
+    for _ in range(3):
+        values = [total_misfit(d_c) for d_c in trials]
+        k = int(np.argmin(values))
+        trials = np.linspace(trials[max(k - 1, 0)], trials[min(k + 1, len(trials) - 1)], 11)
+    return float(trials[5])
+
+
+def row_of(fit: LawFit) -> dict[str, Any]:
+    """One row of law/parameters.csv (without run, seed and branch); the covariance as JSON."""
+    values = [[float(f"{x:.6g}") if np.isfinite(x) else None for x in line] for line in fit.covariance]
+    return {
+        **{name: value for name, value in zip(PARAMETERS, fit.parameters.tolist(), strict=True)},
+        "covariance": json.dumps(values),
+        "residual": fit.residual,
+        "status": fit.status,
+    }

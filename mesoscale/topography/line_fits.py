@@ -1,0 +1,224 @@
+"""The paper's line fits for q0, q1, slope and their bounds (section 4.2), made precise.
+
+The paper fits straight lines of log C against log q by least squares: from the lowest wave vector up to a
+variable q to find where the plateau ends (q0), and from q0 up to a variable q to find where the power law
+ends (q1).  Made precise here:
+
+- all points are means over bins of equal width in log q, one per scan and bin, inside the trusted range;
+- the plateau *ends* at the last bin for which the slope of [q_L, q] is not significantly negative (one-sided
+  t test at `SIGNIFICANCE`, for this bin and every later one); this literal reading lies above the knee,
+  because the line needs some points of the slope to notice it, so that
+- *q0* is where the plateau's mean level and the power law's line meet;
+- *q1* is the largest q for which the slope of [q0, q] differs from its median by no more than its own
+  standard error times the same threshold, or by 0.05.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesoscale.topography.likelihood import TrustedSpectrum, blur
+from mesoscale.topography.roughness_spectrum import mean_square
+
+SIGNIFICANCE = 0.01
+BINS_PER_DECADE = 12
+SLOPE_TOLERANCE = 0.05
+
+
+@dataclass(frozen=True)
+class Points:
+    """One mean of log C per scan and bin: ln q, ln C, scan number, bin number (ascending in q)."""
+
+    log_q: np.ndarray
+    log_c: np.ndarray
+    scan: np.ndarray
+    bin: np.ndarray
+
+
+@dataclass(frozen=True)
+class LineFit:
+    """Result of the line fits.
+
+    Attributes
+    ----------
+    plateau, q0, slope : level (nm^4), knee (1/nm) and fall of the pooled spectrum.
+    departure : literal reading of q0, where the plateau's slope becomes significant, 1/nm.
+    q1 : end of the constant slope, 1/nm; `q1_limited` when that is merely the end of the trusted range.
+    slope_low, slope_high : slopes of the lines through the knee that bound the scans' points.
+    plateau_low, plateau_high : lowest and highest level of a scan, nm^4.
+    running_q, running_slope, running_error : the slope of [q0, q] against q, from which q1 is read.
+    """
+
+    plateau: float
+    q0: float
+    slope: float
+    departure: float
+    q1: float
+    q1_limited: bool
+    slope_low: float
+    slope_high: float
+    plateau_low: float
+    plateau_high: float
+    running_q: np.ndarray
+    running_slope: np.ndarray
+    running_error: np.ndarray
+
+    def rms(self, q1: float) -> float:
+        """RMS height in nm from the plateau's level, integrated to q1."""
+        return float(np.sqrt(mean_square(self.plateau, self.q0, self.slope, q1)))
+
+
+def points(spectra: Sequence[TrustedSpectrum], q0: float = np.inf, slope: float = 0.0) -> Points:
+    """Mean ln C of each scan on common bins of ln q, inside each scan's trusted range.
+
+    Once knee and slope are known roughly, the window's blur beyond `q0` is taken out.
+    """
+    rows = []
+    for number, item in enumerate(spectra):
+        ok = item.trusted
+        if not ok.any():
+            continue
+        log_q, log_c = np.log(item.spectrum.q[ok]), np.log(item.corrected_psd()[ok])
+        log_c = log_c - np.where(item.spectrum.q[ok] > q0, blur(slope, item.spectrum.q[ok] / item.spectrum.spacing), 0)
+        modes = item.spectrum.modes[ok]
+        bins = np.floor(log_q / np.log(10) * BINS_PER_DECADE).astype(int)
+        for b in np.unique(bins):
+            here = bins == b
+            weight = modes[here] / modes[here].sum()
+            # the mean of ln C lies below ln of the mean by about 1/(2 n)
+            bias = 0.5 / max(float(modes[here].sum()), 0.5)
+            rows.append((weight @ log_q[here], weight @ log_c[here] + min(bias, 0.5), number, b))
+    table = np.array(sorted(rows, key=lambda row: (row[3], row[2]))).reshape(-1, 4)
+    return Points(table[:, 0], table[:, 1], table[:, 2].astype(int), table[:, 3].astype(int))
+
+
+def pooled(data: Points) -> tuple[np.ndarray, np.ndarray]:
+    """Mean over scans in each bin: ln q and ln C, with the differing levels of the scans taken out.
+
+    Scans of different places differ in level; a bin that only some of them reach would step. Levels are
+    estimated together with the bins' means (two-way least squares).
+    """
+    bins, index = np.unique(data.bin, return_inverse=True)
+    scans, member = np.unique(data.scan, return_inverse=True)
+    design = np.zeros((len(data.log_c) + 1, len(bins) + len(scans)))
+    rows = np.arange(len(data.log_c))
+    design[rows, index] = 1
+    design[rows, len(bins) + member] = 1
+    design[-1, len(bins) :] = 1  # levels sum to zero: the pooled spectrum is that of the typical place
+    right = np.append(data.log_c, 0.0)
+    solution = np.linalg.lstsq(design, right, rcond=None)[0]
+    count = np.bincount(index)
+    return np.bincount(index, data.log_q) / count, solution[: len(bins)]
+
+
+def line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
+    """Least-squares line: intercept at x = 0, slope, standard error of the slope."""
+    centre = x - x.mean()
+    spread = float(centre @ centre)
+    slope = float(centre @ y) / spread
+    residual = y - y.mean() - slope * centre
+    error = float(np.sqrt(residual @ residual / max(len(x) - 2, 1) / spread))
+    return float(y.mean() - slope * x.mean()), slope, error
+
+
+def fit_lines(spectra: Sequence[TrustedSpectrum]) -> LineFit | None:
+    """The paper's procedure on the trusted spectra; None when there is no plateau or no power law to fit."""
+    rough = _fit_points(points(spectra))
+    return None if rough is None else _fit_points(points(spectra, rough.q0, rough.slope))
+
+
+def _fit_points(data: Points) -> LineFit | None:
+    """Plateau, knee, power law and their bounds from the scans' points."""
+    if len(np.unique(data.bin)) < 8:
+        return None
+    x, y = pooled(data)
+    end = plateau_end(x, y)
+    if end is None:
+        return None
+    knee = _knee(x, y, end)
+    if knee is None:
+        return None
+    log_q0, level, intercept, slope = knee
+    first = int(np.searchsorted(x, log_q0 + 0.15))
+    sizes = range(first + 4, len(x) + 1)
+    fits = [line(x[first:k], y[first:k]) for k in sizes]
+    if not fits:
+        return None
+    running_q = np.exp(x[[k - 1 for k in sizes]])
+    running = np.array([f[1] for f in fits])
+    errors = np.array([f[2] for f in fits])
+    settled = running[len(running) // 3 :]
+    reference = float(np.median(settled))
+    constant = np.abs(running - reference) <= np.maximum(SLOPE_TOLERANCE, _threshold(len(x) - first) * errors)
+    last = int(np.flatnonzero(constant).max())
+    slope = -float(running[last])
+    intercept = fits[last][0]
+    log_q0 = (intercept - level) / slope
+    own = _levels(data, level, log_q0, slope)
+    low, high = _bounding_slopes(data, level, log_q0)
+    return LineFit(
+        plateau=float(np.exp(level)),
+        q0=float(np.exp(log_q0)),
+        slope=slope,
+        departure=float(np.exp(x[end])),
+        q1=float(running_q[last]),
+        q1_limited=last == len(running) - 1,
+        slope_low=low,
+        slope_high=high,
+        plateau_low=float(np.exp(own.min())),
+        plateau_high=float(np.exp(own.max())),
+        running_q=running_q,
+        running_slope=-running,
+        running_error=errors,
+    )
+
+
+def plateau_end(x: np.ndarray, y: np.ndarray) -> int | None:
+    """Index of the last bin up to which the slope of y(x) from the start is not significantly negative."""
+    significant = []
+    for k in range(3, len(x) + 1):
+        _, slope, error = line(x[:k], y[:k])
+        significant.append(slope < -_threshold(k - 2) * error and slope < -0.1)
+    if not significant[-1]:
+        return None  # flat all the way: no power law
+    flat = np.flatnonzero(~np.array(significant))
+    return None if len(flat) == 0 else int(flat.max()) + 2
+
+
+def _threshold(freedom: int) -> float:
+    from scipy.special import stdtrit
+
+    return float(stdtrit(max(freedom, 1), 1 - SIGNIFICANCE))
+
+
+def _knee(x: np.ndarray, y: np.ndarray, end: int) -> tuple[float, float, float, float] | None:
+    """Meeting point of plateau and power law: ln q0, plateau level, intercept and slope of the line."""
+    log_q0 = float(x[end]) - 0.2
+    level = intercept = slope = 0.0
+    for _ in range(20):
+        flat, fall = x < log_q0 - 0.1, x > log_q0 + 0.15
+        if flat.sum() < 2 or fall.sum() < 4:
+            return None
+        level = float(y[flat].mean())
+        intercept, slope, _ = line(x[fall], y[fall])
+        if slope >= -0.3:
+            return None
+        new = (level - intercept) / slope
+        if abs(new - log_q0) < 1e-6:
+            break
+        log_q0 = new
+    return log_q0, level, intercept, -slope
+
+
+def _levels(data: Points, level: float, log_q0: float, slope: float) -> np.ndarray:
+    """ln plateau of each scan, its points shifted along the common shape."""
+    shape = -slope * np.maximum(data.log_q - log_q0, 0)
+    return np.array([np.mean((data.log_c - shape)[data.scan == k]) for k in np.unique(data.scan)])
+
+
+def _bounding_slopes(data: Points, level: float, log_q0: float) -> tuple[float, float]:
+    """Slopes of the lines through the knee that bound the points between 2 q0 and the end."""
+    beyond = data.log_q > log_q0 + np.log(2)
+    slopes = (level - data.log_c[beyond]) / (data.log_q[beyond] - log_q0)
+    return float(slopes.min()), float(slopes.max())

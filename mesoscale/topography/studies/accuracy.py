@@ -1,0 +1,109 @@
+"""Error of q0, slope and RMS against the run time of the analysis, one knob at a time."""
+
+import resource
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from mesoscale.settings import SyntheticScanSettings, TopographySettings
+from mesoscale.topography.analysis import trusted_scan
+from mesoscale.topography.cleaning import Scan, clean
+from mesoscale.topography.likelihood import trusted_range
+from mesoscale.topography.parameters import analyse
+from mesoscale.topography.spectrum import radial_spectrum
+from mesoscale.topography.synthetic_scans import synthetic_scans
+
+COLUMNS = (
+    "stage",
+    "case",
+    "knob",
+    "value",
+    "error",
+    "error_metric",
+    "reference",
+    "wall_s",
+    "cpu_s",
+    "peak_rss_MB",
+)
+METRIC = {"q0": "relative RMS error", "slope": "absolute RMS error", "rms": "relative RMS error"}
+PIXELS = (128, 256, 512, 1024)
+SECTIONS = (1, 4, 25, 100)
+FLAT_SHARES = (0.0, 0.5, 0.9, 0.99)
+SCANS = ((1, 1), (2, 2), (4, 2), (8, 3))
+
+
+def accuracy_rows(
+    base: SyntheticScanSettings,
+    settings: TopographySettings,
+    repeats: int,
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[dict[str, Any]]:
+    """Rows of accuracy/topography.csv: RMS error over `repeats` surfaces, mean time of one analysis."""
+    truth = base.model_copy(update={"rms_variation": 0.0, "pixels": min(base.pixels, 512)})
+    cases: list[tuple[str, Any, SyntheticScanSettings, TopographySettings]] = []
+    for pixels in PIXELS:
+        if pixels <= base.pixels:
+            few = truth.model_copy(update={"pixels": pixels, "small_scans": 2, "large_scans": 2})
+            cases.append(("pixels", pixels, few, settings))
+    for sections in SECTIONS:
+        few = truth.model_copy(update={"small_scans": 2, "large_scans": 2})
+        cases.append(("sections", sections, few, settings.model_copy(update={"sections": sections})))
+    for small, large in SCANS:
+        some = truth.model_copy(update={"small_scans": small, "large_scans": large})
+        cases.append(("scans", small + large, some, settings))
+    for flat in FLAT_SHARES:  # steep, because side lobes of the window cover steep spectra first
+        few = truth.model_copy(update={"small_scans": 2, "large_scans": 2, "slope": 3.8, "tip_radius_nm": 1.0})
+        cases.append(("flat share of window", flat, few, settings.model_copy(update={"tip_radius_nm": 1.0})))
+    for tip in (0.0, 2.0, 5.0, 10.0, 20.0):
+        few = truth.model_copy(update={"small_scans": 2, "large_scans": 2, "tip_radius_nm": tip})
+        cases.append(("tip radius nm", tip, few, settings.model_copy(update={"tip_radius_nm": tip})))
+    for number, (knob, value, scans, analysis) in enumerate(cases):
+        yield from _case(knob, value, scans, analysis, repeats)
+        if progress:
+            progress((number + 1) / len(cases), f"{knob} {value}")
+
+
+def _case(
+    knob: str, value: Any, truth: SyntheticScanSettings, settings: TopographySettings, repeats: int
+) -> Iterator[dict[str, Any]]:
+    known = {"q0": truth.q0, "slope": truth.slope, "rms": truth.rms_nm}
+    errors: dict[str, list[float]] = {name: [] for name in known}
+    wall, cpu = [], []
+    for repeat in range(repeats):
+        scans = [item.scan for item in synthetic_scans(truth.model_copy(update={"seed": truth.seed + 1000 * repeat}))]
+        started, busy = time.perf_counter(), time.process_time()
+        found = _estimates(scans, settings, value if knob == "flat share of window" else None)
+        wall.append(time.perf_counter() - started)
+        cpu.append(time.process_time() - busy)
+        for name, true in known.items():
+            estimate = found.get(name, float("nan"))
+            errors[name].append(estimate - true if name == "slope" else estimate / true - 1)
+    for name in known:
+        yield {
+            "stage": "topography",
+            "case": name,
+            "knob": knob,
+            "value": value,
+            "error": float(np.sqrt(np.mean(np.square(errors[name])))),
+            "error_metric": METRIC[name],
+            "reference": "truth of the synthetic scans",
+            "wall_s": round(float(np.mean(wall)), 4),
+            "cpu_s": round(float(np.mean(cpu)), 4),
+            "peak_rss_MB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
+        }
+
+
+def _estimates(scans: list[Scan], settings: TopographySettings, flat: float | None) -> dict[str, float]:
+    """Estimates of one set; `flat` replaces the Hann window by one of this flat share."""
+    if flat is None:
+        spectra = [trusted_scan(scan, settings) for scan in scans]
+    else:
+        spectra = []
+        for scan in scans:
+            heights = clean(scan, settings).heights_nm
+            spectrum = radial_spectrum(heights, scan.lengths_nm, 25, settings.section_fraction, flat, skip_lines=True)
+            spectra.append(trusted_range(scan.name, spectrum, settings.tip_radius_nm))
+    result = analyse(spectra, settings)
+    return {name: estimate.value for name, estimate in result.estimates.items()}

@@ -1,0 +1,1 @@
+"""How far the propagation can be trusted: brute force, work and precision, readings, unusual cases."""

@@ -1,0 +1,37 @@
+"""Equations of state: exact curves come back, curves that cannot be trusted are flagged or refused."""
+
+import numpy as np
+import pytest
+
+from atomistic.elastic.equation_of_state import EV_PER_A3_IN_GPA, birch_murnaghan, fit_equation_of_state, vinet
+from atomistic.errors import InputError
+
+VOLUMES = np.linspace(270, 330, 7)
+
+
+def test_birch_murnaghan_curve_comes_back_exactly():
+    fit = fit_equation_of_state(VOLUMES, birch_murnaghan(VOLUMES, 300, -5000, 235 / EV_PER_A3_IN_GPA, 4.2))
+    assert fit.trusted
+    assert (fit.V0_A3, fit.B_GPa, fit.B_prime) == pytest.approx((300, 235, 4.2), rel=1e-8)
+
+
+def test_vinet_curve_gives_the_same_modulus_within_the_difference_of_the_forms():
+    fit = fit_equation_of_state(VOLUMES, vinet(VOLUMES, 300, -5000, 235 / EV_PER_A3_IN_GPA, 4.2))
+    assert fit.B_vinet_GPa == pytest.approx(235, rel=1e-6)
+    assert fit.B_GPa == pytest.approx(235, rel=0.005)
+
+
+def test_minimum_outside_the_scan_is_flagged():
+    fit = fit_equation_of_state(VOLUMES, birch_murnaghan(VOLUMES, 350, -5000, 1.4, 4.2))
+    assert any("outside the scanned" in flag for flag in fit.flags)
+
+
+def test_curve_without_minimum_gives_no_modulus():
+    fit = fit_equation_of_state(VOLUMES, -0.001 * VOLUMES)
+    assert not fit.trusted
+    assert np.isnan(fit.B_GPa)
+
+
+def test_too_few_volumes_are_refused_in_one_line():
+    with pytest.raises(InputError, match="at least 5 are needed"):
+        fit_equation_of_state(VOLUMES[:4], VOLUMES[:4])

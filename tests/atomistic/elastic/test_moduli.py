@@ -1,0 +1,123 @@
+"""E(V) scans that survive failures, and E* with its parts."""
+
+import numpy as np
+import pytest
+from ase.build import bulk
+from ase.calculators.calculator import CalculationFailed
+from ase.calculators.emt import EMT
+
+from atomistic.elastic.moduli import (
+    Modulus,
+    effective_modulus,
+    fit_scan,
+    make_calculator,
+    plane_strain_modulus,
+    rejected_points,
+    scan_volumes,
+    variance_shares,
+)  # fmt: skip
+from atomistic.elastic.relaxation import Rest
+from atomistic.errors import InputError
+from atomistic.settings import DftSettings, ElasticSettings
+
+STRAINS = (-0.03, -0.015, 0.0, 0.015, 0.03)
+TITANIUM = {"name": "titanium", "young_GPa": 116.0, "young_std_GPa": 3.0, "poisson_ratio": 0.32}
+
+
+class FailsWhenStretched(EMT):
+    def calculate(self, atoms=None, *args, **kwargs):
+        assert atoms is not None
+        if atoms.get_volume() > 12.5:
+            raise CalculationFailed("SCF not converged")
+        super().calculate(atoms, *args, **kwargs)
+
+
+def test_modulus_of_two_bodies():
+    # 1/E* = (1 - 0.04)/282.6 + (1 - 0.1024)/116
+    assert plane_strain_modulus(157, 0.2, 116, 0.32) == pytest.approx(1 / (0.96 / 282.6 + 0.8976 / 116))
+
+
+def test_failed_strain_is_named_and_the_rest_survives():
+    points = scan_volumes(bulk("Cu"), FailsWhenStretched(), STRAINS)
+    assert [p.converged for p in points] == [True, True, True, True, False]
+    row = {"structure": "a01", "xc": "GGA", "ions": "clamped", "atoms": "1"}
+    fit = fit_scan([{**row, **{k: str(v) for k, v in vars(p).items()}} for p in points])
+    assert fit["B_GPa"] is None
+    assert "4 of 5 strains converged" in fit["flags"]
+    assert "strain +0.030" in fit["flags"]
+
+
+def test_shares_of_an_additive_case_add_to_one_and_agree_with_samples():
+    B, shift = [150.0, 170.0], 15.0
+    exact = variance_shares(B, shift, (0.15, 0.25), (116.0, 3.0), 0.32)
+    assert sum(s["first_order"] for s in exact["shares"].values()) == pytest.approx(1, abs=0.01)
+    rng = np.random.default_rng(1)
+    n = 200_000
+    samples = plane_strain_modulus(
+        rng.choice(B, n) + shift * rng.integers(0, 2, n),
+        rng.uniform(0.15, 0.25, n),
+        rng.normal(116, 3, n),
+        0.32,
+    )
+    assert exact["mean_GPa"] == pytest.approx(samples.mean(), abs=5 * samples.std() / np.sqrt(n))
+    assert exact["std_GPa"] == pytest.approx(samples.std(), rel=0.02)
+
+
+def test_too_few_trusted_structures_fail_the_gate_with_the_reason():
+    moduli = [
+        Modulus("a01", "GGA", "clamped", 157, True),
+        Modulus("a02", "GGA", "clamped", float("nan"), False, "4 of 5 strains converged"),
+    ]
+    summary, samples = effective_modulus(moduli, TITANIUM, ElasticSettings(samples=100))
+    assert not summary["gate"]["passed"]
+    assert any("1 amorphous structures" in reason for reason in summary["gate"]["reasons"])
+    assert summary["kept_out"][0]["structure"] == "a02"
+    assert len(samples["e_star_GPa"]) == 100
+
+
+def test_nothing_trusted_gives_no_input():
+    summary, _ = effective_modulus([], TITANIUM, ElasticSettings())
+    assert summary["inputs"] == {}
+    assert not summary["gate"]["passed"]
+
+
+def test_scene_cannot_name_a_program():
+    with pytest.raises(InputError, match="may not name programs"):
+        make_calculator(DftSettings(engine="espresso", parameters={"command": "rm"}), "GGA")
+
+
+@pytest.mark.parametrize("bad", [{"poisson_ratio": (0.3, 0.5)}, {"strains": (-0.01, 0.0, 0.01)}])
+def test_poisson_ratio_of_a_liquid_and_too_few_strains_are_refused(bad):
+    with pytest.raises(ValueError, match=r"0\.5|at least 5"):
+        ElasticSettings(**bad)
+
+
+def test_rejected_glass_costs_nothing_and_carries_its_reason():
+    points = rejected_points(bulk("Cu"), STRAINS, "6 atoms without their valence")
+    row = {"structure": "a08", "xc": "GGA", "ions": "clamped", "atoms": "28"}
+    fit = fit_scan([{**row, **{k: str(v) for k, v in vars(p).items()}} for p in points])
+    assert fit["B_GPa"] is None
+    assert fit["flags"].count("6 atoms without their valence") == 1
+
+
+def test_relaxed_scan_starts_on_the_line_through_its_neighbours():
+    """Ions whose rest moves along with the strain: from the third on they start where they will rest.
+
+    The first strain comes once more, between its neighbours.
+    """
+
+    def settle(trial, hessian):
+        started.append(trial.get_scaled_positions()[0, 0])
+        hessians.append(hessian)
+        strain = trial.cell.array[0, 0] / atoms.cell.array[0, 0] - 1
+        trial.positions[0, 0] = (0.1 + strain) * trial.cell.array[0, 0]
+        return Rest(1, 0.05, True, np.eye(12) * len(hessians), 0.002)
+
+    atoms = bulk("Cu", cubic=True)
+    started, hessians = [], []
+    points = scan_volumes(atoms, EMT(), STRAINS, relax=settle)
+    assert started == pytest.approx([0.0, 0.1, 0.085, 0.13, 0.07, 0.1])
+    assert hessians[0] is None
+    assert [h[0, 0] for h in hessians[1:]] == [1, 2, 3, 4, 5]  # each from the Hessian of the one before
+    assert [point.strain for point in points] == list(STRAINS)
+    assert all("0.05 eV/A left, minimum 2.0 meV below" in point.detail for point in points)

@@ -1,0 +1,101 @@
+"""Crystals, the gates of a glass, and the Tersoff parameters checked on a crystal."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+from atomistic.elastic.networks import (
+    core_commands,
+    crystal,
+    examine,
+    random_structure,
+    tersoff_calculator,
+    tersoff_table,
+)
+from atomistic.errors import InputError
+
+MATERIALS = Path(__file__).parents[3] / "config" / "materials"
+NITRIDE = yaml.safe_load((MATERIALS / "silicon_nitride.yaml").read_text(encoding="utf-8"))
+
+
+def test_beta_silicon_nitride_has_its_density_and_coordination_but_is_no_glass():
+    beta = crystal(NITRIDE, "beta")
+    verdict = examine(beta, NITRIDE["glass"])
+    assert len(beta) == 28
+    assert verdict.density_g_cm3 == pytest.approx(3.19, abs=0.01)
+    assert verdict.coordination == {"Si": 4.0, "N": 3.0}
+    assert any("crystalline" in reason for reason in verdict.reasons)
+
+
+def test_collapsed_and_exploded_cells_fail_the_gate():
+    beta = crystal(NITRIDE, "beta")
+    for scale in (0.7, 1.4):
+        cell = beta.copy()
+        cell.set_cell(beta.cell.array * scale, scale_atoms=True)
+        assert any("density" in reason for reason in examine(cell, NITRIDE["glass"]).reasons)
+
+
+def test_unknown_crystal_is_one_line():
+    with pytest.raises(InputError, match="no crystal 'gamma'"):
+        crystal(NITRIDE, "gamma")
+
+
+def test_tersoff_parameters_hold_beta_together_at_its_known_lattice_constants():
+    from ase.filters import FrechetCellFilter
+    from ase.optimize import BFGS
+
+    beta = crystal(NITRIDE, "beta")
+    beta.calc = tersoff_calculator(NITRIDE["tersoff"])
+    cell_and_ions: Any = FrechetCellFilter(beta)
+    BFGS(cell_and_ions, logfile=None).run(fmax=0.05, steps=60)
+    a, _, c = beta.cell.lengths()
+    assert a == pytest.approx(7.40, abs=0.02)  # of this potential; experiment 7.608
+    assert c / 2 == pytest.approx(2.94, abs=0.02)
+    assert len(tersoff_table(NITRIDE["tersoff"]).splitlines()) == 9
+
+
+def test_random_start_is_reproducible_and_not_overlapping():
+    a, b = (random_structure({"Si": 3, "N": 4}, 2, 3.1, 7) for _ in range(2))
+    assert np.array_equal(a.positions, b.positions)
+    distances = a.get_all_distances(mic=True)[np.triu_indices(len(a), 1)]
+    assert distances.min() >= 1.4
+
+
+def test_a_missing_bond_fails_the_gate_of_a_quenched_cell_only():
+    beta = crystal(NITRIDE, "beta")
+    nitrogen = beta.symbols.indices()["N"][0]
+    beta.positions[nitrogen, 2] += 0.9
+    assert examine(beta, NITRIDE["glass"]).defects > 0
+    assert not any("valence" in reason for reason in examine(beta, NITRIDE["glass"]).reasons)
+    assert any("valence" in reason for reason in examine(beta, NITRIDE["glass"], perfect=True).reasons)
+
+
+def test_cores_leave_beta_untouched():
+    """They mend the glass; a crystal with no like atoms that near must not feel them (but for 0.1 Å)."""
+    beta = crystal(NITRIDE, "beta")
+    shortest = examine(beta, NITRIDE["glass"]).shortest_A
+    for pair, core in NITRIDE["cores"].items():
+        assert core["r_A"] < shortest[pair] + 0.1
+    assert core_commands(NITRIDE["cores"], ("Si", "N")).count("harmonic/cut") == 3
+    assert "1 2 harmonic/cut 0.0" in core_commands(NITRIDE["cores"], ("Si", "N"))
+
+
+def test_box_has_the_wanted_density_and_edges():
+    box = random_structure({"Si": 3, "N": 4}, 2, 3.1, 7, (0.8, 1.0, 1.25))
+    assert examine(box, NITRIDE["glass"]).density_g_cm3 == pytest.approx(3.1)
+    a, b, c = box.cell.lengths()
+    assert (a / b, c / b) == pytest.approx((0.8, 1.25))
+
+
+def test_anchors_have_their_atoms_and_volume_per_formula():
+    counts = {}
+    for name, unit, volume in (("silicon", 2, 40.05), ("silicon_dioxide", 3, 23.31), ("silicon_nitride", 14, 145.9)):
+        material = yaml.safe_load((MATERIALS / f"{name}.yaml").read_text(encoding="utf-8"))
+        (anchor,) = material["crystals"]
+        atoms = crystal(material, anchor)
+        counts[anchor] = len(atoms)
+        assert atoms.get_volume() * unit / len(atoms) == pytest.approx(volume, rel=1e-3)
+    assert counts == {"silicon": 54, "stishovite": 24, "beta": 28}

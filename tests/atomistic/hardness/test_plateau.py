@@ -1,0 +1,127 @@
+import numpy as np
+import pytest
+
+from atomistic.hardness.plateau import find_hardness, plastic_onset, point
+from atomistic.settings import ClosingSettings, HardnessSettings, YieldSettings
+
+CLOSING, RULES = ClosingSettings(), YieldSettings()
+TRAVEL = np.arange(0.0125, 1.2, 0.025)
+CELL_AREA = 36.0
+
+
+def curve(stress, length=None, temperature=300.0, drift=0.0):
+    length = np.maximum(0, 3.2 * (TRAVEL - 0.25)) if length is None else length
+    return [
+        {
+            "step": 25 * (k + 1),
+            "displacement_nm": float(TRAVEL[k]),
+            "contact_length_nm": float(length[k]),
+            "contact_area_nm2": float(length[k] ** 2),
+            "contact_stress_GPa": float(stress(length[k])),
+            "temperature_K": temperature + (100.0 * k / len(TRAVEL) if temperature > 300 else 0),
+            "energy_drift_meV_per_atom": drift * k,
+        }
+        for k in range(len(TRAVEL))
+    ]
+
+
+def witness(onset=0.8, background=2, after=40, lowering=0.1):
+    rows = []
+    for k in range(1, 12):
+        travel = 0.1 * k
+        new = 0 if k == 1 else background if travel < onset else background + after
+        rows.append(
+            {
+                "displacement_nm": travel,
+                "new_exchanges": new,
+                "lowering_nm": lowering if travel >= onset else 0.0,
+            }
+        )
+    return rows
+
+
+def plateau(length):
+    return 10.0 if length > 1.6 else 6 * length
+
+
+def find(curve_rows, witness_rows):
+    return find_hardness(curve_rows, witness_rows, CELL_AREA, CLOSING, RULES)
+
+
+def test_plateau_beyond_a_witnessed_onset():
+    found = find(curve(plateau), witness())
+    assert found.status == "yield"
+    assert found.hardness_GPa == pytest.approx(10.0)
+    assert found.hardness_lo <= 10.0 <= found.hardness_hi
+    assert found.length_max_nm**2 <= 0.4 * CELL_AREA
+    assert found.contact_length_nm > found.onset_length_nm
+
+
+@pytest.mark.parametrize("rows", [witness(onset=9), witness(after=3), witness(lowering=0.02)])
+def test_no_yield_without_exchanged_bonds_and_a_lasting_lowering(rows):
+    """A plateau in the stress alone is no hardness."""
+    found = find(curve(plateau), rows)
+    assert found.status == "no_yield"
+    assert np.isnan(found.hardness_GPa)
+
+
+def test_elastic_rise_beyond_an_onset_is_rejected():
+    assert find(curve(lambda length: 4 * length), witness()).status.startswith("rejected: stress still rises")
+
+
+def test_gates():
+    assert find(curve(plateau, drift=0.5), witness()).status.startswith("rejected: energy drifts")
+    hot = curve(plateau, temperature=400.0)
+    for row in hot[30:]:
+        row["temperature_K"] = 800.0
+    assert find(hot, witness()).status.startswith("rejected: warms")
+    tiny = curve(plateau, length=np.full(len(TRAVEL), 0.8))
+    assert find(tiny, witness()).status.startswith("rejected: contact too small")
+    assert find(curve(plateau)[:-2], witness(onset=1.1)).status.startswith("rejected: too few averages")
+
+
+def test_background_of_bond_exchanges_is_measured_before_contact():
+    """The halved energies flicker more: 20 exchanges per snapshot are then no witness, 40 are."""
+    onset = plastic_onset(witness(background=20, after=5), 0.35, RULES)
+    assert (onset.displacement_nm, onset.background) == (None, 20)
+    onset = plastic_onset(witness(background=20, after=20), 0.35, RULES)
+    assert onset.displacement_nm == pytest.approx(0.8)
+    assert onset.exchanges == 40
+    assert 0 < onset.p_value < 0.02
+
+
+def test_p_value_of_the_onset_is_that_of_two_poisson_counts():
+    """Equal rates: the p value is uniform or larger, so below 0.05 at most one time in twenty."""
+    rng = np.random.default_rng(0)
+    small, trials = 0, 0
+    for _ in range(3000):
+        counts = rng.poisson(8, 4)
+        rows = [
+            {"displacement_nm": 0.1 * (k + 1), "new_exchanges": new, "lowering_nm": 0.0 if k < 3 else 0.1}
+            for k, new in enumerate([0, *counts[:2], counts[2]])
+        ]
+        onset = plastic_onset(rows, 0.35, RULES)
+        trials += 1
+        small += onset.p_value < 0.05
+    assert small / trials < 0.05
+
+
+def test_a_lowering_that_recovers_is_no_onset():
+    rows = witness()
+    rows[-1]["lowering_nm"] = 0.0
+    assert plastic_onset(rows, 0.35, RULES).displacement_nm is None
+
+
+def test_a_point_names_what_was_pressed_and_what_it_cost():
+    facts = {
+        "run": "r", "energy_scale": 1.0, "amplitude_nm": 0.4, "asperity": "small", "wavelength_nm": 6.0, "seed": 1,
+        "atoms": 100, "steps": 1000, "restart_steps": 250, "lammps_cpu_s": 9.0, "python_cpu_s": 0.1,
+    }  # fmt: skip
+    settings = HardnessSettings.model_validate({"closing": {"counterface": "oxide", "counter_material": "TiO2"}})
+    row = point(curve(plateau), witness(), facts, settings)
+    assert row["geometry"] == "asperity-oxide TiO2 repulsive"
+    assert row["status"] == "yield"
+    assert row["atom_steps"] == 100_000
+    assert "unloaded_exchanged_bonds" not in row
+    again = point(curve(plateau), witness(), {**facts, "unloaded_exchanged_bonds": 61}, settings)
+    assert again["unloaded_exchanged_bonds"] == 61

@@ -1,0 +1,191 @@
+"""Each counterface and each control, for real but tiny: what must hold whatever the size."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from atomistic.errors import InputError
+from atomistic.hardness.asperity import STRAY_A, facing
+from atomistic.hardness.closing import clearance_A, plan_closing, run_closing
+from atomistic.hardness.cost import plan_rows
+from atomistic.hardness.glass import glass_properties, make_glass, random_start, write_forcefield
+from atomistic.hardness.runs import geometry, needs_counter_glass, planned_runs
+from atomistic.lammps import Atoms, Workspace, read_data, run_lammps, write_data
+from atomistic.potentials import CONTACT_A, contact_energy_and_force, load_potential
+from atomistic.settings import GlassSettings, HardnessSettings
+
+POTENTIALS = Path(__file__).parents[3] / "config" / "potentials"
+GLASS = GlassSettings(atoms=120, melt_ps=0.5, quench_rate_K_ps=2000, rest_ps=0.3, segment_steps=2000)
+
+
+def settings(amplitude_nm=0.2, **closing):
+    quick = {"base_nm": 1, "counter_base_nm": 1, "frozen_nm": 0.3, "thermostat_nm": 0.3, "speed_m_s": 400}
+    return HardnessSettings.model_validate(
+        {
+            "seeds": [1],
+            "energy_scales": [1.0],
+            "asperities": [{"name": "tiny", "tiles": 2, "amplitude_nm": amplitude_nm}],
+            "glass": GLASS.model_dump(),
+            "closing": {**quick, "anneal_ps": 0.1, "segment_nm": 0.3, **closing},
+        }
+    )
+
+
+@pytest.fixture(scope="module")
+def glass(potential, tmp_path_factory):
+    return make_glass("SiO2", potential, GLASS, 1, tmp_path_factory.mktemp("glass") / "work")
+
+
+@pytest.fixture(scope="module")
+def titania(potential, glass, tmp_path_factory):
+    edge = float(glass.cell_A[0])
+    return make_glass("TiO2", potential, GLASS, 1, tmp_path_factory.mktemp("titania") / "work", edge_A=edge)
+
+
+@pytest.fixture
+def close(potential, glass, tmp_path):
+    def run(own, counter_glass=None):
+        [planned] = planned_runs(own)
+        return run_closing(planned, glass, potential, own, tmp_path / "work", counter_glass=counter_glass)
+
+    return run
+
+
+def column(rows, name):
+    return np.array([row[name] for row in rows])
+
+
+def test_sphere_touches_less_than_a_flat(close):
+    sphere = close(settings(0, counterface="sphere", sphere_radius_nm=1, depth_over_amplitude=0.5))
+    force, area = column(sphere.curve, "force_nN"), column(sphere.curve, "contact_area_nm2")
+    assert np.all(force[:3] == 0)
+    assert force[-1] > 1
+    # rigid overlap d of a sphere R: pi (2 R d - d^2); the glass gives way, so less than that of the whole travel
+    overlap = sphere.curve[-1]["displacement_nm"] - 0.3
+    assert 0 < area[-1] < np.pi * (2 * overlap - overlap**2) + 1
+
+
+def test_titania_counterface_shares_the_cell_and_adheres(close, glass, titania):
+    """Adhesion pulls before the repulsion pushes."""
+    assert titania.cell_A[0] == glass.cell_A[0]
+    assert titania.count("O") == 2 * titania.count("Ti")
+    adhesive = close(settings(counterface="oxide", counter_material="TiO2", interface="adhesive"), titania)
+    assert column(adhesive.curve, "force_nN").min() < -0.5
+    assert adhesive.curve[-1]["contact_area_nm2"] > 0.5
+    assert {row["type"] for row in adhesive.snapshots} == {1, 2}  # the counterface is gone
+
+
+def test_asperity_on_asperity_without_adhesion(close):
+    pair = close(settings(counterface="asperity"))
+    force, area = column(pair.curve, "force_nN"), column(pair.curve, "contact_area_nm2")
+    assert force.min() == 0
+    assert force[-1] > 1
+    assert np.all(area[force == 0] < 0.2)
+    assert area[-1] > 0.3
+
+
+def test_controlled_force_is_the_contact_force(close):
+    """Once in contact and at rest, the plane feels what the piston is pressed with."""
+    own = settings(control="force", force_step_MPa=200, dwell_ps=0.4, max_stress_GPa=3, segment_force_steps=5)
+    curve = close(own).curve
+    assert len(curve) == 15
+    nominal = column(curve, "nominal_stress_GPa")
+    asked = 0.2 * np.arange(1, 16)
+    np.testing.assert_allclose(nominal[-4:], asked[-4:], rtol=0.15)
+    assert np.all(np.diff(column(curve, "displacement_nm")) > -0.02)
+    assert np.abs(column(curve, "energy_drift_meV_per_atom")).max() < 3
+
+
+def test_unloading_ends_with_less_force_and_keeps_the_closing_as_it_was(close):
+    there = close(settings())
+    back = close(settings(unload_nm=0.3))
+    assert back.curve == there.curve or [row["force_nN"] for row in back.curve] == [
+        row["force_nN"] for row in there.curve
+    ]
+    assert back.unloading[-1]["force_nN"] < 0.5 * back.curve[-1]["force_nN"]
+    assert back.unloading[-1]["displacement_nm"] < 0  # counted from where unloading began
+    assert back.summary["unloaded_exchanged_bonds"] >= 0
+
+
+def test_two_processes_move_the_same_atoms(potential, glass, tmp_path):
+    """`mpirun -np 2`: sums in another order, else the same motion."""
+    ends = []
+    for processes in (1, 2):
+        workspace = Workspace(tmp_path / str(processes), {}, "nve.in")
+        write_forcefield(workspace, potential, glass.elements, 1.0)
+        write_data(workspace / "start.data", glass, {"Si": 28.085, "O": 15.999})
+        variables = {"data": "start.data", "pairs": "pairs", "timestep": 0.001, "steps": 20, "every": 10}
+        run_lammps("nve.in", workspace, variables, processes=processes)
+        ends.append(read_data(workspace / "end.data", glass.elements).positions_A)
+    np.testing.assert_allclose(ends[1], ends[0], atol=1e-9)
+
+
+def test_a_counterface_that_would_be_strained_is_refused(close, potential):
+    wrong = random_start("TiO2", potential, GLASS, 1)
+    with pytest.raises(InputError, match="would be strained by"):
+        close(settings(counterface="oxide", counter_material="TiO2"), wrong)
+
+
+def test_bodies_face_each_other_with_the_gap_asked_for():
+    def slab(height):
+        grid = np.stack(np.meshgrid(*[np.arange(4.0) * 2.5] * 2, [0.0, height], indexing="ij"), axis=-1).reshape(-1, 3)
+        return Atoms(("Si", "O"), np.tile([1, 2], 16), grid, np.array([10.0, 10.0, 30.0]))
+
+    both, ceiling = facing(slab(5.0), slab(7.0), 4.0)
+    assert both.elements == ("Si", "O", "Si", "O")
+    assert ceiling == pytest.approx(5 + 4 + 7)
+    lower, upper = both.positions_A[:32], both.positions_A[32:]
+    assert upper[:, 2].min() - lower[:, 2].max() == pytest.approx(4.0)
+    assert set(both.types[32:]) == {3, 4}
+
+
+def test_contact_repulsion_ends_smoothly_and_is_its_own_derivative():
+    r = np.linspace(2, CONTACT_A + 0.5, 4001)
+    energy, force = contact_energy_and_force(r)
+    assert np.all(force >= 0)
+    assert energy[-1] == force[-1] == 0
+    np.testing.assert_allclose(-np.gradient(energy, r)[1:-1], force[1:-1], atol=2e-3)
+
+
+def test_rough_bodies_start_further_apart():
+    assert clearance_A(settings(counterface="oxide")) == clearance_A(settings()) + STRAY_A
+    one, other = (plan_closing(own, own.asperities[0]) for own in (settings(), settings(counterface="oxide")))
+    assert other.segments > one.segments
+
+
+def test_names_and_needs_of_counterfaces():
+    titania = settings(counterface="oxide", counter_material="TiO2", interface="adhesive")
+    assert needs_counter_glass(titania)
+    assert not needs_counter_glass(settings(counterface="asperity"))
+    assert geometry(titania.closing, 0.2) == "asperity-oxide TiO2 adhesive"
+    assert geometry(settings(control="force").closing, 0.2) == "asperity-flat, force"
+    with pytest.raises(ValueError, match="amplitude 0"):
+        settings(0)
+
+
+def test_the_plan_counts_what_a_run_has(close):
+    own = settings(counterface="asperity")
+    made = close(own).summary
+    planned = plan_rows(own)[0]
+    assert planned["steps"] == made["steps"]
+    assert planned["restart_steps"] == made["restart_steps"]
+    assert planned["atoms"] == pytest.approx(made["atoms"], rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "material", "coordination", "bond_A"),
+    [("teter", "SiO2", 4.0, 1.61), ("matsui_akaogi", "TiO2", 5.8, 1.93)],
+)
+def test_other_potentials_make_a_glass_and_close(name, material, coordination, bond_A, tmp_path):
+    """Coordination and bond of the glass as known for the potential; then the whole chain with it."""
+    other = load_potential(POTENTIALS / f"{name}.yaml")
+    own = HardnessSettings.model_validate({**settings().model_dump(), "potential": name, "material": material})
+    made = make_glass(material, other, own.glass, 1, tmp_path / "glass")
+    found = glass_properties(material, other, made)
+    assert found["cation_coordination"] == pytest.approx(coordination, rel=0.06)
+    assert found["bond_A"] == pytest.approx(bond_A, abs=0.05)
+    [planned] = planned_runs(own)
+    closing = run_closing(planned, made, other, own, tmp_path / "work")
+    assert closing.curve[-1]["force_nN"] > 1
+    assert np.abs(column(closing.curve, "energy_drift_meV_per_atom")).max() < 3

@@ -1,0 +1,142 @@
+"""The table of inputs: the paper's Table 1, stages with gates, and mistakes in one line."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from mesoscale.errors import InputError
+from mesoscale.inputs.table import UNITS, collect, from_rows, to_rows
+from mesoscale.settings import Correlation, InputRow, InputsSettings
+from workflow.scene import load_scene
+
+PAPER = load_scene("paper").inputs
+TABLE_1 = Path(__file__).parents[3] / "config" / "paper" / "table1.csv"
+FILES = {
+    "hardness": "hardness/fit.json",
+    "elastic": "elastic/e_star.json",
+    "topography": "topography/parameters.json",
+}
+
+
+def stages(passed=True):
+    gate = {"passed": passed, "reasons": [] if passed else ["fewer than 3 sizes"]}
+    ranges = {"q0": (0.015, 0.03), "hurst": (0.6, 0.9), "rms": (3, 9)}
+    return {
+        "hardness": {
+            "gate": gate,
+            "inputs": {"h_prime": {"distribution": "uniform", "a": 5.8, "b": 15.0, "correlation": {"h_macro": -0.4}}},
+        },
+        "elastic": {
+            "gate": {"passed": True, "reasons": []},
+            "inputs": {"e_star": {"distribution": "normal", "a": 95, "b": 5}},
+        },
+        "topography": {
+            "gate": {"passed": True, "reasons": []},
+            "inputs": {name: {"distribution": "uniform", "a": a, "b": b} for name, (a, b) in ranges.items()},
+        },
+    }
+
+
+def test_scene_paper_is_table_1():
+    with TABLE_1.open(newline="") as stream:
+        expected = {row["parameter"]: row for row in csv.DictReader(stream)}
+    table = collect(PAPER, {}, {}, 0.999)
+    assert table.names == list(expected)
+    for row in table.rows:
+        wanted = expected[row.name]
+        assert row.distribution.kind == wanted["distribution"]
+        assert (row.distribution.a, row.distribution.b) == (float(wanted["a"]), float(wanted["b"]))
+        assert row.unit == wanted["unit"] == UNITS[row.name]
+        assert row.origin == "literature"
+
+
+def test_scene_paper_wants_no_stage():
+    assert PAPER.origins() == {"literature"}
+
+
+def test_stage_rows_carry_their_file_and_correlation():
+    table = collect(InputsSettings(), stages(), FILES, 0.999)
+    by_name = {row.name: row for row in table.rows}
+    assert by_name["h_prime"].origin == "hardness"
+    assert by_name["h_prime"].source == "hardness/fit.json"
+    i, j = table.names.index("h_prime"), table.names.index("h_macro")
+    assert table.correlation[i, j] == -0.4
+
+
+def test_table_survives_writing_and_reading():
+    table = collect(InputsSettings(), stages(), FILES, 0.999)
+    rows = [
+        {
+            key: "" if value is None else str(value)
+            for key, value in ({"a": "", "b": "", "low": "", "high": ""} | row).items()
+        }
+        for row in to_rows(table)
+    ]
+    again = from_rows(rows)
+    assert again.names == table.names
+    assert np.array_equal(again.sample(20, 1), table.sample(20, 1))
+
+
+def test_failed_gate_stops_with_its_reason():
+    with pytest.raises(InputError, match=r"hardness/fit.json.*fewer than 3 sizes.*h_prime.*literature"):
+        collect(InputsSettings(), stages(passed=False), FILES, 0.999)
+
+
+def test_missing_entry_of_a_stage_is_named():
+    content = stages()
+    del content["topography"]["inputs"]["rms"]
+    with pytest.raises(InputError, match=r"inputs\.rms"):
+        collect(InputsSettings(), content, FILES, 0.999)
+
+
+def test_range_across_a_physical_bound_is_refused():
+    settings = PAPER.model_copy(update={"rms": InputRow(distribution="normal", a=3, b=2)})
+    with pytest.raises(InputError, match=r"rms spans -.*accepted is 0"):
+        collect(settings, {}, {}, 0.999)
+
+
+def test_samples_from_a_file(tmp_path):
+    file = tmp_path / "rms.csv"
+    file.write_text("rms\n3\n5\n4\n")
+    settings = PAPER.model_copy(update={"rms": InputRow(distribution="samples", file=str(file))})
+    table = collect(settings, {}, {}, 0.999)
+    assert table.ranges(0.999)[-1].tolist() == [3, 5]
+    rows = [{key: str(value) for key, value in row.items()} for row in to_rows(table)]
+    assert np.array_equal(from_rows(rows).sample(10, 1), table.sample(10, 1))
+    file.write_text("height\n3\n")
+    with pytest.raises(InputError, match="column rms"):
+        collect(settings, {}, {}, 0.999)
+    file.unlink()
+    with pytest.raises(InputError, match="cannot be read"):
+        collect(settings, {}, {}, 0.999)
+
+
+def test_eighth_input():
+    settings = PAPER.model_copy(update={"gap_cutoff": InputRow(a=0.165, b=0.3)})
+    assert collect(settings, {}, {}, 0.999).names[-1] == "gap_cutoff"
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        ({"a": 3, "b": 2}, "must not exceed"),
+        ({"distribution": "normal", "a": 3}, "exactly a, b"),
+        ({"origin": "elastic", "a": 3}, "takes no a"),
+        ({"distribution": "normal", "a": 3, "b": -1}, "b = -1"),
+        ({"distribution": "truncated_normal", "a": 3, "b": 1, "low": 4, "high": 2}, "low must lie below"),
+        ({}, "exactly a, b"),
+    ],
+)
+def test_mistakes_in_a_row(row, message):
+    with pytest.raises(ValidationError, match=message):
+        InputRow(**row)
+
+
+def test_mistakes_across_rows():
+    with pytest.raises(ValidationError, match="unknown input hardness"):
+        InputsSettings(correlations=(Correlation(first="rms", second="hardness", rank=0.3),))
+    with pytest.raises(ValidationError, match="q0: origin elastic"):
+        InputsSettings(q0=InputRow(origin="elastic"))

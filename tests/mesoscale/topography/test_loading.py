@@ -1,0 +1,135 @@
+"""Reading AFM files: heights, units, channels, and one clear line for whatever cannot be used."""
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mesoscale.errors import InputError
+from mesoscale.settings import TopographySettings
+from mesoscale.topography.cleaning import Scan, clean
+from mesoscale.topography.loading import read_scan, write_gwy
+
+AFM = Path(__file__).resolve().parents[4] / "shared" / "afm"
+
+
+def gwy(path, heights, lengths=(1000.0, 750.0)):
+    write_gwy(path, Scan(heights, lengths, "test"))
+    return path
+
+
+def test_gwyddion_round_trip_keeps_heights_size_and_holes(tmp_path):
+    heights = np.random.default_rng(0).standard_normal((64, 48))
+    heights[3, 4] = np.nan
+    scan = read_scan(gwy(tmp_path / "a.gwy", heights))
+    assert scan.heights_nm == pytest.approx(heights, rel=1e-12, nan_ok=True)
+    assert scan.lengths_nm == pytest.approx((1000.0, 750.0))
+    assert scan.name == "a"
+
+
+def test_missing_and_foreign_files_are_named(tmp_path):
+    with pytest.raises(InputError, match=r"nothing\.gwy: no such scan"):
+        read_scan(tmp_path / "nothing.gwy")
+    text = tmp_path / "notes.gwy"
+    text.write_text("not a scan")
+    with pytest.raises(InputError, match="no reader understands"):
+        read_scan(text)
+
+
+def test_truncated_file_is_refused(tmp_path):
+    path = gwy(tmp_path / "a.gwy", np.zeros((64, 64)))
+    path.write_bytes(path.read_bytes()[:2000])
+    with pytest.raises(InputError, match=r"a\.gwy"):
+        read_scan(path)
+
+
+def test_text_without_physical_size_is_refused(tmp_path):
+    path = tmp_path / "a.txt"
+    np.savetxt(path, np.random.default_rng(0).standard_normal((40, 40)))
+    with pytest.raises(InputError, match="no physical size"):
+        read_scan(path)
+
+
+class Bomb:
+    """A pickle that leaves a trace when it is loaded."""
+
+    def __init__(self, trace):
+        self.trace = str(trace)
+
+    def __reduce__(self):
+        return (Path.touch, (Path(self.trace),))
+
+
+def test_numpy_files_are_refused_and_pickles_never_loaded(tmp_path):
+    trace = tmp_path / "executed"
+    bomb = np.empty(1, dtype=object)
+    bomb[0] = Bomb(trace)
+    np.save(tmp_path / "a.npy", bomb, allow_pickle=True)
+    np.savez(tmp_path / "b.npz", bomb)
+    (tmp_path / "c.pkl").write_bytes(pickle.dumps(Bomb(trace)))
+    (tmp_path / "d.gwy").write_bytes(pickle.dumps(Bomb(trace)))
+    for name in ("a.npy", "b.npz", "c.pkl", "d.gwy"):
+        with pytest.raises(InputError, match=name):
+            read_scan(tmp_path / name)
+    assert not trace.exists()
+
+
+def test_several_height_channels_are_asked_for(tmp_path):
+    from gwyfile.objects import GwyContainer, GwyDataField
+
+    content = GwyContainer()
+    for k, title in enumerate(("Height", "ZSensor")):
+        content[f"/{k}/data/title"] = title
+        content[f"/{k}/data"] = GwyDataField(
+            np.full((40, 40), k * 1e-9), xreal=1e-6, yreal=1e-6, si_unit_xy="m", si_unit_z="m"
+        )
+    path = tmp_path / "two.gwy"
+    content.tofile(str(path))
+    with pytest.raises(InputError, match=r"Height, ZSensor; name one in topography\.channel"):
+        read_scan(path)
+    assert read_scan(path, channel="ZSensor").heights_nm.max() == pytest.approx(1.0)
+    with pytest.raises(InputError, match="no height channel 'Phase'"):
+        read_scan(path, channel="Phase")
+
+
+def test_cleaning_levels_aligns_fills_and_records(tmp_path):
+    rng = np.random.default_rng(0)
+    rough = rng.standard_normal((128, 128))
+    heights = rough + 0.3 * np.arange(128)[:, None] + 20 * rng.standard_normal(128)[None, :]
+    heights[5, 7] = np.nan
+    heights[60, 60] += 500.0
+    cleaned = clean(Scan(heights, (100.0, 100.0), "a"), TopographySettings())
+    assert len(cleaned.steps) == 4
+    assert np.all(np.isfinite(cleaned.heights_nm))
+    assert cleaned.rms_nm == pytest.approx(1.0, rel=0.03)
+
+
+def test_cleaning_leaves_a_smooth_creased_scan_alone():
+    """Tips leave parabolas that meet in creases; these are no spikes."""
+    x = np.linspace(0, 10, 200)
+    creased = np.maximum.reduce([-((x - c) ** 2) for c in np.arange(0.5, 10, 0.7)])[:, None] + 0 * x[None, :]
+    settings = TopographySettings(detrend="none", line_alignment="none")
+    cleaned = clean(Scan(creased, (10.0, 10.0), "a"), settings)
+    assert cleaned.heights_nm == pytest.approx(creased - creased.mean())
+
+
+def test_too_many_holes_are_refused():
+    heights = np.random.default_rng(0).standard_normal((64, 64))
+    heights[:, :10] = np.nan
+    with pytest.raises(InputError, match=r"15\.6% of the pixels are missing"):
+        clean(Scan(heights, (1.0, 1.0), "holes"), TopographySettings())
+
+
+@pytest.mark.skipif(not AFM.is_dir(), reason="real scans are not shipped")
+@pytest.mark.parametrize(("name", "length", "rms"), [("example_ps.tiff", 1000.0, 3.93), ("di-6.di", 10000.0, 16.85)])
+def test_real_scans_are_read_in_nanometres(name, length, rms):
+    scan = read_scan(AFM / name)
+    assert scan.lengths_nm == pytest.approx((length, length))
+    assert scan.rms_nm == pytest.approx(rms, abs=0.01)
+
+
+def test_cut_off_scans_are_refused():
+    heights = np.clip(np.random.default_rng(0).standard_normal((64, 64)), -1.0, None)
+    with pytest.raises(InputError, match="cut off"):
+        clean(Scan(heights, (1.0, 1.0), "low"), TopographySettings())
