@@ -6,16 +6,8 @@ from ase.build import bulk
 from ase.calculators.calculator import CalculationFailed
 from ase.calculators.emt import EMT
 
-from atomistic.elastic.moduli import (
-    Modulus,
-    effective_modulus,
-    fit_scan,
-    make_calculator,
-    plane_strain_modulus,
-    rejected_points,
-    scan_volumes,
-    variance_shares,
-)  # fmt: skip
+from atomistic.elastic.energy_scans import fit_scan, make_calculator, rejected_points, scan_volumes
+from atomistic.elastic.moduli import Modulus, effective_modulus, plane_strain_modulus, variance_shares
 from atomistic.elastic.relaxation import Rest
 from atomistic.errors import InputError
 from atomistic.settings import DftSettings, ElasticSettings
