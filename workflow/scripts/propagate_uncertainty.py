@@ -5,11 +5,10 @@ Out: uq/outputs.csv (Table 2), uq/ratios.csv, uq/surrogate.json, uq/samples.csv,
 """
 
 import numpy as np
-from mesoscale.uncertainty.ratios import COLUMNS as RATIO_COLUMNS
 
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import LawSettings, UncertaintySettings
-from mesoscale.uncertainty.paper_tables import ratio_rows, table2, table3
+from mesoscale.uncertainty.paper_tables import RATIO_COLUMNS, ratio_rows, table2, table3
 from mesoscale.uncertainty.propagation import SURFACES, output_rows, propagate, read_nodes, surrogate_json
 from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, read_direct_runs, validation_rows
 from workflow.job import job
