@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 
 from tests.workflow.made_up_results import write_all
-from workflow.report.available import Results, show
+from workflow.report.available import Results
 from workflow.report.drawing import draw
-from workflow.report.gates import gates
+from workflow.report.numbers import show
 from workflow.report.render import render
+from workflow.report.stages import STAGES
 from workflow.report.studies import recommended
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -97,7 +98,9 @@ def test_only_what_exists_is_shown(files):
 
 def test_gates_tell_what_failed_and_text_is_escaped(files, page):
     root, paths = files
-    found = {gate.stage: gate for gate in gates(Results(root, paths))}
+    results = Results(root, paths)
+    sections = [section for stage in STAGES if (section := stage.describe(results))]
+    found = {gate.stage: gate for section in sections for gate in section.gates}
     assert not found["hardness"].passed
     assert found["law"].passed
     assert found["law"].reasons == ["1 of 3 fits: poor fit"]

@@ -4,9 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from workflow.report.available import Results, Row, column, number, show
-from workflow.report.figures_contact import OUTPUTS, SYMBOLS, law_band
+from workflow.report.available import Results, Row
+from workflow.report.numbers import OUTPUTS, SYMBOLS, column, number, show
 from workflow.report.page import Table
+from workflow.report.stages import law
+from workflow.report.stages.sensitivity import ranking
 
 MEANINGS = {
     "d_c_nm": "mean separation at initial contact",
@@ -29,22 +31,8 @@ def answer(results: Results) -> dict[str, Any]:
     if results.has("device/switch.json"):
         content["cards"].append(_switch_card(results.json("device/switch.json")))
     if results.has("device/law.csv"):
-        content["figure"] = law_band(results)
+        content["figure"] = law.band(results)
     return content
-
-
-def ranking(rows: list[Row], output: str) -> list[tuple[str, float]]:
-    """Inputs by their share of an output's variance (total Sobol' index), or of the summed squares of the
-    elementary effects where no index was computed; largest first."""
-    part = [row for row in rows if row["output"] == output]
-    if any(np.isfinite(number(row.get("sobol_total"))) for row in part):
-        shares = [(row["input"], number(row["sobol_total"])) for row in part]
-    else:
-        squares = column(part, "mu_star") ** 2
-        whole = np.nansum(squares)
-        shares = [(row["input"], s / whole if whole > 0 else 0) for row, s in zip(part, squares, strict=True)]
-    known = [(name, share) for name, share in shares if np.isfinite(share)]
-    return sorted(known, key=lambda pair: -pair[1])
 
 
 def _law_cards(rows: dict[str, Row], samples: list[Row]) -> list[dict[str, str]]:

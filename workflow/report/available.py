@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from workflow.report.page import COMPUTED, LITERATURE, Gate
 from workflow.results import read_csv, read_h5, read_json
 
 Row = dict[str, str]
@@ -46,32 +47,15 @@ class Results:
         """Groups, root attributes and group attributes of an HDF5 file."""
         return read_h5(self.root / name)
 
+    def origin_of(self, stage: str) -> str:
+        """Badge of a stage: computed, and whether an input of this scene really comes from it."""
+        rows = self.csv("inputs.csv") if self.has("inputs.csv") else []
+        used = any(row["origin"] == stage for row in rows)
+        return COMPUTED if used else f"{COMPUTED}, not used: inputs are {LITERATURE}"
 
-def number(text: Any) -> float:
-    """A number of a result file; NaN where there is none."""
-    try:
-        return float(text)
-    except (TypeError, ValueError):
-        return float("nan")
-
-
-def column(rows: Iterable[Row], name: str) -> np.ndarray:
-    """A numeric column; NaN where there is no number."""
-    return np.array([number(row.get(name)) for row in rows], dtype=float)
-
-
-def show(value: Any, digits: int = 3) -> str:
-    """A number as a person writes it: `digits` significant ones, no exponent between 0.001 and 100 000."""
-    value = number(value)
-    if not np.isfinite(value):
-        return "–"
-    if value == 0:
-        return "0"
-    size = abs(value)
-    if 1e-3 <= size < 1e5:
-        decimals = max(0, digits - 1 - int(np.floor(np.log10(size))))
-        text = f"{value:.{decimals}f}"
-        return text.replace("-", "−")
-    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    superscript = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
-    return f"{mantissa.replace('-', '−')}·10{superscript}"
+    def gate_of(self, stage: str, name: str) -> list[Gate]:
+        """Gate that a stage wrote into its JSON file."""
+        if not self.has(name):
+            return []
+        gate = self.json(name).get("gate", {})
+        return [Gate(stage, bool(gate.get("passed")), tuple(gate.get("reasons", ())))]

@@ -47,6 +47,7 @@ class Section:
     blocks: list[Figure | Table] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     files: list[str] = field(default_factory=list)
+    gates: list[Gate] = field(default_factory=list)
 
     def add(self, svg: str | None, caption: str, paper: str = "", wide: bool = False) -> None:
         """Append a figure if there was anything to draw."""

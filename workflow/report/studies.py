@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from workflow.report.available import Results, Row, column, number, show
+from workflow.report.available import Results, Row
 from workflow.report.drawing import SERIES, draw
+from workflow.report.numbers import column, number, show
 from workflow.report.page import COMPUTED, Section, Table
 
 GOOD_ENOUGH = 0.01  # an error below this is not worth more time

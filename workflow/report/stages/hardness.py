@@ -1,15 +1,72 @@
-"""Figures of the atomistic stages: hardness and elasticity."""
+"""Hardness of single asperities: figures 7 and 8."""
 
-from itertools import cycle
+from typing import Any
 
 import numpy as np
 
-from workflow.report.available import Results, Row, column, number
-from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SERIES, SKY, SOFT, draw
+from workflow.report.available import Results, Row
+from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, SOFT, draw
+from workflow.report.numbers import column, number, show
+from workflow.report.page import Section, Table
 
 SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE, "s")}
 SLICE_NM = 0.25  # half the thickness of a slice that is drawn
 PAPER_HARDNESS = ((3.0, 10.0), (15.0, 2.0))  # nm, GPa: "~10 GPa at 3 nm, ~2 GPa at 15 nm" in the paper's text
+
+
+def describe(results: Results) -> Section | None:
+    """Figures 7 and 8, and every run."""
+    if not results.has("hardness/points.csv"):
+        return None
+    points = results.csv("hardness/points.csv")
+    fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
+    section = Section(
+        "hardness",
+        "Hardness of single asperities",
+        "Molecular dynamics of one asperity pressed against a flat, with full and with halved energies; "
+        "hardness is the contact stress beyond the onset of plastic flow.",
+        results.origin_of("hardness"),
+    )
+    section.add(
+        contact_stress(results),
+        "Contact stress against contact length of every closing run. Circles: where plastic flow was first witnessed "
+        "by exchanged bonds; diamonds: the hardness of runs that yielded.",
+        "Figure 7",
+    )
+    section.add(
+        hardness_size(results),
+        "Hardness against contact length. Grey: the range that the paper's Table 1 spans; crosses: the "
+        "two values its text gives.",
+        "Figure 8",
+    )
+    section.add(
+        contact_pictures(results),
+        "A slice of 0.5 nm through a contact, relaxed without the counterface; dark: cations, light: oxygen.",
+        wide=True,
+    )
+    lines = [
+        (
+            row["run"],
+            show(row.get("energy_scale")),
+            row.get("geometry", ""),
+            show(row.get("wavelength_nm")),
+            show(row.get("contact_length_nm")),
+            _range(row, "hardness"),
+            " → ".join(show(row.get(key)) for key in ("exchanges_before", "exchanges_at_onset", "exchanges_after")),
+            show(row.get("onset_p_value")),
+            row.get("status", ""),
+        )
+        for row in points
+    ]
+    header = (
+        "run", "energy scale", "geometry", "λ (nm)", "contact length (nm)", "hardness (GPa)",
+        "bond exchanges per 0.1 nm: before → onset → after", "p of the onset", "status",
+    )  # fmt: skip
+    section.blocks.append(Table("Every run and what became of it", header, lines))
+    section.notes += _fit_notes(fit)
+    section.files += ["hardness/points.csv", "hardness/fit.json"]
+    section.gates += results.gate_of("hardness", "hardness/fit.json")
+    return section
 
 
 def contact_stress(results: Results) -> str | None:
@@ -139,77 +196,6 @@ def _pictures_of(run: str) -> tuple[str, str]:
     return f"hardness/witness/{run}.csv", f"hardness/snapshots/{run}.csv"
 
 
-def elastic_distribution(results: Results) -> str | None:
-    """Figure 5: bulk moduli of the ensemble and the resulting E*."""
-    rows = results.csv("elastic/bulk_moduli.csv")
-    summary = results.json("elastic/e_star.json")
-    names = sorted({(row["xc"], row.get("ions", "")) for row in rows})
-    samples = results.h5("elastic/e_star.h5")[0] if results.has("elastic/e_star.h5") else {}
-    flat = {name: values for group in samples.values() for name, values in group.items()}
-    glasses = {*summary.get("structures_used", []), *(kept["structure"] for kept in summary.get("kept_out", []))}
-    trusted = [row for row in rows if not row.get("flags") and np.isfinite(number(row.get("B_GPa")))]
-
-    def plot(axis, other):
-        every = column(trusted, "B_GPa")
-        bins = np.linspace(every.min() - 5, every.max() + 5, 12) if every.size else np.linspace(0, 1, 2)
-        for (xc, ions), color in zip(names, cycle(SERIES), strict=False):
-            kind = [row for row in trusted if (row["xc"], row.get("ions", "")) == (xc, ions)]
-            label = f"{xc.upper()}, {ions} ions" if ions else xc.upper()
-            part = column([row for row in kind if row["structure"] in glasses], "B_GPa")
-            if part.size:
-                axis.hist(part, bins=bins, color=color, alpha=0.5, label=label, linewidth=0)
-            for row in kind:
-                if row["structure"] not in glasses:
-                    crystal = f"{row['structure']} crystal, {xc.upper()}"
-                    axis.axvline(number(row["B_GPa"]), color=color, linestyle="--", label=crystal)
-        axis.set(xlabel="bulk modulus B (GPa)", ylabel="structures")
-        axis.set_ylim(0, 1.7 * axis.get_ylim()[1])  # room for the legend
-        axis.yaxis.get_major_locator().set_params(integer=True)
-        axis.legend(fontsize=8.5)
-        mean, std = number(summary.get("mean_GPa")), number(summary.get("std_GPa"))
-        e_star = next((values for name, values in flat.items() if "e_star" in name.lower()), None)
-        grid = np.linspace(min(75, mean - 4 * std), max(107, mean + 4 * std), 300)
-        if e_star is not None and np.size(e_star) > 50:
-            other.hist(np.ravel(e_star), bins=50, density=True, color=BLUE, alpha=0.5, label="here", linewidth=0)
-        else:
-            other.plot(grid, _normal(grid, mean, std), color=BLUE, label=f"here, {mean:.1f} ± {std:.1f} GPa")
-        other.plot(grid, _normal(grid, 91.0, 3.8), "--", color=ORANGE, label="paper, 91 ± 3.8 GPa")
-        other.set(xlabel="E* (GPa)", ylabel="density (1/GPa)", ylim=(0, None))
-        other.legend(fontsize=8.5)
-
-    return draw("fig5", "Bulk moduli of the structures and the effective modulus", plot, (9.4, 3.7), columns=2)
-
-
-def energy_volume(results: Results) -> str | None:
-    """E(V) of every structure, the data behind figure 5."""
-    rows = [row for row in results.csv("elastic/points.csv") if row.get("converged") in ("True", "true", "1")]
-    curves: dict[tuple[str, str, str], list[Row]] = {}
-    for row in rows:
-        curves.setdefault((row["structure"], row["xc"], row.get("ions", "")), []).append(row)
-    if not curves:
-        return None
-
-    def plot(axis):
-        colors = {xc: SERIES[i % len(SERIES)] for i, xc in enumerate(sorted({key[1] for key in curves}))}
-        for (_, xc, _), part in curves.items():
-            strain, energy = column(part, "strain"), column(part, "energy_eV")
-            order = np.argsort(strain)
-            axis.plot(
-                100 * strain[order],
-                energy[order] - energy.min(),
-                "o-",
-                color=colors[xc],
-                markersize=3,
-                linewidth=1,
-            )
-        for xc, color in colors.items():
-            axis.plot([], [], "o-", color=color, label=xc.upper())
-        axis.set(xlabel="strain (%)", ylabel="energy above lowest point (eV per cell)")
-        axis.legend()
-
-    return draw("energy", "Energy against strain of every structure", plot, (5.6, 3.6))
-
-
 def _scale(point: Row) -> tuple[str, str, str]:
     return SCALES.get(_key(point), ("other energies", PURPLE, "^"))
 
@@ -219,5 +205,40 @@ def _key(point: Row) -> str:
     return f"{value:.1f}" if np.isfinite(value) else "1.0"
 
 
-def _normal(x: np.ndarray, mean: float, std: float) -> np.ndarray:
-    return np.exp(-(((x - mean) / std) ** 2) / 2) / (std * np.sqrt(2 * np.pi))
+def _range(row: Row, name: str) -> str:
+    value = number(row.get(f"{name}_GPa"))
+    if not np.isfinite(value):
+        return "–"
+    low, high = number(row.get(f"{name}_lo")), number(row.get(f"{name}_hi"))
+    return f"{show(value)} [{show(low)}, {show(high)}]" if np.isfinite(low) else show(value)
+
+
+def _fit_notes(fit: dict[str, Any]) -> list[str]:
+    """What the MD points say about both constants, and how the halved energies compare."""
+    notes = []
+    method = "from the literature" if fit.get("method") == "literature" else "from the same points"
+    for key, label, unit in (("H_macro_GPa", "H_macro", "GPa"), ("H_prime_GPa_nm0.5", "H′", "GPa nm½")):
+        entry = fit.get(key)
+        if isinstance(entry, dict):
+            origin = method if label == "H_macro" else "from the points"
+            span = f"{show(entry['median'])} [{show(entry['low'])}, {show(entry['high'])}] {unit}"
+            notes.append(f"{label} in use, {origin}: {span} (median and 68 % interval).")
+    free = fit.get("free_fit", {}).get("together", {})
+    if "H_macro_GPa" in free:
+        pairs = [
+            f"{label} = {show(free[key]['median'])} [{show(free[key]['low'])}, {show(free[key]['high'])}]"
+            for key, label in (("H_macro_GPa", "H_macro"), ("H_prime_GPa_nm0.5", "H′"))
+        ]
+        word = "" if free.get("identifiable") else ": the points alone do not identify both"
+        notes.append(f"Free fit of both constants to all points: {', '.join(pairs)}{word}.")
+    for ratio in fit.get("halved_over_full", []):
+        notes.append(
+            f"Halved over full energies, asperity {ratio['asperity']}: {show(ratio['median'])} "
+            f"[{show(ratio['low'])}, {show(ratio['high'])}]; 0.5 is expected."
+        )
+    if cost := fit.get("cost"):
+        notes.append(
+            f"Molecular dynamics: {show(cost['atom_steps'])} atom-steps, {show(cost['lammps_cpu_s'] / 60)} minutes of "
+            f"CPU time; the Python around LAMMPS took {show(100 * cost['python_cpu_share'])} % of all."
+        )
+    return notes

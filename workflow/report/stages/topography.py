@@ -1,12 +1,92 @@
-"""Figures of the topography stage: scans, spectra, recovery of known truth."""
+"""Surface topography: figures 9 and 10, recovery of known truth, contact of the scans themselves."""
+
+from typing import Any
 
 import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SKY, SOFT, draw
+from workflow.report.numbers import SYMBOLS, number, show
+from workflow.report.page import SYNTHETIC, Section, Table
 
 
-def scans(results: Results) -> str | None:
+def describe(results: Results) -> Section | None:
+    """Figures 9 and 10, and the roughness parameters."""
+    if not results.has("topography/spectra.h5", "topography/parameters.json"):
+        return None
+    found = results.json("topography/parameters.json")
+    synthetic = bool(found.get("synthetic"))
+    section = Section(
+        "topography",
+        "Surface topography",
+        (
+            "The scans are synthetic: made by the workflow with known parameters, passed through a simulated "
+            "microscope and read back from a real file format. They check the method; they are no "
+            "measurement. "
+            if synthetic
+            else "Spectra of the measured scans. "
+        )
+        + f"The Hurst exponent follows the convention `{found['convention']}`.",
+        SYNTHETIC if synthetic else results.origin_of("topography"),
+    )
+    section.add(maps(results), "Height maps after levelling, in nm about their mean.", "Figure 9", wide=True)
+    section.add(
+        spectra(results),
+        "Power spectra of all scans, pooled, with the fits behind q₀, Hurst exponent and RMS. The fits use the trusted "
+        "part; grey is what levelling, tip, noise or pixels disturb.",
+        "Figure 10",
+    )
+    section.add(
+        recovery(results),
+        "What the analysis returns of the synthetic scans' known truth. The interval of the typical RMS holds the "
+        "scatter from place to place: it is as wide as so few places make it. Heights miss what levelling took.",
+    )
+    section.add(
+        recovered_sets(results),
+        f"Truth and {float(found.get('confidence', 0.9)):.0%} intervals of many sets of synthetic scans with random "
+        "truth and artefacts.",
+        wide=True,
+    )
+    paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20) by 2H + 1", "rms": "1.82 to 14.17", "slope": "2.84"}
+    truth = found.get("truth") or {}
+    lines = []
+    for name, estimate in found.get("estimates", {}).items():
+        true = truth.get(name, truth.get(f"{name}_nm"))
+        lines.append(
+            (
+                SYMBOLS.get(name, name),
+                str(estimate.get("unit", "")),
+                show(estimate.get("value")),
+                _pair(estimate.get("interval")),
+                _pair(estimate.get("scatter")),
+                show(true) if true is not None else "–",
+                paper.get(name, "–"),
+            )
+        )
+    if lines:
+        header = ("parameter", "unit", "estimate", "interval", "scatter of scans", "truth", "paper")
+        section.blocks.append(Table("Roughness parameters", header, lines))
+    section.files += ["topography/spectra.h5", "topography/parameters.json"]
+    if results.has("law/scans.csv"):
+        section.add(
+            pressed(results),
+            "The contact closed on the scans themselves, on Gaussian surfaces with each scan's own spectrum, and on "
+            "Gaussian surfaces with the fitted power law up to the pixels; all with the grid and RMS of the scan.",
+            wide=True,
+        )
+        header = ("scan", "surface", "d_c (nm)", "C_a (GPa/nm)", "C_r (GPa)", "ρ_r (nm)", "fit")
+        keys = ("d_c_nm", "C_a_GPa_nm", "C_r_GPa", "rho_r_nm")
+        closing = [row for row in results.csv("law/scans.csv") if row["branch"] == "closing"]
+        lines = [
+            (row["scan"], row["surface"], *(show(number(row[key])) for key in keys), row["status"]) for row in closing
+        ]
+        section.blocks.append(Table("Law of the measured scans, closing", header, lines))
+        section.files += ["curves/scans.h5", "law/scans.csv"]
+    section.gates += results.gate_of("topography", "topography/parameters.json")
+    return section
+
+
+def maps(results: Results) -> str | None:
     """Figure 9: height maps of the scans."""
     groups, _, facts = results.h5("topography/spectra.h5")
     names = [name for name in sorted(groups) if name.startswith("scans/") and "heights" in groups[name]]
@@ -163,3 +243,7 @@ def recovered_sets(results: Results) -> str | None:
 def _thin(heights: np.ndarray, most: int = 160) -> np.ndarray:
     step = max(1, -(-max(heights.shape) // most))
     return heights[::step, ::step]
+
+
+def _pair(pair: Any) -> str:
+    return f"{show(pair[0])} to {show(pair[1])}" if isinstance(pair, list) and len(pair) == 2 else "–"

@@ -1,0 +1,145 @@
+"""Contact curves at central inputs: figures 4 and 11."""
+
+import json
+
+import numpy as np
+
+from workflow.report.available import Results
+from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, SOFT, draw
+from workflow.report.numbers import number
+from workflow.report.page import COMPUTED, Gate, Section, Table
+from workflow.report.stages import law
+
+MODELS = {
+    "elastic": ("elastic", ":"),
+    "nonlinear": ("non-linear elastic", "--"),
+    "plastic": ("asperity plasticity", "-"),
+}
+
+
+def describe(results: Results) -> Section | None:
+    """Figures 4 and 11, and the readings in use."""
+    if not results.has("curves/nominal.h5"):
+        return None
+    reading = reading_of(results)
+    section = Section(
+        "curves",
+        "Contact curves at central inputs",
+        f"Closing and opening of one surface of {reading['length_nm']:g} nm with {reading['pixels']}² "
+        "grid points at central inputs.",
+        COMPUTED,
+    )
+    section.add(
+        nominal_models(results),
+        "Three models of the single asperity. Elastic and non-linear elastic contacts reopen along their "
+        "closing line; plastic ones do not.",
+        "Figure 4",
+    )
+    section.add(
+        nominal_loads(results),
+        "Closing (solid) and opening (dashed) up to several largest loads; thin lines: the fitted law.",
+        "Figure 11",
+        wide=True,
+    )
+    words = {
+        "convention": "slope convention",
+        "prefactor": "Hertz prefactor",
+        "radius": "asperity radius",
+        "area": "contact area",
+        "touching_attracts": "sites in contact attract",
+        "flow": "flow rule",
+        "flow_pair": "pair of Gaussians",
+        "gap_cutoff_nm": "smallest gap of the attraction (nm)",
+    }
+    used = [
+        (label, ("no", "yes")[value] if isinstance(value := reading[key], bool) else str(value))
+        for key, label in words.items()
+        if key in reading
+    ]
+    if used:
+        section.blocks.append(Table("Readings of the paper in use", ("reading", "value"), used))
+    section.files += ["curves/nominal.h5", "law/nominal.csv"]
+    section.gates += [_gate(results), *law.gates(results)]
+    return section
+
+
+def nominal_models(results: Results) -> str | None:
+    """Figure 4: the three models of plasticity up to 1e4 nN."""
+    groups, _, facts = results.h5("curves/nominal.h5")
+    present = [model for model in MODELS if f"{model}/closing" in groups]
+    if not present:
+        return None
+    top = max(float(facts[model]["max_force_nN"]) for model in present) / 1e3
+
+    def plot(axis):
+        for model in present:
+            label, style = MODELS[model]
+            for branch, color in (("closing", BLUE), ("opening", ORANGE)):
+                separation, force = _total(groups[f"{model}/{branch}"])
+                if model != "plastic" and branch == "opening":
+                    continue  # reversible: the same line
+                name = label if model != "plastic" else f"{label}, {branch}"
+                color = color if model == "plastic" else SOFT
+                axis.plot(separation, force, style, color=color, label=name)
+        axis.axhline(0, color=SOFT, linewidth=0.8)
+        reach = float(facts[present[-1]]["first_contact_nm"])
+        axis.set(xlim=(None, reach + 8), ylim=(-0.12 * top, 1.04 * top))
+        axis.set(xlabel="mean separation (nm)", ylabel="force on 1 µm² (µN)")
+        axis.legend()
+
+    return draw("fig4", "Force against mean separation for three models of plasticity", plot)
+
+
+def nominal_loads(results: Results) -> str | None:
+    """Figure 11: cycles to various largest loads, with the fitted law as thin lines."""
+    groups, attributes, facts = results.h5("curves/nominal.h5")
+    loads = sorted({name.split("/")[0] for name in groups if name.startswith("load_")}, key=_load)
+    if not loads:
+        return None
+    area = float(attributes["cell_area_nm2"])
+    fits = results.csv("law/nominal.csv") if results.has("law/nominal.csv") else []
+    constants = law.constants(results)
+
+    def plot(axis, zoom):
+        for panel in (axis, zoom):
+            for i, load in enumerate(loads):
+                color = SERIES[i % len(SERIES)]
+                for branch, style in (("closing", "-"), ("opening", "--")):
+                    separation, force = _total(groups[f"{load}/{branch}"])
+                    label = f"{_load(load) / 1e3:g} µN" if branch == "closing" else None
+                    panel.plot(separation, force, style, color=color, label=label, linewidth=1.6)
+                    row = law.fit_of(fits, load, branch)
+                    if row is not None:
+                        h = np.linspace(separation.min(), separation.max(), 300)
+                        fitted = area * law.pressure(h, row, number(facts[load]["hamaker"]), *constants) / 1e3
+                        panel.plot(h, fitted, "-", color=INK, linewidth=0.6)
+            panel.axhline(0, color=SOFT, linewidth=0.8)
+            panel.set(xlabel="mean separation (nm)", ylabel="force on 1 µm² (µN)")
+        contact = float(facts[loads[0]]["first_contact_nm"])
+        highest = max(_load(load) for load in loads) / 1e3
+        axis.set(xlim=(None, contact + 8), ylim=(-0.06 * highest, 1.03 * highest))
+        zoom.set(xlim=(None, contact + 8), ylim=(-2.5, 7.5), title="near zero force")
+        axis.set_title("full range")
+        axis.legend(title="largest load", fontsize=8, title_fontsize=8)
+
+    return draw("fig11", "Closing and opening curves up to several largest loads", plot, (9.4, 4.0), columns=2)
+
+
+def reading_of(results: Results) -> dict[str, object]:
+    """The contact settings that a curve file was made with."""
+    return json.loads(results.h5("curves/nominal.h5")[1]["contact"])
+
+
+def _total(curve: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Separation (nm) and total force (µN)."""
+    return curve["separation_nm"], (curve["repulsive_nN"] + curve["attractive_nN"]) / 1e3
+
+
+def _load(name: str) -> float:
+    return float(name.removeprefix("load_"))
+
+
+def _gate(results: Results) -> Gate:
+    cycles = results.h5("curves/nominal.h5")[2]
+    bad = [name for name, cycle in cycles.items() if "/" not in name and not bool(cycle.get("converged", True))]
+    return Gate("curves", not bad, tuple(f"{name}: some load steps did not converge" for name in bad))

@@ -1,0 +1,154 @@
+"""The law in a switch: pull-in, release, stiction."""
+
+from typing import Any
+
+import numpy as np
+
+from workflow.report.available import Results
+from workflow.report.drawing import BLUE, ORANGE, PURPLE, RED, SOFT, draw
+from workflow.report.numbers import column, number, show
+from workflow.report.page import COMPUTED, Gate, Section, Table
+
+
+def describe(results: Results) -> Section | None:
+    """The switch, its release and its stiction."""
+    if not results.has("device/switch.json", "device/release.csv", "device/path.csv", "device/stiction.csv"):
+        return None
+    found = results.json("device/switch.json")
+    switch = found["switch"]
+    section = Section(
+        "device",
+        "The law in a switch",
+        "An electrostatic switch that lands on the rough dielectric: closing law on the way down, "
+        f"opening law on the way up; stiffness {show(switch['spring_N_per_m'])} N/m, gap "
+        f"{show(switch['gap_nm'] / 1e3)} µm, landed fraction {switch['landed_fraction']:g}.",
+        COMPUTED,
+    )
+    section.add(
+        release_distribution(results),
+        "Left: release voltage over the samples of the law. Right: probability that the switch stays closed at 0 V.",
+        wide=True,
+    )
+    section.add(
+        switch_path(results),
+        "Voltage at which the switch is in balance, from the law at central inputs.",
+        wide=True,
+    )
+    section.blocks.append(Table("The switch", ("quantity", "with adhesion", "without adhesion"), _switch_lines(found)))
+    section.notes += [
+        f"{found['samples']['dropped']} of {found['samples']['dropped'] + found['samples']['used']} "
+        "samples of the law were left out because their repulsion or adhesion had the wrong sign (a "
+        "limit of the response surface).",
+        "Numerical folds against the analytic ones without adhesion: relative error "
+        f"{show(found['checks']['pull_in_relative_error'], 2)} (pull-in), "
+        f"{show(found['checks']['release_relative_error'], 2)} (release).",
+    ]
+    section.files += ["device/switch.json", "device/law.csv", "device/law.json"]
+    section.files += ["device/asperity_contact.sub", "device/asperity_contact.va"]
+    section.gates.append(_gate(found))
+    return section
+
+
+def _switch_lines(found: dict[str, Any]) -> list[tuple[str, ...]]:
+    cases = [found["with_adhesion"], found["without_adhesion"]]
+
+    def spread(case: dict[str, Any], key: str) -> str:
+        quantiles = case[key]["quantiles"]
+        if not quantiles:
+            return "–"
+        return f"{show(quantiles['0.5'])} [{show(quantiles['0.05'])}, {show(quantiles['0.95'])}]"
+
+    def stiction(case: dict[str, Any]) -> str:
+        p = case["stiction_probability"]
+        return f"{p['value']:.3f} [{p['low']:.3f}, {p['high']:.3f}]"
+
+    lines = [
+        ("pull-in (V), median and 5 to 95 %", *(spread(case, "pull_in_V") for case in cases)),
+        ("release (V) of those that release", *(spread(case, "release_V") for case in cases)),
+        ("probability of stiction, 95 % interval", *(stiction(case) for case in cases)),
+        ("critical landed fraction", *(spread(case, "critical_landed_fraction") for case in cases)),
+        ("separation held closed (nm)", *(spread(case, "hold_nm") for case in cases)),
+        ("pressure on the landed part (MPa)", *(spread(case, "hold_pressure_MPa") for case in cases)),
+    ]
+    capacitance = found["capacitance_fF"]
+    up = show(capacitance["up"], 4)
+    down = {key: spread(capacitance, key) for key in ("down_plate", "down_rough")}
+    return [
+        *lines,
+        ("capacitance open (fF)", up, up),
+        ("capacitance closed, rough (fF)", down["down_rough"], "–"),
+        ("capacitance closed, flat plate (fF)", down["down_plate"], "–"),
+    ]
+
+
+def switch_path(results: Results) -> str:
+    """Voltage against separation: folds of the switch with and without adhesion."""
+    rows = results.csv("device/path.csv")
+
+    def plot(axis, zoom):
+        for case, color, label in (
+            ("with_adhesion", BLUE, "with adhesion"),
+            ("without_adhesion", ORANGE, "without adhesion"),
+        ):
+            for branch, style in (("closing", "-"), ("opening", "--")):
+                part = [row for row in rows if row["case"] == case and row["branch"] == branch]
+                s, w = column(part, "separation_nm"), column(part, "voltage_squared_V2")
+                volts = np.where(w >= 0, np.sqrt(np.maximum(w, 0)), np.nan)
+                if branch == "closing" and case == "with_adhesion":
+                    axis.plot(s / 1e3, volts, color=color)
+                zoom.plot(s, volts, style, color=color, label=f"{label}, {branch}")
+        highest = axis.get_lines()[0].get_ydata()
+        s = axis.get_lines()[0].get_xdata()
+        away = s > 0.2
+        axis.set(ylim=(0, 1.15 * np.nanmax(highest[away])), title="way down: the fold is pull-in")
+        axis.set(xlabel="separation (µm)", ylabel="voltage at balance (V)")
+        zoom.set(xlim=(0, 90), ylim=(0, 8), title="way up: the lowest point is release")
+        zoom.set(xlabel="separation (nm)")
+        zoom.legend(fontsize=8)
+
+    return draw("path", "Voltage at balance against separation of the switch", plot, (9.4, 3.8), columns=2)
+
+
+def release_distribution(results: Results) -> str:
+    """Release voltage over the samples, with and without adhesion, and stiction against landed fraction."""
+    rows = results.csv("device/release.csv")
+    curve = results.csv("device/stiction.csv")
+    chosen = number(results.json("device/switch.json")["switch"]["landed_fraction"])
+
+    def plot(axis, other):
+        volts = {
+            case: column([row for row in rows if row["case"] == case], "release_V")
+            for case in ("with_adhesion", "without_adhesion")
+        }
+        bins = np.linspace(0, max(np.nanquantile(volts["without_adhesion"], 0.999), 0.1), 45)
+        for case, color, label in (
+            ("without_adhesion", ORANGE, "without adhesion"),
+            ("with_adhesion", BLUE, "with adhesion"),
+        ):
+            free = volts[case][volts[case] > 0]
+            weights = np.full(free.size, 1 / max(volts[case].size, 1))
+            axis.hist(free, bins=bins, weights=weights, color=color, alpha=0.5, label=label, linewidth=0)
+        stuck = float(np.mean(volts["with_adhesion"] == 0))
+        if stuck > 0:
+            axis.bar(0, stuck, width=bins[1], align="edge", color=RED, label="stuck at 0 V")
+            free_top = max(axis.get_ylim()[1] if stuck < 0.3 else 0, 0.15)
+            if stuck > 2 * free_top:
+                axis.set_ylim(0, free_top)
+                axis.annotate(f"{stuck:.0%} stuck", (bins[1], free_top), va="top", ha="left", color=RED)
+        axis.set(xlabel="release voltage (V)", ylabel="share of samples per bin")
+        axis.legend(fontsize=8.5)
+        fraction = column(curve, "landed_fraction")
+        other.fill_between(fraction, column(curve, "low"), column(curve, "high"), color=PURPLE, alpha=0.2, linewidth=0)
+        other.plot(fraction, column(curve, "stiction_probability"), color=PURPLE)
+        other.axvline(chosen, color=SOFT, linestyle=":")
+        other.annotate("this scene ", (chosen, 0.97), ha="right", va="top", color=SOFT, fontsize=9)
+        other.set(xscale="log", ylim=(0, 1), xlabel="landed fraction of the electrode")
+        other.set_ylabel("probability of stiction")
+
+    return draw("release", "Release voltage and probability of stiction", plot, (9.4, 3.7), columns=2)
+
+
+def _gate(found: dict[str, Any]) -> Gate:
+    errors = found["checks"].items()
+    off = [f"{name.replace('_', ' ')} {show(value)}" for name, value in errors if not number(value) < 1e-6]
+    return Gate("device", not off, (*off, *found["warnings"]))

@@ -1,0 +1,126 @@
+"""Effective elastic modulus: figure 5."""
+
+from itertools import cycle
+
+import numpy as np
+
+from workflow.report.available import Results, Row
+from workflow.report.drawing import BLUE, ORANGE, SERIES, draw
+from workflow.report.numbers import column, number, show
+from workflow.report.page import Section, Table
+
+
+def describe(results: Results) -> Section | None:
+    """Figure 5, and every structure."""
+    if not results.has("elastic/bulk_moduli.csv", "elastic/e_star.json"):
+        return None
+    summary = results.json("elastic/e_star.json")
+    section = Section(
+        "elastic",
+        "Effective elastic modulus",
+        "Density functional theory on an ensemble of Si₃N₄ structures: E* = "
+        f"{show(summary.get('mean_GPa'))} ± {show(summary.get('std_GPa'))} GPa (the paper: 91 ± 3.8 GPa).",
+        results.origin_of("elastic"),
+    )
+    section.add(
+        elastic_distribution(results),
+        "Left: bulk moduli of the glasses; dashed: a crystal. Right: the modulus E* of the contact, variability and "
+        "model-form error included.",
+        "Figure 5",
+        wide=True,
+    )
+    if results.has("elastic/points.csv"):
+        section.add(energy_volume(results), "Energy of every structure under isotropic strain.")
+    lines = [
+        (
+            row["structure"],
+            row["xc"],
+            row.get("ions", ""),
+            show(row.get("B_GPa"), 4),
+            show(row.get("B_prime")),
+            show(row.get("V0_A3"), 4),
+            row.get("flags", "") or "–",
+        )
+        for row in results.csv("elastic/bulk_moduli.csv")
+    ]
+    header = ("structure", "functional", "ions", "B (GPa)", "B′", "V₀ (Å³)", "flags")
+    section.blocks.append(Table("Equation of state of every structure", header, lines))
+    section.notes += summary.get("notes", [])
+    section.files += ["elastic/points.csv", "elastic/bulk_moduli.csv", "elastic/e_star.json"]
+    section.gates += results.gate_of("elastic", "elastic/e_star.json")
+    return section
+
+
+def elastic_distribution(results: Results) -> str | None:
+    """Figure 5: bulk moduli of the ensemble and the resulting E*."""
+    rows = results.csv("elastic/bulk_moduli.csv")
+    summary = results.json("elastic/e_star.json")
+    names = sorted({(row["xc"], row.get("ions", "")) for row in rows})
+    samples = results.h5("elastic/e_star.h5")[0] if results.has("elastic/e_star.h5") else {}
+    flat = {name: values for group in samples.values() for name, values in group.items()}
+    glasses = {*summary.get("structures_used", []), *(kept["structure"] for kept in summary.get("kept_out", []))}
+    trusted = [row for row in rows if not row.get("flags") and np.isfinite(number(row.get("B_GPa")))]
+
+    def plot(axis, other):
+        every = column(trusted, "B_GPa")
+        bins = np.linspace(every.min() - 5, every.max() + 5, 12) if every.size else np.linspace(0, 1, 2)
+        for (xc, ions), color in zip(names, cycle(SERIES), strict=False):
+            kind = [row for row in trusted if (row["xc"], row.get("ions", "")) == (xc, ions)]
+            label = f"{xc.upper()}, {ions} ions" if ions else xc.upper()
+            part = column([row for row in kind if row["structure"] in glasses], "B_GPa")
+            if part.size:
+                axis.hist(part, bins=bins, color=color, alpha=0.5, label=label, linewidth=0)
+            for row in kind:
+                if row["structure"] not in glasses:
+                    crystal = f"{row['structure']} crystal, {xc.upper()}"
+                    axis.axvline(number(row["B_GPa"]), color=color, linestyle="--", label=crystal)
+        axis.set(xlabel="bulk modulus B (GPa)", ylabel="structures")
+        axis.set_ylim(0, 1.7 * axis.get_ylim()[1])  # room for the legend
+        axis.yaxis.get_major_locator().set_params(integer=True)
+        axis.legend(fontsize=8.5)
+        mean, std = number(summary.get("mean_GPa")), number(summary.get("std_GPa"))
+        e_star = next((values for name, values in flat.items() if "e_star" in name.lower()), None)
+        grid = np.linspace(min(75, mean - 4 * std), max(107, mean + 4 * std), 300)
+        if e_star is not None and np.size(e_star) > 50:
+            other.hist(np.ravel(e_star), bins=50, density=True, color=BLUE, alpha=0.5, label="here", linewidth=0)
+        else:
+            other.plot(grid, _normal(grid, mean, std), color=BLUE, label=f"here, {mean:.1f} ± {std:.1f} GPa")
+        other.plot(grid, _normal(grid, 91.0, 3.8), "--", color=ORANGE, label="paper, 91 ± 3.8 GPa")
+        other.set(xlabel="E* (GPa)", ylabel="density (1/GPa)", ylim=(0, None))
+        other.legend(fontsize=8.5)
+
+    return draw("fig5", "Bulk moduli of the structures and the effective modulus", plot, (9.4, 3.7), columns=2)
+
+
+def energy_volume(results: Results) -> str | None:
+    """E(V) of every structure, the data behind figure 5."""
+    rows = [row for row in results.csv("elastic/points.csv") if row.get("converged") in ("True", "true", "1")]
+    curves: dict[tuple[str, str, str], list[Row]] = {}
+    for row in rows:
+        curves.setdefault((row["structure"], row["xc"], row.get("ions", "")), []).append(row)
+    if not curves:
+        return None
+
+    def plot(axis):
+        colors = {xc: SERIES[i % len(SERIES)] for i, xc in enumerate(sorted({key[1] for key in curves}))}
+        for (_, xc, _), part in curves.items():
+            strain, energy = column(part, "strain"), column(part, "energy_eV")
+            order = np.argsort(strain)
+            axis.plot(
+                100 * strain[order],
+                energy[order] - energy.min(),
+                "o-",
+                color=colors[xc],
+                markersize=3,
+                linewidth=1,
+            )
+        for xc, color in colors.items():
+            axis.plot([], [], "o-", color=color, label=xc.upper())
+        axis.set(xlabel="strain (%)", ylabel="energy above lowest point (eV per cell)")
+        axis.legend()
+
+    return draw("energy", "Energy against strain of every structure", plot, (5.6, 3.6))
+
+
+def _normal(x: np.ndarray, mean: float, std: float) -> np.ndarray:
+    return np.exp(-(((x - mean) / std) ** 2) / 2) / (std * np.sqrt(2 * np.pi))

@@ -1,0 +1,132 @@
+"""Closed again and again: shakedown and creep."""
+
+import numpy as np
+
+from workflow.report.available import Results, Row
+from workflow.report.drawing import SERIES, SOFT, draw
+from workflow.report.numbers import column, number, show
+from workflow.report.page import COMPUTED, Section, Table
+
+
+def describe(results: Results) -> Section | None:
+    """Shakedown and creep."""
+    if not results.has("history/cycles.csv", "history/dwell.csv", "history/curves.h5"):
+        return None
+    rows = results.csv("history/cycles.csv")
+    last = max(int(row["cycle"]) for row in rows)
+    held = max(number(row["held_s"]) for row in rows)
+    section = Section(
+        "history",
+        "Closed again and again",
+        f"{last} cycles of the same surfaces, each from what the last one left"
+        + (
+            f", {show(held)} s under load in all: the hardness falls with time by the creep law of the scene. "
+            if held
+            else ". "
+        )
+        + _shakedown(rows),
+        COMPUTED,
+    )
+    section.add(history_curves(results), "Cycles of one surface; opening is dashed.")
+    section.add(
+        history_drift(results),
+        "Left: energy lost by each cycle, one line per surface. Right: how far the closed contact sinks.",
+        wide=True,
+    )
+    shown = [row for row in rows if int(row["cycle"]) in (1, 2, 5, 10, 20, 50, 100, last)]
+    lines = [
+        (
+            row["seed"],
+            row["cycle"],
+            show(row["held_s"]) if held else "–",
+            show(row["closed_nm"], 4),
+            show(row["last_contact_nm"], 4),
+            show(row["contact_area_nm2"]),
+            show(row["dissipated_nN_nm"]),
+            show(row["pull_off_nN"]),
+            "stuck" if number(row["release_V"]) == 0 else show(row["release_V"]),
+            show(row["critical_landed_fraction"]),
+        )
+        for row in shown
+    ]
+    header = (
+        "surface",
+        "cycle",
+        "time under load (s)",
+        "closed (nm)",
+        "last contact (nm)",
+        "contact area (nm²)",
+        "energy lost (nN nm)",
+        "pull-off (nN)",
+        "release (V)",
+        "critical landed fraction",
+    )
+    section.blocks.append(Table("Cycles, and the switch that would follow each", header, lines, heads=2))
+    if not all(row["converged"] == "True" for row in rows):
+        section.notes.append("Some cycles did not converge or missed their force: see column converged.")
+    if held:
+        section.notes.append("The constants of the creep law are the scene's, not results of this work.")
+    section.files += ["history/cycles.csv", "history/dwell.csv", "history/curves.h5"]
+    return section
+
+
+def history_curves(results: Results) -> str:
+    """Closing and opening of the first surface, a few of its cycles."""
+    groups, _, facts = results.h5("history/curves.h5")
+    names = sorted(name for name in facts if "/" not in name)
+
+    def plot(axis):
+        for place, name in enumerate(names):
+            color = SERIES[place % len(SERIES)]
+            for branch, style in (("closing", "-"), ("opening", "--")):
+                curve = groups[f"{name}/{branch}"]
+                force = (curve["repulsive_nN"] + curve["attractive_nN"]) / 1e3
+                label = f"cycle {int(facts[name]['cycle'])}" if branch == "closing" else None
+                axis.plot(curve["separation_nm"], force, style, color=color, label=label, linewidth=1.5)
+        first = groups[f"{names[0]}/closing"]
+        contact = float(first["separation_nm"][first["repulsive_nN"] > 0].max())
+        axis.axhline(0, color=SOFT, linewidth=0.8)
+        axis.set(xlim=(None, contact + 6), xlabel="mean separation (nm)", ylabel="force on the cell (µN)")
+        axis.legend(fontsize=8.5)
+
+    return draw("history", "Force against separation of a surface that is closed again and again", plot)
+
+
+def history_drift(results: Results) -> str:
+    """Energy lost by each cycle, and how far the closed contact sinks and grows with the time under load."""
+    cycles = results.csv("history/cycles.csv")
+    dwell = results.csv("history/dwell.csv")
+    seeds = sorted({row["seed"] for row in cycles}, key=int)
+
+    def plot(energy, sunk):
+        for place, seed in enumerate(seeds):
+            color = SERIES[place % len(SERIES)]
+            part = [row for row in cycles if row["seed"] == seed]
+            lost = column(part, "dissipated_nN_nm")
+            some = lost > 0  # an elastic cycle loses nothing but rounding
+            energy.plot(column(part, "cycle")[some], lost[some], "o-", color=color, markersize=3)
+            held = [row for row in dwell if row["seed"] == seed]
+            x, depth = (column(held, "held_s"), "separation_nm") if held else (column(part, "cycle"), "closed_nm")
+            closed = column(held or part, depth)
+            sunk.plot(x, closed[0] - closed, "-", color=color)
+        energy.set(xscale="log", yscale="log", xlabel="cycle", ylabel="energy lost (nN nm)")
+        sunk.set(xscale="symlog" if dwell else "log", xlabel="time under load (s)" if dwell else "cycle")
+        sunk.set(ylabel="sunk since first closed (nm)")
+
+    return draw("drift", "Energy lost by each cycle and sinking of the closed contact", plot, (9.4, 3.6), columns=2)
+
+
+def _shakedown(rows: list[Row]) -> str:
+    """How much less energy the last cycle loses than the first."""
+    by_cycle = {
+        n: column([row for row in rows if int(row["cycle"]) == n], "dissipated_nN_nm").mean() for n in _ends(rows)
+    }
+    first, last = by_cycle[min(by_cycle)], by_cycle[max(by_cycle)]
+    if len(by_cycle) < 2 or not np.isfinite(first) or first <= 0:
+        return ""
+    return f"The last cycle loses {show(100 * max(last, 0.0) / first, 2)} % of the energy that the first one lost."
+
+
+def _ends(rows: list[Row]) -> set[int]:
+    numbers = [int(row["cycle"]) for row in rows]
+    return {min(numbers), max(numbers)}

@@ -1,0 +1,46 @@
+"""Inputs in use: the paper's Table 1."""
+
+from workflow.report.available import Results, Row
+from workflow.report.numbers import SYMBOLS, number, show
+from workflow.report.page import Section, Table
+
+
+def describe(results: Results) -> Section | None:
+    """Table 1 in use."""
+    if not results.has("inputs.csv"):
+        return None
+    rows = results.csv("inputs.csv")
+    section = Section(
+        "inputs",
+        "Inputs",
+        "What the contact model is fed with: each input with its distribution and where it comes from.",
+    )
+    lines = [
+        (
+            SYMBOLS.get(row["parameter"], row["parameter"]),
+            row["unit"],
+            _distribution(row),
+            row["origin"],
+            row.get("file", ""),
+        )
+        for row in rows
+    ]
+    section.blocks.append(
+        Table(
+            "Inputs in use (the paper's Table 1)",
+            ("input", "unit", "distribution", "origin", "source"),
+            lines,
+        )
+    )
+    section.files.append("inputs.csv")
+    return section
+
+
+def _distribution(row: Row) -> str:
+    a, b = f"{number(row['a']):.4g}", f"{number(row['b']):.4g}"
+    if row["distribution"] == "uniform":
+        return f"uniform from {a} to {b}"
+    text = f"normal, {a} ± {b}"
+    if row["distribution"] == "truncated_normal":
+        text += f" within {show(row.get('low'))} to {show(row.get('high'))}"
+    return text
