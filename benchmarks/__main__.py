@@ -1,6 +1,8 @@
 """Time a surface and a closing-opening cycle on several grids, side by side with others in one run.
 
-python -m benchmarks [--large] [--repeats 3] [--plain] [--cycles 200]      (one thread each; docs/contact.md, Run time)
+python -m benchmarks [--large] [--repeats 3] [--plain] [--cycles 200]
+
+One thread each; docs/contact_reference.md, Run time.
 """
 
 import argparse

@@ -66,7 +66,7 @@ def take(law: Law, index: Any) -> Law:
 def physical(law: Law) -> NDArray[np.bool_]:
     """Which samples can be used: all parameters finite, C_r and rho_r positive, C_a not negative.
 
-    A response surface that is linear in the inputs does not know the signs; samples that break them are
+    A response that is linear in the inputs does not know the signs; samples that break them are
     counted and left out, never clipped.
     """
     law = flat(law, samples_of(law))

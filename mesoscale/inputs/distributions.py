@@ -44,7 +44,7 @@ class Distribution:
         return np.clip(self.a + self.b * ndtri(below + p * (above - below)), self.low, self.high)
 
     def span(self, central_share: float) -> tuple[float, float]:
-        """Ends of the range that response surfaces cover.
+        """Ends of the range that responses cover.
 
         All of a bounded distribution; the central share of an unbounded one.
         """
@@ -80,7 +80,7 @@ class InputTable:
         return [row.name for row in self.rows]
 
     def ranges(self, central_share: float) -> Array:
-        """Range that response surfaces cover, shape (n, 2)."""
+        """Range that responses cover, shape (n, 2)."""
         return np.array([row.distribution.span(central_share) for row in self.rows])
 
     def transform(self, unit_points: Array) -> Array:

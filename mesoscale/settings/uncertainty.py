@@ -12,16 +12,16 @@ class UncertaintySettings(Settings):
 
     surrogate: Literal["level1", "level2"] = Field(
         default="level1",
-        description="response surface: level1 is the paper's (2n+1 nodes, linear); level2 is the next "
+        description="design of the surrogate: level1 is the paper's (2n+1 nodes, linear); level2 is the next "
         "Smolyak level with quadratic and interaction terms (113 nodes for seven inputs)",
     )
-    surface: Literal["linear", "polynomial", "regression"] = Field(
+    response: Literal["linear", "polynomial", "regression"] = Field(
         default="regression",
-        description="surface behind samples, Sobol' indices and surrogate.json: the paper's linear one; the "
+        description="response behind samples, Sobol' indices and surrogate.json: the paper's linear one; the "
         "polynomial through all nodes; or sparse polynomial chaos fitted to the direct runs. The last two "
         "take C_a, C_r and rho_r in logarithm, so that they stay positive. Table 2 always has the linear one",
     )
-    chaos_degree: int = Field(default=3, ge=1, le=6, description="highest total degree of the regression surface")
+    chaos_degree: int = Field(default=3, ge=1, le=6, description="highest total degree of the regression")
     seeds: int = Field(default=8, ge=1, le=10000, description="surfaces per node, the same ones at every node")
     first_seed: int = Field(default=0, ge=0, le=2**31, description="seed of the first surface")
     central_share: float = Field(
@@ -32,7 +32,7 @@ class UncertaintySettings(Settings):
         json_schema_extra={"unit": "1"},
     )
     chunk_runs: int = Field(default=100, ge=1, le=100000, description="contact cycles per job and file")
-    samples: int = Field(default=10000, ge=10, le=10**7, description="samples of the inputs sent through the surface")
+    samples: int = Field(default=10000, ge=10, le=10**7, description="samples of the inputs sent through the response")
     sample_seed: int = Field(default=1, ge=0, le=2**31, description="seed of those samples")
     sobol_samples: int = Field(
         default=2048, ge=64, le=10**6, description="size of each of the n + 2 samples behind the Sobol' indices"
@@ -54,19 +54,19 @@ class UncertaintySettings(Settings):
         ge=0,
         le=10**6,
         description="independent cycles, each with its own inputs and surface: they train the regression "
-        "surface and validate all of them",
+        "and validate all responses",
     )
     morris_trajectories: int = Field(
         default=24,
         ge=2,
         le=10000,
-        description="trajectories of Morris' elementary effects, through the surface and, in the study, the engine",
+        description="trajectories of Morris' elementary effects, through the response and, in the study, the engine",
     )
     study_runs: int = Field(
         default=1600,
         ge=100,
         le=10**6,
-        description="direct runs that are the truth of the study of surfaces (target `work_precision`)",
+        description="direct runs that are the truth of the study of responses (target `work_precision`)",
     )
     study_replicates: int = Field(
         default=150,

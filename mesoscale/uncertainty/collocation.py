@@ -1,4 +1,4 @@
-"""Sparse-grid collocation: the paper's level-1 surface with its elementary effects, and level 2.
+"""Sparse-grid collocation: the paper's level-1 response with its elementary effects, and level 2.
 
 Clenshaw-Curtis nodes on [-1, 1]^n. Level 1 is the centre plus both ends of every axis: 2n + 1 nodes. Level 2
 adds the inner points of the five-point rule on every axis and the corners of every pair of axes.
@@ -43,8 +43,8 @@ def to_values(u: Array, ranges: Array) -> Array:
     return low + (u + 1) / 2 * (high - low)
 
 
-def level1_surface(y: Array, ranges: Array) -> Surrogate:
-    """The paper's linear surface from the 15 nodes.
+def level1_response(y: Array, ranges: Array) -> Surrogate:
+    """The paper's linear response from the 15 nodes.
 
     u_0 = (1 - n/3) y_0 + sum_i (y_i+ + y_i-) / 6 is the level-1 quadrature of the mean and
     u_i = (y_i+ - y_i-) / 2.
@@ -88,7 +88,7 @@ def _interpolation(inputs: int, level: int) -> _Interpolation:
     return _Interpolation(terms, np.asarray(np.linalg.inv(basis_matrix(nodes(inputs, level), terms)), float))
 
 
-def interpolating_surface(y: Array, ranges: Array, level: int, transform: str = "identity") -> Surrogate:
+def interpolating_response(y: Array, ranges: Array, level: int, transform: str = "identity") -> Surrogate:
     """The polynomial through all node values; its mean equals the sparse-grid quadrature.
 
     Parameters

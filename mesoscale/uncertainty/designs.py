@@ -1,4 +1,4 @@
-"""Which cycles are computed: nodes of the collocation, and the designs of direct runs.
+"""Which cycles are computed: nodes of the collocation design, and the designs of direct runs.
 
 A run depends on its index alone, so that more runs extend those that are there.
 """
@@ -14,7 +14,7 @@ from mesoscale.uncertainty.chunks import collocation_level
 from mesoscale.uncertainty.collocation import nodes, to_values
 
 FIRST_RANDOM_SEED = 1_000_000
-"""Surfaces of the direct runs are other ones than those of the collocation."""
+"""Surfaces of the direct runs differ from those of the collocation."""
 FIRST_REPLICATE_SEED = 500_000_000
 FIRST_TRAJECTORY_SEED = 1_000_000_000
 MORRIS_LEVELS = 8

@@ -11,14 +11,14 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.compact import PARAMETERS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.chunks import collocation_level
-from mesoscale.uncertainty.collocation import elementary_effects, interpolating_surface, level1_surface
+from mesoscale.uncertainty.collocation import elementary_effects, interpolating_response, level1_response
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS, short_name
 from mesoscale.uncertainty.surrogate import Surrogate, evaluate, to_json, with_scatter
 
 Array = NDArray[np.float64]
 
-SURFACES = tuple(f"{branch}_{name}" for branch in ("closing", "opening") for name in PARAMETERS)
-"""Outputs that have a response surface; the changes on opening are differences of two of them."""
+RESPONSES = tuple(f"{branch}_{name}" for branch in ("closing", "opening") for name in PARAMETERS)
+"""Outputs that have a response; the changes on opening are differences of two of them."""
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class NodeOutputs:
         return to_paper_outputs(self.values)
 
 
-def to_paper_outputs(surfaces: Array) -> Array:
+def to_paper_outputs(parameters: Array) -> Array:
     """Closing and opening parameters (..., 8) to closing parameters and their change (..., 8)."""
-    closing, opening = surfaces[..., :4], surfaces[..., 4:]
+    closing, opening = parameters[..., :4], parameters[..., 4:]
     return np.concatenate([closing, opening - closing], axis=-1)
 
 
@@ -55,15 +55,15 @@ def read_nodes(rows: Iterable[Mapping[str, str]]) -> NodeOutputs:
     return NodeOutputs(seeds, values)
 
 
-def transform_of(surface: int, settings: UncertaintySettings) -> str:
-    """Transform of the exported surface of an entry of SURFACES: d_c may have any sign, the rest not."""
-    return "identity" if settings.surface == "linear" or surface % 4 == 0 else "log"
+def transform_of(output: int, settings: UncertaintySettings) -> str:
+    """Transform of the response of entry `output` of RESPONSES: d_c may have any sign, the rest not."""
+    return "identity" if settings.response == "linear" or output % 4 == 0 else "log"
 
 
-def exported_surfaces(
+def exported_responses(
     nodes: NodeOutputs, direct: tuple[Array, Array], ranges: Array, settings: UncertaintySettings
 ) -> list[Surrogate | None]:
-    """The surfaces behind samples, Sobol' indices and surrogate.json, one per SURFACES.
+    """The responses behind samples, Sobol' indices and surrogate.json, one per RESPONSES.
 
     Parameters
     ----------
@@ -73,22 +73,22 @@ def exported_surfaces(
     -------
     None for an output that no seed (or too few runs) determines; nothing is filled in.
     """
-    surfaces: list[Surrogate | None] = []
-    for k in range(len(SURFACES)):
+    responses: list[Surrogate | None] = []
+    for k in range(len(RESPONSES)):
         transform = transform_of(k, settings)
-        if settings.surface == "regression":
-            surfaces.append(_regression(direct[0], direct[1][:, k], ranges, transform, settings))
+        if settings.response == "regression":
+            responses.append(_regression(direct[0], direct[1][:, k], ranges, transform, settings))
             continue
         y = nodes.values[:, :, k]
         complete = np.isfinite(y).all(axis=1)
         average = y[complete].mean(axis=0) if complete.any() else np.full(y.shape[1], np.nan)
         if not np.isfinite(average).all() or (transform == "log" and (average <= 0).any()):
-            surfaces.append(None)
-        elif settings.surface == "linear":
-            surfaces.append(level1_surface(average[: 2 * len(ranges) + 1], ranges))
+            responses.append(None)
+        elif settings.response == "linear":
+            responses.append(level1_response(average[: 2 * len(ranges) + 1], ranges))
         else:
-            surfaces.append(interpolating_surface(average, ranges, collocation_level(settings), transform))
-    return surfaces
+            responses.append(interpolating_response(average, ranges, collocation_level(settings), transform))
+    return responses
 
 
 OUTPUT_TRANSFORMS = ("identity", "log", "log", "log", *["identity"] * 4)
@@ -97,7 +97,7 @@ OUTPUT_TRANSFORMS = ("identity", "log", "log", "log", *["identity"] * 4)
 
 @dataclass(frozen=True)
 class Change:
-    """Opening minus closing surface of a parameter."""
+    """Opening minus closing response of a parameter."""
 
     closing: Surrogate
     opening: Surrogate
@@ -107,17 +107,17 @@ class Change:
         return self.opening(x) - self.closing(x)
 
 
-def output_surfaces(
+def output_responses(
     exported: Sequence[Surrogate | None], direct: tuple[Array, Array], ranges: Array, settings: UncertaintySettings
 ) -> list[Surrogate | Change | None]:
-    """Surfaces of the eight outputs of Table 2, behind indices and elementary effects, from the exported ones.
+    """Responses of the eight outputs of Table 2, behind indices and elementary effects, from the exported ones.
 
-    By regression a change on opening has a surface of its own: as a small difference of two large numbers it would
-    inherit the errors of both (docs/uncertainty.md).
+    By regression a change on opening has a response of its own: as a small difference of two large numbers it would
+    inherit the errors of both (docs/uncertainty_reference.md).
     """
     changes: list[Surrogate | Change | None] = []
     for k, (closing, opening) in enumerate(zip(exported[:4], exported[4:], strict=True)):
-        if settings.surface == "regression":
+        if settings.response == "regression":
             change = direct[1][:, 4 + k] - direct[1][:, k]
             changes.append(_regression(direct[0], change, ranges, OUTPUT_TRANSFORMS[4 + k], settings))
         else:
@@ -136,20 +136,20 @@ def _regression(x: Array, y: Array, ranges: Array, transform: str, settings: Unc
 
 @dataclass(frozen=True)
 class Propagation:
-    """Response surfaces and what the samples of the inputs become through them."""
+    """Responses and what the samples of the inputs become through them."""
 
     samples: Array
     """Samples of the inputs, shape (m, n)."""
     outputs: Array
-    """Closing and opening parameters of every sample through the exported surfaces, shape (m, 8)."""
+    """Closing and opening parameters of every sample through the exported responses, shape (m, 8)."""
     cells: Array
     """The same of single cells, with the scatter from one surface to the next; NaN without direct runs."""
-    surfaces: list[Surrogate | None]
-    """One per SURFACES; None where no seed has all nodes."""
+    responses: list[Surrogate | None]
+    """One per RESPONSES; None where no seed has all nodes."""
     by_seed: Array
-    """Mean and deviation of the eight outputs of Table 2 of every seed's own surface, shape (seeds, 2, 8)."""
+    """Mean and deviation of the eight outputs of Table 2 of every seed's own response, shape (seeds, 2, 8)."""
     variances: Array
-    """Var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear surfaces, shape (2, 8)."""
+    """Var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear responses, shape (2, 8)."""
 
     @property
     def seed_share(self) -> Array:
@@ -164,9 +164,9 @@ def propagate(
     settings: UncertaintySettings,
     direct: tuple[Array, Array] | None = None,
 ) -> Propagation:
-    """Send samples of the inputs through every seed's linear surface and through the exported surfaces.
+    """Send samples of the inputs through every seed's linear response and through the exported responses.
 
-    A seed with a missing node has no surface for that output; nothing is filled in.
+    A seed with a missing node has no response for that output; nothing is filled in.
     """
     ranges = table.ranges(settings.central_share)
     samples = table.sample(settings.samples, settings.sample_seed)
@@ -186,19 +186,19 @@ def propagate(
         within = np.maximum(total_squares / used - mean**2, 0).mean(axis=0) * used / (used - 1)
         between = np.maximum(mean.var(axis=0) - within / used, 0)
         variances = np.where(used > 1, np.stack([between, within]), np.nan)
-    known = direct or (np.empty((0, len(ranges))), np.empty((0, len(SURFACES))))
-    surfaces = exported_surfaces(nodes, known, ranges, settings)
-    outputs = evaluate(surfaces, samples)
-    cells = with_scatter(outputs, surfaces, known, settings.surface == "regression", settings.sample_seed)
-    return Propagation(samples, outputs, cells, surfaces, by_seed, variances)
+    known = direct or (np.empty((0, len(ranges))), np.empty((0, len(RESPONSES))))
+    responses = exported_responses(nodes, known, ranges, settings)
+    outputs = evaluate(responses, samples)
+    cells = with_scatter(outputs, responses, known, settings.response == "regression", settings.sample_seed)
+    return Propagation(samples, outputs, cells, responses, by_seed, variances)
 
 
 def _linear(y: Array, ranges: Array, samples: Array) -> Array:
-    """The paper's linear surface from the nodes of level 1, which come first."""
+    """The paper's linear response from the nodes of level 1, which come first."""
     y = y[: 2 * len(ranges) + 1]
     if not np.isfinite(y).all():
         return np.full(len(samples), np.nan)
-    return level1_surface(y, ranges)(samples)
+    return level1_response(y, ranges)(samples)
 
 
 def output_rows(
@@ -209,8 +209,8 @@ def output_rows(
 ) -> list[dict[str, Any]]:
     """Rows of uq/outputs.csv: Table 2 beside the paper's, differences in units of the scatter of seeds.
 
-    mean and dev are the paper's method; surface_* are those of the exported surfaces, that is of the mean over
-    surfaces' randomness; cell_* those of single cells.
+    mean and dev are the paper's method; response_* are those of the exported responses, averaged over random
+    surfaces; cell_* those of single cells.
     """
     y = nodes.paper_outputs
     inputs = result.samples.shape[1]
@@ -245,11 +245,11 @@ def output_rows(
                 "dev_difference_in_seed_sd_exchanged": (dev[0] - exchanged[1]) / dev[1] if dev[1] else np.nan,
                 "centre": centre[0],
                 "centre_seed_sd": centre[1],
-                "surface_mean": propagated[:, k].mean(),
-                "surface_dev": propagated[:, k].std(),
-                "surface_q05": quantiles[0],
-                "surface_q50": quantiles[1],
-                "surface_q95": quantiles[2],
+                "response_mean": propagated[:, k].mean(),
+                "response_dev": propagated[:, k].std(),
+                "response_q05": quantiles[0],
+                "response_q50": quantiles[1],
+                "response_q95": quantiles[2],
                 "cell_dev": cells[:, k].std(),
                 "cell_q05": cell_quantiles[0],
                 "cell_q50": cell_quantiles[1],
@@ -298,9 +298,9 @@ def surrogate_json(
         for row, (low, high) in zip(table.rows, table.ranges(settings.central_share).tolist(), strict=True)
     ]
     outputs = []
-    for k, name in enumerate(SURFACES):
-        surface = result.surfaces[k]
-        if surface is None:
+    for k, name in enumerate(RESPONSES):
+        response = result.responses[k]
+        if response is None:
             continue
         branch, _, parameter = name.partition("_")
         scatter = np.nanmean(np.nanstd(nodes.values[:, :, k], axis=0, ddof=1)) if len(nodes.seeds) > 1 else np.nan
@@ -308,7 +308,7 @@ def surrogate_json(
             {
                 "name": name,
                 "unit": OUTPUT_UNITS[k],
-                **to_json(surface),
+                **to_json(response),
                 "residual_std": float(scatter),
                 "paper_mean": paper.get(short_name(parameter), (np.nan,))[0] if branch == "closing" else np.nan,
             }
@@ -316,8 +316,8 @@ def surrogate_json(
     return {
         "about": "value = transform(sum of coefficient * product of Legendre P_degree(u)), u = 2 (x - low) / "
         "(high - low) - 1; valid for low <= x <= high; residual_std: scatter from one surface to the next",
-        "method": f"{settings.surface} ({settings.surrogate} grid)"
-        if settings.surface != "regression"
+        "method": f"{settings.response} ({settings.surrogate} design)"
+        if settings.response != "regression"
         else "regression",
         "seeds": len(nodes.seeds),
         "inputs": inputs,

@@ -1,6 +1,6 @@
 """Truth by brute force: moments, quantiles, variance shares and first-order indices of scattered runs.
 
-Nothing here uses a response surface but `total_indices`. Errors come from a jackknife over groups of runs.
+Nothing here uses a response but `total_indices`. Errors come from a jackknife over groups of runs.
 """
 
 from collections.abc import Callable
@@ -65,7 +65,7 @@ def jackknife(statistic: Callable[[NDArray[np.int_]], Array], count: int, groups
 
 @dataclass(frozen=True)
 class Reference:
-    """What direct runs tell about the eight outputs of Table 2, free of surfaces."""
+    """What direct runs tell about the eight outputs of Table 2, free of responses."""
 
     runs: int
     replicates: int

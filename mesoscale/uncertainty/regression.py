@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 def sparse_chaos(
     x: Array, y: Array, ranges: Array, degree: int, transform: str = "identity", hyperbolic: float = 0.7
 ) -> Surrogate:
-    """Sparse Legendre expansion of the mean of y over the randomness that x does not explain.
+    """Sparse Legendre expansion of y, averaged over the scatter that x does not explain.
 
     Linear terms of all inputs are kept, if the runs allow it; those of higher degree are selected.
 
@@ -21,7 +21,7 @@ def sparse_chaos(
     y : outputs, shape (m,); runs with NaN (and, for `log`, without positive value) are left out.
     ranges : shape (n, 2).
     degree : highest total degree; terms of many inputs are thinned by the hyperbolic norm.
-    transform : log fits ln y, then scales the surface so that its mean over the runs is theirs (it would be
+    transform : log fits ln y, then scales the response so that its mean over the runs is theirs (it would be
         too low by the scatter that x does not explain).
 
     Raises

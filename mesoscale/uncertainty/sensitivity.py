@@ -14,8 +14,8 @@ from mesoscale.uncertainty.morris import Effects, trajectory_effects, trajectory
 from mesoscale.uncertainty.propagation import (
     Change,
     NodeOutputs,
-    exported_surfaces,
-    output_surfaces,
+    exported_responses,
+    output_responses,
     to_paper_outputs,
 )
 from mesoscale.uncertainty.regression import refit
@@ -78,18 +78,18 @@ def sensitivity_rows(
     """Rows of uq/sensitivity.csv: every output with every input.
 
     mu* is the mean over seeds of every seed's own value on the nodes of level 1 (the paper's one star), beside
-    its scatter; morris_* are those of many trajectories through the exported surfaces. Sobol'
-    indices are those of the exported surfaces, that is of the mean over surfaces' randomness; their intervals
+    its scatter; morris_* are those of many trajectories through the exported responses. Sobol'
+    indices are those of the exported responses, averaged over random surfaces; their intervals
     (5 to 95 %) come from resampling the samples behind them together with the seeds, or with the direct runs if
-    the surfaces are fitted to these.
+    the responses are fitted to these.
     """
     y = nodes.paper_outputs
     ranges = table.ranges(settings.central_share)
     inputs = len(table.rows)
     direct = direct or (np.empty((0, inputs)), np.empty((0, 8)))
-    surfaces = output_surfaces(exported_surfaces(nodes, direct, ranges, settings), direct, ranges, settings)
-    first, total = index_intervals(surfaces, nodes, direct, table, settings)
-    through_surface = surface_effects(surfaces, table, settings)
+    responses = output_responses(exported_responses(nodes, direct, ranges, settings), direct, ranges, settings)
+    first, total = index_intervals(responses, nodes, direct, table, settings)
+    through_response = response_effects(responses, table, settings)
     rows = []
     for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
         lines = y[:, : 2 * len(ranges) + 1, k]
@@ -112,10 +112,10 @@ def sensitivity_rows(
                     "paper_mu_star_as_printed": printed,
                     "difference_in_seed_sd": (mu_star - argued) / scatter if scatter else np.nan,
                     "difference_in_seed_sd_as_printed": (mu_star - printed) / scatter if scatter else np.nan,
-                    "morris_mu_star": through_surface[k].mu_star[i],
-                    "morris_mu_star_low": through_surface[k].mu_star[i] - through_surface[k].half_width[i],
-                    "morris_mu_star_high": through_surface[k].mu_star[i] + through_surface[k].half_width[i],
-                    "morris_sigma": through_surface[k].sigma[i],
+                    "morris_mu_star": through_response[k].mu_star[i],
+                    "morris_mu_star_low": through_response[k].mu_star[i] - through_response[k].half_width[i],
+                    "morris_mu_star_high": through_response[k].mu_star[i] + through_response[k].half_width[i],
+                    "morris_sigma": through_response[k].sigma[i],
                     "sobol_first": first[0, k, i],
                     "sobol_first_low": first[1, k, i],
                     "sobol_first_high": first[2, k, i],
@@ -129,19 +129,19 @@ def sensitivity_rows(
     return rows
 
 
-def surface_effects(
-    surfaces: Sequence[Surrogate | Change | None], table: InputTable, settings: UncertaintySettings
+def response_effects(
+    responses: Sequence[Surrogate | Change | None], table: InputTable, settings: UncertaintySettings
 ) -> list[Effects]:
-    """Morris' elementary effects of the eight outputs through their surfaces, over the inputs' ranges."""
+    """Morris' elementary effects of the eight outputs through their responses, over the inputs' ranges."""
     inputs = len(table.rows)
     points = trajectory_points(inputs, settings.morris_trajectories, settings.sample_seed)
     x = to_values(2 * points.reshape(-1, inputs) - 1, table.ranges(settings.central_share))
-    y = evaluate(surfaces, x).reshape(*points.shape[:2], 8)
+    y = evaluate(responses, x).reshape(*points.shape[:2], 8)
     return [trajectory_effects(points, y[:, :, k], settings.sample_seed) for k in range(8)]
 
 
 def index_intervals(
-    surfaces: Sequence[Surrogate | Change | None],
+    responses: Sequence[Surrogate | Change | None],
     nodes: NodeOutputs,
     direct: tuple[Array, Array],
     table: InputTable,
@@ -151,25 +151,25 @@ def index_intervals(
 
     Parameters
     ----------
-    surfaces : of the eight outputs; what they come from, `nodes` or `direct`, is resampled for the ends.
+    responses : of the eight outputs; what they come from, `nodes` or `direct`, is resampled for the ends.
     """
     ranges = table.ranges(settings.central_share)
     points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
     rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB0]))
-    estimate = surface_indices(points, surfaces)
+    estimate = response_indices(points, responses)
     outputs = to_paper_outputs(direct[1])
     resampled = []
     for _ in range(settings.sobol_bootstrap):
         # other samples as well: heavy tails make the estimators themselves uncertain
-        again = partial(surface_indices, points[:, rng.integers(points.shape[1], size=points.shape[1])])
-        if settings.surface == "regression":
+        again = partial(response_indices, points[:, rng.integers(points.shape[1], size=points.shape[1])])
+        if settings.response == "regression":
             picks = rng.integers(len(direct[0]), size=len(direct[0])) if len(direct[0]) else np.empty(0, int)
-            resampled.append(again(_refitted(surfaces, direct[0][picks], outputs[picks])))
+            resampled.append(again(_refitted(responses, direct[0][picks], outputs[picks])))
         elif len(nodes.seeds) > 1:
             chosen = rng.integers(len(nodes.seeds), size=len(nodes.seeds))
             others = NodeOutputs(nodes.seeds, nodes.values[chosen])
-            exported = exported_surfaces(others, direct, ranges, settings)
-            resampled.append(again(output_surfaces(exported, direct, ranges, settings)))
+            exported = exported_responses(others, direct, ranges, settings)
+            resampled.append(again(output_responses(exported, direct, ranges, settings)))
     ends = np.full((2, *estimate.shape), np.nan)
     if resampled:
         draws = np.array(resampled)
@@ -179,27 +179,27 @@ def index_intervals(
     return first, total
 
 
-def surface_indices(points: Array, surfaces: Sequence[Surrogate | Change | None]) -> Array:
-    """First-order and total indices of the eight outputs by their surfaces, shape (2, 8, n).
+def response_indices(points: Array, responses: Sequence[Surrogate | Change | None]) -> Array:
+    """First-order and total indices of the eight outputs by their responses, shape (2, 8, n).
 
     Parameters
     ----------
     points : of `pick_freeze`, shape (n + 2, count, n).
     """
     inputs = points.shape[2]
-    y = evaluate(surfaces, points.reshape(-1, inputs)).reshape(inputs + 2, -1, 8)
+    y = evaluate(responses, points.reshape(-1, inputs)).reshape(inputs + 2, -1, 8)
     return np.stack([sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(8)], axis=1)
 
 
-def _refitted(surfaces: Sequence[Surrogate | Change | None], x: Array, y: Array) -> list[Surrogate | None]:
-    """The regression surfaces with their terms kept and their coefficients fitted to other runs."""
+def _refitted(responses: Sequence[Surrogate | Change | None], x: Array, y: Array) -> list[Surrogate | None]:
+    """The regression responses with their terms kept and their coefficients fitted to other runs."""
     again: list[Surrogate | None] = []
-    for k, surface in enumerate(surfaces):
-        if not isinstance(surface, Surrogate):
+    for k, response in enumerate(responses):
+        if not isinstance(response, Surrogate):
             again.append(None)
             continue
-        usable = np.isfinite(y[:, k]) & ((y[:, k] > 0) | (surface.transform == "identity"))
-        u = np.clip(surface.scaled(x[usable]), -1, 1)
-        target = np.log(y[usable, k]) if surface.transform == "log" else y[usable, k]
-        again.append(refit(u, target, surface.ranges, surface.degrees, surface.transform))
+        usable = np.isfinite(y[:, k]) & ((y[:, k] > 0) | (response.transform == "identity"))
+        u = np.clip(response.scaled(x[usable]), -1, 1)
+        target = np.log(y[usable, k]) if response.transform == "log" else y[usable, k]
+        again.append(refit(u, target, response.ranges, response.degrees, response.transform))
     return again

@@ -1,4 +1,4 @@
-"""Response surfaces in Legendre polynomials: evaluate, moments, Sobol' indices, scatter, plain JSON."""
+"""Responses in Legendre polynomials: evaluate, moments, Sobol' indices, scatter, plain JSON."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -62,9 +62,9 @@ class Surrogate:
         return np.exp(total) if self.transform == "log" else total
 
 
-def evaluate(surfaces: Sequence[Callable[[Array], Array] | None], x: Array) -> Array:
-    """Surfaces at inputs x (m, n), shape (m, surfaces); NaN where there is no surface."""
-    return np.stack([surface(x) if surface else np.full(len(x), np.nan) for surface in surfaces], axis=1)
+def evaluate(responses: Sequence[Callable[[Array], Array] | None], x: Array) -> Array:
+    """Responses at inputs x (m, n), shape (m, responses); NaN where there is no response."""
+    return np.stack([response(x) if response else np.full(len(x), np.nan) for response in responses], axis=1)
 
 
 def uniform_moments(surrogate: Surrogate) -> tuple[float, float]:
@@ -76,7 +76,7 @@ def uniform_moments(surrogate: Surrogate) -> tuple[float, float]:
 
 
 def to_json(surrogate: Surrogate) -> dict[str, Any]:
-    """The surface as plain values; docs/uncertainty.md has a ten-line reader."""
+    """The response as plain values; docs/uncertainty.md has a ten-line reader."""
     return {
         "transform": surrogate.transform,
         "terms": [
@@ -87,7 +87,7 @@ def to_json(surrogate: Surrogate) -> dict[str, Any]:
 
 
 def from_json(output: Mapping[str, Any], inputs: Sequence[Mapping[str, Any]]) -> Surrogate:
-    """The surface of one entry of `outputs` in uq/surrogate.json."""
+    """The response of one entry of `outputs` in uq/surrogate.json."""
     return Surrogate(
         np.array([[row["low"], row["high"]] for row in inputs], float),
         np.array([term["degrees"] for term in output["terms"]], int),
@@ -100,35 +100,35 @@ FEWEST_RUNS = 20
 
 
 def with_scatter(
-    outputs: Array, surfaces: Sequence[Surrogate | None], direct: tuple[Array, Array], fitted: bool, seed: int
+    outputs: Array, responses: Sequence[Surrogate | None], direct: tuple[Array, Array], fitted: bool, seed: int
 ) -> Array:
-    """Outputs of single cells: those of the response surfaces times residuals drawn from direct runs.
+    """Outputs of single cells: those of the responses times residuals drawn from direct runs.
 
     Residuals of all outputs of a run are drawn together, which keeps their dependence. They are ratios where a
-    response surface is positive throughout (all lengths scale with RMS), else differences.
+    response is positive throughout (all lengths scale with RMS), else differences.
 
     Parameters
     ----------
-    outputs : closing and opening parameters by the surfaces, shape (m, 8).
+    outputs : closing and opening parameters by the responses, shape (m, 8).
     direct : inputs (r, n) and closing and opening parameters (r, 8) of direct runs.
-    fitted : whether the surfaces were fitted to these runs; residuals are then widened by the terms' number.
+    fitted : whether the responses were fitted to these runs; residuals are then widened by the terms' number.
 
     Returns
     -------
-    shape (m, 8); NaN without surface or with fewer than 20 complete runs.
+    shape (m, 8); NaN without response or with fewer than 20 complete runs.
     """
     x, y = direct
-    predicted = evaluate(surfaces, x)
-    has_surface = np.array([surface is not None for surface in surfaces])
-    complete = np.isfinite(y[:, has_surface]).all(axis=1)
+    predicted = evaluate(responses, x)
+    has_response = np.array([response is not None for response in responses])
+    complete = np.isfinite(y[:, has_response]).all(axis=1)
     cells = np.full_like(outputs, np.nan)
     if complete.sum() < FEWEST_RUNS:
         return cells
     picks = np.random.default_rng(np.random.SeedSequence([seed, 0x5C])).integers(complete.sum(), size=len(outputs))
-    for k, surface in enumerate(surfaces):
-        if surface is None:
+    for k, response in enumerate(responses):
+        if response is None:
             continue
-        terms = len(surface.degrees) if fitted else 0
+        terms = len(response.degrees) if fitted else 0
         widening = np.sqrt(complete.sum() / max(complete.sum() - terms, 1))
         truth, smooth = y[complete, k], predicted[complete, k]
         if (smooth > 0).all() and (outputs[:, k] > 0).all():

@@ -1,4 +1,4 @@
-"""Response surfaces against direct cycles: bias of mean and deviation, errors, Q²."""
+"""Responses against direct cycles: bias of mean and deviation, errors, Q²."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.propagation import (
-    SURFACES,
+    RESPONSES,
     NodeOutputs,
     Propagation,
-    exported_surfaces,
+    exported_responses,
     to_paper_outputs,
 )
 from mesoscale.uncertainty.reference import STATISTICS
@@ -21,37 +21,37 @@ from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
 from mesoscale.uncertainty.surrogate import Surrogate, evaluate
 
 Array = NDArray[np.float64]
-Surfaces = Sequence[Surrogate | None]
+Responses = Sequence[Surrogate | None]
 
 
 def read_direct_runs(rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int) -> tuple[Array, Array]:
     """Inputs (m, n), and closing and opening parameters (m, 8; NaN where missing), of the first `count` runs."""
     rows = list(islice(rows, count))
     inputs = np.array([[float(row[name]) for name in names] for row in rows]).reshape(len(rows), len(names))
-    outputs = np.array([[float(row[name]) if row[name] else np.nan for name in SURFACES] for row in rows])
-    return inputs, outputs.reshape(len(rows), len(SURFACES))
+    outputs = np.array([[float(row[name]) if row[name] else np.nan for name in RESPONSES] for row in rows])
+    return inputs, outputs.reshape(len(rows), len(RESPONSES))
 
 
 def held_out_predictions(
     direct: tuple[Array, Array],
     nodes: NodeOutputs,
-    surfaces: Surfaces,
+    responses: Responses,
     ranges: Array,
     settings: UncertaintySettings,
 ) -> Array:
-    """Closing and opening parameters of every direct run by surfaces that never saw it, shape (m, 8).
+    """Closing and opening parameters of every direct run by responses that never saw it, shape (m, 8).
 
-    Surfaces from the nodes are independent of the direct runs. A regression surface is fitted to these, so it
+    Responses from the nodes are independent of the direct runs. A regression response is fitted to these, so it
     is fitted anew, terms and coefficients, without each fifth of them (five-fold cross-validation).
     """
     x, y = direct
-    if settings.surface != "regression":
-        return evaluate(surfaces, x)
+    if settings.response != "regression":
+        return evaluate(responses, x)
     predicted = np.full_like(y, np.nan)
     folds = np.arange(len(x)) % 5
     for fold in range(5):
         rest, held = folds != fold, folds == fold
-        again = exported_surfaces(nodes, (x[rest], y[rest]), ranges, settings)
+        again = exported_responses(nodes, (x[rest], y[rest]), ranges, settings)
         predicted[held] = evaluate(again, x[held])
     return predicted
 
@@ -72,17 +72,17 @@ def validation_rows(
     Notes
     -----
     `*_direct` are the truth up to sampling, with bootstrap intervals (5 to 95 %) over the direct runs;
-    `*_linear` the paper's method; `*_surface` the exported surface with the scatter of single cells. Every
+    `*_linear` the paper's method; `*_response` the exported response with the scatter of single cells. Every
     direct run has its own surface, so `q2` (1 - mean squared error / variance of the runs) includes the scatter
     between surfaces and cannot reach 1.
     """
     outputs = direct[1]
     ranges = table.ranges(settings.central_share)
     cells = np.where(np.isfinite(result.cells), result.cells, result.outputs)
-    predicted = to_paper_outputs(held_out_predictions(direct, nodes, result.surfaces, ranges, settings))
-    linear_settings = settings.model_copy(update={"surface": "linear"})
-    linear_surfaces = exported_surfaces(nodes, direct, ranges, linear_settings)
-    linear = to_paper_outputs(held_out_predictions(direct, nodes, linear_surfaces, ranges, linear_settings))
+    predicted = to_paper_outputs(held_out_predictions(direct, nodes, result.responses, ranges, settings))
+    linear_settings = settings.model_copy(update={"response": "linear"})
+    linear_responses = exported_responses(nodes, direct, ranges, linear_settings)
+    linear = to_paper_outputs(held_out_predictions(direct, nodes, linear_responses, ranges, linear_settings))
     truth, samples = to_paper_outputs(outputs), to_paper_outputs(cells)
     rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB1]))
     rows = []
@@ -105,7 +105,7 @@ def validation_rows(
             row[f"{name}_direct"] = statistic(y, axis=0)
             draws = statistic(resampled, axis=1)
             row[f"{name}_direct_low"], row[f"{name}_direct_high"] = np.quantile(draws, [0.05, 0.95])
-            row[f"{name}_surface"] = statistic(samples[:, k], axis=0)
+            row[f"{name}_response"] = statistic(samples[:, k], axis=0)
         errors = predicted[usable, k] - y
         variance = y.var()
         row["rmse"], row["bias"] = np.sqrt((errors**2).mean()), errors.mean()
@@ -123,7 +123,7 @@ VALIDATION_COLUMNS = (
     "unit",
     "runs",
     "missing",
-    *(f"{name}_{kind}" for name in STATISTICS for kind in ("direct", "direct_low", "direct_high", "surface")),
+    *(f"{name}_{kind}" for name in STATISTICS for kind in ("direct", "direct_low", "direct_high", "response")),
     "mean_linear",
     "dev_linear",
     "rmse",

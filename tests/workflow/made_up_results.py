@@ -97,11 +97,11 @@ def _uncertainty(root: Path) -> None:
                 "mean": value,
                 "dev": abs(value) / 2,
                 "centre": value,
-                "surface_q05": value / 2,
+                "response_q05": value / 2,
             }
             | {
-                "surface_q50": value,
-                "surface_q95": 2 * value,
+                "response_q50": value,
+                "response_q95": 2 * value,
                 "paper_mean": value,
                 "paper_dev": abs(value) / 3,
                 "seed_share": 0.1,
@@ -124,7 +124,7 @@ def _uncertainty(root: Path) -> None:
         [{"output": name, "q2": 0.9, "q2_low": 0.8, "q2_high": 0.95} for name in outputs],
     )
     zero, last = [0] * 7, [0] * 6 + [1]
-    surfaces = [
+    responses = [
         {
             "name": f"{branch}_{name}",
             "transform": "identity",
@@ -146,7 +146,7 @@ def _uncertainty(root: Path) -> None:
         }
         for name, (unit, kind, a, b, _) in INPUTS.items()
     ]
-    content = {"inputs": inputs, "outputs": surfaces, "law": {"rho_a_nm": 2.0, "alpha_nm": 2.0}}
+    content = {"inputs": inputs, "outputs": responses, "law": {"rho_a_nm": 2.0, "alpha_nm": 2.0}}
     write_json(root / "uq/surrogate.json", content, PROVENANCE)
 
 

@@ -104,4 +104,4 @@ def _law_table(rows: dict[str, Row], samples: list[Row]) -> Table:
 
 
 def _interval(row: Row) -> str:
-    return f"{show(row['surface_q05'])} to {show(row['surface_q95'])}"
+    return f"{show(row['response_q05'])} to {show(row['response_q95'])}"

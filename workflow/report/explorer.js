@@ -1,5 +1,5 @@
 "use strict";
-// Sliders move the law: response surfaces in Legendre polynomials, as exported in uq/surrogate.json.
+// Sliders move the law: responses in Legendre polynomials, as exported in uq/surrogate.json.
 (() => {
   const data = JSON.parse(document.getElementById("surrogate").textContent);
   const form = document.getElementById("sliders");
@@ -74,7 +74,7 @@
     const laws = Object.fromEntries(branches.map((branch) => [branch, law(branch, u)]));
     const broken = branches.filter((branch) => !usable(laws[branch]));
     status.textContent = broken.length
-      ? `The response surface leaves its physical range here (${broken.join(" and ")}): no curve.` : "";
+      ? `The response leaves its physical range here (${broken.join(" and ")}): no curve.` : "";
     draw(laws, u, hamaker);
     fill(laws);
   }

@@ -1,4 +1,4 @@
-"""What the page's own script needs: the exported response surfaces behind sliders."""
+"""What the page's own script needs: the exported responses behind sliders."""
 
 import json
 from typing import Any
@@ -20,7 +20,7 @@ SURROGATE_KEYS = ("name", "transform", "terms", "residual_std")
 
 
 def explorer(results: Results) -> dict[str, Any] | None:
-    """What the page's own script needs of the exported response surfaces."""
+    """What the page's own script needs of the exported responses."""
     if not results.has("uq/surrogate.json"):
         return None
     surrogate = results.json("uq/surrogate.json")

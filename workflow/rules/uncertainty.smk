@@ -159,9 +159,9 @@ rule work_precision:
         f"{RESULTS}/accuracy/uncertainty.csv",
 
 
-rule study_surfaces:
+rule study_responses:
     message:
-        "set the response surfaces against direct runs"
+        "set the responses against direct runs"
     input:
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
@@ -177,11 +177,11 @@ rule study_surfaces:
         morris=f"{RESULTS}/uq/morris.csv",
         accuracy=f"{RESULTS}/accuracy/uncertainty.csv",
     log:
-        f"{RESULTS}/logs/study_surfaces.log",
+        f"{RESULTS}/logs/study_responses.log",
     params:
         settings=settings("uncertainty"),
     script:
-        "../scripts/study_surfaces.py"
+        "../scripts/study_responses.py"
 
 
 ACCURACY.append(f"{RESULTS}/accuracy/uncertainty.csv")

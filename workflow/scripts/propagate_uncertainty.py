@@ -1,4 +1,4 @@
-"""Propagate the inputs' uncertainty through the response surfaces and validate these.
+"""Propagate the inputs' uncertainty through the responses and validate these.
 
 In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, the paper's Tables 1 to 3.
 Out: uq/outputs.csv (Table 2), uq/ratios.csv, uq/surrogate.json, uq/samples.csv, uq/validation.csv (nm, GPa/nm, GPa).
@@ -9,7 +9,7 @@ import numpy as np
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import LawSettings, UncertaintySettings
 from mesoscale.uncertainty.paper_tables import RATIO_COLUMNS, ratio_rows, table2, table3
-from mesoscale.uncertainty.propagation import SURFACES, output_rows, propagate, read_nodes, surrogate_json
+from mesoscale.uncertainty.propagation import RESPONSES, output_rows, propagate, read_nodes, surrogate_json
 from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, read_direct_runs, validation_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv, write_json
@@ -37,7 +37,7 @@ with job(snakemake) as run:
         surrogate_json(result, nodes, table, settings, constants, symbols, paper),
         run.provenance,
     )
-    columns = [*table.names, *SURFACES]
+    columns = [*table.names, *RESPONSES]
     values = np.hstack([result.samples, result.outputs]).tolist()
     write_csv(snakemake.output.samples, (dict(zip(columns, line, strict=True)) for line in values), columns)
 

@@ -1,7 +1,7 @@
 """Reproduction audit: which readings of the paper come closest to its Tables 2 and 3.
 
 A reading is one choice for every ambiguity of the contact model (`CHOICES`) and of the law's fit
-(`LAW_READINGS`); model.md of the paper's equations lists them, docs/uncertainty.md the ranking.
+(`LAW_READINGS`); docs/contact_reference.md lists them, docs/uncertainty_reference.md the ranking.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.branches import fit_cycle
 from mesoscale.settings import ContactSettings, LawSettings
-from mesoscale.uncertainty.collocation import elementary_effects, level1_surface
+from mesoscale.uncertainty.collocation import elementary_effects, level1_response
 from mesoscale.uncertainty.designs import Run
 from mesoscale.uncertainty.runs import OUTPUTS, compute_all, short_name
 from mesoscale.uncertainty.studies.readings import CHOICES
@@ -64,7 +64,7 @@ def audit_rows(
 
 
 MISPRINT = 20.0
-"""mu* of one input is at most sqrt(12) = 3.5 deviations of the linear surface; an entry of Table 3 beyond
+"""mu* of one input is at most sqrt(12) = 3.5 deviations of the linear response; an entry of Table 3 beyond
 that many (delta_C_a, q0: 335.9) contradicts Table 2 under every labeling and is left out."""
 RESAMPLES = 200
 AUDIT_COLUMNS = ("contact", "law", "seed", "node", "converged", *OUTPUTS)
@@ -96,23 +96,23 @@ def rank(
     for contact, law in dict.fromkeys((row["contact"], row["law"]) for row in rows):
         chosen = [row for row in rows if (row["contact"], row["law"]) == (contact, law)]
         y = _arrange(chosen)
-        surfaces = _moments(y, ranges)
+        moments = _moments(y, ranges)
         # mean, deviation, mu*: averages over the seeds that have all nodes
-        average, scatter = _over_seeds(surfaces)
+        average, scatter = _over_seeds(moments)
         best = min(
             (_distance(average, short, table.names, two, three), label)
             for label, (two, three) in enumerate(zip(tables2, tables3, strict=True))
         )
         two, three = tables2[best[1]], tables3[best[1]]
         resampled = [
-            _distance(_over_seeds(surfaces[rng.integers(len(y), size=len(y))])[0], short, table.names, two, three)[0]
+            _distance(_over_seeds(moments[rng.integers(len(y), size=len(y))])[0], short, table.names, two, three)[0]
             for _ in range(RESAMPLES)
         ]
         low, high = np.nanquantile(resampled, [0.05, 0.95]) if np.isfinite(resampled).any() else (np.nan, np.nan)
         seeds = [
-            _distance(surfaces[s], short, table.names, two, three)[0]
+            _distance(moments[s], short, table.names, two, three)[0]
             for s in range(len(y))
-            if np.isfinite(surfaces[s]).all()
+            if np.isfinite(moments[s]).all()
         ]
         ranked.append(
             {
@@ -153,23 +153,23 @@ def _arrange(rows: Sequence[Mapping[str, str]]) -> Array:
     return y
 
 
-def _over_seeds(surfaces: Array) -> tuple[Array, Array]:
+def _over_seeds(moments: Array) -> tuple[Array, Array]:
     """Mean and standard deviation over the seeds that have all nodes of an output, shape (2 + n, 8)."""
-    complete = np.asarray(np.isfinite(surfaces).all(axis=1))
+    complete = np.asarray(np.isfinite(moments).all(axis=1))
     usable = complete.sum(axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        average = np.where(complete[:, None], surfaces, 0.0).sum(axis=0) / usable
-        squares = np.where(complete[:, None], (surfaces - average) ** 2, 0.0).sum(axis=0)
+        average = np.where(complete[:, None], moments, 0.0).sum(axis=0) / usable
+        squares = np.where(complete[:, None], (moments - average) ** 2, 0.0).sum(axis=0)
         return average, np.sqrt(squares / (usable - 1))
 
 
 def _moments(y: Array, ranges: Array) -> Array:
-    """Mean, deviation and mu* of every seed's linear surface on uniform inputs, shape (seeds, 2 + n, 8)."""
+    """Mean, deviation and mu* of every seed's linear response on uniform inputs, shape (seeds, 2 + n, 8)."""
     inputs = len(ranges)
     moments = np.empty((len(y), 2 + inputs, y.shape[2]))
     for s in range(len(y)):
         for k in range(y.shape[2]):
-            coefficients = level1_surface(y[s, :, k], ranges).coefficients
+            coefficients = level1_response(y[s, :, k], ranges).coefficients
             moments[s, 0, k] = coefficients[0]
             moments[s, 1, k] = np.sqrt((coefficients[1:] ** 2).sum() / 3)
             moments[s, 2:, k] = elementary_effects(y[s, :, k], inputs)

@@ -1,4 +1,4 @@
-"""The surfaces beside brute force: bias of mean and deviation, Sobol' indices, Morris' effects."""
+"""The responses beside brute force: bias of mean and deviation, Sobol' indices, Morris' effects."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,15 +12,15 @@ from mesoscale.uncertainty.morris import trajectory_effects, trajectory_points
 from mesoscale.uncertainty.propagation import (
     OUTPUT_TRANSFORMS,
     NodeOutputs,
-    exported_surfaces,
-    output_surfaces,
+    exported_responses,
+    output_responses,
     propagate,
     to_paper_outputs,
 )
 from mesoscale.uncertainty.reference import TWO_SIDED_90, Estimate, Reference, jackknife
 from mesoscale.uncertainty.regression import full_chaos
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
-from mesoscale.uncertainty.sensitivity import index_intervals, pick_freeze, surface_indices
+from mesoscale.uncertainty.sensitivity import index_intervals, pick_freeze, response_indices
 
 Array = NDArray[np.float64]
 Direct = tuple[Array, Array]
@@ -33,13 +33,13 @@ DEGREE_OF_ALL = 4
 def bias_rows(
     nodes: NodeOutputs, direct: Direct, truth: Reference, table: InputTable, settings: UncertaintySettings
 ) -> list[dict[str, Any]]:
-    """Rows of uq/bias.csv: mean and deviation by the paper's level 1 and by the default surface beside the truth.
+    """Rows of uq/bias.csv: mean and deviation by the paper's level 1 and by the default response beside the truth.
 
     Biases are estimate - truth, the mean's in units of the true deviation, the deviation's relative to it; their
     90 % intervals hold the errors of the truth and of the seeds behind level 1.
     """
     result = propagate(nodes, table, settings, _training(direct, settings))
-    surface = to_paper_outputs(result.outputs)
+    response = to_paper_outputs(result.outputs)
     rows = []
     for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
         row: dict[str, Any] = {
@@ -66,9 +66,9 @@ def bias_rows(
         for j, name in enumerate(("mean", "dev")):
             row[f"{name}_level1"] = level1[j]
             row |= _bias(f"{name}_level1", level1[j], error[j], truth, name, k)
-            found = surface[:, k].mean() if name == "mean" else surface[:, k].std()
-            row[f"{name}_surface"] = found
-            row |= _bias(f"{name}_surface", found, 0.0, truth, name, k)
+            found = response[:, k].mean() if name == "mean" else response[:, k].std()
+            row[f"{name}_response"] = found
+            row |= _bias(f"{name}_response", found, 0.0, truth, name, k)
     return rows
 
 
@@ -80,51 +80,51 @@ def _bias(label: str, value: float, error: float, truth: Reference, name: str, k
 
 
 def _training(direct: Direct, settings: UncertaintySettings) -> Direct:
-    """The runs that the default surface is fitted to."""
+    """The runs that the default response is fitted to."""
     return direct[0][: settings.direct_runs], direct[1][: settings.direct_runs]
 
 
 def index_rows(
     nodes: NodeOutputs, direct: Direct, truth: Reference, table: InputTable, settings: UncertaintySettings
 ) -> list[dict[str, Any]]:
-    """Rows of uq/indices.csv: Sobol' indices of the default surface beside brute force.
+    """Rows of uq/indices.csv: Sobol' indices of the default response beside brute force.
 
-    First-order ones are compared with those of the runs themselves; total ones with a surface of all terms to
+    First-order ones are compared with those of the runs themselves; total ones with a response of all terms to
     degree 4 fitted to all runs, because scattered runs alone do not give them.
     """
     training, ranges = _training(direct, settings), table.ranges(settings.central_share)
-    surfaces = output_surfaces(exported_surfaces(nodes, training, ranges, settings), training, ranges, settings)
-    first, total = index_intervals(surfaces, nodes, training, table, settings)
+    responses = output_responses(exported_responses(nodes, training, ranges, settings), training, ranges, settings)
+    first, total = index_intervals(responses, nodes, training, table, settings)
     of_all = _total_of_all(direct, table, settings)
     rows = []
     for k, output in enumerate(OUTPUTS):
         for i, name in enumerate(table.names):
             row: dict[str, Any] = {"output": output, "input": name}
-            for kind, surface, brute in (("first", first, truth.first), ("total", total, of_all)):
-                row[f"{kind}_surface"], row[f"{kind}_surface_low"], row[f"{kind}_surface_high"] = surface[:, k, i]
+            for kind, response, brute in (("first", first, truth.first), ("total", total, of_all)):
+                row[f"{kind}_response"], row[f"{kind}_response_low"], row[f"{kind}_response_high"] = response[:, k, i]
                 row[f"{kind}_direct"], row[f"{kind}_direct_low"] = brute.value[k, i], brute.low[k, i]
                 row[f"{kind}_direct_high"] = brute.high[k, i]
-                off = surface[0, k, i] - brute.value[k, i]
+                off = response[0, k, i] - brute.value[k, i]
                 row[f"{kind}_difference"] = off
-                inside = brute.low[k, i] <= surface[0, k, i] <= brute.high[k, i]
+                inside = brute.low[k, i] <= response[0, k, i] <= brute.high[k, i]
                 row[f"{kind}_agrees"] = bool(inside or abs(off) <= TOLERANCE) if np.isfinite(off) else ""
             rows.append(row)
     return rows
 
 
 def _total_of_all(direct: Direct, table: InputTable, settings: UncertaintySettings) -> Estimate:
-    """Total indices, shape (8, n), by surfaces with all terms fitted to all runs."""
+    """Total indices, shape (8, n), by responses with all terms fitted to all runs."""
     x, y = direct
     ranges = table.ranges(settings.central_share)
     points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
     outputs = to_paper_outputs(y)
 
     def indices(chosen: NDArray[np.int_]) -> Array:
-        surfaces = [
+        responses = [
             full_chaos(x[chosen], outputs[chosen, k], ranges, DEGREE_OF_ALL, transform)
             for k, transform in enumerate(OUTPUT_TRANSFORMS)
         ]
-        return surface_indices(points, surfaces)[1]
+        return response_indices(points, responses)[1]
 
     return jackknife(indices, len(x))
 

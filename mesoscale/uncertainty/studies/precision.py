@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.settings import UncertaintySettings
-from mesoscale.uncertainty.propagation import NodeOutputs, exported_surfaces, output_surfaces, to_paper_outputs
+from mesoscale.uncertainty.propagation import NodeOutputs, exported_responses, output_responses, to_paper_outputs
 from mesoscale.uncertainty.reference import STATISTICS, Reference, each, explained_by
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
-from mesoscale.uncertainty.sensitivity import pick_freeze, surface_indices
+from mesoscale.uncertainty.sensitivity import pick_freeze, response_indices
 from mesoscale.uncertainty.surrogate import evaluate, with_scatter
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ METRICS = {
     "q50": "of the median, in deviations",
     "q95": "of the 95 % quantile, in deviations",
     "sobol_first": "of the first-order indices, largest over inputs",
-    "q2": "1 - Q2 on independent runs, of which surfaces cannot know the part in `floor`",
+    "q2": "1 - Q2 on independent runs, irreducible part, given in `floor`",
 }
 
 
@@ -42,10 +42,10 @@ class Method:
     calls: int
     settings: UncertaintySettings
     nodes: tuple[NodeOutputs, ...] = ()
-    """One per repeat, for surfaces from nodes."""
+    """One per repeat, for responses from nodes."""
     blocks: tuple[NDArray[np.int_], ...] = ()
     """Direct runs in use, one array per repeat."""
-    surface: bool = True
+    response: bool = True
     """False: statistics of the runs themselves."""
 
 
@@ -63,14 +63,14 @@ class Found:
 
 
 def methods(nodes: NodeOutputs, runs: int, inputs: int, settings: UncertaintySettings) -> Iterator[Method]:
-    """The paper's surface, polynomials through nodes, regressions and plain sampling, at growing cost."""
+    """The paper's response, polynomials through nodes, regressions and plain sampling, at growing cost."""
     seeds = len(nodes.seeds)
     first_level = 2 * inputs + 1
     grids = [("level-1 linear (the paper's)", "level1", "linear"), ("level-1 polynomial", "level1", "polynomial")]
     if nodes.values.shape[1] > first_level:
         grids.append(("level-2 polynomial", "level2", "polynomial"))
-    for name, level, surface in grids:
-        changed = settings.model_copy(update={"surrogate": level, "surface": surface})
+    for name, level, response in grids:
+        changed = settings.model_copy(update={"surrogate": level, "response": response})
         count = first_level if level == "level1" else nodes.values.shape[1]
         for used in _doublings(1, seeds):
             parts = [range(start, start + used) for start in range(0, seeds - used + 1, used)]
@@ -79,13 +79,13 @@ def methods(nodes: NodeOutputs, runs: int, inputs: int, settings: UncertaintySet
             )
             yield Method(name, used * count, changed, nodes=taken)
     for degree in (1, 2, 3, 4):
-        changed = settings.model_copy(update={"surface": "regression", "chaos_degree": degree})
+        changed = settings.model_copy(update={"response": "regression", "chaos_degree": degree})
         # the highest degree is dear to fit, and no better with few runs
         most = min(runs // 2, 800 if degree == 4 else 3200)
         for used in _doublings(SMALLEST_TRAINING, most):
             yield Method(f"regression, degree {degree}", used, changed, blocks=_blocks(runs, used))
     for used in _doublings(SMALLEST_TRAINING, runs // 2):
-        yield Method("plain sampling", used, settings, blocks=_blocks(runs, used), surface=False)
+        yield Method("plain sampling", used, settings, blocks=_blocks(runs, used), response=False)
 
 
 def _doublings(first: int, most: int) -> Iterator[int]:
@@ -113,23 +113,23 @@ def run_method(method: Method, direct: Direct, table: InputTable) -> list[Found]
         training = method.blocks[repeat] if method.blocks else np.empty(0, int)
         unseen = np.setdiff1d(np.arange(len(x)), training)[-TESTED:]
         truth = to_paper_outputs(y[unseen])
-        if not method.surface:
+        if not method.response:
             values = to_paper_outputs(y[training])
             shares = [[explained_by(x[training, i], values[:, k]) for i in range(x.shape[1])] for k in range(8)]
             found.append(Found(_statistics(values, values), np.array(shares), np.full(8, np.nan), 0.0))
             continue
         nodes = method.nodes[repeat] if method.nodes else NodeOutputs([], np.empty((0, 0, 8)))
         known = (x[training], y[training]) if method.blocks else nothing
-        surfaces = exported_surfaces(nodes, known, ranges, settings)
-        of_outputs = output_surfaces(surfaces, known, ranges, settings)
+        responses = exported_responses(nodes, known, ranges, settings)
+        of_outputs = output_responses(responses, known, ranges, settings)
         fit_s = time.process_time() - before
-        outputs = evaluate(surfaces, samples)
+        outputs = evaluate(responses, samples)
         values, cells = to_paper_outputs(outputs), to_paper_outputs(outputs)
         if method.blocks:
-            cells = to_paper_outputs(with_scatter(outputs, surfaces, known, True, settings.sample_seed))
-        errors = to_paper_outputs(evaluate(surfaces, x[unseen])) - truth
+            cells = to_paper_outputs(with_scatter(outputs, responses, known, True, settings.sample_seed))
+        errors = to_paper_outputs(evaluate(responses, x[unseen])) - truth
         q2 = 1 - np.nanmean(errors**2, axis=0) / np.nanvar(truth, axis=0)
-        found.append(Found(_statistics(values, cells), surface_indices(points, of_outputs)[0], q2, fit_s))
+        found.append(Found(_statistics(values, cells), response_indices(points, of_outputs)[0], q2, fit_s))
     return found
 
 
@@ -150,9 +150,9 @@ def precision_rows(
     """Rows of uq/work_precision.csv: method, cost, output and statistic with its error.
 
     The error is the root mean square over repeats with other runs (or surfaces), against all direct runs; an
-    error near `floor` cannot be told from that truth's own. A surface stands for the mean over surfaces'
-    randomness, so its deviation is compared with sqrt(Var(E[Y|X])), that of plain sampling with sqrt(Var(Y)).
-    Quantiles are those of single cells; surfaces from nodes know no scatter and give those of the mean.
+    error near `floor` cannot be told from that truth's own. A response is averaged over random surfaces,
+    so its deviation is compared with sqrt(Var(E[Y|X])), that of plain sampling with sqrt(Var(Y)).
+    Quantiles are those of single cells; responses from nodes know no scatter and give those of the mean.
     """
     rows = []
     plan = list(methods(nodes, len(direct[0]), len(table.rows), settings))
@@ -171,16 +171,16 @@ def precision_rows(
             entries = {}
             for name, estimate in truth.statistics.items():
                 target, floor, scale = estimate.value[k], estimate.error[k], deviation[k]
-                if name == "dev" and method.surface:
+                if name == "dev" and method.response:
                     target = np.sqrt(max(truth.input_variance.value[k], 0.0))
                     floor = truth.input_variance.error[k] / (2 * target) if target else np.nan
                     scale = target
                 values = np.array([found.statistics[name][k] for found in repeats])
                 entries[name] = (values.mean(), target, _rms(values - target) / scale, floor / scale)
             indices = np.array([found.first[k] for found in repeats])
-            off = np.abs(indices - (truth.first.value[k] if method.surface else _of_all(truth, k)))
+            off = np.abs(indices - (truth.first.value[k] if method.response else _of_all(truth, k)))
             entries["sobol_first"] = (np.nan, np.nan, _rms(off.max(axis=1)), truth.first.error[k].max())
-            if method.surface:
+            if method.response:
                 q2 = np.array([found.q2[k] for found in repeats])
                 entries["q2"] = (q2.mean(), np.nan, (1 - q2).mean(), truth.surface_variance.value[k] / variance[k])
             for name, (value, target, error, floor) in entries.items():

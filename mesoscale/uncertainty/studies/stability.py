@@ -14,7 +14,7 @@ from mesoscale.law.fit import fit_branch
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
 from mesoscale.uncertainty.collocation import nodes, to_values
 from mesoscale.uncertainty.designs import Run
-from mesoscale.uncertainty.propagation import SURFACES, NodeOutputs, output_rows, propagate
+from mesoscale.uncertainty.propagation import RESPONSES, NodeOutputs, output_rows, propagate
 from mesoscale.uncertainty.runs import compute_rows
 from mesoscale.uncertainty.sensitivity import sensitivity_rows
 from mesoscale.uncertainty.validation import read_direct_runs, validation_rows
@@ -39,8 +39,8 @@ class Answer:
     output: dict[str, Any]
     sensitivity: list[dict[str, Any]]
     validation: dict[str, Any]
-    surfaces: int
-    """Outputs that have a surface."""
+    responses: int
+    """Outputs that have a response."""
 
 
 def _table(*distributions: Distribution, correlation: Array | None = None) -> InputTable:
@@ -59,7 +59,7 @@ def _answer(
 ) -> Answer:
     """Propagate an engine that is a plain function of the inputs; a share `missing` of its runs fails.
 
-    `place` 0 is an output whose response surface is fitted as it is, 1 one fitted in logarithm.
+    `place` 0 is an output whose response is fitted as it is, 1 one fitted in logarithm.
     """
     settings = SETTINGS.model_copy(update=changes)
     rng = np.random.default_rng(5)
@@ -76,7 +76,7 @@ def _answer(
         output_rows(given, result, {}, {})[place],
         ranked[place * len(table.rows) : (place + 1) * len(table.rows)],
         validation_rows((x, y), given, table, result, settings)[place],
-        sum(surface is not None for surface in result.surfaces),
+        sum(response is not None for response in result.responses),
     )
 
 
@@ -104,7 +104,7 @@ def _count_of_inputs(inputs: int) -> list[str]:
     found = _answer(lambda x: 10 + x.sum(axis=1), _table(*[UNIFORM] * inputs))
     firsts = np.array([row["sobol_first"] for row in found.sensitivity])
     return _unless(
-        deviation=_close(found.output["surface_dev"], np.sqrt(inputs / 12)),
+        deviation=_close(found.output["response_dev"], np.sqrt(inputs / 12)),
         equal_indices=bool(np.abs(firsts - 1 / inputs).max() < 0.05),
         q2_is_one=_close(found.validation["q2"], 1.0, 1e-6),
     )
@@ -114,8 +114,8 @@ def _heavy_input() -> list[str]:
     values = np.sort(np.exp(1.5 * np.random.default_rng(3).normal(size=2000)))
     found = _answer(lambda x: 10 + x[:, 0] + x[:, 1], _table(Distribution("samples", values=values), UNIFORM), runs=400)
     return _unless(
-        mean=_close(found.output["surface_mean"], 10.5 + values.mean(), 0.1),
-        finite=bool(np.isfinite(found.output["surface_dev"])),
+        mean=_close(found.output["response_mean"], 10.5 + values.mean(), 0.1),
+        finite=bool(np.isfinite(found.output["response_dev"])),
         index_of_the_tail=found.sensitivity[0]["sobol_total_high"] > 0.95,
     )
 
@@ -127,7 +127,7 @@ def _heavy_output() -> list[str]:
     found = _answer(function, _table(UNIFORM, UNIFORM), place=1)
     exact = (np.exp(6) - 1) / 6 * (np.e - 1)
     return _unless(
-        surface_has_the_mean=_close(found.output["surface_mean"], exact),
+        response_has_the_mean=_close(found.output["response_mean"], exact),
         paper_mean_is_off_and_shown=not _close(found.output["mean"], exact, 0.1),
     )
 
@@ -139,13 +139,13 @@ def _failing_runs(share: float) -> list[str]:
         return _unless(
             all_counted=counted == 200,
             no_seed_used=found.output["seeds_used"] == 0,
-            no_surface=found.surfaces == 0,
-            no_number=all(np.isnan(found.output[key]) for key in ("mean", "dev", "surface_mean", "surface_dev")),
+            no_response=found.responses == 0,
+            no_number=all(np.isnan(found.output[key]) for key in ("mean", "dev", "response_mean", "response_dev")),
         )
     return _unless(
         counted=bool(0 < counted < 200) and found.output["missing"] > 0,
         incomplete_seeds_left_out=found.output["seeds_used"] < found.output["seeds"],
-        mean_not_shifted=_close(found.output["surface_mean"], 11.5, 0.01),
+        mean_not_shifted=_close(found.output["response_mean"], 11.5, 0.01),
     )
 
 
@@ -174,7 +174,7 @@ def _not_smooth() -> list[str]:
 def _tiny_sample() -> list[str]:
     found = _answer(lambda x: 10 + x[:, 0], _table(UNIFORM, UNIFORM), runs=3, seeds=1, samples=10)
     return _unless(
-        no_surface_from_three_runs=found.surfaces == 0 and np.isnan(found.output["surface_mean"]),
+        no_response_from_three_runs=found.responses == 0 and np.isnan(found.output["response_mean"]),
         paper_method_still_there=_close(found.output["mean"], 10.5, 0.1),
         no_scatter_from_one_seed=np.isnan(found.output["mean_seed_sd"]),
     )
@@ -183,7 +183,7 @@ def _tiny_sample() -> list[str]:
 def _all_equal() -> list[str]:
     found = _answer(lambda x: np.full(len(x), 7.0), _table(UNIFORM, UNIFORM))
     return _unless(
-        no_deviation=abs(found.output["dev"]) < 1e-9 and abs(found.output["surface_dev"]) < 1e-6,
+        no_deviation=abs(found.output["dev"]) < 1e-9 and abs(found.output["response_dev"]) < 1e-6,
         no_indices=all(np.isnan(row["sobol_first"]) for row in found.sensitivity),
         no_q2="q2" not in found.validation or found.validation["dev_direct"] == 0,
     )
@@ -193,7 +193,7 @@ def _not_identifiable() -> list[str]:
     h = np.linspace(10.0, 40.0, 60)
     repulsion = 200.0 * np.maximum(30.0 - h, 0.0)
     fit = fit_branch(h, repulsion, -np.ones_like(h), 1e6, 0.215, 30.0)
-    row = {name: "" if np.isnan(value) else value for name, value in zip(SURFACES, [*fit.parameters] * 2, strict=True)}
+    row = {name: "" if np.isnan(value) else value for name, value in zip(RESPONSES, [*fit.parameters] * 2, strict=True)}
     _, y = read_direct_runs([{"x0": "0", **{key: str(value) for key, value in row.items()}}], ["x0"], 1)
     return _unless(
         status_says_so=fit.status.startswith("not_identifiable"),
@@ -207,7 +207,7 @@ def _correlated() -> list[str]:
     table = _table(UNIFORM, UNIFORM, correlation=correlation_matrix(["x0", "x1"], {("x0", "x1"): rank}))
     found = _answer(lambda x: 10 + x.sum(axis=1), table)
     # Spearman's rank correlation of uniform inputs is their correlation
-    return _unless(deviation_of_the_sum=_close(found.output["surface_dev"], np.sqrt((2 + 2 * rank) / 12)))
+    return _unless(deviation_of_the_sum=_close(found.output["response_dev"], np.sqrt((2 + 2 * rank) / 12)))
 
 
 def _contradiction() -> list[str]:

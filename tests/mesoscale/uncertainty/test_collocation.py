@@ -1,4 +1,4 @@
-"""The paper's level-1 surface and mu* by hand, and sparse-grid interpolation of polynomials."""
+"""The paper's level-1 response and mu* by hand, and sparse-grid interpolation of polynomials."""
 
 import numpy as np
 import pytest
@@ -6,8 +6,8 @@ import pytest
 from mesoscale.uncertainty.chunks import chunk_bounds, node_count
 from mesoscale.uncertainty.collocation import (
     elementary_effects,
-    interpolating_surface,
-    level1_surface,
+    interpolating_response,
+    level1_response,
     nodes,
     to_values,
 )
@@ -37,21 +37,21 @@ def test_nodes_are_centre_and_ends():
 def test_level_1_of_a_linear_function_is_exact():
     slopes = np.arange(1.0, 8.0)
     y = nodes(7, 1) @ slopes + 3
-    surface = level1_surface(y, RANGES)
-    assert surface.coefficients == pytest.approx([3, *slopes])
-    assert uniform_moments(surface) == pytest.approx((3, (slopes**2).sum() / 3))
+    response = level1_response(y, RANGES)
+    assert response.coefficients == pytest.approx([3, *slopes])
+    assert uniform_moments(response) == pytest.approx((3, (slopes**2).sum() / 3))
     # dev = sqrt(sum mu*^2 / 12), the check that the paper's tables pass
     effects = elementary_effects(y, 7)
     assert effects == pytest.approx(2 * slopes)
-    assert np.sqrt((effects**2).sum() / 12) == pytest.approx(np.sqrt(uniform_moments(surface)[1]))
+    assert np.sqrt((effects**2).sum() / 12) == pytest.approx(np.sqrt(uniform_moments(response)[1]))
 
 
 def test_level_1_mean_of_a_square():
-    """y = u_0^2 has mean 1/3; the quadrature is exact, although the surface is constant."""
+    """y = u_0^2 has mean 1/3; the quadrature is exact, although the response is constant."""
     y = nodes(7, 1)[:, 0] ** 2
-    surface = level1_surface(y, RANGES)
-    assert surface.coefficients[0] == pytest.approx(1 / 3)
-    assert surface.coefficients[1:] == pytest.approx(np.zeros(7))
+    response = level1_response(y, RANGES)
+    assert response.coefficients[0] == pytest.approx(1 / 3)
+    assert response.coefficients[1:] == pytest.approx(np.zeros(7))
     assert elementary_effects(y, 7)[0] == pytest.approx(2)
 
 
@@ -61,8 +61,8 @@ def test_level_1_misses_interactions_and_biases_the_mean_of_convex_functions():
     def f(v):
         return np.exp(v.sum(axis=1))
 
-    surface = level1_surface(f(nodes(7, 1)), RANGES)
-    assert surface.coefficients[0] < f(u).mean() * 0.9
+    response = level1_response(f(nodes(7, 1)), RANGES)
+    assert response.coefficients[0] < f(u).mean() * 0.9
 
 
 @pytest.mark.parametrize("level", [1, 2])
@@ -70,8 +70,8 @@ def test_interpolation_passes_through_the_nodes(level):
     grid = nodes(7, level)
     y = np.cos(grid @ np.arange(7)) + 2
     for transform in ("identity", "log"):
-        surface = interpolating_surface(y, RANGES, level, transform)
-        assert surface(to_values(grid, RANGES)) == pytest.approx(y)
+        response = interpolating_response(y, RANGES, level, transform)
+        assert response(to_values(grid, RANGES)) == pytest.approx(y)
 
 
 def test_level_2_reproduces_quadratics_with_interactions():
@@ -82,20 +82,20 @@ def test_level_2_reproduces_quadratics_with_interactions():
         return np.einsum("ij,jk,ik->i", u, matrix, u) + u.sum(axis=1)
 
     u = rng.uniform(-1, 1, (50, 7))
-    surface = interpolating_surface(f(nodes(7, 2)), RANGES, 2)
-    assert surface(to_values(u, RANGES)) == pytest.approx(f(u))
+    response = interpolating_response(f(nodes(7, 2)), RANGES, 2)
+    assert response(to_values(u, RANGES)) == pytest.approx(f(u))
 
 
 def test_interpolants_of_level_1_have_the_papers_mean():
     y = np.exp(nodes(7, 1) @ np.linspace(0.1, 0.7, 7))
-    mean, _ = uniform_moments(interpolating_surface(y, RANGES, 1))
-    assert mean == pytest.approx(level1_surface(y, RANGES).coefficients[0])
+    mean, _ = uniform_moments(interpolating_response(y, RANGES, 1))
+    assert mean == pytest.approx(level1_response(y, RANGES).coefficients[0])
 
 
-def test_missing_node_gives_no_surface_value():
+def test_missing_node_gives_no_response_value():
     y = np.ones(15)
     y[4] = np.nan
-    assert np.isnan(level1_surface(y, RANGES)(RANGES.mean(axis=1)[None])).all()
+    assert np.isnan(level1_response(y, RANGES)(RANGES.mean(axis=1)[None])).all()
 
 
 def test_legendre():
@@ -103,19 +103,19 @@ def test_legendre():
     assert legendre(u, 3)[2:] == pytest.approx(np.stack([(3 * u**2 - 1) / 2, (5 * u**3 - 3 * u) / 2]))
 
 
-def test_surface_survives_json():
-    surface = interpolating_surface(np.exp(nodes(7, 1).sum(axis=1)), RANGES, 1, "log")
+def test_response_survives_json():
+    response = interpolating_response(np.exp(nodes(7, 1).sum(axis=1)), RANGES, 1, "log")
     inputs = [{"low": low, "high": high} for low, high in RANGES.tolist()]
-    again = from_json(to_json(surface), inputs)
+    again = from_json(to_json(response), inputs)
     points = to_values(np.random.default_rng(1).uniform(-1, 1, (20, 7)), RANGES)
-    assert np.array_equal(again(points), surface(points))
+    assert np.array_equal(again(points), response(points))
 
 
 def test_inputs_of_zero_width_do_not_divide_by_zero():
     ranges = RANGES.copy()
     ranges[2] = 1.0
-    surface = level1_surface(nodes(7, 1) @ np.array([1, 1, 0, 1, 1, 1, 1]), ranges)
-    assert np.isfinite(surface(ranges.mean(axis=1)[None])).all()
+    response = level1_response(nodes(7, 1) @ np.array([1, 1, 0, 1, 1, 1, 1]), ranges)
+    assert np.isfinite(response(ranges.mean(axis=1)[None])).all()
 
 
 def test_chunks_cover_all_runs_and_grow_at_their_end():

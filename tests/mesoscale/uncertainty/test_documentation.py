@@ -10,19 +10,19 @@ import pytest
 from mesoscale.inputs.table import collect
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import nodes, to_values
-from mesoscale.uncertainty.propagation import SURFACES, NodeOutputs, propagate, surrogate_json
+from mesoscale.uncertainty.propagation import RESPONSES, NodeOutputs, propagate, surrogate_json
 from workflow.results import write_json
 from workflow.scene import load_scene
 
 PAGE = Path(__file__).parents[3] / "docs" / "uncertainty.md"
 
 
-def test_ten_lines_read_the_exported_surfaces(tmp_path, monkeypatch):
+def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):
     table = collect(load_scene("paper").inputs, {}, {}, 0.999)
     ranges = table.ranges(0.999)
     x = to_values(nodes(7, 1), ranges)
     given = NodeOutputs([0], np.repeat(np.exp(x @ (1 / ranges[:, 1]))[None, :, None], 8, axis=2))
-    settings = UncertaintySettings(surface="polynomial", samples=20)
+    settings = UncertaintySettings(response="polynomial", samples=20)
     result = propagate(given, table, settings)
     path = tmp_path / "results/paper/uq/surrogate.json"
     write_json(path, surrogate_json(result, given, table, settings, {}, {}, {}))
@@ -36,6 +36,6 @@ def test_ten_lines_read_the_exported_surfaces(tmp_path, monkeypatch):
     assert callable(evaluate)
     for sample, outputs in zip(result.samples[:5], result.outputs[:5], strict=True):
         values = dict(zip(table.names, sample.tolist(), strict=True))
-        # E* is normal and may leave the range of the surface, where both extrapolate
-        read = [evaluate(name, values) for name in SURFACES]
+        # E* is normal and may leave the range of the response, where both extrapolate
+        read = [evaluate(name, values) for name in RESPONSES]
         assert read == pytest.approx(outputs.tolist(), rel=1e-9)

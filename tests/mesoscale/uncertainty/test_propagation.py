@@ -29,7 +29,7 @@ from mesoscale.uncertainty.surrogate import from_json
 from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, validation_rows
 
 PAPER = Path(__file__).parents[3] / "config" / "paper"
-SETTINGS = UncertaintySettings(surface="linear", samples=2000, bootstrap=50, sobol_samples=1024)
+SETTINGS = UncertaintySettings(response="linear", samples=2000, bootstrap=50, sobol_samples=1024)
 
 
 def uniform_table(inputs=3, correlation=None):
@@ -84,7 +84,7 @@ def test_missing_nodes_are_counted_and_not_filled():
     row = {r["output"]: r for r in output_rows(given, result, {}, {})}["rho_r_nm"]
     assert row["seeds_used"] == 0
     assert np.isnan(row["mean"])
-    assert result.surfaces[3] is None
+    assert result.responses[3] is None
 
 
 def test_one_input_and_twelve_inputs():
@@ -152,11 +152,11 @@ def test_surrogate_json_reproduces_the_propagated_values():
     content = surrogate_json(result, given, table, SETTINGS, {"rho_a_nm": 2.0, "alpha_nm": 2.0}, {}, {})
     assert [o["name"] for o in content["outputs"]][:2] == ["closing_d_c_nm", "closing_C_a_GPa_nm"]
     for k, output in enumerate(content["outputs"]):
-        surface = from_json(output, content["inputs"])
-        assert surface(result.samples[:5]) == pytest.approx(result.outputs[:5, k])
+        response = from_json(output, content["inputs"])
+        assert response(result.samples[:5]) == pytest.approx(result.outputs[:5, k])
 
 
-def test_validation_of_a_perfect_and_of_a_biased_surface():
+def test_validation_of_a_perfect_and_of_a_biased_response():
     table = uniform_table()
     given = linear_nodes(table, [1, 2, 3])
     result = propagate(given, table, SETTINGS)
@@ -166,7 +166,7 @@ def test_validation_of_a_perfect_and_of_a_biased_surface():
     assert row["q2"] == pytest.approx(1)
     assert row["mean_direct_low"] <= row["mean_direct"] <= row["mean_direct_high"]
     # 400 and 2000 samples of a deviation of 1.08
-    assert row["mean_surface"] == pytest.approx(row["mean_direct"], abs=4 * 1.08 / 20)
+    assert row["mean_response"] == pytest.approx(row["mean_direct"], abs=4 * 1.08 / 20)
     row = validation_rows((x, direct + 1.0), given, table, result, SETTINGS)[0]
     assert row["bias"] == pytest.approx(-1)
     assert row["q2"] == pytest.approx(1 - 1 / (direct[:, 0].var()), rel=1e-6)
@@ -225,9 +225,9 @@ def test_outputs_are_the_papers_columns():
     assert by_name["delta_C_r_GPa"]["paper_mean_exchanged"] == pytest.approx(5.5e-5)
 
 
-@pytest.mark.parametrize("surface", ["polynomial", "regression"])
-def test_positive_outputs_stay_positive_where_the_linear_surface_does_not(surface):
-    """y = exp(4 x0): the paper's linear surface is negative over part of the range."""
+@pytest.mark.parametrize("response", ["polynomial", "regression"])
+def test_positive_outputs_stay_positive_where_the_linear_response_does_not(response):
+    """y = exp(4 x0): the paper's linear response is negative over part of the range."""
     table = uniform_table()
     x = to_values(nodes(3, 1), table.ranges(0.999))
     values = np.repeat(np.exp(4 * x[:, :1]), 8, axis=1)
@@ -236,11 +236,11 @@ def test_positive_outputs_stay_positive_where_the_linear_surface_does_not(surfac
     direct = (samples, np.repeat(np.exp(4 * samples[:, :1]), 8, axis=1))
     linear = propagate(given, table, SETTINGS, direct)
     assert (linear.outputs[:, 1] < 0).any()
-    settings = SETTINGS.model_copy(update={"surface": surface})
+    settings = SETTINGS.model_copy(update={"response": response})
     result = propagate(given, table, settings, direct)
     assert (result.outputs[:, 1] > 0).all()
     assert result.outputs[:, 1] == pytest.approx(np.exp(4 * result.samples[:, 0]), rel=1e-6)
-    # exact in the logarithm; the mean of the linear surface is that of Simpson's rule (here 14 % too high)
+    # exact in the logarithm; the mean of the linear response is that of Simpson's rule (here 14 % too high)
     exact = (np.exp(4) - 1) / 4
     assert result.outputs[:, 1].mean() == pytest.approx(exact, rel=0.1)
 
@@ -251,7 +251,7 @@ def test_regression_recovers_the_mean_over_noise_and_reports_intervals():
     x = table.sample(300, 6)
     truth = 5 + x @ [1.0, 2.0, 3.0]
     noisy = truth[:, None] + rng.normal(0, 0.3, (300, 8))
-    settings = SETTINGS.model_copy(update={"surface": "regression", "sobol_bootstrap": 20})
+    settings = SETTINGS.model_copy(update={"response": "regression", "sobol_bootstrap": 20})
     given = linear_nodes(table, [1, 2, 3])
     result = propagate(given, table, settings, (x, noisy))
     expected = 5 + result.samples @ [1.0, 2.0, 3.0]
@@ -272,7 +272,7 @@ def test_a_small_change_of_a_large_output_has_the_indices_of_the_change():
     closing = 10 * np.exp(-5 * x[:, 0]) * scatter
     opening = closing + 1 + x @ [0.0, 1.0, 2.0]
     direct = (x, np.stack([closing] * 4 + [opening] * 4, axis=1))
-    settings = SETTINGS.model_copy(update={"surface": "regression", "sobol_bootstrap": 0})
+    settings = SETTINGS.model_copy(update={"response": "regression", "sobol_bootstrap": 0})
     rows = sensitivity_rows(linear_nodes(table, [1, 2, 3]), table, settings, np.zeros(8), {}, {}, direct)
     found = [row["sobol_first"] for row in rows if row["output"] == "delta_C_a_GPa_nm"]
     assert found == pytest.approx([0.0, 0.2, 0.8], abs=0.02)
@@ -282,7 +282,7 @@ def test_an_input_without_effect_has_an_index_near_zero_with_an_interval():
     table = uniform_table()
     x = table.sample(400, 8)
     noisy = (x @ [1.0, 2.0, 0.0])[:, None] + np.random.default_rng(4).normal(5, 0.5, (400, 8))
-    settings = SETTINGS.model_copy(update={"surface": "regression", "sobol_bootstrap": 20})
+    settings = SETTINGS.model_copy(update={"response": "regression", "sobol_bootstrap": 20})
     rows = sensitivity_rows(linear_nodes(table, [1, 2, 0]), table, settings, np.zeros(8), {}, {}, (x, noisy))
     for row in rows[:12]:  # the four closing parameters; here nothing changes on opening
         assert row["sobol_total_high"] > row["sobol_total_low"]
@@ -291,10 +291,10 @@ def test_an_input_without_effect_has_an_index_near_zero_with_an_interval():
             assert 0 < row["sobol_total"] < 0.03
 
 
-def test_too_few_runs_give_no_regression_surface():
+def test_too_few_runs_give_no_regression_response():
     table = uniform_table()
-    settings = SETTINGS.model_copy(update={"surface": "regression"})
+    settings = SETTINGS.model_copy(update={"response": "regression"})
     x = table.sample(5, 1)
     result = propagate(linear_nodes(table, [1, 2, 3]), table, settings, (x, np.ones((5, 8))))
-    assert result.surfaces == [None] * 8
+    assert result.responses == [None] * 8
     assert np.isnan(result.outputs).all()

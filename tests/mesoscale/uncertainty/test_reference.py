@@ -1,4 +1,4 @@
-"""Truth by brute force, and the errors of surfaces against it, on functions whose answers are known."""
+"""Truth by brute force, and the errors of responses against it, on functions whose answers are known."""
 
 import numpy as np
 import pytest
@@ -81,13 +81,13 @@ def test_scatter_gives_single_cells_the_variance_of_the_runs(runs):
     x, y, _ = runs
     ranges = np.array([[0.0, 1.0]] * 3)
     degrees = np.vstack([np.zeros((1, 3), int), np.eye(3, dtype=int)])
-    surface = Surrogate(ranges, degrees, np.array([13.0, 0.5, 1.0, 1.5]))
-    cells = with_scatter(np.repeat(surface(x)[:, None], 8, axis=1), [surface] * 4 + [None] * 4, (x, y), False, 1)
+    response = Surrogate(ranges, degrees, np.array([13.0, 0.5, 1.0, 1.5]))
+    cells = with_scatter(np.repeat(response(x)[:, None], 8, axis=1), [response] * 4 + [None] * 4, (x, y), False, 1)
     assert cells[:, 0].var() == pytest.approx(y[:, 0].var(), rel=0.1)
     # drawn together: outputs with equal residuals stay equal
     assert cells[:, 1] == pytest.approx(cells[:, 0])
     assert np.isnan(cells[:, 4:]).all()
-    assert np.isnan(with_scatter(cells[:, :], [surface] * 8, (x[:5], y[:5]), False, 1)).all()
+    assert np.isnan(with_scatter(cells[:, :], [response] * 8, (x[:5], y[:5]), False, 1)).all()
 
 
 def given_nodes(table, seeds=4):
@@ -109,11 +109,11 @@ def test_a_linear_engine_has_no_bias_at_level_1(table, runs):
     assert first["surface_share"] == pytest.approx(NOISE**2 / (NOISE**2 + 14 / 12), rel=0.3)
 
 
-def test_indices_of_the_default_surface_agree_with_brute_force(table, runs):
+def test_indices_of_the_default_response_agree_with_brute_force(table, runs):
     rows = index_rows(given_nodes(table), runs[:2], reference(*runs), table, SETTINGS)
     for row, exact in zip(rows[:3], SLOPES**2 / 14, strict=True):
         assert row["total_direct"] == pytest.approx(exact, abs=0.05)
-        assert row["first_surface_low"] <= row["first_surface"] + 0.05
+        assert row["first_response_low"] <= row["first_response"] + 0.05
 
 
 def test_errors_fall_with_the_calls(table, runs):

@@ -9,7 +9,7 @@ from mesoscale.law.branches import fit_cycle
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
 from mesoscale.uncertainty import runs as runs_module
 from mesoscale.uncertainty.designs import Run, collocation_runs, random_runs
-from mesoscale.uncertainty.propagation import SURFACES
+from mesoscale.uncertainty.propagation import RESPONSES
 from mesoscale.uncertainty.runs import compute, compute_all, compute_rows
 from workflow.scene import load_scene
 
@@ -46,8 +46,8 @@ def test_a_cycle_gives_eight_outputs():
     assert 2 < outcome.closing.d_c_nm / CENTRE["rms"] < 6
 
 
-def test_rough_surfaces_touch_at_separations_in_proportion_to_rms():
-    """Common random numbers: the same surface, scaled."""
+def test_rough_responses_touch_at_separations_in_proportion_to_rms():
+    """Common random numbers: the same response, scaled."""
     cycles = [computed({**CENTRE, "rms": rms}, 3) for rms in (4.0, 8.0)]
     assert cycles[1].first_contact_nm == pytest.approx(2 * cycles[0].first_contact_nm)
 
@@ -55,7 +55,7 @@ def test_rough_surfaces_touch_at_separations_in_proportion_to_rms():
 def test_a_failing_engine_is_reported_and_leaves_no_numbers():
     rows = list(compute_rows([Run(0, -1, 1, {**CENTRE, "e_star": -1.0})], CONTACT, LawSettings()))
     assert str(rows[0]["curve_status"]).startswith("failed: InputError")
-    assert all(rows[0][name] == "" for name in SURFACES)
+    assert all(rows[0][name] == "" for name in RESPONSES)
 
 
 def test_equal_inputs_are_computed_once(monkeypatch):

@@ -38,7 +38,7 @@ def describe(results: Results) -> Section | None:
     section.notes += [
         f"{found['samples']['dropped']} of {found['samples']['dropped'] + found['samples']['used']} "
         "samples of the law were left out because their repulsion or adhesion had the wrong sign (a "
-        "limit of the response surface).",
+        "limit of the response).",
         "Numerical folds against the analytic ones without adhesion: relative error "
         f"{show(found['checks']['pull_in_relative_error'], 2)} (pull-in), "
         f"{show(found['checks']['release_relative_error'], 2)} (release).",

@@ -16,8 +16,7 @@ def describe(results: Results) -> Section | None:
     section = Section(
         "uncertainty",
         "Uncertainty of the law",
-        "The distributions of the inputs sent through response surfaces of the contact model, beside the "
-        "paper's Table 2.",
+        "The distributions of the inputs sent through responses of the contact model, beside the paper's Table 2.",
         COMPUTED,
     )
     lines = []
@@ -76,7 +75,7 @@ def describe(results: Results) -> Section | None:
     if results.has("uq/validation.csv"):
         section.add(
             validation_points(results),
-            "How well the response surfaces predict independent runs: 1 is perfect, 0 no better than the mean.",
+            "How well the responses predict independent runs: 1 is perfect, 0 no better than the mean.",
         )
         section.files.append("uq/validation.csv")
     section.files += ["uq/outputs.csv", "uq/samples.csv", "uq/surrogate.json"]
@@ -119,7 +118,7 @@ def output_distributions(results: Results) -> str:
 
 
 def validation_points(results: Results) -> str | None:
-    """Response surfaces against independent runs: quantiles of both."""
+    """Responses against independent runs: quantiles of both."""
     rows = [row for row in results.csv("uq/validation.csv") if row.get("q2")]
     if not rows:
         return None
@@ -135,4 +134,4 @@ def validation_points(results: Results) -> str | None:
         axis.set(yticks=places, ylim=(len(rows) - 0.5, -0.5), xlim=(-1.05, 1.05), xlabel="Q² on independent runs")
         axis.set_yticklabels(labels)
 
-    return draw("validation", "Predictive quality of the response surfaces", plot, (5.2, 3.2))
+    return draw("validation", "Predictive quality of the responses", plot, (5.2, 3.2))
