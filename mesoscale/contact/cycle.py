@@ -1,15 +1,16 @@
 """One closing-opening cycle of a rough contact: the entry point of the mesoscale model."""
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mesoscale.errors import InputError
+from mesoscale.checks import check_number, check_seed
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
+
+SMALLEST_FORCE_NN, LARGEST_FORCE_NN = 1e-9, 1e12
 
 if TYPE_CHECKING:
     from mesoscale.contact.engine import Contact, Row
@@ -47,8 +48,19 @@ class Cycle:
     first_contact_nm: float  # separation at which the surface first touches on closing
     last_contact_nm: float  # separation at which it last touches on opening
     flags: dict[str, int | bool | str | float]
-    converged: bool  # every step converged and the requested force was reached
-    heights: np.ndarray | None = None  # the surface afterwards, nm (only if asked for)
+    converged: bool  # every step converged and the requested force was reached within 1 %
+    inputs: ContactInputs
+    length_nm: float  # side of the surface
+    heights: np.ndarray | None = None  # (N, N) surface afterwards, nm (only if asked for)
+
+    @property
+    def cell_area_nm2(self) -> float:
+        """Area of the surface in its mean plane, nm^2."""
+        return self.length_nm**2
+
+
+MAX_FORCE_MISS = 0.01
+"""Relative distance from the requested force beyond which a cycle is not converged."""
 
 
 def run_cycle(
@@ -57,6 +69,7 @@ def run_cycle(
     seed: int,
     max_force_nN: float | None = None,
     heights: np.ndarray | None = None,
+    length_nm: float | None = None,
     keep_surface: bool = False,
     hold: "Callable[[Contact, Row], list[Row]] | None" = None,
 ) -> Cycle:
@@ -73,7 +86,10 @@ def run_cycle(
         0.8 H(L^2) L^2 if this is less, where the whole cell is one contact, and is not converged.
     heights
         (N, N) surface in nm to use instead of a random one, for instance `Cycle.heights` of an
-        earlier cycle; it is not changed. Contact is at its minima.
+        earlier cycle; it is not changed. Contact is at its minima. Without `length_nm` its grid must be
+        `settings.pixels`.
+    length_nm
+        Side of `heights` in nm; default `settings.length_nm`.
     keep_surface
         Return the surface as it is after the cycle.
     hold
@@ -83,27 +99,27 @@ def run_cycle(
     Raises
     ------
     InputError
-        For a surface that is not square or holds non-finite heights.
+        For heights that are not a square of real, finite numbers in nm on the stated side, a force that is not
+        positive, or a seed that is no whole number.
     """
     from mesoscale.contact.engine import Contact, trace
+    from mesoscale.contact.surface import given_surface, random_surface
 
     plastic = settings.model == "plastic"
-    if heights is None:
-        from mesoscale.contact.surface import random_surface
-
-        surface = random_surface(inputs, settings, seed)
-    else:
-        surface = _checked(heights)
-        if plastic:
-            surface = surface.copy()
+    check_seed(seed)
     force = settings.max_force_nN if max_force_nN is None else max_force_nN
-    if not (math.isfinite(force) and force > 0):
-        raise InputError(f"max_force_nN = {force}: accepted are finite forces > 0 nN")
+    check_number("max_force_nN", force, SMALLEST_FORCE_NN, LARGEST_FORCE_NN, "nN")
+    surface, settings = given_surface(heights, length_nm, settings)
+    if surface is None:
+        surface = random_surface(inputs, settings, seed)
+    elif plastic:
+        surface = surface.copy()
     contact = Contact(surface, inputs, settings)
     first_contact = contact.touching_separation
     approach = _approach(contact)
     closing = trace(contact, settings.force_steps, plastic, stop_force=min(force, contact.capacity))
     reached = closing.reached and force <= contact.capacity
+    miss = abs(closing.rows[-1].force - force) / force
     if hold is not None:
         closing.rows += hold(contact, closing.rows[-1])
     last = closing.rows[-1]
@@ -132,18 +148,11 @@ def run_cycle(
             "repeated_steps": closing.repeated,
             "changed_sites": changed,
         },
-        converged=reached and closing.unconverged == 0,
+        converged=reached and miss <= MAX_FORCE_MISS and closing.unconverged == 0,
+        inputs=inputs,
+        length_nm=settings.length_nm,
         heights=surface if keep_surface else None,
     )
-
-
-def _checked(heights: np.ndarray) -> np.ndarray:
-    heights = np.ascontiguousarray(heights, dtype=float)
-    if heights.ndim != 2 or heights.shape[0] != heights.shape[1] or heights.shape[0] < 3:
-        raise InputError(f"heights: accepted is a square array of at least 3 x 3 sites, not {heights.shape}")
-    if not np.isfinite(heights).all():
-        raise InputError("heights: accepted are finite numbers in nm; fill or cut missing data")
-    return heights
 
 
 def _approach(contact: "Contact") -> "list[Row]":

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+from mesoscale.checks import checked_heights
+from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
@@ -40,3 +42,29 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
 
         heights = -with_moments(-heights, wanted.skewness, wanted.kurtosis)
     return heights
+
+
+def given_surface(
+    heights: np.ndarray | None, length_nm: float | None, settings: ContactSettings
+) -> tuple[np.ndarray | None, ContactSettings]:
+    """The heights that a caller gives, checked, and the settings with their grid and side.
+
+    Raises
+    ------
+    InputError : heights that are no surface in nm; a side without heights; a grid other than the settings' where no
+        side is given.
+    """
+    if heights is None:
+        if length_nm is not None:
+            raise InputError("length_nm is the side of heights; give both, or settings.length_nm alone")
+        return None, settings
+    surface = checked_heights(heights, settings.length_nm if length_nm is None else length_nm)
+    pixels = len(surface)
+    if length_nm is None:
+        if pixels != settings.pixels:
+            raise InputError(
+                f"heights: {pixels} x {pixels} sites, but settings.pixels = {settings.pixels}; "
+                "give length_nm, the side of the surface"
+            )
+        return surface, settings
+    return surface, settings.model_copy(update={"pixels": pixels, "length_nm": float(length_nm)})

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesoscale.checks import checked_array
 from mesoscale.errors import InputError
 from mesoscale.law.compact import PARAMETERS, shielded_hamaker
 from mesoscale.settings import LawSettings
@@ -109,14 +110,13 @@ def fit_branch(
     InputError : arrays of unequal length or not finite.
     """
     settings = settings or LawSettings()
-    h, repulsive, attractive = (np.asarray(x, float) for x in (separation_nm, repulsive_nN, attractive_nN))
+    named = (("separation_nm", separation_nm), ("repulsive_nN", repulsive_nN), ("attractive_nN", attractive_nN))
+    h, repulsive, attractive = (checked_array(f"law fit: {name}", x, name.rpartition("_")[2]) for name, x in named)
     if not (h.ndim == 1 and h.shape == repulsive.shape == attractive.shape):
         raise InputError(
             f"law fit: separation and forces have shapes {h.shape}, {repulsive.shape}, "
             f"{attractive.shape}; one value of each per point is needed"
         )
-    if not all(np.isfinite(x).all() for x in (h, repulsive, attractive)):
-        raise InputError("law fit: separation or force is not finite; the curve was not computed properly")
     order = np.argsort(h, kind="stable")
     h, repulsive, attractive = h[order], repulsive[order] / cell_area_nm2, attractive[order] / cell_area_nm2
 

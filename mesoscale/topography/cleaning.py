@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from mesoscale.checks import MAX_LENGTH_NM, MIN_LENGTH_NM, check_number, checked_array
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
 
@@ -28,6 +29,13 @@ class Scan:
     lengths_nm: tuple[float, float]
     name: str
     steps: tuple[str, ...] = field(default=())
+
+    def __post_init__(self):
+        heights = checked_array(f"{self.name}: heights_nm", self.heights_nm, "nm", missing=True)
+        if heights.ndim != 2:
+            raise InputError(f"{self.name}: heights_nm has shape {heights.shape}; accepted is a map (nx, ny)")
+        for length in self.lengths_nm:
+            check_number(f"{self.name}: lengths_nm", length, MIN_LENGTH_NM, MAX_LENGTH_NM, "nm")
 
     @property
     def pixel_nm(self) -> tuple[float, float]:

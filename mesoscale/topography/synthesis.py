@@ -10,12 +10,14 @@ surface with both (Perez-Rafols and Almqvist, doi:10.1016/j.triboint.2018.10.020
 """
 
 from collections.abc import Callable
+from numbers import Integral
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 from scipy import fft
 
+from mesoscale.checks import MAX_LENGTH_NM, MIN_LENGTH_NM, check_number, check_seed
 from mesoscale.errors import InputError
 from mesoscale.topography.roughness_spectrum import Convention, slope_from_hurst
 
@@ -50,7 +52,13 @@ def synthesize(
     Returns
     -------
     heights : (pixels, pixels) array in nm, mean zero.
+
+    Raises
+    ------
+    InputError : a number that is no such parameter, or a cut-off that leaves no wave.
     """
+    check_number("q0", q0, 1e-7, 1e3, "1/nm")
+    check_number("hurst", hurst, 1e-6, 2.0, "1")
     squared, step = _squared_waves(pixels, length_nm, q1)
     amplitude = np.empty(len(squared) + 1)
     amplitude[0] = 0.0
@@ -83,6 +91,9 @@ def synthesize_spectrum(
 
 def _squared_waves(pixels: int, length_nm: float, q1: float | None) -> tuple[Array, float]:
     """Squared wave numbers 1, 2, ... up to the cut-off, and the wave vector of wave number 1 (1/nm)."""
+    check_number("length_nm", length_nm, MIN_LENGTH_NM, MAX_LENGTH_NM, "nm")
+    if isinstance(pixels, bool) or not isinstance(pixels, Integral) or pixels < 3:
+        raise InputError(f"pixels = {pixels!r}: accepted is a whole number >= 3")
     step = 2.0 * np.pi / length_nm
     cutoff = np.inf if q1 is None else q1
     cutoff = min(cutoff, np.pi * pixels / length_nm)
@@ -97,6 +108,8 @@ def _squared_waves(pixels: int, length_nm: float, q1: float | None) -> tuple[Arr
 
 def _filtered_noise(pixels: int, amplitude: Array, rms: float, seed: int) -> Array:
     """The surface whose waves of squared wave number n have noise times `amplitude[n]`, scaled to `rms`."""
+    check_seed(seed)
+    check_number("rms", rms, 1e-5, 1e6, "nm", zero=True)
     highest = (pixels - 1) // 2
     modes = 2 * highest * (highest + 1)
     normals = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed))).standard_normal(2 * modes)

@@ -98,7 +98,7 @@ def extreme_cases(settings: ContactSettings) -> list[Case]:
         Case("middle of Table 1", "the paper's mean inputs"),
         Case("E* x 1000", "stiff: yields at once", with_(e_star=91e3)),
         Case("E* / 1000", "soft: never yields", with_(e_star=0.091)),
-        Case("hard", "H = 1e9 GPa: elastic", with_(h_macro=1e9)),
+        Case("hard", "H = 1e6 GPa: elastic", with_(h_macro=1e6)),
         Case(
             "no hardness",
             "H = 1e-6 GPa: flows without carrying",

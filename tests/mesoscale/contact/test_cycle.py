@@ -60,7 +60,7 @@ def test_plasticity_softens_and_yield_limits_the_pressure():
 
 
 def test_a_harder_surface_is_the_elastic_one():
-    hard = ContactInputs(**{**vars(INPUTS), "h_macro": 1e9})
+    hard = ContactInputs(**{**vars(INPUTS), "h_macro": 1e6})
     plastic = run_cycle(hard, settings_for(), 1)
     elastic = run_cycle(hard, settings_for(model="elastic"), 1)
     assert plastic.flags["changed_sites"] == 0
@@ -149,15 +149,32 @@ def test_elastic_models_copy_no_surface_and_never_flow(monkeypatch):
 
 
 def test_a_flat_surface_touches_everywhere():
-    cycle = run_cycle(INPUTS, settings_for(model="elastic"), 1, heights=np.zeros((64, 64)))
+    cycle = run_cycle(INPUTS, settings_for(model="elastic"), 1, heights=np.zeros((64, 64)), length_nm=250.0)
     assert cycle.converged
     assert cycle.first_contact_nm == 0.0
     assert cycle.closing.contact_area_nm2[-1] == pytest.approx(250.0**2)
 
 
+ROUGH = synthesize(256, 250.0, 0.025, 0.75, 8.5, 1)  # nm
+
+
 @pytest.mark.parametrize(
     ("heights", "words"),
-    [(np.zeros((4, 5)), "square"), (np.zeros(9), "square"), (np.full((8, 8), np.nan), "finite")],
+    [
+        (np.zeros((4, 5)), "square"),
+        (np.zeros(9), "square"),
+        (np.zeros((2, 2)), "3 x 3"),
+        (np.full((8, 8), np.nan), "finite"),
+        (np.where(np.eye(256), np.inf, 0), "finite"),
+        (np.ma.masked_greater(ROUGH, 10.0), "masked"),
+        (ROUGH + 0j, "complex128"),
+        (ROUGH > 0, "bool"),
+        (ROUGH.astype(str), "real numbers"),
+        ([[0.0, 1.0], [2.0]], "rectangular"),
+        (ROUGH[::2, ::2], "128 x 128 sites, but settings.pixels = 256"),
+        (1e-9 * ROUGH, "both in nm"),
+        (1e9 * ROUGH, "both in nm"),
+    ],
 )
 def test_bad_surfaces_are_refused_in_one_line(heights, words):
     with pytest.raises(InputError, match=words) as refusal:
@@ -165,7 +182,68 @@ def test_bad_surfaces_are_refused_in_one_line(heights, words):
     assert "\n" not in str(refusal.value)
 
 
-@pytest.mark.parametrize("change", [{"e_star": 0.0}, {"rms": -1.0}, {"h_macro": float("nan")}, {"q0": 0.0}])
+@pytest.mark.parametrize("length_nm", [0.0, -250.0, 250e-9, np.nan, "250", True])
+def test_a_side_that_is_no_length_in_nm_is_refused(length_nm):
+    with pytest.raises(InputError, match=r"length_nm = .* nm"):
+        run_cycle(INPUTS, settings_for(), 1, heights=ROUGH, length_nm=length_nm)
+
+
+def test_a_side_without_heights_is_refused():
+    with pytest.raises(InputError, match="give both"):
+        run_cycle(INPUTS, settings_for(), 1, length_nm=250.0)
+
+
+def test_given_heights_bring_their_own_grid_and_side():
+    """A quarter of the settings' sites on half their side: the same contact as with settings of that size."""
+    small = synthesize(128, 125.0, 0.1, 0.75, 2.0, 1)
+    given = run_cycle(INPUTS, settings_for(), 1, heights=small, length_nm=125.0)
+    stated = run_cycle(INPUTS, settings_for(pixels=128, length_nm=125.0), 1, heights=small)
+    np.testing.assert_array_equal(given.opening.repulsive_nN, stated.opening.repulsive_nN)
+    assert given.cell_area_nm2 == stated.cell_area_nm2 == 125.0**2
+
+
+@pytest.mark.parametrize(("sites", "miss"), [(2.5, 0.2), (20.5, 1 / 41), (200.5, 1 / 401)])
+def test_a_force_missed_by_more_than_one_per_cent_is_not_converged(sites, miss):
+    """Where hardness caps every site, the force jumps by one site's: half of that is missed between two."""
+    soft = ContactInputs(**{**vars(INPUTS), "h_macro": 0.01, "h_prime": 0.0})
+    force = sites * 0.01 * (250.0 / 64) ** 2
+    cycle = run_cycle(soft, settings_for(model="nonlinear", pixels=64), 1, force)
+    assert cycle.flags["force_miss"] == pytest.approx(miss, rel=1e-6)
+    assert cycle.converged == (miss <= 0.01)
+
+
+@pytest.mark.parametrize("seed", [1.5, 1.0, -1, True, "1", None, np.nan])
+def test_a_seed_is_a_whole_number(seed):
+    with pytest.raises(InputError, match=r"seed = .*whole number"):
+        run_cycle(INPUTS, settings_for(), seed)
+
+
+@pytest.mark.parametrize("force", [0.0, -1.0, np.inf, np.nan, "500", 1e15, 1 + 0j])
+def test_an_impossible_force_is_refused(force):
+    with pytest.raises(InputError, match="max_force_nN = "):
+        run_cycle(INPUTS, settings_for(), 1, force)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"e_star": 0.0},
+        {"rms": -1.0},
+        {"h_macro": float("nan")},
+        {"q0": 0.0},
+        {"hurst": 50},
+        {"rms": 8.5e-9},  # metres
+        {"e_star": 91e9},  # pascals
+        {"hamaker": 2.1e-19},  # joules
+        {"q0": 0.025e9},  # 1/m
+        {"h_macro": "hard"},
+        {"h_prime": None},
+        {"rms": np.array([1.0, 2.0])},
+        {"hurst": True},
+        {"e_star": 1 + 1j},
+    ],
+)
 def test_impossible_inputs_are_refused(change):
-    with pytest.raises(InputError, match=next(iter(change))):
+    with pytest.raises(InputError, match=f"^{next(iter(change))} = ") as refusal:
         ContactInputs(**{**vars(INPUTS), **change})
+    assert "\n" not in str(refusal.value)
