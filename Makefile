@@ -22,6 +22,7 @@ bench: setup
 lint: setup
 	$(RUN) ruff format --check .
 	$(RUN) ruff check .
+	$(RUN) snakefmt --check Snakefile workflow
 	$(RUN) pyright
 
 setup: .venv/.asperity-ready

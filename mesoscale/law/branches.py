@@ -41,7 +41,7 @@ def fit_cycle(cycle: Cycle, hamaker: float, cell_area_nm2: float, settings: LawS
     fits = []
     for branch, touch in (
         (cycle.closing, cycle.first_contact_nm),
-        (cycle.opening, getattr(cycle, "last_contact_nm", None)),
+        (cycle.opening, cycle.last_contact_nm),
     ):
         fits.append(
             fit_curve(

@@ -5,17 +5,17 @@ rule coupling:
 
 
 rule compare_half_space:
-    message:
-        "compare with an elastic half-space"
     input:
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/coupling/comparison.csv",
     log:
         f"{RESULTS}/logs/compare_half_space.log",
+    threads: 1
     params:
         settings=settings("coupling"),
         contact=settings("contact"),
-    threads: 1
+    message:
+        "compare with an elastic half-space"
     script:
         "../scripts/compare_half_space.py"

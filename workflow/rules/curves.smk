@@ -4,54 +4,52 @@ rule curves:
 
 
 rule compute_nominal:
-    message:
-        "compute the nominal force-separation curves"
     input:
         inputs=f"{RESULTS}/inputs.csv",
     output:
         curves=f"{RESULTS}/curves/nominal.h5",
     log:
         f"{RESULTS}/logs/compute_nominal.log",
+    threads: 1
     params:
         settings=settings("contact"),
-    threads: 1
+    message:
+        "compute the nominal force-separation curves"
     script:
         "../scripts/compute_nominal.py"
 
 
 rule study_contact_accuracy:
-    message:
-        "study the error of the contact model against its run time"
     output:
         f"{RESULTS}/accuracy/contact.csv",
     log:
         f"{RESULTS}/logs/study_contact_accuracy.log",
+    threads: 1
     params:
         settings=settings("contact"),
-    threads: 1
+    message:
+        "study the error of the contact model against its run time"
     script:
         "../scripts/study_contact_accuracy.py"
 
 
 rule draw_contacts:
-    message:
-        "close and open random draws of Table 1, chunk {wildcards.draws}"
     output:
         f"{RESULTS}/stability/contact_draws/chunk_{{draws}}.csv",
     log:
         f"{RESULTS}/logs/draw_contacts_{{draws}}.log",
-    params:
-        settings=settings("contact"),
     wildcard_constraints:
         draws="\\d+",
     threads: 1
+    params:
+        settings=settings("contact"),
+    message:
+        "close and open random draws of Table 1, chunk {wildcards.draws}"
     script:
         "../scripts/draw_contacts.py"
 
 
 rule study_contact_stability:
-    message:
-        "study the contact model in stiff and extreme cases"
     input:
         draws=expand(rules.draw_contacts.output[0], draws=[f"{k:03d}" for k in range(SCENE.contact.draw_chunks)]),
     output:
@@ -59,9 +57,11 @@ rule study_contact_stability:
         draws=f"{RESULTS}/stability/contact_draws.csv",
     log:
         f"{RESULTS}/logs/study_contact_stability.log",
+    threads: 1
     params:
         settings=settings("contact"),
-    threads: 1
+    message:
+        "study the contact model in stiff and extreme cases"
     script:
         "../scripts/study_contact_stability.py"
 

@@ -5,8 +5,6 @@ rule device:
 
 
 rule solve_switch:
-    message:
-        "solve the switch"
     input:
         samples=f"{RESULTS}/uq/samples.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
@@ -22,13 +20,13 @@ rule solve_switch:
         law=settings("law"),
         max_force_nN=SCENE.contact.max_force_nN,
         length_nm=SCENE.contact.length_nm,
+    message:
+        "solve the switch"
     script:
         "../scripts/solve_switch.py"
 
 
 rule export_law:
-    message:
-        "export the law for device and circuit simulators"
     input:
         samples=f"{RESULTS}/uq/samples.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
@@ -44,5 +42,7 @@ rule export_law:
         settings=settings("device"),
         law=settings("law"),
         length_nm=SCENE.contact.length_nm,
+    message:
+        "export the law for device and circuit simulators"
     script:
         "../scripts/export_law.py"

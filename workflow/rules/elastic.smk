@@ -8,22 +8,17 @@ if needed("elastic"):
     for key in ("material", "counter_body"):
         if not (MATERIALS / f"{ELASTIC[key]}.yaml").exists():
             known = ", ".join(sorted(path.stem for path in MATERIALS.glob("*.yaml")))
-            print(f"ERROR {config.get('scene', 'reduced')}: elastic.{key}: no material {ELASTIC[key]!r}; known: {known}", file=sys.stderr)
-            sys.exit(1)
+            refuse(f"{SCENE_GIVEN}: elastic.{key}: no material {ELASTIC[key]!r}; known: {known}")
 for path in sorted(MATERIALS.glob("*.yaml")):
     for crystal in yaml.safe_load(path.read_text(encoding="utf-8")).get("crystals", {}):
         CRYSTALS.setdefault(crystal, str(path))
 for crystal in ELASTIC["crystals"]:
     if crystal not in CRYSTALS:
-        print(
-            f"ERROR {config.get('scene', 'reduced')}: elastic.crystals: no crystal {crystal!r}; known: {', '.join(CRYSTALS)}",
-            file=sys.stderr,
-        )
-        sys.exit(1)
-SCANS = [f"{name}_{xc}_clamped" for name in ELASTIC["crystals"] for xc in ("GGA", "LDA")]
-SCANS += [f"{name}_GGA_clamped" for name in GLASSES]
-SCANS += [f"{name}_LDA_clamped" for name in GLASSES[: ELASTIC["lda_structures"]]]
-SCANS += [f"{name}_GGA_relaxed" for name in GLASSES[: ELASTIC["relaxed_structures"]]]
+        refuse(f"{SCENE_GIVEN}: elastic.crystals: no crystal {crystal!r}; known: {', '.join(CRYSTALS)}")
+VOLUME_SCANS = [f"{name}_{xc}_clamped" for name in ELASTIC["crystals"] for xc in ("GGA", "LDA")]
+VOLUME_SCANS += [f"{name}_GGA_clamped" for name in GLASSES]
+VOLUME_SCANS += [f"{name}_LDA_clamped" for name in GLASSES[: ELASTIC["lda_structures"]]]
+VOLUME_SCANS += [f"{name}_GGA_relaxed" for name in GLASSES[: ELASTIC["relaxed_structures"]]]
 MATERIAL = str(MATERIALS / f"{ELASTIC['material']}.yaml")
 COUNTER_BODY = str(MATERIALS / f"{ELASTIC['counter_body']}.yaml")
 
@@ -47,21 +42,19 @@ rule elastic:
 
 
 rule make_crystal:
-    message:
-        "set up crystal {wildcards.crystal}"
     input:
         material=lambda wildcards: CRYSTALS[wildcards.crystal],
     output:
         structure=f"{RESULTS}/elastic/structures/{{crystal}}.xyz",
     log:
         f"{RESULTS}/logs/make_crystal_{{crystal}}.log",
+    message:
+        "set up crystal {wildcards.crystal}"
     script:
         "../scripts/make_crystal.py"
 
 
 rule make_amorphous:
-    message:
-        "melt and quench amorphous cell {wildcards.amorphous}"
     input:
         material=MATERIAL,
     output:
@@ -69,17 +62,17 @@ rule make_amorphous:
         attempts=f"{RESULTS}/elastic/quenched/{{amorphous}}.csv",
     log:
         f"{RESULTS}/logs/make_amorphous_{{amorphous}}.log",
+    priority: 90
     params:
         settings=elastic_settings("material", "glass"),
         work=f"{RESULTS}/work/{{amorphous}}",
-    priority: 90
+    message:
+        "melt and quench amorphous cell {wildcards.amorphous}"
     script:
         "../scripts/make_amorphous.py"
 
 
 rule relax_amorphous:
-    message:
-        "relax amorphous cell {wildcards.amorphous}"
     input:
         material=MATERIAL,
         structure=f"{RESULTS}/elastic/quenched/{{amorphous}}.xyz",
@@ -89,10 +82,12 @@ rule relax_amorphous:
         orbitals=f"{RESULTS}/elastic/structures/{{amorphous}}.h5",
     log:
         f"{RESULTS}/logs/relax_amorphous_{{amorphous}}.log",
+    priority: 90
     params:
         settings=elastic_settings("material", "dft", "relaxation"),
         store=f"{RESULTS}/work/scf/relax_{{amorphous}}",
-    priority: 90
+    message:
+        "relax amorphous cell {wildcards.amorphous}"
     script:
         "../scripts/relax_amorphous.py"
 
@@ -106,8 +101,6 @@ def relaxed_glass(wildcards):
 
 
 rule scan_volumes:
-    message:
-        "E(V) of {wildcards.structure}, {wildcards.xc}, ions {wildcards.ions}"
     input:
         unpack(relaxed_glass),
         structure=f"{RESULTS}/elastic/structures/{{structure}}.xyz",
@@ -116,10 +109,12 @@ rule scan_volumes:
         points=f"{RESULTS}/elastic/scans/{{structure}}_{{xc}}_{{ions}}.csv",
     log:
         f"{RESULTS}/logs/scan_volumes_{{structure}}_{{xc}}_{{ions}}.log",
+    priority: 80
     params:
         settings=elastic_settings("strains", "lda_centre", "relaxed_force_eV_A", "relaxation", "dft"),
         store=f"{RESULTS}/work/scf/{{structure}}_{{xc}}_{{ions}}",
-    priority: 80
+    message:
+        "E(V) of {wildcards.structure}, {wildcards.xc}, ions {wildcards.ions}"
     script:
         "../scripts/scan_volumes.py"
 
@@ -134,22 +129,20 @@ ruleorder: scan_relaxed_volumes > scan_volumes
 
 
 rule fit_bulk_moduli:
-    message:
-        "fit equations of state"
     input:
-        scans=[f"{RESULTS}/elastic/scans/{scan}.csv" for scan in SCANS],
+        scans=[f"{RESULTS}/elastic/scans/{scan}.csv" for scan in VOLUME_SCANS],
     output:
         points=f"{RESULTS}/elastic/points.csv",
         moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
     log:
         f"{RESULTS}/logs/fit_bulk_moduli.log",
+    message:
+        "fit equations of state"
     script:
         "../scripts/fit_bulk_moduli.py"
 
 
 rule combine_e_star:
-    message:
-        "combine E* from bulk moduli, Poisson's ratio and the counter body"
     input:
         moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
         structures=[f"{RESULTS}/elastic/structures/{name}.json" for name in GLASSES],
@@ -163,6 +156,8 @@ rule combine_e_star:
         f"{RESULTS}/logs/combine_e_star.log",
     params:
         settings=ELASTIC,
+    message:
+        "combine E* from bulk moduli, Poisson's ratio and the counter body"
     script:
         "../scripts/combine_e_star.py"
 
@@ -179,8 +174,6 @@ def ensemble(wildcards):
 
 
 rule measure_elastic_accuracy:
-    message:
-        "measure the error of the bulk modulus against run time"
     input:
         unpack(ensemble),
         material=str(MATERIALS / "silicon_nitride.yaml"),
@@ -188,19 +181,21 @@ rule measure_elastic_accuracy:
         table=f"{RESULTS}/accuracy/elastic.csv",
     log:
         f"{RESULTS}/logs/measure_elastic_accuracy.log",
+    message:
+        "measure the error of the bulk modulus against run time"
     script:
         "../scripts/measure_elastic_accuracy.py"
 
 
 rule check_elastic_stability:
-    message:
-        "check the elastic stage in hard cases"
     input:
         material=str(MATERIALS / "silicon_nitride.yaml"),
     output:
         table=f"{RESULTS}/stability/elastic.csv",
     log:
         f"{RESULTS}/logs/check_elastic_stability.log",
+    message:
+        "check the elastic stage in hard cases"
     script:
         "../scripts/check_elastic_stability.py"
 
@@ -216,8 +211,6 @@ rule anchors:
 
 
 rule compute_anchor:
-    message:
-        "E(V) of {wildcards.crystal} as an anchor, {wildcards.xc}"
     input:
         material=lambda wildcards: CRYSTALS[wildcards.crystal],
     output:
@@ -227,13 +220,13 @@ rule compute_anchor:
     params:
         settings=elastic_settings("strains", "dft"),
         store=f"{RESULTS}/work/scf/anchor_{{crystal}}_{{xc}}",
+    message:
+        "E(V) of {wildcards.crystal} as an anchor, {wildcards.xc}"
     script:
         "../scripts/compute_anchor.py"
 
 
 rule compare_anchors:
-    message:
-        "compare the anchors with published values"
     input:
         points=[f"{RESULTS}/accuracy/anchors/{anchor}.csv" for anchor in ANCHORS],
         materials=sorted(set(CRYSTALS.values())),
@@ -241,5 +234,7 @@ rule compare_anchors:
         table=f"{RESULTS}/accuracy/elastic_anchors.csv",
     log:
         f"{RESULTS}/logs/compare_anchors.log",
+    message:
+        "compare the anchors with published values"
     script:
         "../scripts/compare_anchors.py"

@@ -5,8 +5,6 @@ rule history:
 
 
 rule follow_history:
-    message:
-        "close and open again and again"
     input:
         inputs=f"{RESULTS}/inputs.csv",
     output:
@@ -15,11 +13,13 @@ rule follow_history:
         curves=f"{RESULTS}/history/curves.h5",
     log:
         f"{RESULTS}/logs/follow_history.log",
+    threads: 1
     params:
         settings=settings("history"),
         contact=settings("contact"),
         law=settings("law"),
         device=settings("device"),
-    threads: 1
+    message:
+        "close and open again and again"
     script:
         "../scripts/follow_history.py"

@@ -12,8 +12,6 @@ rule inputs:
 
 
 rule collect_inputs:
-    message:
-        "collect the uncertain inputs"
     input:
         **INPUT_STAGES,
     output:
@@ -23,5 +21,7 @@ rule collect_inputs:
     params:
         settings=settings("inputs"),
         central_share=SCENE.uncertainty.central_share,
+    message:
+        "collect the uncertain inputs"
     script:
         "../scripts/collect_inputs.py"

@@ -16,26 +16,24 @@ rule law:
 
 
 rule compute_runs:
-    message:
-        "compute contact cycles, chunk {wildcards.chunk}" + f" of {len(RUN_CHUNKS)}"
     input:
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/curves/runs/chunk_{{chunk}}.h5",
     log:
         f"{RESULTS}/logs/compute_runs_{{chunk}}.log",
+    threads: 1
     params:
         contact=settings("contact"),
         uncertainty=RUN_SETTINGS,
         bounds=lambda wildcards: RUN_CHUNKS[wildcards.chunk],
-    threads: 1
+    message:
+        "compute contact cycles, chunk {wildcards.chunk}" + f" of {len(RUN_CHUNKS)}"
     script:
         "../scripts/compute_runs.py"
 
 
 rule fit_law:
-    message:
-        "fit the force-separation law"
     input:
         inputs=f"{RESULTS}/inputs.csv",
         chunks=[f"{RESULTS}/curves/runs/chunk_{chunk}.h5" for chunk in RUN_CHUNKS],
@@ -43,16 +41,16 @@ rule fit_law:
         parameters=f"{RESULTS}/law/parameters.csv",
     log:
         f"{RESULTS}/logs/fit_law.log",
+    threads: 1
     params:
         settings=settings("law"),
-    threads: 1
+    message:
+        "fit the force-separation law"
     script:
         "../scripts/fit_law.py"
 
 
 rule fit_nominal_law:
-    message:
-        "fit the law to the nominal curves"
     input:
         nominal=f"{RESULTS}/curves/nominal.h5",
     output:
@@ -61,5 +59,7 @@ rule fit_nominal_law:
         f"{RESULTS}/logs/fit_nominal_law.log",
     params:
         settings=settings("law"),
+    message:
+        "fit the law to the nominal curves"
     script:
         "../scripts/fit_nominal_law.py"

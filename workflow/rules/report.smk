@@ -1,7 +1,13 @@
+from workflow.job import file_checksum
+
+
 def report_inputs():
     """Result files of exactly the stages that the scene needs; each has its section in the page."""
     files = ["scene.yaml", "inputs.csv", "curves/nominal.h5", "law/parameters.csv", "law/nominal.csv"]
-    files += [f"uq/{name}" for name in ("outputs.csv", "ratios.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")]
+    files += [
+        f"uq/{name}"
+        for name in ("outputs.csv", "ratios.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")
+    ]
     files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "path.csv", "law.csv")]
     if needed("hardness"):
         files += ["hardness/points.csv", "hardness/fit.json"]
@@ -21,7 +27,7 @@ def report_inputs():
 
 
 def studies_at_hand():
-    """Accuracy and stability tables that lie there already, with their checksums.
+    """Accuracy and stability tables already present, with their checksums.
 
     As parameters, not inputs: they are shown without being scheduled, and a new one renews the page.
     """
@@ -35,8 +41,6 @@ rule report:
 
 
 rule render_report:
-    message:
-        "write the report"
     input:
         report_inputs(),
         style=[str(ROOT / "workflow" / "report" / name) for name in ("template.html.j2", "style.css", "explorer.js")],
@@ -48,5 +52,7 @@ rule render_report:
         root=RESULTS,
         scene=SCENE.name,
         studies=studies_at_hand(),
+    message:
+        "write the report"
     script:
         "../scripts/render_report.py"

@@ -1,7 +1,7 @@
 # AFM scans → spectra → q0, Hurst exponent and RMS with ranges (docs/topography.md)
 
 TOPOGRAPHY = SCENE.topography
-SCANS = f"{RESULTS}/topography/scans"
+SCAN_FOLDER = f"{RESULTS}/topography/scans"
 
 
 def scan_files():
@@ -10,8 +10,8 @@ def scan_files():
         synthetic = TOPOGRAPHY.synthetic
         names = [f"small_{k + 1:02d}" for k in range(synthetic.small_scans)]
         names += [f"large_{k + 1:02d}" for k in range(synthetic.large_scans)]
-        return [f"{SCANS}/{name}.gwy" for name in names]
-    scene_folder = Path(str(config.get("scene", ""))).parent
+        return [f"{SCAN_FOLDER}/{name}.gwy" for name in names]
+    scene_folder = Path(SCENE_GIVEN).parent
     found, missing = [], []
     for name in TOPOGRAPHY.scans:
         places = [Path(name), scene_folder / name]
@@ -19,12 +19,11 @@ def scan_files():
         found.append(str(existing[0]) if existing else name)
         missing += [] if existing else [name]
     if missing and workflow.is_main_process:
-        for name in missing:
-            print(
-                f"ERROR topography.scans: {name}: no such file here or beside the scene; correct the path",
-                file=sys.stderr,
+        refuse(
+            "\n".join(
+                f"topography.scans: {name}: no such file here or beside the scene; correct the path" for name in missing
             )
-        sys.exit(1)
+        )
     return found
 
 

@@ -20,8 +20,6 @@ rule sensitivity:
 
 
 rule compute_direct_runs:
-    message:
-        "compute contact cycles of design {wildcards.design}, chunk {wildcards.chunk}"
     input:
         inputs=f"{RESULTS}/inputs.csv",
     output:
@@ -29,23 +27,21 @@ rule compute_direct_runs:
         timing=f"{RESULTS}/uq/{{design}}/timing_{{chunk}}.csv",
     log:
         f"{RESULTS}/logs/compute_direct_runs_{{design}}_{{chunk}}.log",
+    wildcard_constraints:
+        design="direct|replicate|morris",
+    threads: 1
     params:
         contact=settings("contact"),
         law=settings("law"),
         uncertainty=RUN_SETTINGS,
-        bounds=lambda wildcards: [
-            (int(wildcards.chunk) + shift) * SCENE.uncertainty.chunk_runs for shift in (0, 1)
-        ],
-    wildcard_constraints:
-        design="direct|replicate|morris",
-    threads: 1
+        bounds=lambda wildcards: [(int(wildcards.chunk) + shift) * SCENE.uncertainty.chunk_runs for shift in (0, 1)],
+    message:
+        "compute contact cycles of design {wildcards.design}, chunk {wildcards.chunk}"
     script:
         "../scripts/compute_direct_runs.py"
 
 
 rule propagate_uncertainty:
-    message:
-        "propagate the uncertainty of the inputs"
     input:
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
@@ -64,13 +60,13 @@ rule propagate_uncertainty:
     params:
         settings=settings("uncertainty"),
         law=settings("law"),
+    message:
+        "propagate the uncertainty of the inputs"
     script:
         "../scripts/propagate_uncertainty.py"
 
 
 rule rank_sensitivity:
-    message:
-        "rank the inputs by sensitivity"
     input:
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
@@ -83,6 +79,8 @@ rule rank_sensitivity:
         f"{RESULTS}/logs/rank_sensitivity.log",
     params:
         settings=settings("uncertainty"),
+    message:
+        "rank the inputs by sensitivity"
     script:
         "../scripts/rank_sensitivity.py"
 
@@ -93,27 +91,25 @@ rule audit:
 
 
 rule compute_audit:
-    message:
-        "audit reading {wildcards.reading}, surface {wildcards.seed}"
     input:
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/audit/runs/{{reading}}_{{seed}}.csv",
     log:
         f"{RESULTS}/logs/compute_audit_{{reading}}_{{seed}}.log",
+    wildcard_constraints:
+        seed=r"\d+",
     params:
         contact=settings("contact"),
         law=settings("law"),
         uncertainty={**RUN_SETTINGS, "surrogate": "level1"},
-    wildcard_constraints:
-        seed=r"\d+",
+    message:
+        "audit reading {wildcards.reading}, surface {wildcards.seed}"
     script:
         "../scripts/compute_audit.py"
 
 
 rule rank_readings:
-    message:
-        "rank the readings by their distance to the paper's tables"
     input:
         inputs=f"{RESULTS}/inputs.csv",
         table2=str(CONFIG / "paper" / "table2.csv"),
@@ -129,6 +125,8 @@ rule rank_readings:
         f"{RESULTS}/logs/rank_readings.log",
     params:
         central_share=SCENE.uncertainty.central_share,
+    message:
+        "rank the readings by their distance to the paper's tables"
     script:
         "../scripts/rank_readings.py"
 
@@ -139,8 +137,6 @@ rule brute_force:
 
 
 rule measure_overhead:
-    message:
-        "compare the time of the engine with the time of the jobs"
     input:
         runs=direct_files("direct", SCENE.uncertainty.study_runs),
         timing=direct_files("direct", SCENE.uncertainty.study_runs, "timing"),
@@ -150,6 +146,8 @@ rule measure_overhead:
         f"{RESULTS}/logs/measure_overhead.log",
     params:
         cores=lambda wildcards: workflow.cores,  # known only where there is no cluster
+    message:
+        "compare the time of the engine with the time of the jobs"
     script:
         "../scripts/measure_overhead.py"
 
@@ -160,8 +158,6 @@ rule work_precision:
 
 
 rule study_responses:
-    message:
-        "set the responses against direct runs"
     input:
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
@@ -180,6 +176,8 @@ rule study_responses:
         f"{RESULTS}/logs/study_responses.log",
     params:
         settings=settings("uncertainty"),
+    message:
+        "set the responses against direct runs"
     script:
         "../scripts/study_responses.py"
 
@@ -188,12 +186,12 @@ ACCURACY.append(f"{RESULTS}/accuracy/uncertainty.csv")
 
 
 rule study_uncertainty_stability:
-    message:
-        "study the propagation in unusual cases"
     output:
         f"{RESULTS}/stability/uncertainty.csv",
     log:
         f"{RESULTS}/logs/study_uncertainty_stability.log",
+    message:
+        "study the propagation in unusual cases"
     script:
         "../scripts/study_uncertainty_stability.py"
 
@@ -207,8 +205,6 @@ rule extremes:
 
 
 rule study_extremes:
-    message:
-        "study first contact and d_c on larger samples"
     input:
         inputs=f"{RESULTS}/inputs.csv",
     output:
@@ -219,5 +215,7 @@ rule study_extremes:
         contact=settings("contact"),
         law=settings("law"),
         central_share=SCENE.uncertainty.central_share,
+    message:
+        "study first contact and d_c on larger samples"
     script:
         "../scripts/study_extremes.py"

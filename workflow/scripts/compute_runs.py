@@ -37,7 +37,7 @@ with job(snakemake) as run:
             "status": "ok" if cycle.converged else "unconverged",
             "flags": cycle.flags,
             "first_contact_nm": cycle.first_contact_nm,
-            "last_contact_nm": getattr(cycle, "last_contact_nm", None),
+            "last_contact_nm": cycle.last_contact_nm,
         }
         for branch in ("closing", "opening"):
             curve = getattr(cycle, branch)

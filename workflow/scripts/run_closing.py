@@ -1,7 +1,7 @@
 """Close one asperity against its counterface.
 
 In:  potential (YAML), glass (LAMMPS data file), counter_glass where the counterface is of another oxide.
-Out: curve (GPa, nm), witness (bond exchanges, nm), snapshots (nm), unloading (GPa, nm; if asked for), summary.
+Out: curve (GPa, nm), witness (bond exchanges, nm), snapshots (nm), summary (with the unloading, where asked for).
 """
 
 import resource

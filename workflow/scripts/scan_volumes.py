@@ -27,13 +27,13 @@ with job(snakemake) as run:
     def relax(trial, hessian):
         return relax_ions(trial, settings["relaxed_force_eV_A"], relaxation.max_steps, hessian)
 
-    gate = read_json(snakemake.input.report)["gate"] if snakemake.input.get("report") else {"passed": True}
-    if gate["passed"]:
+    reasons = read_json(snakemake.input.report)["gate"]["reasons"] if snakemake.input.get("report") else []
+    if not reasons:
         if snakemake.input.get("orbitals"):
             start_from(calculator, snakemake.input.orbitals)
         points = scan_volumes(atoms, calculator, settings["strains"], relax if relaxed else None, run.progress)
     else:
-        points = rejected_points(atoms, settings["strains"], "; ".join(gate["reasons"]))
+        points = rejected_points(atoms, settings["strains"], "; ".join(reasons))
     name = {key: snakemake.wildcards[key] for key in ("structure", "xc", "ions")}
     write_csv(snakemake.output.points, [{**name, "atoms": len(atoms), **asdict(point)} for point in points])
     store.remove()

@@ -1,0 +1,46 @@
+# What the rule files share: the scene, where its results go, and how it is refused
+
+import os
+import sys
+from pathlib import Path
+
+from workflow.scene import ROOT, SceneError, load_scene
+
+# one thread per process: the jobs themselves fill the cores, and results do not depend on their number
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
+    os.environ[variable] = "1"
+
+
+def refuse(mistakes):
+    """End before any job starts, with one ERROR line for each line of `mistakes`."""
+    for line in str(mistakes).splitlines():
+        print(f"ERROR {line}", file=sys.stderr)
+    sys.exit(1)
+
+
+SCENE_GIVEN = str(config.get("scene", "reduced"))  # a name or a path
+try:
+    SCENE = load_scene(SCENE_GIVEN)
+except SceneError as error:
+    refuse(error)
+
+RESULTS = f"results/{SCENE.name}"
+
+writable = next(folder for folder in (Path(RESULTS), *Path(RESULTS).parents) if folder.exists())
+if not (writable.is_dir() and os.access(writable, os.W_OK)):
+    refuse(f"{RESULTS}: cannot write to {writable}; run in a folder you may write to")
+
+CONFIG = ROOT / "config"  # data files that ship with the project
+RESOLVED = SCENE.model_dump(mode="json")
+ACCURACY = []  # result files of the error-against-run-time studies, filled by the stages' rules
+STABILITY = []  # result files of the stability studies
+
+
+def settings(section):
+    """Settings of one section as plain values for `params:`, so that a change re-runs just that stage."""
+    return RESOLVED[section]
+
+
+def needed(stage):
+    """Does the report of this scene need `stage` (hardness, elastic or topography) computed?"""
+    return stage in SCENE.stages()
