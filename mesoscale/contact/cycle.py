@@ -52,6 +52,7 @@ class Cycle:
     inputs: ContactInputs
     length_nm: float  # side of the surface
     heights: np.ndarray | None = None  # (N, N) surface afterwards, nm (only if asked for)
+    flattened: np.ndarray | None = None  # (N, N) sites of asperities that have yielded (unloading_radius: flattened)
 
     @property
     def cell_area_nm2(self) -> float:
@@ -72,6 +73,7 @@ def run_cycle(
     length_nm: float | None = None,
     keep_surface: bool = False,
     hold: "Callable[[Contact, Row], list[Row]] | None" = None,
+    flattened: np.ndarray | None = None,
 ) -> Cycle:
     """Close a rough surface onto a flat up to a force, and open it again.
 
@@ -95,6 +97,8 @@ def run_cycle(
     hold
         What happens between closing and opening (`mesoscale.contact.history`): takes the contact and its
         last row, returns the rows that follow at the end of the closing branch.
+    flattened
+        (N, N) `Cycle.flattened` of the cycle that left ``heights``; only `unloading_radius: flattened` asks for it.
 
     Raises
     ------
@@ -114,7 +118,7 @@ def run_cycle(
         surface = random_surface(inputs, settings, seed)
     elif plastic:
         surface = surface.copy()
-    contact = Contact(surface, inputs, settings)
+    contact = Contact(surface, inputs, settings, flattened)
     first_contact = contact.touching_separation
     approach = _approach(contact)
     closing = trace(contact, settings.force_steps, plastic, stop_force=min(force, contact.capacity))
@@ -147,12 +151,20 @@ def run_cycle(
             "radius_bound_events": closing.bounds,
             "repeated_steps": closing.repeated,
             "changed_sites": changed,
+            "repulsion_drop": _largest_drop([row.force for row in closing.rows]),
         },
         converged=reached and miss <= MAX_FORCE_MISS and closing.unconverged == 0,
         inputs=inputs,
         length_nm=settings.length_nm,
         heights=surface if keep_surface else None,
+        flattened=contact.flattened if keep_surface else None,
     )
+
+
+def _largest_drop(forces: list[float]) -> float:
+    """Largest fall of a force below an earlier value, as a share of its largest value."""
+    highest = np.maximum.accumulate(forces)
+    return float((highest - forces).max() / highest[-1]) if highest[-1] > 0 else 0.0
 
 
 def _approach(contact: "Contact") -> "list[Row]":

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mesoscale.contact import attraction, kernels, state
+from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings
 
 PREFACTOR = {"paper": 2.0 / 3.0, "hertz": 4.0 / 3.0}
@@ -62,6 +63,8 @@ class Contact:
     ----------
     surface
         (N, N) heights in nm; changed in place by flow.
+    flattened
+        (N, N) sites whose asperities have yielded in earlier cycles, for `unloading_radius: flattened`.
     """
 
     FORCE_TOLERANCE = 1e-6
@@ -69,7 +72,7 @@ class Contact:
     # that merge carry less than apart, and cycles gain energy (seen at 0.9, not at 0.8: docs/contact.md)
     BEARING_SHARE = 0.8
 
-    def __init__(self, surface: np.ndarray, inputs, settings: ContactSettings):
+    def __init__(self, surface: np.ndarray, inputs, settings: ContactSettings, flattened: np.ndarray | None = None):
         self.n = surface.shape[0]
         self.heights = surface.reshape(-1)
         self.spacing = settings.length_nm / self.n
@@ -88,6 +91,8 @@ class Contact:
             settings.radius == "curvature",
             settings.area == "sites",
             settings.neighbours == 8,
+            self.flows and settings.unloading_radius == "flattened",
+            settings.merge == "not_less",
         )
         self.rule = state.FlowRule(
             settings.flow == "increment",
@@ -101,8 +106,13 @@ class Contact:
         self.asperities = state.no_asperities(self.heights.size)
         # a surface that cannot flow needs no record of changes
         self.changes = state.no_changes(self.heights.size if self.flows else 0)
+        if flattened is not None and self.mechanics.flattened_radius:
+            if flattened.shape != surface.shape:
+                raise InputError(f"flattened: accepted is an array of the heights' shape {surface.shape}")
+            self.changes.flattened[flattened.reshape(-1)] = -1
         self.changed = self.changes.changed if self.flows else np.zeros(self.n**2, np.uint8)
         self.work = state.workspace(self.heights.size if self.flows else 0)
+        self.parts = state.no_parts(self.heights.size if self.mechanics.not_less else 0)
         self.order = np.empty(0, np.int32)
         self.order_heights = np.empty(0)
         self.sorted_to = -np.inf
@@ -121,6 +131,13 @@ class Contact:
     def changed_sites(self) -> int:
         """Sites that flow has moved."""
         return int(self.changes.used[0])
+
+    @property
+    def flattened(self) -> np.ndarray | None:
+        """(N, N) sites whose asperities have yielded, if the reading asks for them."""
+        if not self.mechanics.flattened_radius:
+            return None
+        return (self.changes.flattened != 0).reshape(self.n, self.n)
 
     @property
     def capacity(self) -> float:
@@ -188,7 +205,16 @@ class Contact:
                 self.work,
             )
         force, sites, asperities, bounds, load = kernels.total_force(
-            self.asperities, level, self.mechanics, self.capped
+            self.asperities,
+            self.heights,
+            self.n,
+            self.spacing,
+            level,
+            self.mechanics,
+            self.capped,
+            self.flows,
+            self.changes.flattened,
+            self.parts,
         )
         nowhere = with_flow and sites == self.heights.size and load > 1.0 + self.rule.tolerance
         stuck = nowhere or not (settled or self.rule.fixed)
@@ -197,6 +223,9 @@ class Contact:
     def back(self) -> None:
         """Undo the last move's flow and lift the flat; the next move finds all contacts anew."""
         kernels.undo(self.heights, self.changes)
+        if self.mechanics.flattened_radius:
+            flattened, step = self.changes.flattened, self.changes.used[2]
+            flattened[flattened == step] = 0
         self.lift()
 
     def lift(self) -> None:

@@ -53,7 +53,7 @@ def follow(
     InputError : no cycle is asked for, or cycles of a model without history.
     """
     check(contact, settings)
-    heights = None
+    heights = flattened = None
     for number in range(1, settings.cycles + 1):
         times = _times(settings, (number - 1) * settings.dwell_s)
         hold = Hold(settings, times)
@@ -64,8 +64,9 @@ def follow(
             heights=heights,
             keep_surface=True,
             hold=hold if settings.dwell_s > 0 else None,
+            flattened=flattened,
         )
-        heights = cycle.heights
+        heights, flattened = cycle.heights, cycle.flattened
         yield HeldCycle(number, cycle, times[: len(hold.rows)], hold.rows, hold.missed)
         if progress is not None:
             progress(number / settings.cycles, f"cycle {number}")

@@ -42,6 +42,8 @@ class Mechanics(NamedTuple):
     curvature_radius: bool  # else truncation
     area_of_sites: bool  # else Hertz's
     eight: bool  # 8 neighbours, else 4
+    flattened_radius: bool  # an asperity that has yielded has R >= A / (pi delta)
+    not_less: bool  # an asperity carries at least what its parts carried before they merged
 
 
 class FlowRule(NamedTuple):
@@ -65,6 +67,9 @@ class Changes(NamedTuple):
     journal: np.ndarray  # (N^2,) int32: sites changed in this step
     before: np.ndarray  # (N^2,) float64: their heights before it
     stamp: np.ndarray  # (N^2,) int32: last step in which a site changed
+    flattened: (
+        np.ndarray
+    )  # (N^2,) int32: step in which the site's asperity first yielded; 0: never, -1: in an earlier cycle
     used: np.ndarray  # (4,) int64: changed sites, journal entries, number of this step, changed sites before it
 
 
@@ -77,7 +82,33 @@ def no_changes(sites: int) -> Changes:
         np.empty(sites, np.int32),
         np.empty(sites),
         np.zeros(sites, np.int32),
+        np.zeros(sites, np.int32),
         np.zeros(4, np.int64),
+    )
+
+
+class Parts(NamedTuple):
+    """Parts of one asperity as its sites join them, by place in the order of heights; see `kernels.force_of_parts`."""
+
+    place: np.ndarray  # (N^2,) int32: place + 1 of a site, 0 while it has none
+    parent: np.ndarray  # (N^2,) int32: place of another site of the same part, the place itself at its root
+    sites: np.ndarray  # (N^2,) int32: number of sites of a root
+    peak: np.ndarray  # (N^2,) int32: lowest site of a root (the smaller number among equals)
+    lowest: np.ndarray  # (N^2,) float64: its height, nm
+    curvature: np.ndarray  # (N^2,) float64: sum of the mean curvatures of a root's sites, 1/nm
+    carried: np.ndarray  # (N^2,) float64: force that the root's sites carried as they joined, nN
+
+
+def no_parts(sites: int) -> Parts:
+    """Room for the parts of any asperity of N^2 sites; the memory is touched only as needed."""
+    return Parts(
+        np.zeros(sites, np.int32),
+        np.empty(sites, np.int32),
+        np.empty(sites, np.int32),
+        np.empty(sites, np.int32),
+        np.empty(sites),
+        np.empty(sites),
+        np.empty(sites),
     )
 
 

@@ -68,6 +68,18 @@ class ContactSettings(Settings):
         description="asperity radius: mean curvature of the sites (eq. 2), or R = A/(2 pi delta)",
         json_schema_extra={"unit": "1"},
     )
+    unloading_radius: Literal["curvature", "flattened"] = Field(
+        default="curvature",
+        description="radius of an asperity that has yielded: as `radius` says, or at least A/(pi delta), that of "
+        "Hertz's contact of its area, which unloads more stiffly",
+        json_schema_extra={"unit": "1"},
+    )
+    merge: Literal["as_one", "not_less"] = Field(
+        default="as_one",
+        description="asperities that merge: one with the radius of all sites, or one that carries at least what they "
+        "carried (with flow: up to its hardness)",
+        json_schema_extra={"unit": "1"},
+    )
     area: Literal["sites", "hertz"] = Field(
         default="sites",
         description="asperity area in eq. 4: its contacting sites, or Hertz's pi R delta",

@@ -22,6 +22,7 @@ class Asperity:
     area: float  # the one of eq. 4
     elastic_force: float  # eq. 3
     hardness: float
+    carried: float  # by its parts before they merged, 0 with merge: as_one
 
 
 def connected_sites(touching: np.ndarray, neighbours: int) -> list[np.ndarray]:
@@ -60,24 +61,75 @@ def curvature(h: np.ndarray, spacing: float) -> np.ndarray:
     return total / 2
 
 
-def asperities(h: np.ndarray, separation: float, inputs: ContactInputs, settings: ContactSettings) -> list[Asperity]:
-    """All asperities in contact at a separation, with eq. 3 and eq. 4."""
+def radius_of(area: float, mean: float, indentation: float, flat: bool, settings: ContactSettings) -> float:
+    """Radius of an asperity of a mean curvature; ``flat``: its peak has been at its hardness."""
+    if settings.radius == "curvature":
+        # no stiffer than a rigid flat punch of the same area, which also bounds flattened tops
+        bound = 9 * area / (4 * np.pi * indentation)
+        radius = min(1 / mean, bound) if mean > 0 else bound
+    else:
+        radius = area / (2 * np.pi * indentation)
+    if flat and settings.unloading_radius == "flattened":
+        radius = max(radius, area / (np.pi * indentation))
+    return radius
+
+
+def neighbours_of(site: int, n: int, neighbours: int) -> set[int]:
+    row, col = divmod(int(site), n)
+    steps = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0) and (neighbours == 8 or i * j == 0)]
+    return {(row + i) % n * n + (col + j) % n for i, j in steps}
+
+
+def force_of_parts(h, sites, kappa, flattened, stiffness: float, settings: ContactSettings) -> float:
+    """What the parts of an asperity carried when its last site joined them (merge: not_less).
+
+    The sites join one by one, the lowest first; a site's part carries at least what those carried that it joins.
+    """
+    heights = h.ravel()
+    parts: list[tuple[set[int], float]] = []
+    for site in sites[np.lexsort((sites, heights[sites]))]:
+        near = neighbours_of(site, len(h), settings.neighbours)
+        joined, carried = {int(site)}, 0.0
+        for part, before in [entry for entry in parts if entry[0] & near]:
+            parts.remove((part, before))
+            members = np.array(sorted(part))
+            indentation = heights[site] - heights[members].min()
+            force = 0.0
+            if indentation > 0:
+                area = len(part) * (settings.length_nm / len(h)) ** 2
+                peak = members[heights[members].argmin()]
+                mean = kappa.ravel()[members].mean()
+                radius = radius_of(area, mean, indentation, flattened.ravel()[peak], settings)
+                force = stiffness * np.sqrt(radius * indentation**3)
+            joined |= part
+            carried += max(force, before)
+        parts.append((joined, carried))
+    return parts[0][1]
+
+
+def asperities(
+    h: np.ndarray,
+    separation: float,
+    inputs: ContactInputs,
+    settings: ContactSettings,
+    flattened: np.ndarray | None = None,
+) -> list[Asperity]:
+    """All asperities in contact at a separation, with eq. 3 and eq. 4; ``flattened``: sites that have yielded."""
     spacing = settings.length_nm / len(h)
     p = {"paper": 2 / 3, "hertz": 4 / 3}[settings.prefactor]
     kappa = curvature(h, spacing)
+    flattened = np.zeros(h.shape, bool) if flattened is None else flattened
     found = []
     for sites in connected_sites(h + separation < 0, settings.neighbours):
         heights = h.ravel()[sites]
         peak = sites[heights == heights.min()].min()
         indentation = -(heights.min() + separation)
         area = len(sites) * spacing**2
-        if settings.radius == "curvature":
-            mean = kappa.ravel()[sites].mean()
-            # no stiffer than a rigid flat punch of the same area, which also bounds flattened tops
-            bound = 9 * area / (4 * np.pi * indentation)
-            radius = min(1 / mean, bound) if mean > 0 else bound
-        else:
-            radius = area / (2 * np.pi * indentation)
+        radius = radius_of(area, kappa.ravel()[sites].mean(), indentation, flattened.ravel()[peak], settings)
+        force = p * inputs.e_star * np.sqrt(radius * indentation**3)
+        carried = 0.0
+        if settings.merge == "not_less":
+            carried = force_of_parts(h, sites, kappa, flattened, p * inputs.e_star, settings)
         if settings.area == "hertz":
             area = np.pi * radius * indentation
         found.append(
@@ -87,19 +139,24 @@ def asperities(h: np.ndarray, separation: float, inputs: ContactInputs, settings
                 indentation,
                 radius,
                 area,
-                p * inputs.e_star * np.sqrt(radius * indentation**3),
+                force,
                 inputs.h_macro + inputs.h_prime * area**-0.25,
+                carried,
             )
         )
     return found
 
 
-def repulsion(h, separation, inputs: ContactInputs, settings: ContactSettings) -> float:
+def repulsion(
+    h, separation, inputs: ContactInputs, settings: ContactSettings, flattened: np.ndarray | None = None
+) -> float:
     """Repulsive force in nN: eq. 3, or eq. 4 for the non-linear elastic model."""
-    found = asperities(h, separation, inputs, settings)
+    found = asperities(h, separation, inputs, settings, flattened)
     if settings.model == "nonlinear":
-        return sum(min(a.elastic_force, a.hardness * a.area) for a in found)
-    return sum(a.elastic_force for a in found)
+        return sum(min(max(a.elastic_force, a.carried), a.hardness * a.area) for a in found)
+    if settings.model == "plastic":
+        return sum(max(a.elastic_force, min(a.carried, a.hardness * a.area)) for a in found)
+    return sum(max(a.elastic_force, a.carried) for a in found)
 
 
 def attraction(h, separation, inputs: ContactInputs, settings: ContactSettings) -> float:
@@ -132,16 +189,19 @@ def raise_site(h: np.ndarray, site: tuple[int, int], rise: float, asperity: Aspe
     h[patch] += rise * change
 
 
-def settle(h, separation, inputs: ContactInputs, settings: ContactSettings) -> tuple[np.ndarray, int, bool]:
-    """Let yielding asperities flow until none is above its hardness.
+def settle(
+    h, separation, inputs: ContactInputs, settings: ContactSettings, flattened: np.ndarray | None = None
+) -> tuple[np.ndarray, int, bool]:
+    """Let yielding asperities flow until none is above its hardness; notes their sites in ``flattened``.
 
     Returns the surface, the sweeps, and whether flow came to its end. Nothing flows where every site touches.
     """
     h = h.copy()
+    flattened = np.zeros(h.shape, bool) if flattened is None else flattened
     returning = settings.flow == "return"
     tolerance = settings.flow_tolerance if returning else 0.0
     for sweeps in range(settings.max_sweeps + 1):
-        found = asperities(h, separation, inputs, settings)
+        found = asperities(h, separation, inputs, settings, flattened)
         limits = [a.hardness * a.area for a in found]
         yielding = [
             (a, limit)
@@ -152,6 +212,8 @@ def settle(h, separation, inputs: ContactInputs, settings: ContactSettings) -> t
             return h, sweeps, True
         if sweeps == settings.max_sweeps:
             break
+        for a, _ in yielding:
+            flattened.ravel()[a.sites] = True
         for a, limit in sorted(yielding, key=lambda pair: pair[0].peak):
             if not returning:
                 raise_site(h, a.peak, settings.flow_increment_nm, a, settings)
@@ -172,8 +234,10 @@ def settle(h, separation, inputs: ContactInputs, settings: ContactSettings) -> t
 def walk(h, separations, inputs: ContactInputs, settings: ContactSettings):
     """Repulsion and attraction at falling separations; returns them and the final surface."""
     forces = []
+    flattened = np.zeros(h.shape, bool)
     for separation in separations:
         if settings.model == "plastic":
-            h, _, _ = settle(h, separation, inputs, settings)
-        forces.append((repulsion(h, separation, inputs, settings), attraction(h, separation, inputs, settings)))
+            h, _, _ = settle(h, separation, inputs, settings, flattened)
+        pull = attraction(h, separation, inputs, settings)
+        forces.append((repulsion(h, separation, inputs, settings, flattened), pull))
     return np.array(forces), h

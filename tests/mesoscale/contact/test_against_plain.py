@@ -16,6 +16,10 @@ READINGS = {
     "wide increments": {"flow": "increment", "flow_pair": "wide"},
     "truncation": {"radius": "truncation", "area": "hertz", "gap_cutoff_nm": 0.3, "max_sweeps": 60},
     "as printed": {"convention": "profile", "prefactor": "paper", "touching_attracts": True, "neighbours": 4},
+    "flattened": {"unloading_radius": "flattened"},
+    "not less": {"merge": "not_less"},
+    "both mended": {"unloading_radius": "flattened", "merge": "not_less", "neighbours": 4},
+    "mended truncation": {"unloading_radius": "flattened", "merge": "not_less", "radius": "truncation"},
 }
 
 
