@@ -69,7 +69,7 @@ def _curves(root: Path) -> None:
     contact = {"length_nm": 1000.0, "pixels": 128, "convention": "areal", "touching_attracts": False}
     write_h5(root / "curves/nominal.h5", groups, {"cell_area_nm2": 1e6, "contact": contact}, PROVENANCE, facts)
     rows = [
-        {"run": 0, "node": 0, "seed": 0, "branch": branch, **law, "status": "ok", "hamaker": 0.215}
+        {"run": 0, "node": 0, "seed": 0, "branch": branch, **law, "residual": 0.2, "status": "ok", "hamaker": 0.215}
         for branch, law in (("closing", LAW), ("opening", OPENED))
     ]
     rows.append({**rows[1], "status": "poor_fit"})
@@ -96,7 +96,13 @@ def _uncertainty(root: Path) -> None:
                 "unit": "nm",
                 "mean": value,
                 "dev": abs(value) / 2,
+                "mean_difference_in_seed_sd": 0.0,
+                "paper_mean_exchanged": value,
+                "paper_dev_exchanged": abs(value) / 3,
                 "centre": value,
+                "centre_seed_sd": abs(value) / 9,
+                "response_mean": value,
+                "response_dev": abs(value) / 2,
                 "response_q05": value / 2,
             }
             | {
@@ -121,7 +127,7 @@ def _uncertainty(root: Path) -> None:
     write_csv(root / "uq/ratios.csv", [ratio])
     write_csv(
         root / "uq/validation.csv",
-        [{"output": name, "q2": 0.9, "q2_low": 0.8, "q2_high": 0.95} for name in outputs],
+        [{"output": name, "runs": 50, "missing": 0, "q2": 0.9, "q2_low": 0.8, "q2_high": 0.95} for name in outputs],
     )
     zero, last = [0] * 7, [0] * 6 + [1]
     responses = [
@@ -146,7 +152,12 @@ def _uncertainty(root: Path) -> None:
         }
         for name, (unit, kind, a, b, _) in INPUTS.items()
     ]
-    content = {"inputs": inputs, "outputs": responses, "law": {"rho_a_nm": 2.0, "alpha_nm": 2.0}}
+    content = {
+        "method": "regression",
+        "inputs": inputs,
+        "outputs": responses,
+        "law": {"rho_a_nm": 2.0, "alpha_nm": 2.0},
+    }
     write_json(root / "uq/surrogate.json", content, PROVENANCE)
 
 

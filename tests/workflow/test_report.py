@@ -31,7 +31,7 @@ def files(tmp_path_factory):
 @pytest.fixture(scope="module")
 def page(files):
     root, paths = files
-    return render(Results(root, paths), "made_up")
+    return render(Results(root, paths, "paper"))
 
 
 class Outline(HTMLParser):
@@ -89,7 +89,7 @@ def test_answer_comes_first(page):
 def test_only_what_exists_is_shown(files):
     root, paths = files
     few = [path for path in paths if path.name in ("inputs.csv", "scene.yaml")]
-    page = render(Results(root, few), "few")
+    page = render(Results(root, few, "few"))
     shown = [anchor for anchor in SECTIONS if f'<section id="{anchor}"' in page]
     assert shown == ["inputs"]
     assert 'id="explorer"' not in page
@@ -98,20 +98,44 @@ def test_only_what_exists_is_shown(files):
 
 def test_gates_tell_what_failed_and_text_is_escaped(files, page):
     root, paths = files
-    results = Results(root, paths)
+    results = Results(root, paths, "made_up")
     sections = [section for stage in STAGES if (section := stage.describe(results))]
     found = {gate.stage: gate for section in sections for gate in section.gates}
     assert not found["hardness"].passed
     assert found["law"].passed
-    assert found["law"].reasons == ["1 of 3 fits: poor fit"]
+    (remark,) = found["law"].reasons
+    assert remark.startswith("1 of 3 fits miss their curve by up to 20% of its largest pressure; they are used as")
     assert "gate failed" in page
     assert "&lt;gave&gt;" in page
     assert "<gave>" not in page
 
 
+def test_a_stage_that_no_input_comes_from_shows_no_red_gate(files):
+    root, paths = files
+    results = Results(root, paths, "made_up")
+    unused = [{**row, "origin": "literature"} for row in results.csv("inputs.csv")]
+    results.csv = lambda name: unused if name == "inputs.csv" else Results.csv(results, name)
+    (gate,) = results.gate_of("hardness", "hardness/fit.json")
+    assert not gate.passed
+    assert not gate.used
+    assert "no other number on this page depends on it" in gate.reasons[-1]
+    page = render(results)
+    gates = page[page.index("Can the numbers be trusted?") : page.index("<nav")]
+    assert "not used, too little for its gate" in gates
+    assert "gate failed" not in gates
+
+
+def test_only_scene_paper_compares_with_the_paper(files, page):
+    root, paths = files
+    own = render(Results(root, paths, "own"))
+    said = own[own.index("<body>") : own.index('id="provenance"')]
+    assert not re.search(r"the paper|Table [123]|>paper<|> paper", said)
+    assert len(re.findall(r"the paper|Table [123]", page)) > 20
+
+
 def test_same_results_give_the_same_page(files, page):
     root, paths = files
-    assert render(Results(root, paths), "made_up") == page
+    assert render(Results(root, paths, "paper")) == page
 
 
 def test_synthetic_scans_and_unused_stages_are_named(page):
@@ -121,7 +145,7 @@ def test_synthetic_scans_and_unused_stages_are_named(page):
 
 def test_studies_recommend_the_cheapest_good_setting(files):
     root, paths = files
-    (line,) = recommended("contact", Results(root, paths).csv("accuracy/contact.csv"))
+    (line,) = recommended("contact", Results(root, paths, "made_up").csv("accuracy/contact.csv"))
     # the larger of both outputs' errors, 3/steps^2: 20 steps come below 1 %
     assert line[:4] == ("contact", "force_steps", "20", "0.0075")
 

@@ -20,36 +20,38 @@ MEANINGS = {
 
 def answer(results: Results) -> dict[str, Any]:
     """Sentences, table and figure that open the report."""
-    content: dict[str, Any] = {"sentences": [], "figure": None, "table": None, "cards": []}
+    content: dict[str, Any] = {"method": "", "figure": None, "table": None, "cards": []}
     if results.has("uq/outputs.csv", "uq/samples.csv"):
         rows = {row["output"]: row for row in results.csv("uq/outputs.csv")}
         samples = results.csv("uq/samples.csv")
-        content["table"] = _law_table(rows, samples)
-        content["cards"] += _law_cards(rows, samples)
+        content["method"] = (
+            f"All numbers on this screen come from the {results.response} at {len(samples)} samples of the inputs. "
+            "Their intervals hold what the inputs leave open, not the scatter from one surface to the next."
+        )
+        content["table"] = _law_table(results, rows, samples)
+        content["cards"] += _law_cards(results, rows, samples)
     if results.has("uq/sensitivity.csv") and ranking(results.csv("uq/sensitivity.csv"), "d_c_nm"):
         content["cards"].append(_cause_card(results.csv("uq/sensitivity.csv")))
     if results.has("device/switch.json"):
         content["cards"].append(_switch_card(results.json("device/switch.json")))
-    if results.has("device/law.csv"):
+    if results.has("device/law.csv", "device/switch.json", "uq/samples.csv"):
         content["figure"] = law.band(results)
     return content
 
 
-def _law_cards(rows: dict[str, Row], samples: list[Row]) -> list[dict[str, str]]:
+def _law_cards(results: Results, rows: dict[str, Row], samples: list[Row]) -> list[dict[str, str]]:
     closing, opening = (column(samples, f"{branch}_d_c_nm") for branch in ("closing", "opening"))
     d_c, delta = rows["d_c_nm"], rows["delta_d_c_nm"]
     return [
         {
             "title": "Contact begins at",
             "value": f"{show(np.nanmean(closing))} nm",
-            "detail": f"mean separation d_c; 5 to 95 %: {_interval(d_c)} nm; the paper has {show(d_c['paper_mean'])} ± "
-            f"{show(d_c['paper_dev'])} nm",
+            "detail": f"mean separation d_c; 5 to 95 %: {_interval(d_c)} nm{_beside(d_c, results)}",
         },
         {
             "title": "Hysteresis",
             "value": f"{show(np.nanmean(opening - closing))} nm",
-            "detail": f"shift of contact on opening; 5 to 95 %: {_interval(delta)} nm; the paper has "
-            f"{show(delta['paper_mean'])} ± {show(delta['paper_dev'])} nm",
+            "detail": f"shift of contact on opening; 5 to 95 %: {_interval(delta)} nm{_beside(delta, results)}",
         },
     ]
 
@@ -83,7 +85,7 @@ def _switch_card(switch: dict[str, Any]) -> dict[str, str]:
     return {"title": "Release", "value": value, "detail": detail}
 
 
-def _law_table(rows: dict[str, Row], samples: list[Row]) -> Table:
+def _law_table(results: Results, rows: dict[str, Row], samples: list[Row]) -> Table:
     lines = []
     for name, meaning in MEANINGS.items():
         symbol, unit, factor = OUTPUTS[name]
@@ -93,15 +95,20 @@ def _law_table(rows: dict[str, Row], samples: list[Row]) -> Table:
             values = values[np.isfinite(values)]
             low, high = np.quantile(values, [0.05, 0.95])
             cells.append(f"{show(values.mean())} [{show(low)}, {show(high)}]")
-        paper = rows[name]
-        cells.append(f"{show(number(paper['paper_mean']) * factor)} ± {show(number(paper['paper_dev']) * factor)}")
+        if results.beside_paper:
+            mean, dev = (number(rows[name][f"paper_{key}"]) * factor for key in ("mean", "dev"))
+            cells.append(f"{show(mean)} ± {show(dev)}")
         lines.append(cells)
     return Table(
         "The force–separation law: mean and 5 to 95 % interval over all uncertain inputs",
-        ("parameter", "closing", "opening", "paper, closing (mean ± dev)"),
+        ("parameter", "closing", "opening", *(["paper, closing (mean ± dev)"] if results.beside_paper else [])),
         lines,
     )
 
 
 def _interval(row: Row) -> str:
     return f"{show(row['response_q05'])} to {show(row['response_q95'])}"
+
+
+def _beside(row: Row, results: Results) -> str:
+    return f"; the paper has {show(row['paper_mean'])} ± {show(row['paper_dev'])} nm" if results.beside_paper else ""

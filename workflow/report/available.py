@@ -20,9 +20,15 @@ class Results:
     that happens to lie beside them.
     """
 
-    def __init__(self, root: str | Path, paths: Iterable[str | Path]) -> None:
+    def __init__(self, root: str | Path, paths: Iterable[str | Path], scene: str) -> None:
         self.root = Path(root)
+        self.scene = scene
         self.paths = {Path(path).relative_to(self.root).as_posix() for path in map(Path, paths)}
+
+    @property
+    def beside_paper(self) -> bool:
+        """Whether the page compares with the paper: only the scene that repeats the paper does."""
+        return self.scene == "paper"
 
     def has(self, *names: str) -> bool:
         """Are all these files there?"""
@@ -47,15 +53,27 @@ class Results:
         """Groups, root attributes and group attributes of an HDF5 file."""
         return read_h5(self.root / name)
 
-    def origin_of(self, stage: str) -> str:
-        """Badge of a stage: computed, and whether an input of this scene really comes from it."""
+    @property
+    def response(self) -> str:
+        """Name of the method behind samples, explorer and switch."""
+        method = self.json("uq/surrogate.json")["method"] if self.has("uq/surrogate.json") else ""
+        return f"response ({method}; mean over random surfaces)" if method else "response"
+
+    def uses(self, stage: str) -> bool:
+        """Whether an input of this scene comes from the stage."""
         rows = self.csv("inputs.csv") if self.has("inputs.csv") else []
-        used = any(row["origin"] == stage for row in rows)
-        return COMPUTED if used else f"{COMPUTED}, not used: inputs are {LITERATURE}"
+        return any(row["origin"] == stage for row in rows)
+
+    def origin_of(self, stage: str) -> str:
+        """Badge of a stage: computed, and whether this scene uses it."""
+        return COMPUTED if self.uses(stage) else f"{COMPUTED}, not used: inputs are {LITERATURE}"
 
     def gate_of(self, stage: str, name: str) -> list[Gate]:
-        """Gate that a stage wrote into its JSON file."""
+        """Gate that a stage wrote into its JSON file, with what it means for this scene."""
         if not self.has(name):
             return []
-        gate = self.json(name).get("gate", {})
-        return [Gate(stage, bool(gate.get("passed")), tuple(gate.get("reasons", ())))]
+        gate, used = self.json(name).get("gate", {}), self.uses(stage)
+        reasons = [*gate.get("reasons", ())]
+        if not used:
+            reasons.append("No input of this scene comes from here, so no other number on this page depends on it.")
+        return [Gate(stage, bool(gate.get("passed")), reasons, used)]

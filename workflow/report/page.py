@@ -34,6 +34,8 @@ class Gate:
     stage: str
     passed: bool
     reasons: Sequence[str] = ()
+    used: bool = True
+    """Whether anything else on the page depends on the stage."""
 
 
 @dataclass
@@ -65,6 +67,7 @@ class Page:
     """All that the template needs."""
 
     scene: str
+    beside_paper: bool
     answer: dict[str, Any]
     sections: Sequence[Section]
     gates: Sequence[Gate]

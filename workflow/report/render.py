@@ -10,7 +10,7 @@ from workflow.report.answer import answer
 from workflow.report.available import Results
 from workflow.report.drawing import SUBSCRIPT
 from workflow.report.explorer import explorer, script_json
-from workflow.report.limits import LIMITS
+from workflow.report.limits import limits
 from workflow.report.page import Page, kind
 from workflow.report.stages import STAGES
 from workflow.report.studies import studies
@@ -18,16 +18,17 @@ from workflow.report.studies import studies
 HERE = Path(__file__).parent
 
 
-def render(results: Results, scene: str) -> str:
+def render(results: Results) -> str:
     """HTML of the report; sections appear only for results that exist."""
     sections = [section for stage in STAGES if (section := stage.describe(results))] + studies(results)
     sliders = explorer(results)
     page = Page(
-        scene=scene,
+        scene=results.scene,
+        beside_paper=results.beside_paper,
         answer=answer(results),
         sections=sections,
         gates=[gate for section in sections for gate in section.gates],
-        limits=LIMITS,
+        limits=limits(results),
         provenance=_provenance(results),
         explorer=sliders,
     )

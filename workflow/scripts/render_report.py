@@ -11,4 +11,4 @@ from workflow.results import write_text
 with job(snakemake) as run:
     shown = [path for path in snakemake.input if path not in set(snakemake.input.style)]
     shown += snakemake.params.studies
-    write_text(snakemake.output[0], render(Results(snakemake.params.root, shown), snakemake.params.scene))
+    write_text(snakemake.output[0], render(Results(snakemake.params.root, shown, snakemake.params.scene)))

@@ -57,7 +57,8 @@ def describe(results: Results) -> Section | None:
         if key in reading
     ]
     if used:
-        section.blocks.append(Table("Readings of the paper in use", ("reading", "value"), used))
+        caption = "Readings of the paper in use" if results.beside_paper else "Choices of the contact model"
+        section.blocks.append(Table(caption, ("choice", "value"), used))
     section.files += ["curves/nominal.h5", "law/nominal.csv"]
     section.gates += [_gate(results), *law.gates(results)]
     return section

@@ -35,8 +35,12 @@ def describe(results: Results) -> Section | None:
     )
     section.add(
         hardness_size(results),
-        "Hardness against contact length. Grey: the range that the paper's Table 1 spans; crosses: the "
-        "two values its text gives.",
+        "Hardness against contact length."
+        + (
+            " Grey: the range that the paper's Table 1 spans; crosses: the two values its text gives."
+            if results.beside_paper
+            else ""
+        ),
         "Figure 8",
     )
     section.add(
@@ -114,7 +118,7 @@ def contact_stress(results: Results) -> str | None:
 
 
 def hardness_size(results: Results) -> str | None:
-    """Figure 8: hardness against contact length, with the fit and the paper's two stated values."""
+    """Figure 8: hardness against contact length, with the fit."""
     points = results.csv("hardness/points.csv")
     fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
 
@@ -136,27 +140,20 @@ def hardness_size(results: Results) -> str | None:
             )
             axis.fill_between(length, low, high, color=GREEN, alpha=0.18, linewidth=0)
             axis.plot(length, middle, color=GREEN, label="H_macro + H′/√L in use, 68 %")
-        length = np.linspace(1.5, 20, 200)
-        axis.fill_between(
-            length,
-            0.7 + 1.95 / np.sqrt(length),
-            3.2 + 14.8 / np.sqrt(length),
-            color=SOFT,
-            alpha=0.13,
-            linewidth=0,
-        )
-        axis.plot(
-            *zip(*PAPER_HARDNESS, strict=True),
-            "x",
-            color=INK,
-            markersize=8,
-            label="paper, values in its text",
-        )
-        axis.fill_between([], [], [], color=SOFT, alpha=0.3, label="paper, range of its Table 1")
+        if results.beside_paper:
+            _draw_paper(axis)
         axis.set(xlabel="contact length √A (nm)", ylabel="hardness (GPa)", ylim=(0, None), xlim=(1, 20))
         axis.legend(fontsize=8.5)
 
     return draw("fig8", "Hardness of single asperities against contact length", plot)
+
+
+def _draw_paper(axis) -> None:
+    length = np.linspace(1.5, 20, 200)
+    low, high = 0.7 + 1.95 / np.sqrt(length), 3.2 + 14.8 / np.sqrt(length)
+    axis.fill_between(length, low, high, color=SOFT, alpha=0.13, linewidth=0)
+    axis.plot(*zip(*PAPER_HARDNESS, strict=True), "x", color=INK, markersize=8, label="paper, values in its text")
+    axis.fill_between([], [], [], color=SOFT, alpha=0.3, label="paper, range of its Table 1")
 
 
 def contact_pictures(results: Results) -> str | None:

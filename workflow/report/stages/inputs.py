@@ -1,4 +1,4 @@
-"""Inputs in use: the paper's Table 1."""
+"""Inputs in use, as the paper's Table 1."""
 
 from workflow.report.available import Results, Row
 from workflow.report.numbers import SYMBOLS, number, show
@@ -27,7 +27,7 @@ def describe(results: Results) -> Section | None:
     ]
     section.blocks.append(
         Table(
-            "Inputs in use (the paper's Table 1)",
+            "Inputs in use (the paper's Table 1)" if results.beside_paper else "Inputs in use",
             ("input", "unit", "distribution", "origin", "source"),
             lines,
         )

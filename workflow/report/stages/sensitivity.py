@@ -17,7 +17,8 @@ def describe(results: Results) -> Section | None:
     section = Section(
         "sensitivity",
         "What matters",
-        "Mean elementary effect µ* of every input over its full range, beside the paper's Table 3.",
+        "Mean elementary effect µ* of every input over its full range"
+        + (", beside the paper's Table 3." if results.beside_paper else "."),
         COMPUTED,
     )
     outputs = [name for name in OUTPUTS if any(row["output"] == name for row in rows)]
@@ -29,20 +30,23 @@ def describe(results: Results) -> Section | None:
             factor = OUTPUTS[output][2]
             row = part.get((output, name), {})
             ours, paper = number(row.get("mu_star")) * factor, number(row.get("paper_mu_star")) * factor
-            cells.append(f"{show(ours, 2)} ({show(paper, 2)})")
+            cells.append(f"{show(ours, 2)} ({show(paper, 2)})" if results.beside_paper else show(ours, 2))
         lines.append(cells)
     header = ("input", *(f"{OUTPUTS[name][0]} ({OUTPUTS[name][1]})" for name in outputs))
-    section.blocks.append(Table("Elementary effects µ* here (and in the paper)", header, lines))
+    section.blocks.append(
+        Table("Elementary effects µ*" + " here (and in the paper)" * results.beside_paper, header, lines)
+    )
     section.add(
         sensitivity_bars(results),
         "The same as bars; lines: scatter over surfaces.",
         "Table 3",
         wide=True,
     )
-    section.notes.append(
-        "For the closing columns C_a and C_r the paper's Table 3 is read with its two labels exchanged, "
-        "the only reading consistent with its Table 2."
-    )
+    if results.beside_paper:
+        section.notes.append(
+            "For the closing columns C_a and C_r the paper's Table 3 is read with its two labels exchanged, "
+            "the only reading consistent with its Table 2."
+        )
     section.files.append("uq/sensitivity.csv")
     return section
 
@@ -62,7 +66,7 @@ def ranking(rows: list[Row], output: str) -> list[tuple[str, float]]:
 
 
 def sensitivity_bars(results: Results) -> str:
-    """Table 3 as bars: elementary effects relative to the largest of each output, ours and the paper's."""
+    """Table 3 as bars: elementary effects of each output."""
     rows = results.csv("uq/sensitivity.csv")
     names = [name for name in OUTPUTS if any(row["output"] == name for row in rows)]
     inputs = list(dict.fromkeys(row["input"] for row in rows))
@@ -76,12 +80,16 @@ def sensitivity_bars(results: Results) -> str:
             spread = np.array([number(part[key].get("mu_star_seed_sd")) for key in inputs]) * factor
             paper = np.array([number(part[key].get("paper_mu_star")) for key in inputs]) * factor
             bars = {"xerr": np.nan_to_num(spread), "error_kw": {"ecolor": SOFT, "elinewidth": 1}}
-            axis.barh(places - 0.2, ours, 0.38, color=BLUE, label="here", **bars)
-            axis.barh(places + 0.2, np.nan_to_num(paper), 0.38, color=ORANGE, label="paper")
+            if results.beside_paper:
+                axis.barh(places - 0.2, ours, 0.38, color=BLUE, label="here", **bars)
+                axis.barh(places + 0.2, np.nan_to_num(paper), 0.38, color=ORANGE, label="paper")
+            else:
+                axis.barh(places, ours, 0.6, color=BLUE, **bars)
             axis.set(title=f"{symbol} ({unit})", yticks=places, ylim=(len(inputs) - 0.5, -0.5))
             axis.set_yticklabels([SYMBOLS.get(key, key) for key in inputs])
             axis.grid(axis="y", visible=False)
             axis.set_xlim(left=0)
-        axes[0].legend(fontsize=8)
+        if results.beside_paper:
+            axes[0].legend(fontsize=8)
 
     return draw("table3fig", "Elementary effects of each input on each output", plot, (9.8, 5.6), 4, 2, sharey=True)

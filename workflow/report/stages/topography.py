@@ -60,11 +60,12 @@ def describe(results: Results) -> Section | None:
                 _pair(estimate.get("interval")),
                 _pair(estimate.get("scatter")),
                 show(true) if true is not None else "–",
-                paper.get(name, "–"),
+                *([paper.get(name, "–")] if results.beside_paper else []),
             )
         )
     if lines:
-        header = ("parameter", "unit", "estimate", "interval", "scatter of scans", "truth", "paper")
+        header = ("parameter", "unit", "estimate", "interval", "scatter of scans", "truth")
+        header += ("paper",) if results.beside_paper else ()
         section.blocks.append(Table("Roughness parameters", header, lines))
     section.files += ["topography/spectra.h5", "topography/parameters.json"]
     if results.has("law/scans.csv"):
@@ -122,7 +123,7 @@ def spectra(results: Results) -> str | None:
         return None
     styles = {
         "likelihood": ("fit of eq. 9 (maximum likelihood)", BLUE, "-"),
-        "lines": ("line fits as in the paper", GREEN, "-"),
+        "lines": ("line fits", GREEN, "-"),
         "shallow_bound": ("bounding slopes", RED, "--"),
         "steep_bound": (None, RED, "--"),
         "plateau_low": ("bounding plateaus", PURPLE, ":"),

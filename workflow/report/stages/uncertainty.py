@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from workflow.report.available import Results
+from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, GREEN, ORANGE, SKY, SOFT, draw
 from workflow.report.numbers import OUTPUTS, column, number, show
 from workflow.report.page import COMPUTED, Section, Table
@@ -13,60 +13,34 @@ def describe(results: Results) -> Section | None:
     if not results.has("uq/outputs.csv", "uq/samples.csv"):
         return None
     rows = {row["output"]: row for row in results.csv("uq/outputs.csv")}
+    paper = results.beside_paper
     section = Section(
         "uncertainty",
         "Uncertainty of the law",
-        "The distributions of the inputs sent through responses of the contact model, beside the paper's Table 2.",
+        f"The distributions of the inputs sent through the {results.response}, which is also behind the first screen, "
+        "the explorer and the switch."
+        + " Beside it the paper's method, a plane through 2n + 1 runs of each surface, and its Table 2."
+        * paper,
         COMPUTED,
     )
-    lines = []
-    for name, (symbol, unit, factor) in OUTPUTS.items():
-        if name not in rows:
-            continue
-        row = rows[name]
-        values = {key: number(row.get(key)) * factor for key in row if key not in ("output", "unit")}
-        exchanged = ""
-        if values.get("paper_mean_exchanged", values["paper_mean"]) != values["paper_mean"]:
-            exchanged = f"{show(values['paper_mean_exchanged'])} ± {show(values['paper_dev_exchanged'])}"
-        lines.append(
-            (
-                f"{symbol} ({unit})",
-                f"{show(values['mean'])} ± {show(values['dev'])}",
-                f"{show(values['paper_mean'])} ± {show(values['paper_dev'])}",
-                exchanged or "–",
-                show(number(row.get("mean_difference_in_seed_sd"))),
-                show(values.get("centre")),
-                show(values.get("centre_seed_sd")),
-                f"{number(row.get('seed_share')):.0%}" if np.isfinite(number(row.get("seed_share"))) else "–",
-            )
-        )
-    header = (
-        "output",
-        "here (mean ± dev)",
-        "paper",
-        "paper, labels exchanged",
-        "mean less the paper's, in scatters of one surface",
-        "at central inputs",
-        "its scatter over surfaces",
-        "surface's share of variance",
-    )
-    section.blocks.append(
-        Table("Law parameters on closing and their change on opening (the paper's Table 2)", header, lines)
-    )
+    header, lines = _table2(rows, paper)
+    caption = "Law parameters on closing and their change on opening"
+    section.blocks.append(Table(caption + " (the paper's Table 2)" * paper, header, lines))
     section.add(
         output_distributions(results),
-        "Distributions of the outputs; circles: mean and deviation here, diamonds: in the paper.",
+        "Distributions of the outputs by the response; circles: their mean and deviation"
+        + ("; squares: those of the paper's method here; diamonds: those the paper states." if paper else "."),
         "Table 2",
         wide=True,
     )
-    if results.has("uq/ratios.csv") and results.csv("uq/ratios.csv"):
+    if paper and results.has("uq/ratios.csv") and results.csv("uq/ratios.csv"):
         header = ("quantity", "from", "here", "scatter of one surface", "paper")
         keys = ("value", "seed_sd", "paper")
         ratios = [
             (row["quantity"], row["from"], *(show(number(row[key])) for key in keys))
             for row in results.csv("uq/ratios.csv")
         ]
-        section.blocks.append(Table("Numbers per RMS roughness", header, ratios))
+        section.blocks.append(Table("Numbers per RMS roughness, by the paper's method", header, ratios))
         section.files.append("uq/ratios.csv")
         section.notes.append(
             "The readings of the contact model and the definition of d_c were chosen by their nearness to the paper's "
@@ -82,8 +56,33 @@ def describe(results: Results) -> Section | None:
     return section
 
 
+def _table2(rows: dict[str, Row], paper: bool) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Header and lines of Table 2, each number under the method that gave it."""
+    header = ("output", "by the response (mean ± dev)")
+    if paper:
+        header += ("by the paper's method, here", "the paper", "the paper, labels exchanged")
+        header += ("paper's method less the paper, in scatters of one surface",)
+    header += ("runs at central inputs, mean over surfaces", "their scatter", "surface's share of variance")
+    lines = []
+    for name, (symbol, unit, factor) in OUTPUTS.items():
+        if name not in rows:
+            continue
+        row = rows[name]
+        shown = {key: show(number(value) * factor) for key, value in row.items() if key not in ("output", "unit")}
+        cells = [f"{symbol} ({unit})", f"{shown['response_mean']} ± {shown['response_dev']}"]
+        if paper:
+            exchanged = f"{shown['paper_mean_exchanged']} ± {shown['paper_dev_exchanged']}"
+            printed = f"{shown['paper_mean']} ± {shown['paper_dev']}"
+            cells += [f"{shown['mean']} ± {shown['dev']}", printed, exchanged if exchanged != printed else "–"]
+            cells.append(show(row["mean_difference_in_seed_sd"]))
+        share = number(row["seed_share"])
+        cells += [shown["centre"], shown["centre_seed_sd"], f"{share:.0%}" if np.isfinite(share) else "–"]
+        lines.append(tuple(cells))
+    return header, lines
+
+
 def output_distributions(results: Results) -> str:
-    """Closing parameters and their change, with the paper's mean and deviation."""
+    """Closing parameters and their change, with mean and deviation by each method."""
     samples = results.csv("uq/samples.csv")
     table = {row["output"]: row for row in results.csv("uq/outputs.csv")}
     names = [name for name in OUTPUTS if name in table]
@@ -98,18 +97,20 @@ def output_distributions(results: Results) -> str:
             values = values[np.isfinite(values)] * factor
             low, high = np.quantile(values, [0.002, 0.998])
             axis.hist(values, bins=50, range=(low, high), density=True, color=BLUE, alpha=0.55, linewidth=0)
-            mean, dev = (number(table[name][f"paper_{key}"]) * factor for key in ("mean", "dev"))
             height = axis.get_ylim()[1]
-            if np.isfinite(mean):
-                axis.errorbar(mean, 1.08 * height, xerr=dev, fmt="D", color=ORANGE, markersize=4, capsize=3)
-            own_mean, own_dev = (number(table[name][key]) * factor for key in ("mean", "dev"))
-            axis.errorbar(own_mean, 1.2 * height, xerr=own_dev, fmt="o", color=BLUE, markersize=4, capsize=3)
-            axis.set(ylim=(0, 1.3 * height), yticks=[], xlabel=f"{symbol} ({unit})")
+            marks = [("response_mean", "response_dev", "o", BLUE)]
+            if results.beside_paper:
+                marks += [("mean", "dev", "s", GREEN), ("paper_mean", "paper_dev", "D", ORANGE)]
+            for level, (centre, width, marker, color) in enumerate(marks):
+                mean, dev = (number(table[name][key]) * factor for key in (centre, width))
+                place = (1.06 + 0.11 * level) * height
+                axis.errorbar(mean, place, xerr=dev, fmt=marker, color=color, markersize=4, capsize=3)
+            axis.set(ylim=(0, (1.08 + 0.11 * len(marks)) * height), yticks=[], xlabel=f"{symbol} ({unit})")
             axis.grid(False)
 
     return draw(
         "table2fig",
-        "Distributions of the eight outputs beside the paper's mean and deviation",
+        "Distributions of the eight outputs with mean and deviation",
         plot,
         (9.4, 4.4),
         4,
