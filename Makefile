@@ -24,6 +24,7 @@ lint: setup
 	$(RUN) ruff check .
 	$(RUN) snakefmt --check Snakefile workflow
 	$(RUN) pyright
+	$(RUN) lint-imports --no-cache
 
 setup: .venv/.asperity-ready
 

@@ -59,7 +59,7 @@ def floor(pixels: int) -> np.ndarray:
 
 def plain(heights: np.ndarray, cycle: Cycle, settings: ContactSettings) -> np.ndarray:
     """Forces of the plain NumPy/SciPy model at the separations of a cycle; columns repulsion, attraction."""
-    from tests.reference import plain_contact
+    from benchmarks import plain_contact
 
     elastic = settings.model_copy(update={"model": "elastic"})
     there, flowed = plain_contact.walk(heights, cycle.closing.separation_nm, MIDDLE, settings)

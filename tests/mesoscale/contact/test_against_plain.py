@@ -1,13 +1,13 @@
-"""The engine against the plain implementation of the model (tests/reference/plain_contact.py)."""
+"""The engine against the plain implementation of the model (benchmarks/plain_contact.py)."""
 
 import numpy as np
 import pytest
 
+from benchmarks import plain_contact
 from mesoscale.contact.engine import Contact
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
-from tests.reference import plain_contact
 
 INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0)
 READINGS = {

@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
 
+from benchmarks import plain_contact
 from mesoscale.contact import run_cycle
 from mesoscale.contact.engine import Contact
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
-from tests.reference import plain_contact
 
 INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.05, hurst=0.75, rms=4.0)
 

@@ -10,9 +10,9 @@ from pydantic import ValidationError
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import UNITS, collect, from_rows, to_rows
 from mesoscale.settings import Correlation, InputRow, InputsSettings
-from workflow.scene import load_scene
+from tests.mesoscale import paper
 
-PAPER = load_scene("paper").inputs
+PAPER = paper.INPUTS
 TABLE_1 = Path(__file__).parents[3] / "config" / "paper" / "table1.csv"
 FILES = {
     "hardness": "hardness/fit.json",

@@ -13,10 +13,10 @@ from mesoscale.uncertainty.paper_tables import table2, table3
 from mesoscale.uncertainty.runs import OUTPUTS, short_name
 from mesoscale.uncertainty.studies.audit import LAW_READINGS, MISPRINT, rank, with_reading
 from mesoscale.uncertainty.studies.readings import audited_readings, contact_readings
-from workflow.scene import load_scene
+from tests.mesoscale import paper
 
 PAPER = Path(__file__).parents[3] / "config" / "paper"
-TABLE = collect(load_scene("paper").inputs, {}, {}, 0.999)
+TABLE = collect(paper.INPUTS, {}, {}, 0.999)
 
 
 def paper_rows(name):
@@ -86,7 +86,7 @@ def test_the_default_is_the_reading_that_the_audit_puts_first():
         first = next(csv.DictReader(stream))
     for contact, law in (
         (ContactSettings(), LawSettings()),
-        (load_scene("paper").contact, load_scene("paper").law),
+        (paper.CONTACT, paper.LAW),
     ):
         assert with_reading(first["contact"], contact) == contact
         assert law.model_copy(update=LAW_READINGS[first["law"]]) == law

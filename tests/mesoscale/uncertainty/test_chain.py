@@ -10,9 +10,9 @@ from mesoscale.uncertainty.propagation import NodeOutputs, propagate
 from mesoscale.uncertainty.runs import compute_rows
 from mesoscale.uncertainty.sensitivity import sensitivity_rows
 from mesoscale.uncertainty.validation import read_direct_runs
-from workflow.scene import load_scene
+from tests.mesoscale import paper
 
-PAPER = load_scene("paper").inputs
+PAPER = paper.INPUTS
 CONTACT = ContactSettings(pixels=64)
 
 

@@ -9,9 +9,9 @@ from mesoscale.uncertainty.chunks import full_chunks
 from mesoscale.uncertainty.designs import DESIGNS, morris_runs, random_runs, replicate_runs
 from mesoscale.uncertainty.morris import trajectory_effects, trajectory_points
 from mesoscale.uncertainty.studies.overhead import workload
-from workflow.scene import load_scene
+from tests.mesoscale import paper
 
-PAPER = collect(load_scene("paper").inputs, {}, {}, 0.999)
+PAPER = collect(paper.INPUTS, {}, {}, 0.999)
 SETTINGS = UncertaintySettings()
 
 

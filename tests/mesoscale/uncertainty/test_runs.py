@@ -11,9 +11,9 @@ from mesoscale.uncertainty import runs as runs_module
 from mesoscale.uncertainty.designs import Run, collocation_runs, random_runs
 from mesoscale.uncertainty.propagation import RESPONSES
 from mesoscale.uncertainty.runs import compute, compute_all, compute_rows
-from workflow.scene import load_scene
+from tests.mesoscale import paper
 
-PAPER = collect(load_scene("paper").inputs, {}, {}, 0.999)
+PAPER = collect(paper.INPUTS, {}, {}, 0.999)
 CONTACT = ContactSettings(pixels=64)
 CENTRE = collocation_runs(PAPER, UncertaintySettings(), 0, 1)[0].values
 

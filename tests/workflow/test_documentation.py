@@ -14,7 +14,7 @@ from mesoscale.uncertainty.propagation import RESPONSES, NodeOutputs, propagate,
 from workflow.results import write_json
 from workflow.scene import load_scene
 
-PAGE = Path(__file__).parents[3] / "docs" / "uncertainty.md"
+PAGE = Path(__file__).parents[2] / "docs" / "uncertainty.md"
 
 
 def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):
