@@ -1,0 +1,124 @@
+"""Compare two folders of results: `python -m workflow.compare results/before results/after`.
+
+Prints one line for each file that differs and exits 1 if any does. Provenance (versions, input hashes, git commit)
+and machine times do not count. Logs, work folders and the report page, which is drawn from the other files and shows
+their times, are left out.
+"""
+
+import argparse
+import csv
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import yaml
+
+from workflow.job import without_machine_times
+
+LEFT_OUT = ("logs", "work", "report.html")  # first part of a path below the folder
+PROVENANCE = {"provenance", "schema_version", "rule", "inputs_hash", "versions", "git_commit"}
+LINKS = {"DIMENSION_LIST", "REFERENCE_LIST"}  # addresses inside an HDF5 file
+
+
+def differences(first: Path, second: Path) -> Iterator[str]:
+    """One line for each result file that two folders do not share, or share with other content."""
+    names = [_result_files(folder) for folder in (first, second)]
+    for name in sorted(names[0] | names[1]):
+        if not all(name in present for present in names):
+            yield f"{name}: only in {first if name in names[0] else second}"
+            continue
+        contents = [content(folder / name) for folder in (first, second)]
+        if found := first_difference(*contents):
+            yield f"{name}: {found}"
+
+
+def _result_files(folder: Path) -> set[str]:
+    files = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
+    # hidden: locks and files that are being written
+    return {str(path) for path in files if path.parts[0] not in LEFT_OUT and not path.name.startswith(".")}
+
+
+def content(path: Path) -> Any:
+    """What a result file says, as nested mappings and lists, less its provenance and machine times."""
+    if path.suffix == ".h5":
+        return _h5_content(path)
+    if path.suffix == ".csv":
+        with path.open(encoding="utf-8", newline="") as stream:
+            return without_machine_times(list(csv.DictReader(stream)))
+    if path.suffix == ".json":
+        return _without_provenance(without_machine_times(json.loads(path.read_text(encoding="utf-8"))))
+    if path.suffix == ".yaml":
+        return _without_provenance(yaml.safe_load(path.read_text(encoding="utf-8")))
+    return path.read_bytes()
+
+
+def _h5_content(path: Path) -> dict[str, Any]:
+    with h5py.File(path, "r") as file:
+        items: dict[str, Any] = {"attributes": _without_provenance(dict(file.attrs))}
+
+        def visit(name: str, item: Any) -> None:
+            attributes = {key: value for key, value in item.attrs.items() if key not in LINKS}
+            items[name] = {"attributes": attributes}
+            if isinstance(item, h5py.Dataset):
+                items[name]["values"] = item[()]
+
+        file.visititems(visit)
+    return items
+
+
+def _without_provenance(mapping: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in mapping.items() if key not in PROVENANCE}
+
+
+def first_difference(first: Any, second: Any, place: str = "") -> str:
+    """Where two contents differ first and how, in words; empty where they are the same."""
+    if isinstance(first, dict) and isinstance(second, dict):
+        if list(first) != list(second):
+            gone, new = (
+                ", ".join(sorted(one.keys() - other.keys())) for one, other in ((first, second), (second, first))
+            )
+            return (
+                f"{place} keys in another order" if not gone + new else f"{place} keys gone: {gone:.99}; new: {new:.99}"
+            )
+        pairs = ((f"{place}/{key}", first[key], second[key]) for key in first)
+    elif isinstance(first, list) and isinstance(second, list):
+        if len(first) != len(second):
+            return f"{place} {len(first)} entries | {len(second)} entries".strip()
+        pairs = ((f"{place}[{k}]", *items) for k, items in enumerate(zip(first, second, strict=True)))
+    else:
+        return _value_difference(first, second, place)
+    return next(filter(None, (first_difference(a, b, where) for where, a, b in pairs)), "")
+
+
+def _value_difference(first: Any, second: Any, place: str) -> str:
+    if isinstance(first, bytes) and isinstance(second, bytes):
+        return "" if first == second else f"{place} other bytes".strip()
+    a, b = np.asarray(first), np.asarray(second)
+    equal_values = a.tolist() == b.tolist() if a.dtype == object else a.tobytes() == b.tobytes()
+    if (a.dtype, a.shape) == (b.dtype, b.shape) and equal_values:
+        return ""
+    if a.dtype.kind == b.dtype.kind == "f" and a.shape == b.shape and a.ndim:
+        return f"{place} differs by up to {np.nanmax(np.abs(a - b), initial=0):.3g}"
+    return f"{place} {first!r:.60} | {second!r:.60}"
+
+
+def main() -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog="python -m workflow.compare", description=(__doc__ or "").splitlines()[2])
+    parser.add_argument("first", type=Path)
+    parser.add_argument("second", type=Path)
+    chosen = parser.parse_args()
+    for folder in (chosen.first, chosen.second):
+        if not folder.is_dir():
+            parser.error(f"{folder}: no such folder; give two folders of results")
+    found = list(differences(chosen.first, chosen.second))
+    print("\n".join(found) if found else "no difference beyond provenance and machine times")
+    sys.exit(bool(found))
+
+
+if __name__ == "__main__":
+    main()
