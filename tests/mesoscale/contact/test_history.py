@@ -4,7 +4,6 @@ import itertools
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from mesoscale.contact.history import follow, hardness_factor
 from mesoscale.contact.studies.stability import MIDDLE, violations
@@ -82,7 +81,7 @@ def test_logarithmic_creep_has_its_strength_per_e_fold():
     [({"cycles": 1, "dwell_s": 5}, "creep = none"), ({"cycles": 1, "creep": "power"}, "dwell_s = 0")],
 )
 def test_a_dwell_and_a_creep_law_need_each_other(changes, word):
-    with pytest.raises(ValidationError, match=word):
+    with pytest.raises(InputError, match=word):
         HistorySettings(**changes)
 
 

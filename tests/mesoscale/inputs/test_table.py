@@ -5,11 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import UNITS, collect, from_rows, to_rows
-from mesoscale.settings import Correlation, InputRow, InputsSettings
+from mesoscale.settings import ContactSettings, Correlation, InputRow, InputsSettings
 from tests.mesoscale import paper
 
 PAPER = paper.INPUTS
@@ -131,12 +130,26 @@ def test_eighth_input():
     ],
 )
 def test_mistakes_in_a_row(row, message):
-    with pytest.raises(ValidationError, match=message):
+    with pytest.raises(InputError, match=message):
         InputRow(**row)
 
 
 def test_mistakes_across_rows():
-    with pytest.raises(ValidationError, match="unknown input hardness"):
+    with pytest.raises(InputError, match="unknown input hardness"):
         InputsSettings(correlations=(Correlation(first="rms", second="hardness", rank=0.3),))
-    with pytest.raises(ValidationError, match="q0: origin elastic"):
+    with pytest.raises(InputError, match="q0: origin elastic"):
         InputsSettings(q0=InputRow(origin="elastic"))
+
+
+def test_settings_called_from_python_give_one_line_for_all_mistakes():
+    with pytest.raises(InputError) as refusal:
+        ContactSettings(pixels="many", lenght_nm=3, nominal_seed=1.5)
+    message = str(refusal.value)
+    assert "\n" not in message
+    assert all(word in message for word in ("pixels = 'many'", "lenght_nm = 3", "nominal_seed = 1.5"))
+
+
+def test_help_on_settings_shows_keys_with_default_and_unit():
+    text = ContactSettings.__doc__ or ""
+    assert "length_nm : default 1000.0, nm" in text
+    assert "side of the square, periodic cell" in text
