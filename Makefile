@@ -1,5 +1,5 @@
 # make run [SCENE=reduced|ci|paper|full|path.yaml] [TARGET=law]   set up, then run a scene
-# make test | bench | lint
+# make test | bench | lint | docs
 SCENE ?= reduced
 TARGET ?=
 
@@ -9,7 +9,7 @@ RUN := $(UV) run --locked --no-sync
 # trust the system's certificates, so that set-up works behind a TLS-inspecting proxy
 export UV_SYSTEM_CERTS := 1
 
-.PHONY: run test bench lint setup
+.PHONY: run test bench lint docs setup
 run: setup
 	@$(RUN) snakemake --workflow-profile workflow/profiles/local $(TARGET) --config scene="$(SCENE)"
 
@@ -25,6 +25,12 @@ lint: setup
 	$(RUN) snakefmt --check Snakefile workflow
 	$(RUN) pyright
 	$(RUN) lint-imports --no-cache
+
+docs: setup
+	@$(UV) sync --locked --quiet --inexact --group docs
+	@rm -rf docs/api docs/_build
+	$(RUN) sphinx-build -W --keep-going -q -b html docs docs/_build/html
+	@echo "docs/_build/html/index.html"
 
 setup: .venv/.asperity-ready
 

@@ -1,4 +1,4 @@
-# Names that pyright takes as known everywhere: Snakemake puts `snakemake` into each script.
+# Snakemake puts this name into every script; pyright reads it here.
 from typing import Any
 
 snakemake: Any

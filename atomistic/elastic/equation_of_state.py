@@ -1,10 +1,13 @@
 """Equations of state: bulk modulus and equilibrium volume from E(V), with the checks that make them trustworthy.
 
-Birch–Murnaghan (third order, Phys. Rev. 71, 809 (1947)):
-    E = E0 + (9/16) V0 B0 { (x−1)³ B′ + (x−1)² (6 − 4x) },  x = (V0/V)^{2/3},
-a cubic polynomial in V^{−2/3}, hence one linear least-squares problem with an analytic minimum.
+Birch–Murnaghan (third order, Phys. Rev. 71, 809 (1947)),
 
-Vinet (PRB 35, 1945 (1987)):
+    E = E0 + (9/16) V0 B0 { (x−1)³ B′ + (x−1)² (6 − 4x) },  x = (V0/V)^{2/3},
+
+is a cubic polynomial in V^{−2/3}, hence one linear least-squares problem with an analytic minimum.
+
+Vinet (PRB 35, 1945 (1987)),
+
     E = E0 + (9 B0 V0/c²) { 1 − [1 − c(1−η)] e^{c(1−η)} },  c = 3(B′−1)/2,  η = (V/V0)^{1/3}.
 """
 

@@ -2,7 +2,7 @@
 
 PySCF's multigrid evaluates every pair of Gaussians again in each cycle.  For cells of tens of atoms the orbital
 values on the grid fit into memory (8 B × grid points × orbitals; 0.7 GB for 28 atoms of Si3N4 at 100 Ha), so here
-they are computed once per geometry and everything after that is matrix algebra and FFTs:
+they are computed once per geometry and everything after that is matrix algebra and FFTs::
 
     ρ(r) = Σ_i |Σ_µ C_µi φ_µ(r)|²,   V_µν = Σ_r w φ_µ(r) v(r) φ_ν(r),
     v = v_loc + v_Hartree + ∂f/∂ρ − ∇·(2 ∂f/∂σ ∇ρ),
@@ -223,7 +223,7 @@ def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     pseudo : PySCF's parsed GTH entry
-    g2 : |G|², 1/bohr²; at G = 0 the divergence is left out (it cancels against Hartree and Ewald terms)
+    g2 : squared length of G, 1/bohr²; at G = 0 the divergence is left out (it cancels against Hartree and Ewald terms)
     """
     charge = sum(pseudo[0])
     radius, n, c = pseudo[1:4]

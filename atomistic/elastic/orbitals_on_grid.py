@@ -102,7 +102,7 @@ def collocate(orbitals: list[AtomOrbitals], lattice: np.ndarray, mesh: tuple[int
 def pulay_force(
     atom: AtomOrbitals, lattice: np.ndarray, mesh: tuple[int, int, int], potential_density: np.ndarray
 ) -> np.ndarray:
-    """Sum over grid points and orbitals of ∇φ_µ(r) · `potential_density`_µ(r), shape (3,).
+    """Sum over grid points and orbitals µ of ∇φ_µ(r) times the potential density of µ at r, shape (3,).
 
     Parameters
     ----------

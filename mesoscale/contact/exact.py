@@ -130,7 +130,7 @@ def wave_pressure(x: Real, mean_pressure: Real, amplitude: Real, wavelength: Rea
     """Pressure, GPa, at a place x (nm) of a wave with its crests at x = 0, +-wavelength, ...
 
     p(x) = 2 p* cos(pi x / wavelength) sqrt(sin^2(pi a / wavelength) - sin^2(pi x / wavelength)) in contact,
-    |x| <= a, and 0 outside. Above full contact the surplus is uniform.
+    -a <= x <= a, and 0 outside. Above full contact the surplus is uniform.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def wave_pressure(x: Real, mean_pressure: Real, amplitude: Real, wavelength: Rea
 def wave_gap(x: Real, mean_pressure: Real, amplitude: Real, wavelength: Real, e_star: Real) -> Real:
     """Gap, nm, between a wave and the flat at a place x (nm); crests at x = 0, +-wavelength, ...; 0 in contact.
 
-    With S = |sin(pi x / wavelength)| and s^2 = p/p*: gap = 2 amplitude [S sqrt(S^2 - s^2) - s^2 arccosh(S/s)].
+    With S = abs(sin(pi x / wavelength)) and s^2 = p/p*: gap = 2 amplitude [S sqrt(S^2 - s^2) - s^2 arccosh(S/s)].
     A strip that carries dp more lowers the flat like a punch: outside it the gap falls by
     2 wavelength / (pi E*) arccosh(S/s) dp (potential of a charged arc); the sum over all dp is the line above.
 

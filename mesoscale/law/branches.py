@@ -24,7 +24,7 @@ class Outcome:
     closing: LawFit
     opening: LawFit
     status: str = "ok"
-    """`ok`, `unconverged`, or `failed: why`."""
+    """ok, unconverged, or failed: why."""
 
     @property
     def outputs(self) -> Array:
@@ -80,7 +80,7 @@ def fit_stored(
     cell_area_nm2: float,
     settings: LawSettings,
 ) -> Iterator[dict[str, Any]]:
-    """Rows of law/*.csv for both branches of a stored curve.
+    """Rows of the tables in law/ for both branches of a stored curve.
 
     Parameters
     ----------

@@ -61,9 +61,9 @@ def level1_response(y: Array, ranges: Array) -> Surrogate:
 
 
 def elementary_effects(y: Array, inputs: int) -> Array:
-    """mu* per input, shape (n,): mean |elementary effect| between neighbouring nodes, inputs on [0, 1].
+    """mu* per input, shape (n,): mean size of the elementary effects between neighbouring nodes, inputs on [0, 1].
 
-    |y_0 - y_-| and |y_+ - y_0| over half the range each: mu* = |y_0 - y_-| + |y_+ - y_0|.
+    With the nodes y0 in the middle, y1 and y2 at the ends, half the range apart: mu* = abs(y0 - y1) + abs(y2 - y0).
     """
     lower, upper = y[1::2][:inputs], y[2::2][:inputs]
     return np.abs(y[0] - lower) + np.abs(upper - y[0])

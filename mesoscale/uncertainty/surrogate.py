@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 def legendre(u: Array, highest: int) -> Array:
-    """Legendre polynomials P_0 .. P_highest (P_n(1) = 1), shape (highest + 1, *u.shape)."""
+    """Legendre polynomials P_0 .. P_highest (P_n(1) = 1), shape (highest + 1, ...) with that of u."""
     values = [np.ones_like(u), u]
     for n in range(1, highest):
         values.append(((2 * n + 1) * u * values[n] - n * values[n - 1]) / (n + 1))

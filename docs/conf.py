@@ -1,0 +1,43 @@
+"""The documentation site. `make docs` writes it to docs/_build/html, without network; every warning is an error."""
+
+import importlib.metadata
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+
+project = "Asperity"
+author = copyright = "The Asperity developers"
+release = importlib.metadata.version("asperity-contact")
+
+extensions = ["myst_nb", "sphinx.ext.apidoc", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
+exclude_patterns = ["_build", "conf.py", "api/*/modules.rst"]
+html_theme = "furo"
+html_title = "Asperity"
+default_role = "code"
+myst_heading_anchors = 3
+
+# examples are Python scripts with cells, run while the site is built
+nb_custom_formats = {".py": ["jupytext.reads", {"fmt": "py:percent"}]}
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 120
+
+# the API reference: a page per room and module. Settings have their own page, written from the same classes
+apidoc_modules = [
+    {
+        "path": ROOT / package,
+        "destination": f"api/{package}",
+        "exclude_patterns": [str(ROOT / package / "settings")],
+        "automodule_options": {"members"},
+        "separate_modules": True,
+        "module_first": True,
+    }
+    for package in ("mesoscale", "atomistic")
+]
+autodoc_member_order = "bysource"
+autodoc_typehints_format = "short"
+napoleon_use_ivar = True
+
+suppress_warnings = [
+    "ref.python",  # a short name such as `width` stands for the field at hand, not for a link
+]
