@@ -5,6 +5,7 @@ import hashlib
 import importlib.util
 import json
 import os
+import shlex
 import shutil
 import signal
 import subprocess
@@ -19,6 +20,9 @@ from atomistic.errors import InputError
 
 PROTOCOLS = Path(__file__).parent / "protocols"  # the LAMMPS input scripts
 Progress = Callable[[float, str], None]
+# the environment variable with the command that starts several processes (gets -np N): what a machine runs is the
+# machine's matter, never that of a scene or a data file
+MPI_LAUNCHER = "ASPERITY_MPI_LAUNCHER"
 
 
 @dataclass(frozen=True)
@@ -160,7 +164,6 @@ def run_lammps(
     variables: Mapping[str, object | Sequence[object]],
     on_step: Callable[[int], None] | None = None,
     processes: int = 1,
-    launcher: str = "mpirun",
 ) -> None:
     """Run an input script of `atomistic/protocols` in a workspace.
 
@@ -168,7 +171,7 @@ def run_lammps(
     ----------
     variables : index variables of the script; a sequence becomes a variable with several values.
     on_step : called with the time step of every thermo line.
-    processes : MPI processes; more than one starts LAMMPS under `launcher`.
+    processes : MPI processes; more than one are started by the command in `MPI_LAUNCHER`, by default mpirun.
 
     Raises
     ------
@@ -186,7 +189,8 @@ def run_lammps(
         values = [value] if isinstance(value, (str, int, float)) else list(value)  # type: ignore[call-overload]
         command += ["-var", name, *map(str, values)]
     if processes > 1:
-        command = [*launcher.split(), "-np", str(processes), *command]
+        launcher = shlex.split(os.environ.get(MPI_LAUNCHER, "mpirun"))
+        command = [*launcher, "-np", str(processes), *command]
     log_path = workspace / "log.lammps"
     error_line = ""
     with (

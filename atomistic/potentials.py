@@ -27,6 +27,8 @@ CORE_RADIUS_A = 0.9  # below this every pair must repel; the shortest bond (Si-O
 
 Confidence = Literal["high", "medium", "low"]
 Positive = Annotated[float, Field(gt=0)]
+# names stand in LAMMPS's commands, where $(...), ${...} or a new line would be evaluated
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,19}$")]
 
 
 class _Sourced(Settings):
@@ -75,7 +77,7 @@ class Buckingham(_Sourced):
 class Pair(Settings):
     """All short-range terms between two species."""
 
-    species: tuple[str, str]
+    species: tuple[Name, Name]
     terms: tuple[Annotated[Morse | Power | Buckingham, Field(discriminator="term")], ...] = Field(min_length=1)
 
 
@@ -107,10 +109,10 @@ class Potential(Settings):
     name: str
     description: str
     sources: dict[str, Source]
-    species: dict[str, Species]
+    species: dict[Name, Species]
     coulomb: Coulomb
     cutoff_A: float = Field(ge=4, le=20)
-    materials: dict[str, dict[str, int]]
+    materials: dict[Name, dict[Name, int]]
     pairs: tuple[Pair, ...]
 
     @cached_property
@@ -160,7 +162,7 @@ class Potential(Settings):
         """
         r = np.sqrt(np.linspace(TABLE_START_A**2, self.cutoff_A**2, TABLE_POINTS))
         lines = io.StringIO()
-        lines.write(f"# {self.description}; energies x {energy_scale}; eV, Angstrom\n")
+        lines.write(f"# {' '.join(self.description.split())}; energies x {energy_scale}; eV, Angstrom\n")
         sections = {
             f"{first}_{second}": self.energy_and_force(first, second, r, coulomb)
             for first, second in combinations_with_replacement(elements, 2)
@@ -204,7 +206,7 @@ def load_potential(path: str | Path) -> Potential:
         potential = Potential(**content)
     except ValidationError as error:
         first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
+        where = " ".join(".".join(str(part) for part in first["loc"]).split())
         raise InputError(f"{path}: {where}: {first['msg']} (got {first['input']!r:.80})") from None
     _check(path, potential)
     return potential

@@ -6,13 +6,12 @@ two drift apart.
 
 import difflib
 import json
-import re
+import os
 import types
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
-import yaml
 from annotated_types import Ge, Gt, Le, Lt, MaxLen, MinLen
 from pydantic import BaseModel, Field, ValidationError, model_validator
 from pydantic.fields import FieldInfo
@@ -30,11 +29,13 @@ from mesoscale.settings import (
     UncertaintySettings,
 )
 from workflow.report.settings import ReportSettings
+from workflow.scene_yaml import MistakenYaml, read_mapping
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENES = ROOT / "config" / "scenes"
 DEFAULTS = ROOT / "config" / "config.yaml"
 COMPUTED = ("hardness", "elastic", "topography")
+SHOWN = 60  # characters of a value or key in a message
 
 
 class SceneError(Exception):
@@ -46,7 +47,7 @@ class Scene(Settings):
 
     name: str = Field(
         default="reduced",
-        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$",
+        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,99}$",
         description="name of the scene; results go to results/<name>/ (default: the file's name)",
     )
     compute: tuple[Literal["hardness", "elastic", "topography"], ...] = Field(
@@ -80,24 +81,6 @@ class Scene(Settings):
         return self
 
 
-class _Loader(yaml.SafeLoader):
-    """Safe YAML that also refuses duplicate keys and reads 7e3 as a number (YAML 1.1 reads text)."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        keys = [self.construct_object(key, deep=True) for key, _ in node.value]
-        for key in keys:
-            if keys.count(key) > 1:
-                raise yaml.constructor.ConstructorError(None, None, f"key {key!r} stands twice", node.start_mark)
-        return super().construct_mapping(node, deep)
-
-
-_Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:float",
-    re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$"),
-    list("-+0123456789."),
-)
-
-
 def load_scene(name_or_path: str) -> Scene:
     """Read and validate a scene by name (config/scenes/<name>.yaml) or by the path of a YAML file.
 
@@ -106,44 +89,84 @@ def load_scene(name_or_path: str) -> Scene:
     SceneError : the scene is missing, unreadable or has a mistake; one line per mistake, each naming file,
         key, value and what is accepted.
     """
-    path = _find(str(name_or_path))
+    path = find_scene(str(name_or_path))
     try:
-        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)
-    except (OSError, UnicodeDecodeError) as error:
-        raise SceneError(f"{path}: cannot be read ({error}); give a readable YAML file") from None
-    except yaml.YAMLError as error:
-        raise SceneError(f"{path}: not valid YAML ({' '.join(str(error).split())})") from None
-    if content is None:
-        content = {}
-    if not isinstance(content, dict):
-        raise SceneError(f"{path}: a scene is a mapping of keys to values, not {type(content).__name__}")
+        content = read_mapping(path)
+    except MistakenYaml as error:
+        raise SceneError(f"{path}: {error}") from None
     content.setdefault("name", path.stem)
+    if str(content["name"]) in _shipped() and path.resolve().parent != SCENES:
+        raise SceneError(
+            f"{path}: name = {content['name']}: the name of a shipped scene, whose results it would take; "
+            "choose another (key `name`, or the name of the file)"
+        )
     try:
         # JSON mode: strict types, yet a YAML list may fill a tuple
-        return Scene.model_validate_json(json.dumps(content, default=str), strict=True)
+        return Scene.model_validate_json(json.dumps(content), strict=True)
     except ValidationError as error:
         lines = [_explain(path, item) for item in error.errors()]
         raise SceneError("\n".join(dict.fromkeys(lines))) from None
 
 
-def _find(name_or_path: str) -> Path:
+def find_scene(name_or_path: str) -> Path:
+    """The file of a scene that is given by name or by path.
+
+    Raises
+    ------
+    SceneError : there is none.
+    """
     path = Path(name_or_path)
+    shown = _cut(name_or_path)
     if path.suffix in {".yaml", ".yml"} or len(path.parts) > 1:
-        if not path.is_file():
-            raise SceneError(f"scene={name_or_path}: no such file; give the path of a YAML file or a scene's name")
+        if not os.path.isfile(path):  # unlike Path.is_file, False for a name that is too long
+            raise SceneError(f"scene={shown}: no such file; give the path of a YAML file or a scene's name")
         return path
-    known = {file.stem: file for file in sorted(SCENES.glob("*.yaml"))}
+    known = _shipped()
     if name_or_path not in known:
-        raise SceneError(
-            f"scene={name_or_path}: unknown scene; accepted: {', '.join(known)}, or the path of a YAML file"
-        )
+        raise SceneError(f"scene={shown}: unknown scene; accepted: {', '.join(known)}, or the path of a YAML file")
     return known[name_or_path]
+
+
+def _shipped() -> dict[str, Path]:
+    return {file.stem: file for file in sorted(SCENES.glob("*.yaml"))}
+
+
+def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
+    """Paths of files that a scene names: as seen from here, else beside the scene.
+
+    Parameters
+    ----------
+    scene : name or path of the scene
+    key : under which it names them
+
+    Raises
+    ------
+    SceneError : a file is missing, or its path has braces; one line per file.
+    """
+    found, mistakes = [], []
+    for name in names:
+        places = [name, str(Path(scene).parent / name)]
+        path = next((place for place in places if os.path.isfile(place)), None)
+        if path is None:
+            mistakes.append(f"{scene}: {key} = {_cut(name)}: no such file here or beside the scene; correct the path")
+        elif set(path) & set("{}"):
+            mistakes.append(f"{scene}: {key} = {_cut(path)}: braces mean wildcards to Snakemake; rename the file")
+        else:
+            found.append(path)
+    if mistakes:
+        raise SceneError("\n".join(mistakes))
+    return found
+
+
+def _cut(text: str) -> str:
+    text = " ".join(text.split())
+    return text if len(text) <= SHOWN else text[: SHOWN - 3] + "..."
 
 
 def _explain(path: Path, error: Any) -> str:
     """One line for one pydantic error."""
     location = tuple(part for part in error["loc"] if part != "__root__")
-    key = ".".join(str(part) for part in location)
+    key = ".".join(_cut(str(part)) for part in location)
     if error["type"] == "extra_forbidden":
         owner = _model_at(location[:-1])
         known = list(owner.model_fields) if owner else []
@@ -152,8 +175,9 @@ def _explain(path: Path, error: Any) -> str:
         return f"{path}: {key}: unknown key{hint} (accepted: {', '.join(known)})"
     field = _field_at(location)
     accepted = accepted_values(field) if field else error["msg"]
-    value = json.dumps(error["input"], ensure_ascii=False, default=str)
-    value = value if len(value) <= 60 else value[:57] + "..."
+    value = _cut(json.dumps(error["input"], ensure_ascii=False, default=str))
+    if error["type"] == "json_invalid":
+        return f"{path}: holds text that is no Unicode (half of a surrogate pair); write the character itself"
     if error["type"] == "value_error":
         return f"{path}: {key + ': ' if key else ''}{error['msg'].removeprefix('Value error, ')}"
     return f"{path}: {key} = {value}: accepted is {accepted}"
@@ -202,6 +226,8 @@ def accepted_values(field: FieldInfo) -> str:
     if bounds := _bounds(field.metadata):
         # bounds of a list stand apart from those of its entries
         words += f"{';' if get_origin(annotation) in (tuple, list) else ''} {bounds}"
+    if annotation is str:
+        words = words.replace(" entries", " characters")
     if annotation is not field.annotation:
         words += ", or null"
     return words

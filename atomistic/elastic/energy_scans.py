@@ -21,12 +21,6 @@ from atomistic.settings import DftSettings
 
 Progress = Callable[[float, str], None]
 ENGINES_OF_ASE = ("espresso", "vasp", "abinit", "cp2k", "gpaw", "siesta")
-FORBIDDEN_PARAMETERS = (
-    "command",
-    "profile",
-    "binary",
-    "executable",
-)  # a scene must not be able to start programs
 
 
 def make_calculator(
@@ -56,12 +50,6 @@ def make_calculator(
             max_cycles=dft.max_cycles,
             numerics=dft.numerics,
         )
-    for key in FORBIDDEN_PARAMETERS:
-        if key in dft.parameters:
-            raise InputError(
-                f"elastic.dft.parameters.{key}: a scene may not name programs; configure them in ASE's own "
-                "configuration file (ase.readthedocs.io, 'Calculator configuration')"
-            )
     from ase.calculators.calculator import get_calculator_class
 
     try:

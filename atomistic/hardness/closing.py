@@ -179,7 +179,7 @@ def run_closing(
             "segment": range(done + 1, plan.segments + plan.back + 1),
             "previous": range(done, plan.segments + plan.back),
         }
-        run_lammps("closing.in", workspace, variables, on_step, closing.processes, closing.launcher)
+        run_lammps("closing.in", workspace, variables, on_step, closing.processes)
     relaxed = range(1, plan.segments + plan.back + 1)
     if missing := [n for n in relaxed if not (workspace / f"relaxed.{n}").exists()]:
         run_lammps("relax.in", workspace, {"pairs": "pairs", "segment": missing})
@@ -284,7 +284,7 @@ def _prepare(
             "to": [hot, closing.temperature_K][done:],
             "steps": [plan.anneal_steps] * (2 - done),
         }
-        run_lammps("anneal.in", workspace, variables, on_step, closing.processes, closing.launcher)
+        run_lammps("anneal.in", workspace, variables, on_step, closing.processes)
     annealed = read_data(workspace / "annealed.data", glass.elements)
     kept = remove_strays(annealed, formula_of(glass))
     return with_vacuum(kept, float(annealed.cell_A[2]))

@@ -2,9 +2,10 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field, field_validator, model_validator
 
 from atomistic.settings.base import Settings
+from atomistic.settings.engines import refused_parameter
 
 
 class NitrideGlassSettings(Settings):
@@ -45,13 +46,15 @@ class DftSettings(Settings):
         description="pyscf (built in), or an ASE calculator configured in your own ASE configuration file",
     )
     parameters: dict[str, str | float | int | bool | dict[str, str | float | int | bool]] = Field(
-        default={}, description="keyword parameters of an ASE calculator other than pyscf; no commands"
+        default={},
+        description="keyword parameters of an ASE calculator other than pyscf: those of the physics "
+        "(atomistic/settings/engines.py), no commands, no folders",
     )
     numerics: Literal["cached-grid", "multigrid", "fftdf"] = Field(
         default="cached-grid", description="how PySCF's potential is evaluated: ours (fast), or one of its own"
     )
     basis: str = Field(
-        default="gth-dzvp-molopt-sr", pattern=r"^[a-z0-9-]+$", description="GTH basis set by PySCF's name"
+        default="gth-dzvp-molopt-sr", pattern=r"^[a-z0-9-]{1,60}$", description="GTH basis set by PySCF's name"
     )
     cutoff_Ha: float = Field(
         default=100,
@@ -71,13 +74,19 @@ class DftSettings(Settings):
         default=50, ge=1, le=1000, description="SCF cycles before giving up", json_schema_extra={"unit": "1"}
     )
 
+    @model_validator(mode="after")
+    def _only_physics(self) -> "DftSettings":
+        if mistake := refused_parameter(self.engine, self.parameters):
+            raise ValueError(mistake)
+        return self
+
 
 class RelaxationSettings(Settings):
     """Relaxation of the ions of a glass by DFT before its E(V) scan."""
 
     basis: str = Field(
         default="gth-dzvp-molopt-sr",
-        pattern=r"^[a-z0-9-]+$",
+        pattern=r"^[a-z0-9-]{1,60}$",
         description="GTH basis set during relaxation, by PySCF's name",
     )
     cutoff_Ha: float = Field(
@@ -114,12 +123,12 @@ class ElasticSettings(Settings):
 
     material: str = Field(
         default="silicon_nitride",
-        pattern=r"^[A-Za-z0-9_-]+$",
+        pattern=r"^[A-Za-z0-9_-]{1,60}$",
         description="file in config/materials: the computed body",
     )
     counter_body: str = Field(
         default="titanium",
-        pattern=r"^[A-Za-z0-9_-]+$",
+        pattern=r"^[A-Za-z0-9_-]{1,60}$",
         description="file in config/materials: the other body, from experiment",
     )
     crystals: tuple[str, ...] = Field(

@@ -39,7 +39,7 @@ class GlassSettings(Settings):
 class AsperitySettings(Settings):
     """One asperity after eq. 6, Z = min[A sin(2 pi x / lambda), A sin(2 pi y / lambda)]."""
 
-    name: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9]*$", description="name in file names and tables")
+    name: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9]{0,39}$", description="name in file names and tables")
     tiles: int = Field(
         ge=1,
         le=40,
@@ -179,9 +179,12 @@ class ClosingSettings(Settings):
         json_schema_extra={"unit": "nm"},
     )
     processes: int = Field(
-        default=1, ge=1, le=4096, description="MPI processes of one closing run", json_schema_extra={"unit": "1"}
+        default=1,
+        ge=1,
+        le=4096,
+        description="MPI processes of one closing run, started as docs/cluster.md says",
+        json_schema_extra={"unit": "1"},
     )
-    launcher: str = Field(default="mpirun", description="command that starts several MPI processes (gets -np N)")
 
 
 class AreaSettings(Settings):

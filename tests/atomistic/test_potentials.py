@@ -82,6 +82,14 @@ def misname_source(content):
     content["coulomb"]["source"] = "nobody"
 
 
+def name_a_command(content):
+    content["species"]["Ti\nshell touch pwned"] = content["species"]["Ti"]
+
+
+def name_a_formula(content):
+    content["species"]["$(1+1)"] = content["species"]["Ti"]
+
+
 def misspell_key(content):
     content["cutof_A"] = 5
 
@@ -94,6 +102,8 @@ def misspell_key(content):
         (soften_core, ["Si-O attracts", "repulsive core"]),
         (misname_source, ["nobody", "sources"]),
         (misspell_key, ["cutof_A"]),
+        (name_a_command, ["species", "touch pwned", "should match pattern"]),
+        (name_a_formula, ["species", "$(1+1)", "should match pattern"]),
     ],
 )
 def test_a_bad_file_gets_one_line_that_names_it(tmp_path, change, words):

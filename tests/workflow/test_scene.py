@@ -1,8 +1,10 @@
 """A scene is checked before any job starts; every mistake is one line that says what to do."""
 
+import itertools
+
 import pytest
 
-from workflow.scene import DEFAULTS, SCENES, Scene, SceneError, documented_defaults, load_scene
+from workflow.scene import DEFAULTS, SCENES, Scene, SceneError, documented_defaults, load_scene, locate
 
 
 def load(tmp_path, text):
@@ -22,7 +24,9 @@ def test_the_documented_defaults_are_the_settings():
 
 
 def test_the_documented_defaults_are_a_valid_scene_that_changes_nothing(tmp_path):
-    assert load(tmp_path, documented_defaults()) == Scene()
+    text = documented_defaults()
+    assert 'name: "reduced"' in text
+    assert load(tmp_path, text.replace('name: "reduced"', "name: mine")) == Scene(name="mine")
 
 
 @pytest.mark.parametrize("path", sorted(SCENES.glob("*.yaml")), ids=lambda path: path.stem)
@@ -53,13 +57,41 @@ def test_an_exponent_without_a_point_is_a_number(tmp_path):
         ("a: [", ["not valid YAML"]),
         ("contact: {pixels: 256, pixels: 512}", ["'pixels' stands twice"]),
         ("x: !!python/object/apply:os.system ['true']", ["not valid YAML"]),
+        ("x: !!binary aGVsbG8=", ["line 1", "plain values only"]),
+        ("contact: {pixels: 16:40}", ['contact.pixels = "16:40"', "an integer"]),  # 1000 in YAML 1.1
+        ("contact: {pixels: 0200}", ['contact.pixels = "0200"', "an integer"]),  # 128
+        ("contact: {pixels: 1_024}", ['contact.pixels = "1_024"', "an integer"]),
+        ("contact: {pixels: 2026-11-22}", ['contact.pixels = "2026-11-22"', "an integer"]),
+        ("contact:\n  <<: {pixels: 128}", ["line 2", "merge key"]),
+        ("contact: &a {pixels: *a}", ["line 1", "alias *a: write the value out"]),
+        ("contact: " + 5000 * "[" + 5000 * "]", ["line 1", "nested deeper than 20 levels"]),
+        ("2026-11-22: 3", ["2026-11-22: unknown key"]),
+        ("? [a, b]\n: 3", ["line 1", "a key is a word"]),
+        ("name: " + 5000 * "x", ["name = ", "xxx...", "{0,99}"]),
+        ("? " + 5000 * "x" + "\n: 3", ["xxx...: unknown key"]),
+        ('name: "\\ud800"', ["no Unicode"]),
+        ("contact: {pixels: " + 5000 * "9" + "}", ["not valid YAML"]),
+        ("name: paper", ["name = paper", "shipped scene", "choose another"]),
+        ("hardness: {closing: {launcher: rm -rf /}}", ["hardness.closing.launcher: unknown key"]),
+        (
+            "elastic: {dft: {engine: espresso, parameters: {directory: /etc}}}",
+            ["elastic.dft: parameters.directory = '/etc'", "accepted: input_data", "ASE's own configuration file"],
+        ),
     ],
 )
 def test_a_mistake_is_one_line_with_file_key_value_and_what_is_accepted(tmp_path, text, words):
     (line,) = lines(tmp_path, text)
     assert "mine.yaml" in line
+    assert len(line) < 1000
     for word in words:
         assert word in line
+
+
+def test_aliases_that_would_unfold_to_gigabytes_are_refused_at_the_first(tmp_path):
+    bomb = "a: &a [x,x,x,x,x,x,x,x,x]\n"
+    bomb += "".join(f"{b}: &{b} [{','.join([f'*{a}'] * 9)}]\n" for a, b in itertools.pairwise("abcdefghi"))
+    (line,) = lines(tmp_path, bomb)
+    assert "line 2: alias *a" in line
 
 
 def test_every_mistake_is_told_at_once(tmp_path):
@@ -74,3 +106,24 @@ def test_an_unknown_scene_lists_the_known_ones():
 def test_a_missing_scene_file_is_named():
     with pytest.raises(SceneError, match=r"nowhere\.yaml: no such file"):
         load_scene("nowhere.yaml")
+
+
+@pytest.mark.parametrize("name", [5000 * "x" + ".yaml", 5000 * "x", "a\0.yaml"])
+def test_a_scene_that_cannot_exist_is_one_short_line(name):
+    with pytest.raises(SceneError) as caught:
+        load_scene(name)
+    assert len(str(caught.value)) < 300
+
+
+def test_files_that_a_scene_names_are_sought_here_and_beside_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scene = tmp_path / "scenes" / "mine.yaml"
+    scene.parent.mkdir()
+    for path in (tmp_path / "here.csv", scene.parent / "beside.csv", scene.parent / "{a}.csv"):
+        path.write_text("")
+    found = locate("scenes/mine.yaml", "inputs.rms.file", ["here.csv", "beside.csv"])
+    assert found == ["here.csv", "scenes/beside.csv"]
+    with pytest.raises(SceneError, match=r"inputs\.rms\.file = scenes/{a}\.csv: braces mean wildcards"):
+        locate("scenes/mine.yaml", "inputs.rms.file", ["{a}.csv"])
+    with pytest.raises(SceneError, match=r"inputs\.rms\.file = nowhere\.csv: no such file here or beside"):
+        locate("scenes/mine.yaml", "inputs.rms.file", ["nowhere.csv"])

@@ -4,7 +4,7 @@ import os
 import sys
 from pathlib import Path
 
-from workflow.scene import ROOT, SceneError, load_scene
+from workflow.scene import ROOT, SceneError, load_scene, locate
 
 # one thread per process: the jobs themselves fill the cores, and results do not depend on their number
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
@@ -39,6 +39,14 @@ STABILITY = []  # result files of the stability studies
 def settings(section):
     """Settings of one section as plain values for `params:`, so that a change re-runs just that stage."""
     return RESOLVED[section]
+
+
+def named_files(key, *names):
+    """Paths of files that the scene names under a key, sought here and beside the scene; missing ones are refused."""
+    try:
+        return locate(SCENE_GIVEN, key, names)
+    except SceneError as error:
+        refuse(error)
 
 
 def needed(stage):

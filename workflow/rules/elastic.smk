@@ -14,7 +14,7 @@ for path in sorted(MATERIALS.glob("*.yaml")):
         CRYSTALS.setdefault(crystal, str(path))
 for crystal in ELASTIC["crystals"]:
     if crystal not in CRYSTALS:
-        refuse(f"{SCENE_GIVEN}: elastic.crystals: no crystal {crystal!r}; known: {', '.join(CRYSTALS)}")
+        refuse(f"{SCENE_GIVEN}: elastic.crystals: no crystal {crystal!r:.60}; known: {', '.join(CRYSTALS)}")
 VOLUME_SCANS = [f"{name}_{xc}_clamped" for name in ELASTIC["crystals"] for xc in ("GGA", "LDA")]
 VOLUME_SCANS += [f"{name}_GGA_clamped" for name in GLASSES]
 VOLUME_SCANS += [f"{name}_LDA_clamped" for name in GLASSES[: ELASTIC["lda_structures"]]]
@@ -162,8 +162,9 @@ rule combine_e_star:
         "../scripts/combine_e_star.py"
 
 
-ACCURACY.append(f"{RESULTS}/accuracy/elastic.csv")
-STABILITY.append(f"{RESULTS}/stability/elastic.csv")
+if needed("elastic"):
+    ACCURACY.append(f"{RESULTS}/accuracy/elastic.csv")
+    STABILITY.append(f"{RESULTS}/stability/elastic.csv")
 
 
 def ensemble(wildcards):

@@ -5,11 +5,13 @@ HARDNESS = settings("hardness")
 
 def potential_path(name):
     """The file of a potential that is given by name or by path."""
-    path = name if name.endswith((".yaml", ".yml")) else str(CONFIG / "potentials" / f"{name}.yaml")
-    if needed("hardness") and not Path(path).exists():
-        known = ", ".join(sorted(file.stem for file in (CONFIG / "potentials").glob("*.yaml")))
-        refuse(f"{SCENE_GIVEN}: hardness.potential: no file {path}; known potentials: {known}")
-    return path
+    if name.endswith((".yaml", ".yml")):
+        return named_files("hardness.potential", name)[0] if needed("hardness") else name
+    path = CONFIG / "potentials" / f"{name}.yaml"
+    if needed("hardness") and not os.path.isfile(path):
+        known = ", ".join(sorted(file.stem for file in path.parent.glob("*.yaml")))
+        refuse(f"{SCENE_GIVEN}: hardness.potential = {name!r:.60}: no such potential; known: {known}, or a path")
+    return str(path)
 
 
 POTENTIAL = potential_path(HARDNESS["potential"])

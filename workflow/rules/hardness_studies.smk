@@ -7,9 +7,9 @@ from atomistic.hardness.studies.variations import VARIATIONS, smallest_run
 
 # One knob at a time: accuracy/hardness.csv
 
-ACCURACY.append(f"{RESULTS}/accuracy/hardness.csv")
-ACCURACY.append(f"{RESULTS}/accuracy/hardness_detection.csv")
-STABILITY.append(f"{RESULTS}/stability/hardness.csv")
+if needed("hardness"):
+    ACCURACY += [f"{RESULTS}/accuracy/hardness.csv", f"{RESULTS}/accuracy/hardness_detection.csv"]
+    STABILITY.append(f"{RESULTS}/stability/hardness.csv")
 SMALLEST = smallest_run(SCENE.hardness)
 
 

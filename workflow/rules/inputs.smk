@@ -4,6 +4,11 @@ STAGE_RESULT = {
     "topography": f"{RESULTS}/topography/parameters.json",
 }
 INPUT_STAGES = {stage: path for stage, path in STAGE_RESULT.items() if stage in SCENE.inputs.origins()}
+SAMPLES = {
+    f"samples_{name}": named_files(f"inputs.{name}.file", row.file)[0]
+    for name, row in SCENE.inputs.rows().items()
+    if row.origin == "literature" and row.distribution == "samples"
+}
 
 
 rule inputs:
@@ -14,6 +19,7 @@ rule inputs:
 rule collect_inputs:
     input:
         **INPUT_STAGES,
+        **SAMPLES,
     output:
         f"{RESULTS}/inputs.csv",
     log:

@@ -11,20 +11,7 @@ def scan_files():
         names = [f"small_{k + 1:02d}" for k in range(synthetic.small_scans)]
         names += [f"large_{k + 1:02d}" for k in range(synthetic.large_scans)]
         return [f"{SCAN_FOLDER}/{name}.gwy" for name in names]
-    scene_folder = Path(SCENE_GIVEN).parent
-    found, missing = [], []
-    for name in TOPOGRAPHY.scans:
-        places = [Path(name), scene_folder / name]
-        existing = [place for place in places if place.is_file()]
-        found.append(str(existing[0]) if existing else name)
-        missing += [] if existing else [name]
-    if missing and workflow.is_main_process:
-        refuse(
-            "\n".join(
-                f"topography.scans: {name}: no such file here or beside the scene; correct the path" for name in missing
-            )
-        )
-    return found
+    return named_files("topography.scans", *TOPOGRAPHY.scans)
 
 
 SCAN_FILES = scan_files() if needed("topography") or not TOPOGRAPHY.scans else list(TOPOGRAPHY.scans)
@@ -111,9 +98,9 @@ rule press_scans:
         "../scripts/press_scans.py"
 
 
-ACCURACY.append(f"{RESULTS}/accuracy/topography.csv")
-ACCURACY.append(f"{RESULTS}/topography/recovery.csv")
-STABILITY.append(f"{RESULTS}/stability/topography.csv")
+if needed("topography"):
+    ACCURACY += [f"{RESULTS}/accuracy/topography.csv", f"{RESULTS}/topography/recovery.csv"]
+    STABILITY.append(f"{RESULTS}/stability/topography.csv")
 
 
 rule measure_topography_accuracy:

@@ -1,8 +1,11 @@
 """Collect the table of uncertain inputs, each row from literature or from the stage that computes it.
 
-In: hardness/fit.json, elastic/e_star.json, topography/parameters.json (those that the scene wants).
+In: hardness/fit.json, elastic/e_star.json, topography/parameters.json (those that the scene wants); the files of
+samples that it names, as samples_<input>.
 Out: inputs.csv.
 """
+
+import copy
 
 from mesoscale.inputs.table import COLUMNS, collect, to_rows
 from mesoscale.settings import InputsSettings
@@ -10,8 +13,12 @@ from workflow.job import job
 from workflow.results import read_json, write_csv
 
 with job(snakemake) as run:
-    settings = InputsSettings(**snakemake.params.settings)
-    stages = {stage: read_json(path) for stage, path in snakemake.input.items()}
-    files = {stage: "/".join(path.split("/")[-2:]) for stage, path in snakemake.input.items()}
+    given = copy.deepcopy(snakemake.params.settings)
+    results = dict(snakemake.input.items())
+    for name in [name for name in results if name.startswith("samples_")]:
+        given[name.removeprefix("samples_")]["file"] = results.pop(name)  # found beside the scene, perhaps
+    settings = InputsSettings(**given)
+    stages = {stage: read_json(path) for stage, path in results.items()}
+    files = {stage: "/".join(path.split("/")[-2:]) for stage, path in results.items()}
     table = collect(settings, stages, files, snakemake.params.central_share)
     write_csv(snakemake.output[0], to_rows(table), COLUMNS)

@@ -1,15 +1,17 @@
 """E(V) scans that survive failures, and E* with its parts."""
 
+import re
+
 import numpy as np
 import pytest
 from ase.build import bulk
 from ase.calculators.calculator import CalculationFailed
 from ase.calculators.emt import EMT
+from pydantic import ValidationError
 
-from atomistic.elastic.energy_scans import fit_scan, make_calculator, rejected_points, scan_volumes
+from atomistic.elastic.energy_scans import fit_scan, rejected_points, scan_volumes
 from atomistic.elastic.moduli import Modulus, effective_modulus, plane_strain_modulus, variance_shares
 from atomistic.elastic.relaxation import Rest
-from atomistic.errors import InputError
 from atomistic.settings import DftSettings, ElasticSettings
 
 STRAINS = (-0.03, -0.015, 0.0, 0.015, 0.03)
@@ -73,9 +75,29 @@ def test_nothing_trusted_gives_no_input():
     assert not summary["gate"]["passed"]
 
 
-def test_scene_cannot_name_a_program():
-    with pytest.raises(InputError, match="may not name programs"):
-        make_calculator(DftSettings(engine="espresso", parameters={"command": "rm"}), "GGA")
+@pytest.mark.parametrize(
+    ("engine", "parameters", "named"),
+    [
+        ("espresso", {"command": "rm"}, "parameters.command = 'rm'"),
+        ("espresso", {"directory": "/etc"}, "parameters.directory"),
+        ("espresso", {"input_data": {"outdir": "/etc"}}, "parameters.input_data.outdir"),
+        ("espresso", {"input_data": {"input_dft": "pbe'\n/\n&control outdir='/etc"}}, "a plain name"),
+        ("espresso", {"pseudopotentials": {"Si": "../../secret"}}, "a plain name"),
+        ("vasp", {"setups": {"Si'\n": "_sv"}}, "plain names"),
+        ("gpaw", {"txt": "/etc/passwd"}, "parameters.txt"),
+        ("cp2k", {"inp": "&GLOBAL"}, "parameters.inp"),
+        ("siesta", {"fdf_arguments": {"SystemLabel": "x"}}, "parameters.fdf_arguments"),
+        ("pyscf", {"verbose": 9}, "accepted: none"),
+    ],
+)
+def test_a_scene_gives_an_engine_physics_but_neither_program_nor_folder(engine, parameters, named):
+    with pytest.raises(ValidationError, match=re.escape(named)):
+        DftSettings(engine=engine, parameters=parameters)
+
+
+def test_parameters_of_the_physics_reach_the_engine():
+    given = {"input_data": {"ecutwfc": 40, "occupations": "fixed"}, "pseudopotentials": {"Si": "Si.pbe-n.UPF"}}
+    assert DftSettings(engine="espresso", parameters=given).parameters == given
 
 
 @pytest.mark.parametrize("bad", [{"poisson_ratio": (0.3, 0.5)}, {"strains": (-0.01, 0.0, 0.01)}])

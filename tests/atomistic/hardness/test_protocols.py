@@ -121,6 +121,17 @@ def test_two_processes_move_the_same_atoms(potential, glass, tmp_path):
     np.testing.assert_allclose(ends[1], ends[0], atol=1e-9)
 
 
+def test_the_machine_says_what_starts_several_processes(potential, glass, tmp_path, monkeypatch):
+    workspace = Workspace(tmp_path / "work", {}, "nve.in")
+    witness = tmp_path / "arguments"
+    launcher = tmp_path / "launcher"
+    launcher.write_text(f'#!/bin/sh\necho "$@" > {witness}\n')
+    launcher.chmod(0o755)
+    monkeypatch.setenv("ASPERITY_MPI_LAUNCHER", f"{launcher} --quiet")
+    run_lammps("nve.in", workspace, {}, processes=3)
+    assert witness.read_text().startswith("--quiet -np 3 ")
+
+
 def test_a_counterface_that_would_be_strained_is_refused(close, potential):
     wrong = random_start("TiO2", potential, GLASS, 1)
     with pytest.raises(InputError, match="would be strained by"):
