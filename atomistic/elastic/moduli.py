@@ -105,6 +105,14 @@ NOTES = (
     "Ions clamped to fractional coordinates (the paper's scaling) stiffen the glass; relaxed_over_clamped says by how "
     "much.",
 )
+SAMPLE_COLUMNS = {
+    "e_star_GPa": ("GPa", "effective modulus E*"),
+    "B_GPa": ("GPa", "bulk modulus of the glass"),
+    "nu": ("1", "Poisson ratio of the glass"),
+    "counter_E_GPa": ("GPa", "Young modulus of the counter body"),
+    "xc": ("1", "functional: 0 GGA, 1 GGA + (LDA - GGA)"),
+}
+"""Unit and long name of each array of samples, as elastic/e_star.h5 states them."""
 PAPER = {"mean_GPa": 91.0, "std_GPa": 3.8, "source": "Kim et al. (2013), Table 1"}
 
 
@@ -120,7 +128,7 @@ def effective_modulus(
 
     Returns
     -------
-    Summary for `e_star.json` (with `inputs` and `gate`), and samples: e_star_GPa, B_GPa, nu, counter_E_GPa, xc
+    Summary for `e_star.json` (with `inputs` and `gate`), and samples, the arrays of SAMPLE_COLUMNS
     """
     used = [m for m in moduli if m.xc == "GGA" and m.ions == settings.ions and m.trusted]
     shift = functional_shift(moduli, settings.ions)
@@ -172,7 +180,7 @@ def effective_modulus(
             "inputs": {},
             "gate": {"passed": False, "reasons": reasons},
         }
-        return summary, {name: np.empty(0) for name in ("e_star_GPa", "B_GPa", "nu", "counter_E_GPa", "xc")}
+        return summary, {name: np.empty(0) for name in SAMPLE_COLUMNS}
     delta = shift["mean_GPa"] if shift["structures"] else 0.0
     B = np.array([m.B_GPa for m in used])
     summary |= variance_shares(B, delta, settings.poisson_ratio, other_E, other_nu)

@@ -1,0 +1,104 @@
+"""The amorphous structures of the ensemble: relaxed, judged and listed."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from ase import Atoms
+from ase.calculators.calculator import Calculator
+
+from atomistic.elastic.moduli import Modulus
+from atomistic.elastic.networks import Gate, examine
+from atomistic.elastic.relaxation import UNTOUCHED, Progress, Relaxation, relax_glass
+from atomistic.settings import RelaxationSettings
+
+
+@dataclass(frozen=True)
+class Structure:
+    """A cell after its relaxation, Å.
+
+    Attributes
+    ----------
+    calculator : as it ended; None where the quenched cell was rejected and nothing was calculated
+    verdict : on the relaxed cell, or on the quenched one that was rejected
+    reasons : why the structure does not enter E*; empty for a good one
+    """
+
+    atoms: Atoms
+    calculator: Calculator | None
+    verdict: Gate
+    relaxation: Relaxation
+    reasons: tuple[str, ...]
+
+    def report(self, name: str) -> dict[str, Any]:
+        """What elastic/structures/NAME.json says."""
+        return {
+            "structure": name,
+            "atoms": len(self.atoms),
+            "density_g_cm3": self.verdict.density_g_cm3,
+            **{f"coordination_{element}": value for element, value in self.verdict.coordination.items()},
+            "bond_spread_A": self.verdict.bond_spread_A,
+            "relaxation": asdict(self.relaxation),
+            "gate": {"passed": not self.reasons, "reasons": list(self.reasons)},
+        }
+
+
+def relaxed_structure(
+    quenched: Atoms,
+    criteria: Mapping[str, Any],
+    make_calculator: Callable[[], Calculator],
+    settings: RelaxationSettings,
+    progress: Progress | None = None,
+) -> Structure:
+    """Relax a quenched cell and judge the result; a cell that is no perfect network is not relaxed at all.
+
+    Parameters
+    ----------
+    criteria : the `glass` section of a material file (see `examine`), with the least `gap_eV` of an insulator
+    make_calculator : called only if the cell is relaxed
+    """
+    verdict = examine(quenched, criteria, perfect=True)
+    atoms, calculator, done = quenched, None, UNTOUCHED
+    if verdict.passed:
+        calculator = make_calculator()
+        atoms, done = relax_glass(quenched, calculator, settings, progress)
+        verdict = examine(atoms, criteria)
+    reasons = [*verdict.reasons, *filter(None, [done.failure])]
+    if done.gap_eV < criteria["gap_eV"]:
+        reasons.append(f"gap {done.gap_eV:.2f} eV: no insulator")
+    return Structure(atoms, calculator, verdict, done, tuple(reasons))
+
+
+def trusted_moduli(fits: Sequence[Mapping[str, str]], reports: Sequence[Mapping[str, Any]]) -> list[Modulus]:
+    """The bulk moduli of the ensemble, each trusted if its fit has no flag and its structure passed its gate.
+
+    Parameters
+    ----------
+    fits : rows of elastic/bulk_moduli.csv; crystals among them anchor the engine and are left out
+    reports : of the amorphous structures (`Structure.report`)
+    """
+    gates = {report["structure"]: report["gate"] for report in reports}
+    moduli = []
+    for row in fits:
+        if row["structure"] in gates:
+            reasons = [*filter(None, [row["flags"]]), *gates[row["structure"]]["reasons"]]
+            B = float(row["B_GPa"] or "nan")
+            moduli.append(Modulus(row["structure"], row["xc"], row["ions"], B, not reasons, "; ".join(reasons)))
+    return moduli
+
+
+def structure_rows(reports: Sequence[Mapping[str, Any]], quenches: Sequence[int]) -> list[dict[str, Any]]:
+    """Rows of elastic/structures.csv from the structures' reports and the number of quenches each one took."""
+    return [
+        {
+            "structure": report["structure"],
+            "atoms": report["atoms"],
+            "density_g_cm3": report["density_g_cm3"],
+            **{key: value for key, value in report.items() if key.startswith("coordination_")},
+            "bond_spread_A": report["bond_spread_A"],
+            **report["relaxation"],
+            "quenches": count,
+            "status": "accepted" if report["gate"]["passed"] else "rejected: " + "; ".join(report["gate"]["reasons"]),
+        }
+        for report, count in zip(reports, quenches, strict=True)
+    ]
