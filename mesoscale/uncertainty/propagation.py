@@ -13,7 +13,7 @@ from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.chunks import collocation_level
 from mesoscale.uncertainty.collocation import elementary_effects, interpolating_response, level1_response
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS, short_name
-from mesoscale.uncertainty.surrogate import Surrogate, evaluate, to_json, with_scatter
+from mesoscale.uncertainty.surrogate import Scatter, Surrogate, evaluate, joint_scatter, to_json, with_scatter
 
 Array = NDArray[np.float64]
 
@@ -146,6 +146,8 @@ class Propagation:
     """The same of single cells, with the scatter from one surface to the next; NaN without direct runs."""
     responses: list[Surrogate | None]
     """One per RESPONSES; None where no seed has all nodes."""
+    scatter: Scatter | None
+    """Joint scatter of single cells about the responses that exist; None with too few direct runs."""
     by_seed: Array
     """Mean and deviation of the eight outputs of Table 2 of every seed's own response, shape (seeds, 2, 8)."""
     variances: Array
@@ -190,7 +192,13 @@ def propagate(
     responses = exported_responses(nodes, known, ranges, settings)
     outputs = evaluate(responses, samples)
     cells = with_scatter(outputs, responses, known, settings.response == "regression", settings.sample_seed)
-    return Propagation(samples, outputs, cells, responses, by_seed, variances)
+    existing = [k for k, response in enumerate(responses) if response is not None]
+    scatter = joint_scatter(
+        [response for response in responses if response is not None],
+        (known[0], known[1][:, existing]),
+        settings.response == "regression",
+    )
+    return Propagation(samples, outputs, cells, responses, scatter, by_seed, variances)
 
 
 def _linear(y: Array, ranges: Array, samples: Array) -> Array:
@@ -303,19 +311,17 @@ def surrogate_json(
         if response is None:
             continue
         branch, _, parameter = name.partition("_")
-        scatter = np.nanmean(np.nanstd(nodes.values[:, :, k], axis=0, ddof=1)) if len(nodes.seeds) > 1 else np.nan
         outputs.append(
             {
                 "name": name,
                 "unit": OUTPUT_UNITS[k],
                 **to_json(response),
-                "residual_std": float(scatter),
                 "paper_mean": paper.get(short_name(parameter), (np.nan,))[0] if branch == "closing" else np.nan,
             }
         )
     return {
         "about": "value = transform(sum of coefficient * product of Legendre P_degree(u)), u = 2 (x - low) / "
-        "(high - low) - 1; valid for low <= x <= high; residual_std: scatter from one surface to the next",
+        "(high - low) - 1; valid for low <= x <= high; the mean over random surfaces",
         "method": f"{settings.response} ({settings.surrogate} design)"
         if settings.response != "regression"
         else "regression",
@@ -323,4 +329,20 @@ def surrogate_json(
         "inputs": inputs,
         "law": dict(law),
         "outputs": outputs,
+        "scatter": _scatter_json(result.scatter, [output["name"] for output in outputs]),
+    }
+
+
+def _scatter_json(scatter: Scatter | None, names: list[str]) -> dict[str, Any] | None:
+    if scatter is None:
+        return None
+    return {
+        "about": "one random surface about the mean over surfaces: log: value = output * exp(z), identity: value = "
+        "output + z; z of all outputs together is normal with this mean and covariance, estimated from direct runs, "
+        "each with its own inputs and its own surface, and taken as the same over the ranges of the inputs",
+        "outputs": names,
+        "transforms": list(scatter.transforms),
+        "mean": scatter.mean,
+        "covariance": scatter.covariance,
+        "runs": scatter.runs,
     }

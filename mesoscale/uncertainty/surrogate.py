@@ -99,6 +99,60 @@ def from_json(output: Mapping[str, Any], inputs: Sequence[Mapping[str, Any]]) ->
 FEWEST_RUNS = 20
 
 
+@dataclass(frozen=True)
+class Scatter:
+    """Scatter of single cells about their responses, joint in all outputs.
+
+    transform(cell) = transform(response) + z, z normal. The transforms are not those of the responses: d_c has an
+    identity response and a scatter in proportion to it (all lengths scale with RMS).
+    """
+
+    transforms: tuple[str, ...]
+    """log (cell = response exp(z)) or identity (cell = response + z), one per output."""
+    mean: Array
+    """Mean of z, shape (n,); below zero for log, as the response is the mean of the cells, not of their logarithm."""
+    covariance: Array
+    """Of z, shape (n, n)."""
+    runs: int
+    """Direct runs behind it."""
+
+
+def joint_scatter(responses: Sequence[Surrogate], direct: tuple[Array, Array], fitted: bool) -> Scatter | None:
+    """Residuals of direct runs in the transformed space as a joint normal distribution.
+
+    Parameters
+    ----------
+    responses : n of them.
+    direct : inputs (r, m) and outputs (r, n) of direct runs, each on a surface of its own.
+    fitted : whether the responses were fitted to these runs; deviations are then widened by the terms' number.
+
+    Returns
+    -------
+    None with fewer than 20 complete runs.
+    """
+    x, y = direct
+    complete = np.isfinite(y).all(axis=1)
+    if complete.sum() < FEWEST_RUNS or not responses:
+        return None
+    truth, smooth = y[complete], evaluate(responses, x[complete])
+    positive = ((truth > 0) & (smooth > 0)).all(axis=0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        residuals = np.where(positive, np.log(truth / smooth), truth - smooth)
+    widening = np.array([_widening(response, len(truth), fitted) for response in responses])
+    return Scatter(
+        tuple("log" if each else "identity" for each in positive.tolist()),
+        residuals.mean(axis=0),
+        np.cov(residuals, rowvar=False).reshape(len(responses), -1) * np.outer(widening, widening),
+        len(truth),
+    )
+
+
+def _widening(response: Surrogate, runs: int, fitted: bool) -> float:
+    """How much smaller the residuals of a least-squares fit are than those of runs that it has not seen."""
+    terms = len(response.degrees) if fitted else 0
+    return float(np.sqrt(runs / max(runs - terms, 1)))
+
+
 def with_scatter(
     outputs: Array, responses: Sequence[Surrogate | None], direct: tuple[Array, Array], fitted: bool, seed: int
 ) -> Array:
@@ -128,8 +182,7 @@ def with_scatter(
     for k, response in enumerate(responses):
         if response is None:
             continue
-        terms = len(response.degrees) if fitted else 0
-        widening = np.sqrt(complete.sum() / max(complete.sum() - terms, 1))
+        widening = _widening(response, int(complete.sum()), fitted)
         truth, smooth = y[complete, k], predicted[complete, k]
         if (smooth > 0).all() and (outputs[:, k] > 0).all():
             ratio = truth / smooth

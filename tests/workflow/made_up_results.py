@@ -134,7 +134,6 @@ def _uncertainty(root: Path) -> None:
         {
             "name": f"{branch}_{name}",
             "transform": "identity",
-            "residual_std": 0.05 * value,
             "terms": [
                 {"degrees": zero, "coefficient": value},
                 {"degrees": last, "coefficient": 0.5 * value if name == "d_c_nm" else 0.0},
@@ -157,6 +156,13 @@ def _uncertainty(root: Path) -> None:
         "inputs": inputs,
         "outputs": responses,
         "law": {"rho_a_nm": 2.0, "alpha_nm": 2.0},
+        "scatter": {
+            "outputs": [response["name"] for response in responses],
+            "transforms": ["log"] * 8,
+            "mean": [0.0] * 8,
+            "covariance": np.diag([0.01] * 8),
+            "runs": 50,
+        },
     }
     write_json(root / "uq/surrogate.json", content, PROVENANCE)
 

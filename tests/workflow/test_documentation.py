@@ -22,16 +22,20 @@ def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):
     ranges = table.ranges(0.999)
     x = to_values(nodes(7, 1), ranges)
     given = NodeOutputs([0], np.repeat(np.exp(x @ (1 / ranges[:, 1]))[None, :, None], 8, axis=2))
-    settings = UncertaintySettings(response="polynomial", samples=20)
-    result = propagate(given, table, settings)
+    settings = UncertaintySettings(response="polynomial", samples=200)
+    smooth = propagate(given, table, settings)
+    covariance = 0.04 * (np.eye(8) + 0.5)
+    z = np.random.default_rng(1).multivariate_normal(np.zeros(8), covariance, 200)
+    result = propagate(given, table, settings, (smooth.samples, smooth.outputs * np.exp(z)))
     path = tmp_path / "results/paper/uq/surrogate.json"
     write_json(path, surrogate_json(result, given, table, settings, {}, {}, {}))
     assert json.loads(path.read_text())["method"].startswith("polynomial")
 
-    (code,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    code, draw = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     exec(code, names)
+    exec(draw, names)
     evaluate = names["evaluate"]
     assert callable(evaluate)
     for sample, outputs in zip(result.samples[:5], result.outputs[:5], strict=True):
@@ -39,3 +43,16 @@ def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):
         # E* is normal and may leave the range of the response, where both extrapolate
         read = [evaluate(name, values) for name in RESPONSES]
         assert read == pytest.approx(outputs.tolist(), rel=1e-9)
+    cells = names["cells"]
+    assert callable(cells)
+    values = dict(zip(table.names, result.samples[0].tolist(), strict=True))
+    scatter = json.loads(path.read_text())["scatter"]
+    drawn = []
+    for name, transform in zip(RESPONSES, scatter["transforms"], strict=True):
+        sample, mean = cells(values, 4000)[name], evaluate(name, values)
+        drawn.append(np.log(sample / mean) if transform == "log" else sample - mean)
+    expected = np.array(scatter["covariance"])
+    deviation = np.sqrt(np.diag(expected))
+    # four standard errors of the covariance of 4000 draws
+    error = 4 * np.sqrt((expected**2 + np.outer(deviation, deviation) ** 2) / 4000)
+    np.testing.assert_array_less(np.abs(np.cov(drawn) - expected), error)

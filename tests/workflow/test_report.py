@@ -1,6 +1,7 @@
 """The report page: complete, self-contained, only what exists, alive in a real browser."""
 
 import json
+import math
 import re
 import shutil
 import subprocess
@@ -8,8 +9,10 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+from scipy.optimize import brentq
 
-from tests.workflow.made_up_results import write_all
+from mesoscale.law.compact import PARAMETERS, Law, pressure
+from tests.workflow.made_up_results import LAW, write_all
 from workflow.report.available import Results
 from workflow.report.drawing import draw
 from workflow.report.numbers import show
@@ -211,6 +214,25 @@ def test_page_lives_in_a_real_browser(page, tmp_path):
     assert found["curves"] > 1000
     assert found["curve_moved"]
     assert found["table_moved"]
+    for panel in found["followed"]:  # the axes follow the data: most of a curve is seen, over most of the height
+        assert panel["share"] > 0.5
+        assert panel["drop"] > 0.4
+    low, high = map(float, re.findall(r"[\d.]+", found["table"][0][1])[1:])
+    # d_c scatters by 10 % about 47.7 nm: 16 to 84 % of a log-normal, within the noise of 300 draws (2 % here)
+    assert [low, high] == pytest.approx([47.7 * math.exp(0.0994 * sign) for sign in (-1, 1)], rel=0.02)
+    label, closing, _ = found["table"][-1]
+    assert label == "separation at 6 MPa (nm)"
+    assert float(closing.split()[0]) == pytest.approx(_separation_at(6.0), rel=2e-3)  # three digits are shown
     assert found["empty"] == 0
     assert found["overflow"] <= 0, "the page scrolls sideways"
     assert found["load_ms"] < 2000
+
+
+def _separation_at(pressure_MPa):
+    """On closing at the largest RMS, by the library's law and SciPy's root finder."""
+    law = Law(1.5 * LAW["d_c_nm"], *(LAW[name] for name in PARAMETERS[1:]), hamaker=0.215)
+
+    def excess(separation):
+        return sum(pressure(separation, law)) - pressure_MPa / 1e3
+
+    return brentq(excess, 0.0, 1.5 * LAW["d_c_nm"])

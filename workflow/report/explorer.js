@@ -1,18 +1,18 @@
 "use strict";
-// Sliders move the law: responses in Legendre polynomials, as exported in uq/surrogate.json.
+// Sliders move the law: responses in Legendre polynomials and their scatter, as exported in uq/surrogate.json.
 (() => {
   const data = JSON.parse(document.getElementById("surrogate").textContent);
   const form = document.getElementById("sliders");
-  const chart = document.getElementById("chart");
   const status = document.getElementById("status");
   const body = document.querySelector("#parameters tbody");
   const outputs = Object.fromEntries(data.outputs.map((output) => [output.name, output]));
   const names = ["d_c_nm", "C_a_GPa_nm", "C_r_GPa", "rho_r_nm"];
   const branches = ["closing", "opening"];
-  const BAND = 80;
-  const normals = gaussians(BAND * 8);
-  const range = axis();
+  const HIGHEST = 15; // MPa, as in the figure of the first screen
+  const READ = 6; // MPa, the pressure whose separation the table gives
+  const draws = scatter(data.scatter, 300);
 
+  document.getElementById("live").hidden = false;
   const sliders = data.inputs.map((input) => {
     const label = document.createElement("label");
     const text = document.createElement("span");
@@ -32,6 +32,7 @@
   reset.textContent = "Back to the middle";
   form.append(reset);
   form.addEventListener("reset", () => setTimeout(update));
+  addEventListener("resize", update);
   update();
 
   function legendre(n, u) {
@@ -42,8 +43,8 @@
     return now;
   }
 
-  function predict(output, u, shift) {
-    let sum = shift * output.residual_std;
+  function predict(output, u) {
+    let sum = 0;
     for (const term of output.terms) {
       let product = term.coefficient;
       term.degrees.forEach((n, i) => { if (n) product *= legendre(n, u[i]); });
@@ -52,9 +53,16 @@
     return output.transform === "log" ? Math.exp(sum) : sum;
   }
 
-  function law(branch, u, shifts) {
-    return names.map((name, i) => predict(outputs[`${branch}_${name}`], u, shifts ? shifts[i] : 0));
+  function laws(branch, u) {
+    const mean = names.map((name) => predict(outputs[`${branch}_${name}`], u));
+    const cells = draws.map((draw) => names.map((name, i) => {
+      const { z, transform } = draw[`${branch}_${name}`];
+      return transform === "log" ? mean[i] * Math.exp(z) : mean[i] + z;
+    })).filter(usable);
+    return { branch, mean, cells: usable(mean) ? cells : [] };
   }
+
+  function usable([, C_a, C_r, rho_r]) { return C_a >= 0 && C_r > 0 && rho_r > 0; }
 
   function pressure(s, [d_c, C_a, C_r, rho_r], hamaker) {
     const { rho_a_nm: onset, alpha_nm: shield } = data.law;
@@ -62,7 +70,23 @@
     return (C_r * Math.expm1(Math.max(d_c - s, 0) / rho_r) - attraction) * 1e3; // MPa
   }
 
-  function usable([, C_a, C_r, rho_r]) { return C_a >= 0 && C_r > 0 && rho_r > 0; }
+  function separation(p, law, hamaker) { // on the repulsive side, by bisection
+    let near = law[0] - law[3];
+    let far = law[0];
+    while (pressure(near, law, hamaker) < p) near -= far - near;
+    for (let k = 0; k < 50; k++) {
+      const middle = (near + far) / 2;
+      if (pressure(middle, law, hamaker) > p) near = middle; else far = middle;
+    }
+    return far;
+  }
+
+  function quantile(values, q) {
+    const sorted = values.slice().sort((a, b) => a - b);
+    const place = q * (sorted.length - 1);
+    const below = Math.floor(place);
+    return sorted[below] + (place - below) * ((sorted[below + 1] ?? sorted[below]) - sorted[below]);
+  }
 
   function update() {
     const u = sliders.map(({ slider, value, input }) => {
@@ -70,83 +94,112 @@
       value.textContent = x.toPrecision(3);
       return input.high > input.low ? (2 * (x - input.low)) / (input.high - input.low) - 1 : 0;
     });
-    const hamaker = Number((sliders.find(({ input }) => input.name === "hamaker") || { slider: { value: 0.215 } }).slider.value);
-    const laws = Object.fromEntries(branches.map((branch) => [branch, law(branch, u)]));
-    const broken = branches.filter((branch) => !usable(laws[branch]));
+    const hamaker = Number(sliders.find(({ input }) => input.name === "hamaker").slider.value);
+    const both = branches.map((branch) => laws(branch, u));
+    const broken = both.filter(({ mean }) => !usable(mean)).map(({ branch }) => branch);
+    const shown = both.filter(({ mean }) => usable(mean));
     status.textContent = broken.length
-      ? `The response leaves its physical range here (${broken.join(" and ")}): no curve.` : "";
-    draw(laws, u, hamaker);
-    fill(laws);
+      ? `The response leaves its physical range here (${broken.join(" and ")}): no curve.`
+      : draws.length ? "" : "No band: fewer than 20 direct runs of this scene gave a law.";
+    drawLaw(shown, hamaker);
+    drawWell(shown, hamaker);
+    fill(both, hamaker);
   }
 
-  function draw(laws, u, hamaker) {
-    const { x, y, grid } = range;
-    const curves = node("g", { "clip-path": "url(#inside)" });
-    chart.replaceChildren(...frame(), curves);
-    for (const branch of branches) {
-      if (!usable(laws[branch])) continue;
-      const many = [];
-      for (let k = 0; k < BAND; k++) {
-        const offset = k * 8 + (branch === "opening" ? 4 : 0);
-        const one = law(branch, u, normals.slice(offset, offset + 4));
-        if (usable(one)) many.push(one);
-      }
-      const low = [];
-      const high = [];
-      for (const s of grid) {
-        const values = many.map((one) => pressure(s, one, hamaker)).sort((a, b) => a - b);
-        low.push(values[Math.floor(0.16 * (values.length - 1))]);
-        high.push(values[Math.ceil(0.84 * (values.length - 1))]);
-      }
-      const there = grid.map((s, i) => `${x(s)},${y(high[i])}`);
-      const back = grid.map((s, i) => `${x(s)},${y(low[i])}`).reverse();
-      if (many.length) curves.append(node("path", { class: `band ${branch}`, d: `M${there.concat(back).join("L")}Z` }));
-      const line = grid.map((s) => `${x(s)},${y(pressure(s, laws[branch], hamaker))}`);
-      curves.append(node("path", { class: branch, d: `M${line.join("L")}` }));
+  function drawLaw(shown, hamaker) {
+    const ends = shown.flatMap(({ mean, cells }) => {
+      const each = cells.length ? cells : [mean];
+      return [quantile(each.map((law) => separation(HIGHEST, law, hamaker)), 0.16), quantile(each.map((law) => law[0]), 0.84)];
+    });
+    const [from, to] = ends.length ? [Math.max(Math.min(...ends), 0), Math.max(...ends)] : [0, 1];
+    const pad = 0.06 * (to - from);
+    const panel = axes("chart", [Math.max(from - pad, 0), to + 2 * pad], [-0.05 * HIGHEST, HIGHEST],
+      ["mean separation (nm)", "contact pressure (MPa)"]);
+    for (const law of shown) curve(panel, law, (s, one) => pressure(s, one, hamaker));
+  }
+
+  function drawWell(shown, hamaker) {
+    const onset = data.law.rho_a_nm;
+    const kPa = (x, law) => 1e3 * pressure(law[0] + x, law, hamaker);
+    const back = shown.map(({ mean }) => separation(0, mean, hamaker) - mean[0]);
+    const reach = [1.5 * Math.min(0, ...back) - 0.1 * onset, 1.3 * onset];
+    const depth = Math.max(1e-6, ...shown.flatMap(({ mean, cells }) =>
+      [-kPa(0, mean), ...(cells.length ? [-quantile(cells.map((law) => kPa(0, law)), 0.16)] : [])]));
+    const panel = axes("well", reach, [-1.15 * depth, 0.4 * depth], ["mean separation less d_c (nm)", "contact pressure (kPa)"]);
+    for (const law of shown) curve(panel, law, kPa);
+  }
+
+  function curve({ x, y, grid, group }, { branch, mean, cells }, value) {
+    if (cells.length) {
+      const edges = grid.map((at) => {
+        const values = cells.map((law) => value(at, law));
+        return [quantile(values, 0.16), quantile(values, 0.84)];
+      });
+      const there = grid.map((at, i) => `${x(at)},${y(edges[i][1])}`);
+      const back = grid.map((at, i) => `${x(at)},${y(edges[i][0])}`).reverse();
+      group.append(node("path", { class: `band ${branch}`, d: `M${there.concat(back).join("L")}Z` }));
     }
+    group.append(node("path", { class: branch, d: `M${grid.map((at) => `${x(at)},${y(value(at, mean))}`).join("L")}` }));
   }
 
-  function fill(laws) {
-    const rows = [["d<sub>c</sub> (nm)", 1], ["C<sub>a</sub> (10⁻⁵ GPa/nm)", 1e5], ["C<sub>r</sub> (10⁻⁴ GPa)", 1e4], ["ρ<sub>r</sub> (nm)", 1]];
-    body.replaceChildren(...rows.map(([label, factor], i) => {
+  function fill(both, hamaker) {
+    const rows = [["d<sub>c</sub> (nm)", (law) => law[0]], ["C<sub>a</sub> (10⁻⁵ GPa/nm)", (law) => 1e5 * law[1]],
+      ["C<sub>r</sub> (10⁻⁴ GPa)", (law) => 1e4 * law[2]], ["ρ<sub>r</sub> (nm)", (law) => law[3]],
+      [`separation at ${READ} MPa (nm)`, (law) => (usable(law) ? separation(READ, law, hamaker) : NaN)]];
+    body.replaceChildren(...rows.map(([label, value]) => {
       const row = document.createElement("tr");
       const head = document.createElement("th");
       head.scope = "row";
       head.innerHTML = label; // our own constant text
-      row.append(head, ...branches.map((branch) => {
+      row.append(head, ...both.map(({ mean, cells }) => {
         const cell = document.createElement("td");
-        cell.textContent = (laws[branch][i] * factor).toPrecision(3);
+        const ends = cells.length ? [0.16, 0.84].map((q) => show(quantile(cells.map(value), q))) : [];
+        cell.textContent = show(value(mean)) + (ends.length ? ` [${ends.join(", ")}]` : "");
         return cell;
       }));
       return row;
     }));
   }
 
-  function axis() {
-    const [left, right, top, bottom] = [62, 628, 12, 336];
-    const [from, to, lowest, highest] = [0, 80, -3, 12];
-    const grid = Array.from({ length: 201 }, (_, i) => from + ((to - from) * i) / 200);
-    const x = (s) => (left + ((right - left) * (s - from)) / (to - from)).toFixed(1);
-    const y = (p) => (bottom - ((bottom - top) * (Math.min(Math.max(p, lowest - 30), highest + 30) - lowest)) / (highest - lowest)).toFixed(1);
-    return { x, y, grid, left, right, top, bottom, lowest, highest, to };
+  function show(value) { return Number.isFinite(value) ? value.toPrecision(3).replace("-", "−") : "–"; }
+
+  function ticks(low, high, most) {
+    const rough = (high - low) / most;
+    const power = 10 ** Math.floor(Math.log10(rough));
+    const step = [1, 2, 5, 10].map((n) => n * power).find((n) => n >= rough);
+    const decimals = Math.max(0, -Math.floor(Math.log10(step)));
+    const found = [];
+    for (let k = Math.ceil(low / step); k * step <= high; k++) found.push([k * step, (k * step).toFixed(decimals).replace("-", "−")]);
+    return found;
   }
 
-  function frame() {
-    const { x, y, left, right, top, bottom, lowest, highest, to } = range;
-    const inside = node("clipPath", { id: "inside" });
+  function axes(id, [from, to], [lowest, highest], [across, up]) {
+    // drawn at the width it has, so that its text keeps its size
+    const svg = document.getElementById(id);
+    const width = Math.max(svg.clientWidth, 260);
+    const height = Math.min(340, Math.max(220, 0.55 * width));
+    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    const [left, right, top, bottom] = [58, width - 10, 10, height - 44];
+    const limit = (p) => Math.min(Math.max(p, 2 * lowest - highest), 2 * highest - lowest);
+    const x = (s) => (left + ((right - left) * (s - from)) / (to - from)).toFixed(1);
+    const y = (p) => (bottom - ((bottom - top) * (limit(p) - lowest)) / (highest - lowest)).toFixed(1);
+    const grid = Array.from({ length: 161 }, (_, i) => from + ((to - from) * i) / 160);
+    const inside = node("clipPath", { id: `inside-${id}` });
     inside.append(node("rect", { x: left, y: top, width: right - left, height: bottom - top }));
     const parts = [inside];
-    for (let s = 0; s <= to; s += 10) {
+    for (const [s, text] of ticks(from, to, width / 90)) {
       parts.push(node("line", { class: "grid", x1: x(s), x2: x(s), y1: top, y2: bottom }));
-      parts.push(node("text", { x: x(s), y: bottom + 18, "text-anchor": "middle" }, s));
+      parts.push(node("text", { x: x(s), y: bottom + 17, "text-anchor": "middle" }, text));
     }
-    for (let p = lowest; p <= highest; p += 3) {
-      parts.push(node("line", { class: p ? "grid" : "zero", x1: left, x2: right, y1: y(p), y2: y(p) }));
-      parts.push(node("text", { x: left - 8, y: Number(y(p)) + 4, "text-anchor": "end" }, String(p).replace("-", "−")));
+    for (const [p, text] of ticks(lowest, highest, 6)) {
+      parts.push(node("line", { class: Math.abs(p) > 1e-12 * highest ? "grid" : "zero", x1: left, x2: right, y1: y(p), y2: y(p) }));
+      parts.push(node("text", { x: left - 7, y: Number(y(p)) + 4, "text-anchor": "end" }, text));
     }
-    parts.push(node("text", { x: (left + right) / 2, y: bottom + 38, "text-anchor": "middle" }, "mean separation (nm)"));
-    parts.push(node("text", { transform: `translate(16 ${(top + bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }, "contact pressure (MPa)"));
-    return parts;
+    parts.push(node("text", { x: (left + right) / 2, y: bottom + 37, "text-anchor": "middle" }, across));
+    parts.push(node("text", { transform: `translate(13 ${(top + bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }, up));
+    const group = node("g", { "clip-path": `url(#inside-${id})` });
+    svg.replaceChildren(...parts, group);
+    return { x, y, grid, group };
   }
 
   function node(tag, attributes, text) {
@@ -156,10 +209,16 @@
     return element;
   }
 
-  function gaussians(count) {
-    // fixed sequence: the same band at the same inputs
-    let state = 12345;
-    const uniform = () => { state = (1103515245 * state + 12345) % 2147483648; return (state + 0.5) / 2147483648; };
-    return Array.from({ length: count }, () => Math.sqrt(-2 * Math.log(uniform())) * Math.cos(2 * Math.PI * uniform()));
+  function scatter(joint, count) {
+    // single surfaces about the mean response: jointly normal where the file says, correlated by the factor
+    if (!joint) return [];
+    let state = 12345; // fixed sequence (Park and Miller 1988): the same band at the same inputs
+    const uniform = () => { state = (16807 * state) % 2147483647; return state / 2147483647; };
+    const normal = () => Math.sqrt(-2 * Math.log(uniform())) * Math.cos(2 * Math.PI * uniform());
+    return Array.from({ length: count }, () => {
+      const free = joint.outputs.map(normal);
+      return Object.fromEntries(joint.outputs.map((name, i) =>
+        [name, { transform: joint.transforms[i], z: joint.factor[i].reduce((sum, f, k) => sum + f * free[k], joint.mean[i]) }]));
+    });
   }
 })();

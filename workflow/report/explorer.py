@@ -3,6 +3,9 @@
 import json
 from typing import Any
 
+import numpy as np
+
+from mesoscale.law.compact import PARAMETERS
 from workflow.report.available import Results
 from workflow.report.numbers import SYMBOLS
 
@@ -16,7 +19,7 @@ NAMES = {
     "rms": "RMS roughness",
     "gap_cutoff": "gap cutoff",
 }
-SURROGATE_KEYS = ("name", "transform", "terms", "residual_std")
+SURROGATE_KEYS = ("name", "transform", "terms")
 
 
 def explorer(results: Results) -> dict[str, Any] | None:
@@ -24,6 +27,8 @@ def explorer(results: Results) -> dict[str, Any] | None:
     if not results.has("uq/surrogate.json"):
         return None
     surrogate = results.json("uq/surrogate.json")
+    if len(surrogate["outputs"]) < 2 * len(PARAMETERS):
+        return None  # an output that too few runs determine has no response
     inputs = [
         {
             "name": row["name"],
@@ -35,9 +40,17 @@ def explorer(results: Results) -> dict[str, Any] | None:
         for row in surrogate["inputs"]
     ]
     outputs = [{key: output[key] for key in SURROGATE_KEYS} for output in surrogate["outputs"]]
-    for output in outputs:
-        output["residual_std"] = output["residual_std"] or 0.0
-    return {"inputs": inputs, "outputs": outputs, "law": surrogate["law"]}
+    return {"inputs": inputs, "outputs": outputs, "law": surrogate["law"], "scatter": _scatter(surrogate["scatter"])}
+
+
+def _scatter(joint: dict[str, Any] | None) -> dict[str, Any] | None:
+    """Scatter of single surfaces with a factor F of its covariance F Fᵀ, so that the page need not factorise."""
+    if joint is None:
+        return None
+    values, vectors = np.linalg.eigh(np.array(joint["covariance"], float))
+    factor = vectors * np.sqrt(np.maximum(values, 0))  # rounding may leave a value just below zero
+    kept = {key: joint[key] for key in ("outputs", "transforms", "mean")}
+    return {**kept, "factor": factor.tolist()}
 
 
 def script_json(data: Any) -> str:

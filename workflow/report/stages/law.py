@@ -90,8 +90,9 @@ def _wells(results: Results) -> dict[str, tuple[np.ndarray, ...]]:
 
 def pressure(h: np.ndarray, row: Row, hamaker: float, rho_a: float, shield: float) -> np.ndarray:
     """Total pressure of a fitted row (GPa), eqs 10 to 13."""
-    parameters = (number(row[name]) for name in PARAMETERS)
-    return sum(law_pressure(h, Law(*parameters, hamaker, rho_a, shield)))
+    d_c, C_a, C_r, rho_r = (number(row[name]) for name in PARAMETERS)
+    attractive, repulsive = law_pressure(h, Law(d_c, C_a, C_r, rho_r, hamaker, rho_a, shield))
+    return attractive + repulsive
 
 
 def fit_of(rows: list[Row], curve: str, branch: str) -> Row | None:
