@@ -5,21 +5,13 @@ In: inputs.csv.  Out: curves/runs/chunk_NNN.h5 (groups run_NNNN/closing and run_
 
 from dataclasses import fields
 
+from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import ContactSettings, UncertaintySettings
 from mesoscale.uncertainty.designs import collocation_runs
 from mesoscale.uncertainty.runs import compute_all
 from workflow.job import job
 from workflow.results import Dataset, read_csv, write_h5
-
-COLUMNS = {
-    "separation_nm": ("nm", "mean separation"),
-    "repulsive_nN": ("nN", "repulsive force"),
-    "attractive_nN": ("nN", "attractive force (negative)"),
-    "contact_area_nm2": ("nm^2", "area of contacting sites"),
-    "asperities": ("1", "number of asperities in contact"),
-    "sweeps": ("1", "flow sweeps of the step"),
-}
 
 with job(snakemake) as run:
     contact = ContactSettings(**snakemake.params.contact)
@@ -42,9 +34,9 @@ with job(snakemake) as run:
         for branch in ("closing", "opening"):
             curve = getattr(cycle, branch)
             groups[f"{name}/{branch}"] = {
-                field.name: Dataset(getattr(curve, field.name), *COLUMNS[field.name], ("point",))
+                field.name: Dataset(getattr(curve, field.name), *BRANCH_COLUMNS[field.name], ("point",))
                 for field in fields(curve)
-                if field.name in COLUMNS
+                if field.name in BRANCH_COLUMNS
             }
     reading = {"cell_area_nm2": contact.length_nm**2, "contact": contact.model_dump(mode="json")}
     write_h5(snakemake.output[0], groups, reading, run.provenance, attributes)

@@ -19,14 +19,18 @@ def workload(timings: Sequence[Mapping[str, str]], cores: int) -> dict[str, floa
         elapsed += (idle if idle <= PAUSE_S else 0.0) + max(end - max(start, reached), 0.0)
         reached = max(reached, end)
     engine = sum(float(row["engine_cpu_s"]) for row in timings)
-    cycles = sum(int(row["cycles"]) for row in timings)
     return {
-        "cycles": cycles,
+        "cycles": sum(int(row["cycles"]) for row in timings),
         "jobs": len(jobs),
         "cores": cores,
         "elapsed_s": elapsed,
         "engine_cpu_s": engine,
-        "engine_s_per_cycle": engine / cycles,
+        "engine_s_per_cycle": engine_s_per_cycle(timings),
         "overhead": 1 - engine / (cores * elapsed),
         "peak_rss_MB": max(float(row["peak_rss_MB"]) for row in timings),
     }
+
+
+def engine_s_per_cycle(timings: Sequence[Mapping[str, str]]) -> float:
+    """CPU seconds of the engine per cycle, from the jobs' timings."""
+    return sum(float(row["engine_cpu_s"]) for row in timings) / sum(int(row["cycles"]) for row in timings)

@@ -6,9 +6,11 @@ import pytest
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import nodes, to_values
+from mesoscale.uncertainty.morris import trajectory_points
 from mesoscale.uncertainty.propagation import NodeOutputs
 from mesoscale.uncertainty.reference import GROUPS, explained_by, jackknife, reference
 from mesoscale.uncertainty.studies.brute_force import bias_rows, index_rows
+from mesoscale.uncertainty.studies.comparison import compare_with_direct_runs
 from mesoscale.uncertainty.studies.precision import accuracy_rows, precision_rows
 from mesoscale.uncertainty.surrogate import Surrogate, with_scatter
 
@@ -131,3 +133,31 @@ def test_errors_fall_with_the_calls(table, runs):
     summary = list(accuracy_rows(rows, truth, 1.0))
     assert {row["stage"] for row in summary} == {"uncertainty"}
     assert len(summary) < len(rows)
+
+
+def test_all_tables_of_the_study_agree_on_a_linear_engine(table, runs):
+    settings = SETTINGS.model_copy(update={"samples": 500, "morris_trajectories": 4})
+    few = (runs[0][:200], runs[1][:200])
+    ranges = table.ranges(settings.central_share)
+    points = trajectory_points(3, 4, settings.sample_seed).reshape(-1, 3)
+    along = 10 + (ranges[:, 0] + points * np.diff(ranges).T) @ SLOPES
+    timings = [{"engine_cpu_s": "1.5", "cycles": "10"}, {"engine_cpu_s": "0.5", "cycles": "10"}]
+    printed = {"d_c": {table.names[0]: 0.7}}
+    tables = compare_with_direct_runs(
+        given_nodes(table),
+        few,
+        runs[2][:200],
+        np.repeat(along[:, None], 8, axis=1),
+        timings,
+        table,
+        settings,
+        printed,
+        lambda fraction, text: None,
+    )
+    assert list(tables) == ["bias", "indices", "morris", "precision", "accuracy"]
+    # the effect of a linear input is its slope times its range, on the star and along the trajectories
+    for row, slope, width in zip(tables["morris"][:3], SLOPES, np.diff(ranges)[:, 0], strict=True):
+        assert row["one_star_mu_star"] == pytest.approx(slope * width)
+        assert row["morris_mu_star"] == pytest.approx(slope * width)
+    assert tables["morris"][0]["paper_mu_star"] == 0.7
+    assert {row["engine_cpu_s"] for row in tables["precision"] if row["engine_calls"] == 100} == {10.0}
