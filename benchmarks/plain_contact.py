@@ -119,7 +119,7 @@ def asperities(
     p = {"paper": 2 / 3, "hertz": 4 / 3}[settings.prefactor]
     kappa = curvature(h, spacing)
     flattened = np.zeros(h.shape, bool) if flattened is None else flattened
-    found = []
+    touching = []
     for sites in connected_sites(h + separation < 0, settings.neighbours):
         heights = h.ravel()[sites]
         peak = sites[heights == heights.min()].min()
@@ -132,7 +132,7 @@ def asperities(
             carried = force_of_parts(h, sites, kappa, flattened, p * inputs.e_star, settings)
         if settings.area == "hertz":
             area = np.pi * radius * indentation
-        found.append(
+        touching.append(
             Asperity(
                 sites,
                 divmod(int(peak), len(h)),
@@ -144,19 +144,19 @@ def asperities(
                 carried,
             )
         )
-    return found
+    return touching
 
 
 def repulsion(
     h, separation, inputs: ContactInputs, settings: ContactSettings, flattened: np.ndarray | None = None
 ) -> float:
     """Repulsive force in nN: eq. 3, or eq. 4 for the non-linear elastic model."""
-    found = asperities(h, separation, inputs, settings, flattened)
+    touching = asperities(h, separation, inputs, settings, flattened)
     if settings.model == "nonlinear":
-        return sum(min(max(a.elastic_force, a.carried), a.hardness * a.area) for a in found)
+        return sum(min(max(a.elastic_force, a.carried), a.hardness * a.area) for a in touching)
     if settings.model == "plastic":
-        return sum(max(a.elastic_force, min(a.carried, a.hardness * a.area)) for a in found)
-    return sum(max(a.elastic_force, a.carried) for a in found)
+        return sum(max(a.elastic_force, min(a.carried, a.hardness * a.area)) for a in touching)
+    return sum(max(a.elastic_force, a.carried) for a in touching)
 
 
 def attraction(h, separation, inputs: ContactInputs, settings: ContactSettings) -> float:
@@ -201,11 +201,11 @@ def settle(
     returning = settings.flow == "return"
     tolerance = settings.flow_tolerance if returning else 0.0
     for sweeps in range(settings.max_sweeps + 1):
-        found = asperities(h, separation, inputs, settings, flattened)
-        limits = [a.hardness * a.area for a in found]
+        touching = asperities(h, separation, inputs, settings, flattened)
+        limits = [a.hardness * a.area for a in touching]
         yielding = [
             (a, limit)
-            for a, limit in zip(found, limits, strict=True)
+            for a, limit in zip(touching, limits, strict=True)
             if a.elastic_force > limit * (1 + tolerance) and a.sites.size < h.size
         ]
         if not yielding:

@@ -119,17 +119,17 @@ class PyscfGamma(Calculator):
         if key not in self.store:
             self.store[key] = self._solve(mesh, wanted == "forces")
             self.scf_runs += 1
-        found = self.store[key]
-        self.scf_cycles = int(found["cycles"])
-        self.gap_eV = float(found["gap_Ha"]) * Hartree
-        if not bool(found["converged"]):
+        solved = self.store[key]
+        self.scf_cycles = int(solved["cycles"])
+        self.gap_eV = float(solved["gap_Ha"]) * Hartree
+        if not bool(solved["converged"]):
             self.history = []
             raise ScfNotConverged(f"SCF not converged in {p.max_cycles} cycles (gap {self.gap_eV:.2f} eV)")
-        self.history = [*self.history, Solution(found["overlap"], found["orbitals"])][-HISTORY:]
-        energy = float(found["energy_Ha"]) * Hartree
+        self.history = [*self.history, Solution(solved["overlap"], solved["orbitals"])][-HISTORY:]
+        energy = float(solved["energy_Ha"]) * Hartree
         self.results: dict[str, Any] = {"energy": energy, "free_energy": energy}
         if wanted == "forces":
-            self.results["forces"] = found["forces"] * Hartree / Bohr
+            self.results["forces"] = solved["forces"] * Hartree / Bohr
 
     def check_state(self, atoms, tol=1e-15):
         return super().check_state(atoms, tol=tol)
@@ -175,7 +175,7 @@ class PyscfGamma(Calculator):
         filled = np.asarray(mf.mo_occ) > 0
         levels = np.asarray(mf.mo_energy)
         occupied = np.asarray(mf.mo_coeff)[:, filled]
-        found = {
+        solved = {
             "energy_Ha": np.array(energy),
             "converged": np.array(converged),
             "cycles": np.array(mf.cycles),
@@ -185,12 +185,12 @@ class PyscfGamma(Calculator):
         }
         if forces and converged:
             if p.numerics == "cached-grid":
-                found["forces"] = mf._numint.forces(mf)
+                solved["forces"] = mf._numint.forces(mf)
             elif p.numerics == "multigrid":
-                found["forces"] = -mf.nuc_grad_method().kernel()
+                solved["forces"] = -mf.nuc_grad_method().kernel()
             else:
                 raise NotImplementedError("forces with numerics 'fftdf'")
-        return found
+        return solved
 
     def _guess(self, cell, overlap: np.ndarray) -> np.ndarray | None:
         """Density matrix of extrapolated orbitals; None if there are none that fit."""

@@ -199,8 +199,8 @@ def make_glass(
     for attempt in range(settings.attempts):
         if progress:
             progress(attempt / settings.attempts, f"melt and quench, attempt {attempt + 1}")
-        own = int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
-        atoms = quench(material, settings, own, work)
+        quench_seed = int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
+        atoms = quench(material, settings, quench_seed, work)
         verdict = examine(atoms, material["glass"], perfect=True)
         attempts.append(
             {

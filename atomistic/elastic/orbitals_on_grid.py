@@ -144,13 +144,13 @@ def _closest(centre, lattice, mesh, i, j, radius):
     step = lattice[2] / mesh[2]
     origin = lattice[0] * (i / mesh[0]) + lattice[1] * (j / mesh[1]) - centre
     s2 = step[0] ** 2 + step[1] ** 2 + step[2] ** 2
-    along = -(origin[0] * step[0] + origin[1] * step[1] + origin[2] * step[2]) / s2
-    distance2 = origin[0] ** 2 + origin[1] ** 2 + origin[2] ** 2 - along * along * s2
+    closest = -(origin[0] * step[0] + origin[1] * step[1] + origin[2] * step[2]) / s2
+    distance2 = origin[0] ** 2 + origin[1] ** 2 + origin[2] ** 2 - closest * closest * s2
     room = radius * radius - distance2
     if room <= 0.0:
         return origin, step, 0, 0, -1
     half = np.sqrt(room / s2)
-    return origin, step, int(np.rint(along)), int(np.ceil(along - half)), int(np.floor(along + half))
+    return origin, step, int(np.rint(closest)), int(np.ceil(closest - half)), int(np.floor(closest + half))
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -270,7 +270,7 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
     n_radial, n_primitives = contraction.shape
     longest = high[2] - low[2] + 2
     gaussians = np.empty((n_primitives, longest))
-    f, slope, x, y, z, along, a0, a1, a2, a3, a4 = np.empty((11, longest))
+    f, slope, x, y, z, radial, a0, a1, a2, a3, a4 = np.empty((11, longest))
     total = np.zeros(3)
     for i in range(low[0], high[0] + 1):
         for j in range(low[1], high[1] + 1):
@@ -285,7 +285,7 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
                 x[k] = origin[0] + (begin + k) * step[0]
                 y[k] = origin[1] + (begin + k) * step[1]
                 z[k] = origin[2] + (begin + k) * step[2]
-            along[:n] = 0.0  # Σ R'/r S_lm field: the part of the gradient that points along r
+            radial[:n] = 0.0  # Σ R'/r S_lm field: the part of the gradient that points along r
             gx = gy = gz = 0.0
             for s in range(n_radial):
                 f[:n] = 0.0
@@ -301,13 +301,13 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
                 if angular[s] == 0:
                     _take_line(a0, field[a, start:stop], begin, n)
                     for k in range(n):
-                        along[k] += slope[k] * S0 * a0[k]
+                        radial[k] += slope[k] * S0 * a0[k]
                 elif angular[s] == 1:
                     _take_line(a0, field[a, start:stop], begin, n)
                     _take_line(a1, field[a + 1, start:stop], begin, n)
                     _take_line(a2, field[a + 2, start:stop], begin, n)
                     for k in range(n):
-                        along[k] += slope[k] * P0 * (x[k] * a0[k] + y[k] * a1[k] + z[k] * a2[k])
+                        radial[k] += slope[k] * P0 * (x[k] * a0[k] + y[k] * a1[k] + z[k] * a2[k])
                         gx += f[k] * P0 * a0[k]
                         gy += f[k] * P0 * a1[k]
                         gz += f[k] * P0 * a2[k]
@@ -318,7 +318,7 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
                     _take_line(a3, field[a + 3, start:stop], begin, n)
                     _take_line(a4, field[a + 4, start:stop], begin, n)
                     for k in range(n):
-                        along[k] += slope[k] * (
+                        radial[k] += slope[k] * (
                             D0 * (x[k] * y[k] * a0[k] + y[k] * z[k] * a1[k] + x[k] * z[k] * a3[k])
                             + D1 * (2.0 * z[k] * z[k] - x[k] * x[k] - y[k] * y[k]) * a2[k]
                             + D2 * (x[k] * x[k] - y[k] * y[k]) * a4[k]
@@ -327,9 +327,9 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
                         gy += f[k] * (D0 * (x[k] * a0[k] + z[k] * a1[k]) - 2.0 * y[k] * (D2 * a4[k] + D1 * a2[k]))
                         gz += f[k] * (D0 * (y[k] * a1[k] + x[k] * a3[k]) + 4.0 * D1 * z[k] * a2[k])
             for k in range(n):
-                gx += along[k] * x[k]
-                gy += along[k] * y[k]
-                gz += along[k] * z[k]
+                gx += radial[k] * x[k]
+                gy += radial[k] * y[k]
+                gz += radial[k] * z[k]
             total[0] += gx
             total[1] += gy
             total[2] += gz

@@ -30,8 +30,8 @@ def bond_hessian(atoms: Atoms) -> np.ndarray:
     hessian = FLOOR_EV_A2 * np.eye(3 * len(atoms))
     for i, j, bond in zip(*neighbor_list("ijD", atoms, BOND_A), strict=True):
         if symbols[i] != symbols[j]:
-            along = np.outer(bond, bond) / (bond @ bond)
-            spring = STRETCH_EV_A2 * along + BEND_EV_A2 * (np.eye(3) - along)
+            projection = np.outer(bond, bond) / (bond @ bond)
+            spring = STRETCH_EV_A2 * projection + BEND_EV_A2 * (np.eye(3) - projection)
             hessian[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] += spring
             hessian[3 * i : 3 * i + 3, 3 * j : 3 * j + 3] -= spring
     return hessian

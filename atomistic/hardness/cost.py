@@ -21,8 +21,8 @@ def plan_rows(settings: HardnessSettings) -> list[dict[str, float | str]]:
         wavelength, amplitude = run.asperity.tiles * edge_nm, run.asperity.amplitude_nm
         atoms = ATOMS_PER_NM3[settings.material] * wavelength**2 * (closing.base_nm + MEAN_HEIGHT * amplitude)
         if closing.counterface in ("oxide", "asperity"):
-            own = amplitude if closing.counterface == "asperity" else 0
-            thickness = closing.counter_base_nm + MEAN_HEIGHT * own
+            relief = amplitude if closing.counterface == "asperity" else 0
+            thickness = closing.counter_base_nm + MEAN_HEIGHT * relief
             atoms += ATOMS_PER_NM3[closing.counter_material] * wavelength**2 * thickness
         seconds = atoms * plan.total_steps / ATOM_STEPS_PER_CORE_SECOND
         rows.append(

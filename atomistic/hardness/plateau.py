@@ -76,12 +76,12 @@ def plastic_onset(witness: Rows, approach_nm: float, settings: YieldSettings) ->
     background = float(np.mean(new[before])) if np.any(before) else 0.0
     limit = background + max(settings.min_exchanges, 2 * np.sqrt(background))
     lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= settings.min_lowering_A
-    found = np.flatnonzero((new >= limit) & lasting & (displacement > approach_nm))
-    if len(found) == 0:
+    onsets = np.flatnonzero((new >= limit) & lasting & (displacement > approach_nm))
+    if len(onsets) == 0:
         return Onset(None, background)
-    count, earlier, snapshots = int(new[found[0]]), int(np.sum(new[before])), int(np.sum(before))
+    count, earlier, snapshots = int(new[onsets[0]]), int(np.sum(new[before])), int(np.sum(before))
     p_value = float(bdtrc(count - 1, count + earlier, 1 / (1 + snapshots))) if snapshots else float("nan")
-    return Onset(float(displacement[found[0]]), background, float(count), p_value)
+    return Onset(float(displacement[onsets[0]]), background, float(count), p_value)
 
 
 def find_hardness(
@@ -107,23 +107,23 @@ def find_hardness(
     fraction = column["contact_area_nm2"] / cell_area_nm2
     window = _first_stretch((length >= settings.min_length_nm) & (fraction <= settings.max_area_fraction))
     onset = plastic_onset(witness, closing.approach_nm, settings)
-    facts: dict[str, Any] = {
+    measured: dict[str, Any] = {
         "drift_meV_atom_ps": drift,
         "warming_K": warming,
         "exchanges_before": onset.background,
     }
     if drift > settings.max_drift_meV_atom_ps:
-        return Hardness(f"rejected: energy drifts by {drift:.2g} meV per atom and ps", **facts)
+        return Hardness(f"rejected: energy drifts by {drift:.2g} meV per atom and ps", **measured)
     if warming > settings.max_warming_K:
-        return Hardness(f"rejected: warms by {warming:.0f} K", **facts)
+        return Hardness(f"rejected: warms by {warming:.0f} K", **measured)
     if np.sum(window) < settings.min_points:
-        return Hardness("rejected: contact too small for the window of lengths", **facts)
+        return Hardness("rejected: contact too small for the window of lengths", **measured)
     start = onset.displacement_nm
     if start is None:
-        return Hardness("no_yield", **facts)
+        return Hardness("no_yield", **measured)
     beyond = window & (travel >= start)
     last = witness[-1]
-    facts |= {
+    measured |= {
         "onset_displacement_nm": start,
         "onset_length_nm": float(np.interp(start, travel, length)),
         "exchanges_at_onset": onset.exchanges,
@@ -132,11 +132,11 @@ def find_hardness(
         "lowering_nm": float(last["lowering_nm"]),
     }
     if np.sum(beyond) < settings.min_points:
-        return Hardness("rejected: too few averages between onset and the end of the window", **facts)
+        return Hardness("rejected: too few averages between onset and the end of the window", **measured)
     plateau, lengths = stress[beyond], length[beyond]
     exponent = float(np.polyfit(np.log(lengths), np.log(plateau), 1)[0])
     low, high = _interval_of_mean(plateau)
-    facts |= {
+    measured |= {
         "contact_length_nm": float(np.mean(lengths)),
         "contact_area_nm2": float(np.mean(lengths) ** 2),
         "hardness_GPa": float(np.mean(plateau)),
@@ -150,28 +150,28 @@ def find_hardness(
         status = f"rejected: stress still rises as length^{exponent:.2f} beyond the onset"
     else:
         status = "yield"
-    return Hardness(status, plateau_points=int(np.sum(beyond)), **facts)
+    return Hardness(status, plateau_points=int(np.sum(beyond)), **measured)
 
 
-def point(curve: Rows, witness: Rows, facts: Mapping[str, Any], settings: HardnessSettings) -> dict[str, Any]:
+def point(curve: Rows, witness: Rows, run: Mapping[str, Any], settings: HardnessSettings) -> dict[str, Any]:
     """Row of points.csv of a run, given its summary `facts`."""
-    found = find_hardness(curve, witness, facts["wavelength_nm"] ** 2, settings.closing, settings.plasticity)
+    hardness = find_hardness(curve, witness, run["wavelength_nm"] ** 2, settings.closing, settings.plasticity)
     return {
-        "run": facts["run"],
+        "run": run["run"],
         "potential": settings.potential,
-        "energy_scale": facts["energy_scale"],
-        "geometry": geometry(settings.closing, facts["amplitude_nm"]),
-        "asperity": facts["asperity"],
-        "wavelength_nm": facts["wavelength_nm"],
-        "amplitude_nm": facts["amplitude_nm"],
-        "seed": facts["seed"],
-        "atoms": facts["atoms"],
-        **asdict(found),
-        "atom_steps": facts["atoms"] * facts["steps"],
-        "restart_steps": facts["restart_steps"],
-        "lammps_cpu_s": facts["lammps_cpu_s"],
-        "python_cpu_s": facts["python_cpu_s"],
-        **{key: facts[key] for key in UNLOADED if key in facts},
+        "energy_scale": run["energy_scale"],
+        "geometry": geometry(settings.closing, run["amplitude_nm"]),
+        "asperity": run["asperity"],
+        "wavelength_nm": run["wavelength_nm"],
+        "amplitude_nm": run["amplitude_nm"],
+        "seed": run["seed"],
+        "atoms": run["atoms"],
+        **asdict(hardness),
+        "atom_steps": run["atoms"] * run["steps"],
+        "restart_steps": run["restart_steps"],
+        "lammps_cpu_s": run["lammps_cpu_s"],
+        "python_cpu_s": run["python_cpu_s"],
+        **{key: run[key] for key in UNLOADED if key in run},
     }
 
 

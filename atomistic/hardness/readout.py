@@ -98,14 +98,14 @@ def _beyond(near: np.ndarray, geometry: Geometry) -> tuple[np.ndarray, np.ndarra
     """
     if geometry.bodies == 1:
         return near[:, 2:4], near[:, 5]
-    own = near[:, 0] <= geometry.lower
-    if np.all(own) or not np.any(own):
+    below = near[:, 0] <= geometry.lower
+    if np.all(below) or not np.any(below):
         return np.empty((0, 2)), np.empty(0)
     box = np.array([geometry.wavelength_A, geometry.wavelength_A, 0.0])  # 0: not periodic
     positions = near[:, 2:5].copy()
     positions[:, :2] = np.mod(positions[:, :2], geometry.wavelength_A)
-    distance, _ = KDTree(positions[~own], boxsize=box).query(positions[own])
-    return near[own, 2:4], CONTACT_A - distance
+    distance, _ = KDTree(positions[~below], boxsize=box).query(positions[below])
+    return near[below, 2:4], CONTACT_A - distance
 
 
 def read_relaxed(workspace: Workspace, segment: int) -> tuple[int, Frame]:

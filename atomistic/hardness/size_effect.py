@@ -85,7 +85,7 @@ def literature_samples(points: Sequence[Point], fit: FitSettings) -> tuple[np.nd
     rng = _rng(11)
     hardness, spread, length, scale = _columns(points)
     scales = np.unique(scale)
-    weight = np.array([1 / np.sum(scale == own) for own in scale]) / len(scales)
+    weight = np.array([1 / np.sum(scale == one) for one in scale]) / len(scales)
     chosen = rng.choice(len(points), size=fit.bootstrap, p=weight)
     h_macro = rng.uniform(*fit.h_macro_GPa, fit.bootstrap)
     drawn = hardness[chosen] + spread[chosen] * rng.normal(size=fit.bootstrap)
@@ -124,7 +124,7 @@ def free_fit(points: Sequence[Point], fit: FitSettings) -> dict:
 def size_exponents(points: Sequence[Point], fit: FitSettings) -> dict:
     """n in H ~ L^-n at each energy scale, with its 68 % interval: 0 means that no size effect shows."""
     rng = _rng(13)
-    found = {}
+    fits = {}
     for scale in sorted({float(point["energy_scale"]) for point in points}):
         hardness, spread, length, _ = _columns(_of_scale(points, scale))
         if len(hardness) < 3 or np.ptp(length) < 0.3:
@@ -135,12 +135,12 @@ def size_exponents(points: Sequence[Point], fit: FitSettings) -> dict:
         x = x - x.mean(axis=1, keepdims=True)
         varies = np.sum(x**2, axis=1) > 1e-6
         slope = np.sum(x * y, axis=1)[varies] / np.sum(x**2, axis=1)[varies]
-        found[f"scale_{scale:g}"] = {
+        fits[f"scale_{scale:g}"] = {
             **_summary(-slope),
             "length_min_nm": length.min(),
             "length_max_nm": length.max(),
         }
-    return found
+    return fits
 
 
 def scale_ratios(points: Sequence[Point]) -> list[dict]:

@@ -96,15 +96,15 @@ class Hold:
         """Rows of the contact at all times but the first, which is `last` itself."""
         self.rows.append(_from_mean(contact, last))
         fresh = contact.mechanics
-        found = []
+        states = []
         row = last
         for factor in hardness_factor(self.times[1:], self.settings):
             contact.mechanics = fresh._replace(h_macro=fresh.h_macro * factor, h_prime=fresh.h_prime * factor)
             row = self._sink(contact, row.separation, last.force)
-            found.append(row)
+            states.append(row)
             self.rows.append(_from_mean(contact, row))
         contact.mechanics = fresh
-        return found
+        return states
 
     def _sink(self, contact: Contact, separation: float, force: float) -> Row:
         """Let the asperities flow, then lower the flat until the force is back."""

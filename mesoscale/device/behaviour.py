@@ -151,7 +151,7 @@ def study_switch(
         "samples": {"used": len(rms), "dropped": samples.dropped},
         "nominal_law": _nominal_json(samples),
         "nominal_from": samples.nominal_from,
-        **{case: describe_states(found) for case, found in states.items()},
+        **{case: describe_states(state) for case, state in states.items()},
         "capacitance_fF": {
             "up": float(switch.capacitance_F(up_nm)[0] * 1e15),
             "down_plate": describe(switch.capacitance_F(kept.hold_nm) * 1e15),
@@ -190,14 +190,14 @@ def state_rows(states: dict[str, SwitchStates]) -> list[dict[str, Any]]:
         {
             "case": case,
             "sample": i,
-            "pull_in_V": float(found.pull_in_V[i]),
-            "release_V": float(found.release_V[i]),
-            "release_nm": float(found.release_nm[i]),
-            "stuck": int(found.stuck[i]),
-            "critical_landed_fraction": float(found.critical_fraction[i]),
+            "pull_in_V": float(state.pull_in_V[i]),
+            "release_V": float(state.release_V[i]),
+            "release_nm": float(state.release_nm[i]),
+            "stuck": int(state.stuck[i]),
+            "critical_landed_fraction": float(state.critical_fraction[i]),
         }
-        for case, found in states.items()
-        for i in range(len(found.stuck))
+        for case, state in states.items()
+        for i in range(len(state.stuck))
     ]
 
 

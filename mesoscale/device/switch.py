@@ -216,9 +216,9 @@ def _refine(function, grid: np.ndarray, index: np.ndarray) -> tuple[np.ndarray, 
             go_left = function(left[:, None])[:, 0] < function(right[:, None])[:, 0]
             low, high = np.where(go_left, low, left), np.where(go_left, right, high)
         middle = (low + high) / 2
-        found = function(middle[:, None])[:, 0]
-        best = np.where(found < value, middle, best)
-        value = np.minimum(found, value)
+        trial = function(middle[:, None])[:, 0]
+        best = np.where(trial < value, middle, best)
+        value = np.minimum(trial, value)
     return best, value
 
 

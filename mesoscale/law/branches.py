@@ -76,7 +76,7 @@ def fit_curve(
 def fit_stored(
     curves: Mapping[str, Mapping[str, Array]],
     name: str,
-    facts: Mapping[str, Any],
+    attributes: Mapping[str, Any],
     cell_area_nm2: float,
     settings: LawSettings,
 ) -> Iterator[dict[str, Any]]:
@@ -96,8 +96,8 @@ def fit_stored(
                 curve["repulsive_nN"],
                 curve["attractive_nN"],
                 cell_area_nm2,
-                float(facts["hamaker"]),
-                facts.get(touch),
+                float(attributes["hamaker"]),
+                attributes.get(touch),
                 settings,
             )
-        yield {"branch": branch, **row_of(fit), "curve_status": facts.get("status", "")}
+        yield {"branch": branch, **row_of(fit), "curve_status": attributes.get("status", "")}

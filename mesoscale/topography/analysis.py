@@ -139,26 +139,26 @@ def scan_rows(
     truth: Mapping[str, Any] | None,
 ) -> list[dict[str, Any]]:
     """One row per scan: size, RMS from heights and from the spectrum, trusted range and what limits it."""
-    own = {}
+    spectrum_rms = {}
     fitted = topography.likelihood
     if fitted is not None:
         used = [item.name for item in spectra if item.trusted.sum() >= 3]
-        own = dict(zip(used, fitted.scan_rms(topography.cutoff), strict=True))
+        spectrum_rms = dict(zip(used, fitted.scan_rms(topography.cutoff), strict=True))
     rows = []
     for item in spectra:
-        facts = attributes[item.name]
+        loaded = attributes[item.name]
         row = {
             "name": item.name,
-            "file": facts["file"],
-            "sha256": facts["sha256"],
-            "length_nm": min(facts["length_x_nm"], facts["length_y_nm"]),
-            "pixels": f"{facts['pixels_x']} x {facts['pixels_y']}",
-            "rms_heights_nm": facts["rms_nm"],
-            "rms_spectrum_nm": own.get(item.name, float("nan")),
+            "file": loaded["file"],
+            "sha256": loaded["sha256"],
+            "length_nm": min(loaded["length_x_nm"], loaded["length_y_nm"]),
+            "pixels": f"{loaded['pixels_x']} x {loaded['pixels_y']}",
+            "rms_heights_nm": loaded["rms_nm"],
+            "rms_spectrum_nm": spectrum_rms.get(item.name, float("nan")),
             "trusted_low": item.low,
             "trusted_high": item.high,
             "limit": item.limit,
-            "steps": facts["steps"],
+            "steps": loaded["steps"],
         }
         if truth is not None:
             row["true_rms_nm"] = truth["scans"][item.name]["rms_nm"]

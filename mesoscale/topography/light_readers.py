@@ -54,13 +54,13 @@ def light_reader(path: Path) -> Iterator[type[Any] | None]:
 
 def _stand_ins() -> dict[str, ModuleType]:
     """The packages, found but not initialised: enough to import modules below them."""
-    found = {}
+    modules = {}
     for name in PACKAGES:
         spec = importlib.util.find_spec(name)
         if spec is None:
             raise ModuleNotFoundError(name)
-        found[name] = sys.modules[name] = importlib.util.module_from_spec(spec)
-    return found
+        modules[name] = sys.modules[name] = importlib.util.module_from_spec(spec)
+    return modules
 
 
 def _loaded() -> list[str]:

@@ -180,8 +180,8 @@ def fit(spectra: Sequence[TrustedSpectrum]) -> LikelihoodFit | None:
     best = np.array(min(grid, key=lambda point: objective(np.array(point))))
     dispersion, raw, residual = 1.0, level, np.ones(bins)
     for _ in range(4):
-        found = minimize(objective, best, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-3})
-        best = np.clip(found.x, [low, 0.0], [high, MAX_SLOPE])
+        minimum = minimize(objective, best, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-3})
+        best = np.clip(minimum.x, [low, 0.0], [high, MAX_SLOPE])
         _, level, ratio = _deviance(data, best[0], best[1], spread, level)
         raw = np.log(np.bincount(data.scan, data.weight * ratio, data.scans) / data.per_scan)
         residual = np.bincount(data.bin, data.weight * ratio * np.exp(-raw[data.scan]))
@@ -218,12 +218,12 @@ def _deviance(
     shape, ratio = data.ratio(log_q0, slope, level)
     mean = np.bincount(data.scan, data.weight * ratio, data.scans) / data.per_scan
     raw = np.log(np.maximum(mean, 1e-300))
-    own = 2 * np.sum(data.weight * (shape - np.log(data.psd))) + 2 * np.sum(data.per_scan * (1 + raw))
+    per_scan = 2 * np.sum(data.weight * (shape - np.log(data.psd))) + 2 * np.sum(data.per_scan * (1 + raw))
     variance = 1 / data.per_scan + spread**2
     typical = np.sum(raw / variance) / np.sum(1 / variance)
     # amplitudes at their own optimum cost nothing; the population pulls them together
     population = np.sum((raw - typical) ** 2 / variance)
-    return float(own + population), raw, ratio
+    return float(per_scan + population), raw, ratio
 
 
 def _between(raw: np.ndarray, variance: np.ndarray) -> float:
@@ -341,5 +341,5 @@ def _lowest(function: Callable[[float], float], centre: float, reach: float) -> 
     """Minimum of a function of one variable within `reach` of `centre`."""
     from scipy.optimize import minimize_scalar
 
-    found: Any = minimize_scalar(function, bounds=(centre - reach, centre + reach), method="bounded")
-    return float(found.x)
+    minimum: Any = minimize_scalar(function, bounds=(centre - reach, centre + reach), method="bounded")
+    return float(minimum.x)

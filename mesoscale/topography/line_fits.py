@@ -155,7 +155,7 @@ def _fit_points(data: Points) -> LineFit | None:
     slope = -float(running[last])
     intercept = fits[last][0]
     log_q0 = (intercept - level) / slope
-    own = _levels(data, level, log_q0, slope)
+    levels = _levels(data, level, log_q0, slope)
     low, high = _bounding_slopes(data, level, log_q0)
     return LineFit(
         plateau=float(np.exp(level)),
@@ -166,8 +166,8 @@ def _fit_points(data: Points) -> LineFit | None:
         q1_limited=last == len(running) - 1,
         slope_low=low,
         slope_high=high,
-        plateau_low=float(np.exp(own.min())),
-        plateau_high=float(np.exp(own.max())),
+        plateau_low=float(np.exp(levels.min())),
+        plateau_high=float(np.exp(levels.max())),
         running_q=running_q,
         running_slope=-running,
         running_error=errors,

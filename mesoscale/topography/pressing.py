@@ -79,7 +79,7 @@ def surfaces(
     rms, seed = float(np.std(heights)), contact.nominal_seed
     yield "measured", heights, chosen, force
     spectrum = radial_spectrum(heights, (side, side), settings.sections, settings.section_fraction, flat=0.0)
-    own = SpectrumTable(spectrum.q, spectrum.psd).psd
-    yield "own spectrum", synthesize_spectrum(len(heights), side, own, rms, seed), chosen, force
+    scan_psd = SpectrumTable(spectrum.q, spectrum.psd).psd
+    yield "own spectrum", synthesize_spectrum(len(heights), side, scan_psd, rms, seed), chosen, force
     power_law = RoughSpectrum(fitted.plateau, fitted.q0, fitted.slope, math.inf).psd
     yield "eq. 9", synthesize_spectrum(len(heights), side, power_law, rms, seed), chosen, force

@@ -214,10 +214,10 @@ def _cubic(skewness: float, kurtosis: float) -> tuple[float, float, float]:
             - (kurtosis - 3),
         ]
 
-    found = root(miss, [1.0, skewness / 6, 0.0], tol=1e-12)
-    if np.max(np.abs(miss(found.x))) > MAX_RESIDUAL:
+    solution = root(miss, [1.0, skewness / 6, 0.0], tol=1e-12)
+    if np.max(np.abs(miss(solution.x))) > MAX_RESIDUAL:
         raise InputError(
             f"contact.surface: no surface with skewness {skewness:g} and kurtosis {kurtosis:g}; "
             f"accepted is a kurtosis above about {1.64 * skewness**2 + 1.8:.1f} at this skewness"
         )
-    return float(found.x[0]), float(found.x[1]), float(found.x[2])
+    return float(solution.x[0]), float(solution.x[1]), float(solution.x[2])

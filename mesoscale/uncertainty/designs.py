@@ -95,8 +95,8 @@ def morris_points(inputs: int, trajectory: int, seed: int) -> np.ndarray:
     """One trajectory in the unit cube, shape (n + 1, n)."""
     from SALib.sample import morris  # 2 s to import, needed here alone
 
-    own_seed = int(np.random.SeedSequence([seed, 0x3E, trajectory]).generate_state(1)[0])
-    return np.asarray(morris.sample(morris_problem(inputs), 1, num_levels=MORRIS_LEVELS, seed=own_seed), float)
+    trajectory_seed = int(np.random.SeedSequence([seed, 0x3E, trajectory]).generate_state(1)[0])
+    return np.asarray(morris.sample(morris_problem(inputs), 1, num_levels=MORRIS_LEVELS, seed=trajectory_seed), float)
 
 
 def morris_problem(inputs: int) -> dict[str, object]:

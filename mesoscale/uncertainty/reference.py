@@ -96,8 +96,8 @@ def reference(x: Array, y: Array, replicates: Array) -> Reference:
     """
     y, again = to_paper_outputs(y), to_paper_outputs(replicates)
     pairs = (y[: len(again)] - again) ** 2 / 2
-    within = jackknife(lambda chosen: each(np.mean, pairs[chosen]), len(pairs))
-    variance = jackknife(lambda chosen: each(np.var, y[chosen]), len(y))
+    within = jackknife(lambda chosen: of_outputs(np.mean, pairs[chosen]), len(pairs))
+    variance = jackknife(lambda chosen: of_outputs(np.var, y[chosen]), len(y))
     between = Estimate(variance.value - within.value, np.hypot(variance.error, within.error))
     shares = jackknife(
         lambda chosen: np.array(
@@ -110,12 +110,14 @@ def reference(x: Array, y: Array, replicates: Array) -> Reference:
         scale = np.where(between.value > 0, variance.value / between.value, np.nan)[:, None]
         of_scale = np.where(between.value > 0, within.error / between.value, np.nan)[:, None]
     first = Estimate(shares.value * scale, np.hypot(shares.error * scale, shares.value * scale * of_scale))
-    statistics = {name: jackknife(lambda chosen, f=f: each(f, y[chosen]), len(y)) for name, f in STATISTICS.items()}
+    statistics = {
+        name: jackknife(lambda chosen, f=f: of_outputs(f, y[chosen]), len(y)) for name, f in STATISTICS.items()
+    }
     missing = np.isnan(y).sum(axis=0)
     return Reference(len(y), len(again), missing, statistics, within, between, first)
 
 
-def each(statistic: Callable[..., Any], values: Array) -> Array:
+def of_outputs(statistic: Callable[..., Any], values: Array) -> Array:
     """A statistic of every column's known values, shape (columns,); NaN with fewer than three."""
     columns = [column[np.isfinite(column)] for column in values.T]
     return np.array([statistic(column) if len(column) > 2 else np.nan for column in columns], float)

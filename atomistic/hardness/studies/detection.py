@@ -45,8 +45,8 @@ def detection_rows(
     curves: Sequence[Rows], witnesses: Sequence[Rows], cell_areas_nm2: Sequence[float], settings: HardnessSettings
 ) -> list[dict]:
     """Rows of accuracy/hardness_detection.csv: rates of false and of missed yield against the bounds asked for."""
-    found = [noise_of(curve, settings, area) for curve, area in zip(curves, cell_areas_nm2, strict=True)]
-    noises = [noise for noise in found if noise is not None]
+    measured = [noise_of(curve, settings, area) for curve, area in zip(curves, cell_areas_nm2, strict=True)]
+    noises = [noise for noise in measured if noise is not None]
     backgrounds = [
         plastic_onset(witness, settings.closing.approach_nm, settings.plasticity).background for witness in witnesses
     ]
@@ -114,10 +114,15 @@ class _Draw:
     """Made-up runs: 30 averages in the window, a snapshot every 0.1 nm of travel."""
 
     def __init__(
-        self, rng: np.random.Generator, noise_GPa: float, correlation: float, background: float, own: HardnessSettings
+        self,
+        rng: np.random.Generator,
+        noise_GPa: float,
+        correlation: float,
+        background: float,
+        settings: HardnessSettings,
     ) -> None:
         self.rng, self.noise, self.correlation, self.background = rng, noise_GPa, correlation, background
-        self.settings = own
+        self.settings = settings
         self.travel = np.arange(0.0125, 1.6, 0.025)
         self.length = np.maximum(0.0, 3.4 * (self.travel - 0.3))
 
@@ -156,5 +161,5 @@ class _Draw:
             for k in range(len(stress))
         ]
         cell = 4.2**2 / self.settings.plasticity.max_area_fraction
-        found = find_hardness(curve, witness, cell, self.settings.closing, self.settings.plasticity)
-        return found.status, found.hardness_GPa
+        hardness = find_hardness(curve, witness, cell, self.settings.closing, self.settings.plasticity)
+        return hardness.status, hardness.hardness_GPa

@@ -155,7 +155,7 @@ def _of_closing(potential: Potential, glass: Atoms, work: Path) -> list[Check]:
                 case,
                 description,
                 f"no atom lost, energy balance within {MAX_DRIFT_CLOSING} meV per atom and ps",
-                lambda own=changes: _closing(glass, potential, work, own),
+                lambda settings=changes: _closing(glass, potential, work, settings),
             )
             for case, description, changes in (
                 ("snap_in", "an adhesive oxide is let snap onto the asperity", body),

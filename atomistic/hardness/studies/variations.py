@@ -57,55 +57,55 @@ def smallest_run(settings: HardnessSettings) -> ClosingRun:
 def compare(
     curves: Mapping[str, Rows],
     witnesses: Mapping[str, Rows],
-    facts: Mapping[str, Mapping],
+    runs: Mapping[str, Mapping],
     settings: HardnessSettings,
 ) -> list[dict]:
     """Rows of accuracy/hardness.csv: plateau stress of each variation against the default's.
 
     The scatter of a single run (`hardness_lo`, `hardness_hi`) limits what a difference means.
     """
-    found = {
+    hardnesses = {
         name: find_hardness(
             curves[name],
             witnesses[name],
-            facts[name]["wavelength_nm"] ** 2,
+            runs[name]["wavelength_nm"] ** 2,
             VARIATIONS[name].closing(settings),
             settings.plasticity,
         )
         for name in curves
     }
-    reference = found[DEFAULT].hardness_GPa
+    reference = hardnesses[DEFAULT].hardness_GPa
     rows = []
-    for name, hardness in found.items():
-        variation, fact = VARIATIONS[name], facts[name]
+    for name, hardness in hardnesses.items():
+        variation, run = VARIATIONS[name], runs[name]
         value = getattr(variation.closing(settings), variation.key) if variation.key else settings.closing.speed_m_s
         rows.append(
             {
                 **_row(name, variation.key or "speed_m_s", value, hardness.hardness_GPa, reference),
-                "wall_s": fact["wall_s"],
-                "cpu_s": fact["lammps_cpu_s"] + fact["python_cpu_s"],
-                "peak_rss_MB": fact.get("peak_rss_MB"),
+                "wall_s": run["wall_s"],
+                "cpu_s": run["lammps_cpu_s"] + run["python_cpu_s"],
+                "peak_rss_MB": run.get("peak_rss_MB"),
                 "hardness_lo": hardness.hardness_lo,
                 "hardness_hi": hardness.hardness_hi,
                 "status": hardness.status,
-                "atom_steps": fact["atoms"] * fact["steps"],
+                "atom_steps": run["atoms"] * run["steps"],
             }
         )
     rows += _area_definitions(
-        curves[DEFAULT], found[DEFAULT].onset_displacement_nm, settings, reference, facts[DEFAULT]
+        curves[DEFAULT], hardnesses[DEFAULT].onset_displacement_nm, settings, reference, runs[DEFAULT]
     )
     return rows
 
 
 def _area_definitions(
-    curve: Rows, onset_nm: float, settings: HardnessSettings, reference: float, facts: Mapping
+    curve: Rows, onset_nm: float, settings: HardnessSettings, reference: float, run: Mapping
 ) -> Sequence[dict]:
     """The same run and the same averages with the area of other depths."""
     column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
     window = (
         (column["displacement_nm"] >= onset_nm)
         & (column["contact_length_nm"] >= settings.plasticity.min_length_nm)
-        & (column["contact_area_nm2"] <= settings.plasticity.max_area_fraction * facts["wavelength_nm"] ** 2)
+        & (column["contact_area_nm2"] <= settings.plasticity.max_area_fraction * run["wavelength_nm"] ** 2)
     )
     rows = []
     for name in column:

@@ -91,13 +91,13 @@ def accuracy_rows(
         reference, _, _ = _outputs(inputs, settings, reference_changes)
         done += 1
         for knob, value, changes in cases:
-            found, wall, cpu = _outputs(inputs, settings, changes)
+            outputs, wall, cpu = _outputs(inputs, settings, changes)
             done += 1
             if progress is not None:
                 progress(done / total, f"{knob} {value}")
             scale = np.abs(reference)
             scale[:, [OUTPUTS.index("d_c"), OUTPUTS.index("separation at full load")]] = inputs.rms
-            errors = np.nanmean(np.abs(found - reference) / scale, axis=0)
+            errors = np.nanmean(np.abs(outputs - reference) / scale, axis=0)
             for output, error in zip(OUTPUTS, errors, strict=True):
                 yield {
                     "stage": "contact",

@@ -42,40 +42,40 @@ def violations(
     ``start``: the surface before the cycle, for the check of volume (needs `Cycle.heights`), and to judge a gain of
     energy on a finer path: the error of a sum over few points is unknown where asperities merge and the force jumps.
     """
-    found = []
+    broken = []
     closing, opening = cycle.closing, cycle.opening
     if not all(np.isfinite(array).all() for branch in (closing, opening) for array in vars(branch).values()):
         return ["not finite"]
     if (np.diff(closing.separation_nm) > 0).any() or (np.diff(opening.separation_nm) < 0).any():
-        found.append("separations not ordered")
+        broken.append("separations not ordered")
     if closing.repulsive_nN.min() < 0 or opening.repulsive_nN.min() < 0:
-        found.append("repulsion negative")
+        broken.append("repulsion negative")
     if max(closing.attractive_nN.max(), opening.attractive_nN.max()) > 0:
-        found.append("attraction positive")
+        broken.append("attraction positive")
     if inputs.hamaker == 0 and closing.attractive_nN.any():
-        found.append("attraction without A_H")
+        broken.append("attraction without A_H")
     if (
         closing.repulsive_nN[-1] != opening.repulsive_nN[0]
         or closing.separation_nm[-1] != opening.separation_nm[0]
         or closing.attractive_nN[-1] != opening.attractive_nN[0]
     ):
-        found.append("opening does not start where closing ended")
+        broken.append("opening does not start where closing ended")
     gain, known = _energy_gain(cycle)
     if gain > known and start is not None:
         finer = settings.model_copy(update={"force_steps": FINER * settings.force_steps})
         gain, known = _energy_gain(run_cycle(inputs, finer, 0, heights=start))
     if gain > known:
-        found.append(f"energy gained: {gain:.2g} of the work, known to {known:.1g}")
+        broken.append(f"energy gained: {gain:.2g} of the work, known to {known:.1g}")
     if cycle.flags["unconverged_steps"]:
-        found.append(f"{cycle.flags['unconverged_steps']} steps did not settle")
+        broken.append(f"{cycle.flags['unconverged_steps']} steps did not settle")
     limit = 1.0 + (settings.flow_tolerance if settings.flow == "return" else 0.0)
     if settings.model == "plastic" and float(cycle.flags["largest_load"]) > limit * (1 + 1e-12):
-        found.append(f"an asperity at {cycle.flags['largest_load']:.4g} of its hardness")
+        broken.append(f"an asperity at {cycle.flags['largest_load']:.4g} of its hardness")
     if start is not None and cycle.heights is not None:
         moved = np.abs(cycle.heights - start).sum()
         if abs(np.sum(cycle.heights - start)) > 1e-12 * (moved + np.abs(start).sum()):
-            found.append("volume changed")
-    return found
+            broken.append("volume changed")
+    return broken
 
 
 def _energy_gain(cycle: Cycle) -> tuple[float, float]:

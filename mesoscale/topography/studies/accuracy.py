@@ -74,11 +74,11 @@ def _case(
     for repeat in range(repeats):
         scans = [item.scan for item in synthetic_scans(truth.model_copy(update={"seed": truth.seed + 1000 * repeat}))]
         started, busy = time.perf_counter(), time.process_time()
-        found = _estimates(scans, settings, value if knob == "flat share of window" else None)
+        estimates = _estimates(scans, settings, value if knob == "flat share of window" else None)
         wall.append(time.perf_counter() - started)
         cpu.append(time.process_time() - busy)
         for name, true in known.items():
-            estimate = found.get(name, float("nan"))
+            estimate = estimates.get(name, float("nan"))
             errors[name].append(estimate - true if name == "slope" else estimate / true - 1)
     for name in known:
         yield {

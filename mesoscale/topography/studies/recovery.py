@@ -60,15 +60,15 @@ def recovery_rows(
 ) -> Iterator[dict[str, Any]]:
     """One row per set and method: truth, estimate, interval, error, whether within tolerance and covered."""
     for number in numbers:
-        truth, told = random_truth(number, base)
+        truth, stated_radius = random_truth(number, base)
         known = {"q0": truth.q0, "slope": truth.slope, "rms": truth.rms_nm}
-        told_settings = settings.model_copy(update={"tip_radius_nm": told, "convention": "areal"})
-        result, spectra, _ = analysed_set(truth, told_settings)
+        stated_settings = settings.model_copy(update={"tip_radius_nm": stated_radius, "convention": "areal"})
+        result, spectra, _ = analysed_set(truth, stated_settings)
         for method in ("likelihood", "lines"):
             if method == "lines":
-                result = analyse(spectra, told_settings.model_copy(update={"method": "lines"}))
+                result = analyse(spectra, stated_settings.model_copy(update={"method": "lines"}))
             row: dict[str, Any] = {"set": number, "method": method, "tip_radius_nm": truth.tip_radius_nm}
-            row["told_tip_radius_nm"] = told
+            row["told_tip_radius_nm"] = stated_radius
             row["gate"] = "; ".join(reason for reason in result.reasons if not reason.startswith("H ="))
             for name, value in known.items():
                 estimate = result.estimates.get(name)

@@ -66,9 +66,9 @@ def bias_rows(
         for j, name in enumerate(("mean", "dev")):
             row[f"{name}_level1"] = level1[j]
             row |= _bias(f"{name}_level1", level1[j], error[j], truth, name, k)
-            found = response[:, k].mean() if name == "mean" else response[:, k].std()
-            row[f"{name}_response"] = found
-            row |= _bias(f"{name}_response", found, 0.0, truth, name, k)
+            estimate = response[:, k].mean() if name == "mean" else response[:, k].std()
+            row[f"{name}_response"] = estimate
+            row |= _bias(f"{name}_response", estimate, 0.0, truth, name, k)
     return rows
 
 

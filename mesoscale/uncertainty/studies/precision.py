@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.propagation import NodeOutputs, exported_responses, output_responses, to_paper_outputs
-from mesoscale.uncertainty.reference import STATISTICS, Reference, each, explained_by
+from mesoscale.uncertainty.reference import STATISTICS, Reference, explained_by, of_outputs
 from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
 from mesoscale.uncertainty.sensitivity import pick_freeze, response_indices
 from mesoscale.uncertainty.surrogate import evaluate, with_scatter
@@ -50,7 +50,7 @@ class Method:
 
 
 @dataclass(frozen=True)
-class Found:
+class MethodResult:
     """Statistics of the eight outputs by one repeat of a method."""
 
     statistics: dict[str, Array]
@@ -99,7 +99,7 @@ def _blocks(runs: int, used: int) -> tuple[NDArray[np.int_], ...]:
     return tuple(np.arange(k * used, (k + 1) * used) for k in range(repeats))
 
 
-def run_method(method: Method, direct: Direct, table: InputTable) -> list[Found]:
+def run_method(method: Method, direct: Direct, table: InputTable) -> list[MethodResult]:
     """Statistics of every repeat of a method."""
     x, y = direct
     settings = method.settings
@@ -107,7 +107,7 @@ def run_method(method: Method, direct: Direct, table: InputTable) -> list[Found]
     samples = table.sample(settings.samples, settings.sample_seed)
     points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
     nothing = np.empty((0, x.shape[1])), np.empty((0, y.shape[1]))
-    found = []
+    results = []
     for repeat in range(max(len(method.nodes), len(method.blocks))):
         before = time.process_time()
         training = method.blocks[repeat] if method.blocks else np.empty(0, int)
@@ -116,12 +116,12 @@ def run_method(method: Method, direct: Direct, table: InputTable) -> list[Found]
         if not method.response:
             values = to_paper_outputs(y[training])
             shares = [[explained_by(x[training, i], values[:, k]) for i in range(x.shape[1])] for k in range(8)]
-            found.append(Found(_statistics(values, values), np.array(shares), np.full(8, np.nan), 0.0))
+            results.append(MethodResult(_statistics(values, values), np.array(shares), np.full(8, np.nan), 0.0))
             continue
         nodes = method.nodes[repeat] if method.nodes else NodeOutputs([], np.empty((0, 0, 8)))
         known = (x[training], y[training]) if method.blocks else nothing
         responses = exported_responses(nodes, known, ranges, settings)
-        of_outputs = output_responses(responses, known, ranges, settings)
+        per_output = output_responses(responses, known, ranges, settings)
         fit_s = time.process_time() - before
         outputs = evaluate(responses, samples)
         values, cells = to_paper_outputs(outputs), to_paper_outputs(outputs)
@@ -129,13 +129,13 @@ def run_method(method: Method, direct: Direct, table: InputTable) -> list[Found]
             cells = to_paper_outputs(with_scatter(outputs, responses, known, True, settings.sample_seed))
         errors = to_paper_outputs(evaluate(responses, x[unseen])) - truth
         q2 = 1 - np.nanmean(errors**2, axis=0) / np.nanvar(truth, axis=0)
-        found.append(Found(_statistics(values, cells), response_indices(points, of_outputs)[0], q2, fit_s))
-    return found
+        results.append(MethodResult(_statistics(values, cells), response_indices(points, per_output)[0], q2, fit_s))
+    return results
 
 
 def _statistics(values: Array, cells: Array) -> dict[str, Array]:
     """Mean and deviation of `values`, quantiles of `cells`."""
-    return {name: each(f, cells if name.startswith("q") else values) for name, f in STATISTICS.items()}
+    return {name: of_outputs(f, cells if name.startswith("q") else values) for name, f in STATISTICS.items()}
 
 
 def precision_rows(
@@ -164,7 +164,7 @@ def precision_rows(
             "method": method.name,
             "engine_calls": method.calls,
             "engine_cpu_s": method.calls * seconds_per_call,
-            "fit_cpu_s": float(np.mean([found.fit_s for found in repeats])),
+            "fit_cpu_s": float(np.mean([result.fit_s for result in repeats])),
             "repeats": len(repeats),
         }
         for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
@@ -175,13 +175,13 @@ def precision_rows(
                     target = np.sqrt(max(truth.input_variance.value[k], 0.0))
                     floor = truth.input_variance.error[k] / (2 * target) if target else np.nan
                     scale = target
-                values = np.array([found.statistics[name][k] for found in repeats])
+                values = np.array([result.statistics[name][k] for result in repeats])
                 entries[name] = (values.mean(), target, _rms(values - target) / scale, floor / scale)
-            indices = np.array([found.first[k] for found in repeats])
+            indices = np.array([result.first[k] for result in repeats])
             off = np.abs(indices - (truth.first.value[k] if method.response else _of_all(truth, k)))
             entries["sobol_first"] = (np.nan, np.nan, _rms(off.max(axis=1)), truth.first.error[k].max())
             if method.response:
-                q2 = np.array([found.q2[k] for found in repeats])
+                q2 = np.array([result.q2[k] for result in repeats])
                 entries["q2"] = (q2.mean(), np.nan, (1 - q2).mean(), truth.surface_variance.value[k] / variance[k])
             for name, (value, target, error, floor) in entries.items():
                 rows.append(

@@ -91,32 +91,34 @@ def _close(value: float, wanted: float, relative: float = 0.05) -> bool:
 
 def _zero_width() -> list[str]:
     table = _table(UNIFORM, Distribution("fixed", 2.0), Distribution("normal", 5.0, 0.0))
-    found = _answer(lambda x: 10 + x @ np.array([1.0, 3.0, 2.0]), table)
+    answer = _answer(lambda x: 10 + x @ np.array([1.0, 3.0, 2.0]), table)
     return _unless(
-        deviation_of_the_one_that_varies=_close(found.output["dev"], 1 / np.sqrt(12)),
-        no_effect_of_the_fixed=all(row["mu_star"] < 1e-9 for row in found.sensitivity[1:]),
-        no_morris_effect_of_the_fixed=all(row["morris_mu_star"] < 1e-6 for row in found.sensitivity[1:]),
-        index_one_of_the_other=_close(found.sensitivity[0]["sobol_total"], 1.0),
+        deviation_of_the_one_that_varies=_close(answer.output["dev"], 1 / np.sqrt(12)),
+        no_effect_of_the_fixed=all(row["mu_star"] < 1e-9 for row in answer.sensitivity[1:]),
+        no_morris_effect_of_the_fixed=all(row["morris_mu_star"] < 1e-6 for row in answer.sensitivity[1:]),
+        index_one_of_the_other=_close(answer.sensitivity[0]["sobol_total"], 1.0),
     )
 
 
 def _count_of_inputs(inputs: int) -> list[str]:
-    found = _answer(lambda x: 10 + x.sum(axis=1), _table(*[UNIFORM] * inputs))
-    firsts = np.array([row["sobol_first"] for row in found.sensitivity])
+    answer = _answer(lambda x: 10 + x.sum(axis=1), _table(*[UNIFORM] * inputs))
+    firsts = np.array([row["sobol_first"] for row in answer.sensitivity])
     return _unless(
-        deviation=_close(found.output["response_dev"], np.sqrt(inputs / 12)),
+        deviation=_close(answer.output["response_dev"], np.sqrt(inputs / 12)),
         equal_indices=bool(np.abs(firsts - 1 / inputs).max() < 0.05),
-        q2_is_one=_close(found.validation["q2"], 1.0, 1e-6),
+        q2_is_one=_close(answer.validation["q2"], 1.0, 1e-6),
     )
 
 
 def _heavy_input() -> list[str]:
     values = np.sort(np.exp(1.5 * np.random.default_rng(3).normal(size=2000)))
-    found = _answer(lambda x: 10 + x[:, 0] + x[:, 1], _table(Distribution("samples", values=values), UNIFORM), runs=400)
+    answer = _answer(
+        lambda x: 10 + x[:, 0] + x[:, 1], _table(Distribution("samples", values=values), UNIFORM), runs=400
+    )
     return _unless(
-        mean=_close(found.output["response_mean"], 10.5 + values.mean(), 0.1),
-        finite=bool(np.isfinite(found.output["response_dev"])),
-        index_of_the_tail=found.sensitivity[0]["sobol_total_high"] > 0.95,
+        mean=_close(answer.output["response_mean"], 10.5 + values.mean(), 0.1),
+        finite=bool(np.isfinite(answer.output["response_dev"])),
+        index_of_the_tail=answer.sensitivity[0]["sobol_total_high"] > 0.95,
     )
 
 
@@ -124,28 +126,28 @@ def _heavy_output() -> list[str]:
     def function(x: Array) -> Array:
         return np.exp(6 * x[:, 0] + x[:, 1])
 
-    found = _answer(function, _table(UNIFORM, UNIFORM), place=1)
+    answer = _answer(function, _table(UNIFORM, UNIFORM), place=1)
     exact = (np.exp(6) - 1) / 6 * (np.e - 1)
     return _unless(
-        response_has_the_mean=_close(found.output["response_mean"], exact),
-        paper_mean_is_off_and_shown=not _close(found.output["mean"], exact, 0.1),
+        response_has_the_mean=_close(answer.output["response_mean"], exact),
+        paper_mean_is_off_and_shown=not _close(answer.output["mean"], exact, 0.1),
     )
 
 
 def _failing_runs(share: float) -> list[str]:
-    found = _answer(lambda x: 10 + x @ np.array([1.0, 2.0]), _table(UNIFORM, UNIFORM), missing=share, seeds=8)
-    counted = found.validation["missing"]
+    answer = _answer(lambda x: 10 + x @ np.array([1.0, 2.0]), _table(UNIFORM, UNIFORM), missing=share, seeds=8)
+    counted = answer.validation["missing"]
     if share == 1.0:
         return _unless(
             all_counted=counted == 200,
-            no_seed_used=found.output["seeds_used"] == 0,
-            no_response=found.responses == 0,
-            no_number=all(np.isnan(found.output[key]) for key in ("mean", "dev", "response_mean", "response_dev")),
+            no_seed_used=answer.output["seeds_used"] == 0,
+            no_response=answer.responses == 0,
+            no_number=all(np.isnan(answer.output[key]) for key in ("mean", "dev", "response_mean", "response_dev")),
         )
     return _unless(
-        counted=bool(0 < counted < 200) and found.output["missing"] > 0,
-        incomplete_seeds_left_out=found.output["seeds_used"] < found.output["seeds"],
-        mean_not_shifted=_close(found.output["response_mean"], 11.5, 0.01),
+        counted=bool(0 < counted < 200) and answer.output["missing"] > 0,
+        incomplete_seeds_left_out=answer.output["seeds_used"] < answer.output["seeds"],
+        mean_not_shifted=_close(answer.output["response_mean"], 11.5, 0.01),
     )
 
 
@@ -162,30 +164,30 @@ def _failing_engine() -> list[str]:
 
 
 def _not_smooth() -> list[str]:
-    found = _answer(lambda x: 10 + np.where(x[:, 0] > 0.37, 5.0, 0.0), _table(UNIFORM, UNIFORM), runs=400)
+    answer = _answer(lambda x: 10 + np.where(x[:, 0] > 0.37, 5.0, 0.0), _table(UNIFORM, UNIFORM), runs=400)
     return _unless(
-        validation_says_so=found.validation["q2"] < 0.9,
-        mean_inside_its_interval=found.validation["mean_direct_low"]
+        validation_says_so=answer.validation["q2"] < 0.9,
+        mean_inside_its_interval=answer.validation["mean_direct_low"]
         <= 10 + 5 * 0.63
-        <= found.validation["mean_direct_high"],
+        <= answer.validation["mean_direct_high"],
     )
 
 
 def _tiny_sample() -> list[str]:
-    found = _answer(lambda x: 10 + x[:, 0], _table(UNIFORM, UNIFORM), runs=3, seeds=1, samples=10)
+    answer = _answer(lambda x: 10 + x[:, 0], _table(UNIFORM, UNIFORM), runs=3, seeds=1, samples=10)
     return _unless(
-        no_response_from_three_runs=found.responses == 0 and np.isnan(found.output["response_mean"]),
-        paper_method_still_there=_close(found.output["mean"], 10.5, 0.1),
-        no_scatter_from_one_seed=np.isnan(found.output["mean_seed_sd"]),
+        no_response_from_three_runs=answer.responses == 0 and np.isnan(answer.output["response_mean"]),
+        paper_method_still_there=_close(answer.output["mean"], 10.5, 0.1),
+        no_scatter_from_one_seed=np.isnan(answer.output["mean_seed_sd"]),
     )
 
 
 def _all_equal() -> list[str]:
-    found = _answer(lambda x: np.full(len(x), 7.0), _table(UNIFORM, UNIFORM))
+    answer = _answer(lambda x: np.full(len(x), 7.0), _table(UNIFORM, UNIFORM))
     return _unless(
-        no_deviation=abs(found.output["dev"]) < 1e-9 and abs(found.output["response_dev"]) < 1e-6,
-        no_indices=all(np.isnan(row["sobol_first"]) for row in found.sensitivity),
-        no_q2="q2" not in found.validation or found.validation["dev_direct"] == 0,
+        no_deviation=abs(answer.output["dev"]) < 1e-9 and abs(answer.output["response_dev"]) < 1e-6,
+        no_indices=all(np.isnan(row["sobol_first"]) for row in answer.sensitivity),
+        no_q2="q2" not in answer.validation or answer.validation["dev_direct"] == 0,
     )
 
 
@@ -205,9 +207,9 @@ def _not_identifiable() -> list[str]:
 def _correlated() -> list[str]:
     rank = -0.8
     table = _table(UNIFORM, UNIFORM, correlation=correlation_matrix(["x0", "x1"], {("x0", "x1"): rank}))
-    found = _answer(lambda x: 10 + x.sum(axis=1), table)
+    answer = _answer(lambda x: 10 + x.sum(axis=1), table)
     # Spearman's rank correlation of uniform inputs is their correlation
-    return _unless(deviation_of_the_sum=_close(found.output["response_dev"], np.sqrt((2 + 2 * rank) / 12)))
+    return _unless(deviation_of_the_sum=_close(answer.output["response_dev"], np.sqrt((2 + 2 * rank) / 12)))
 
 
 def _contradiction() -> list[str]:
