@@ -1,6 +1,7 @@
 """The rough surface that a contact cycle starts from."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -16,7 +17,6 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
     Contact is at the minima of the heights, so a surface of positive skewness (tall peaks) has deep minima here.
     The sum of two independent Gaussian surfaces is a Gaussian surface with the sum of their spectra.
     """
-    from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable, slope_from_hurst
     from mesoscale.topography.synthesis import synthesize, synthesize_spectrum
 
     pixels, length, q1, wanted = settings.pixels, settings.length_nm, settings.q1_per_nm, settings.surface
@@ -24,24 +24,36 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
     if wanted.spectrum is None and other is None:
         heights = synthesize(pixels, length, inputs.q0, inputs.hurst, inputs.rms, seed, settings.convention, q1)
     else:
-        cutoff = min(q1 or math.inf, math.pi * pixels / length)
-
-        def rough(rms: float, q0: float, hurst: float) -> RoughSpectrum:
-            return RoughSpectrum.from_rms(rms, q0, slope_from_hurst(hurst, settings.convention), cutoff)
-
-        if wanted.spectrum is None:
-            spectra = [rough(inputs.rms, inputs.q0, inputs.hurst).psd]
-        else:
-            spectra = [SpectrumTable(wanted.spectrum.q, wanted.spectrum.psd).scaled(inputs.rms, cutoff).psd]
-        if other is not None:
-            spectra.append(rough(other.rms_nm, other.q0, other.hurst).psd)
         rms = math.hypot(inputs.rms, other.rms_nm if other else 0.0)
-        heights = synthesize_spectrum(pixels, length, lambda q: np.sum([c(q) for c in spectra], axis=0), rms, seed, q1)
+        heights = synthesize_spectrum(pixels, length, surface_spectrum(inputs, settings), rms, seed, q1)
     if (wanted.skewness, wanted.kurtosis) != (0.0, 3.0):
         from mesoscale.topography.synthesis import with_moments
 
         heights = -with_moments(-heights, wanted.skewness, wanted.kurtosis)
     return heights
+
+
+def surface_spectrum(inputs: ContactInputs, settings: ContactSettings) -> Callable[[np.ndarray], np.ndarray]:
+    """Two-dimensional spectrum, nm^4 of wave vectors in 1/nm, from which `random_surface` draws its surfaces."""
+    from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable, slope_from_hurst
+
+    wanted, cutoff = settings.surface, shortest_wave(settings)
+
+    def rough(rms: float, q0: float, hurst: float) -> RoughSpectrum:
+        return RoughSpectrum.from_rms(rms, q0, slope_from_hurst(hurst, settings.convention), cutoff)
+
+    if wanted.spectrum is None:
+        spectra = [rough(inputs.rms, inputs.q0, inputs.hurst).psd]
+    else:
+        spectra = [SpectrumTable(wanted.spectrum.q, wanted.spectrum.psd).scaled(inputs.rms, cutoff).psd]
+    if wanted.counterface is not None:
+        spectra.append(rough(wanted.counterface.rms_nm, wanted.counterface.q0, wanted.counterface.hurst).psd)
+    return lambda q: np.sum([c(q) for c in spectra], axis=0)
+
+
+def shortest_wave(settings: ContactSettings) -> float:
+    """Largest wave vector of a random surface, 1/nm: q1, at most the grid's Nyquist limit."""
+    return min(settings.q1_per_nm or math.inf, math.pi * settings.pixels / settings.length_nm)
 
 
 def given_surface(
