@@ -3,8 +3,11 @@
 import importlib.util
 import shutil
 import subprocess
+from pathlib import Path
 
 import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
 
 TARGETS = ("inputs", "curves")
 SLURM = ("--seconds-between-status-checks", "2", "--latency-wait", "5")
@@ -38,6 +41,21 @@ def test_results_do_not_depend_on_where_a_job_ran(make_workflow, tmp_path):
         assert done.returncode == 0, done.stdout + done.stderr
         found.append([(folder / "results/ci" / name).read_bytes() for name in files])
     assert found[0] == found[1]
+
+
+@pytest.mark.skipif(not answers(), reason="no Slurm answers here; .ci/slurm starts one on a machine for tests")
+def test_jobs_of_one_rule_are_submitted_as_an_array(make_workflow, tmp_path):
+    paper = (ROOT / "config/scenes/paper.yaml").read_text().replace("name: paper", "name: arrays")
+    small = paper.replace("contact:", "contact:\n  pixels: 64", 1)
+    (tmp_path / "arrays.yaml").write_text(small + "\nuncertainty: {chunk_runs: 40}\n")
+    workflow = make_workflow(tmp_path, profile="slurm")
+    target = "results/arrays/law/parameters.csv"
+    done = workflow.run(str(tmp_path / "arrays.yaml"), target, options=(*SLURM, "--verbose"))
+    said = done.stdout + done.stderr
+    assert done.returncode == 0, said
+    assert (tmp_path / target).exists()
+    assert "--array" in said
+    assert len(list((tmp_path / "results/arrays/curves/runs").glob("chunk_*.h5"))) > 1
 
 
 @pytest.mark.parametrize("scene", ["ci", "paper", "reduced", "full"])

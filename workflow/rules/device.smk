@@ -9,7 +9,7 @@ rule solve_switch:
         samples=f"{RESULTS}/uq/samples.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
     output:
-        switch=f"{RESULTS}/device/switch.json",
+        switch=report(f"{RESULTS}/device/switch.json", caption="../captions/switch.rst", category="Device"),
         release=f"{RESULTS}/device/release.csv",
         stiction=f"{RESULTS}/device/stiction.csv",
         path=f"{RESULTS}/device/path.csv",
@@ -31,7 +31,7 @@ rule export_law:
         samples=f"{RESULTS}/uq/samples.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
     output:
-        table=f"{RESULTS}/device/law.csv",
+        table=report(f"{RESULTS}/device/law.csv", caption="../captions/device_law.rst", category="Device"),
         samples=f"{RESULTS}/device/law.json",
         spice=f"{RESULTS}/device/asperity_contact.sub",
         testbench=f"{RESULTS}/device/asperity_contact.cir",

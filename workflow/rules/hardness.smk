@@ -126,7 +126,7 @@ rule fit_hardness:
             for body in ("", *(["_counter"] if COUNTER_GLASS else []))
         ],
     output:
-        fit=f"{RESULTS}/hardness/fit.json",
+        fit=report(f"{RESULTS}/hardness/fit.json", caption="../captions/hardness.rst", category="Inputs"),
     log:
         f"{RESULTS}/logs/fit_hardness.log",
     params:

@@ -21,7 +21,7 @@ rule collect_inputs:
         **INPUT_STAGES,
         **SAMPLES,
     output:
-        f"{RESULTS}/inputs.csv",
+        report(f"{RESULTS}/inputs.csv", caption="../captions/inputs.rst", category="Inputs"),
     log:
         f"{RESULTS}/logs/collect_inputs.log",
     params:

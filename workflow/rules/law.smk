@@ -28,7 +28,7 @@ rule compute_runs:
         uncertainty=RUN_SETTINGS,
         bounds=lambda wildcards: RUN_CHUNKS[wildcards.chunk],
     message:
-        "compute contact cycles, chunk {wildcards.chunk}" + f" of {len(RUN_CHUNKS)}"
+        f"compute contact cycles, chunk {{wildcards.chunk}} of {len(RUN_CHUNKS)}"
     script:
         "../scripts/compute_runs.py"
 
@@ -38,7 +38,7 @@ rule fit_law:
         inputs=f"{RESULTS}/inputs.csv",
         chunks=[f"{RESULTS}/curves/runs/chunk_{chunk}.h5" for chunk in RUN_CHUNKS],
     output:
-        parameters=f"{RESULTS}/law/parameters.csv",
+        parameters=report(f"{RESULTS}/law/parameters.csv", caption="../captions/law.rst", category="Law"),
     log:
         f"{RESULTS}/logs/fit_law.log",
     threads: 1

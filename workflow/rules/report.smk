@@ -45,7 +45,7 @@ rule render_report:
         report_inputs(),
         style=[str(ROOT / "workflow" / "report" / name) for name in ("template.html.j2", "style.css", "explorer.js")],
     output:
-        f"{RESULTS}/report.html",
+        report(f"{RESULTS}/report.html", caption="../captions/report.rst", category="Report"),
     log:
         f"{RESULTS}/logs/render_report.log",
     params:

@@ -67,7 +67,9 @@ rule pool_spectra:
         truth=[] if TOPOGRAPHY.scans else f"{RESULTS}/topography/truth.json",
     output:
         spectra=f"{RESULTS}/topography/spectra.h5",
-        parameters=f"{RESULTS}/topography/parameters.json",
+        parameters=report(
+            f"{RESULTS}/topography/parameters.json", caption="../captions/topography.rst", category="Inputs"
+        ),
     log:
         f"{RESULTS}/logs/pool_spectra.log",
     params:

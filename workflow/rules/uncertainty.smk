@@ -50,7 +50,7 @@ rule propagate_uncertainty:
         table2=str(CONFIG / "paper" / "table2.csv"),
         table3=str(CONFIG / "paper" / "table3.csv"),
     output:
-        outputs=f"{RESULTS}/uq/outputs.csv",
+        outputs=report(f"{RESULTS}/uq/outputs.csv", caption="../captions/outputs.rst", category="Uncertainty"),
         ratios=f"{RESULTS}/uq/ratios.csv",
         surrogate=f"{RESULTS}/uq/surrogate.json",
         samples=f"{RESULTS}/uq/samples.csv",
@@ -74,7 +74,7 @@ rule rank_sensitivity:
         direct=direct_files("direct", SCENE.uncertainty.direct_runs),
         table3=str(CONFIG / "paper" / "table3.csv"),
     output:
-        f"{RESULTS}/uq/sensitivity.csv",
+        report(f"{RESULTS}/uq/sensitivity.csv", caption="../captions/sensitivity.rst", category="Uncertainty"),
     log:
         f"{RESULTS}/logs/rank_sensitivity.log",
     params:

@@ -1,5 +1,6 @@
 """Record what a run depends on.  Out: scene.yaml with the resolved settings, package versions, git commit."""
 
+import shutil
 import subprocess
 
 import yaml
@@ -9,14 +10,13 @@ from workflow.results import write_text
 from workflow.scene import ROOT
 
 with job(snakemake) as run:
-    commit = subprocess.run(
-        ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=40"],
-        capture_output=True,
-        text=True,
-    )
+    commit = ""
+    if shutil.which("git"):  # absent from slim container images
+        command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=40"]
+        commit = subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
     record = {
         "scene": snakemake.params.scene,
         "versions": package_versions(),
-        "git_commit": commit.stdout.strip() or "not a git checkout",
+        "git_commit": commit or "not a git checkout",
     }
     write_text(snakemake.output[0], yaml.safe_dump(record, sort_keys=False, allow_unicode=True, width=100))
