@@ -7,11 +7,10 @@ import numpy as np
 
 from mesoscale.contact.energy import dissipated_energy
 from mesoscale.contact.history import HeldCycle, follow, hardness_factor
-from mesoscale.device.contact_law import scale_adhesion
-from mesoscale.device.switch import solve_switch, switch_from_settings
+from mesoscale.device.switch import drive_switch
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.law.branches import fit_cycle
-from mesoscale.law.compact import PARAMETERS, Law
+from mesoscale.law.branches import fit_cycle, law_of_fit
+from mesoscale.law.compact import PARAMETERS
 from mesoscale.law.fit import LawFit
 from mesoscale.settings import ContactSettings, DeviceSettings, HistorySettings, LawSettings
 
@@ -50,7 +49,7 @@ def cycle_row(
 ) -> dict[str, Any]:
     """Row of history/cycles.csv: the cycle, the law of its opening, and the switch that follows it."""
     cycle = held.cycle
-    fits = fit_cycle(cycle, inputs.hamaker, contact.length_nm**2, law)
+    fits = fit_cycle(cycle, law)
     release, critical = _release(fits.closing, fits.opening, inputs.hamaker, law, device)
     return {
         "seed": seed,
@@ -89,10 +88,8 @@ def _release(
     for fit in (closing, opening):
         if not np.all(np.isfinite(fit.parameters)):
             return None, None
-        values = dict(zip(PARAMETERS, map(float, fit.parameters), strict=True))
-        one = Law(**values, hamaker=hamaker, rho_a_nm=law.rho_a_nm, shield_nm=law.shield_nm)
-        laws.append(scale_adhesion(one, device.adhesion_scale))
-    states = solve_switch(switch_from_settings(device), laws[0], laws[1], device.hold_voltage_V)
+        laws.append(law_of_fit(fit, hamaker, law))
+    states = drive_switch(device, laws[0], laws[1])
     return float(states.release_V[0]), float(states.critical_fraction[0])
 
 

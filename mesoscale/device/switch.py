@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesoscale.device.contact_law import column, flat, onset_nm, pressure_GPa, samples_of, take
+from mesoscale.device.contact_law import column, flat, onset_nm, pressure_GPa, samples_of, scale_adhesion, take
 from mesoscale.law.compact import Law
 from mesoscale.settings import DeviceSettings
 
@@ -127,6 +127,16 @@ def solve_switch(switch: Switch, closing: Law, opening: Law, hold_voltage_V: flo
         block = every[start : start + CHUNK]
         parts.append(_solve_block(switch, take(closing, block), take(opening, block), hold_voltage_V))
     return SwitchStates(*(np.concatenate([part[i] for part in parts]) for i in range(len(parts[0]))))
+
+
+def drive_switch(settings: DeviceSettings, closing: Law, opening: Law) -> SwitchStates:
+    """Pull-in, hold, release and sticking of the switch that the settings describe, one entry per sample of the laws.
+
+    The laws' attraction is scaled by `settings.adhesion_scale`, and the closed switch is held at
+    `settings.hold_voltage_V`.
+    """
+    closing, opening = (scale_adhesion(law, settings.adhesion_scale) for law in (closing, opening))
+    return solve_switch(switch_from_settings(settings), closing, opening, settings.hold_voltage_V)
 
 
 def sweep(switch: Switch, law: Law, points: int = 600) -> tuple[np.ndarray, np.ndarray]:

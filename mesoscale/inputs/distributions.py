@@ -79,6 +79,10 @@ class InputTable:
         """Names of the inputs in order."""
         return [row.name for row in self.rows]
 
+    def medians(self) -> dict[str, float]:
+        """Central values by name, in the inputs' units (the means, where a distribution is symmetric)."""
+        return {row.name: float(row.distribution.quantile(0.5)) for row in self.rows}
+
     def ranges(self, central_share: float) -> Array:
         """Range that responses cover, shape (n, 2)."""
         return np.array([row.distribution.span(central_share) for row in self.rows])

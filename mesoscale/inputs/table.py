@@ -10,7 +10,7 @@ import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
-from mesoscale.settings import InputRow, InputsSettings
+from mesoscale.settings import TABLE_1, InputRow, InputsSettings, UncertaintySettings
 
 UNITS = {
     "hamaker": "1e-18 J",
@@ -72,6 +72,35 @@ def collect(
         rows.append(UncertainInput(name, UNITS[name], given, row.origin, source))
     names = [row.name for row in rows]
     return InputTable(tuple(rows), correlation_matrix(names, pairs))
+
+
+PAPER_ROWS = {
+    "e_star": InputRow(distribution="normal", a=91, b=3.8, source=TABLE_1),
+    "h_prime": InputRow(a=1.95, b=14.8, source=TABLE_1),
+    "q0": InputRow(a=0.015, b=0.035, source=TABLE_1),
+    "hurst": InputRow(a=0.5, b=1.0, source=TABLE_1),
+    "rms": InputRow(a=2, b=15, source=TABLE_1),
+}
+"""The paper's rows of the inputs that stages compute; the settings' defaults hold the others."""
+
+
+def input_table(topography: Mapping[str, Any] | None = None, **rows: InputRow) -> InputTable:
+    """The paper's Table 1 with some rows exchanged.
+
+    Parameters
+    ----------
+    topography : what `measure_roughness` found: gives q0, hurst and rms.
+    rows : distributions by name of the input (`InputsSettings`), for instance
+        ``e_star=InputRow(distribution="normal", a=70, b=5)`` in GPa.
+
+    Raises
+    ------
+    InputError : unknown name, a range that crosses a physical bound, or roughness that the scans do not determine.
+    """
+    measured = {} if topography is None else {name: InputRow(origin="topography") for name in ("q0", "hurst", "rms")}
+    settings = InputsSettings(**{**PAPER_ROWS, **measured, **rows})
+    stages = {} if topography is None else {"topography": topography}
+    return collect(settings, stages, {"topography": "measured roughness"}, UncertaintySettings().central_share)
 
 
 def _literature(name: str, row: InputRow) -> Distribution:
@@ -176,4 +205,4 @@ def from_rows(rows: Iterable[Mapping[str, str]]) -> InputTable:
 
 def medians(rows: Iterable[Mapping[str, str]]) -> dict[str, float]:
     """Central inputs by name (the means, where a distribution is symmetric) from the rows of inputs.csv."""
-    return {row.name: float(row.distribution.quantile(0.5)) for row in from_rows(rows).rows}
+    return from_rows(rows).medians()

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact import Cycle
+from mesoscale.errors import InputError
+from mesoscale.law.compact import PARAMETERS, Law
 from mesoscale.law.fit import LawFit, contact_separation, fit_branch, row_of
 from mesoscale.settings import LawSettings
 
@@ -36,25 +38,43 @@ class Outcome:
 NO_FIT = LawFit(np.nan, np.nan, np.nan, np.nan, status="no_curve")
 
 
-def fit_cycle(cycle: Cycle, hamaker: float, cell_area_nm2: float, settings: LawSettings) -> Outcome:
+def fit_cycle(cycle: Cycle, settings: LawSettings) -> Outcome:
     """The law fitted to both branches of a cycle."""
-    fits = []
-    for branch, touch in (
-        (cycle.closing, cycle.first_contact_nm),
-        (cycle.opening, cycle.last_contact_nm),
-    ):
-        fits.append(
-            fit_curve(
-                branch.separation_nm,
-                branch.repulsive_nN,
-                branch.attractive_nN,
-                cell_area_nm2,
-                hamaker,
-                touch,
-                settings,
-            )
+    fits = [
+        fit_curve(
+            branch.separation_nm,
+            branch.repulsive_nN,
+            branch.attractive_nN,
+            cycle.cell_area_nm2,
+            cycle.inputs.hamaker,
+            touch,
+            settings,
         )
+        for branch, touch in ((cycle.closing, cycle.first_contact_nm), (cycle.opening, cycle.last_contact_nm))
+    ]
     return Outcome(fits[0], fits[1], "ok" if cycle.converged else "unconverged")
+
+
+def laws_of(cycle: Cycle, settings: LawSettings | None = None) -> tuple[Law, Law]:
+    """The force-separation laws of closing and opening, ready for `pressure`, `force` and a switch.
+
+    Raises
+    ------
+    InputError : a branch does not determine its law; the message says why.
+    """
+    settings = settings or LawSettings()
+    outcome = fit_cycle(cycle, settings)
+    for branch, fit in (("closing", outcome.closing), ("opening", outcome.opening)):
+        if not np.isfinite(fit.parameters).all():
+            raise InputError(f"law of {branch}: {fit.status}; choose a larger force or another definition of contact")
+    closing, opening = (law_of_fit(fit, cycle.inputs.hamaker, settings) for fit in (outcome.closing, outcome.opening))
+    return closing, opening
+
+
+def law_of_fit(fit: LawFit, hamaker: float, settings: LawSettings) -> Law:
+    """The law with the four numbers of a fit; Hamaker constant in 1e-18 J."""
+    values = dict(zip(PARAMETERS, fit.parameters.tolist(), strict=True))
+    return Law(**values, hamaker=hamaker, rho_a_nm=settings.rho_a_nm, shield_nm=settings.shield_nm)
 
 
 def fit_curve(

@@ -77,5 +77,5 @@ def press_scan(
     for surface, heights, chosen, force in surfaces(scan, fitted, settings, contact):
         own = replace(inputs, rms=float(np.std(heights)))
         cycle = run_cycle(own, chosen, contact.nominal_seed, force, heights)
-        outcome = fit_cycle(cycle, own.hamaker, cycle.cell_area_nm2, law)
+        outcome = fit_cycle(cycle, law)
         yield PressedSurface(scan.name, surface, chosen.pixels, force, cycle, outcome)

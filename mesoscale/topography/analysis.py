@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.cleaning import Scan, clean
 from mesoscale.topography.likelihood import TrustedSpectrum, trusted_range
-from mesoscale.topography.parameters import Topography, inputs
+from mesoscale.topography.parameters import Topography, analyse, inputs
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, mean_square
 from mesoscale.topography.spectrum import (
     Spectrum,
@@ -113,6 +114,25 @@ def fit_curves(topography: Topography, lowest_q: float, truth: RoughSpectrum | N
     if truth is not None:
         curves["truth"] = truth.psd(q)
     return curves
+
+
+def measure_roughness(scans: Sequence[Scan], settings: TopographySettings | None = None) -> dict[str, Any]:
+    """Roll-off wave vector q0 (1/nm), Hurst exponent and RMS height (nm) of raw scans of one surface.
+
+    Returns
+    -------
+    content : as topography/parameters.json: `estimates` by name with value, interval and scatter, `inputs` (what the
+        table of inputs takes) and `gate` (`passed`, `reasons`: why not to trust them).
+
+    Raises
+    ------
+    InputError : no scan, or one that cannot be used.
+    """
+    settings = settings or TopographySettings()
+    if not scans:
+        raise InputError("scans: none given; at least one is needed")
+    topography = analyse([trusted_scan(scan, settings) for scan in scans], settings)
+    return parameters(topography, [], settings, None)
 
 
 UNITS = {"q0": "1/nm", "slope": "1", "hurst": "1", "rms": "nm"}

@@ -15,6 +15,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from mesoscale.extras import needs
+
 SUFFIXES = {  # reader (and module below SurfaceTopography.IO) by the suffixes of its files
     "GWY": ("gwy",),
     "IBW": ("ibw",),
@@ -40,7 +42,8 @@ def light_reader(path: Path) -> Iterator[type[Any] | None]:
         yield None
         return
     try:
-        sys.modules.update(_parked or _stand_ins())
+        with needs("scans"):
+            sys.modules.update(_parked or _stand_ins())
         try:
             module = importlib.import_module(f"{PACKAGES[1]}.{name}")
             reader = getattr(module, f"{name}Reader")
@@ -58,7 +61,7 @@ def _stand_ins() -> dict[str, ModuleType]:
     for name in PACKAGES:
         spec = importlib.util.find_spec(name)
         if spec is None:
-            raise ModuleNotFoundError(name)
+            raise ModuleNotFoundError(name=name)
         modules[name] = sys.modules[name] = importlib.util.module_from_spec(spec)
     return modules
 

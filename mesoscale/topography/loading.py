@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
+from mesoscale.extras import needs
 from mesoscale.topography.cleaning import Scan
 from mesoscale.topography.light_readers import light_reader
 
@@ -71,8 +72,9 @@ def _read(reader: Any, path: Path, name: str | None, channel: str | None) -> Sca
 
 def _open(path: Path, start: bytes) -> Any:
     """The file in the first of all readers that understands it."""
-    from SurfaceTopography.IO import readers
-    from SurfaceTopography.IO.Reader import MagicMatch
+    with needs("scans"):
+        from SurfaceTopography.IO import readers
+        from SurfaceTopography.IO.Reader import MagicMatch
 
     reasons = []
     for reader in readers:
@@ -150,7 +152,8 @@ def _scan(path: Path, name: str, info: Any, note: str) -> Scan:
 
 def write_gwy(path: str | Path, scan: Scan) -> None:
     """Write heights to a Gwyddion file, in metres as Gwyddion wants them; missing pixels as its mask."""
-    from gwyfile.objects import GwyContainer, GwyDataField
+    with needs("scans"):
+        from gwyfile.objects import GwyContainer, GwyDataField
 
     metre = 1e-9
     x, y = (length * metre for length in scan.lengths_nm)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mesoscale.extras import needs
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.chunks import collocation_level
@@ -93,7 +94,8 @@ def morris_runs(table: InputTable, settings: UncertaintySettings, first: int, la
 
 def morris_points(inputs: int, trajectory: int, seed: int) -> np.ndarray:
     """One trajectory in the unit cube, shape (n + 1, n)."""
-    from SALib.sample import morris  # 2 s to import, needed here alone
+    with needs("uncertainty"):
+        from SALib.sample import morris  # 2 s to import, needed here alone
 
     trajectory_seed = int(np.random.SeedSequence([seed, 0x3E, trajectory]).generate_state(1)[0])
     return np.asarray(morris.sample(morris_problem(inputs), 1, num_levels=MORRIS_LEVELS, seed=trajectory_seed), float)

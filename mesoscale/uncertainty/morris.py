@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.extras import needs
 from mesoscale.uncertainty.designs import MORRIS_LEVELS, morris_points, morris_problem
 
 Array = NDArray[np.float64]
@@ -39,7 +40,8 @@ def trajectory_effects(points: Array, y: Array, seed: int, resamples: int = 200)
     points : trajectories in the unit cube, shape (t, n + 1, n).
     y : output along them, shape (t, n + 1).
     """
-    from SALib.analyze import morris  # 2 s to import, needed here alone
+    with needs("uncertainty"):
+        from SALib.analyze import morris  # 2 s to import, needed here alone
 
     known = np.isfinite(y).all(axis=1)
     inputs = points.shape[2]

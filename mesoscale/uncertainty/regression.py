@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.extras import needs
 from mesoscale.uncertainty.surrogate import Surrogate, basis_matrix
 
 Array = NDArray[np.float64]
@@ -28,7 +29,8 @@ def sparse_chaos(
     ------
     ValueError : fewer usable runs than twice the inputs.
     """
-    import openturns as ot
+    with needs("uncertainty"):
+        import openturns as ot
 
     usable = np.isfinite(y) & ((y > 0) | (transform == "identity"))
     inputs = x.shape[1]
@@ -72,7 +74,8 @@ def full_chaos(
     x: Array, y: Array, ranges: Array, degree: int, transform: str = "identity", hyperbolic: float = 0.7
 ) -> Surrogate:
     """As `sparse_chaos` with all terms kept: for many more runs than terms."""
-    import openturns as ot
+    with needs("uncertainty"):
+        import openturns as ot
 
     usable = np.isfinite(y) & ((y > 0) | (transform == "identity"))
     inputs = x.shape[1]

@@ -2,19 +2,23 @@
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.checks import check_seed
 from mesoscale.contact import Cycle, run_cycle
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.branches import NO_FIT, Outcome, fit_cycle
-from mesoscale.law.compact import PARAMETERS
-from mesoscale.settings import ContactSettings, LawSettings
-from mesoscale.uncertainty.designs import Run
+from mesoscale.law.compact import PARAMETERS, Law
+from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
+from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
+
 
 OUTPUTS = (*PARAMETERS, *(f"delta_{name}" for name in PARAMETERS))
 """Closing parameters and their change on opening, in the order of the paper's Table 2."""
@@ -66,7 +70,7 @@ def compute_rows(
         if isinstance(cycle, str):
             outcome = Outcome(NO_FIT, NO_FIT, cycle)
         else:
-            outcome = fit_cycle(cycle, run.values["hamaker"], contact.length_nm**2, law)
+            outcome = fit_cycle(cycle, law)
             touch = cycle.first_contact_nm
         row: dict[str, float | int | str] = {"run": run.index, "seed": run.seed, **run.values}
         for branch, fit in (("closing", outcome.closing), ("opening", outcome.opening)):
@@ -76,3 +80,59 @@ def compute_rows(
         after = time.process_time()
         yield {**row, "first_contact_nm": touch, "curve_status": outcome.status, "cpu_s": after - before}
         before = after
+
+
+@dataclass(frozen=True)
+class MonteCarlo:
+    """Laws of surfaces and inputs drawn at random; arrays of one entry per sample kept, shape (m,)."""
+
+    inputs: dict[str, Array]
+    """Inputs by name, in the units of the table."""
+    closing: Law
+    """Laws of closing; each parameter has shape (m,)."""
+    opening: Law
+    """Laws of opening."""
+    failed: tuple[str, ...]
+    """Why the other samples are left out, one entry each."""
+
+
+def monte_carlo(
+    table: InputTable,
+    contact: ContactSettings,
+    samples: int,
+    seed: int = 1,
+    law: LawSettings | None = None,
+    progress: Callable[[float, str], None] | None = None,
+) -> MonteCarlo:
+    """Close and open `samples` random surfaces, each with its own draw of the inputs, and fit the law to each.
+
+    Samples whose cycle or fit failed are left out and counted. More samples extend fewer ones of the same seed.
+
+    Raises
+    ------
+    InputError : `samples` or `seed` is no whole number, or no sample gave a law.
+    """
+    check_seed(seed)
+    if isinstance(samples, bool) or not isinstance(samples, int) or samples < 1:
+        raise InputError(f"samples = {samples!r}: accepted is a whole number >= 1")
+    law = law or LawSettings()
+    runs = random_runs(table, UncertaintySettings(sample_seed=seed), 0, samples)
+    kept, parameters, failed = [], [], []
+    for run, cycle in compute_all(runs, contact, progress):
+        outcome = Outcome(NO_FIT, NO_FIT, cycle) if isinstance(cycle, str) else fit_cycle(cycle, law)
+        pair = np.stack([outcome.closing.parameters, outcome.opening.parameters])
+        if outcome.status == "ok" and np.isfinite(pair).all():
+            kept.append(list(run.values.values()))
+            parameters.append(pair)
+        else:
+            reasons = [outcome.status, outcome.closing.status, outcome.opening.status]
+            failed.append(next(reason for reason in reasons if reason != "ok"))
+    if not kept:
+        raise InputError(f"none of {samples} samples gave a law: {'; '.join(dict.fromkeys(failed))}")
+    inputs = dict(zip(table.names, np.array(kept).T, strict=True))
+    fixed = {"hamaker": inputs["hamaker"], "rho_a_nm": law.rho_a_nm, "shield_nm": law.shield_nm}
+    closing, opening = (
+        Law(**dict(zip(PARAMETERS, columns, strict=True)), **fixed)
+        for columns in np.stack(parameters).transpose(1, 2, 0)
+    )
+    return MonteCarlo(inputs, closing, opening, tuple(failed))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.extras import needs
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import elementary_effects, to_values
@@ -53,7 +54,8 @@ def pick_freeze(table: InputTable, count: int, seed: int) -> Array:
     the independent variables behind them, in the order of the table (Rosenblatt's order).
     """
     inputs = len(table.rows)
-    import openturns  # a second to import, needed here alone
+    with needs("uncertainty"):
+        import openturns  # a second to import, needed here alone
 
     shift = np.random.default_rng(np.random.SeedSequence([seed, 0x50])).random(2 * inputs)
     unit = (np.asarray(openturns.SobolSequence(2 * inputs).generate(count)) + shift) % 1.0

@@ -54,7 +54,7 @@ def audit_rows(
             if isinstance(cycle, str):
                 yield {**row, "converged": False}
                 continue
-            outcome = fit_cycle(cycle, run.values["hamaker"], settings.length_nm**2, law_settings)
+            outcome = fit_cycle(cycle, law_settings)
             numbers = outcome.outputs.tolist()
             yield {
                 **row,

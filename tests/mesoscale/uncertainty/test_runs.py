@@ -39,7 +39,7 @@ def test_random_runs_can_be_cut_anywhere():
 
 def test_a_cycle_gives_eight_outputs():
     cycle = computed(CENTRE, 0)
-    outcome = fit_cycle(cycle, CENTRE["hamaker"], 1e6, LawSettings(contact_definition="first_contact"))
+    outcome = fit_cycle(cycle, LawSettings(contact_definition="first_contact"))
     assert outcome.outputs.shape == (8,)
     assert outcome.closing.d_c_nm == pytest.approx(cycle.first_contact_nm)
     # a smooth closing: contact a few rms from the mean plane
@@ -69,7 +69,7 @@ def test_equal_inputs_are_computed_once(monkeypatch):
 def test_the_eighth_input_reaches_the_engine():
     inputs, settings = contact_of({**CENTRE, "gap_cutoff": 0.3}, CONTACT)
     assert settings.gap_cutoff_nm == 0.3
-    near, far = (fit_cycle(computed({**CENTRE, "gap_cutoff": d}, 1), 0.215, 1e6, LawSettings()) for d in (0.165, 0.3))
+    near, far = (fit_cycle(computed({**CENTRE, "gap_cutoff": d}, 1), LawSettings()) for d in (0.165, 0.3))
     assert near.closing.C_a_GPa_nm > far.closing.C_a_GPa_nm
     assert np.isclose(near.closing.rho_r_nm, far.closing.rho_r_nm)
     assert inputs.rms == CENTRE["rms"]

@@ -1,0 +1,66 @@
+"""Contact mechanics of rough surfaces from atoms to device: the names to start from, and the command `asperity`.
+
+From a scan to a switch::
+
+    import asperity as asp
+
+    roughness = asp.measure_roughness([asp.read_scan("film.gwy")])
+    table = asp.input_table(topography=roughness)  # the rest: the paper's Table 1
+    settings = asp.ContactSettings(pixels=256)
+    cycle = asp.run_cycle(asp.ContactInputs(**table.medians()), settings, seed=1)
+    switch = asp.drive_switch(asp.DeviceSettings(), *asp.laws_of(cycle))
+    samples = asp.monte_carlo(table, settings, samples=20)
+    switches = asp.drive_switch(asp.DeviceSettings(), samples.closing, samples.opening)
+
+Lengths are in nm, forces in nN, pressures and moduli in GPa; `help()` of every name states its units.
+"""
+
+from mesoscale.contact import Branch, ContactInputs, Cycle, run_cycle
+from mesoscale.contact.energy import dissipated_energy, work
+from mesoscale.contact.surface import random_surface
+from mesoscale.device.switch import SwitchStates, drive_switch, switch_from_settings
+from mesoscale.errors import InputError
+from mesoscale.extras import MissingExtra
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.inputs.table import input_table
+from mesoscale.law.branches import laws_of
+from mesoscale.law.compact import Law, force, pressure
+from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, LawSettings, TopographySettings
+from mesoscale.topography.analysis import measure_roughness
+from mesoscale.topography.cleaning import Scan, clean
+from mesoscale.topography.loading import read_scan
+from mesoscale.topography.pressing import contacting_heights
+from mesoscale.uncertainty.runs import MonteCarlo, monte_carlo
+
+__all__ = [
+    "Branch",
+    "ContactInputs",
+    "ContactSettings",
+    "Cycle",
+    "DeviceSettings",
+    "InputError",
+    "InputRow",
+    "InputTable",
+    "Law",
+    "LawSettings",
+    "MissingExtra",
+    "MonteCarlo",
+    "Scan",
+    "SwitchStates",
+    "TopographySettings",
+    "clean",
+    "contacting_heights",
+    "dissipated_energy",
+    "drive_switch",
+    "force",
+    "input_table",
+    "laws_of",
+    "measure_roughness",
+    "monte_carlo",
+    "pressure",
+    "random_surface",
+    "read_scan",
+    "run_cycle",
+    "switch_from_settings",
+    "work",
+]
