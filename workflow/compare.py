@@ -58,16 +58,25 @@ def content(path: Path) -> Any:
 
 def _h5_content(path: Path) -> dict[str, Any]:
     with h5py.File(path, "r") as file:
-        items: dict[str, Any] = {"attributes": _without_provenance(dict(file.attrs))}
+        values: dict[str, Any] = {}
+        attributes = {"root": _without_provenance(_attributes(file))}
 
         def visit(name: str, item: Any) -> None:
-            attributes = {key: value for key, value in item.attrs.items() if key not in LINKS}
-            items[name] = {"attributes": attributes}
+            attributes[name] = _attributes(item)
             if isinstance(item, h5py.Dataset):
-                items[name]["values"] = item[()]
+                values[name] = item[()]
 
         file.visititems(visit)
-    return items
+    return {"values": values, "attributes": attributes}  # values first: the first difference is the one that is named
+
+
+def _attributes(item: Any) -> dict[str, Any]:
+    """Attributes, those that hold settings as mappings."""
+    known = {key: value for key, value in item.attrs.items() if key not in LINKS}
+    return {
+        key: json.loads(value) if isinstance(value, str) and value.startswith("{") else value
+        for key, value in known.items()
+    }
 
 
 def _without_provenance(mapping: dict[str, Any]) -> dict[str, Any]:
