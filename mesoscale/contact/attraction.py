@@ -43,6 +43,29 @@ def take_out(originals, start, stop, lowest, width, moments):
 
 
 @njit(cache=True)
+def first_far_bin(gap, separation, lowest, width, bins):
+    """First of the bins all of whose sites are at least a gap away."""
+    return min(max(int(np.floor((gap - separation - lowest) / width)) + 1, 0), bins)
+
+
+@njit(cache=True)
+def far_inverse_cubes(separation, far, lowest, width, moments):
+    """Sum over the sites of 1/g^3 in the bins from `far` on: (g + t)^-3 expanded in t / g."""
+    rest = 0.0
+    for b in range(far, moments.shape[0]):
+        u = 1.0 / (lowest + (b + 0.5) * width + separation)
+        rest += u**3 * (
+            moments[b, 0]
+            + u
+            * (
+                -3.0 * moments[b, 1]
+                + u * (6.0 * moments[b, 2] + u * (-10.0 * moments[b, 3] + u * 15.0 * moments[b, 4]))
+            )
+        )
+    return rest
+
+
+@njit(cache=True)
 def inverse_cubes(
     heights,
     separation,
@@ -62,8 +85,7 @@ def inverse_cubes(
     ``order`` holds at least all sites of the near bins, by rising original height.
     """
     bins = moments.shape[0]
-    far = int(np.floor((max(NEAR_BINS * width, 2.0 * cutoff) - separation - lowest) / width)) + 1
-    far = min(max(far, 0), bins)
+    far = first_far_bin(max(NEAR_BINS * width, 2.0 * cutoff), separation, lowest, width, bins)
     near = 0.0
     for place in range(order.size):
         if min(int((order_heights[place] - lowest) / width), bins - 1) >= far:
@@ -79,16 +101,4 @@ def inverse_cubes(
         if gap >= 0.0 or touching:
             gap = max(gap, cutoff)
             moved += 1.0 / (gap * gap * gap)
-    rest = 0.0
-    for b in range(far, bins):
-        u = 1.0 / (lowest + (b + 0.5) * width + separation)
-        # (g + t)^-3 expanded in t / g
-        rest += u**3 * (
-            moments[b, 0]
-            + u
-            * (
-                -3.0 * moments[b, 1]
-                + u * (6.0 * moments[b, 2] + u * (-10.0 * moments[b, 3] + u * 15.0 * moments[b, 4]))
-            )
-        )
-    return near + moved + rest
+    return near + moved + far_inverse_cubes(separation, far, lowest, width, moments)

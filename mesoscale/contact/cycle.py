@@ -106,7 +106,7 @@ def run_cycle(
         For heights that are not a square of real, finite numbers in nm on the stated side, a force that is not
         positive, or a seed that is no whole number.
     """
-    from mesoscale.contact.engine import Contact, trace
+    from mesoscale.contact.engine import trace
     from mesoscale.contact.surface import given_surface, random_surface
 
     plastic = settings.model == "plastic"
@@ -118,11 +118,12 @@ def run_cycle(
         surface = random_surface(inputs, settings, seed)
     elif plastic:
         surface = surface.copy()
-    contact = Contact(surface, inputs, settings, flattened)
+    contact = _contact(surface, inputs, settings, flattened)
+    capacity = contact.capacity
     first_contact = contact.touching_separation
     approach = _approach(contact)
-    closing = trace(contact, settings.force_steps, plastic, stop_force=min(force, contact.capacity))
-    reached = closing.reached and force <= contact.capacity
+    closing = trace(contact, settings.force_steps, plastic, stop_force=min(force, capacity))
+    reached = closing.reached and force <= capacity
     miss = abs(closing.rows[-1].force - force) / force
     if hold is not None:
         closing.rows += hold(contact, closing.rows[-1])
@@ -159,6 +160,19 @@ def run_cycle(
         heights=surface if keep_surface else None,
         flattened=contact.flattened if keep_surface else None,
     )
+
+
+def _contact(
+    surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, flattened: np.ndarray | None
+) -> "Contact":
+    """The engine of `settings.mechanics`; the other one is neither loaded nor compiled."""
+    if settings.mechanics == "coupled":
+        from mesoscale.contact.coupled.engine import CoupledContact
+
+        return CoupledContact(surface, inputs, settings)
+    from mesoscale.contact.engine import Contact
+
+    return Contact(surface, inputs, settings, flattened)
 
 
 def _largest_drop(forces: list[float]) -> float:

@@ -13,6 +13,11 @@ DRAWS_PER_CHUNK = 50
 class ContactSettings(Settings):
     """Mesoscale contact model (docs/contact.md)."""
 
+    mechanics: Literal["asperity", "coupled"] = Field(
+        default="asperity",
+        description="how asperities carry load: each on its own by eq. 3, or all on one elastic half-space",
+        json_schema_extra={"unit": "1"},
+    )
     model: Literal["elastic", "nonlinear", "plastic"] = Field(
         default="plastic",
         description="asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the surface",

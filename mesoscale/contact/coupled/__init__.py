@@ -1,0 +1,1 @@
+"""Contact of rough surfaces whose asperities share one elastic half-space (docs/contact.md)."""

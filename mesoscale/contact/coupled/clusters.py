@@ -1,0 +1,90 @@
+"""Compiled loops over the sites in contact: which belong together, what attracts, what yields."""
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True)
+def label(sites, place, pressure, pixels, eight, number):
+    """Number the clusters of connected sites under pressure, from 0; -1 for the sites apart.
+
+    `place` holds the position of each site of the cell in `sites`, or -1. Returns how many clusters there are.
+    """
+    found = 0
+    number[:] = -1
+    waiting = np.empty(sites.size, np.int32)
+    for start in range(sites.size):
+        if number[start] >= 0 or not pressure[start] > 0.0:
+            continue
+        number[start] = found
+        waiting[0] = start
+        end = 1
+        while end > 0:
+            end -= 1
+            site = sites[waiting[end]]
+            row, col = site // pixels, site % pixels
+            for rows in range(-1, 2):
+                for cols in range(-1, 2):
+                    if not eight and rows != 0 and cols != 0:
+                        continue
+                    other = place[(row + rows) % pixels * pixels + (col + cols) % pixels]
+                    if other >= 0 and number[other] < 0 and pressure[other] > 0.0:
+                        number[other] = found
+                        waiting[end] = other
+                        end += 1
+        found += 1
+    return found
+
+
+@njit(cache=True)
+def flatten(heights, sites, separation, displacement, pressure, limit, changes):
+    """Lower the sites at their hardness by their overlap (contact is at the minima, so their heights rise)."""
+    step = np.int32(changes.used[2])
+    for k in range(sites.size):
+        site = sites[k]
+        gap = heights[site] + separation + displacement[k]
+        if not (gap < 0.0 and 0.0 < limit[k] <= pressure[k]):
+            continue
+        if changes.stamp[site] != step:
+            changes.stamp[site] = step
+            changes.journal[changes.used[1]] = site
+            changes.before[changes.used[1]] = heights[site]
+            changes.used[1] += 1
+        if changes.changed[site] == 0:
+            changes.changed[site] = 1
+            changes.sites[changes.used[0]] = site
+            changes.original[changes.used[0]] = heights[site]
+            changes.used[0] += 1
+        heights[site] -= gap
+
+
+@njit(cache=True)
+def displace(table, scale, pixels, sites, pressure, others, displacement):
+    """Displacement (nm) of other sites by the pressures of some."""
+    rows = np.empty(sites.size, np.int64)
+    cols = np.empty(sites.size, np.int64)
+    value = np.empty(sites.size)
+    count = 0
+    for k in range(sites.size):
+        if pressure[k] > 0.0:
+            rows[count], cols[count] = sites[k] // pixels, sites[k] % pixels
+            value[count] = scale * pressure[k]
+            count += 1
+    for m in range(others.size):
+        row, col = others[m] // pixels, others[m] % pixels
+        total = 0.0
+        for k in range(count):
+            dr, dc = abs(row - rows[k]), abs(col - cols[k])
+            total += value[k] * table[np.uint64(min(dr, pixels - dr)), np.uint64(min(dc, pixels - dc))]
+        displacement[m] = total
+
+
+@njit(cache=True)
+def inverse_cubes(gap, pressure, cutoff, touching):
+    """Sum of 1/max(g, cutoff)^3; ``touching``: whether sites under pressure count."""
+    total = 0.0
+    for k in range(gap.size):
+        if touching or not pressure[k] > 0.0:
+            g = max(gap[k], cutoff)
+            total += 1.0 / (g * g * g)
+    return total

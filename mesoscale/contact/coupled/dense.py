@@ -1,0 +1,177 @@
+"""Pressures between bounds on a few thousand sites, by active sets; all compiled.
+
+The pressures p of the known sites make the gap g = g0 + G p complementary to 0 <= p <= limit: g >= 0 where p = 0,
+g = 0 between the bounds, g <= 0 where p = limit. This is a convex quadratic programme. A primal-dual active set, which
+is a semismooth Newton iteration (Hueeber and Wohlmuth, doi:10.1016/j.cma.2004.08.006), solves it with one linear
+system for the sites between the bounds at a time; conjugate gradients solve this system, because they need 10 to 20
+products with a matrix whose factors cost as much as hundreds. `grid` holds the same for whole grids, and what
+takes over where the sets do not come to rest.
+"""
+
+import numpy as np
+from numba import njit
+
+NEWTON_STEPS = 40
+FACE_STEPS = 1000
+FAST = {"contract", "reassoc", "nsz"}  # sums in any order, so that they run in parallel lanes
+
+
+@njit(cache=True)
+def extend(matrix, table, scale, sites, old, new, pixels):
+    """Fill the rows and columns of the sites old .. new - 1 into the matrix of influences."""
+    for k in range(old, new):
+        row, col = sites[k] // pixels, sites[k] % pixels
+        for j in range(k + 1):
+            rows = abs(row - sites[j] // pixels)
+            cols = abs(col - sites[j] % pixels)
+            value = scale * table[min(rows, pixels - rows), min(cols, pixels - cols)]
+            matrix[k, j] = value
+            matrix[j, k] = value
+
+
+@njit(cache=True, fastmath=FAST)
+def multiply(matrix, n, x, y):
+    """y = matrix[:n, :n] x for a symmetric matrix; its cost is that of the values of x that are not 0."""
+    y[:n] = 0.0
+    for k in range(n):
+        if x[k] != 0.0:
+            row = matrix[k]
+            factor = x[k]
+            for j in range(n):
+                y[j] += factor * row[j]
+
+
+@njit(cache=True, fastmath=FAST)
+def _multiply_block(block, x, y):
+    for k in range(x.size):
+        row = block[k]
+        total = 0.0
+        for j in range(x.size):
+            total += row[j] * x[j]
+        y[k] = total
+
+
+@njit(cache=True)
+def residual(gap, pressure, displacement, limit, stiffness, n):
+    """Largest |p - min(max(p - k g, 0), limit)| over the largest pressure: 0 where all conditions are met."""
+    worst = 0.0
+    largest = 0.0
+    for k in range(n):
+        wanted = pressure[k] - stiffness * (gap[k] + displacement[k])
+        wanted = min(max(wanted, 0.0), limit[k])
+        worst = max(worst, abs(pressure[k] - wanted))
+        largest = max(largest, pressure[k])
+    return worst / largest if largest > 0.0 else (np.inf if worst > 0.0 else 0.0)
+
+
+@njit(cache=True)
+def _classify(gap, pressure, displacement, limit, stiffness, n, state):
+    """Sort the sites into those apart (0), between the bounds (1) and at the limit (2); returns how many moved.
+
+    From one bound to the other a site goes by way of the state between: where steps jump over it, all sites at the
+    limit can change places with those apart for ever (seen in second cycles, where whole tops yield again at once).
+    """
+    moved = 0
+    for k in range(n):
+        open_gap = gap[k] + displacement[k]
+        old = state[k]
+        value = pressure[k] - stiffness * open_gap
+        new = np.int8(0)
+        if value >= limit[k]:
+            new = np.int8(2)
+        elif value > 0.0:
+            new = np.int8(1)
+        if abs(new - old) == 2:
+            new = np.int8(1)
+        if new != old:
+            moved += 1
+            state[k] = new
+    return moved
+
+
+@njit(cache=True)
+def _close_gaps(block, gap, goal, share):
+    """Pressures that close the gaps of some sites, by conjugate gradients.
+
+    Ends where the largest gap is below `goal`, or below `share` of the first one.
+    """
+    size = gap.size
+    x = np.zeros(size)
+    r = -gap
+    goal = max(goal, share * np.abs(gap).max())
+    d = r.copy()
+    q = np.empty(size)
+    rr = r @ r
+    for _ in range(FACE_STEPS):
+        if np.abs(r).max() <= goal:
+            break
+        _multiply_block(block, d, q)
+        dq = d @ q
+        if not dq > 0.0:
+            break
+        x += (rr / dq) * d
+        r -= (rr / dq) * q
+        new = r @ r
+        d = r + (new / rr) * d
+        rr = new
+    return x
+
+
+@njit(cache=True)
+def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
+    """Find the pressures of n sites; `pressure` holds a first guess.
+
+    Parameters
+    ----------
+    matrix : (>= n, >= n), displacement of one site from the pressure on another, nm/GPa
+    gap : (n,), gap of the undeformed surface, nm
+    limit : (n,), largest pressures, GPa, may be infinite
+    stiffness : 1 / matrix[0, 0], what makes a pressure of a gap in the residual
+    tolerance : of the residual over the largest pressure
+    pressure, displacement : (>= n,), GPa and nm; the answer
+
+    Returns
+    -------
+    Newton steps, and whether they settled.
+    """
+    multiply(matrix, n, pressure, displacement)
+    state = np.full(n, 1, np.int8)
+    change = np.zeros(n)
+    moves = np.empty(n)
+    block = np.empty((0, 0))
+    for step in range(NEWTON_STEPS):
+        moved = _classify(gap, pressure, displacement, limit, stiffness, n, state) > 0 or step == 0
+        largest = 0.0
+        count = 0
+        for k in range(n):
+            new = min(max(pressure[k], 0.0), limit[k])
+            if state[k] == 0:
+                new = 0.0
+            elif state[k] == 2:
+                new = limit[k]
+            else:
+                count += 1
+            change[k] = new - pressure[k]
+            pressure[k] = new
+            largest = max(largest, new)
+        multiply(matrix, n, change, moves)
+        displacement[:n] += moves
+        if residual(gap, pressure, displacement, limit, stiffness, n) <= tolerance:
+            return step, True
+        if count == 0:
+            continue
+        free = np.flatnonzero(state == 1)
+        if moved:
+            block = np.empty((count, count))
+            for k in range(count):
+                for j in range(count):
+                    block[k, j] = matrix[free[k], free[j]]
+        open_gap = gap[free] + displacement[free]
+        share = 1e-3 if moved else 0.0
+        found = _close_gaps(block, open_gap, 0.1 * tolerance * largest / stiffness, share)
+        change[:] = 0.0
+        change[free] = found
+        pressure[free] += found
+        multiply(matrix, n, change, moves)
+        displacement[:n] += moves
+    return NEWTON_STEPS, False

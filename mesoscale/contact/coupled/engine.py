@@ -1,0 +1,272 @@
+"""The contact of a rough surface with a flat where all asperities share one elastic half-space.
+
+The gap g = h + d + u holds the displacement u of a half-space of modulus E* under the pressure p; d is the separation
+of the mean planes. Where p = 0 the surfaces are apart (g >= 0), where 0 < p < H they touch (g = 0), and where p = H,
+the hardness, the surface yields (g <= 0). Unknown are only the sites that can touch: a force F raises the surface
+nowhere by more than F times the depth of the Green's function, so all sites higher than that are apart.
+"""
+
+import math
+
+import numpy as np
+
+from mesoscale.contact import attraction, kernels
+from mesoscale.contact.coupled import clusters, dense, grid, half_space
+from mesoscale.contact.engine import Contact, State
+from mesoscale.settings import ContactSettings
+
+
+class CoupledContact(Contact):
+    """A surface on an elastic half-space, and its pressures at the current separation.
+
+    Parameters
+    ----------
+    surface
+        (N, N) heights in nm; changed in place by flow.
+    """
+
+    TOLERANCE = 1e-9  # aimed at, residual of the pressures over the largest one
+    SETTLED = 1e-6  # demanded
+    # Sites that a dense matrix holds, per pixel of a side: beyond, transforms of the whole grid cost less (measured:
+    # docs/contact.md). The other bound keeps the matrix below 140 MB.
+    DENSE_PER_PIXEL = 16
+    DENSE = 4096
+    NEAR_GAP = 2.0  # nm: sites this near count with their displacement in the attraction (error 0.2 %: docs)
+    ROUNDS = 40
+    FALLING_ROUNDS = 10  # from here on hardness may only fall, so that the rounds come to an end
+
+    def __init__(self, surface: np.ndarray, inputs, settings: ContactSettings):
+        super().__init__(surface, inputs, settings)
+        self.e_star = float(inputs.e_star)
+        self.table = half_space.influence(self.n)
+        self.scale = self.length / self.e_star
+        self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
+        # how far 1 nN raises the surface at most, anywhere: it does, because the mean of the displacement is 0
+        self.rise = -self.scale * float(self.table.min()) / self.mechanics.site_area
+        self.dense = min(self.DENSE, self.DENSE_PER_PIXEL * self.n)
+        self.matrix = np.empty((0, 0))
+        self.place = np.full(self.heights.size, -1, np.int32)
+        self.mean = self.offset
+        self._forget()
+
+    def _forget(self) -> None:
+        self.separation = math.inf
+        self.bounded = False
+        self.known_height = -math.inf
+        self.grid: grid.Grid | None = None
+        self.place[:] = -1
+        self.sites = np.empty(0, np.int32)  # the known sites
+        self.pressure = np.empty(0)  # GPa, of the known sites, as all that follows
+        self.displacement = np.empty(0)  # nm
+        self.limit = np.empty(0)  # GPa
+        self.before = (self.separation, self.sites, self.pressure, self.limit)
+
+    @property
+    def capacity(self) -> float:
+        """Largest force (nN) to which the contact is followed.
+
+        Full elastic contact: there the separation of the mean planes is 0 and stays so. With a hardness,
+        `BEARING_SHARE` of what it carries on the whole cell if this is less.
+        """
+        pressure = half_space.flattening_pressure(self.heights.reshape(self.n, self.n), self.length, self.e_star)
+        full = (1.0 - 1e-6) * max(-float(pressure.min()), 0.0) * self.length**2
+        if not (self.flows or self.capped):
+            return full
+        area = self.length**2
+        return min(full, self.BEARING_SHARE * kernels.hardness(area, self.mechanics) * area)
+
+    def lift(self) -> None:
+        """Leave contact; the surface stays as it is."""
+        super().lift()
+        self._forget()
+
+    def adopt_changes(self) -> None:
+        """Leave contact and take the surface as flow has left it for the original one."""
+        super().adopt_changes()
+        self.mean = float(self.heights.mean())
+
+    def back(self) -> None:
+        """Undo the last move, its flow and its pressures."""
+        kernels.undo(self.heights, self.changes)
+        self.separation, sites, pressure, limit = self.before
+        places = self.place[sites]
+        self.pressure[:] = 0.0
+        self.pressure[places] = pressure
+        self.limit[:] = self._fresh_limit
+        self.limit[places] = limit
+        if self.grid is None:
+            dense.multiply(self.matrix, self.sites.size, self.pressure, self.displacement)
+        else:
+            self.displacement = self.grid.displacement(self.pressure)
+
+    def move_to(self, separation: float, with_flow: bool) -> State:
+        """Bring the flat down to a separation; it may be undone by `back` until the next move."""
+        self.before = (self.separation, self.sites, self.pressure.copy(), self.limit.copy())
+        self.changes.used[1] = 0
+        self.changes.used[2] += 1
+        self.changes.used[3] = self.changes.used[0]
+        self.separation = separation
+        self.bounded = with_flow or self.capped
+        if not self.bounded and separation + self.mean <= 0.0:  # no pressure parts the mean planes
+            return State(math.inf, self.heights.size, 1, 0, math.inf, 0, False, False)
+        rounds, settled = self._solve_rounds() if self.bounded else (0, self._solve())
+        number, found = self._clusters()
+        if with_flow:
+            clusters.flatten(
+                self.heights, self.sites, separation, self.displacement, self.pressure, self.limit, self.changes
+            )
+        touching = int(np.count_nonzero(number >= 0))
+        hardness = self._hardness(number)
+        load = float((self.pressure / hardness).max()) if touching and hardness.all() else 0.0
+        return State(self.force, touching, found, 0, load, rounds, settled, False)
+
+    @property
+    def force(self) -> float:
+        """Repulsive force of the pressures, nN."""
+        return float(self.pressure.sum()) * self.mechanics.site_area
+
+    def _solve_rounds(self) -> tuple[int, bool]:
+        """Solve with the hardness of each cluster until the clusters are those it belongs to.
+
+        A larger cluster is softer and a softer one larger, so the rounds, which start from the clusters of the
+        separation before, mostly go one way. Returns the rounds and whether they settled.
+        """
+        settled = True
+        for rounds in range(1, self.ROUNDS + 1):
+            solved = self._solve()
+            wanted = self._hardness(self._clusters()[0])
+            touching = self.pressure > 0.0
+            if self.mechanics.h_prime == 0.0 or np.array_equal(wanted[touching], self.limit[touching]):
+                return rounds, solved
+            settled = solved and bool(np.all(wanted[touching] <= self.limit[touching] * (1.0 + self.rule.tolerance)))
+            if rounds >= self.FALLING_ROUNDS:
+                lower = np.minimum(wanted, self.limit)
+                if np.array_equal(lower[touching], self.limit[touching]):
+                    return rounds, settled
+                wanted = lower
+            self.limit = wanted
+        return self.ROUNDS, False
+
+    def _clusters(self) -> tuple[np.ndarray, int]:
+        """Number of the cluster of each known site, -1 where it is apart, and how many there are."""
+        number = np.empty(self.sites.size, np.int32)
+        return number, clusters.label(self.sites, self.place, self.pressure, self.n, self.mechanics.eight, number)
+
+    def _hardness(self, number: np.ndarray) -> np.ndarray:
+        """Hardness (GPa) of the clusters by eq. 4, for each known site; for one apart that of a single site."""
+        sites = np.bincount(number[number >= 0], minlength=1)
+        area = self.mechanics.site_area * np.where(number >= 0, sites[number], 1)
+        return self.mechanics.h_macro + self.mechanics.h_prime * area**-0.25
+
+    def _solve(self) -> bool:
+        """Find the pressures with the limits at hand; True if they settled."""
+        while True:
+            self._know(self.force)
+            gap = self.heights[self.sites] + self.separation
+            if self.grid is None:
+                _, settled = dense.solve(
+                    self.matrix,
+                    self.sites.size,
+                    gap,
+                    self.limit,
+                    self.stiffness,
+                    self.TOLERANCE,
+                    self.pressure,
+                    self.displacement,
+                )
+            else:
+                self.pressure, self.displacement, _, settled = grid.solve(
+                    self.grid, gap, self.limit, self.stiffness, self.TOLERANCE, self.pressure
+                )
+            if not settled:
+                settled = self._project(gap)
+            if self._knows_enough(self.force):
+                return settled
+
+    def _project(self, gap: np.ndarray) -> bool:
+        """The same where the active sets did not settle."""
+        matrix = self.matrix[: self.sites.size, : self.sites.size]
+        if self.grid is None:
+            norm = float(np.abs(matrix).sum(axis=1).max())
+            apply = matrix.__matmul__
+        else:
+            norm = float(self.grid.compliance.max())
+            apply = self.grid.displacement
+        self.pressure, self.displacement, _, _ = grid.project(
+            apply, norm, gap, self.limit, self.stiffness, self.TOLERANCE, self.pressure
+        )
+        worst = grid.residual(gap, self.pressure, self.displacement, self.limit, self.stiffness)
+        return worst <= self.SETTLED
+
+    def _highest(self, force: float) -> float:
+        """Original height above which no site can touch under a force."""
+        return -self.separation + self.rise * force
+
+    def _knows_enough(self, force: float) -> bool:
+        return self.grid is not None or self.known_height >= self._highest(force)
+
+    def _know(self, force: float) -> None:
+        """Make all sites known that can touch under a force, and a few more."""
+        if self._knows_enough(force):
+            return
+        height = self._highest(1.1 * force) + 1e-3 * self.rms
+        self._sort_to(height)
+        count = int(np.searchsorted(self.order_heights, height))
+        old = self.sites.size
+        if count > self.dense:
+            self._know_all()
+            return
+        self.known_height = height
+        self.sites = self.order[:count]
+        self.place[self.sites[old:]] = np.arange(old, count, dtype=np.int32)
+        self.pressure = np.concatenate((self.pressure, np.zeros(count - old)))
+        self.displacement = np.concatenate((self.displacement, np.zeros(count - old)))
+        self.limit = np.concatenate((self.limit, np.full(count - old, self._fresh_limit)))
+        if self.matrix.size == 0:  # memory is touched only as sites come in; the odd length keeps cache lines apart
+            self.matrix = np.empty((self.dense, self.dense + 8))
+        dense.extend(self.matrix, self.table, self.scale, self.sites, old, count, self.n)
+
+    def _know_all(self) -> None:
+        """Go over to the whole grid."""
+        self.grid = grid.Grid(self.n, self.length, self.e_star)
+        pressure, limit = np.zeros(self.heights.size), np.full(self.heights.size, self._fresh_limit)
+        pressure[self.sites], limit[self.sites] = self.pressure, self.limit
+        self.pressure, self.limit = pressure, limit
+        self.displacement = np.zeros(self.heights.size)
+        self.sites = np.arange(self.heights.size, dtype=np.int32)
+        self.place = self.sites.copy()
+
+    @property
+    def _fresh_limit(self) -> float:
+        """Limit of a site that has not touched."""
+        return kernels.hardness(self.mechanics.site_area, self.mechanics) if self.bounded else math.inf
+
+    def attraction(self, separation: float) -> float:
+        """Attractive force in nN, negative (eq. 1), at the current separation or before contact.
+
+        The gap is the deformed one at sites whose undeformed gap is small; the others count undeformed, through the
+        histogram (docs/contact.md states the error).
+        """
+        if not self.attracts:
+            return 0.0
+        if self.grid is not None:
+            gap = self.heights + separation + self.displacement
+            return -self.strength * clusters.inverse_cubes(gap, self.pressure, self.cutoff, self.touching)
+        known = self.sites.size
+        near = max(self.NEAR_GAP, 2.0 * self.cutoff, self.rise * self.force + 2.0 * self.bin_width)
+        far = attraction.first_far_bin(near, separation, self.lowest, self.bin_width, len(self.moments))
+        edge = self.lowest + far * self.bin_width
+        self._sort_to(min(edge + self.bin_width, self.highest))
+        count = int(np.searchsorted(self.order_heights, edge)) if far < len(self.moments) else self.heights.size
+        sites = self.order[: max(count, known)]
+        displacement = np.zeros(sites.size)
+        pressure = np.zeros(sites.size)
+        if self.force > 0.0:
+            displacement[:known], pressure[:known] = self.displacement, self.pressure
+            clusters.displace(
+                self.table, self.scale, self.n, self.sites, self.pressure, sites[known:], displacement[known:]
+            )
+        gap = self.heights[sites[:count]] + separation + displacement[:count]
+        total = clusters.inverse_cubes(gap, pressure[:count], self.cutoff, self.touching)
+        total += attraction.far_inverse_cubes(separation, far, self.lowest, self.bin_width, self.moments)
+        return -self.strength * total

@@ -1,0 +1,51 @@
+"""The elastic half-space under a periodic cell: its Green's function, as a table and by FFT.
+
+A pressure of wave vector q bends the surface by 2 / (E* |q|) times itself (K. L. Johnson, Contact Mechanics, 1985,
+section 13.2). The mean is left out: it shifts the half-space as a whole, and the separation of the mean planes is
+what is prescribed.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from scipy import fft
+
+
+def wave_numbers(pixels: int) -> np.ndarray:
+    """|q| L / 2 pi of the modes of a real transform, shape (pixels, pixels // 2 + 1)."""
+    return np.hypot(np.fft.fftfreq(pixels, 1 / pixels)[:, None], np.fft.rfftfreq(pixels, 1 / pixels)[None, :])
+
+
+@lru_cache(maxsize=4)
+def _compliance(pixels: int) -> np.ndarray:
+    """1 / |q| in units of L / 2 pi; 0 for the mean."""
+    number = wave_numbers(pixels)
+    number[0, 0] = np.inf
+    return 1.0 / number
+
+
+@lru_cache(maxsize=4)
+def influence(pixels: int) -> np.ndarray:
+    """Displacement (in L / E*) at sites 0 .. pixels/2 in x and y from a unit pressure on one site (in E*).
+
+    Shape (pixels // 2 + 1, pixels // 2 + 1); the rest of the cell follows by its symmetry.
+    """
+    half = pixels // 2 + 1
+    table = fft.irfft2(_compliance(pixels), s=(pixels, pixels)) / np.pi
+    table = np.ascontiguousarray(np.asarray(table)[:half, :half])
+    table.flags.writeable = False
+    return table
+
+
+def displacement(pressure: np.ndarray, length: float, e_star: float) -> np.ndarray:
+    """Displacement (nm) of the surface under a pressure (GPa), shape (N, N), mean zero."""
+    spectrum = np.asarray(fft.rfft2(pressure))
+    spectrum *= _compliance(len(pressure)) * (length / (np.pi * e_star))
+    return np.asarray(fft.irfft2(spectrum, s=pressure.shape, overwrite_x=True))
+
+
+def flattening_pressure(heights: np.ndarray, length: float, e_star: float) -> np.ndarray:
+    """Pressure (GPa) with mean zero that makes a surface flat; shape (N, N)."""
+    spectrum = np.asarray(fft.rfft2(heights))
+    spectrum *= wave_numbers(len(heights)) * (-np.pi * e_star / length)
+    return np.asarray(fft.irfft2(spectrum, s=heights.shape, overwrite_x=True))

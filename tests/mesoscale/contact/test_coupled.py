@@ -1,0 +1,248 @@
+"""The coupled engine: exact solutions, the plain model, tamaas, and what must hold for every cycle."""
+
+import numpy as np
+import pytest
+
+from benchmarks import plain_coupled
+from mesoscale.contact import ContactInputs, exact, run_cycle
+from mesoscale.contact.coupled import grid
+from mesoscale.contact.coupled.engine import CoupledContact
+from mesoscale.settings import ContactSettings
+from mesoscale.topography.synthesis import synthesize
+
+INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0)
+MODELS = ("elastic", "nonlinear", "plastic")
+LATTICE = 3.900264920001956  # of a square lattice of charges in their neutralising background: sum 1/r - integral
+
+
+def coupled(pixels: int, length_nm: float, **changes) -> ContactSettings:
+    return ContactSettings(mechanics="coupled", pixels=pixels, length_nm=length_nm, **changes)
+
+
+def on_grid(contact: CoupledContact) -> np.ndarray:
+    """Pressures of the whole cell, (N, N)."""
+    p = np.zeros(contact.heights.size)
+    p[contact.sites] = contact.pressure
+    return p.reshape(contact.n, contact.n)
+
+
+def worst_condition(contact: CoupledContact, limit: float = np.inf) -> float:
+    """Residual of the conditions over the whole cell, by a transform that the engine did not use."""
+    p = on_grid(contact).ravel()
+    u = grid.Grid(contact.n, contact.length, contact.e_star).displacement(p)
+    limits = np.full(p.size, limit)
+    return grid.residual(contact.heights + contact.separation, p, u, limits, contact.stiffness)
+
+
+def sphere(sites: float, contact_radius: float, radius: float, pixels: int):
+    """Paraboloid whose contact radius is `sites` grid points, and its settings."""
+    spacing = contact_radius / sites
+    x = (np.arange(pixels) - pixels // 2 + 0.37) * spacing  # its summit between the sites
+    y = (np.arange(pixels) - pixels // 2 - 0.21) * spacing
+    bowl = (x[:, None] ** 2 + y[None, :] ** 2) / (2 * radius)
+    settings = coupled(pixels, pixels * spacing, model="elastic")
+    return bowl, np.hypot(x[:, None], y[None, :]), settings
+
+
+def pressed_sphere(sites: float, pixels: int):
+    """Errors of the force and of the pressures (RMS over the inner 90 % of the contact) beside Hertz."""
+    radius, contact_radius, e_star = 1000.0, 20.0, INPUTS.e_star
+    bowl, distance, settings = sphere(sites, contact_radius, radius, pixels)
+    contact = CoupledContact(bowl.copy(), INPUTS, settings)
+    approach = contact_radius**2 / radius
+    force = exact.hertz_force(approach, radius, e_star)
+    # the neighbouring cells and the mean that is left out lower the surface below the sphere
+    contact.move_to(-approach + LATTICE * force / (np.pi * e_star * settings.length_nm), False)
+    assert worst_condition(contact) < 1e-6
+    p = on_grid(contact)
+    wanted = exact.hertz_pressure(distance, force, radius, e_star)
+    inner = distance < 0.9 * contact_radius
+    return abs(contact.force / force - 1), np.sqrt(np.mean((p - wanted)[inner] ** 2)) / wanted.max()
+
+
+def test_a_sphere_is_hertzs():
+    errors = np.array([pressed_sphere(sites, int(32 * sites)) for sites in (5, 10, 20)])
+    assert (errors[-1] < 0.01).all()
+    assert (np.log2(errors[0] / errors[-1]) / 2 > 0.8).all()  # first order, as the edge of the contact is resolved
+
+
+@pytest.mark.parametrize("share", [0.05, 0.2, 0.5, 0.8, 0.95])
+def test_a_wave_is_westergaards(share):
+    pixels, amplitude, wavelength, e_star = 256, 1.0, 100.0, INPUTS.e_star
+    x = np.arange(pixels) * wavelength / pixels
+    surface = np.repeat(-amplitude * np.cos(2 * np.pi * x / wavelength)[:, None], pixels, axis=1)
+    mean = exact.wave_mean_pressure(share, amplitude, wavelength, e_star)
+    contact = CoupledContact(surface, INPUTS, coupled(pixels, wavelength, model="elastic"))
+    moved = contact.move_to(exact.wave_separation(mean, amplitude, wavelength, e_star), False)
+    assert worst_condition(contact) < 1e-6
+    assert moved.force == pytest.approx(mean * wavelength**2, rel=0.01)
+    # the edge is known to a site
+    assert moved.sites / pixels**2 == pytest.approx(share, abs=2 / pixels)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_pressures_and_surface_agree_with_the_plain_model(model):
+    # bounded least squares is slow: fewer sites; the engine takes the number of sites from the surface
+    pixels, length = (32, 40.0) if model == "elastic" else (18, 22.5)
+    settings = coupled(32, length, model=model)
+    heights = synthesize(pixels, length, 0.3, 0.75, 1.0, 3)
+    lowest = np.unravel_index(np.argmin(heights), heights.shape)
+    heights = np.roll(heights, (-lowest[0], -lowest[1]), (0, 1))  # the first cluster straddles the corner
+    separations = -heights.min() - np.linspace(0.05, 2.2, 5)
+    expected, surface = plain_coupled.walk(heights, separations, INPUTS, settings)
+    contact = CoupledContact(heights.copy(), INPUTS, settings)
+    found = []
+    for separation in separations:
+        assert contact.move_to(separation, model == "plastic").settled
+        found.append(on_grid(contact))
+    np.testing.assert_allclose(np.array(found), expected, atol=1e-6 * expected.max())
+    np.testing.assert_allclose(contact.heights.reshape(heights.shape), surface, atol=1e-6)
+    assert 0.05 < (expected[-1] > 0).mean() < 0.9
+
+
+def by_tamaas(heights: np.ndarray, length: float, load_nN: float, hardness: float | None = None):
+    """Pressures (N, N) of tamaas under a load and the separation of the mean planes, by the gap where it touches."""
+    tamaas = pytest.importorskip("tamaas")
+    tamaas.set_log_level(tamaas.LogLevel.error)
+    model = tamaas.Model(tamaas.model_type.basic_2d, [length] * 2, list(heights.shape))
+    model.E, model.nu = INPUTS.e_star, 0.0
+    if hardness is None:
+        solver = tamaas.PolonskyKeerRey(model, -heights, 1e-10)
+    else:
+        solver = tamaas.KatoSaturated(model, -heights, 1e-10, hardness)
+    solver.max_iter = 5000
+    solver.solve(load_nN / length**2)
+    p = np.array(model.traction).reshape(heights.shape)
+    # its displacement holds the plastic part, too
+    u = grid.Grid(len(heights), length, INPUTS.e_star).displacement(p.ravel()).reshape(heights.shape)
+    elastic = p > 0 if hardness is None else (p > 0) & (p < hardness * (1 - 1e-9))
+    return p, -(heights + u)[elastic].mean(), u
+
+
+@pytest.mark.parametrize("load", [30.0, 1e3, 1e4, 4e4])
+@pytest.mark.parametrize("hardness", [None, 4.0])
+def test_forces_and_areas_are_those_of_tamaas(load, hardness):
+    if hardness is not None and load > 0.9 * hardness * 62.5**2:
+        load = 0.9 * hardness * 62.5**2
+    settings = coupled(64, 62.5, model="elastic" if hardness is None else "nonlinear")
+    constant = ContactInputs(**{**vars(INPUTS), "h_macro": hardness or 1.0, "h_prime": 0.0})
+    for seed in (1, 2):
+        heights = synthesize(64, 62.5, 0.15, 0.75, 2.0, seed)
+        p, separation, _ = by_tamaas(heights, 62.5, load, hardness)
+        contact = CoupledContact(heights.copy(), constant, settings)
+        moved = contact.move_to(separation, False)
+        assert moved.settled
+        assert moved.force == pytest.approx(load, rel=1e-6)
+        np.testing.assert_allclose(on_grid(contact), p, atol=1e-5 * p.max())
+        assert moved.sites == pytest.approx((p > 0).sum(), rel=0.002)
+
+
+def test_a_flattened_surface_unloads_as_tamaas_says():
+    constant = ContactInputs(**{**vars(INPUTS), "hamaker": 0.0, "h_prime": 0.0})
+    settings = coupled(64, 62.5, max_force_nN=2e3)
+    cycle = run_cycle(constant, settings, 0, heights=synthesize(64, 62.5, 0.15, 0.75, 2.0, 1), keep_surface=True)
+    assert cycle.converged
+    assert cycle.flags["changed_sites"] > 50
+    rising = cycle.opening.repulsive_nN[::-1]
+    wanted = np.array([2e3, 1e3, 200.0, 30.0])
+    separations = np.interp(wanted, rising, cycle.opening.separation_nm[::-1])
+    for load, separation in zip(wanted, separations, strict=True):
+        # between rows the force is read off chords
+        assert by_tamaas(cycle.heights, 62.5, load)[1] == pytest.approx(separation, abs=0.01)
+
+
+CASES = {
+    "elastic": {"model": "elastic"},
+    "nonlinear": {"model": "nonlinear"},
+    "plastic": {},
+    "whole grid": {"pixels": 48, "length_nm": 46.9, "max_force_nN": 2.5e3},
+    "few steps": {"force_steps": 5},
+    "4 neighbours": {"neighbours": 4},
+}
+
+
+def dissipated(cycle) -> tuple[float, float]:
+    """Work lost over a cycle and work spent on closing, nN nm."""
+    spent = np.trapezoid(-cycle.closing.repulsive_nN, cycle.closing.separation_nm)
+    return spent - np.trapezoid(cycle.opening.repulsive_nN, cycle.opening.separation_nm), spent
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("h_prime", [0.0, 8.375])
+def test_no_repulsion_is_lost_on_closing_and_no_energy_won(case, h_prime):
+    settings = coupled(**{"pixels": 64, "length_nm": 62.5, "max_force_nN": 800.0, "force_steps": 20, **CASES[case]})
+    inputs = ContactInputs(**{**vars(INPUTS), "h_prime": h_prime, "q0": 0.15})
+    cycle = run_cycle(inputs, settings, 1, keep_surface=True)
+    assert cycle.converged
+    force = cycle.closing.repulsive_nN
+    if h_prime == 0.0 or settings.model == "elastic":
+        assert np.diff(force).min() >= -1e-9 * force.max()
+    lost, spent = dissipated(cycle)
+    # trapezoids over 20 to 30 points know the work to a per cent
+    assert lost >= (0.0 if settings.model != "plastic" else 0.1 * spent)
+    if settings.model == "plastic":
+        second = run_cycle(inputs, settings, 1, heights=cycle.heights)
+        assert second.converged
+        assert abs(dissipated(second)[0]) < 0.01 * lost
+
+
+def test_few_sites_and_the_whole_grid_give_the_same():
+    heights = synthesize(128, 125.0, 0.06, 0.75, 3.0, 2)
+    settings = coupled(128, 125.0)
+    few, whole = (CoupledContact(heights.copy(), INPUTS, settings) for _ in range(2))
+    whole.dense = 0
+    for depth in (0.1, 0.5, 1.5):
+        separation = few.touching_separation - depth
+        assert few.move_to(separation, True).force == pytest.approx(whole.move_to(separation, True).force, rel=1e-7)
+        assert few.attraction(separation) == pytest.approx(whole.attraction(separation), rel=5e-3)
+    assert few.grid is None
+    assert whole.grid is not None
+    np.testing.assert_allclose(few.heights, whole.heights, atol=1e-8)
+    np.testing.assert_allclose(on_grid(few), on_grid(whole), atol=1e-6 * on_grid(few).max())
+
+
+@pytest.mark.parametrize("dense", [0, 10**6])
+def test_gradient_projection_finds_what_active_sets_find(dense, monkeypatch):
+    heights = synthesize(64, 62.5, 0.15, 0.75, 2.0, 4)
+    settings = coupled(64, 62.5)
+    contacts = [CoupledContact(heights.copy(), INPUTS, settings) for _ in range(2)]
+    for contact in contacts:
+        contact.dense = min(dense, 4096)
+    separation = contacts[0].touching_separation - 3.0
+    contacts[0].move_to(separation, True)
+    # as if the active sets had not settled
+    refused = lambda *_: (0, False)  # noqa: E731
+    monkeypatch.setattr(grid, "solve", lambda g, gap, *_: (np.zeros(gap.size), np.zeros(gap.size), 0, False))
+    monkeypatch.setattr("mesoscale.contact.coupled.engine.dense.solve", refused)
+    assert contacts[1].move_to(separation, True).settled
+    np.testing.assert_allclose(on_grid(contacts[1]), on_grid(contacts[0]), atol=1e-6 * on_grid(contacts[0]).max())
+
+
+def test_a_step_that_does_not_settle_is_counted(monkeypatch):
+    monkeypatch.setattr(CoupledContact, "SETTLED", -1.0)
+    monkeypatch.setattr("mesoscale.contact.coupled.engine.dense.solve", lambda *_: (0, False))
+    cycle = run_cycle(INPUTS, coupled(64, 62.5, max_force_nN=200.0), 1)
+    assert cycle.flags["unconverged_steps"] > 0
+    assert not cycle.converged
+
+
+def test_attraction_is_that_of_the_deformed_gap():
+    settings = coupled(128, 125.0)
+    contact = CoupledContact(synthesize(128, 125.0, 0.06, 0.75, 3.0, 5), INPUTS, settings)
+    for depth in (0.5, 1.5, 3.0):
+        separation = contact.touching_separation - depth
+        contact.move_to(separation, True)
+        p = on_grid(contact).ravel()
+        gap = contact.heights + separation + grid.Grid(128, 125.0, INPUTS.e_star).displacement(p)
+        gap = np.maximum(gap[p == 0], settings.gap_cutoff_nm)
+        exact_sum = -INPUTS.hamaker * (125 / 128) ** 2 / (6 * np.pi) * np.sum(gap**-3.0)
+        assert contact.attraction(separation) == pytest.approx(exact_sum, rel=3e-3)
+
+
+def test_closing_ends_at_full_contact_and_says_so():
+    settings = coupled(32, 40.0, model="elastic", max_force_nN=1e9)
+    cycle = run_cycle(INPUTS, settings, 1)
+    assert not cycle.flags["force_reached"]
+    assert not cycle.converged
+    assert cycle.flags["unconverged_steps"] == 0
+    assert cycle.closing.separation_nm[-1] == pytest.approx(0.0, abs=1e-3)
