@@ -43,7 +43,7 @@ class UncertaintySettings(Settings):
     audit_readings: tuple[str, ...] = Field(
         default=(),
         description="readings of the contact model to audit, named as in audit/ranking.csv; [all]: all of them; "
-        "empty: those of the mean curvature",
+        "[mended]: the nearest with the contact model's mended readings; empty: those of the mean curvature",
     )
     sobol_bootstrap: int = Field(
         default=40, ge=0, le=10000, description="resamplings for the intervals of Sobol' indices"

@@ -16,7 +16,7 @@ from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty.collocation import elementary_effects, level1_response
 from mesoscale.uncertainty.designs import Run
 from mesoscale.uncertainty.runs import OUTPUTS, compute_all, short_name
-from mesoscale.uncertainty.studies.readings import CHOICES
+from mesoscale.uncertainty.studies.readings import CHOICES, MENDED
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,9 @@ LAW_READINGS: dict[str, dict[str, Any]] = {
 
 def with_reading(name: str, settings: ContactSettings) -> ContactSettings:
     """Contact settings with the choices of a reading's name put in."""
-    chosen: dict[str, Any] = dict(zip(CHOICES, name.split("."), strict=True))
+    values = name.split(".")
+    keys = (*CHOICES, *MENDED) if len(values) > len(CHOICES) else CHOICES
+    chosen: dict[str, Any] = dict(zip(keys, values, strict=True))
     chosen["touching_attracts"] = chosen["touching_attracts"] == "true"
     return settings.model_copy(update=chosen)
 

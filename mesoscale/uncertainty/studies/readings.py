@@ -13,6 +13,12 @@ CHOICES: dict[str, tuple[str, ...]] = {
 }
 """Ambiguities of the contact model, as keys of ContactSettings with the values tried."""
 
+MENDED: dict[str, tuple[str, ...]] = {"unloading_radius": ("curvature", "flattened"), "merge": ("as_one", "not_less")}
+"""Readings that mend the asperity model; not the paper's, so that a name without them has their first values."""
+
+NEAREST = "areal.wide.hertz.curvature.sites.false"
+"""The reading nearest to the paper's tables (docs/data/audit.csv), the default."""
+
 
 def contact_readings() -> list[str]:
     """Names of all readings of the contact model that can be computed, values joined by dots.
@@ -25,10 +31,13 @@ def contact_readings() -> list[str]:
 
 
 def audited_readings(names: Sequence[str]) -> list[str]:
-    """The readings to audit: those named, or `all`; by default those of the mean curvature.
+    """The readings to audit: those named, `all`, or `mended`; by default those of the mean curvature.
 
+    ``mended`` are the nearest reading and what mends it, named with the values of `MENDED` at the end.
     R = A/(2 pi delta) with Hertz's area takes several times as long; config/studies/all_readings.yaml has all.
     """
     if list(names) == ["all"]:
         return contact_readings()
+    if list(names) == ["mended"]:
+        return [".".join((NEAREST, *values)) for values in product(*MENDED.values())]
     return list(names) or [name for name in contact_readings() if ".curvature." in name]

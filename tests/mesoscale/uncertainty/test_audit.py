@@ -12,7 +12,7 @@ from mesoscale.uncertainty.collocation import nodes
 from mesoscale.uncertainty.paper_tables import table2, table3
 from mesoscale.uncertainty.runs import OUTPUTS, short_name
 from mesoscale.uncertainty.studies.audit import LAW_READINGS, MISPRINT, rank, with_reading
-from mesoscale.uncertainty.studies.readings import audited_readings, contact_readings
+from mesoscale.uncertainty.studies.readings import NEAREST, audited_readings, contact_readings
 from tests.mesoscale import paper
 
 PAPER = Path(__file__).parents[3] / "config" / "paper"
@@ -79,6 +79,15 @@ def test_readings_become_settings():
     assert len(audited_readings(())) == 16
     assert audited_readings(("all",)) == contact_readings()
     assert set(LAW_READINGS) >= {"first_contact", "force_0.03", "free_fit"}
+
+
+def test_mended_readings_end_with_their_choices():
+    names = audited_readings(("mended",))
+    assert len(names) == 4
+    assert with_reading(names[0], ContactSettings()) == with_reading(NEAREST, ContactSettings()) == ContactSettings()
+    settings = with_reading(f"{NEAREST}.flattened.not_less", ContactSettings())
+    assert (settings.unloading_radius, settings.merge) == ("flattened", "not_less")
+    assert settings.touching_attracts is False
 
 
 def test_the_default_is_the_reading_that_the_audit_puts_first():
