@@ -1,7 +1,7 @@
 """A scene: the resolved settings of one run, from the documented defaults and a YAML file.
 
-`python -m workflow.scene` rewrites config/config.yaml, which documents every key; a test fails when the
-two drift apart.
+`python -m workflow.scene` rewrites config/config.yaml, which documents every key, and config/scene.schema.json; tests
+fail when they drift apart.
 """
 
 import difflib
@@ -298,4 +298,7 @@ def _document(model: BaseModel, depth: int, explained: set[type[BaseModel]]) -> 
 
 
 if __name__ == "__main__":
+    from workflow.schema import SCHEMA, scene_schema
+
     DEFAULTS.write_text(documented_defaults(), encoding="utf-8")
+    SCHEMA.write_text(scene_schema(), encoding="utf-8")

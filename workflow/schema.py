@@ -1,6 +1,6 @@
 """The JSON Schema of a scene, by which editors complete keys and mark mistakes.
 
-`python -m workflow.schema` rewrites config/scene.schema.json; a test fails when the two drift apart.
+`python -m workflow.scene` rewrites config/scene.schema.json; a test fails when the two drift apart.
 """
 
 import json
@@ -26,7 +26,3 @@ def _first_paragraphs(item: Any) -> Any:
             for key, value in item.items()
         }
     return [_first_paragraphs(entry) for entry in item] if isinstance(item, list) else item
-
-
-if __name__ == "__main__":
-    SCHEMA.write_text(scene_schema(), encoding="utf-8")

@@ -53,7 +53,7 @@ def test_contact_alone_installs_no_heavy_package(wheel):
 
 
 def test_the_schema_is_up_to_date():
-    """`python -m workflow.schema` rewrites it."""
+    """`python -m workflow.scene` rewrites it."""
     assert SCHEMA.read_text(encoding="utf-8") == scene_schema()
 
 
