@@ -24,6 +24,7 @@ from mesoscale.settings import (
     HistorySettings,
     InputsSettings,
     LawSettings,
+    PadSettings,
     Settings,
     TopographySettings,
     UncertaintySettings,
@@ -60,6 +61,7 @@ class Scene(Settings):
     topography: TopographySettings = TopographySettings()
     contact: ContactSettings = ContactSettings()
     law: LawSettings = LawSettings()
+    pad: PadSettings = PadSettings()
     uncertainty: UncertaintySettings = UncertaintySettings()
     device: DeviceSettings = DeviceSettings()
     history: HistorySettings = HistorySettings()

@@ -7,6 +7,7 @@ from mesoscale.settings.device import DeviceSettings
 from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import STAGE_OF_INPUT, TABLE_1, Correlation, InputRow, InputsSettings
 from mesoscale.settings.law import LawSettings
+from mesoscale.settings.pad import PadSettings
 from mesoscale.settings.topography import SyntheticScanSettings, TopographySettings
 from mesoscale.settings.uncertainty import UncertaintySettings
 
@@ -21,6 +22,7 @@ __all__ = [
     "InputRow",
     "InputsSettings",
     "LawSettings",
+    "PadSettings",
     "Settings",
     "SyntheticScanSettings",
     "TopographySettings",

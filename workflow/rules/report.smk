@@ -9,6 +9,7 @@ def report_inputs():
         for name in ("outputs.csv", "ratios.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")
     ]
     files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "path.csv", "law.csv")]
+    files += ["pad/curves.csv", "pad/adhesion.csv", "pad/tail.json", "device/pad_switch.json"]
     if needed("hardness"):
         files += ["hardness/points.csv", "hardness/fit.json"]
         files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness", "snapshots") for run in CLOSINGS]

@@ -1,0 +1,173 @@
+"""The switch on the curves of a pad: pull-in, hold, release, with the memory of the held state.
+
+The force balance is that of `mesoscale.device.switch` with the whole electrode flat on the pad. Nothing is
+extrapolated: a held state beyond the computed closing, or an opening from a depth that was not computed, is refused.
+"""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq, minimize_scalar
+
+from mesoscale.device.statistics import describe, probability
+from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, Switch, switch_from_settings
+from mesoscale.errors import InputError
+from mesoscale.pad.curves import PadCells
+from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.pad.tail import Tail
+from mesoscale.settings import DeviceSettings
+
+Array = NDArray[np.float64]
+
+POINTS = 400
+"""Separations between the end of the pad's table and the gap at rest that bracket the folds."""
+RESAMPLES = 200
+"""Pads of resampled cells behind the intervals: a 5 % quantile is known to 1.5 %."""
+
+
+@dataclass(frozen=True)
+class PadStates:
+    """What the switch does on one pad."""
+
+    pull_in_V: float
+    """Voltage at which the open switch snaps shut."""
+    hold_nm: float
+    """Separation while held closed (nm)."""
+    hold_MPa: float
+    """Contact pressure while held closed (MPa)."""
+    release_V: float
+    """Voltage at which the closed switch lets go; 0 where it sticks."""
+    stuck: bool
+    """Whether it stays closed without voltage."""
+    deepest_net_kPa: float
+    """Largest net adhesive pressure of the pad on opening from the held state (kPa)."""
+
+
+def solve_on_pad(switch: Switch, law: PadLaw, hold_voltage_V: float | None) -> PadStates:
+    """Close the switch on a pad, hold it, and release it.
+
+    Parameters
+    ----------
+    hold_voltage_V : voltage of the closed switch; None takes its own pull-in voltage.
+
+    Raises
+    ------
+    InputError : the held state is not on the computed closing curve, or the hold voltage does not hold the switch.
+    """
+    outside = np.geomspace(law.separation_nm[-1], switch.gap_nm, POINTS)[1:]
+    grid = np.concatenate([law.separation_nm, outside])
+    down = _voltage_squared(switch, grid, law.closing_GPa(grid))
+    near = grid <= law.separation_nm[-1]
+    # the fold of the way down lies far above the pad, where nothing but the spring acts
+    peak = int(np.argmax(np.where(near, -np.inf, down)))
+    fold = minimize_scalar(
+        lambda s: -_voltage_squared(switch, s, law.closing_GPa(s)),
+        bounds=(grid[peak - 1], grid[min(peak + 1, grid.size - 1)]),
+        method="bounded",
+        options={"xatol": 1e-6},
+    )
+    pull_in = -float(fold.fun)
+    hold = pull_in if hold_voltage_V is None else hold_voltage_V**2
+    holds = np.flatnonzero(near & (down >= hold))
+    if holds.size == 0:
+        raise InputError(
+            f"device.hold_voltage_V: {np.sqrt(hold):.4g} V presses the pad harder than the computed "
+            f"{law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa; raise pad.max_pressure_MPa, or lower the voltage"
+        )
+    inner = int(holds[-1])
+    if inner + 1 == near.sum():
+        raise InputError(
+            f"device.hold_voltage_V = {np.sqrt(hold):.4g}: too little to keep the switch on the pad (pull-in is at "
+            f"{np.sqrt(pull_in):.4g} V); raise it"
+        )
+    held = brentq(lambda s: _voltage_squared(switch, s, law.closing_GPa(s)) - hold, grid[inner], grid[inner + 1])
+    hold_nm = float(np.asarray(held))
+    deepest = max(hold_nm, float(law.depth_nm[0]))
+    way_up = np.concatenate([[deepest], grid[grid > deepest]])
+    net = law.opening_GPa(way_up, deepest)
+    up = _voltage_squared(switch, way_up, net)
+    # release is the lowest point before the barrier, the fold that the way down met, too
+    barrier = int(np.argmax(np.where(way_up > law.separation_nm[-1], up, -np.inf)))
+    release = float(up[: barrier + 1].min())
+    return PadStates(
+        float(np.sqrt(pull_in)),
+        hold_nm,
+        float(law.closing_GPa(hold_nm)) * 1e3,
+        float(np.sqrt(max(release, 0.0))),
+        release <= 0.0,
+        -float(net.min()) * 1e6,
+    )
+
+
+def resampled_states(
+    switch: Switch, cells: PadCells, hamaker: float, hold_voltage_V: float | None, resamples: int, seed: int
+) -> list[PadStates]:
+    """The switch on pads made of cells drawn with replacement: what the finite number of computed cells leaves open.
+
+    Raises
+    ------
+    InputError : see `solve_on_pad`.
+    """
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 0x9AD5]))
+    found = []
+    for _ in range(resamples):
+        weights = rng.multinomial(cells.count, np.full(cells.count, 1.0 / cells.count)) / cells.count
+        found.append(solve_on_pad(switch, law_of(cells, hamaker, weights), hold_voltage_V))
+    return found
+
+
+def switch_on_pad(
+    cells: PadCells, hamaker: float, settings: DeviceSettings, cell_area_nm2: float, tail: Tail
+) -> dict[str, Any]:
+    """Content of device/pad_switch.json: the switch on the mean pad, and what the number of cells leaves open.
+
+    A switch whose held state was not computed gets no numbers; `gate` says why.
+    """
+    switch = switch_from_settings(settings)
+    pad_cells = switch.area_m2 * 1e18 / cell_area_nm2
+    content: dict[str, Any] = {
+        "cells_computed": cells.count,
+        "cells_of_pad": pad_cells,
+        "unsettled_cells": int((~cells.settled).sum()),
+        "spring_pressure_kPa": switch.spring_N_per_m * switch.gap_nm * NM / switch.area_m2 * 1e-3,
+        "first_contact_nm": float(tail.first_contact_nm(pad_cells)[0]),
+    }
+    try:
+        mean = solve_on_pad(switch, law_of(cells, hamaker), settings.hold_voltage_V)
+        resampled = resampled_states(switch, cells, hamaker, settings.hold_voltage_V, RESAMPLES, 0)
+    except InputError as error:
+        return {**content, "mean": None, "gate": {"passed": False, "reasons": [str(error)]}}
+    spread = {
+        name: describe(np.array([getattr(state, name) for state in resampled]))
+        for name in ("pull_in_V", "hold_nm", "hold_MPa", "release_V", "deepest_net_kPa")
+    }
+    stuck = sum(state.stuck for state in resampled)
+    reasons = _doubts(content, spread, stuck)
+    return {
+        **content,
+        "mean": asdict(mean),
+        "estimate": {**spread, "stuck": probability(stuck, RESAMPLES)},
+        "gate": {"passed": not reasons, "reasons": reasons},
+    }
+
+
+def _doubts(content: dict[str, Any], spread: dict[str, Any], stuck: int) -> list[str]:
+    reasons = []
+    if content["unsettled_cells"]:
+        reasons.append(f"{content['unsettled_cells']} cells in which flow did not come to rest")
+    if 0.05 * RESAMPLES < stuck < 0.95 * RESAMPLES:
+        low, high = (spread["deepest_net_kPa"]["quantiles"][key] for key in ("0.05", "0.95"))
+        reasons.append(
+            f"the {content['cells_computed']} computed cells do not decide whether the switch sticks: the pad pulls "
+            f"with {low:.2g} to {high:.2g} kPa, the spring with {content['spring_pressure_kPa']:.2g} kPa; raise "
+            "pad.cells"
+        )
+    return reasons
+
+
+def _voltage_squared(switch: Switch, separation_nm: Array, pressure_GPa: Array) -> Array:
+    spring = switch.spring_N_per_m * (switch.gap_nm - separation_nm) * NM
+    electric_gap = (separation_nm + switch.dielectric_nm) * NM
+    return 2 * electric_gap**2 / (VACUUM_PERMITTIVITY * switch.area_m2) * (spring + switch.area_m2 * pressure_GPa * GPA)

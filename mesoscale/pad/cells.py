@@ -1,0 +1,99 @@
+"""The cells of a pad: which separations they are brought to, and their forces there."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.contact.displacement import Displacement, close_by_separation
+from mesoscale.contact.surface import random_surface
+from mesoscale.errors import InputError
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.settings import ContactSettings, PadSettings
+
+Array = NDArray[np.float64]
+
+DEVIATIONS_ABOVE = 6.0
+"""First contacts of cells have a Gumbel tail: 1 of 4000 cells touches more than 6 deviations above the mean."""
+FAR_NM = 200.0
+"""Beyond, the attraction of the pad is that of two flats to 1 %: 1 + 6 (rms / separation)^2."""
+FAR_POINTS = 24
+MAX_PILOT_STEPS = 4000
+
+
+@dataclass(frozen=True)
+class PadGrid:
+    """Separations that all cells of a pad share."""
+
+    separation_nm: Array
+    """From far to near, shape (n,)."""
+    depths: NDArray[np.int_]
+    """Positions in `separation_nm` from which the pad is opened, shape (k,)."""
+
+    @property
+    def depth_nm(self) -> Array:
+        """Separations from which the pad is opened, falling, shape (k,)."""
+        return self.separation_nm[self.depths]
+
+
+def plan_grid(inputs: ContactInputs, contact: ContactSettings, pad: PadSettings) -> PadGrid:
+    """Separations for a pad, from a few pilot cells that are closed until their mean pressure is the largest asked for.
+
+    Raises
+    ------
+    InputError : the pilot cells never reach the pressure.
+    """
+    seeds = range(pad.first_seed, pad.first_seed + pad.pilot_cells)
+    surfaces = [random_surface(inputs, contact, seed) for seed in seeds]
+    first = np.array([float(heights.mean() - heights.min()) for heights in surfaces])
+    typical, deviation = float(first.mean()), float(first.std(ddof=1))
+    wanted = pad.max_pressure_MPa * 1e-3 * contact.length_nm**2
+    lowest = _separation_at(inputs, contact, surfaces, wanted, float(first.max()), pad)
+    top = typical + DEVIATIONS_ABOVE * max(deviation, pad.step_nm)
+    near = lowest + pad.step_nm * np.arange(np.ceil((top - lowest) / pad.step_nm) + 1)
+    far = np.geomspace(near[-1], max(FAR_NM, 2.0 * near[-1]), FAR_POINTS)[1:]
+    separation = np.concatenate([near, far])[::-1]
+    shallow = int(np.searchsorted(-separation, -typical))
+    depths = np.unique(np.linspace(shallow, separation.size - 1, pad.depths).round().astype(int))
+    return PadGrid(separation, depths)
+
+
+def _separation_at(
+    inputs: ContactInputs,
+    contact: ContactSettings,
+    surfaces: Sequence[Array],
+    wanted_nN: float,
+    start_nm: float,
+    pad: PadSettings,
+) -> float:
+    """Separation at which the mean repulsion of the surfaces is the wanted force."""
+    steps = pad.step_nm * 5.0 * np.arange(MAX_PILOT_STEPS)
+    # in pieces, so that no surface is pressed much deeper than needed
+    for size in (20, 60, 200, MAX_PILOT_STEPS):
+        separations = np.asarray(start_nm - steps[:size], float)
+        repelled = np.zeros(size)
+        for heights in surfaces:
+            found = close_by_separation(inputs, contact, heights.copy(), separations, np.empty(0, int))
+            repelled += found.closing[0] / len(surfaces)
+        if repelled[-1] >= wanted_nN:
+            return float(separations[np.argmax(repelled >= wanted_nN)])
+    raise InputError(
+        f"pad.max_pressure_MPa = {pad.max_pressure_MPa:g}: {pad.pilot_cells} cells closed by {steps[-1]:g} nm carry "
+        f"{repelled[-1] / contact.length_nm**2 * 1e3:.3g} MPa; lower it"
+    )
+
+
+def close_cells(
+    inputs: ContactInputs,
+    contact: ContactSettings,
+    grid: PadGrid,
+    seeds: Sequence[int],
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[Displacement]:
+    """Forces of each cell at the separations of the pad, while closing and while opening from each depth."""
+    for done, seed in enumerate(seeds):
+        heights = random_surface(inputs, contact, seed)
+        yield close_by_separation(inputs, contact, heights, grid.separation_nm, grid.depths)
+        if progress:
+            progress((done + 1) / len(seeds), f"{done + 1} of {len(seeds)} cells")

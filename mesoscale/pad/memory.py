@@ -1,0 +1,104 @@
+"""The pressure of a pad as a function of separation and of the deepest closing."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesoscale.errors import InputError
+from mesoscale.pad.curves import PadCells
+
+Array = NDArray[np.float64]
+
+FLOOR_GPa = 1e-13
+"""Repulsion of 0.1 Pa counts as none; it keeps the logarithm finite beyond the last contact."""
+
+
+@dataclass(frozen=True)
+class PadLaw:
+    """Mean pressure of a pad: one closing curve, and an opening curve for each depth.
+
+    Between depths, repulsion and attraction are interpolated in logarithm at equal distance from the depth: an
+    exponential repulsion, which rough contacts come near to, is interpolated exactly.
+    """
+
+    separation_nm: Array
+    """From near to far, shape (n,)."""
+    closing: Array
+    """Repulsive and attractive pressure (GPa, attraction negative), shape (2, n)."""
+    depth_nm: Array
+    """Separations from which the pad was opened, rising, shape (k,)."""
+    opening: Array
+    """As `closing`, from each depth, shape (k, 2, n); NaN below the depth."""
+    hamaker: float
+    """Hamaker constant (1e-18 J), for separations beyond the table."""
+
+    def closing_GPa(self, separation_nm: ArrayLike) -> Array:
+        """Net pressure while closing (GPa, positive: pushed apart), any shape.
+
+        Raises
+        ------
+        InputError : a separation below the deepest that was computed.
+        """
+        s = np.asarray(separation_nm, float)
+        self._check(s)
+        return self._extended(s, np.sum(_at(self.separation_nm, self.closing, s), axis=0))
+
+    def opening_GPa(self, separation_nm: ArrayLike, deepest_nm: float) -> Array:
+        """Net pressure while opening from `deepest_nm` (GPa), any shape; separations below it count as it.
+
+        Raises
+        ------
+        InputError : a depth that was not computed; the message has the range.
+        """
+        low, high = float(self.depth_nm[0]), float(self.depth_nm[-1])
+        if not low <= deepest_nm <= high:
+            raise InputError(
+                f"deepest closing {deepest_nm:.4g} nm: the pad was computed for {low:.4g} .. {high:.4g} nm "
+                f"({self.closing_GPa(high) * 1e3:.3g} .. {self.closing_GPa(low) * 1e3:.3g} MPa); raise "
+                "pad.max_pressure_MPa, or lower the hold voltage"
+            )
+        s = np.maximum(np.asarray(separation_nm, float), deepest_nm)
+        upper = int(np.clip(np.searchsorted(self.depth_nm, deepest_nm), 1, self.depth_nm.size - 1))
+        lower = upper - 1
+        share = (deepest_nm - self.depth_nm[lower]) / (self.depth_nm[upper] - self.depth_nm[lower])
+        risen = s - deepest_nm
+        shallow = self._logarithms(upper, self.depth_nm[upper] + risen)
+        deep = self._logarithms(lower, self.depth_nm[lower] + risen)
+        repulsion, attraction = np.exp((1.0 - share) * deep + share * shallow)
+        return self._extended(s, np.where(repulsion > 2.0 * FLOOR_GPa, repulsion, 0.0) - attraction)
+
+    def _logarithms(self, number: int, separation_nm: Array) -> Array:
+        known = np.isfinite(self.opening[number, 0])
+        repulsion, attraction = _at(self.separation_nm[known], self.opening[number][:, known], separation_nm)
+        return np.log(np.stack([np.maximum(repulsion, FLOOR_GPa), np.maximum(-attraction, FLOOR_GPa)]))
+
+    def _check(self, separation_nm: Array) -> None:
+        if (separation_nm < self.separation_nm[0]).any():
+            raise InputError(
+                f"separation {separation_nm.min():.4g} nm: the pad was closed to {self.separation_nm[0]:.4g} nm "
+                f"({self.closing[:, 0].sum() * 1e3:.3g} MPa); raise pad.max_pressure_MPa"
+            )
+
+    def _extended(self, separation_nm: Array, pressure: Array) -> Array:
+        """Beyond the table, two flats."""
+        far = separation_nm > self.separation_nm[-1]
+        flats = -self.hamaker / (6.0 * np.pi * np.maximum(separation_nm, 1.0) ** 3)
+        return np.where(far, flats, pressure)
+
+
+def _at(separation_nm: Array, curves: Array, wanted: Array) -> Array:
+    """Rows of `curves` at other separations, shape (rows, *wanted.shape)."""
+    return np.stack([np.interp(wanted, separation_nm, row) for row in curves])
+
+
+def law_of(cells: PadCells, hamaker: float, weights: ArrayLike | None = None) -> PadLaw:
+    """The law of a pad from its cells; `weights` of the cells (sum 1) for a resampled pad, shape (cells,)."""
+    share = np.full(cells.count, 1.0 / cells.count) if weights is None else np.asarray(weights, float)
+    return PadLaw(
+        cells.grid.separation_nm[::-1],
+        np.tensordot(share, cells.closing, 1)[:, ::-1],
+        cells.grid.depth_nm[::-1],
+        np.tensordot(share, cells.opening, 1)[::-1, :, ::-1],
+        hamaker,
+    )

@@ -1,0 +1,37 @@
+"""Settings of the pad."""
+
+from pydantic import Field
+
+from mesoscale.settings.base import Settings
+
+
+class PadSettings(Settings):
+    """Pad of many cells that share one separation (docs/pad.md)."""
+
+    cells: int = Field(default=256, ge=8, le=1_000_000, description="cells that are computed; a pad has their mean")
+    pilot_cells: int = Field(
+        default=8, ge=2, le=1000, description="cells that are closed first, to find the range of separations"
+    )
+    max_pressure_MPa: float = Field(
+        default=20.0,
+        gt=0,
+        le=1e6,
+        description="mean pressure that the deepest closing reaches; a switch that presses harder is refused",
+        json_schema_extra={"unit": "MPa"},
+    )
+    step_nm: float = Field(
+        default=0.1,
+        gt=0,
+        le=10,
+        description="step of separation in and near contact",
+        json_schema_extra={"unit": "nm"},
+    )
+    depths: int = Field(
+        default=8,
+        ge=2,
+        le=200,
+        description="depths of closing from which the pad is opened, between first contact "
+        "of a typical cell and the deepest closing",
+    )
+    chunk_cells: int = Field(default=64, ge=1, le=100000, description="cells per job and file")
+    first_seed: int = Field(default=1000, ge=0, le=2**31, description="seed of the first cell's surface")

@@ -1,0 +1,133 @@
+"""Cells under one plane: means, memory between depths, and the tail of first contacts."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from mesoscale.contact import ContactInputs
+from mesoscale.errors import InputError
+from mesoscale.pad.cells import PadGrid, close_cells, plan_grid
+from mesoscale.pad.curves import adhesion_by_cells, assemble
+from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.pad.tail import fit_tail
+from mesoscale.settings import ContactSettings, PadSettings
+
+MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
+CONTACT = ContactSettings(pixels=128)
+PAD = PadSettings(cells=16, pilot_cells=4, step_nm=0.2, depths=5, max_pressure_MPa=5.0)
+
+
+@pytest.fixture(scope="module")
+def pad():
+    grid = plan_grid(MIDDLE, CONTACT, PAD)
+    cells = list(close_cells(MIDDLE, CONTACT, grid, range(PAD.first_seed, PAD.first_seed + PAD.cells)))
+    return assemble(grid, cells, CONTACT.length_nm**2)
+
+
+def exponential_law(depths):
+    """A pad whose opening is known: exp(-(s - D) / 1.5 nm) 5 exp((25 - D)/2 nm) MPa, and a smooth attraction."""
+    s = np.arange(20.0, 60.0, 0.1)
+
+    def closing(at):
+        return 5e-3 * np.exp((25.0 - at) / 2.0)
+
+    def attraction(at):
+        return -1e-4 * (20.0 / at) ** 3
+
+    opening = np.full((len(depths), 2, s.size), np.nan)
+    for k, depth in enumerate(depths):
+        above = s >= depth - 1e-9
+        opening[k, 0, above] = closing(depth) * np.exp(-(s[above] - depth) / 1.5)
+        opening[k, 1, above] = attraction(s[above])
+    law = PadLaw(s, np.stack([closing(s), attraction(s)]), np.array(depths), opening, 0.2)
+    return law, lambda at, depth: (closing(depth) * np.exp(-(at - depth) / 1.5), attraction(at))
+
+
+def test_the_grid_reaches_the_pressure_and_all_first_contacts(pad):
+    pressure = pad.closing[:, 0].mean(axis=0)
+    assert 0.5 * PAD.max_pressure_MPa < pressure[-1] * 1e3 < 2.0 * PAD.max_pressure_MPa
+    assert pad.grid.separation_nm[0] > pad.first_contact_nm.max()
+    assert (np.diff(pad.grid.separation_nm) < 0).all()
+
+
+def test_a_pressure_out_of_reach_is_refused():
+    rigid = ContactSettings(pixels=32, length_nm=1000.0)
+    soft = ContactInputs(**{**vars(MIDDLE), "e_star": 1e-12, "hamaker": 0.0})
+    with pytest.raises(InputError, match=r"max_pressure_MPa"):
+        plan_grid(soft, rigid, PAD)
+
+
+def test_openings_start_where_closing_ended_and_deeper_pads_hold_more(pad):
+    law = law_of(pad, MIDDLE.hamaker)
+    for depth in law.depth_nm:
+        assert law.opening_GPa(depth, depth) == pytest.approx(law.closing_GPa(depth), rel=1e-6)
+
+
+def test_memory_between_depths_is_exact_for_exponential_branches():
+    law, exact = exponential_law([21.0, 23.0, 25.0, 27.0])
+    at = np.linspace(24.0, 40.0, 50)
+    repulsion, attraction = exact(at, 24.0)
+    # linear between separations 0.1 nm apart: (0.1 / 1.5)^2 / 8 of an exponential of 1.5 nm; and s^-3 taken as an
+    # exponential between depths 2 nm apart: (3 / s^2) 2^2 / 8
+    error = np.abs(law.opening_GPa(at, 24.0) - repulsion - attraction)
+    assert (error <= 6e-4 * repulsion + 2.7e-3 * np.abs(attraction)).all()
+
+
+def test_nothing_is_extrapolated():
+    law, _ = exponential_law([21.0, 23.0])
+    with pytest.raises(InputError, match=r"21 \.\. 23 nm"):
+        law.opening_GPa(30.0, 20.5)
+    with pytest.raises(InputError, match="closed to 20 nm"):
+        law.closing_GPa(19.0)
+
+
+def test_far_away_a_pad_is_two_flats(pad):
+    law = law_of(pad, MIDDLE.hamaker)
+    far = law.separation_nm[-1]
+    flats = -MIDDLE.hamaker / (6 * np.pi * far**3)
+    assert law.closing_GPa(far) == pytest.approx(flats, rel=0.02)
+    assert law.closing_GPa(2 * far) == pytest.approx(flats / 8, rel=1e-12)
+
+
+def test_adhesion_falls_with_the_number_of_cells(pad):
+    rows = adhesion_by_cells(pad, (1, 4, 8))
+    deepest = [row for row in rows if row["depth_nm"] == rows[-1]["depth_nm"]]
+    values = [row["net_adhesion_kPa"] for row in deepest if row["method"] == "groups"]
+    assert values == sorted(values, reverse=True)
+    assert deepest[-1]["cells"] == PAD.cells
+
+
+def test_groups_of_equal_cells_pull_as_one_cell():
+    """Without scatter between cells nothing averages out."""
+    separation = np.linspace(40.0, 20.0, 50)
+    grid = PadGrid(separation, np.array([49]))
+    net = -np.exp(-((separation - 30.0) ** 2))
+    one = np.stack([np.zeros(50), net])
+    from mesoscale.pad.curves import PadCells
+
+    cells = PadCells(grid, np.full(16, 31.0), np.tile(one, (16, 1, 1)), np.tile(one, (16, 1, 1, 1)), np.ones(16, bool))
+    for row in adhesion_by_cells(cells, (1, 2, 8)):
+        assert row["net_adhesion_kPa"] == pytest.approx(-net.min() * 1e6)
+
+
+def test_the_tail_recovers_gumbel_and_its_area_law():
+    values = stats.gumbel_r.rvs(30.0, 2.5, size=400, random_state=5)
+    tail = fit_tail(values, resamples=60)
+    assert tail.location_nm == pytest.approx(30.0, abs=4 * tail.covariance[0, 0] ** 0.5)
+    assert tail.scale_nm == pytest.approx(2.5, abs=4 * tail.covariance[1, 1] ** 0.5)
+    assert tail.p_value > 0.01
+    # the largest of N Gumbel numbers, by brute force
+    largest = stats.gumbel_r.rvs(30.0, 2.5, size=(4000, 64), random_state=6).max(axis=1)
+    mean, deviation = tail.first_contact_nm(64)
+    assert mean == pytest.approx(largest.mean(), abs=4 * tail.standard_error_nm(64))
+    assert deviation == pytest.approx(largest.std(), rel=0.15)
+
+
+def test_the_tail_notices_another_distribution():
+    values = np.concatenate([np.full(100, 30.0), np.full(100, 40.0)]) + np.linspace(0, 0.1, 200)
+    assert fit_tail(values, resamples=60).p_value < 0.05
+
+
+def test_too_few_cells_are_refused():
+    with pytest.raises(InputError, match="at least 8"):
+        fit_tail(np.arange(5.0))

@@ -1,0 +1,69 @@
+from mesoscale.uncertainty.chunks import chunk_bounds
+
+CELL_CHUNKS = chunk_bounds(SCENE.pad.cells, SCENE.pad.chunk_cells)
+# what a chunk of cells depends on: not on how many chunks there are, so that adding cells keeps the old ones
+GRID_SETTINGS = {key: value for key, value in settings("pad").items() if key not in ("cells", "chunk_cells")}
+
+
+rule pad:
+    input:
+        f"{RESULTS}/pad/curves.h5",
+        f"{RESULTS}/device/pad_switch.json",
+
+
+rule plan_pad:
+    input:
+        inputs=f"{RESULTS}/inputs.csv",
+    output:
+        f"{RESULTS}/pad/grid.csv",
+    log:
+        f"{RESULTS}/logs/plan_pad.log",
+    threads: 1
+    params:
+        contact=settings("contact"),
+        pad=GRID_SETTINGS,
+    message:
+        "choose the separations that the cells of the pad share"
+    script:
+        "../scripts/plan_pad.py"
+
+
+rule close_cells:
+    input:
+        inputs=f"{RESULTS}/inputs.csv",
+        grid=f"{RESULTS}/pad/grid.csv",
+    output:
+        f"{RESULTS}/pad/cells/chunk_{{chunk}}.h5",
+    log:
+        f"{RESULTS}/logs/close_cells_{{chunk}}.log",
+    threads: 1
+    params:
+        contact=settings("contact"),
+        seeds=lambda wildcards: [SCENE.pad.first_seed + run for run in CELL_CHUNKS[wildcards.chunk]],
+    message:
+        f"close and open the cells of the pad, chunk {{wildcards.chunk}} of {len(CELL_CHUNKS)}"
+    script:
+        "../scripts/close_cells.py"
+
+
+rule assemble_pad:
+    input:
+        inputs=f"{RESULTS}/inputs.csv",
+        grid=f"{RESULTS}/pad/grid.csv",
+        chunks=[f"{RESULTS}/pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS],
+    output:
+        curves=f"{RESULTS}/pad/curves.h5",
+        table=f"{RESULTS}/pad/curves.csv",
+        adhesion=f"{RESULTS}/pad/adhesion.csv",
+        tail=f"{RESULTS}/pad/tail.json",
+        switch=f"{RESULTS}/device/pad_switch.json",
+    log:
+        f"{RESULTS}/logs/assemble_pad.log",
+    threads: 1
+    params:
+        device=settings("device"),
+        length_nm=SCENE.contact.length_nm,
+    message:
+        "assemble the pad and drive the switch with it"
+    script:
+        "../scripts/assemble_pad.py"

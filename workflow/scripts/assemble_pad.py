@@ -1,0 +1,53 @@
+"""Assemble the pad from its cells, and drive the switch with it.
+
+In: inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN).
+Out: pad/curves.h5 and pad/curves.csv (MPa against nm), pad/adhesion.csv, pad/tail.json, device/pad_switch.json.
+"""
+
+import numpy as np
+
+from mesoscale.device.pad_switch import switch_on_pad
+from mesoscale.inputs.table import medians
+from mesoscale.pad.cells import PadGrid
+from mesoscale.pad.curves import PadCells, adhesion_by_cells, curve_rows
+from mesoscale.pad.tail import fit_tail, tail_summary
+from mesoscale.settings import DeviceSettings
+from workflow.job import job
+from workflow.results import Dataset, read_csv, read_h5, read_numbers, write_csv, write_h5, write_json
+
+with job(snakemake) as run:
+    rows = read_numbers(snakemake.input.grid)
+    separation = np.array([row["separation_nm"] for row in rows])
+    grid = PadGrid(separation, np.flatnonzero([row["opened_from"] for row in rows]))
+    chunks = [read_h5(path)[0]["cells"] for path in snakemake.input.chunks]
+    area = snakemake.params.length_nm**2
+    cells = PadCells(
+        grid,
+        np.concatenate([chunk["first_contact_nm"] for chunk in chunks]),
+        np.concatenate([chunk["closing_nN"] for chunk in chunks]) / area,
+        np.concatenate([chunk["opening_nN"] for chunk in chunks]) / area,
+        np.concatenate([chunk["settled"] for chunk in chunks]).astype(bool),
+    )
+    device = DeviceSettings(**snakemake.params.device)
+    hamaker = medians(read_csv(snakemake.input.inputs))["hamaker"]
+
+    table = curve_rows(cells)
+    write_csv(snakemake.output.table, table)
+    datasets = {
+        "separation_nm": Dataset(separation, "nm", "mean separation", ("separation",)),
+        "depth_nm": Dataset(grid.depth_nm, "nm", "separation from which the pad is opened", ("depth",)),
+        "closing_GPa": Dataset(
+            cells.closing.mean(axis=0), "GPa", "repulsive and attractive pressure", ("force", "separation")
+        ),
+        "opening_GPa": Dataset(
+            cells.opening.mean(axis=0),
+            "GPa",
+            "repulsive and attractive pressure while opening from each depth",
+            ("depth", "force", "separation"),
+        ),
+    }
+    write_h5(snakemake.output.curves, {"pad": datasets}, {"cells": cells.count, "hamaker": hamaker}, run.provenance)
+    write_csv(snakemake.output.adhesion, adhesion_by_cells(cells, [2**k for k in range(20)]))
+    tail = fit_tail(cells.first_contact_nm)
+    write_json(snakemake.output.tail, tail_summary(tail, area), run.provenance)
+    write_json(snakemake.output.switch, switch_on_pad(cells, hamaker, device, area, tail), run.provenance)

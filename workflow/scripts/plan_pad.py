@@ -1,0 +1,18 @@
+"""Choose the separations and depths that all cells of the pad share.  In: inputs.csv.  Out: pad/grid.csv (nm)."""
+
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.table import medians
+from mesoscale.pad.cells import plan_grid
+from mesoscale.settings import ContactSettings, PadSettings
+from workflow.job import job
+from workflow.results import read_csv, write_csv
+
+with job(snakemake) as run:
+    inputs, contact = contact_of(medians(read_csv(snakemake.input.inputs)), ContactSettings(**snakemake.params.contact))
+    grid = plan_grid(inputs, contact, PadSettings(**snakemake.params.pad))
+    depths = set(grid.depths.tolist())
+    rows = [
+        {"separation_nm": float(separation), "opened_from": int(place in depths)}
+        for place, separation in enumerate(grid.separation_nm)
+    ]
+    write_csv(snakemake.output[0], rows)
