@@ -84,9 +84,8 @@ def solve_on_pad(switch: Switch, law: PadLaw, hold_voltage_V: float | None) -> P
         )
     held = brentq(lambda s: _voltage_squared(switch, s, law.closing_GPa(s)) - hold, grid[inner], grid[inner + 1])
     hold_nm = float(np.asarray(held))
-    deepest = max(hold_nm, float(law.depth_nm[0]))
-    way_up = np.concatenate([[deepest], grid[grid > deepest]])
-    net = law.opening_GPa(way_up, deepest)
+    way_up = np.concatenate([[hold_nm], grid[grid > hold_nm]])
+    net = law.opening_GPa(way_up, hold_nm)
     up = _voltage_squared(switch, way_up, net)
     # release is the lowest point before the barrier, the fold that the way down met, too
     barrier = int(np.argmax(np.where(way_up > law.separation_nm[-1], up, -np.inf)))

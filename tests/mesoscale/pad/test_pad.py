@@ -52,7 +52,7 @@ def test_the_grid_reaches_the_pressure_and_all_first_contacts(pad):
 
 def test_a_pressure_out_of_reach_is_refused():
     rigid = ContactSettings(pixels=32, length_nm=1000.0)
-    soft = ContactInputs(**{**vars(MIDDLE), "e_star": 1e-12, "hamaker": 0.0})
+    soft = ContactInputs(**{**vars(MIDDLE), "e_star": 1e-6, "hamaker": 0.0})
     with pytest.raises(InputError, match=r"max_pressure_MPa"):
         plan_grid(soft, rigid, PAD)
 

@@ -12,10 +12,11 @@ from workflow.report.stages import (
     hardness,
     history,
     inputs,
+    pad,
     sensitivity,
     topography,
     uncertainty,
 )
 
 # in the order of the data's flow
-STAGES = (inputs, hardness, elastic, topography, contact, uncertainty, sensitivity, device, history, coupling)
+STAGES = (inputs, hardness, elastic, topography, contact, uncertainty, sensitivity, pad, device, history, coupling)

@@ -1,0 +1,157 @@
+"""Many cells under one plane: what a pad is, beside one cell."""
+
+import numpy as np
+
+from workflow.report.available import Results, Row
+from workflow.report.drawing import BLUE, ORANGE, SERIES, SOFT, draw
+from workflow.report.numbers import column, show
+from workflow.report.page import COMPUTED, Gate, Section, Table
+
+
+def describe(results: Results) -> Section | None:
+    """The pad's curves, its adhesion against the number of cells, and the switch on it."""
+    if not results.has("pad/curves.csv", "pad/adhesion.csv", "pad/tail.json", "device/pad_switch.json"):
+        return None
+    switch = results.json("device/pad_switch.json")
+    tail = results.json("pad/tail.json")
+    section = Section(
+        "pad",
+        "From a cell to a pad",
+        f"{switch['cells_computed']} cells with surfaces of their own, brought to one separation and opened "
+        "together, at central inputs. Single cells pull at separations that differ by nanometres, so their adhesion "
+        "does not add up: the highest cells still push while others pull.",
+        COMPUTED,
+    )
+    section.add(
+        pad_curves(results),
+        "Mean pressure of the pad. Left: closing, and opening from each depth. Right: the net pressure near the last "
+        "contact; the band is one standard error of the mean of the computed cells.",
+        wide=True,
+    )
+    section.add(
+        adhesion_by_cells(results),
+        "Largest net adhesive pressure on opening against the number of cells of a pad, with the scatter between "
+        "pads. The point at the right is the mean of all computed cells with its standard error.",
+    )
+    section.blocks.append(
+        Table("The switch, its whole electrode flat on the pad", ("quantity", "value"), _lines(switch))
+    )
+    test = f"Gumbel's distribution (test: p = {tail['p_value']:.2g})"
+    if tail["accepted"]:
+        section.notes.append(
+            f"First contacts of the cells follow {test}; a pad touches {show(tail['scale_nm'])} nm further out for "
+            "every factor e of its area."
+        )
+    else:
+        section.notes.append(
+            f"First contacts of the cells do not follow {test}: where a large pad first touches is not known."
+        )
+    section.notes.append(
+        "The inputs are the central ones: the interval holds the finite number of computed cells alone. A bowed or "
+        "tilted electrode touches with less of its area."
+    )
+    section.files += ["pad/curves.csv", "pad/curves.h5", "pad/adhesion.csv", "pad/tail.json", "device/pad_switch.json"]
+    gate = switch["gate"]
+    section.gates.append(Gate("pad", gate["passed"], gate["reasons"]))
+    return section
+
+
+def _lines(switch: dict) -> list[tuple[str, str]]:
+    lines = [
+        ("cells on the electrode", show(switch["cells_of_pad"])),
+        ("first contact of such a pad (nm)", show(switch["first_contact_nm"])),
+        ("pull of the spring (kPa)", show(switch["spring_pressure_kPa"])),
+    ]
+    if switch["mean"] is None:
+        return lines
+    estimate = switch["estimate"]
+
+    def spread(key: str) -> str:
+        low, middle, high = (estimate[key]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
+        return f"{show(middle)} [{show(low)}, {show(high)}]"
+
+    stuck = estimate["stuck"]
+    return [
+        *lines,
+        ("pull-in (V)", show(switch["mean"]["pull_in_V"])),
+        ("held closed at (nm)", spread("hold_nm")),
+        ("pressure while held closed (MPa)", spread("hold_MPa")),
+        ("largest net adhesion on opening (kPa), median and 5 to 95 %", spread("deepest_net_kPa")),
+        ("release (V), 0 where it sticks, median and 5 to 95 %", spread("release_V")),
+        ("share of resampled pads that stick", f"{stuck['value']:.2f} [{stuck['low']:.2f}, {stuck['high']:.2f}]"),
+    ]
+
+
+def pad_curves(results: Results) -> str:
+    """Closing and opening of the pad, and the well on opening."""
+    rows = results.csv("pad/curves.csv")
+    depths = sorted({float(row["depth_nm"]) for row in rows if row["branch"] == "opening"})
+    opened = {depth: [row for row in rows if row["depth_nm"] and float(row["depth_nm"]) == depth] for depth in depths}
+    deepest = opened[depths[0]]
+    shown = depths[:: max(1, len(depths) // 4)]
+
+    def plot(whole, well):
+        closing = [row for row in rows if row["branch"] == "closing"]
+        _line(whole, closing, 1e-3, BLUE, "closing")
+        for depth in shown:
+            _line(whole, opened[depth], 1e-3, ORANGE, "opening" if depth == shown[0] else None, "--")
+        top = max(column(closing, "net_kPa")) * 1e-3
+        whole.set(yscale="log", ylim=(1e-4 * top, 2 * top), xlim=(depths[0] - 1, _last_contact(deepest) + 12))
+        whole.set(xlabel="separation (nm)", ylabel="net pressure (MPa)", title="closing, and opening from each depth")
+        whole.legend()
+        lowest = 0.0
+        for place, depth in enumerate(shown):
+            line = opened[depth]
+            s, net, error = (column(line, name) for name in ("separation_nm", "net_kPa", "standard_error_kPa"))
+            color = SERIES[place % len(SERIES)]
+            well.plot(s, net, color=color, label=f"closed to {depth:.1f} nm")
+            well.fill_between(s, net - error, net + error, color=color, alpha=0.15, linewidth=0)
+            lowest = min(lowest, float(net.min()))
+        well.axhline(0, color=SOFT, linewidth=0.8)
+        well.set(xlim=(depths[0], _last_contact(deepest) + 12), ylim=(2.5 * lowest, -2.5 * lowest))
+        well.set(xlabel="separation (nm)", ylabel="net pressure (kPa)", title="near the last contact, on opening")
+        well.legend(fontsize=8)
+
+    return draw("pad-curves", "Mean pressure of a pad against separation", plot, (9.4, 3.8), columns=2)
+
+
+def _line(axis, rows: list[Row], scale: float, color: str, label: str | None, style: str = "-") -> None:
+    net = column(rows, "net_kPa") * scale
+    axis.plot(column(rows, "separation_nm"), np.where(net > 0, net, np.nan), style, color=color, label=label)
+
+
+def _last_contact(rows: list[Row]) -> float:
+    """Largest separation at which any cell pushes (nm)."""
+    touching = column(rows, "repulsive_MPa") > 0
+    return float(column(rows, "separation_nm")[touching].max())
+
+
+def adhesion_by_cells(results: Results) -> str:
+    """Largest net adhesive pressure against the number of cells."""
+    rows = results.csv("pad/adhesion.csv")
+    depths = sorted({float(row["depth_nm"]) for row in rows})
+    shown = depths[:: max(1, len(depths) // 3)]
+
+    def plot(axis):
+        for place, depth in enumerate(shown):
+            part = [row for row in rows if float(row["depth_nm"]) == depth]
+            groups = [row for row in part if row["method"] == "groups"]
+            color = SERIES[place % len(SERIES)]
+            cells, mean, scatter = (column(groups, key) for key in ("cells", "net_adhesion_kPa", "pad_scatter_kPa"))
+            label = f"closed to {depth:.1f} nm, {float(part[0]['closed_to_MPa']):.1f} MPa"
+            axis.errorbar(
+                cells * 1.04**place, mean, np.minimum(scatter, 0.95 * mean), fmt="o-", color=color, label=label
+            )
+            whole = part[-1]
+            axis.errorbar(
+                float(whole["cells"]) * 1.04**place,
+                float(whole["net_adhesion_kPa"]),
+                float(whole["standard_error_kPa"]),
+                fmt="s",
+                color=color,
+                mfc="none",
+            )
+        axis.set(xscale="log", yscale="log", xlabel="cells of the pad", ylabel="net adhesive pressure (kPa)")
+        axis.legend(fontsize=8)
+
+    return draw("pad-adhesion", "Net adhesive pressure against the number of cells", plot)
