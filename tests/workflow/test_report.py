@@ -225,7 +225,6 @@ def test_page_lives_in_a_real_browser(page, tmp_path):
     assert float(closing.split()[0]) == pytest.approx(_separation_at(6.0), rel=2e-3)  # three digits are shown
     assert found["empty"] == 0
     assert found["overflow"] <= 0, "the page scrolls sideways"
-    assert found["load_ms"] < 2000
 
 
 def _separation_at(pressure_MPa):
