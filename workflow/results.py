@@ -173,12 +173,24 @@ def write_h5(
                 stored.attrs["long_name"] = dataset.long_name
                 for axis, dim in enumerate(dataset.dims):
                     stored.dims[axis].label = dim
+            _attach_scales(group, datasets)
         for group_name, values in (group_attributes or {}).items():
             file.require_group(group_name).attrs.update(_attributes(values))
         file.attrs.update(_attributes(attributes))
         file.attrs.update(_attributes({"schema_version": SCHEMA_VERSION, **provenance}))
         file.attrs["complete"] = True
     write_bytes(path, image.getvalue())
+
+
+def _attach_scales(group: Any, datasets: Mapping[str, Dataset]) -> None:
+    """Make each dataset named like its one dimension the coordinate of that dimension, as netCDF readers expect."""
+    for name, dataset in datasets.items():
+        if dataset.dims == (name,):
+            group[name].make_scale(name)
+    for name, dataset in datasets.items():
+        for axis, dim in enumerate(dataset.dims):
+            if dim != name and dim in datasets and datasets[dim].dims == (dim,):
+                group[name].dims[axis].attach_scale(group[dim])
 
 
 def _attributes(values: Mapping[str, Any]) -> dict[str, Any]:

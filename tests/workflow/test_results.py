@@ -111,3 +111,22 @@ def test_an_incomplete_h5_is_refused(tmp_path):
         file["force"] = [1.0]
     with pytest.raises(ValueError, match="not a complete result file"):
         read_h5(tmp_path / "half.h5")
+
+
+def test_a_dataset_named_like_its_dimension_is_its_coordinate(tmp_path):
+    """As netCDF has it: the separation is the dimension scale of its curve, and of nothing else."""
+    import h5py
+
+    curve = {
+        "separation_nm": Dataset([3.0, 2.0], "nm", "mean separation", ("separation_nm",)),
+        "repulsive_nN": Dataset([0.0, 5.0], "nN", "repulsive force", ("separation_nm",)),
+        "heights": Dataset([[0.0]], "nm", "heights", ("x", "y")),
+    }
+    path = tmp_path / "curves.h5"
+    write_h5(path, {"plastic/closing": curve}, {}, {})
+    with h5py.File(path) as file:
+        group = file["plastic/closing"]
+        assert group["separation_nm"].is_scale
+        assert list(group["repulsive_nN"].dims[0].keys()) == ["separation_nm"]
+        assert group["repulsive_nN"].dims[0]["separation_nm"][:].tolist() == [3.0, 2.0]
+        assert not list(group["heights"].dims[0].keys())

@@ -31,7 +31,7 @@ with job(snakemake) as run:
         }
         for branch, curve in (("closing", cycle.closing), ("opening", cycle.opening)):
             groups[f"{name}/{branch}"] = {
-                key: Dataset(values, *BRANCH_COLUMNS[key], ("point",)) for key, values in asdict(curve).items()
+                key: Dataset(values, *BRANCH_COLUMNS[key], ("separation_nm",)) for key, values in asdict(curve).items()
             }
     reading = {"cell_area_nm2": settings.length_nm**2, "contact": settings.model_dump(mode="json")}
     write_h5(snakemake.output.curves, groups, reading, run.provenance, attributes)

@@ -34,7 +34,7 @@ with job(snakemake) as run:
         for branch in ("closing", "opening"):
             curve = getattr(cycle, branch)
             groups[f"{name}/{branch}"] = {
-                field.name: Dataset(getattr(curve, field.name), *BRANCH_COLUMNS[field.name], ("point",))
+                field.name: Dataset(getattr(curve, field.name), *BRANCH_COLUMNS[field.name], ("separation_nm",))
                 for field in fields(curve)
                 if field.name in BRANCH_COLUMNS
             }

@@ -29,7 +29,7 @@ with job(snakemake) as run:
             attributes[name] = {"cycle": held.number, "seed": seed, **asdict(inputs)}
             for branch in ("closing", "opening"):
                 groups[f"{name}/{branch}"] = {
-                    key: Dataset(values, *BRANCH_COLUMNS[key], ("point",))
+                    key: Dataset(values, *BRANCH_COLUMNS[key], ("separation_nm",))
                     for key, values in asdict(getattr(held.cycle, branch)).items()
                 }
     write_csv(snakemake.output.cycles, cycles)

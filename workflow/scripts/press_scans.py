@@ -34,7 +34,8 @@ with job(snakemake) as run:
             name = f"{pressed.scan}/{pressed.surface}"
             for branch, curve in (("closing", pressed.cycle.closing), ("opening", pressed.cycle.opening)):
                 groups[f"{name}/{branch}"] = {
-                    key: Dataset(values, *BRANCH_COLUMNS[key], ("point",)) for key, values in asdict(curve).items()
+                    key: Dataset(values, *BRANCH_COLUMNS[key], ("separation_nm",))
+                    for key, values in asdict(curve).items()
                 }
             attributes[name] = {**pressed.description, **pressed.cycle.flags}
             rows += pressed.rows()
