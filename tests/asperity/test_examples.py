@@ -1,0 +1,18 @@
+"""The examples of the documentation run as they stand and save their pictures."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "docs" / "examples").glob("*.py"))
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_runs_and_draws(example, tmp_path):
+    environment = {**os.environ, "MPLBACKEND": "Agg"}
+    run = subprocess.run([sys.executable, str(example)], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    assert (tmp_path / f"{example.stem}.png").stat().st_size > 5000
