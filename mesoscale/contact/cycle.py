@@ -128,7 +128,7 @@ def run_cycle(
     if hold is not None:
         closing.rows += hold(contact, closing.rows[-1])
     last = closing.rows[-1]
-    changed = contact.changed_sites
+    changed, remarks = contact.changed_sites, contact.remarks()
     if changed > 0 and last.force > 0:
         contact.adopt_changes()
         departure = _approach(contact)
@@ -153,6 +153,7 @@ def run_cycle(
             "repeated_steps": closing.repeated,
             "changed_sites": changed,
             "repulsion_drop": _largest_drop([row.force for row in closing.rows]),
+            **remarks,
         },
         converged=reached and miss <= MAX_FORCE_MISS and closing.unconverged == 0,
         inputs=inputs,

@@ -152,6 +152,10 @@ class Contact:
         """Separation of first contact of the surface as it is now."""
         return -float(self.heights.min())
 
+    def remarks(self) -> dict[str, float]:
+        """Flags of a cycle that only one mechanics has; the contact as it is now."""
+        return {}
+
     def _sort_to(self, height: float) -> None:
         """Have all unchanged sites below ``height`` sorted by height."""
         band = 0.5 * self.rms

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from mesoscale.contact import attraction, kernels
-from mesoscale.contact.coupled import clusters, dense, grid, half_space
+from mesoscale.contact.coupled import clusters, dense, grid, half_space, validity
 from mesoscale.contact.engine import Contact, State
 from mesoscale.settings import ContactSettings
 
@@ -38,15 +38,17 @@ class CoupledContact(Contact):
     def __init__(self, surface: np.ndarray, inputs, settings: ContactSettings):
         super().__init__(surface, inputs, settings)
         self.e_star = float(inputs.e_star)
+        self.hamaker, self.gap_cutoff = float(inputs.hamaker), settings.gap_cutoff_nm
         self.table = half_space.influence(self.n)
         self.scale = self.length / self.e_star
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
         # how far 1 nN raises the surface at most, anywhere: it does, because the mean of the displacement is 0
         self.rise = -self.scale * float(self.table.min()) / self.mechanics.site_area
-        self.dense = min(self.DENSE, self.DENSE_PER_PIXEL * self.n)
+        self.dense = min(self.DENSE, self.DENSE_PER_PIXEL * self.n, self.heights.size - 1)
         self.matrix = np.empty((0, 0))
         self.place = np.full(self.heights.size, -1, np.int32)
         self.mean = self.offset
+        self.roughness = validity.roughness(surface, self.length)
         self._forget()
 
     def _forget(self) -> None:
@@ -68,8 +70,7 @@ class CoupledContact(Contact):
         Full elastic contact: there the separation of the mean planes is 0 and stays so. With a hardness,
         `BEARING_SHARE` of what it carries on the whole cell if this is less.
         """
-        pressure = half_space.flattening_pressure(self.heights.reshape(self.n, self.n), self.length, self.e_star)
-        full = (1.0 - 1e-6) * max(-float(pressure.min()), 0.0) * self.length**2
+        full = (1.0 - 1e-6) * self.e_star * self.roughness.flattening * self.length**2
         if not (self.flows or self.capped):
             return full
         area = self.length**2
@@ -119,6 +120,21 @@ class CoupledContact(Contact):
         hardness = self._hardness(number)
         load = float((self.pressure / hardness).max()) if touching and hardness.all() else 0.0
         return State(self.force, touching, found, 0, load, rounds, settled, False)
+
+    def remarks(self) -> dict[str, float]:
+        """What says whether the model holds, for the flags of a cycle (`validity`); the contact as it is now."""
+        number, found = self._clusters()
+        touching = number >= 0
+        area = self.mechanics.site_area * max(int(touching.sum()) / max(found, 1), 1.0)
+        hardness = kernels.hardness(area, self.mechanics)
+        yielded = float(np.mean(self.pressure[touching] >= self._hardness(number)[touching])) if found else 0.0
+        return {
+            "rms_slope": self.roughness.slope,
+            "rms_curvature_per_nm": self.roughness.curvature,
+            "plasticity_index": self.e_star * self.roughness.slope / hardness if hardness > 0.0 else math.inf,
+            "yielded_share": yielded,
+            **validity.adhesion_numbers(self.hamaker, self.gap_cutoff, self.e_star, self.roughness),
+        }
 
     @property
     def force(self) -> float:

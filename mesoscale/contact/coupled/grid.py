@@ -25,6 +25,7 @@ class Grid:
     def __init__(self, pixels: int, length: float, e_star: float):
         self.shape = (pixels, pixels)
         number = half_space.wave_numbers(pixels)
+        number[0, 0] = 1.0  # a preconditioner must not swallow the mean
         self.stiffness = number * (np.pi * e_star / length)
         number[0, 0] = np.inf
         self.compliance = (length / (np.pi * e_star)) / number
@@ -34,7 +35,7 @@ class Grid:
         return self._filtered(pressure, self.compliance)
 
     def pressure(self, displacement: np.ndarray) -> np.ndarray:
-        """Pressure (GPa), mean zero, that makes a displacement (nm)."""
+        """Pressure (GPa) that makes a displacement (nm), but for its mean, which none makes."""
         return self._filtered(displacement, self.stiffness)
 
     def _filtered(self, values: np.ndarray, factor: np.ndarray) -> np.ndarray:
@@ -77,6 +78,8 @@ def solve(
         if free.any():
             goal = 0.1 * tolerance * largest / stiffness
             _close_gaps(grid, free, gap, pressure, displacement, goal, FACE_SHARE if moved else 0.0)
+            if free.all():  # a uniform pressure moves nothing: take the least, so that the sets can change
+                pressure -= pressure.min()
     return pressure, displacement, NEWTON_STEPS, False
 
 
@@ -116,7 +119,7 @@ def _close_gaps(
         last = rz
         q = grid.displacement(d)
         dq = float(d @ q)
-        if not dq > 0.0:
+        if not dq > 1e-14 * rz:  # rounding of what moves nothing
             return
         pressure += (rz / dq) * d
         displacement += (rz / dq) * q

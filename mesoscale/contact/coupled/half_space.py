@@ -35,17 +35,3 @@ def influence(pixels: int) -> np.ndarray:
     table = np.ascontiguousarray(np.asarray(table)[:half, :half])
     table.flags.writeable = False
     return table
-
-
-def displacement(pressure: np.ndarray, length: float, e_star: float) -> np.ndarray:
-    """Displacement (nm) of the surface under a pressure (GPa), shape (N, N), mean zero."""
-    spectrum = np.asarray(fft.rfft2(pressure))
-    spectrum *= _compliance(len(pressure)) * (length / (np.pi * e_star))
-    return np.asarray(fft.irfft2(spectrum, s=pressure.shape, overwrite_x=True))
-
-
-def flattening_pressure(heights: np.ndarray, length: float, e_star: float) -> np.ndarray:
-    """Pressure (GPa) with mean zero that makes a surface flat; shape (N, N)."""
-    spectrum = np.asarray(fft.rfft2(heights))
-    spectrum *= wave_numbers(len(heights)) * (-np.pi * e_star / length)
-    return np.asarray(fft.irfft2(spectrum, s=heights.shape, overwrite_x=True))

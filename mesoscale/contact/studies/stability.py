@@ -17,6 +17,7 @@ from mesoscale.topography.synthesis import synthesize
 COLUMNS = ("stage", "case", "description", "checks", "passed", "detail", "wall_s")
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
 FINER = 16  # force steps of the path that judges a gain of energy, over those of the cycle
+LOST = 1e-8  # coupled, constant hardness: pressures are solved to 1e-9, so repulsion falls by no more than rounding
 CHECKS = "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow settled"
 
 
@@ -71,7 +72,14 @@ def violations(
     limit = 1.0 + (settings.flow_tolerance if settings.flow == "return" else 0.0)
     if settings.model == "plastic" and float(cycle.flags["largest_load"]) > limit * (1 + 1e-12):
         broken.append(f"an asperity at {cycle.flags['largest_load']:.4g} of its hardness")
-    if start is not None and cycle.heights is not None:
+    coupled = settings.mechanics == "coupled"
+    constant = settings.model == "elastic" or inputs.h_prime == 0.0
+    if coupled and constant and float(cycle.flags["repulsion_drop"]) > LOST:
+        broken.append(f"closing lost {cycle.flags['repulsion_drop']:.2g} of its repulsion")
+    if start is not None and cycle.heights is not None and coupled:
+        if (cycle.heights < start).any():
+            broken.append("flow added material")
+    elif start is not None and cycle.heights is not None:
         moved = np.abs(cycle.heights - start).sum()
         if abs(np.sum(cycle.heights - start)) > 1e-12 * (moved + np.abs(start).sum()):
             broken.append("volume changed")
@@ -94,6 +102,7 @@ def extreme_cases(settings: ContactSettings) -> list[Case]:
     rough = synthesize(n, settings.length_nm, 0.025, 0.75, 8.5, 1)
     share = (settings.length_nm / 1000.0) ** 2  # loads as on 1 um^2
     with_ = lambda **change: replace(MIDDLE, **change)  # noqa: E731
+    coupled = settings.mechanics == "coupled"  # then the separation of the mean planes says when contact is full
     cases = [
         Case("middle of Table 1", "the paper's mean inputs"),
         Case("E* x 1000", "stiff: yields at once", with_(e_star=91e3)),
@@ -112,14 +121,13 @@ def extreme_cases(settings: ContactSettings) -> list[Case]:
         Case("profile", "slope -(2H+1): rough down to its pixels", changes={"convention": "profile"}),
         Case("profile, H 0.01", "slope -1.02", with_(hurst=0.01), {"convention": "profile"}),
         Case("one-pixel asperities", "white noise", heights=np.random.default_rng(1).normal(0, 5, (n, n))),
-        Case("flat", "all sites touch at once", heights=np.zeros((n, n))),
+        Case("flat", "all sites touch at once", heights=np.zeros((n, n)), too_much=coupled),
         Case("giant asperity", "one paraboloid as wide as the cell", heights=bowl),
         Case("A_H = 0", "no attraction", with_(hamaker=0.0)),
         Case("A_H x 100", "strong attraction", with_(hamaker=21.5)),
         Case("gap cut-off 1e-6 nm", "eq. 1 near its singularity", changes={"gap_cutoff_nm": 1e-6}),
         Case("touching sites attract", "reading of eq. 1", changes={"touching_attracts": True}),
-        Case("p = 2/3", "reading of eq. 3", changes={"prefactor": "paper"}),
-        Case("nm x 1e-6", "heights of picometres and less", heights=1e-6 * rough),
+        Case("nm x 1e-6", "heights of picometres and less", heights=1e-6 * rough, too_much=coupled),
         Case("nm x 1e6", "heights of millimetres on a grid of nanometres", heights=1e6 * rough),
         Case("nm x 100", "heights of micrometres on a grid of nanometres", heights=100 * rough),
         Case("20 cycles", "shakedown: the last cycle is elastic", cycles=20),
@@ -130,12 +138,46 @@ def extreme_cases(settings: ContactSettings) -> list[Case]:
         cases.append(Case(f"{force:.0e} nN", "load on 1 um^2", changes={"max_force_nN": force * share}))
     words = "load on 1 um^2, more than hardness carries: closing ends before, and says so"
     cases.append(Case("1e+07 nN", words, changes={"max_force_nN": 1e7 * share}, too_much=True))
+    cases += _coupled_cases(settings, share) if coupled else _asperity_cases()
+    for model in ("elastic", "nonlinear"):
+        cases.append(Case(model, "single asperities without flow", changes={"model": model}))
+    return cases
+
+
+def _asperity_cases() -> list[Case]:
+    """Readings that only asperities on their own have."""
+    cases = [Case("p = 2/3", "reading of eq. 3", changes={"prefactor": "paper"})]
     for pair in ("paper", "wide"):
         for flow in ("increment", "return"):
             words = f"flow {flow}, pair {pair}"
             cases.append(Case(words, "readings of flow", changes={"flow": flow, "flow_pair": pair}))
-    for model in ("elastic", "nonlinear"):
-        cases.append(Case(model, "single asperities without flow", changes={"model": model}))
+    return cases
+
+
+def _coupled_cases(settings: ContactSettings, share: float) -> list[Case]:
+    """What tries a half-space with all asperities on it."""
+    n = settings.pixels
+    spike, pair = np.zeros((n, n)), np.zeros((n, n))
+    spike[n // 2, n // 2] = -5.0
+    pair[n // 2, n // 2 - 2 : n // 2 + 3] = -5.0 + 0.5 * np.array([0.0, 1.0, 2.0, 1.0, 0.0])
+    light = {"max_force_nN": 50.0 * share}
+    cases = [
+        Case("single site", "one site above a plane", heights=spike, changes=light),
+        Case("merging pair", "two equal summits with a saddle between", heights=pair, changes=light),
+        Case("H' = 0", "constant hardness", replace(MIDDLE, h_prime=0.0)),
+        Case("4 neighbours", "reading of a cluster", changes={"neighbours": 4}),
+        Case("4 force steps", "large steps", changes={"force_steps": 4}),
+        Case(
+            "full elastic contact",
+            "closing ends where all sites touch, and says so",
+            changes={"model": "elastic", "max_force_nN": 1e12},
+            too_much=True,
+        ),
+    ]
+    for exponent in range(-3, 7):
+        inputs = replace(MIDDLE, e_star=10.0**exponent, h_macro=1.0, h_prime=0.0)
+        # softest: the load is beyond full contact
+        cases.append(Case(f"E*/H 1e{exponent}", "from never yielding to rigid", inputs, too_much=exponent == -3))
     return cases
 
 

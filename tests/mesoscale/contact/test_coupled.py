@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks import plain_coupled
 from mesoscale.contact import ContactInputs, exact, run_cycle
-from mesoscale.contact.coupled import grid
+from mesoscale.contact.coupled import grid, validity
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
@@ -246,3 +246,25 @@ def test_closing_ends_at_full_contact_and_says_so():
     assert not cycle.converged
     assert cycle.flags["unconverged_steps"] == 0
     assert cycle.closing.separation_nm[-1] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_roughness_of_waves_is_exact():
+    pixels, length, amplitude = 64, 10.0, 0.3
+    k = 2 * np.pi / length
+    x = np.arange(pixels) * length / pixels
+    crossed = validity.roughness(amplitude * np.cos(2 * k * x)[:, None] * np.cos(k * x)[None, :], length)
+    assert crossed.slope == pytest.approx(amplitude * np.sqrt(5) * k / 2, rel=1e-12)
+    assert crossed.curvature == pytest.approx(amplitude * 5 * k**2 / 2, rel=1e-12)
+    wave = validity.roughness(np.repeat(amplitude * np.cos(k * x)[:, None], pixels, axis=1), length)
+    assert wave.flattening * 91.0 == pytest.approx(exact.wave_full_pressure(amplitude, length, 91.0), rel=1e-12)
+
+
+def test_flags_say_where_the_model_holds():
+    flags = run_cycle(INPUTS, coupled(64, 62.5, max_force_nN=500.0), 1).flags
+    # DMT on stiff small summits; softer and with more adhesion, Tabor's parameter rises as E*^(-2/3)
+    soft = ContactInputs(**{**vars(INPUTS), "e_star": INPUTS.e_star / 8})
+    softer = run_cycle(soft, coupled(64, 62.5, max_force_nN=500.0), 1).flags
+    assert softer["tabor"] / flags["tabor"] == pytest.approx(4.0, rel=1e-9)
+    assert softer["stickiness"] / flags["stickiness"] == pytest.approx(8.0, rel=1e-9)
+    assert 0.0 < softer["yielded_share"] < flags["yielded_share"] < 1.0
+    assert softer["plasticity_index"] < flags["plasticity_index"]

@@ -1,0 +1,54 @@
+"""Numbers that say where the coupled model holds: adhesion that deforms the contact, share of plasticity.
+
+Attraction acts on the gap that repulsion alone leaves (the picture of Derjaguin, Muller and Toporov). This holds where
+Tabor's parameter is well below 1 and where the surface is not sticky by the criterion of Pastewka and Robbins
+(doi:10.1073/pnas.1320846111).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from scipy import fft
+
+from mesoscale.contact.coupled import half_space
+
+KAPPA = 2.0  # area of an elastic contact over force / (E* h'), as Pastewka and Robbins take it
+
+
+class Roughness(NamedTuple):
+    """What the spectrum of a periodic surface says about it."""
+
+    slope: float  # RMS of the gradient
+    curvature: float  # RMS of the Laplacian, 1/nm
+    flattening: float  # pressure that makes it flat, over E*
+
+
+def roughness(heights: np.ndarray, length: float) -> Roughness:
+    """Slope, curvature and the mean pressure of full contact of heights (N, N) in nm on a side of `length` nm."""
+    pixels = len(heights)
+    spectrum = np.asarray(fft.rfft2(heights))
+    number = half_space.wave_numbers(pixels)
+    power = np.abs(spectrum) ** 2
+    power[:, 1 : (pixels + 1) // 2] *= 2.0  # the other half of the modes
+    squared = (number * (2.0 * np.pi / length)) ** 2
+    slope, curvature = (math.sqrt(float((power * factor).sum())) / pixels**2 for factor in (squared, squared**2))
+    spectrum *= number * (-np.pi / length)
+    pressure = np.asarray(fft.irfft2(spectrum, s=heights.shape, overwrite_x=True))
+    return Roughness(slope, curvature, max(-float(pressure.min()), 0.0))
+
+
+def adhesion_numbers(hamaker: float, cutoff: float, e_star: float, surface: Roughness) -> dict[str, float]:
+    """Tabor's parameter and the number of Pastewka and Robbins (above 1: sticky).
+
+    The law of attraction is eq. 1 with the cut-off D0: pressure at contact s = A_H / (6 pi D0^3), work of adhesion
+    w = A_H / (4 pi D0^2), range w / s = 1.5 D0; the radius of a summit is 2 / h''.
+    """
+    work, reach = hamaker / (4.0 * math.pi * cutoff**2), 1.5 * cutoff
+    if surface.curvature == 0.0:
+        return {"tabor": math.inf, "stickiness": math.inf} if hamaker else {"tabor": 0.0, "stickiness": 0.0}
+    tabor = (2.0 / surface.curvature * work**2 / (e_star**2 * reach**3)) ** (1.0 / 3.0)
+    # attraction over the rim of the contacts beside repulsion in them; d = 4 h'/h'' is the size of a contact
+    rough = surface.slope**2 / (surface.curvature * reach)
+    needed = surface.slope * reach * e_star / KAPPA * rough ** (2.0 / 3.0)
+    return {"tabor": tabor, "stickiness": math.pi * (3.0 / 16.0) ** (2.0 / 3.0) * work / needed}
