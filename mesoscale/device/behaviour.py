@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.device.capacitance import rough_capacitance_F
-from mesoscale.device.contact_law import BRANCHES, SAMPLED, law_from_columns, physical, scale_adhesion, take
+from mesoscale.device.contact_law import SAMPLED, law_from_columns, physical, scale_adhesion, take
 from mesoscale.device.statistics import (
     analytic_pull_in_V,
     analytic_release_V,
@@ -17,7 +17,8 @@ from mesoscale.device.statistics import (
 )
 from mesoscale.device.switch import Switch, SwitchStates, solve_switch, sweep, switch_from_settings
 from mesoscale.errors import InputError
-from mesoscale.law.compact import PARAMETERS, Law
+from mesoscale.law.compact import Law
+from mesoscale.law.parameters import BRANCHES, FITTED, PARAMETERS
 from mesoscale.settings import DeviceSettings
 
 CASES = ("with_adhesion", "without_adhesion")
@@ -61,7 +62,7 @@ def read_samples(
     ------
     InputError : no sample can be used.
     """
-    names = ["hamaker", "rms", *(f"{branch}_{name}" for branch in BRANCHES for name in PARAMETERS)]
+    names = ["hamaker", "rms", *FITTED]
     chosen = rows[: settings.samples]
     columns = {name: np.array([float(row[name] or "nan") for row in chosen]) for name in names}
     laws = {branch: law_from_columns(columns, branch, rho_a_nm, shield_nm) for branch in BRANCHES}

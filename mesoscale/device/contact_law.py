@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesoscale.law.compact import PARAMETERS, Law, pressure
+from mesoscale.law.compact import Law, pressure
+from mesoscale.law.parameters import PARAMETERS
 
 Array = NDArray[np.float64]
 
-BRANCHES = ("closing", "opening")
 SAMPLED = (*PARAMETERS, "hamaker")  # what differs between samples; the lengths rho_a and shield are fixed
 
 

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.device.contact_law import BRANCHES, column, onset_nm, pressure_GPa, slope_GPa_nm
-from mesoscale.law.compact import PARAMETERS, Law
+from mesoscale.device.contact_law import column, onset_nm, pressure_GPa, slope_GPa_nm
+from mesoscale.law.compact import Law
+from mesoscale.law.parameters import BRANCHES, PARAMETERS
 
 QUANTILE_COLUMNS = {"pressure_q05_GPa": 0.05, "pressure_q50_GPa": 0.5, "pressure_q95_GPa": 0.95}
 TABLE_COLUMNS = ("branch", "gap_nm", "pressure_GPa", "derivative_GPa_nm", *QUANTILE_COLUMNS)

@@ -10,8 +10,8 @@ from mesoscale.contact.history import HeldCycle, follow, hardness_factor
 from mesoscale.device.switch import drive_switch
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.branches import fit_cycle, law_of_fit
-from mesoscale.law.compact import PARAMETERS
 from mesoscale.law.fit import LawFit
+from mesoscale.law.parameters import PARAMETERS
 from mesoscale.settings import ContactSettings, DeviceSettings, HistorySettings, LawSettings
 
 DWELL_COLUMNS = ("seed", "cycle", "held_s", "hardness_factor", "separation_nm", "contact_area_nm2", "asperities")

@@ -9,30 +9,9 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
+from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
 from mesoscale.settings import TABLE_1, InputRow, InputsSettings, UncertaintySettings
-
-UNITS = {
-    "hamaker": "1e-18 J",
-    "e_star": "GPa",
-    "h_macro": "GPa",
-    "h_prime": "GPa nm^0.5",
-    "q0": "1/nm",
-    "hurst": "1",
-    "rms": "nm",
-    "gap_cutoff": "nm",
-}
-BOUNDS = {
-    "hamaker": (0.0, np.inf),
-    "e_star": (0.0, np.inf),
-    "h_macro": (0.0, np.inf),
-    "h_prime": (0.0, np.inf),
-    "q0": (0.0, np.inf),
-    "hurst": (0.0, 2.0),
-    "rms": (0.0, np.inf),
-    "gap_cutoff": (0.0, np.inf),
-}
-"""Physical bounds of the inputs; a range that crosses them is refused."""
 
 COLUMNS = ("parameter", "unit", "distribution", "a", "b", "low", "high", "correlation", "origin", "file")
 
@@ -69,7 +48,7 @@ def collect(
                 if other in settings.rows():
                     pairs.setdefault((name, other), float(rank))
         _check_range(name, given, source, central_share)
-        rows.append(UncertainInput(name, UNITS[name], given, row.origin, source))
+        rows.append(UncertainInput(name, BY_NAME[name].unit, given, row.origin, source))
     names = [row.name for row in rows]
     return InputTable(tuple(rows), correlation_matrix(names, pairs))
 
@@ -151,11 +130,11 @@ def _read_samples(name: str, file: str) -> np.ndarray:
 
 def _check_range(name: str, given: Distribution, source: str, central_share: float) -> None:
     low, high = given.span(central_share)
-    least, most = BOUNDS[name]
-    if not (np.isfinite([low, high]).all() and least <= low <= high <= most):
+    row = BY_NAME[name]
+    if not (row.accepts(low) and row.accepts(high) and low <= high):
         raise InputError(
-            f"{source}: {name} spans {low:g} .. {high:g} {UNITS[name]}; accepted is "
-            f"{least:g} .. {most:g}: narrow or truncate its distribution"
+            f"{source}: {name} spans {low:g} .. {high:g} {row.unit}; accepted is "
+            f"{row.accepted}: narrow or truncate its distribution"
         )
 
 

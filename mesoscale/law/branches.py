@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from mesoscale.contact import Cycle
 from mesoscale.errors import InputError
-from mesoscale.law.compact import PARAMETERS, Law
+from mesoscale.law.compact import Law
 from mesoscale.law.fit import LawFit, contact_separation, fit_branch, row_of
+from mesoscale.law.parameters import PARAMETERS
 from mesoscale.settings import LawSettings
 
 Array = NDArray[np.float64]
@@ -30,7 +31,7 @@ class Outcome:
 
     @property
     def outputs(self) -> Array:
-        """The eight outputs in the order of OUTPUTS; NaN where a fit is missing."""
+        """The outputs in the order of OUTPUTS; NaN where a fit is missing."""
         closing, opening = self.closing.parameters, self.opening.parameters
         return np.concatenate([closing, opening - closing])
 

@@ -14,9 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-PARAMETERS = ("d_c_nm", "C_a_GPa_nm", "C_r_GPa", "rho_r_nm")
-"""The four numbers of a branch, as the result files name them."""
-
 
 @dataclass(frozen=True)
 class Law:

@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesoscale.checks import checked_array
 from mesoscale.errors import InputError
-from mesoscale.law.compact import PARAMETERS, shielded_hamaker
+from mesoscale.law.compact import shielded_hamaker
+from mesoscale.law.parameters import PARAMETERS
 from mesoscale.settings import LawSettings
 
 Array = NDArray[np.float64]
@@ -38,8 +39,8 @@ class LawFit:
 
     @property
     def parameters(self) -> Array:
-        """The four numbers in the order of PARAMETERS."""
-        return np.array([self.d_c_nm, self.C_a_GPa_nm, self.C_r_GPa, self.rho_r_nm])
+        """The numbers in the order of PARAMETERS."""
+        return np.array([getattr(self, name) for name in PARAMETERS])
 
 
 def contact_separation(

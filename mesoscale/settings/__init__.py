@@ -5,14 +5,13 @@ from mesoscale.settings.contact import ContactSettings
 from mesoscale.settings.coupling import CouplingSettings
 from mesoscale.settings.device import DeviceSettings
 from mesoscale.settings.history import HistorySettings
-from mesoscale.settings.inputs import STAGE_OF_INPUT, TABLE_1, Correlation, InputRow, InputsSettings
+from mesoscale.settings.inputs import TABLE_1, Correlation, InputRow, InputsSettings
 from mesoscale.settings.law import LawSettings
 from mesoscale.settings.pad import PadSettings
 from mesoscale.settings.topography import SyntheticScanSettings, TopographySettings
 from mesoscale.settings.uncertainty import UncertaintySettings
 
 __all__ = [
-    "STAGE_OF_INPUT",
     "TABLE_1",
     "ContactSettings",
     "Correlation",

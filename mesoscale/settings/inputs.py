@@ -1,9 +1,10 @@
 """Settings of the uncertain inputs."""
 
-from typing import Literal
+from typing import Any, Literal, cast
 
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 
+from mesoscale.inputs.definitions import BY_NAME, INPUTS, InputDefinition
 from mesoscale.settings.base import Settings
 
 
@@ -61,25 +62,21 @@ class Correlation(Settings):
 TABLE_1 = "Kim et al. (2013), Table 1"
 
 
-class InputsSettings(Settings):
+def _key(row: InputDefinition) -> Any:
+    """Type, default and description of the key of an input."""
+    symbol = "" if row.symbol in row.label else f" {row.symbol}"
+    about = f"{row.label}{symbol} ({row.unit})"
+    if row.optional:
+        return InputRow | None, Field(default=None, description=f"optional input: {about}")
+    if row.literature is None:
+        return InputRow, Field(default=InputRow(origin=cast(Any, row.stage)), description=about)
+    low, high = row.literature
+    return InputRow, Field(default=InputRow(a=low, b=high, source=TABLE_1), description=about)
+
+
+class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.name: _key(row) for row in INPUTS})):
     """Origin and distribution of the uncertain inputs (docs/uncertainty.md)."""
 
-    hamaker: InputRow = Field(
-        default=InputRow(a=0.18, b=0.25, source=TABLE_1), description="Hamaker constant (1e-18 J)"
-    )
-    e_star: InputRow = Field(default=InputRow(origin="elastic"), description="effective elastic modulus E* (GPa)")
-    h_macro: InputRow = Field(
-        default=InputRow(a=0.7, b=3.2, source=TABLE_1), description="hardness of large asperities H_macro (GPa)"
-    )
-    h_prime: InputRow = Field(
-        default=InputRow(origin="hardness"), description="size effect of hardness H' (GPa nm^0.5)"
-    )
-    q0: InputRow = Field(default=InputRow(origin="topography"), description="roll-off wave vector (1/nm)")
-    hurst: InputRow = Field(default=InputRow(origin="topography"), description="Hurst exponent (1)")
-    rms: InputRow = Field(default=InputRow(origin="topography"), description="RMS roughness (nm)")
-    gap_cutoff: InputRow | None = Field(
-        default=None, description="optional eighth input: smallest gap of the attraction D0 (nm)"
-    )
     correlations: tuple[Correlation, ...] = Field(
         default=(), description="rank correlations between inputs, besides those that a stage reports itself"
     )
@@ -94,28 +91,18 @@ class InputsSettings(Settings):
             if pair.first == pair.second:
                 raise ValueError(f"correlations: {pair.first} with itself; name two inputs")
         for name, row in self.rows().items():
-            if name in ("hamaker", "h_macro", "gap_cutoff") and row.origin != "literature":
-                raise ValueError(f"{name}: no stage computes it; origin must be literature")
-            if row.origin != "literature" and row.origin != STAGE_OF_INPUT[name]:
-                raise ValueError(f"{name}: origin {row.origin}; accepted: literature, {STAGE_OF_INPUT[name]}")
+            stage = BY_NAME[name].stage
+            if row.origin not in ("literature", stage):
+                if stage == "literature":
+                    raise ValueError(f"{name}: no stage computes it; origin must be literature")
+                raise ValueError(f"{name}: origin {row.origin}; accepted: literature, {stage}")
         return self
 
     def rows(self) -> dict[str, InputRow]:
         """The inputs in use, by name."""
-        named = {name: getattr(self, name) for name in (*STAGE_OF_INPUT, "gap_cutoff")}
+        named = {name: getattr(self, name) for name in BY_NAME}
         return {name: row for name, row in named.items() if row is not None}
 
     def origins(self) -> set[str]:
         """Where the inputs come from; cheap, so that a workflow can decide which stages to run."""
         return {row.origin for row in self.rows().values()}
-
-
-STAGE_OF_INPUT = {
-    "hamaker": "literature",
-    "e_star": "elastic",
-    "h_macro": "literature",
-    "h_prime": "hardness",
-    "q0": "topography",
-    "hurst": "topography",
-    "rms": "topography",
-}

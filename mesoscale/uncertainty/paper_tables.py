@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.law.parameters import OUTPUTS
 from mesoscale.uncertainty.collocation import elementary_effects
 from mesoscale.uncertainty.propagation import NodeOutputs, Propagation
-from mesoscale.uncertainty.runs import OUTPUTS
 
 SCALE_TABLE_2 = {"C_a": 1e-5, "C_r": 1e-4, "delta_C_a": 1e-5, "delta_C_r": 1e-4}
 SCALE_TABLE_3 = {"C_a": 1e-5, "C_r": 1e-5, "delta_C_a": 1e-5, "delta_C_r": 1e-4}

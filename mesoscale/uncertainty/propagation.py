@@ -7,18 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.law.compact import PARAMETERS
+from mesoscale.law.parameters import CLOSING, FITTED, LAW, LAW_OUTPUTS, OPENING, OUTPUTS, PARAMETERS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.chunks import collocation_level
 from mesoscale.uncertainty.collocation import elementary_effects, interpolating_response, level1_response
-from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS, short_name
 from mesoscale.uncertainty.surrogate import Scatter, Surrogate, evaluate, joint_scatter, to_json, with_scatter
 
 Array = NDArray[np.float64]
-
-RESPONSES = tuple(f"{branch}_{name}" for branch in ("closing", "opening") for name in PARAMETERS)
-"""Outputs that have a response; the changes on opening are differences of two of them."""
 
 
 @dataclass(frozen=True)
@@ -27,17 +24,17 @@ class NodeOutputs:
 
     seeds: list[int]
     values: Array
-    """Shape (seeds, nodes, 8): the closing parameters, then the opening ones; NaN where missing."""
+    """Shape (seeds, nodes, len(FITTED)): the closing parameters, then the opening ones; NaN where missing."""
 
     @property
     def paper_outputs(self) -> Array:
-        """The eight outputs of Table 2: closing, and opening minus closing; same shape."""
+        """The outputs of Table 2: closing, and opening minus closing; same shape."""
         return to_paper_outputs(self.values)
 
 
 def to_paper_outputs(parameters: Array) -> Array:
-    """Closing and opening parameters (..., 8) to closing parameters and their change (..., 8)."""
-    closing, opening = parameters[..., :4], parameters[..., 4:]
+    """Closing and opening parameters (..., len(FITTED)) to closing parameters and their change, same shape."""
+    closing, opening = parameters[..., CLOSING], parameters[..., OPENING]
     return np.concatenate([closing, opening - closing], axis=-1)
 
 
@@ -46,35 +43,35 @@ def read_nodes(rows: Iterable[Mapping[str, str]]) -> NodeOutputs:
     rows = list(rows)
     seeds = sorted({int(row["seed"]) for row in rows})
     count = max(int(row["node"]) for row in rows) + 1
-    values = np.full((len(seeds), count, 8), np.nan)
+    values = np.full((len(seeds), count, len(FITTED)), np.nan)
     position = {seed: k for k, seed in enumerate(seeds)}
     for row in rows:
-        start = 0 if row["branch"] == "closing" else 4
+        place = CLOSING if row["branch"] == "closing" else OPENING
         numbers = [float(row[name]) if row[name] else np.nan for name in PARAMETERS]
-        values[position[int(row["seed"])], int(row["node"]), start : start + 4] = numbers
+        values[position[int(row["seed"])], int(row["node"]), place] = numbers
     return NodeOutputs(seeds, values)
 
 
 def transform_of(output: int, settings: UncertaintySettings) -> str:
-    """Transform of the response of entry `output` of RESPONSES: d_c may have any sign, the rest not."""
-    return "identity" if settings.response == "linear" or output % 4 == 0 else "log"
+    """Transform of the response of entry `output` of FITTED."""
+    return "identity" if settings.response == "linear" or LAW[output % len(LAW)].any_sign else "log"
 
 
 def exported_responses(
     nodes: NodeOutputs, direct: tuple[Array, Array], ranges: Array, settings: UncertaintySettings
 ) -> list[Surrogate | None]:
-    """The responses behind samples, Sobol' indices and surrogate.json, one per RESPONSES.
+    """The responses behind samples, Sobol' indices and surrogate.json, one per entry of FITTED.
 
     Parameters
     ----------
-    direct : inputs (m, n) and closing and opening parameters (m, 8) of the direct runs, for `regression`.
+    direct : inputs (m, n) and closing and opening parameters (m, len(FITTED)) of the direct runs, for `regression`.
 
     Returns
     -------
     None for an output that no seed (or too few runs) determines; nothing is filled in.
     """
     responses: list[Surrogate | None] = []
-    for k in range(len(RESPONSES)):
+    for k in range(len(FITTED)):
         transform = transform_of(k, settings)
         if settings.response == "regression":
             responses.append(_regression(direct[0], direct[1][:, k], ranges, transform, settings))
@@ -91,8 +88,8 @@ def exported_responses(
     return responses
 
 
-OUTPUT_TRANSFORMS = ("identity", "log", "log", "log", *["identity"] * 4)
-"""Transforms of the regressions of the eight outputs of Table 2: closing as exported, changes of any sign."""
+OUTPUT_TRANSFORMS = tuple("identity" if row.any_sign else "log" for row in LAW_OUTPUTS)
+"""Transforms of the regressions of the outputs of Table 2: closing as exported, changes of any sign."""
 
 
 @dataclass(frozen=True)
@@ -110,19 +107,19 @@ class Change:
 def output_responses(
     exported: Sequence[Surrogate | None], direct: tuple[Array, Array], ranges: Array, settings: UncertaintySettings
 ) -> list[Surrogate | Change | None]:
-    """Responses of the eight outputs of Table 2, behind indices and elementary effects, from the exported ones.
+    """Responses of the outputs of Table 2, behind indices and elementary effects, from the exported ones.
 
     By regression a change on opening has a response of its own: as a small difference of two large numbers it would
     inherit the errors of both (docs/uncertainty_reference.md).
     """
     changes: list[Surrogate | Change | None] = []
-    for k, (closing, opening) in enumerate(zip(exported[:4], exported[4:], strict=True)):
+    outputs = to_paper_outputs(direct[1])
+    for k, (closing, opening) in enumerate(zip(exported[CLOSING], exported[OPENING], strict=True), OPENING.start):
         if settings.response == "regression":
-            change = direct[1][:, 4 + k] - direct[1][:, k]
-            changes.append(_regression(direct[0], change, ranges, OUTPUT_TRANSFORMS[4 + k], settings))
+            changes.append(_regression(direct[0], outputs[:, k], ranges, OUTPUT_TRANSFORMS[k], settings))
         else:
             changes.append(Change(closing, opening) if closing and opening else None)
-    return [*exported[:4], *changes]
+    return [*exported[CLOSING], *changes]
 
 
 def _regression(x: Array, y: Array, ranges: Array, transform: str, settings: UncertaintySettings) -> Surrogate | None:
@@ -141,21 +138,21 @@ class Propagation:
     samples: Array
     """Samples of the inputs, shape (m, n)."""
     outputs: Array
-    """Closing and opening parameters of every sample through the exported responses, shape (m, 8)."""
+    """Closing and opening parameters of every sample through the exported responses, shape (m, len(FITTED))."""
     cells: Array
     """The same of single cells, with the scatter from one surface to the next; NaN without direct runs."""
     responses: list[Surrogate | None]
-    """One per RESPONSES; None where no seed has all nodes."""
+    """One per entry of FITTED; None where no seed has all nodes."""
     scatter: Scatter | None
     """Joint scatter of single cells about the responses that exist; None with too few direct runs."""
     by_seed: Array
-    """Mean and deviation of the eight outputs of Table 2 of every seed's own response, shape (seeds, 2, 8)."""
+    """Mean and deviation of the outputs of Table 2 of every seed's own response, shape (seeds, 2, len(OUTPUTS))."""
     variances: Array
-    """Var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear responses, shape (2, 8)."""
+    """Var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear responses, shape (2, len(OUTPUTS))."""
 
     @property
     def seed_share(self) -> Array:
-        """Share of the variance of each output of Table 2 that is scatter between seeds, shape (8,)."""
+        """Share of the variance of each output of Table 2 that is scatter between seeds, shape (len(OUTPUTS),)."""
         with np.errstate(invalid="ignore", divide="ignore"):
             return self.variances[1] / self.variances.sum(axis=0)
 
@@ -173,10 +170,10 @@ def propagate(
     ranges = table.ranges(settings.central_share)
     samples = table.sample(settings.samples, settings.sample_seed)
     seeds = len(nodes.seeds)
-    total, total_squares = np.zeros((len(samples), 8)), np.zeros((len(samples), 8))
-    by_seed = np.full((seeds, 2, 8), np.nan)
+    total, total_squares = np.zeros((2, len(samples), len(OUTPUTS)))
+    by_seed = np.full((seeds, 2, len(OUTPUTS)), np.nan)
     for s in range(seeds):
-        y = np.stack([_linear(nodes.values[s, :, k], ranges, samples) for k in range(8)], axis=1)
+        y = np.stack([_linear(nodes.values[s, :, k], ranges, samples) for k in range(len(FITTED))], axis=1)
         y = to_paper_outputs(y)
         by_seed[s] = y.mean(axis=0), y.std(axis=0)
         usable = np.isfinite(by_seed[s, 0])
@@ -188,7 +185,7 @@ def propagate(
         within = np.maximum(total_squares / used - mean**2, 0).mean(axis=0) * used / (used - 1)
         between = np.maximum(mean.var(axis=0) - within / used, 0)
         variances = np.where(used > 1, np.stack([between, within]), np.nan)
-    known = direct or (np.empty((0, len(ranges))), np.empty((0, len(RESPONSES))))
+    known = direct or (np.empty((0, len(ranges))), np.empty((0, len(FITTED))))
     responses = exported_responses(nodes, known, ranges, settings)
     outputs = evaluate(responses, samples)
     cells = with_scatter(outputs, responses, known, settings.response == "regression", settings.sample_seed)
@@ -224,7 +221,7 @@ def output_rows(
     inputs = result.samples.shape[1]
     propagated, cells = to_paper_outputs(result.outputs), to_paper_outputs(result.cells)
     rows = []
-    for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
+    for k, output in enumerate(LAW_OUTPUTS):
         first_level = y[:, : 2 * inputs + 1]
         complete = np.isfinite(result.by_seed[:, 0, k])
         mean, dev = (_center_and_scatter(result.by_seed[complete, j, k]) for j in (0, 1))
@@ -232,13 +229,12 @@ def output_rows(
         effects = [np.sqrt((elementary_effects(line, inputs) ** 2).sum() / 12) for line in first_level[complete, :, k]]
         quantiles = np.quantile(propagated[:, k], [0.05, 0.5, 0.95])
         cell_quantiles = np.quantile(cells[:, k], [0.05, 0.5, 0.95])
-        name = short_name(output)
-        reference = paper.get(name, (np.nan, np.nan))
-        exchanged = paper_exchanged.get(name, (np.nan, np.nan))
+        reference = paper.get(output.short, (np.nan, np.nan))
+        exchanged = paper_exchanged.get(output.short, (np.nan, np.nan))
         rows.append(
             {
-                "output": output,
-                "unit": unit,
+                "output": output.name,
+                "unit": output.unit,
                 "mean": mean[0],
                 "dev": dev[0],
                 "mean_seed_sd": mean[1],
@@ -288,14 +284,13 @@ def surrogate_json(
     table: InputTable,
     settings: UncertaintySettings,
     law: Mapping[str, float],
-    symbols: Mapping[str, str],
     paper: Mapping[str, tuple[float, float]],
 ) -> dict[str, Any]:
     """Content of uq/surrogate.json: usable without this code (docs/uncertainty.md)."""
     inputs = [
         {
             "name": row.name,
-            "symbol": symbols.get(row.name, row.name),
+            "symbol": BY_NAME[row.name].symbol if row.name in BY_NAME else row.name,
             "unit": row.unit,
             "distribution": row.distribution.kind,
             "a": row.distribution.a,
@@ -306,17 +301,16 @@ def surrogate_json(
         for row, (low, high) in zip(table.rows, table.ranges(settings.central_share).tolist(), strict=True)
     ]
     outputs = []
-    for k, name in enumerate(RESPONSES):
-        response = result.responses[k]
+    for k, name in enumerate(FITTED):
+        response, parameter = result.responses[k], LAW[k % len(LAW)]
         if response is None:
             continue
-        branch, _, parameter = name.partition("_")
         outputs.append(
             {
                 "name": name,
-                "unit": OUTPUT_UNITS[k],
+                "unit": parameter.unit,
                 **to_json(response),
-                "paper_mean": paper.get(short_name(parameter), (np.nan,))[0] if branch == "closing" else np.nan,
+                "paper_mean": paper.get(parameter.short, (np.nan,))[0] if k < len(LAW) else np.nan,
             }
         )
     return {

@@ -1,6 +1,6 @@
 """Truth by brute force: moments, quantiles, variance shares and first-order indices of scattered runs.
 
-Nothing here uses a response but `total_indices`. Errors come from a jackknife over groups of runs.
+Nothing here uses a response. Errors come from a jackknife over groups of runs.
 """
 
 from collections.abc import Callable
@@ -65,20 +65,20 @@ def jackknife(statistic: Callable[[NDArray[np.int_]], Array], count: int, groups
 
 @dataclass(frozen=True)
 class Reference:
-    """What direct runs tell about the eight outputs of Table 2, free of responses."""
+    """What direct runs tell about the outputs of Table 2, free of responses."""
 
     runs: int
     replicates: int
     missing: NDArray[np.int_]
-    """Runs without a number, shape (8,); left out, never filled in."""
+    """Runs without a number, shape (len(OUTPUTS),); left out, never filled in."""
     statistics: dict[str, Estimate]
-    """mean, dev, q05, q50, q95, each of shape (8,)."""
+    """mean, dev, q05, q50, q95, each of shape (len(OUTPUTS),)."""
     surface_variance: Estimate
-    """E[Var(Y|X)]: the surface's part of the variance, shape (8,)."""
+    """E[Var(Y|X)]: the surface's part of the variance, shape (len(OUTPUTS),)."""
     input_variance: Estimate
-    """Var(E[Y|X]): the inputs' part, shape (8,)."""
+    """Var(E[Y|X]): the inputs' part, shape (len(OUTPUTS),)."""
     first: Estimate
-    """First-order indices of E[Y|X], shape (8, n)."""
+    """First-order indices of E[Y|X], shape (len(OUTPUTS), n)."""
 
 
 def reference(x: Array, y: Array, replicates: Array) -> Reference:
@@ -87,8 +87,8 @@ def reference(x: Array, y: Array, replicates: Array) -> Reference:
     Parameters
     ----------
     x : inputs, shape (m, n).
-    y : closing and opening parameters, shape (m, 8), NaN where missing.
-    replicates : those of the first r inputs on other surfaces, shape (r, 8).
+    y : closing and opening parameters, shape (m, len(FITTED)), NaN where missing.
+    replicates : those of the first r inputs on other surfaces, shape (r, len(FITTED)).
 
     Notes
     -----
@@ -101,7 +101,7 @@ def reference(x: Array, y: Array, replicates: Array) -> Reference:
     between = Estimate(variance.value - within.value, np.hypot(variance.error, within.error))
     shares = jackknife(
         lambda chosen: np.array(
-            [[explained_by(x[chosen, i], y[chosen, k]) for i in range(x.shape[1])] for k in range(8)]
+            [[explained_by(x[chosen, i], y[chosen, k]) for i in range(x.shape[1])] for k in range(y.shape[1])]
         ),
         len(y),
     )

@@ -1,4 +1,4 @@
-"""Runs of the contact model: which inputs and seed each has, computing them, and their eight outputs."""
+"""Runs of the contact model: which inputs and seed each has, computing them, and the law of each."""
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -13,24 +13,12 @@ from mesoscale.errors import InputError
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.branches import NO_FIT, Outcome, fit_cycle
-from mesoscale.law.compact import PARAMETERS, Law
+from mesoscale.law.compact import Law
+from mesoscale.law.parameters import PARAMETERS
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
 from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
-
-
-OUTPUTS = (*PARAMETERS, *(f"delta_{name}" for name in PARAMETERS))
-"""Closing parameters and their change on opening, in the order of the paper's Table 2."""
-OUTPUT_UNITS = ("nm", "GPa/nm", "GPa", "nm") * 2
-
-
-def short_name(output: str) -> str:
-    """`delta_C_a_GPa_nm` to `delta_C_a`, the name in the paper's tables."""
-    for suffix in ("_GPa_nm", "_GPa", "_nm"):
-        if output.endswith(suffix):
-            return output.removesuffix(suffix)
-    return output
 
 
 def compute(values: Mapping[str, float], seed: int, settings: ContactSettings) -> Cycle | str:

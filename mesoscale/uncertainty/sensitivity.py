@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mesoscale.extras import needs
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.law.parameters import FITTED, LAW_OUTPUTS, OUTPUTS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import elementary_effects, to_values
 from mesoscale.uncertainty.morris import Effects, trajectory_effects, trajectory_points
@@ -20,7 +21,6 @@ from mesoscale.uncertainty.propagation import (
     to_paper_outputs,
 )
 from mesoscale.uncertainty.regression import refit
-from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS, short_name
 from mesoscale.uncertainty.surrogate import Surrogate, evaluate
 
 Array = NDArray[np.float64]
@@ -88,26 +88,25 @@ def sensitivity_rows(
     y = nodes.paper_outputs
     ranges = table.ranges(settings.central_share)
     inputs = len(table.rows)
-    direct = direct or (np.empty((0, inputs)), np.empty((0, 8)))
+    direct = direct or (np.empty((0, inputs)), np.empty((0, len(FITTED))))
     responses = output_responses(exported_responses(nodes, direct, ranges, settings), direct, ranges, settings)
     first, total = index_intervals(responses, nodes, direct, table, settings)
     through_response = response_effects(responses, table, settings)
     rows = []
-    for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
+    for k, output in enumerate(LAW_OUTPUTS):
         lines = y[:, : 2 * len(ranges) + 1, k]
         lines = lines[np.isfinite(lines).all(axis=1)]
         effects = np.array([elementary_effects(line, inputs) for line in lines]).reshape(-1, inputs)
-        name = short_name(output)
         for i, row in enumerate(table.rows):
             mu_star = effects[:, i].mean() if len(effects) else np.nan
             scatter = effects[:, i].std(ddof=1) if len(effects) > 1 else np.nan
-            argued = paper.get(name, {}).get(row.name, np.nan)
-            printed = paper_as_printed.get(name, {}).get(row.name, np.nan)
+            argued = paper.get(output.short, {}).get(row.name, np.nan)
+            printed = paper_as_printed.get(output.short, {}).get(row.name, np.nan)
             rows.append(
                 {
-                    "output": output,
+                    "output": output.name,
                     "input": row.name,
-                    "unit": unit,
+                    "unit": output.unit,
                     "mu_star": mu_star,
                     "mu_star_seed_sd": scatter,
                     "paper_mu_star": argued,
@@ -134,12 +133,12 @@ def sensitivity_rows(
 def response_effects(
     responses: Sequence[Surrogate | Change | None], table: InputTable, settings: UncertaintySettings
 ) -> list[Effects]:
-    """Morris' elementary effects of the eight outputs through their responses, over the inputs' ranges."""
+    """Morris' elementary effects of the outputs through their responses, over the inputs' ranges."""
     inputs = len(table.rows)
     points = trajectory_points(inputs, settings.morris_trajectories, settings.sample_seed)
     x = to_values(2 * points.reshape(-1, inputs) - 1, table.ranges(settings.central_share))
-    y = evaluate(responses, x).reshape(*points.shape[:2], 8)
-    return [trajectory_effects(points, y[:, :, k], settings.sample_seed) for k in range(8)]
+    y = evaluate(responses, x).reshape(*points.shape[:2], len(OUTPUTS))
+    return [trajectory_effects(points, y[:, :, k], settings.sample_seed) for k in range(len(OUTPUTS))]
 
 
 def index_intervals(
@@ -149,11 +148,11 @@ def index_intervals(
     table: InputTable,
     settings: UncertaintySettings,
 ) -> tuple[Array, Array]:
-    """First-order and total indices of the eight outputs: estimate, lower and upper end, shape (3, 8, n).
+    """First-order and total indices of the outputs: estimate, lower and upper end, shape (3, len(OUTPUTS), n).
 
     Parameters
     ----------
-    responses : of the eight outputs; what they come from, `nodes` or `direct`, is resampled for the ends.
+    responses : of the outputs; what they come from, `nodes` or `direct`, is resampled for the ends.
     """
     ranges = table.ranges(settings.central_share)
     points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
@@ -182,15 +181,15 @@ def index_intervals(
 
 
 def response_indices(points: Array, responses: Sequence[Surrogate | Change | None]) -> Array:
-    """First-order and total indices of the eight outputs by their responses, shape (2, 8, n).
+    """First-order and total indices of the outputs by their responses, shape (2, len(OUTPUTS), n).
 
     Parameters
     ----------
     points : of `pick_freeze`, shape (n + 2, count, n).
     """
     inputs = points.shape[2]
-    y = evaluate(responses, points.reshape(-1, inputs)).reshape(inputs + 2, -1, 8)
-    return np.stack([sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(8)], axis=1)
+    y = evaluate(responses, points.reshape(-1, inputs)).reshape(inputs + 2, -1, len(OUTPUTS))
+    return np.stack([sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(len(OUTPUTS))], axis=1)
 
 
 def _refitted(responses: Sequence[Surrogate | Change | None], x: Array, y: Array) -> list[Surrogate | None]:

@@ -135,7 +135,7 @@ def joint_scatter(responses: Sequence[Surrogate], direct: tuple[Array, Array], f
     if complete.sum() < FEWEST_RUNS or not responses:
         return None
     truth, smooth = y[complete], evaluate(responses, x[complete])
-    positive = ((truth > 0) & (smooth > 0)).all(axis=0)
+    positive = np.asarray(((truth > 0) & (smooth > 0)).all(axis=0))
     with np.errstate(invalid="ignore", divide="ignore"):
         residuals = np.where(positive, np.log(truth / smooth), truth - smooth)
     widening = np.array([_widening(response, len(truth), fitted) for response in responses])
@@ -163,13 +163,13 @@ def with_scatter(
 
     Parameters
     ----------
-    outputs : closing and opening parameters by the responses, shape (m, 8).
-    direct : inputs (r, n) and closing and opening parameters (r, 8) of direct runs.
+    outputs : closing and opening parameters by the responses, shape (m, k).
+    direct : inputs (r, n) and closing and opening parameters (r, k) of direct runs.
     fitted : whether the responses were fitted to these runs; residuals are then widened by the terms' number.
 
     Returns
     -------
-    shape (m, 8); NaN without response or with fewer than 20 complete runs.
+    shape (m, k); NaN without response or with fewer than 20 complete runs.
     """
     x, y = direct
     predicted = evaluate(responses, x)

@@ -8,16 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.law.parameters import FITTED, LAW_OUTPUTS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.propagation import (
-    RESPONSES,
     NodeOutputs,
     Propagation,
     exported_responses,
     to_paper_outputs,
 )
 from mesoscale.uncertainty.reference import STATISTICS
-from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
 from mesoscale.uncertainty.surrogate import Surrogate, evaluate
 
 Array = NDArray[np.float64]
@@ -25,11 +24,11 @@ Responses = Sequence[Surrogate | None]
 
 
 def read_direct_runs(rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int) -> tuple[Array, Array]:
-    """Inputs (m, n), and closing and opening parameters (m, 8; NaN where missing), of the first `count` runs."""
+    """Inputs (m, n) and parameters (m, len(FITTED)) of the first `count` runs; NaN where missing."""
     rows = list(islice(rows, count))
     inputs = np.array([[float(row[name]) for name in names] for row in rows]).reshape(len(rows), len(names))
-    outputs = np.array([[float(row[name]) if row[name] else np.nan for name in RESPONSES] for row in rows])
-    return inputs, outputs.reshape(len(rows), len(RESPONSES))
+    outputs = np.array([[float(row[name]) if row[name] else np.nan for name in FITTED] for row in rows])
+    return inputs, outputs.reshape(len(rows), len(FITTED))
 
 
 def held_out_predictions(
@@ -39,7 +38,7 @@ def held_out_predictions(
     ranges: Array,
     settings: UncertaintySettings,
 ) -> Array:
-    """Closing and opening parameters of every direct run by responses that never saw it, shape (m, 8).
+    """Closing and opening parameters of every direct run by responses that never saw it, shape (m, len(FITTED)).
 
     Responses from the nodes are independent of the direct runs. A regression response is fitted to these, so it
     is fitted anew, terms and coefficients, without each fifth of them (five-fold cross-validation).
@@ -67,7 +66,7 @@ def validation_rows(
 
     Parameters
     ----------
-    direct : inputs (m, n) and closing and opening parameters (m, 8) of the direct runs.
+    direct : inputs (m, n) and closing and opening parameters (m, len(FITTED)) of the direct runs.
 
     Notes
     -----
@@ -86,12 +85,12 @@ def validation_rows(
     truth, samples = to_paper_outputs(outputs), to_paper_outputs(cells)
     rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB1]))
     rows = []
-    for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
+    for k, output in enumerate(LAW_OUTPUTS):
         usable = np.isfinite(truth[:, k])
         y = truth[usable, k]
         row: dict[str, Any] = {
-            "output": output,
-            "unit": unit,
+            "output": output.name,
+            "unit": output.unit,
             "runs": len(truth),
             "missing": int((~usable).sum()),
         }

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from mesoscale.inputs.table import collect
+from mesoscale.law.parameters import FITTED
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import nodes, to_values
-from mesoscale.uncertainty.propagation import RESPONSES, NodeOutputs, propagate, surrogate_json
+from mesoscale.uncertainty.propagation import NodeOutputs, propagate, surrogate_json
 from workflow.results import write_json
 from workflow.scene import load_scene
 
@@ -28,7 +29,7 @@ def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):
     z = np.random.default_rng(1).multivariate_normal(np.zeros(8), covariance, 200)
     result = propagate(given, table, settings, (smooth.samples, smooth.outputs * np.exp(z)))
     path = tmp_path / "results/paper/uq/surrogate.json"
-    write_json(path, surrogate_json(result, given, table, settings, {}, {}, {}))
+    write_json(path, surrogate_json(result, given, table, settings, {}, {}))
     assert json.loads(path.read_text())["method"].startswith("polynomial")
 
     code, draw = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
@@ -41,14 +42,14 @@ def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):
     for sample, outputs in zip(result.samples[:5], result.outputs[:5], strict=True):
         values = dict(zip(table.names, sample.tolist(), strict=True))
         # E* is normal and may leave the range of the response, where both extrapolate
-        read = [evaluate(name, values) for name in RESPONSES]
+        read = [evaluate(name, values) for name in FITTED]
         assert read == pytest.approx(outputs.tolist(), rel=1e-9)
     cells = names["cells"]
     assert callable(cells)
     values = dict(zip(table.names, result.samples[0].tolist(), strict=True))
     scatter = json.loads(path.read_text())["scatter"]
     drawn = []
-    for name, transform in zip(RESPONSES, scatter["transforms"], strict=True):
+    for name, transform in zip(FITTED, scatter["transforms"], strict=True):
         sample, mean = cells(values, 4000)[name], evaluate(name, values)
         drawn.append(np.log(sample / mean) if transform == "log" else sample - mean)
     expected = np.array(scatter["covariance"])

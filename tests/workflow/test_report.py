@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 from scipy.optimize import brentq
 
-from mesoscale.law.compact import PARAMETERS, Law, pressure
+from mesoscale.law.compact import Law, pressure
+from mesoscale.law.parameters import PARAMETERS
 from tests.workflow.made_up_results import LAW, write_all
 from workflow.report.available import Results
 from workflow.report.drawing import draw

@@ -4,18 +4,12 @@ from typing import Any
 
 import numpy as np
 
+from mesoscale.law.parameters import LAW
 from workflow.report.available import Results, Row
 from workflow.report.numbers import OUTPUTS, SYMBOLS, column, number, show
 from workflow.report.page import Table
 from workflow.report.stages import law
 from workflow.report.stages.sensitivity import ranking
-
-MEANINGS = {
-    "d_c_nm": "mean separation at initial contact",
-    "C_a_GPa_nm": "adhesion per nm of approach",
-    "C_r_GPa": "scale of the repulsion",
-    "rho_r_nm": "decay length of the repulsion",
-}
 
 
 def answer(results: Results) -> dict[str, Any]:
@@ -87,9 +81,10 @@ def _switch_card(switch: dict[str, Any]) -> dict[str, str]:
 
 def _law_table(results: Results, rows: dict[str, Row], samples: list[Row]) -> Table:
     lines = []
-    for name, meaning in MEANINGS.items():
+    for parameter in LAW:
+        name = parameter.name
         symbol, unit, factor = OUTPUTS[name]
-        cells = [f"{symbol} ({unit}), {meaning}"]
+        cells = [f"{symbol} ({unit}), {parameter.meaning}"]
         for branch in ("closing", "opening"):
             values = column(samples, f"{branch}_{name}") * factor
             values = values[np.isfinite(values)]

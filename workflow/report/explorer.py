@@ -5,20 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.law.compact import PARAMETERS
+from mesoscale.inputs.definitions import definition
+from mesoscale.law.parameters import PARAMETERS
 from workflow.report.available import Results
-from workflow.report.numbers import SYMBOLS
 
-NAMES = {
-    "hamaker": "Hamaker constant",
-    "e_star": "effective modulus",
-    "h_macro": "macroscopic hardness",
-    "h_prime": "size effect of hardness",
-    "q0": "roll-off wave vector",
-    "hurst": "Hurst exponent",
-    "rms": "RMS roughness",
-    "gap_cutoff": "gap cutoff",
-}
 SURROGATE_KEYS = ("name", "transform", "terms")
 
 
@@ -32,7 +22,7 @@ def explorer(results: Results) -> dict[str, Any] | None:
     inputs = [
         {
             "name": row["name"],
-            "label": f"{NAMES.get(row['name'], row['name'])} {SYMBOLS.get(row['name'], '')}".strip(),
+            "label": f"{definition(row['name']).label} {definition(row['name']).symbol}",
             "unit": row["unit"],
             "low": row["low"],
             "high": row["high"],

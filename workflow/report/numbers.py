@@ -5,25 +5,21 @@ from typing import Any
 
 import numpy as np
 
+from mesoscale.inputs.definitions import INPUTS
+from mesoscale.law.parameters import LAW_OUTPUTS, LawParameter
 from workflow.report.available import Row
 
-SYMBOLS = {
-    "hamaker": "A_H",
-    "e_star": "E*",
-    "h_macro": "H_macro",
-    "h_prime": "H′",
-    "q0": "q₀",
-    "hurst": "Hurst",
-    "rms": "RMS",
-    "gap_cutoff": "D₀",
-}
-OUTPUTS = {  # shown name, unit shown, factor from the file's unit
-    "d_c_nm": ("d_c", "nm", 1.0),
-    "C_a_GPa_nm": ("C_a", "10⁻⁵ GPa/nm", 1e5),
-    "C_r_GPa": ("C_r", "10⁻⁴ GPa", 1e4),
-    "rho_r_nm": ("ρ_r", "nm", 1.0),
-}
-OUTPUTS |= {f"delta_{name}": (f"δ{symbol}", unit, factor) for name, (symbol, unit, factor) in OUTPUTS.items()}
+SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+SYMBOLS = {row.name: row.symbol for row in INPUTS}
+
+
+def _shown(row: LawParameter) -> tuple[str, str, float]:
+    """Symbol of an output, the unit that it is shown in, and the factor from the file's unit to that."""
+    power = f"10{str(row.power).translate(SUPERSCRIPT)} " if row.power else ""
+    return row.symbol, power + row.unit, 10.0**-row.power
+
+
+OUTPUTS = {row.name: _shown(row) for row in LAW_OUTPUTS}
 
 
 def number(text: Any) -> float:
@@ -52,5 +48,5 @@ def show(value: Any, digits: int = 3) -> str:
         text = f"{value:.{decimals}f}"
         return text.replace("-", "−")
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    superscript = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    superscript = str(int(exponent)).translate(SUPERSCRIPT)
     return f"{mantissa.replace('-', '−')}·10{superscript}"

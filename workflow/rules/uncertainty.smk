@@ -46,7 +46,6 @@ rule propagate_uncertainty:
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
         direct=direct_files("direct", SCENE.uncertainty.direct_runs),
-        table1=str(CONFIG / "paper" / "table1.csv"),
         table2=str(CONFIG / "paper" / "table2.csv"),
         table3=str(CONFIG / "paper" / "table3.csv"),
     output:

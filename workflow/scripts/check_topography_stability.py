@@ -4,9 +4,10 @@ In: nothing.  Out: stability/topography.csv.
 """
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.studies.stability import COLUMNS, stability_rows
+from mesoscale.topography.studies.stability import stability_checks
+from workflow.checks import stability_rows
 from workflow.job import job
 from workflow.results import write_csv
 
 with job(snakemake) as run:
-    write_csv(snakemake.output[0], stability_rows(TopographySettings(), run.progress), COLUMNS)
+    write_csv(snakemake.output[0], stability_rows("topography", stability_checks(TopographySettings()), run.progress))

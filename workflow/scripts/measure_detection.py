@@ -5,18 +5,19 @@ In:  closing/*.csv, witness/*.csv (GPa, nm), points.csv.  Out: accuracy/hardness
 
 import time
 
-from atomistic.hardness.studies.detection import COLUMNS, detection_rows
+from atomistic.hardness.studies.detection import detection_points
 from atomistic.settings import HardnessSettings
+from workflow.checks import accuracy_rows
 from workflow.job import job
 from workflow.results import read_csv, read_numbers, write_csv
 
 with job(snakemake) as run:
     started, cpu = time.perf_counter(), time.process_time()
-    rows = detection_rows(
+    points = detection_points(
         [read_numbers(path) for path in snakemake.input.curves],
         [read_numbers(path) for path in snakemake.input.witnesses],
         [float(point["wavelength_nm"]) ** 2 for point in read_csv(snakemake.input.points)],
         HardnessSettings.model_validate(snakemake.params.settings),
     )
     cost = {"wall_s": time.perf_counter() - started, "cpu_s": time.process_time() - cpu}
-    write_csv(snakemake.output.table, [{**row, **cost} for row in rows], COLUMNS)
+    write_csv(snakemake.output.table, accuracy_rows("hardness", [{**point, **cost} for point in points]))

@@ -5,7 +5,8 @@ from pathlib import Path
 import yaml
 
 from atomistic.elastic.networks import crystal
-from atomistic.elastic.studies.accuracy import COLUMNS, accuracy_rows, ensemble_rows
+from atomistic.elastic.studies.accuracy import accuracy_points, ensemble_points
+from workflow.checks import accuracy_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 
@@ -13,7 +14,8 @@ with job(snakemake) as run:
     material = yaml.safe_load(Path(snakemake.input.material).read_text(encoding="utf-8"))
     crystals = material["crystals"]
     small = crystal({**material, "crystals": {"beta": {**crystals["beta"], "supercell": [1, 1, 1]}}}, "beta")
-    rows = list(accuracy_rows(small, crystal(material, "beta"), run.progress))
+    points = accuracy_points(small, crystal(material, "beta"), run.progress)
+    rows = list(accuracy_rows("elastic", points))
     if snakemake.input.get("moduli"):
         clamped = [
             row
@@ -22,5 +24,5 @@ with job(snakemake) as run:
         ]
         names = {row["structure"] for row in clamped}
         cost = sum(float(p["wall_s"]) for p in read_csv(snakemake.input.points) if p["structure"] in names)
-        rows += ensemble_rows([float(row["B_GPa"]) for row in clamped], cost)
-    write_csv(snakemake.output.table, rows, COLUMNS)
+        rows += accuracy_rows("elastic", ensemble_points([float(row["B_GPa"]) for row in clamped], cost))
+    write_csv(snakemake.output.table, rows)

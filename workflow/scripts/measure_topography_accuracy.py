@@ -4,11 +4,12 @@ In: nothing (synthetic scans with known truth).  Out: accuracy/topography.csv.
 """
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.studies.accuracy import COLUMNS, accuracy_rows
+from mesoscale.topography.studies.accuracy import accuracy_points
+from workflow.checks import accuracy_rows
 from workflow.job import job
 from workflow.results import write_csv
 
 with job(snakemake) as run:
     settings = TopographySettings(**snakemake.params.settings)
-    rows = accuracy_rows(settings.synthetic, settings, settings.study_repeats, run.progress)
-    write_csv(snakemake.output[0], rows, COLUMNS)
+    points = accuracy_points(settings.synthetic, settings, settings.study_repeats, run.progress)
+    write_csv(snakemake.output[0], accuracy_rows("topography", points))

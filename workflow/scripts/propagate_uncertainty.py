@@ -1,15 +1,16 @@
 """Propagate the inputs' uncertainty through the responses and validate these.
 
-In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, the paper's Tables 1 to 3.
+In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, the paper's Tables 2 and 3.
 Out: uq/outputs.csv (Table 2), uq/ratios.csv, uq/surrogate.json, uq/samples.csv, uq/validation.csv (nm, GPa/nm, GPa).
 """
 
 import numpy as np
 
 from mesoscale.inputs.table import from_rows
+from mesoscale.law.parameters import FITTED
 from mesoscale.settings import LawSettings, UncertaintySettings
 from mesoscale.uncertainty.paper_tables import RATIO_COLUMNS, ratio_rows, table2, table3
-from mesoscale.uncertainty.propagation import RESPONSES, output_rows, propagate, read_nodes, surrogate_json
+from mesoscale.uncertainty.propagation import output_rows, propagate, read_nodes, surrogate_json
 from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, read_direct_runs, validation_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv, write_json
@@ -21,7 +22,6 @@ with job(snakemake) as run:
     nodes = read_nodes(read_csv(snakemake.input.parameters))
     paper_rows = read_csv(snakemake.input.table2)
     paper = table2(paper_rows)
-    symbols = {row["parameter"]: row["symbol"] for row in read_csv(snakemake.input.table1)}
 
     direct = read_direct_runs(
         (row for path in snakemake.input.direct for row in read_csv(path)), table.names, settings.direct_runs
@@ -34,10 +34,10 @@ with job(snakemake) as run:
     constants = {"rho_a_nm": law.rho_a_nm, "alpha_nm": law.shield_nm}
     write_json(
         snakemake.output.surrogate,
-        surrogate_json(result, nodes, table, settings, constants, symbols, paper),
+        surrogate_json(result, nodes, table, settings, constants, paper),
         run.provenance,
     )
-    columns = [*table.names, *RESPONSES]
+    columns = [*table.names, *FITTED]
     values = np.hstack([result.samples, result.outputs]).tolist()
     write_csv(snakemake.output.samples, (dict(zip(columns, line, strict=True)) for line in values), columns)
 

@@ -4,13 +4,15 @@ In: stability/contact_draws/chunk_*.csv.  Out: stability/contact.csv, stability/
 """
 
 from mesoscale.contact.studies import draws
-from mesoscale.contact.studies.stability import COLUMNS, stability_rows
+from mesoscale.contact.studies.stability import stability_checks
 from mesoscale.settings import ContactSettings
+from workflow.checks import stability_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 
 with job(snakemake) as run:
     settings = ContactSettings(**snakemake.params.settings)
     drawn = [row for chunk in snakemake.input.draws for row in read_csv(chunk)]
-    write_csv(snakemake.output.table, list(stability_rows(settings, drawn, run.progress)), COLUMNS)
+    checks = stability_checks(settings, drawn)
+    write_csv(snakemake.output.table, stability_rows("contact", checks, run.progress))
     write_csv(snakemake.output.draws, drawn, draws.COLUMNS)

@@ -10,6 +10,7 @@ from mesoscale.uncertainty.paper_tables import table3
 from mesoscale.uncertainty.propagation import read_nodes
 from mesoscale.uncertainty.studies.comparison import compare_with_direct_runs
 from mesoscale.uncertainty.validation import read_direct_runs
+from workflow.checks import accuracy_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 
@@ -34,5 +35,6 @@ with job(snakemake) as run:
         table3(read_csv(snakemake.input.table3)),
         run.progress,
     )
+    tables["accuracy"] = list(accuracy_rows("uncertainty", tables["accuracy"]))
     for name, rows in tables.items():
         write_csv(snakemake.output[name], rows)

@@ -1,6 +1,5 @@
 """Error of the bulk modulus against run time: one knob of the calculation at a time, on small cells of β-Si3N4."""
 
-import resource
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
@@ -13,9 +12,6 @@ from atomistic.elastic.energy_scans import Point, scan_volumes
 from atomistic.elastic.equation_of_state import fit_equation_of_state
 
 Progress = Callable[[float, str], None]
-COLUMNS = (
-    "stage", "case", "knob", "value", "error", "error_metric", "reference", "wall_s", "cpu_s", "peak_rss_MB",
-)  # fmt: skip
 BASE: dict[str, Any] = {"basis": "gth-dzvp-molopt-sr", "cutoff_Ha": 60.0, "tolerance_Ha": 1e-6, "max_cycles": 40}
 STRAINS = (-0.03, -0.015, 0.0, 0.015, 0.03)
 DENSE = tuple(np.linspace(-0.06, 0.06, 13).round(3).tolist())
@@ -33,12 +29,7 @@ def timed_scan(atoms: Atoms, strains: Sequence[float], **changes: Any) -> tuple[
     calculator = PyscfGamma(xc="GGA", mesh=commensurate_mesh(largest, p["cutoff_Ha"]), **p)
     wall, cpu = time.perf_counter(), time.process_time()
     points = scan_volumes(atoms, calculator, strains)
-    cost = {
-        "wall_s": round(time.perf_counter() - wall, 2),
-        "cpu_s": round(time.process_time() - cpu, 2),
-        "peak_rss_MB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
-    }
-    return points, cost
+    return points, {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}
 
 
 def modulus(points: Sequence[Point]) -> float:
@@ -49,10 +40,9 @@ def modulus(points: Sequence[Point]) -> float:
     return fit_equation_of_state([p.volume_A3 for p in good], [p.energy_eV for p in good]).B_GPa
 
 
-def row(knob: str, value: Any, B_GPa: float, reference_GPa: float, reference: str, cost: Mapping) -> dict[str, Any]:
-    """One row of `accuracy/elastic.csv`."""
+def point(knob: str, value: Any, B_GPa: float, reference_GPa: float, reference: str, cost: Mapping) -> dict[str, Any]:
+    """Error and cost of one value of a knob."""
     return {
-        "stage": "elastic",
         "case": f"B {B_GPa:.1f} GPa",
         "knob": knob,
         "value": value,
@@ -63,7 +53,7 @@ def row(knob: str, value: Any, B_GPa: float, reference_GPa: float, reference: st
     }
 
 
-def accuracy_rows(cell: Atoms, double_cell: Atoms, progress: Progress | None = None) -> Iterator[dict[str, Any]]:
+def accuracy_points(cell: Atoms, double_cell: Atoms, progress: Progress | None = None) -> Iterator[dict[str, Any]]:
     """Cutoff, SCF tolerance, basis, cell size, range and number of strains.
 
     Parameters
@@ -81,7 +71,7 @@ def accuracy_rows(cell: Atoms, double_cell: Atoms, progress: Progress | None = N
         by_cutoff[cutoff] = timed_scan(cell, STRAINS, cutoff_Ha=cutoff)
     best = modulus(by_cutoff[CUTOFFS_HA[-1]][0])
     for cutoff, (points, cost) in by_cutoff.items():
-        yield row("cutoff_Ha", cutoff, modulus(points), best, f"{CUTOFFS_HA[-1]:g} Ha", cost)
+        yield point("cutoff_Ha", cutoff, modulus(points), best, f"{CUTOFFS_HA[-1]:g} Ha", cost)
     base = modulus(by_cutoff[BASE["cutoff_Ha"]][0])
 
     by_tolerance = {}
@@ -90,44 +80,43 @@ def accuracy_rows(cell: Atoms, double_cell: Atoms, progress: Progress | None = N
         by_tolerance[tolerance] = timed_scan(cell, STRAINS, tolerance_Ha=tolerance)
     tight = modulus(by_tolerance[TOLERANCES_HA[-1]][0])
     for tolerance, (points, cost) in by_tolerance.items():
-        yield row("tolerance_Ha", tolerance, modulus(points), tight, f"{TOLERANCES_HA[-1]:g} Ha", cost)
+        yield point("tolerance_Ha", tolerance, modulus(points), tight, f"{TOLERANCES_HA[-1]:g} Ha", cost)
 
     say(0.6, "basis without polarisation functions")
     points, cost = timed_scan(cell, STRAINS, basis="gth-szv-molopt-sr")
-    yield row("basis", "gth-szv-molopt-sr", modulus(points), base, BASE["basis"], cost)
+    yield point("basis", "gth-szv-molopt-sr", modulus(points), base, BASE["basis"], cost)
 
     say(0.65, "28 atoms")
     points, cost = timed_scan(double_cell, STRAINS)
-    yield row("atoms", len(cell), base, modulus(points), f"{len(double_cell)} atoms", by_cutoff[BASE["cutoff_Ha"]][1])
-    yield row("atoms", len(double_cell), modulus(points), modulus(points), f"{len(double_cell)} atoms", cost)
+    yield point("atoms", len(cell), base, modulus(points), f"{len(double_cell)} atoms", by_cutoff[BASE["cutoff_Ha"]][1])
+    yield point("atoms", len(double_cell), modulus(points), modulus(points), f"{len(double_cell)} atoms", cost)
 
     say(0.85, f"{len(DENSE)} strains")
     points, cost = timed_scan(cell, DENSE)
     reference = modulus(points)
     for reach in RANGES:
         chosen = sorted(points, key=lambda p: min(abs(p.strain - reach * x) for x in (-1, -0.5, 0, 0.5, 1)))[:5]
-        share = {**cost, "wall_s": round(sum(p.wall_s for p in chosen), 2), "cpu_s": None}
-        yield row("strain_range", reach, modulus(chosen), reference, f"{len(DENSE)} strains", share)
+        share = {**cost, "wall_s": sum(p.wall_s for p in chosen), "cpu_s": None}
+        yield point("strain_range", reach, modulus(chosen), reference, f"{len(DENSE)} strains", share)
     for count in COUNTS:
         positions = np.linspace(0, len(DENSE) - 1, count).round().astype(int)
         chosen = [points[k] for k in positions]
-        share = {**cost, "wall_s": round(sum(p.wall_s for p in chosen), 2), "cpu_s": None}
-        yield row("strains", count, modulus(chosen), reference, f"{len(DENSE)} strains", share)
+        share = {**cost, "wall_s": sum(p.wall_s for p in chosen), "cpu_s": None}
+        yield point("strains", count, modulus(chosen), reference, f"{len(DENSE)} strains", share)
 
 
-def ensemble_rows(moduli_GPa: Sequence[float], wall_s: float) -> Iterator[dict[str, Any]]:
+def ensemble_points(moduli_GPa: Sequence[float], wall_s: float) -> Iterator[dict[str, Any]]:
     """Standard error of the mean modulus of a glass against the number of structures, from their scatter."""
     B = np.asarray(moduli_GPa, float)
     for count in range(2, len(B) + 1):
         yield {
-            "stage": "elastic",
             "case": f"amorphous, B {B.mean():.1f} GPa",
             "knob": "structures",
             "value": count,
             "error": float(B.std(ddof=1) / np.sqrt(count) / B.mean()),
             "error_metric": "relative standard error of the mean B",
             "reference": f"scatter of {len(B)} structures: {B.std(ddof=1):.1f} GPa",
-            "wall_s": round(wall_s * count / len(B), 2),
+            "wall_s": wall_s * count / len(B),
             "cpu_s": None,
             "peak_rss_MB": None,
         }

@@ -12,10 +12,6 @@ import numpy as np
 from atomistic.hardness.plateau import Rows, find_hardness, plastic_onset
 from atomistic.settings import HardnessSettings
 
-COLUMNS = (
-    "stage", "case", "knob", "value", "error", "error_metric", "reference", "wall_s", "cpu_s", "peak_rss_MB",
-    "bound", "passed", "trials", "noise_GPa", "correlation", "background",
-)  # fmt: skip
 TRUTH_GPA = 10.0
 WITHIN = 0.15  # of the true stress counts as found
 TRIALS = 300
@@ -41,10 +37,10 @@ def noise_of(curve: Rows, settings: HardnessSettings, cell_area_nm2: float) -> t
     return float(deviation / stress.mean()), float(np.clip(correlation, 0, 0.9))
 
 
-def detection_rows(
+def detection_points(
     curves: Sequence[Rows], witnesses: Sequence[Rows], cell_areas_nm2: Sequence[float], settings: HardnessSettings
 ) -> list[dict]:
-    """Rows of accuracy/hardness_detection.csv: rates of false and of missed yield against the bounds asked for."""
+    """Accuracy points of the detector: rates of false and of missed yield against the bounds asked for."""
     measured = [noise_of(curve, settings, area) for curve, area in zip(curves, cell_areas_nm2, strict=True)]
     noises = [noise for noise in measured if noise is not None]
     backgrounds = [
@@ -71,7 +67,6 @@ def detection_rows(
             bound = 0.8 if least else 0.05
             rows.append(
                 {
-                    "stage": "hardness",
                     "case": case,
                     "knob": f"noise, {label} of the runs",
                     "value": deviation,

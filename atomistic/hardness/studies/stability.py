@@ -1,7 +1,6 @@
 """Molecular dynamics in hard cases, on a glass of some hundred atoms: what must hold does hold."""
 
 import shutil
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +14,6 @@ from atomistic.hardness.glass import make_glass, write_forcefield
 from atomistic.hardness.runs import planned_runs
 from atomistic.lammps import (
     Atoms,
-    Progress,
     Workspace,
     read_averages,
     read_data,
@@ -26,7 +24,6 @@ from atomistic.lammps import (
 from atomistic.potentials import COULOMB_EV_A, Potential
 from atomistic.settings import GlassSettings, HardnessSettings
 
-COLUMNS = ("stage", "case", "description", "checks", "passed", "detail", "wall_s")
 QUICK = GlassSettings(atoms=150, melt_ps=1, quench_rate_K_ps=1000, rest_ps=0.5, segment_steps=500)
 MAX_DRIFT = 0.2  # meV per atom and ps, the gate of the closing runs
 MAX_DRIFT_CLOSING = 1.0  # the same for closings of some ps, in which a cut surface has hardly come to rest
@@ -74,34 +71,20 @@ def drift_meV_atom_ps(record: np.ndarray, atoms: int, timestep_fs: float) -> flo
 Check = tuple[str, str, str, Callable[[], tuple[bool, str]]]  # case, description, what is checked, the check
 
 
-def stability_rows(potentials: list[Potential], work: Path, progress: Progress | None = None) -> list[dict]:
-    """All checks; one row each, passed or not, with the number behind it."""
+def stability_checks(potentials: list[Potential], work: Path) -> list[Check]:
+    """Checks of every potential on a glass made here, and of closings with the first one that knows silica.
+
+    Parameters
+    ----------
+    work : folder for LAMMPS, which the caller removes in the end.
+    """
     glasses = {
         potential.name: make_glass(next(iter(potential.materials)), potential, QUICK, 1, work / potential.name)
         for potential in potentials
     }
     checks = [check for potential in potentials for check in _of_potential(potential, glasses[potential.name], work)]
     first = next(potential for potential in potentials if "SiO2" in potential.materials)
-    checks += _of_closing(first, glasses[first.name], work)
-    rows = []
-    for k, (case, description, what, check) in enumerate(checks):
-        started = time.perf_counter()
-        passed, detail = check()
-        rows.append(
-            {
-                "stage": "hardness",
-                "case": case,
-                "description": description,
-                "checks": what,
-                "passed": passed,
-                "detail": detail,
-                "wall_s": time.perf_counter() - started,
-            }
-        )
-        if progress is not None:
-            progress((k + 1) / len(checks), case)
-    shutil.rmtree(work, ignore_errors=True)
-    return rows
+    return checks + _of_closing(first, glasses[first.name], work)
 
 
 def _of_potential(potential: Potential, glass: Atoms, work: Path) -> list[Check]:

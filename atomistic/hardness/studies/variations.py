@@ -10,10 +10,6 @@ from atomistic.hardness.runs import ClosingRun, planned_runs
 from atomistic.settings import ClosingSettings, HardnessSettings
 
 DEFAULT = "default"
-COLUMNS = (
-    "stage", "case", "knob", "value", "error", "error_metric", "reference", "wall_s", "cpu_s", "peak_rss_MB",
-    "hardness_GPa", "hardness_lo", "hardness_hi", "status", "atom_steps",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -60,7 +56,7 @@ def compare(
     runs: Mapping[str, Mapping],
     settings: HardnessSettings,
 ) -> list[dict]:
-    """Rows of accuracy/hardness.csv: plateau stress of each variation against the default's.
+    """Accuracy points of the variations: plateau stress of each variation against the default's.
 
     The scatter of a single run (`hardness_lo`, `hardness_hi`) limits what a difference means.
     """
@@ -115,6 +111,7 @@ def _area_definitions(
             rows.append(
                 {
                     **_row(f"area_depth_{depth:g}A", "area.depth_A", depth, stress, reference),
+                    "peak_rss_MB": None,  # costs nothing of its own
                     "status": "yield",
                 }
             )
@@ -123,7 +120,6 @@ def _area_definitions(
 
 def _row(case: str, knob: str, value: float, hardness: float, reference: float) -> dict:
     return {
-        "stage": "hardness",
         "case": case,
         "knob": knob,
         "value": value,

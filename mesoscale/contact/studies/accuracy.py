@@ -1,6 +1,5 @@
 """Error of the curve against the run time of a cycle, one numerical knob at a time."""
 
-import resource
 import time
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -13,18 +12,6 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.fit import contact_separation, fit_branch
 from mesoscale.settings import ContactSettings, LawSettings
 
-COLUMNS = (
-    "stage",
-    "case",
-    "knob",
-    "value",
-    "error",
-    "error_metric",
-    "reference",
-    "wall_s",
-    "cpu_s",
-    "peak_rss_MB",
-)
 OUTPUTS = (
     "d_c",
     "C_a",
@@ -78,12 +65,12 @@ def studies(settings: ContactSettings) -> Iterator[tuple[str, dict[str, Any], li
     )
 
 
-def accuracy_rows(
+def accuracy_points(
     inputs: ContactInputs,
     settings: ContactSettings,
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[dict[str, Any]]:
-    """Rows of accuracy/contact.csv, over `settings.study_seeds` surfaces."""
+    """Error and cost of every value of every knob, over `settings.study_seeds` surfaces."""
     plan = list(studies(settings))
     total = sum(len(cases) + 1 for _, _, cases in plan)
     done = 0
@@ -100,16 +87,14 @@ def accuracy_rows(
             errors = np.nanmean(np.abs(outputs - reference) / scale, axis=0)
             for output, error in zip(OUTPUTS, errors, strict=True):
                 yield {
-                    "stage": "contact",
                     "case": output,
                     "knob": knob,
                     "value": value,
                     "error": float(error),
                     "error_metric": METRIC,
                     "reference": words,
-                    "wall_s": round(wall, 4),
-                    "cpu_s": round(cpu, 4),
-                    "peak_rss_MB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
+                    "wall_s": wall,
+                    "cpu_s": cpu,
                 }
 
 

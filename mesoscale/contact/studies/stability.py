@@ -1,8 +1,8 @@
 """Stiff and extreme cases of the contact model, each judged by physical invariants."""
 
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,11 +14,13 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
 
-COLUMNS = ("stage", "case", "description", "checks", "passed", "detail", "wall_s")
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
 FINER = 16  # force steps of the path that judges a gain of energy, over those of the cycle
 LOST = 1e-8  # coupled, constant hardness: pressures are solved to 1e-9, so repulsion falls by no more than rounding
 CHECKS = "finite, ordered, ends meet, no gain of energy, volume kept, nothing above its hardness, flow settled"
+
+Check = tuple[str, str, str, Callable[[], tuple[bool, str]]]
+"""Case, description, what is checked, and the check."""
 
 
 @dataclass(frozen=True)
@@ -217,53 +219,41 @@ def judge(case: Case, settings: ContactSettings) -> tuple[list[str], str]:
     return broken, detail
 
 
-def stability_rows(
-    settings: ContactSettings,
-    draws: Sequence[Mapping[str, str]],
-    progress: Callable[[float, str], None] | None = None,
-) -> Iterator[dict[str, Any]]:
-    """Rows of stability/contact.csv: the extreme cases, and the random draws (rows of `draws.draw_rows`) by grid."""
+def stability_checks(settings: ContactSettings, draws: Sequence[Mapping[str, str]]) -> list[Check]:
+    """The extreme cases, and the random draws (rows of `draws.draw_rows`) by grid."""
     chosen = study_grid(settings)
-    cases = extreme_cases(chosen)
-    for number, case in enumerate(cases):
-        start = time.perf_counter()
-        broken, detail = judge(case, chosen)
-        yield _row(case.name, case.description, broken, detail, time.perf_counter() - start)
-        if progress is not None:
-            progress((number + 1) / len(cases), case.name)
-    yield from draws_by_grid(draws)
+    return [
+        *((case.name, case.description, CHECKS, partial(_verdict, case, chosen)) for case in extreme_cases(chosen)),
+        *draws_by_grid(draws),
+    ]
 
 
-def draws_by_grid(draws: Sequence[Mapping[str, str]]) -> Iterator[dict[str, Any]]:
-    """A row of stability/contact.csv for each grid on which random draws were made."""
+def _verdict(case: Case, settings: ContactSettings) -> tuple[bool, str]:
+    broken, detail = judge(case, settings)
+    return not broken, "; ".join([*broken[:5], detail])
+
+
+def draws_by_grid(draws: Sequence[Mapping[str, str]]) -> Iterator[Check]:
+    """A check for each grid on which random draws were made: it counts what their own jobs found."""
     for pixels in sorted({int(row["pixels"]) for row in draws}):
         rows = [row for row in draws if int(row["pixels"]) == pixels]
-        broken = [f"draw {row['draw']} seed {row['seed']}: {row['broken']}" for row in rows if row["broken"]]
-        detail = (
-            f"{len(broken)} of {len(rows)} cycles break an invariant; {sum(int(row['steps']) for row in rows)} steps, "
-            f"at most {max(int(row['most_sweeps']) for row in rows)} sweeps in one; "
-            f"bounds on R {sum(int(row['radius_bound_events']) for row in rows)}, "
-            f"repeated steps {sum(int(row['repeated_steps']) for row in rows)}, "
-            f"largest force miss {max(float(row['force_miss']) for row in rows):.1e}"
-        )
         words = f"{len({row['draw'] for row in rows})} draws from Table 1, {len(rows)} cycles"
-        wall_s = sum(float(row["wall_s"]) for row in rows)
-        yield _row(f"random draws, {pixels} pixels", words, broken, detail, wall_s)
+        yield f"random draws, {pixels} pixels", words, CHECKS, partial(_counted, rows)
+
+
+def _counted(rows: Sequence[Mapping[str, str]]) -> tuple[bool, str]:
+    broken = [f"draw {row['draw']} seed {row['seed']}: {row['broken']}" for row in rows if row["broken"]]
+    detail = (
+        f"{len(broken)} of {len(rows)} cycles break an invariant; {sum(int(row['steps']) for row in rows)} steps, "
+        f"at most {max(int(row['most_sweeps']) for row in rows)} sweeps in one; "
+        f"bounds on R {sum(int(row['radius_bound_events']) for row in rows)}, "
+        f"repeated steps {sum(int(row['repeated_steps']) for row in rows)}, "
+        f"largest force miss {max(float(row['force_miss']) for row in rows):.1e}"
+    )
+    return not broken, "; ".join([*broken[:5], detail])
 
 
 def study_grid(settings: ContactSettings) -> ContactSettings:
     """At most 256 pixels a side of the same spacing: extreme cases cost more than usual ones."""
     pixels = min(settings.pixels, 256)
     return settings.model_copy(update={"pixels": pixels, "length_nm": settings.length_nm * pixels / settings.pixels})
-
-
-def _row(name: str, description: str, broken: list[str], detail: str, wall_s: float) -> dict[str, Any]:
-    return {
-        "stage": "contact",
-        "case": name,
-        "description": description,
-        "checks": CHECKS,
-        "passed": not broken,
-        "detail": "; ".join([*broken[:5], detail]),
-        "wall_s": round(wall_s, 3),
-    }

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.branches import fit_cycle
+from mesoscale.law.parameters import LAW_OUTPUTS, OUTPUTS
 from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty.collocation import elementary_effects, level1_response
 from mesoscale.uncertainty.designs import Run
-from mesoscale.uncertainty.runs import OUTPUTS, compute_all, short_name
+from mesoscale.uncertainty.runs import compute_all
 from mesoscale.uncertainty.studies.readings import CHOICES, MENDED
 
 Array = NDArray[np.float64]
@@ -47,7 +48,7 @@ def audit_rows(
     law: LawSettings,
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[dict[str, Any]]:
-    """The eight outputs of every run under one reading of the contact and all readings of the law."""
+    """The outputs of every run under one reading of the contact and all readings of the law."""
     laws = {name: law.model_copy(update=update) for name, update in LAW_READINGS.items()}
     settings = with_reading(reading, contact)
     for run, cycle in compute_all(runs, settings, progress):
@@ -92,7 +93,7 @@ def rank(
     """
     ranges = table.ranges(central_share)
     inputs = len(table.rows)
-    short = [short_name(output) for output in OUTPUTS]
+    short = [output.short for output in LAW_OUTPUTS]
     rng = np.random.default_rng(np.random.SeedSequence([len(rows)]))
     ranked = []
     for contact, law in dict.fromkeys((row["contact"], row["law"]) for row in rows):
@@ -146,7 +147,7 @@ def rank(
 
 
 def _arrange(rows: Sequence[Mapping[str, str]]) -> Array:
-    """Outputs by seed and node, shape (seeds, nodes, 8)."""
+    """Outputs by seed and node, shape (seeds, nodes, len(OUTPUTS))."""
     seeds = sorted({int(row["seed"]) for row in rows})
     y = np.full((len(seeds), max(int(row["node"]) for row in rows) + 1, len(OUTPUTS)), np.nan)
     for row in rows:
@@ -156,7 +157,7 @@ def _arrange(rows: Sequence[Mapping[str, str]]) -> Array:
 
 
 def _over_seeds(moments: Array) -> tuple[Array, Array]:
-    """Mean and standard deviation over the seeds that have all nodes of an output, shape (2 + n, 8)."""
+    """Mean and standard deviation over the seeds that have all nodes of an output, shape (2 + n, len(OUTPUTS))."""
     complete = np.asarray(np.isfinite(moments).all(axis=1))
     usable = complete.sum(axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -166,7 +167,7 @@ def _over_seeds(moments: Array) -> tuple[Array, Array]:
 
 
 def _moments(y: Array, ranges: Array) -> Array:
-    """Mean, deviation and mu* of every seed's linear response on uniform inputs, shape (seeds, 2 + n, 8)."""
+    """Mean, deviation and mu* of every seed's linear response on uniform inputs, shape (seeds, 2 + n, len(OUTPUTS))."""
     inputs = len(ranges)
     moments = np.empty((len(y), 2 + inputs, y.shape[2]))
     for s in range(len(y)):

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.law.parameters import LAW_OUTPUTS, OUTPUTS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.morris import trajectory_effects, trajectory_points
 from mesoscale.uncertainty.propagation import (
@@ -19,7 +20,6 @@ from mesoscale.uncertainty.propagation import (
 )
 from mesoscale.uncertainty.reference import TWO_SIDED_90, Estimate, Reference, jackknife
 from mesoscale.uncertainty.regression import full_chaos
-from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
 from mesoscale.uncertainty.sensitivity import index_intervals, pick_freeze, response_indices
 
 Array = NDArray[np.float64]
@@ -41,10 +41,10 @@ def bias_rows(
     result = propagate(nodes, table, settings, _training(direct, settings))
     response = to_paper_outputs(result.outputs)
     rows = []
-    for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
+    for k, output in enumerate(LAW_OUTPUTS):
         row: dict[str, Any] = {
-            "output": output,
-            "unit": unit,
+            "output": output.name,
+            "unit": output.unit,
             "runs": truth.runs,
             "missing": truth.missing[k],
             "replicates": truth.replicates,
@@ -113,7 +113,7 @@ def index_rows(
 
 
 def _total_of_all(direct: Direct, table: InputTable, settings: UncertaintySettings) -> Estimate:
-    """Total indices, shape (8, n), by responses with all terms fitted to all runs."""
+    """Total indices, shape (len(OUTPUTS), n), by responses with all terms fitted to all runs."""
     x, y = direct
     ranges = table.ranges(settings.central_share)
     points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
@@ -140,29 +140,29 @@ def morris_rows(
 
     Parameters
     ----------
-    y : closing and opening parameters along the trajectories, shape (t (n + 1), 8).
+    y : closing and opening parameters along the trajectories, shape (t (n + 1), len(FITTED)).
     one_star, paper : mu* by output and input.
     """
     inputs = len(table.rows)
     trajectories = len(y) // (inputs + 1)
     points = trajectory_points(inputs, trajectories, settings.sample_seed)
-    values = to_paper_outputs(y).reshape(trajectories, inputs + 1, 8)
+    values = to_paper_outputs(y).reshape(trajectories, inputs + 1, len(OUTPUTS))
     rows = []
-    for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
+    for k, output in enumerate(LAW_OUTPUTS):
         effects = trajectory_effects(points, values[:, :, k], settings.sample_seed)
         for i, name in enumerate(table.names):
             rows.append(
                 {
-                    "output": output,
+                    "output": output.name,
                     "input": name,
-                    "unit": unit,
+                    "unit": output.unit,
                     "morris_mu_star": effects.mu_star[i],
                     "morris_mu_star_low": effects.mu_star[i] - effects.half_width[i],
                     "morris_mu_star_high": effects.mu_star[i] + effects.half_width[i],
                     "morris_sigma": effects.sigma[i],
                     "trajectories": effects.trajectories,
-                    "one_star_mu_star": one_star.get((output, name), np.nan),
-                    "paper_mu_star": paper.get((output, name), np.nan),
+                    "one_star_mu_star": one_star.get((output.name, name), np.nan),
+                    "paper_mu_star": paper.get((output.name, name), np.nan),
                 }
             )
     return rows

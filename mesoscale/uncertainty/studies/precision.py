@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.law.parameters import FITTED, LAW_OUTPUTS, OUTPUTS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.propagation import NodeOutputs, exported_responses, output_responses, to_paper_outputs
 from mesoscale.uncertainty.reference import STATISTICS, Reference, explained_by, of_outputs
-from mesoscale.uncertainty.runs import OUTPUT_UNITS, OUTPUTS
 from mesoscale.uncertainty.sensitivity import pick_freeze, response_indices
 from mesoscale.uncertainty.surrogate import evaluate, with_scatter
 
@@ -51,14 +51,14 @@ class Method:
 
 @dataclass(frozen=True)
 class MethodResult:
-    """Statistics of the eight outputs by one repeat of a method."""
+    """Statistics of the outputs by one repeat of a method."""
 
     statistics: dict[str, Array]
-    """By name of STATISTICS, shape (8,)."""
+    """By name of STATISTICS, shape (len(OUTPUTS),)."""
     first: Array
-    """First-order indices, shape (8, n)."""
+    """First-order indices, shape (len(OUTPUTS), n)."""
     q2: Array
-    """Shape (8,)."""
+    """Shape (len(OUTPUTS),)."""
     fit_s: float
 
 
@@ -115,10 +115,11 @@ def run_method(method: Method, direct: Direct, table: InputTable) -> list[Method
         truth = to_paper_outputs(y[unseen])
         if not method.response:
             values = to_paper_outputs(y[training])
-            shares = [[explained_by(x[training, i], values[:, k]) for i in range(x.shape[1])] for k in range(8)]
-            results.append(MethodResult(_statistics(values, values), np.array(shares), np.full(8, np.nan), 0.0))
+            shares = [[explained_by(x[training, i], column) for i in range(x.shape[1])] for column in values.T]
+            unknown = np.full(len(OUTPUTS), np.nan)
+            results.append(MethodResult(_statistics(values, values), np.array(shares), unknown, 0.0))
             continue
-        nodes = method.nodes[repeat] if method.nodes else NodeOutputs([], np.empty((0, 0, 8)))
+        nodes = method.nodes[repeat] if method.nodes else NodeOutputs([], np.empty((0, 0, len(FITTED))))
         known = (x[training], y[training]) if method.blocks else nothing
         responses = exported_responses(nodes, known, ranges, settings)
         per_output = output_responses(responses, known, ranges, settings)
@@ -167,7 +168,7 @@ def precision_rows(
             "fit_cpu_s": float(np.mean([result.fit_s for result in repeats])),
             "repeats": len(repeats),
         }
-        for k, (output, unit) in enumerate(zip(OUTPUTS, OUTPUT_UNITS, strict=True)):
+        for k, output in enumerate(LAW_OUTPUTS):
             entries = {}
             for name, estimate in truth.statistics.items():
                 target, floor, scale = estimate.value[k], estimate.error[k], deviation[k]
@@ -185,7 +186,7 @@ def precision_rows(
                 entries["q2"] = (q2.mean(), np.nan, (1 - q2).mean(), truth.surface_variance.value[k] / variance[k])
             for name, (value, target, error, floor) in entries.items():
                 rows.append(
-                    {**cost, "output": output, "unit": unit, "statistic": name}
+                    {**cost, "output": output.name, "unit": output.unit, "statistic": name}
                     | {"value": value, "truth": target, "error": error, "floor": floor}
                 )
         if progress:
@@ -203,8 +204,8 @@ def _rms(values: Array) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def accuracy_rows(rows: list[dict[str, Any]], truth: Reference, peak_rss_MB: float) -> Iterator[dict[str, Any]]:
-    """Rows of accuracy/uncertainty.csv: every method at every cost, its median error over the outputs."""
+def accuracy_points(rows: list[dict[str, Any]], truth: Reference) -> Iterator[dict[str, Any]]:
+    """Accuracy points: every method at every cost, its median error over the outputs."""
     groups: dict[tuple[str, int, str], list[Mapping[str, Any]]] = {}
     for row in rows:
         groups.setdefault((row["method"], row["engine_calls"], row["statistic"]), []).append(row)
@@ -213,7 +214,6 @@ def accuracy_rows(rows: list[dict[str, Any]], truth: Reference, peak_rss_MB: flo
         floors = [row["floor"] for row in members if np.isfinite(row["floor"])]
         seconds = members[0]["engine_cpu_s"] + members[0]["fit_cpu_s"]
         yield {
-            "stage": "uncertainty",
             "case": method,
             "knob": "engine calls",
             "value": calls,
@@ -224,5 +224,4 @@ def accuracy_rows(rows: list[dict[str, Any]], truth: Reference, peak_rss_MB: flo
             "reference": f"{truth.runs} direct cycles (known to {np.median(floors):.2g})" if floors else "",
             "wall_s": seconds,
             "cpu_s": seconds,
-            "peak_rss_MB": peak_rss_MB,
         }

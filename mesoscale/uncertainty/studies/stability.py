@@ -1,8 +1,8 @@
 """Unusual inputs and outputs of the propagation: each must give the known answer or say that there is none."""
 
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
 from mesoscale.law.fit import fit_branch
+from mesoscale.law.parameters import FITTED, OUTPUTS
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
 from mesoscale.uncertainty.collocation import nodes, to_values
 from mesoscale.uncertainty.designs import Run
-from mesoscale.uncertainty.propagation import RESPONSES, NodeOutputs, output_rows, propagate
+from mesoscale.uncertainty.propagation import NodeOutputs, output_rows, propagate
 from mesoscale.uncertainty.runs import compute_rows
 from mesoscale.uncertainty.sensitivity import sensitivity_rows
 from mesoscale.uncertainty.validation import read_direct_runs, validation_rows
@@ -22,7 +23,6 @@ from mesoscale.uncertainty.validation import read_direct_runs, validation_rows
 Array = NDArray[np.float64]
 Function = Callable[[Array], Array]
 
-COLUMNS = ("stage", "case", "description", "checks", "passed", "detail", "wall_s")
 SETTINGS = UncertaintySettings(
     samples=4000, sobol_samples=512, sobol_bootstrap=4, bootstrap=50, morris_trajectories=4, direct_runs=200
 )
@@ -34,7 +34,7 @@ MIDDLE = {
 
 @dataclass(frozen=True)
 class Answer:
-    """Rows of the three result tables for one output in all eight places."""
+    """Rows of the three result tables for one output in the places of all."""
 
     output: dict[str, Any]
     sensitivity: list[dict[str, Any]]
@@ -64,14 +64,15 @@ def _answer(
     settings = SETTINGS.model_copy(update=changes)
     rng = np.random.default_rng(5)
     x_nodes = to_values(nodes(len(table.rows), 1), table.ranges(settings.central_share))
-    given = NodeOutputs(list(range(seeds)), np.repeat(np.tile(function(x_nodes), (seeds, 1))[..., None], 8, axis=2))
+    of_every_seed = np.tile(function(x_nodes), (seeds, 1))
+    given = NodeOutputs(list(range(seeds)), np.repeat(of_every_seed[..., None], len(FITTED), axis=2))
     given.values[rng.random(given.values.shape[:2]) < missing] = np.nan
     x = table.sample(runs, 11)
-    y = np.repeat(function(x)[:, None], 8, axis=1)
+    y = np.repeat(function(x)[:, None], len(FITTED), axis=1)
     y[rng.random(runs) < missing] = np.nan
     result = propagate(given, table, settings, (x, y))
     with np.errstate(all="ignore"):
-        ranked = sensitivity_rows(given, table, settings, np.zeros(8), {}, {}, (x, y))
+        ranked = sensitivity_rows(given, table, settings, np.zeros(len(OUTPUTS)), {}, {}, (x, y))
     return Answer(
         output_rows(given, result, {}, {})[place],
         ranked[place * len(table.rows) : (place + 1) * len(table.rows)],
@@ -195,12 +196,13 @@ def _not_identifiable() -> list[str]:
     h = np.linspace(10.0, 40.0, 60)
     repulsion = 200.0 * np.maximum(30.0 - h, 0.0)
     fit = fit_branch(h, repulsion, -np.ones_like(h), 1e6, 0.215, 30.0)
-    row = {name: "" if np.isnan(value) else value for name, value in zip(RESPONSES, [*fit.parameters] * 2, strict=True)}
+    row = {name: "" if np.isnan(value) else value for name, value in zip(FITTED, [*fit.parameters] * 2, strict=True)}
     _, y = read_direct_runs([{"x0": "0", **{key: str(value) for key, value in row.items()}}], ["x0"], 1)
+    repulsion = [name for name in FITTED if name.endswith(("_C_r_GPa", "_rho_r_nm"))]
     return _unless(
         status_says_so=fit.status.startswith("not_identifiable"),
         d_c_stands=bool(np.isfinite(y[0, 0])),
-        C_r_and_rho_r_missing=bool(np.isnan(y[0, [2, 3, 6, 7]]).all()),
+        C_r_and_rho_r_missing=all(np.isnan(y[0, FITTED.index(name)]) for name in repulsion),
     )
 
 
@@ -248,22 +250,12 @@ CASES: Sequence[tuple[str, str, Callable[[], list[str]]]] = (
 )
 
 
-def stability_rows(progress: Callable[[float, str], None] | None = None) -> Iterator[dict[str, Any]]:
-    """Rows of stability/uncertainty.csv, one per case; a case that raises has failed."""
-    for done, (name, description, case) in enumerate(CASES):
-        before = time.monotonic()
-        try:
-            broken = case()
-        except Exception as error:  # whatever it is, it is this case's result
-            broken = [f"{type(error).__name__}: {' '.join(str(error).split())}"]
-        yield {
-            "stage": "uncertainty",
-            "case": name,
-            "description": description,
-            "checks": "known answer, or missing and counted; nothing filled in",
-            "passed": not broken,
-            "detail": "; ".join(broken),
-            "wall_s": round(time.monotonic() - before, 3),
-        }
-        if progress:
-            progress((done + 1) / len(CASES), name)
+def stability_checks() -> list[tuple[str, str, str, Callable[[], tuple[bool, str]]]]:
+    """The cases as checks: case, description, what is checked, and the check."""
+    words = "known answer, or missing and counted; nothing filled in"
+    return [(name, description, words, partial(_verdict, case)) for name, description, case in CASES]
+
+
+def _verdict(case: Callable[[], list[str]]) -> tuple[bool, str]:
+    broken = case()
+    return not broken, "; ".join(broken)

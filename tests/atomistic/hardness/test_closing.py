@@ -170,9 +170,10 @@ def test_stability_study_passes(potential, tmp_path, monkeypatch):
     """All checks of a potential, and of those of a closing the overlapping start and the snap-in."""
     of_closing = stability._of_closing
     monkeypatch.setattr(stability, "_of_closing", lambda *given: of_closing(*given)[:2])
-    rows = stability.stability_rows([potential], tmp_path / "work")
-    assert {"overlapping_start", "snap_in", "coulomb_slab_pmmcs"} < {row["case"] for row in rows}
-    assert [row["case"] for row in rows if not row["passed"]] == []
+    checks = stability.stability_checks([potential], tmp_path / "work")
+    assert {"overlapping_start", "snap_in", "coulomb_slab_pmmcs"} < {case for case, *_ in checks}
+    verdicts = {case: check() for case, _, _, check in checks}
+    assert {case: detail for case, (passed, detail) in verdicts.items() if not passed} == {}
 
 
 def test_settings_of_a_run_plan_just_that_run():

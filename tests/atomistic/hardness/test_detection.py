@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from atomistic.hardness.studies import detection
-from atomistic.hardness.studies.detection import detection_rows, noise_of
+from atomistic.hardness.studies.detection import detection_points, noise_of
 from atomistic.settings import HardnessSettings
 
 SETTINGS = HardnessSettings()
@@ -46,6 +46,6 @@ def test_a_curve_too_short_has_no_noise():
 def test_rates_keep_their_bounds(noise, background, monkeypatch):
     monkeypatch.setattr(detection, "TRIALS", 100)
     curve, witness = run(noise, background=background, seed=2)
-    rows = detection_rows([curve], [witness], [64.0], SETTINGS)
+    rows = detection_points([curve], [witness], [64.0], SETTINGS)
     assert {row["knob"] for row in rows} == {"noise, median of the runs", "noise, largest of the runs"}
     assert [row["case"] for row in rows if not row["passed"]] == []

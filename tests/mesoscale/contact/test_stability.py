@@ -38,9 +38,10 @@ def test_a_gain_of_energy_over_few_points_is_judged_on_a_finer_path():
 def test_a_broken_draw_fails_its_row():
     draw = {"draw": "7", "seed": "1", "pixels": "64", "steps": "50", "most_sweeps": "9", "wall_s": "0.1"}
     draw |= {"radius_bound_events": "3", "repeated_steps": "0", "force_miss": "1e-9", "broken": "volume changed"}
-    (row,) = draws_by_grid([draw])
-    assert not row["passed"]
-    assert "draw 7 seed 1: volume changed" in row["detail"]
+    ((*_, check),) = draws_by_grid([draw])
+    passed, detail = check()
+    assert not passed
+    assert "draw 7 seed 1: volume changed" in detail
 
 
 def test_extreme_cases_keep_the_spacing_on_a_smaller_grid():

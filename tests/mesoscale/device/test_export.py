@@ -7,9 +7,10 @@ import subprocess
 import numpy as np
 import pytest
 
-from mesoscale.device.contact_law import BRANCHES, pressure_GPa, slope_GPa_nm
+from mesoscale.device.contact_law import pressure_GPa, slope_GPa_nm
 from mesoscale.device.export import law_table, spice_subcircuit, spice_testbench, verilog_module
-from mesoscale.law.compact import PARAMETERS, Law
+from mesoscale.law.compact import Law
+from mesoscale.law.parameters import BRANCHES, PARAMETERS
 
 AREA = 1e6
 NOMINAL = {

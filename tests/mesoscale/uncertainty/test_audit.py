@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from mesoscale.inputs.table import collect
+from mesoscale.law.parameters import LAW_OUTPUTS
 from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty.collocation import nodes
 from mesoscale.uncertainty.paper_tables import table2, table3
-from mesoscale.uncertainty.runs import OUTPUTS, short_name
 from mesoscale.uncertainty.studies.audit import LAW_READINGS, MISPRINT, rank, with_reading
 from mesoscale.uncertainty.studies.readings import NEAREST, audited_readings, contact_readings
 from tests.mesoscale import paper
@@ -35,11 +35,10 @@ def made_up(reading, shift=0.0, scatter=0.0, missing=False):
         off = shift + scatter * rng.normal()
         for node, u in enumerate(nodes(7, 1)):
             row = {"contact": reading, "law": "force_0.03", "seed": str(seed), "node": str(node), "converged": "True"}
-            for output in OUTPUTS:
-                name = short_name(output)
-                mean, deviation = TWO[name]
-                effects = [x if (x := THREE[name][key]) < MISPRINT * deviation else 0.0 for key in TABLE.names]
-                row[output] = repr(float(mean + off * deviation + u @ np.array(effects) / 2))
+            for output in LAW_OUTPUTS:
+                mean, deviation = TWO[output.short]
+                effects = [x if (x := THREE[output.short][key]) < MISPRINT * deviation else 0.0 for key in TABLE.names]
+                row[output.name] = repr(float(mean + off * deviation + u @ np.array(effects) / 2))
             if missing and (seed, node) == (1, 3):
                 row["rho_r_nm"] = ""
             rows.append(row)

@@ -12,7 +12,7 @@ from mesoscale.inputs.distributions import (
     UncertainInput,
     correlation_matrix,
 )
-from mesoscale.law.compact import PARAMETERS
+from mesoscale.law.parameters import OUTPUTS, PARAMETERS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import nodes, to_values
 from mesoscale.uncertainty.paper_tables import table2, table3
@@ -23,7 +23,6 @@ from mesoscale.uncertainty.propagation import (
     read_nodes,
     surrogate_json,
 )
-from mesoscale.uncertainty.runs import OUTPUTS
 from mesoscale.uncertainty.sensitivity import pick_freeze, sensitivity_rows, sobol_indices
 from mesoscale.uncertainty.surrogate import Surrogate, from_json, joint_scatter
 from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, validation_rows
@@ -149,7 +148,7 @@ def test_surrogate_json_reproduces_the_propagated_values():
     table = uniform_table()
     given = linear_nodes(table, [1, 2, 3])
     result = propagate(given, table, SETTINGS)
-    content = surrogate_json(result, given, table, SETTINGS, {"rho_a_nm": 2.0, "alpha_nm": 2.0}, {}, {})
+    content = surrogate_json(result, given, table, SETTINGS, {"rho_a_nm": 2.0, "alpha_nm": 2.0}, {})
     assert [o["name"] for o in content["outputs"]][:2] == ["closing_d_c_nm", "closing_C_a_GPa_nm"]
     for k, output in enumerate(content["outputs"]):
         response = from_json(output, content["inputs"])

@@ -11,7 +11,7 @@ from mesoscale.uncertainty.propagation import NodeOutputs
 from mesoscale.uncertainty.reference import GROUPS, explained_by, jackknife, reference
 from mesoscale.uncertainty.studies.brute_force import bias_rows, index_rows
 from mesoscale.uncertainty.studies.comparison import compare_with_direct_runs
-from mesoscale.uncertainty.studies.precision import accuracy_rows, precision_rows
+from mesoscale.uncertainty.studies.precision import accuracy_points, precision_rows
 from mesoscale.uncertainty.surrogate import Surrogate, with_scatter
 
 SLOPES = np.array([1.0, 2.0, 3.0])
@@ -130,8 +130,7 @@ def test_errors_fall_with_the_calls(table, runs):
     }
     assert sampled[100] < sampled[25]
     assert {row["engine_cpu_s"] for row in rows if row["engine_calls"] == 100} == {10.0}
-    summary = list(accuracy_rows(rows, truth, 1.0))
-    assert {row["stage"] for row in summary} == {"uncertainty"}
+    summary = list(accuracy_points(rows, truth))
     assert len(summary) < len(rows)
 
 

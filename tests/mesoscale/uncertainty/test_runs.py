@@ -6,10 +6,10 @@ import pytest
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import collect
 from mesoscale.law.branches import fit_cycle
+from mesoscale.law.parameters import FITTED
 from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
 from mesoscale.uncertainty import runs as runs_module
 from mesoscale.uncertainty.designs import Run, collocation_runs, random_runs
-from mesoscale.uncertainty.propagation import RESPONSES
 from mesoscale.uncertainty.runs import compute, compute_all, compute_rows
 from tests.mesoscale import paper
 
@@ -55,7 +55,7 @@ def test_rough_responses_touch_at_separations_in_proportion_to_rms():
 def test_a_failing_engine_is_reported_and_leaves_no_numbers():
     rows = list(compute_rows([Run(0, -1, 1, {**CENTRE, "e_star": -1.0})], CONTACT, LawSettings()))
     assert str(rows[0]["curve_status"]).startswith("failed: InputError")
-    assert all(rows[0][name] == "" for name in RESPONSES)
+    assert all(rows[0][name] == "" for name in FITTED)
 
 
 def test_equal_inputs_are_computed_once(monkeypatch):

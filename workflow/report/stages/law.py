@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from mesoscale.law.compact import PARAMETERS, Law
+from mesoscale.law.compact import Law
 from mesoscale.law.compact import pressure as law_pressure
+from mesoscale.law.parameters import PARAMETERS
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
 from workflow.report.numbers import column, number
@@ -90,8 +91,8 @@ def _wells(results: Results) -> dict[str, tuple[np.ndarray, ...]]:
 
 def pressure(h: np.ndarray, row: Row, hamaker: float, rho_a: float, shield: float) -> np.ndarray:
     """Total pressure of a fitted row (GPa), eqs 10 to 13."""
-    d_c, C_a, C_r, rho_r = (number(row[name]) for name in PARAMETERS)
-    attractive, repulsive = law_pressure(h, Law(d_c, C_a, C_r, rho_r, hamaker, rho_a, shield))
+    parameters = {name: number(row[name]) for name in PARAMETERS}
+    attractive, repulsive = law_pressure(h, Law(**parameters, hamaker=hamaker, rho_a_nm=rho_a, shield_nm=shield))
     return attractive + repulsive
 
 

@@ -1,0 +1,72 @@
+"""The one table of the uncertain inputs.  Imports nothing heavy: settings and the workflow read it to plan."""
+
+from dataclasses import dataclass
+
+from mesoscale.errors import InputError
+
+
+@dataclass(frozen=True)
+class InputDefinition:
+    """What an uncertain input is, and how it enters the contact model."""
+
+    name: str
+    """Key in the settings and in result files."""
+    label: str
+    """In words."""
+    symbol: str
+    """As the report and the exported responses show it."""
+    unit: str
+    """Unit of its values; 1 where there is none."""
+    low: float
+    """Smallest value that is accepted."""
+    high: float
+    """Largest value that is accepted."""
+    zero: bool = False
+    """Whether 0 is accepted besides."""
+    stage: str = "literature"
+    """Stage that can compute it (hardness, elastic, topography), or literature."""
+    literature: tuple[float, float] | None = None
+    """Default range where no stage computes it, uniform, from the paper's Table 1."""
+    setting: str = ""
+    """Field of `ContactSettings` that it replaces; empty: a field of `ContactInputs` of its name."""
+    optional: bool = False
+    """Left out unless a scene gives it."""
+
+    @property
+    def accepted(self) -> str:
+        """The accepted values in words."""
+        return f"{'0 or ' if self.zero else ''}{self.low:g} .. {self.high:g}"
+
+    def accepts(self, value: float) -> bool:
+        """Is this a physical value?"""
+        return self.low <= value <= self.high or (self.zero and value == 0)
+
+
+INPUTS = (
+    InputDefinition("hamaker", "Hamaker constant", "A_H", "1e-18 J", 1e-6, 1e4, zero=True, literature=(0.18, 0.25)),
+    InputDefinition("e_star", "effective modulus", "E*", "GPa", 1e-6, 1e6, stage="elastic"),
+    InputDefinition("h_macro", "macroscopic hardness", "H_macro", "GPa", 1e-9, 1e6, zero=True, literature=(0.7, 3.2)),
+    InputDefinition("h_prime", "size effect of hardness", "H′", "GPa nm^0.5", 1e-9, 1e6, zero=True, stage="hardness"),
+    InputDefinition("q0", "roll-off wave vector", "q₀", "1/nm", 1e-7, 1e3, stage="topography"),
+    InputDefinition("hurst", "Hurst exponent", "Hurst", "1", 1e-6, 2.0, stage="topography"),
+    InputDefinition("rms", "RMS roughness", "RMS", "nm", 1e-5, 1e6, zero=True, stage="topography"),
+    InputDefinition("gap_cutoff", "gap cutoff", "D₀", "nm", 1e-9, 10.0, setting="gap_cutoff_nm", optional=True),
+)
+"""The inputs of the paper's Table 1 in its order, then the optional ones.
+
+Their bounds are wide, from the softest gels to beyond diamond, yet narrow enough to refuse metres, pascals and joules.
+"""
+
+BY_NAME = {row.name: row for row in INPUTS}
+
+
+def definition(name: str) -> InputDefinition:
+    """The row of an input.
+
+    Raises
+    ------
+    InputError : there is no input of this name.
+    """
+    if name not in BY_NAME:
+        raise InputError(f"{name}: no such input of the contact model; accepted: {', '.join(BY_NAME)}")
+    return BY_NAME[name]
