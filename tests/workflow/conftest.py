@@ -45,6 +45,17 @@ class Workflow:
             check=False,
         )
 
+    def start(self, scene: str, *targets: str) -> subprocess.Popen[str]:
+        """Start a run in a session of its own, as a terminal does, and let it work."""
+        return subprocess.Popen(
+            self._command(scene, targets, ()),
+            env=self.environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+
     def planned(self, scene: str, *targets: str) -> dict[str, int]:
         """Number of jobs by rule that would run."""
         done = self.run(scene, *targets, options=("--dry-run", "--quiet", "rules"))

@@ -71,3 +71,13 @@ def test_studies_of_a_scene_cover_every_stage_it_uses(plan):
     expected = {"vary_closing", "measure_detection", "measure_elastic_accuracy", "measure_topography_accuracy"}
     expected |= {f"check_{stage}_stability" for stage in ("hardness", "elastic", "topography")}
     assert plan("ci", "accuracy", "stability") >= expected
+
+
+def test_every_file_that_a_scene_makes_is_asked_for_so_that_a_lost_one_is_made_again(make_workflow, tmp_path):
+    workflow = make_workflow(tmp_path)
+    table = workflow.run("ci", options=("--summary",)).stdout.splitlines()
+    made = {line.split("\t")[0] for line in table[1:]}
+    plan = workflow.run("ci", options=("--dry-run",))
+    (asked,) = (line for line in (plan.stdout + plan.stderr).splitlines() if line.startswith("    input: "))
+    assert len(made) > 50
+    assert made <= set(asked.removeprefix("    input: ").split(", "))

@@ -1,4 +1,4 @@
-from workflow.job import file_checksum
+from workflow.checksums import file_checksum
 
 
 def report_inputs():
@@ -25,6 +25,30 @@ def report_inputs():
         files += ["coupling/comparison.csv"]
     studies = [*ACCURACY, *STABILITY] if SCENE.report.studies else []
     return [f"{RESULTS}/{name}" for name in files] + studies
+
+
+def kept_files():
+    """What jobs of the scene leave beside the files of the report."""
+    parts = [rules.fit_law, rules.fit_nominal_law, rules.propagate_uncertainty, rules.solve_switch, rules.export_law]
+    files = expand(
+        rules.compute_direct_runs.output,
+        design="direct",
+        chunk=full_chunks(SCENE.uncertainty.direct_runs, SCENE.uncertainty.chunk_runs),
+    )
+    if needed("hardness"):
+        parts += [rules.find_hardness, rules.fit_hardness]
+        files += expand(rules.make_glass.output, glass=SCENE.hardness.seeds)
+        files += expand(rules.run_closing.output, run=CLOSINGS)
+        if COUNTER_GLASS:
+            files += expand(rules.make_counter_glass.output, glass=SCENE.hardness.seeds)
+    if needed("elastic"):
+        parts += [rules.fit_bulk_moduli, rules.combine_e_star]
+        files += expand([*rules.make_amorphous.output, *rules.relax_amorphous.output], amorphous=GLASSES)
+        files += expand(rules.make_crystal.output, crystal=ELASTIC["crystals"])
+    if needed("topography"):
+        parts += [rules.pool_spectra] if TOPOGRAPHY.scans else [rules.write_synthetic_scans, rules.pool_spectra]
+    files += [file for part in parts for file in (*part.input, *part.output)]
+    return sorted({file for file in files if file.startswith(RESULTS)})
 
 
 def studies_at_hand():

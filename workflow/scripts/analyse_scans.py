@@ -9,7 +9,8 @@ from pathlib import Path
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import analyse_scan, thumbnail
 from mesoscale.topography.loading import read_scan
-from workflow.job import file_checksum, job
+from workflow.checksums import file_checksum
+from workflow.job import job
 from workflow.results import Dataset, write_h5
 
 with job(snakemake) as run:

@@ -1,0 +1,154 @@
+"""A folder of results has one scene and one run, and no job outlives its run."""
+
+import fcntl
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from workflow import ownership
+
+JOB = """
+import subprocess, sys, time
+from pathlib import Path
+from workflow.ownership import join
+lock = join(Path(sys.argv[1]))
+child = subprocess.Popen(["sleep", "60"], close_fds=False)
+print("ready", child.pid, flush=True)
+time.sleep(60)
+"""
+
+
+@pytest.fixture
+def started():
+    """Start processes that are ended with the test."""
+    processes = []
+
+    def start(command, **options):
+        processes.append(subprocess.Popen(command, stdout=subprocess.PIPE, text=True, **options))
+        return processes[-1]
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.wait()
+        process.stdout.close()
+
+
+def is_free(folder):
+    with (folder / ".jobs").open("w") as jobs:
+        try:
+            fcntl.flock(jobs, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return False
+    return True
+
+
+def eventually(condition, seconds=20.0):
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.02)
+    return condition()
+
+
+def test_a_second_run_is_refused(tmp_path):
+    lock = ownership.take(tmp_path)
+    with pytest.raises(ownership.Refused, match="another run of this scene"):
+        ownership.take(tmp_path)
+    os.close(lock)
+    os.close(ownership.take(tmp_path))
+
+
+@pytest.mark.skipif(not hasattr(os, "pidfd_open"), reason="needs Linux")
+def test_a_job_dies_with_its_run_and_what_it_started_keeps_the_next_run_out(tmp_path, started, monkeypatch):
+    run = started(["sleep", "60"])
+    environment = {**os.environ, ownership.RUN: str(run.pid)}
+    job = started([sys.executable, "-c", JOB, str(tmp_path)], env=environment)
+    child = int(job.stdout.readline().split()[1])
+    assert not is_free(tmp_path)
+    run.kill()
+    assert job.wait(20) == -signal.SIGKILL
+    monkeypatch.setattr(ownership, "PATIENCE_S", 0.1)
+    with pytest.raises(ownership.Refused, match="jobs of an earlier run still work here"):
+        ownership.take(tmp_path)
+    os.kill(child, signal.SIGKILL)
+    assert eventually(lambda: is_free(tmp_path))
+    os.close(ownership.take(tmp_path))
+
+
+@pytest.mark.skipif(not hasattr(os, "pidfd_open"), reason="needs Linux")
+def test_a_job_whose_run_is_gone_does_nothing(tmp_path, started):
+    run = started(["true"])
+    run.wait()
+    job = started([sys.executable, "-c", JOB, str(tmp_path)], env={**os.environ, ownership.RUN: str(run.pid)})
+    assert job.wait(20) == -signal.SIGKILL
+    assert job.stdout.read() == ""
+    assert not (tmp_path / ".jobs").exists()
+
+
+def test_results_belong_to_the_file_of_one_scene(tmp_path):
+    shipped = tmp_path / "shipped"
+    first, second = Path("a/mine.yaml"), Path("b/mine.yaml")
+    ownership.claim(tmp_path, first, shipped, write=False)
+    ownership.claim(tmp_path, second, shipped, write=True)
+    ownership.claim(tmp_path, second.resolve(), shipped, write=True)
+    with pytest.raises(ownership.Refused, match=r"results of .*/b/mine\.yaml, not of .*/a/mine\.yaml"):
+        ownership.claim(tmp_path, first, shipped, write=False)
+
+
+def test_a_shipped_scene_is_known_by_name_wherever_the_project_lies(tmp_path):
+    for place in ("here", "there"):
+        ownership.claim(tmp_path, tmp_path / place / "paper.yaml", tmp_path / place, write=True)
+
+
+# A glass that is quenched in some seconds, in twelve segments
+SCENE = """
+compute: [hardness]
+inputs:
+  e_star: {origin: literature, distribution: normal, a: 91, b: 3.8}
+  h_prime: {origin: literature, a: 1.95, b: 14.8}
+  q0: {origin: literature, a: 0.015, b: 0.035}
+  hurst: {origin: literature, a: 0.5, b: 1.0}
+  rms: {origin: literature, a: 2, b: 15}
+hardness:
+  seeds: [1]
+  glass: {atoms: 600, melt_ps: 2, quench_rate_K_ps: 1000, rest_ps: 6, segment_steps: 500}
+"""
+GLASS = "results/glass/hardness/glass/1.data"
+
+
+def test_runs_after_interrupted_ones_work_at_once_and_end_as_an_uninterrupted_one(make_workflow, tmp_path):
+    interrupted, quiet = make_workflow(tmp_path / "interrupted"), make_workflow(tmp_path / "quiet")
+    for workflow in (interrupted, quiet):
+        workflow.folder.mkdir()
+        (workflow.folder / "glass.yaml").write_text(SCENE)
+    scene = str(interrupted.folder / "glass.yaml")
+    work = interrupted.folder / "results/glass/work/glass_1"
+
+    def start_until(segment):
+        run = interrupted.start(scene, GLASS)
+        assert eventually(lambda: (work / f"restart.{segment}").exists() or run.poll() is not None, 300)
+        assert run.poll() is None
+        return run
+
+    run = start_until(1)
+    os.kill(run.pid, signal.SIGKILL)  # the main process alone; its job and LAMMPS end by themselves
+    run.communicate()
+
+    run = start_until(3)
+    os.killpg(run.pid, signal.SIGINT)  # Ctrl-C: a terminal sends it to all processes
+    said = run.communicate()[1]
+    assert run.returncode == 130
+    assert said.count("interrupted; what is finished is kept: run again") == 1
+    assert not [word for word in ("Traceback", "Error in rule", "ERROR") if word in said]
+
+    glasses = []
+    for workflow in (interrupted, quiet):
+        done = workflow.run(str(workflow.folder / "glass.yaml"), GLASS)
+        assert done.returncode == 0, done.stderr
+        glasses.append((workflow.folder / GLASS).read_bytes())
+    assert glasses[0] == glasses[1]

@@ -1,0 +1,134 @@
+"""One run at a time in a folder of results, of one scene, and no jobs that outlive their run.
+
+Three files in `results/<scene>/`:
+
+.lock    held by the run (Snakemake's main process) while it lives
+.jobs    held, shared, by each job and its LAMMPS: as long as the last of them lives, nothing else starts
+.scene   the file of the scene whose results these are
+
+The system frees such locks (flock) with the last process that holds them, even after SIGKILL.  A job also ends when its
+run is killed, so that the next run need not wait for it.
+"""
+
+import fcntl
+import os
+import select
+import signal
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import NoReturn
+
+RUN = "ASPERITY_RUN"  # environment variable with the process id of the run that a job belongs to
+PATIENCE_S = 60.0  # for jobs of a killed run to end
+
+
+class Refused(Exception):
+    """The folder cannot be used now; the message is one line."""
+
+
+def take(results: Path) -> int:
+    """Take a folder of results for this run; the lock goes with the process.
+
+    Returns
+    -------
+    The open lock, to be kept.
+
+    Raises
+    ------
+    Refused : another run holds the folder, or jobs of an earlier one do not end.
+    """
+    run = os.open(results / ".lock", os.O_RDWR | os.O_CREAT, 0o666)
+    try:
+        fcntl.flock(run, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        _wait_for_jobs(results)
+    except (BlockingIOError, Refused) as error:
+        os.close(run)
+        if isinstance(error, Refused):
+            raise
+        raise Refused(f"{results}: another run of this scene is working here; wait for it or stop it") from None
+    return run
+
+
+def _wait_for_jobs(results: Path) -> None:
+    jobs = os.open(results / ".jobs", os.O_RDWR | os.O_CREAT, 0o666)
+    started = time.monotonic()
+    told = False
+    try:
+        while True:
+            try:
+                fcntl.flock(jobs, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                return
+            except BlockingIOError:
+                waited = time.monotonic() - started
+            if waited > PATIENCE_S:
+                raise Refused(f"{results}: jobs of an earlier run still work here; wait for them or stop them")
+            if waited > 1 and not told:
+                print(f"{results}: waiting for jobs of a killed run to end", file=sys.stderr, flush=True)
+                told = True
+            time.sleep(0.05)
+    finally:
+        os.close(jobs)
+
+
+def claim(results: Path, scene: Path, shipped: Path, write: bool) -> None:
+    """See that the folder's results are those of this scene, and say so in the folder if `write`.
+
+    Parameters
+    ----------
+    scene : the scene's file.
+    shipped : folder of the scenes that come with the project; they are known by name, wherever the project lies.
+
+    Raises
+    ------
+    Refused : the folder holds the results of another scene.
+    """
+    place = scene.resolve()
+    own = f"shipped scene {place.stem}" if place.parent == shipped else str(place)
+    note = results / ".scene"
+    known = note.read_text(encoding="utf-8").rstrip("\n") if note.is_file() else ""
+    if known and known != own:
+        raise Refused(
+            f"{results}: these are results of {known}, not of {own}; give one of them another name (key `name`), or "
+            f"delete {note} if the scene has moved"
+        )
+    if write:
+        note.write_text(own + "\n", encoding="utf-8")
+
+
+def join(results: Path) -> int:
+    """Make this process a job of the run that started it: it dies with the run, and holds its folder until then.
+
+    Returns
+    -------
+    The open lock, to be kept; programs that this process starts inherit it.
+    """
+    run = _watch()
+    jobs = os.open(results / ".jobs", os.O_RDWR | os.O_CREAT, 0o666)
+    fcntl.flock(jobs, fcntl.LOCK_SH)
+    os.set_inheritable(jobs, True)
+    if run is not None:
+        _end_with(run, 0.0)  # killed before the lock was ours: another run may work here by now
+        threading.Thread(target=_end_with, args=(run, None), daemon=True).start()
+    return jobs
+
+
+def _watch() -> int | None:
+    """A file that becomes readable when the run ends; None: started by hand, or no Linux (the lock still holds)."""
+    if RUN not in os.environ or not hasattr(os, "pidfd_open"):
+        return None
+    try:
+        return os.pidfd_open(int(os.environ[RUN]))
+    except ProcessLookupError:
+        _end()
+
+
+def _end_with(run: int, timeout_s: float | None) -> None:
+    if select.select([run], [], [], timeout_s)[0]:
+        _end()
+
+
+def _end() -> NoReturn:
+    os.kill(os.getpid(), signal.SIGKILL)  # not sys.exit: nothing more may be written, by no thread
+    raise AssertionError
