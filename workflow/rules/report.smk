@@ -30,6 +30,7 @@ def report_inputs():
 def kept_files():
     """What jobs of the scene leave beside the files of the report."""
     parts = [rules.fit_law, rules.fit_nominal_law, rules.propagate_uncertainty, rules.solve_switch, rules.export_law]
+    parts += [rules.assemble_pad]
     files = expand(
         rules.compute_direct_runs.output,
         design="direct",
