@@ -118,8 +118,10 @@ def nominal_loads(results: Results) -> str | None:
             panel.set(xlabel="mean separation (nm)", ylabel="force on 1 µm² (µN)")
         contact = float(facts[loads[0]]["first_contact_nm"])
         highest = max(_load(load) for load in loads) / 1e3
+        deepest = max(-float(_total(groups[f"{load}/opening"])[1].min()) for load in loads)
+        near = max(deepest, 0.05 * highest)
         axis.set(xlim=(None, contact + 8), ylim=(-0.06 * highest, 1.03 * highest))
-        zoom.set(xlim=(None, contact + 8), ylim=(-2.5, 7.5), title="near zero force")
+        zoom.set(xlim=(None, contact + 8), ylim=(-1.1 * near, 3.3 * near), title="near zero force")
         axis.set_title("full range")
         axis.legend(title="largest load", fontsize=8, title_fontsize=8)
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from workflow.report.available import Results
+from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, PURPLE, RED, SOFT, draw
 from workflow.report.numbers import column, number, show
 from workflow.report.page import COMPUTED, Gate, Section, Table
@@ -84,6 +84,8 @@ def _switch_lines(found: dict[str, Any]) -> list[tuple[str, ...]]:
 def switch_path(results: Results) -> str:
     """Voltage against separation: folds of the switch with and without adhesion."""
     rows = results.csv("device/path.csv")
+    gap_nm = number(results.json("device/switch.json")["switch"]["gap_nm"])
+    release_nm, release_V = _release_fold(rows, gap_nm)
 
     def plot(axis, zoom):
         for case, color, label in (
@@ -97,16 +99,25 @@ def switch_path(results: Results) -> str:
                 if branch == "closing" and case == "with_adhesion":
                     axis.plot(s / 1e3, volts, color=color)
                 zoom.plot(s, volts, style, color=color, label=f"{label}, {branch}")
-        highest = axis.get_lines()[0].get_ydata()
-        s = axis.get_lines()[0].get_xdata()
-        away = s > 0.2
-        axis.set(ylim=(0, 1.15 * np.nanmax(highest[away])), title="way down: the fold is pull-in")
+        down = [row for row in rows if (row["case"], row["branch"]) == ("with_adhesion", "closing")]
+        far = column(down, "separation_nm") > gap_nm / 3  # pull-in of a plate on a spring is at two thirds
+        pull_in_V = np.sqrt(np.nanmax(column(down, "voltage_squared_V2")[far]))
+        axis.set(ylim=(0, 1.15 * pull_in_V), title="way down: the fold is pull-in")
         axis.set(xlabel="separation (µm)", ylabel="voltage at balance (V)")
-        zoom.set(xlim=(0, 90), ylim=(0, 8), title="way up: the lowest point is release")
+        zoom.set(xlim=(0, 3 * release_nm), ylim=(0, 3 * release_V), title="way up: the lowest point is release")
         zoom.set(xlabel="separation (nm)")
         zoom.legend(fontsize=8)
 
     return draw("path", "Voltage at balance against separation of the switch", plot, (9.4, 3.8), columns=2)
+
+
+def _release_fold(rows: list[Row], gap_nm: float) -> tuple[float, float]:
+    """Separation (nm) and voltage of release without adhesion, the lowest balance near contact."""
+    part = [row for row in rows if (row["case"], row["branch"]) == ("without_adhesion", "opening")]
+    s, squared = column(part, "separation_nm"), column(part, "voltage_squared_V2")
+    near = (s < gap_nm / 3) & (squared > 0)
+    k = np.flatnonzero(near)[np.argmin(squared[near])]
+    return float(s[k]), float(np.sqrt(squared[k]))
 
 
 def release_distribution(results: Results) -> str:

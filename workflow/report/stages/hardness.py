@@ -122,6 +122,8 @@ def hardness_size(results: Results) -> str | None:
     points = results.csv("hardness/points.csv")
     fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
 
+    longest = max(float(np.nanmax(column(points, "contact_length_nm"), initial=0.0)), 18.0)  # nm, where H levels off
+
     def plot(axis):
         for key, (label, color, marker) in SCALES.items():
             part = [row for row in points if _key(row) == key and row.get("status") == "yield"]
@@ -142,7 +144,7 @@ def hardness_size(results: Results) -> str | None:
             axis.plot(length, middle, color=GREEN, label="H_macro + H′/√L in use, 68 %")
         if results.beside_paper:
             _draw_paper(axis)
-        axis.set(xlabel="contact length √A (nm)", ylabel="hardness (GPa)", ylim=(0, None), xlim=(1, 20))
+        axis.set(xlabel="contact length √A (nm)", ylabel="hardness (GPa)", ylim=(0, None), xlim=(1, 1.1 * longest))
         axis.legend(fontsize=8.5)
 
     return draw("fig8", "Hardness of single asperities against contact length", plot)
