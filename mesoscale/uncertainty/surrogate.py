@@ -140,7 +140,7 @@ def joint_scatter(responses: Sequence[Surrogate], direct: tuple[Array, Array], f
         residuals = np.where(positive, np.log(truth / smooth), truth - smooth)
     widening = np.array([_widening(response, len(truth), fitted) for response in responses])
     return Scatter(
-        tuple("log" if logarithmic else "identity" for logarithmic in positive),
+        tuple(np.where(positive, "log", "identity").tolist()),
         residuals.mean(axis=0),
         np.cov(residuals, rowvar=False).reshape(len(responses), -1) * np.outer(widening, widening),
         len(truth),

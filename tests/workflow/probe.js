@@ -18,7 +18,7 @@ window.addEventListener("load", () => setTimeout(() => {
   rms.dispatchEvent(new Event("input", { bubbles: true }));
   const after = [paths(), cells()];
   const followed = [inside(".closing:not(.band)", "chart"), inside(".opening:not(.band)", "well")];
-  const figures = [...document.querySelectorAll("figure svg")];
+  const figures = [...document.querySelectorAll("figure svg")].filter((svg) => !svg.closest(".whole, .panels") || svg.parentElement.getBoundingClientRect().height > 0);
   const text = document.createElement("pre");
   text.id = "probe";
   text.textContent = JSON.stringify({
@@ -29,9 +29,16 @@ window.addEventListener("load", () => setTimeout(() => {
     curves: before[0].length,
     sliders: document.querySelectorAll("#sliders input").length,
     empty: figures.filter((svg) => !(svg.getBoundingClientRect().height > 50)).length,
+    sticks_out: figures.filter((svg) => svg.getBoundingClientRect().right > innerWidth).length,
+    smallest_text: Math.min(...figures.map((svg) => {
+      const scale = svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
+      const drawn = document.getElementById(svg.querySelector(":scope > use")?.getAttribute("href").slice(1)) || svg;
+      return scale * Math.min(...[...drawn.querySelectorAll("text")].map((text) => parseFloat(text.style.fontSize) || 10));
+    })),
+    width: innerWidth,
     overflow: document.documentElement.scrollWidth - innerWidth,
     load_ms: performance.getEntriesByType("navigation")[0].loadEventStart,
     errors: window.failures,
   });
-  document.body.append(text);
+  parent.document.body.append(text); // the page itself, or the host of the frame it is in
 }, 50));

@@ -1,5 +1,6 @@
 """The report page: complete, self-contained, only what exists, alive in a real browser."""
 
+import html
 import json
 import math
 import re
@@ -192,25 +193,48 @@ WATCH = """<script>window.failures = [];
 window.addEventListener("error", (event) => failures.push(event.message));</script>"""
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium is installed (Debian package chromium)")
-def test_page_lives_in_a_real_browser(page, tmp_path):
-    assert CHROMIUM is not None
-    path = tmp_path / "report.html"
+def probed(page, folder, width):
+    """What the probe finds in the page at a window `width` pixels wide, and what the browser says."""
+    if CHROMIUM is None:
+        pytest.skip("no Chromium is installed (Debian package chromium)")
+    path = folder / "report.html"
     probe = f"<script>{PROBE.read_text()}</script></body>"
-    path.write_text(page.replace("<style>", WATCH + "<style>", 1).replace("</body>", probe))
-    options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}"]
-    options += ["--enable-logging=stderr", "--virtual-time-budget=3000", "--window-size=1280,900"]
+    watched = page.replace("<style>", WATCH + "<style>", 1).replace("</body>", probe)
+    # in a frame, as the browser's own window cannot be as narrow as a phone
+    frame = f'<iframe width="{width}" height="900" style="border: 0" srcdoc="{html.escape(watched)}"></iframe>'
+    path.write_text(f"<!doctype html><body>{frame}</body>")
+    options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder / 'profile'}"]
+    options += ["--enable-logging=stderr", "--virtual-time-budget=3000", "--window-size=1400,900"]
+    options += ["--disable-background-networking"]
     done = subprocess.run(
         [CHROMIUM, *options, "--dump-dom", path.as_uri()],
         capture_output=True,
         text=True,
         timeout=60,
     )
-    probe = re.search(r'<pre id="probe">(.*?)</pre>', done.stdout)
-    assert probe, done.stderr[-2000:]
-    found = json.loads(probe[1])
+    found = re.search(r'<pre id="probe">(.*?)</pre>', done.stdout)
+    assert found, done.stderr[-2000:]
+    return json.loads(found[1]), done.stderr
+
+
+def test_figures_fit_a_phone_and_can_be_read_there(page, tmp_path):
+    found, _ = probed(page, tmp_path, 390)
+    assert found["width"] == 390
+    assert found["sticks_out"] == 0
+    assert found["overflow"] <= 0, "the page scrolls sideways"
+    assert found["smallest_text"] > 6.5  # pixels; legends of the widest single figures
+
+
+def test_without_javascript_the_explorer_leaves_no_void(page):
+    live = page[page.index('<div class="explorer"') :]
+    assert live[: live.index(">")].endswith(" hidden")
+    assert "[hidden] { display: none !important; }" in page
+
+
+def test_page_lives_in_a_real_browser(page, tmp_path):
+    found, said = probed(page, tmp_path, 1280)
     assert found["errors"] == []
-    assert "CONSOLE" not in done.stderr, re.findall(r".*CONSOLE.*", done.stderr)
+    assert "CONSOLE" not in said, re.findall(r".*CONSOLE.*", said)
     assert found["sliders"] == 7
     assert found["curves"] > 1000
     assert found["curve_moved"]

@@ -54,12 +54,12 @@ def draw(
     name: str,
     label: str,
     plot: Callable[..., None],
-    size: tuple[float, float] = (6.4, 3.9),
+    size: tuple[float, float] = (5.4, 3.6),
     columns: int = 1,
     rows: int = 1,
     **options: Any,
 ) -> str:
-    """SVG of a figure.
+    """SVG of a figure; one of several columns also as single panels, which narrow screens show below each other.
 
     Parameters
     ----------
@@ -75,9 +75,37 @@ def draw(
         for axis in axes:
             axis.patch.set_alpha(0)
         plot(*axes)
+        boxes = _panels(figure) if columns > 1 else []
         stream = io.StringIO()
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    return _inline(stream.getvalue(), name, label)
+    whole = _inline(stream.getvalue(), name, label)
+    if not boxes:
+        return whole
+    pieces = (
+        f'<svg viewBox="{box}" role="img" aria-label="{_attribute(label)}, panel {k}">'
+        f'<use href="#{name}-figure_1"/></svg>'
+        for k, box in enumerate(boxes, start=1)
+    )
+    return f'<div class="whole">{whole}</div><div class="panels">{"".join(pieces)}</div>'
+
+
+def _panels(figure: Figure) -> list[str]:
+    """View boxes of the panels, in points from the upper left corner."""
+    figure.draw_without_rendering()
+    width, height = 72 * figure.get_size_inches()
+    boxes = []
+    for axis in filter(lambda axis: axis.get_visible(), figure.axes):
+        tight = axis.get_tightbbox()
+        assert tight is not None  # None only for axes that are not visible
+        box = tight.transformed(figure.transFigure.inverted()).padded(0.005)
+        boxes.append(
+            f"{box.x0 * width:.1f} {(1 - box.y1) * height:.1f} {box.width * width:.1f} {box.height * height:.1f}"
+        )
+    return boxes
+
+
+def _attribute(label: str) -> str:
+    return label.replace("&", "and").replace('"', "'").replace("<", "less than")
 
 
 def _inline(svg: str, name: str, label: str) -> str:
@@ -100,10 +128,9 @@ def _inline(svg: str, name: str, label: str) -> str:
     box = re.search(r'viewBox="([^"]+)"', opening[0])
     assert box is not None
     width = float(box[1].split()[2]) * 4 / 3
-    label = label.replace("&", "and").replace('"', "'").replace("<", "less than")
     start = (
         '<svg xmlns:xlink="http://www.w3.org/1999/xlink" xmlns="http://www.w3.org/2000/svg" '
-        f'viewBox="{box[1]}" role="img" aria-label="{label}" style="--width:{width:.0f}px">'
+        f'viewBox="{box[1]}" role="img" aria-label="{_attribute(label)}" style="--width:{width:.0f}px">'
     )
     return start + svg[opening.end() :]
 

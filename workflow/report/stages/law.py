@@ -69,7 +69,7 @@ def band(results: Results) -> str:
         axis.legend(fontsize=8.5)
 
     label = "Contact pressure against separation with the spread over uncertain inputs, and its adhesion well"
-    return draw("law", label, plot, (6.4, 6.0), rows=2)
+    return draw("law", label, plot, (5.4, 5.6), rows=2)
 
 
 def _wells(results: Results) -> dict[str, tuple[np.ndarray, ...]]:

@@ -87,6 +87,7 @@ def sensitivity_bars(results: Results) -> str:
                 axis.barh(places, ours, 0.6, color=BLUE, **bars)
             axis.set(title=f"{symbol} ({unit})", yticks=places, ylim=(len(inputs) - 0.5, -0.5))
             axis.set_yticklabels([SYMBOLS.get(key, key) for key in inputs])
+            axis.tick_params(labelleft=True)  # on every panel, as narrow screens show each by itself
             axis.grid(axis="y", visible=False)
             axis.set_xlim(left=0)
         if results.beside_paper:

@@ -112,7 +112,7 @@ def maps(results: Results) -> str | None:
         for axis in axes[len(shown) :]:
             axis.set_visible(False)
 
-    return draw("fig9", "Height maps of the scans", plot, (8.4, 2.9 * rows), columns, rows)
+    return draw("fig9", "Height maps of the scans", plot, (2.8 * columns, 2.9 * rows), columns, rows)
 
 
 def spectra(results: Results) -> str | None:
@@ -162,7 +162,7 @@ def spectra(results: Results) -> str | None:
         )
         axis.legend(fontsize=8)
 
-    return draw("fig10", "Power spectra of the scans with fits", plot, (7.0, 4.6))
+    return draw("fig10", "Power spectra of the scans with fits", plot, (5.6, 4.4))
 
 
 def recovery(results: Results) -> str | None:
