@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, fminbound
+from scipy.optimize import brentq
 
 from mesoscale.device.statistics import describe, probability
 from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, Switch, switch_from_settings
@@ -62,13 +62,8 @@ def solve_on_pad(switch: Switch, law: PadLaw, hold_voltage_V: float | None) -> P
     near = grid <= law.separation_nm[-1]
     # the fold of the way down lies far above the pad, where nothing but the spring acts
     peak = int(np.argmax(np.where(near, -np.inf, down)))
-    fold_nm = fminbound(
-        lambda s: -_voltage_squared(switch, s, law.closing_GPa(s)),
-        grid[peak - 1],
-        grid[min(peak + 1, grid.size - 1)],
-        xtol=1e-6,
-    )
-    pull_in = float(_voltage_squared(switch, fold_nm, law.closing_GPa(fold_nm)))
+    around = np.linspace(grid[peak - 1], grid[min(peak + 1, grid.size - 1)], POINTS)
+    pull_in = float(_voltage_squared(switch, around, law.closing_GPa(around)).max())
     hold = pull_in if hold_voltage_V is None else hold_voltage_V**2
     holds = np.flatnonzero(near & (down >= hold))
     if holds.size == 0:
