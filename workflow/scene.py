@@ -223,7 +223,7 @@ def accepted_values(field: FieldInfo) -> str:
     words = _type_words(annotation)
     extra = field.json_schema_extra
     unit = extra.get("unit") if isinstance(extra, dict) else None
-    if unit and unit != "1":
+    if unit:
         words += f" in {unit}"
     if bounds := _bounds(field.metadata):
         # bounds of a list stand apart from those of its entries

@@ -11,12 +11,8 @@ from atomistic.settings.engines import refused_parameter
 class NitrideGlassSettings(Settings):
     """Melt and quench of a small amorphous Si3N4 cell (Tersoff potential and soft cores, constant volume)."""
 
-    structures: int = Field(
-        default=8, ge=1, le=1000, description="amorphous structures of the ensemble", json_schema_extra={"unit": "1"}
-    )
-    formula_units: int = Field(
-        default=4, ge=2, le=64, description="formula units of 7 atoms per cell", json_schema_extra={"unit": "1"}
-    )
+    structures: int = Field(default=8, ge=1, le=1000, description="amorphous structures of the ensemble")
+    formula_units: int = Field(default=4, ge=2, le=64, description="formula units of 7 atoms per cell")
     seed: int = Field(default=1, ge=0, le=1_000_000, description="seed of the ensemble")
     melt_temperature_K: float = Field(
         default=5000, ge=1500, le=12000, description="temperature of the melt", json_schema_extra={"unit": "K"}
@@ -34,7 +30,6 @@ class NitrideGlassSettings(Settings):
         ge=1,
         le=10_000,
         description="quenches per structure until one passes the gates; about one in thirty does",
-        json_schema_extra={"unit": "1"},
     )
 
 
@@ -70,9 +65,7 @@ class DftSettings(Settings):
         description="SCF convergence of the energy per cell",
         json_schema_extra={"unit": "hartree"},
     )
-    max_cycles: int = Field(
-        default=50, ge=1, le=1000, description="SCF cycles before giving up", json_schema_extra={"unit": "1"}
-    )
+    max_cycles: int = Field(default=50, ge=1, le=1000, description="SCF cycles before giving up")
 
     @model_validator(mode="after")
     def _only_physics(self) -> "DftSettings":
@@ -107,9 +100,11 @@ class RelaxationSettings(Settings):
         default=0.3, gt=0, le=5, description="largest force left on an atom", json_schema_extra={"unit": "eV/A"}
     )
     max_steps: int = Field(
-        default=15, ge=0, le=500, description="ionic steps; 0 keeps the cheap potential's geometry",
-        json_schema_extra={"unit": "1"},
-    )  # fmt: skip
+        default=15,
+        ge=0,
+        le=500,
+        description="ionic steps; 0 keeps the cheap potential's geometry",
+    )
 
     def applied_to(self, dft: DftSettings) -> DftSettings:
         """The engine with the parameters of the relaxation."""
@@ -138,22 +133,20 @@ class ElasticSettings(Settings):
         default=(-0.03, -0.015, 0.0, 0.015, 0.03),
         min_length=5,
         description="linear isotropic strains of an E(V) scan; at least five",
-        json_schema_extra={"unit": "1"},
     )
-    lda_structures: int = Field(
-        default=4, ge=0, le=1000, description="glasses also computed with LDA", json_schema_extra={"unit": "1"}
-    )
+    lda_structures: int = Field(default=4, ge=0, le=1000, description="glasses also computed with LDA")
     lda_centre: float = Field(
         default=-0.012,
         gt=-0.1,
         lt=0.1,
         description="strain about which LDA is scanned: its volume is some 4 % smaller than that of GGA",
-        json_schema_extra={"unit": "1"},
     )
     relaxed_structures: int = Field(
-        default=2, ge=0, le=1000, description="glasses also computed with ions relaxed at every strain",
-        json_schema_extra={"unit": "1"},
-    )  # fmt: skip
+        default=2,
+        ge=0,
+        le=1000,
+        description="glasses also computed with ions relaxed at every strain",
+    )
     relaxed_force_eV_A: float = Field(
         default=0.15,
         gt=0,
@@ -168,18 +161,14 @@ class ElasticSettings(Settings):
     poisson_ratio: tuple[float, float] = Field(
         default=(0.15, 0.25),
         description="range of the glass's Poisson ratio (Kim et al. 2013)",
-        json_schema_extra={"unit": "1"},
     )
     min_structures: int = Field(
         default=4,
         ge=2,
         le=1000,
         description="trusted bulk moduli below which E* fails its gate",
-        json_schema_extra={"unit": "1"},
     )
-    samples: int = Field(
-        default=20_000, ge=100, le=10_000_000, description="samples of E*", json_schema_extra={"unit": "1"}
-    )
+    samples: int = Field(default=20_000, ge=100, le=10_000_000, description="samples of E*")
     seed: int = Field(default=1, ge=0, le=1_000_000, description="seed of the samples of E*")
     glass: NitrideGlassSettings = NitrideGlassSettings()
     dft: DftSettings = DftSettings()

@@ -10,9 +10,7 @@ from atomistic.settings.base import Settings
 class GlassSettings(Settings):
     """Melt and quench of a periodic glass cell."""
 
-    atoms: int = Field(
-        default=690, ge=100, le=2_000_000, description="atoms of the cell, about", json_schema_extra={"unit": "1"}
-    )
+    atoms: int = Field(default=690, ge=100, le=2_000_000, description="atoms of the cell, about")
     melt_temperature_K: float = Field(
         default=4000, ge=1500, le=12000, description="temperature of the melt", json_schema_extra={"unit": "K"}
     )
@@ -32,7 +30,6 @@ class GlassSettings(Settings):
         ge=100,
         le=1_000_000,
         description="a killed quench loses at most this many steps",
-        json_schema_extra={"unit": "1"},
     )
 
 
@@ -44,7 +41,6 @@ class AsperitySettings(Settings):
         ge=1,
         le=40,
         description="wavelength lambda in glass cells, so that nothing is strained",
-        json_schema_extra={"unit": "1"},
     )
     amplitude_nm: float = Field(
         ge=0,
@@ -131,7 +127,6 @@ class ClosingSettings(Settings):
         le=4,
         description="travel below the top, in amplitudes (in radii of a spherical counterface); "
         "two bodies that yield share it",
-        json_schema_extra={"unit": "1"},
     )
     unload_nm: float = Field(
         default=0,
@@ -169,7 +164,6 @@ class ClosingSettings(Settings):
         ge=1,
         le=10_000,
         description="control force: steps of force between restart files and relaxed snapshots",
-        json_schema_extra={"unit": "1"},
     )
     segment_nm: float = Field(
         default=0.1,
@@ -183,7 +177,6 @@ class ClosingSettings(Settings):
         ge=1,
         le=4096,
         description="MPI processes of one closing run, started as docs/cluster.md says",
-        json_schema_extra={"unit": "1"},
     )
 
 
@@ -220,9 +213,7 @@ class AreaSettings(Settings):
         description="travel over which area and force are averaged",
         json_schema_extra={"unit": "A"},
     )
-    snapshots: int = Field(
-        default=5, ge=1, le=100, description="snapshots per average", json_schema_extra={"unit": "1"}
-    )
+    snapshots: int = Field(default=5, ge=1, le=100, description="snapshots per average")
 
 
 class YieldSettings(Settings):
@@ -240,14 +231,12 @@ class YieldSettings(Settings):
         gt=0,
         le=1,
         description="contact area over cell area up to which stress is judged",
-        json_schema_extra={"unit": "1"},
     )
     min_exchanges: int = Field(
         default=5,
         ge=1,
         le=1000,
         description="changed cation-oxygen bonds above the background that witness plasticity",
-        json_schema_extra={"unit": "1"},
     )
     min_lowering_A: float = Field(
         default=0.5,
@@ -261,14 +250,12 @@ class YieldSettings(Settings):
         ge=3,
         le=100,
         description="averages beyond the onset",
-        json_schema_extra={"unit": "1"},
     )
     max_exponent: float = Field(
         default=0.4,
         gt=0,
         le=2,
         description="largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic",
-        json_schema_extra={"unit": "1"},
     )
     max_drift_meV_atom_ps: float = Field(
         default=0.2,
@@ -294,19 +281,14 @@ class FitSettings(Settings):
         description="literature range of H_macro (Kim et al. 2013, Table 1)",
         json_schema_extra={"unit": "GPa"},
     )
-    min_points: int = Field(
-        default=6, ge=2, le=1000, description="defended points needed", json_schema_extra={"unit": "1"}
-    )
+    min_points: int = Field(default=6, ge=2, le=1000, description="defended points needed")
     min_share: float = Field(
         default=0.5,
         ge=0,
         le=1,
         description="share of runs that must give a defended point",
-        json_schema_extra={"unit": "1"},
     )
-    bootstrap: int = Field(
-        default=2000, ge=100, le=100_000, description="bootstrap samples", json_schema_extra={"unit": "1"}
-    )
+    bootstrap: int = Field(default=2000, ge=100, le=100_000, description="bootstrap samples")
 
 
 class HardnessSettings(Settings):
@@ -318,7 +300,6 @@ class HardnessSettings(Settings):
         default=(1.0, 0.5),
         min_length=1,
         description="factors on all energies; 0.5 is the model-form twin",
-        json_schema_extra={"unit": "1"},
     )
     seeds: tuple[Annotated[int, Field(ge=0, le=1_000_000)], ...] = Field(
         default=(1, 2), min_length=1, description="seeds of the glasses"

@@ -40,10 +40,10 @@ class Settings(BaseModel, metaclass=_OneLine):
         lines = []
         for name, field in cls.model_fields.items():
             extra = field.json_schema_extra
-            unit = extra.get("unit", "1") if isinstance(extra, dict) else "1"
+            unit = extra.get("unit") if isinstance(extra, dict) else None
             value = field.get_default(call_default_factory=True)
             default = type(value).__name__ if isinstance(value, BaseModel) else _shown(value)
             head = f"{name} : {'required' if field.is_required() else f'default {default}'}"
-            lines += [head if unit == "1" else f"{head}, {unit}", f"    {field.description or ''}".rstrip()]
+            lines += [head if unit is None else f"{head}, {unit}", f"    {field.description or ''}".rstrip()]
         if lines:
             cls.__doc__ = "\n".join([(cls.__doc__ or "").strip(), "", "Parameters", "----------", *lines])

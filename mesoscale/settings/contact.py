@@ -16,16 +16,12 @@ class ContactSettings(Settings):
     mechanics: Literal["asperity", "coupled"] = Field(
         default="asperity",
         description="how asperities carry load: each on its own by eq. 3, or all on one elastic half-space",
-        json_schema_extra={"unit": "1"},
     )
     model: Literal["elastic", "nonlinear", "plastic"] = Field(
         default="plastic",
         description="asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the surface",
-        json_schema_extra={"unit": "1"},
     )
-    pixels: int = Field(
-        default=1024, ge=32, le=16384, description="grid points per side", json_schema_extra={"unit": "1"}
-    )
+    pixels: int = Field(default=1024, ge=32, le=16384, description="grid points per side")
     length_nm: float = Field(
         default=1000.0,
         gt=0,
@@ -44,7 +40,6 @@ class ContactSettings(Settings):
         default="areal",
         description="slope of the two-dimensional PSD: -(2H+1), as the paper prints it, or -(2H+2), an isotropic "
         "surface's",
-        json_schema_extra={"unit": "1"},
     )
     q1_per_nm: float | None = Field(
         default=None,
@@ -63,47 +58,39 @@ class ContactSettings(Settings):
     touching_attracts: bool = Field(
         default=False,
         description="whether sites in contact attract (with the gap D0) or are left out of eq. 1",
-        json_schema_extra={"unit": "1"},
     )
     prefactor: Literal["paper", "hertz"] = Field(
-        default="hertz", description="p of eq. 3: 2/3 as printed, or Hertz's 4/3", json_schema_extra={"unit": "1"}
+        default="hertz", description="p of eq. 3: 2/3 as printed, or Hertz's 4/3"
     )
     radius: Literal["curvature", "truncation"] = Field(
         default="curvature",
         description="asperity radius: mean curvature of the sites (eq. 2), or R = A/(2 pi delta)",
-        json_schema_extra={"unit": "1"},
     )
     unloading_radius: Literal["curvature", "flattened"] = Field(
         default="curvature",
         description="radius of an asperity that has yielded: as `radius` says, or at least A/(pi delta), that of "
         "Hertz's contact of its area, which unloads more stiffly",
-        json_schema_extra={"unit": "1"},
     )
     merge: Literal["as_one", "not_less"] = Field(
         default="as_one",
         description="asperities that merge: one with the radius of all sites, or one that carries at least what they "
         "carried (with flow: up to its hardness)",
-        json_schema_extra={"unit": "1"},
     )
     area: Literal["sites", "hertz"] = Field(
         default="sites",
         description="asperity area in eq. 4: its contacting sites, or Hertz's pi R delta",
-        json_schema_extra={"unit": "1"},
     )
     neighbours: Literal[4, 8] = Field(
         default=8,
         description="neighbours through which contacting sites are connected",
-        json_schema_extra={"unit": "1"},
     )
     flow: Literal["increment", "return"] = Field(
         default="return",
         description="plastic flow: fixed increments, or the amplitude that returns the asperity to its yield surface",
-        json_schema_extra={"unit": "1"},
     )
     flow_pair: Literal["paper", "wide"] = Field(
         default="wide",
         description="second Gaussian: 3 times the radius of curvature (s2 = 3^(1/4) s1), or 3 times the width",
-        json_schema_extra={"unit": "1"},
     )
     flow_increment_nm: float = Field(
         default=0.3,
@@ -131,34 +118,29 @@ class ContactSettings(Settings):
         ge=1e-9,
         le=0.1,
         description="an asperity yields above its hardness times 1 + this (flow: return)",
-        json_schema_extra={"unit": "1"},
     )
     max_sweeps: int = Field(
         default=500,
         ge=1,
         le=100000,
         description="bound on the flow sweeps of one separation; reaching it raises a flag",
-        json_schema_extra={"unit": "1"},
     )
     force_steps: int = Field(
         default=40,
         ge=4,
         le=10000,
         description="force steps from contact to the largest force; separations follow from them",
-        json_schema_extra={"unit": "1"},
     )
     gap_bins: int = Field(
         default=4096,
         ge=16,
         le=1048576,
         description="bins of the gap histogram behind the far part of the attraction",
-        json_schema_extra={"unit": "1"},
     )
     nominal_seed: int = Field(
         default=1,
         ge=0,
         description="surface seed of the nominal curves (figures 4 and 11)",
-        json_schema_extra={"unit": "1"},
     )
     nominal_force_nN: float = Field(
         default=1e4,
@@ -178,14 +160,12 @@ class ContactSettings(Settings):
         ge=1,
         le=1000,
         description="surfaces per case of the accuracy study",
-        json_schema_extra={"unit": "1"},
     )
     study_draws: int = Field(
         default=60,
         ge=0,
         le=100000,
         description="random draws from Table 1 of the stability study, on three surfaces each",
-        json_schema_extra={"unit": "1"},
     )
 
     @property

@@ -16,11 +16,8 @@ class CouplingSettings(Settings):
         ge=0,
         le=1000,
         description="surfaces that are compared; 0: the stage is not run",
-        json_schema_extra={"unit": "1"},
     )
-    pixels: int = Field(
-        default=512, ge=32, le=4096, description="grid points per side of both models", json_schema_extra={"unit": "1"}
-    )
+    pixels: int = Field(default=512, ge=32, le=4096, description="grid points per side of both models")
     loads_nN: list[float] = Field(
         default=[100.0, 1000.0, 7000.0, 50000.0],
         min_length=1,
@@ -32,12 +29,10 @@ class CouplingSettings(Settings):
         gt=0,
         le=1e-2,
         description="relative error at which the boundary-element solution stops",
-        json_schema_extra={"unit": "1"},
     )
     max_iterations: int = Field(
         default=5000,
         ge=1,
         le=1000000,
         description="bound on its iterations; reaching it is reported",
-        json_schema_extra={"unit": "1"},
     )

@@ -30,9 +30,7 @@ class DeviceSettings(Settings):
     youngs_modulus_GPa: float = Field(
         default=89.3, gt=0, le=2000, description="Young's modulus of the beam", json_schema_extra={"unit": "GPa"}
     )
-    poisson_ratio: float = Field(
-        default=0.3, ge=0, lt=0.5, description="Poisson's ratio of the beam", json_schema_extra={"unit": "1"}
-    )
+    poisson_ratio: float = Field(default=0.3, ge=0, lt=0.5, description="Poisson's ratio of the beam")
     residual_stress_MPa: float = Field(
         default=0.0,
         ge=0,
@@ -62,7 +60,6 @@ class DeviceSettings(Settings):
         ge=1,
         le=1e5,
         description="relative permittivity of the dielectric",
-        json_schema_extra={"unit": "1"},
     )
     landed_fraction: float = Field(
         default=0.01,
@@ -70,14 +67,12 @@ class DeviceSettings(Settings):
         le=1,
         description="share of the electrode area that meets the dielectric as in the law; a bowed or "
         "tilted beam lands on little of it",
-        json_schema_extra={"unit": "1"},
     )
     adhesion_scale: float = Field(
         default=1.0,
         ge=0,
         le=10,
         description="factor on the attraction of the law; 0.1 brings it near measured dry adhesion",
-        json_schema_extra={"unit": "1"},
     )
     hold_voltage_V: float | None = Field(
         default=None,
@@ -91,5 +86,4 @@ class DeviceSettings(Settings):
         ge=10,
         le=1_000_000,
         description="samples of the law taken from the propagation of uncertainty",
-        json_schema_extra={"unit": "1"},
     )

@@ -15,16 +15,12 @@ class HistorySettings(Settings):
         ge=0,
         le=100000,
         description="closing-opening cycles of each surface; 0: the stage is not run",
-        json_schema_extra={"unit": "1"},
     )
-    seeds: int = Field(
-        default=4, ge=1, le=1000, description="surfaces that are followed", json_schema_extra={"unit": "1"}
-    )
+    seeds: int = Field(default=4, ge=1, le=1000, description="surfaces that are followed")
     creep: Literal["none", "power", "logarithmic"] = Field(
         default="none",
         description="how the hardness falls while the contact is held: not, as (1 + m t/t0)^(-1/m), or as "
         "1/(1 + c ln(1 + t/t0))",
-        json_schema_extra={"unit": "1"},
     )
     dwell_s: float = Field(
         default=0.0,
@@ -38,7 +34,6 @@ class HistorySettings(Settings):
         ge=1,
         le=1000,
         description="times within a dwell at which the contact is solved, evenly in ln(1 + t/t0)",
-        json_schema_extra={"unit": "1"},
     )
     creep_time_s: float = Field(
         default=1.0, gt=0, le=1e12, description="t0 of the creep laws", json_schema_extra={"unit": "s"}
@@ -48,14 +43,12 @@ class HistorySettings(Settings):
         ge=1,
         le=1000,
         description="m: an asperity's pressure p relaxes at the rate (p/H)^m",
-        json_schema_extra={"unit": "1"},
     )
     creep_strength: float = Field(
         default=0.02,
         ge=0,
         le=10,
         description="c: share of the hardness lost per e-fold of time",
-        json_schema_extra={"unit": "1"},
     )
 
     @model_validator(mode="after")

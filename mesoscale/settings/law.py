@@ -20,7 +20,6 @@ class LawSettings(Settings):
         gt=0,
         lt=0.5,
         description="share of the largest repulsion that counts as contact",
-        json_schema_extra={"unit": "1"},
     )
     rho_a_nm: float = Field(
         default=2.0,
@@ -40,7 +39,6 @@ class LawSettings(Settings):
         gt=0,
         le=1,
         description="floor of relative weights, share of the largest repulsion",
-        json_schema_extra={"unit": "1"},
     )
     points: int = Field(
         default=200, ge=20, le=10000, description="even points in separation that a branch is resampled to"
@@ -51,26 +49,22 @@ class LawSettings(Settings):
         gt=0,
         lt=1,
         description="smallest (window / rho_r) that counts as identified",
-        json_schema_extra={"unit": "1"},
     )
     max_depth_ratio: float = Field(
         default=200.0,
         gt=1,
         le=600,
         description="largest (window / rho_r) that counts as identified",
-        json_schema_extra={"unit": "1"},
     )
     max_relative_error: float = Field(
         default=1.0,
         gt=0,
         le=100,
         description="largest relative error of C_r and rho_r that counts as identified",
-        json_schema_extra={"unit": "1"},
     )
     max_residual: float = Field(
         default=0.15,
         gt=0,
         le=1,
         description="misfit above which a fit is marked poor, share of the largest repulsion",
-        json_schema_extra={"unit": "1"},
     )

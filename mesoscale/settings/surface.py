@@ -13,9 +13,7 @@ class CounterfaceSettings(Settings):
     """A second rough surface: the flat meets the sum of both spectra, the effective roughness."""
 
     q0: float = Field(gt=0, le=10, description="its roll-off wave vector", json_schema_extra={"unit": "1/nm"})
-    hurst: float = Field(
-        gt=0, le=2, description="its Hurst exponent, in contact.convention", json_schema_extra={"unit": "1"}
-    )
+    hurst: float = Field(gt=0, le=2, description="its Hurst exponent, in contact.convention")
     rms_nm: float = Field(gt=0, le=1e4, description="its RMS height", json_schema_extra={"unit": "nm"})
 
 
@@ -55,8 +53,5 @@ class SurfaceSettings(Settings):
         ge=-5,
         le=5,
         description="of the heights, peaks counted positive; 0 with kurtosis 3: normal distribution",
-        json_schema_extra={"unit": "1"},
     )
-    kurtosis: float = Field(
-        default=3.0, ge=1, le=50, description="fourth standardised moment", json_schema_extra={"unit": "1"}
-    )
+    kurtosis: float = Field(default=3.0, ge=1, le=50, description="fourth standardised moment")

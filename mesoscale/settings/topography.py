@@ -10,22 +10,16 @@ from mesoscale.settings.base import Settings
 class SyntheticScanSettings(Settings):
     """Synthetic AFM scans with known truth, used when no scans are given (docs/topography.md)."""
 
-    seed: int = Field(default=1, ge=0, description="seed of surfaces and artefacts", json_schema_extra={"unit": "1"})
-    small_scans: int = Field(
-        default=8, ge=0, le=100, description="number of small scans", json_schema_extra={"unit": "1"}
-    )
+    seed: int = Field(default=1, ge=0, description="seed of surfaces and artefacts")
+    small_scans: int = Field(default=8, ge=0, le=100, description="number of small scans")
     small_length_nm: float = Field(
         default=1000.0, gt=0, le=1e6, description="side of a small scan", json_schema_extra={"unit": "nm"}
     )
-    large_scans: int = Field(
-        default=3, ge=0, le=100, description="number of large scans", json_schema_extra={"unit": "1"}
-    )
+    large_scans: int = Field(default=3, ge=0, le=100, description="number of large scans")
     large_length_nm: float = Field(
         default=10000.0, gt=0, le=1e6, description="side of a large scan", json_schema_extra={"unit": "nm"}
     )
-    pixels: int = Field(
-        default=1024, ge=32, le=8192, description="pixels per side of a scan", json_schema_extra={"unit": "1"}
-    )
+    pixels: int = Field(default=1024, ge=32, le=8192, description="pixels per side of a scan")
     q0: float = Field(
         default=0.025,
         gt=0,
@@ -41,7 +35,6 @@ class SyntheticScanSettings(Settings):
         gt=0.5,
         le=6,
         description="true fall of the two-dimensional spectrum, C ~ q^-slope (the paper's H 0.92 as 2H+1)",
-        json_schema_extra={"unit": "1"},
     )
     rms_nm: float = Field(
         default=6.0, gt=0, le=1e4, description="true RMS height of a typical place", json_schema_extra={"unit": "nm"}
@@ -51,7 +44,6 @@ class SyntheticScanSettings(Settings):
         ge=0,
         le=2,
         description="standard deviation of ln(RMS) from place to place; the paper's scans span 1.8 to 14 nm",
-        json_schema_extra={"unit": "1"},
     )
     tip_radius_nm: float = Field(
         default=5.0, ge=0, le=1000, description="radius of the paraboloidal tip", json_schema_extra={"unit": "nm"}
@@ -105,35 +97,30 @@ class TopographySettings(Settings):
         le=1e6,
         description="pixels that differ from the median of their neighbours by more than this many robust "
         "standard deviations are replaced by it; 0 keeps all",
-        json_schema_extra={"unit": "1"},
     )
     max_missing: float = Field(
         default=0.05,
         ge=0,
         le=0.5,
         description="largest share of missing pixels that is filled from neighbours; above, the scan is refused",
-        json_schema_extra={"unit": "1"},
     )
     sections: int = Field(
         default=100,
         ge=1,
         le=10000,
         description="overlapping sections per scan (a square number)",
-        json_schema_extra={"unit": "1"},
     )
     section_fraction: float = Field(
         default=0.75,
         ge=0.1,
         le=1,
         description="side of a section over side of its scan",
-        json_schema_extra={"unit": "1"},
     )
     window_flat: float = Field(
         default=0.99,
         ge=0,
         le=1,
         description="flat share of the window of the paper's procedure",
-        json_schema_extra={"unit": "1"},
     )
     method: Literal["likelihood", "lines"] = Field(
         default="likelihood",
@@ -149,7 +136,6 @@ class TopographySettings(Settings):
         ge=0.5,
         le=0.999,
         description="level of the confidence intervals",
-        json_schema_extra={"unit": "1"},
     )
     convention: Literal["profile", "areal"] = Field(
         default="areal",
@@ -164,23 +150,18 @@ class TopographySettings(Settings):
     press_scans: bool = Field(
         default=False,
         description="close the contact on the scans themselves too, beside random surfaces of their statistics",
-        json_schema_extra={"unit": "1"},
     )
     study_repeats: int = Field(
         default=3,
         ge=1,
         le=1000,
         description="surfaces per point of error against run time",
-        json_schema_extra={"unit": "1"},
     )
     study_sets: int = Field(
         default=10,
         ge=1,
         le=10000,
         description="sets of scans with random truth and artefacts in the recovery study",
-        json_schema_extra={"unit": "1"},
     )
-    scans_per_job: int = Field(
-        default=6, ge=1, le=200, description="scans analysed by one job", json_schema_extra={"unit": "1"}
-    )
+    scans_per_job: int = Field(default=6, ge=1, le=200, description="scans analysed by one job")
     synthetic: SyntheticScanSettings = SyntheticScanSettings()

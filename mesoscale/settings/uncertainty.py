@@ -29,7 +29,6 @@ class UncertaintySettings(Settings):
         gt=0.5,
         lt=1,
         description="central share of an unbounded distribution that the nodes span",
-        json_schema_extra={"unit": "1"},
     )
     chunk_runs: int = Field(default=100, ge=1, le=100000, description="contact cycles per job and file")
     samples: int = Field(default=10000, ge=10, le=10**7, description="samples of the inputs sent through the response")
