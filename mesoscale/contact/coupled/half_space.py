@@ -31,7 +31,7 @@ def influence(pixels: int) -> np.ndarray:
     Shape (pixels // 2 + 1, pixels // 2 + 1); the rest of the cell follows by its symmetry.
     """
     half = pixels // 2 + 1
-    table = fft.irfft2(_compliance(pixels), s=(pixels, pixels)) / np.pi
-    table = np.ascontiguousarray(np.asarray(table)[:half, :half])
+    table = np.asarray(fft.irfft2(_compliance(pixels), s=(pixels, pixels))) / np.pi
+    table = np.ascontiguousarray(table[:half, :half])
     table.flags.writeable = False
     return table

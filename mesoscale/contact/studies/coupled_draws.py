@@ -20,7 +20,7 @@ from mesoscale.settings import ContactSettings
 
 GRIDS = (64, 128, 256)
 SECOND_LOSS = 0.01  # of the first cycle's dissipation, what a second one to the same load may lose
-COLUMNS = ("draw", "pixels", "case", "passed", "broken", "steps", "repulsion_drop", "second_loss", "cpu_s")
+COLUMNS: tuple[str, ...] = ("draw", "pixels", "case", "passed", "broken", "steps", "repulsion_drop", "second_loss", "cpu_s")
 
 
 def coupled_draw_rows(first: int, last: int) -> Iterator[dict[str, Any]]:
