@@ -118,7 +118,7 @@ def run_cycle(
         surface = random_surface(inputs, settings, seed)
     elif plastic:
         surface = surface.copy()
-    contact = _contact(surface, inputs, settings, flattened)
+    contact = contact_on(surface, inputs, settings, flattened)
     capacity = contact.capacity
     first_contact = contact.touching_separation
     approach = _approach(contact)
@@ -163,10 +163,10 @@ def run_cycle(
     )
 
 
-def _contact(
-    surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, flattened: np.ndarray | None
+def contact_on(
+    surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, flattened: np.ndarray | None = None
 ) -> "Contact":
-    """The engine of `settings.mechanics`; the other one is neither loaded nor compiled."""
+    """A contact on heights in nm (N, N), in the engine of `settings.mechanics`; the other one is neither loaded nor compiled."""
     if settings.mechanics == "coupled":
         from mesoscale.contact.coupled.engine import CoupledContact
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.contact.cycle import contact_on
 from mesoscale.contact.engine import Contact, State
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
@@ -55,7 +56,7 @@ def close_by_separation(
     separations_nm = np.asarray(separations_nm, float)
     if not (np.diff(separations_nm) < 0).all():
         raise InputError("separations_nm: accepted are falling separations in nm, from far to near")
-    contact = Contact(heights, inputs, settings)
+    contact = contact_on(heights, inputs, settings)
     flats = separations_nm - contact.offset
     closing = np.zeros((2, flats.size))
     opening = np.full((len(depths), 2, flats.size), np.nan)

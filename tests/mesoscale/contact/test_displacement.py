@@ -20,13 +20,14 @@ def closed(settings=SMALL, separations=SEPARATIONS, depths=DEEPEST, inputs=MIDDL
     return close_by_separation(inputs, settings, heights, separations, depths)
 
 
-def test_elastic_forces_are_those_of_closing_by_force():
-    settings = SMALL.model_copy(update={"model": "elastic"})
+@pytest.mark.parametrize("mechanics", ["asperity", "coupled"])
+def test_elastic_forces_are_those_of_closing_by_force(mechanics):
+    settings = SMALL.model_copy(update={"model": "elastic", "mechanics": mechanics})
     found = closed(settings)
     cycle = run_cycle(MIDDLE, settings, 3, max_force_nN=float(found.closing[0, -1]), keep_surface=False)
-    # the force of an elastic asperity depends on the separation alone
+    # the force of an elastic contact depends on the separation alone
     again = closed(settings, np.asarray(cycle.closing.separation_nm[-20:]), np.empty(0, int))
-    np.testing.assert_allclose(again.closing[0], cycle.closing.repulsive_nN[-20:], rtol=1e-9)
+    np.testing.assert_allclose(again.closing[0], cycle.closing.repulsive_nN[-20:], rtol=1e-8)
     np.testing.assert_allclose(again.closing[1], cycle.closing.attractive_nN[-20:], rtol=1e-6)
 
 
@@ -35,8 +36,9 @@ def test_an_elastic_surface_opens_as_it_closed():
     np.testing.assert_array_equal(found.opening[0], found.closing)
 
 
-def test_plastic_opening_ends_where_closing_ended_and_loses_contact_nearer():
-    found = closed()
+@pytest.mark.parametrize("mechanics", ["asperity", "coupled"])
+def test_plastic_opening_ends_where_closing_ended_and_loses_contact_nearer(mechanics):
+    found = closed(SMALL.model_copy(update={"mechanics": mechanics}))
     assert found.settled
     assert found.opening[0, 0, -1] == found.closing[0, -1] > 0
     assert (found.opening[0, 0] <= found.closing[0] * (1 + 1e-9)).mean() > 0.9
