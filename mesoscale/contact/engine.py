@@ -387,18 +387,18 @@ def solve_force(
         if trial % 4 < 3 and math.isfinite(excess):
             share = short * weight_high / (short * weight_high + excess * weight_low)
         middle = high + share * (low - high)
-        state = contact.move_to(middle, with_flow)
-        reached = abs(state.force - wanted) <= 0.5 * contact.FORCE_TOLERANCE * wanted and not state.stuck
-        if reached or (state.force < wanted and not state.stuck):
-            accept(middle, state)
-            high, short = middle, wanted - state.force
+        moved = contact.move_to(middle, with_flow)
+        reached = abs(moved.force - wanted) <= 0.5 * contact.FORCE_TOLERANCE * wanted and not moved.stuck
+        if reached or (moved.force < wanted and not moved.stuck):
+            accept(middle, moved)
+            high, short = middle, wanted - moved.force
             if reached:
                 return
             weight_high, weight_low = 1.0, weight_low * 0.5 if last_side == 1 else weight_low
             last_side = 1
         else:
             contact.back()
-            low, excess = middle, math.inf if state.stuck else state.force - wanted
+            low, excess = middle, math.inf if moved.stuck else moved.force - wanted
             weight_low, weight_high = 1.0, weight_high * 0.5 if last_side == -1 else weight_high
             last_side = -1
     if excess < short:

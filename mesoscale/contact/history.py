@@ -126,7 +126,7 @@ class Hold:
             step *= 2.0
         separation, moved = path[-1]
         self.missed += abs(moved.force - force) > 1e-3 * force
-        return _row(contact, separation, moved, sum(state.sweeps for _, state in path))
+        return _row(contact, separation, moved, sum(passed.sweeps for _, passed in path))
 
 
 def _times(settings: HistorySettings, start_s: float) -> np.ndarray:
