@@ -15,10 +15,10 @@ import yaml
 from pydantic import Field, ValidationError
 from scipy.special import erfc
 
+from atomistic.constants import COULOMB_EV_A
 from atomistic.errors import InputError
 from atomistic.settings import Settings
 
-COULOMB_EV_A = 14.399645  # e^2 / (4 pi eps0), CODATA 2018
 TABLE_POINTS = 4000
 TABLE_START_A = 0.4  # atoms nearer than this stop LAMMPS
 CONTACT_A = 3.0  # atoms of two bodies nearer than this touch: about the O-O distance across an interface

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.errors import InputError
 
-EV_PER_A3_IN_GPA = 160.21766208
 MIN_POINTS = 5
 B_PRIME_RANGE = (2.0, 7.0)  # outside it, a solid this side of melting is unlikely and the fit suspect
 FORMS_AGREE = 0.02  # Birch–Murnaghan and Vinet must give the same B within this

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from ase import Atoms
 
+from atomistic.constants import AMU_PER_A3_IN_G_CM3
 from atomistic.errors import InputError
 from atomistic.settings import NitrideGlassSettings
 
-AMU_PER_A3_IN_G_CM3 = 1.66053906660
 START_DISTANCE_A = 1.4  # random start: nothing closer than this
 
 

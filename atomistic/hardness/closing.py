@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from atomistic.constants import EV_PER_A3_IN_GPA, KE_EV
 from atomistic.errors import InputError
 from atomistic.hardness.asperity import (
     STRAY_A,
@@ -17,13 +18,12 @@ from atomistic.hardness.asperity import (
     with_vacuum,
 )
 from atomistic.hardness.glass import REFERENCES, cations, write_forcefield
-from atomistic.hardness.readout import EV_A3_GPA, Geometry, Rows, read_curve, read_relaxed, slice_rows, witness_rows
+from atomistic.hardness.readout import Geometry, Rows, read_curve, read_relaxed, slice_rows, witness_rows
 from atomistic.hardness.runs import ClosingRun
 from atomistic.lammps import Atoms, Progress, Workspace, read_data, run_lammps, write_data
 from atomistic.potentials import CONTACT_A, Potential
 from atomistic.settings import AsperitySettings, HardnessSettings
 
-KE_EV = 1.0364269e-4  # u (Å/ps)^2 in eV
 MAX_STRAIN = 0.01  # of a counterface whose cell differs from the asperity's
 
 
@@ -168,7 +168,7 @@ def run_closing(
             "control": closing.control,
             "axis": geometry.axis_A,
             "radius": 10 * closing.sphere_radius_nm,
-            "force_step": closing.force_step_MPa / 1000 / EV_A3_GPA * wavelength**2,
+            "force_step": closing.force_step_MPa / 1000 / EV_PER_A3_IN_GPA * wavelength**2,
             "dwell": max(1, plan.dwell_steps),
             "damping": KE_EV * _mass_u(potential, lower) / closing.damping_ps,
             "start": float(start),

@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import KDTree
 
+from atomistic.constants import AVOGADRO
 from atomistic.errors import InputError
 from atomistic.lammps import Atoms, Progress, Workspace, read_data, run_lammps, write_data
 from atomistic.potentials import Potential
 from atomistic.settings import GlassSettings
 
-AVOGADRO = 6.02214076e23
 NEAREST_START_A = 1.5  # random starts keep atoms this far apart
 
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
+from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.contact_area import contact_area
 from atomistic.lammps import Workspace, read_averages, read_dump
 from atomistic.potentials import CONTACT_A
 from atomistic.settings import AreaSettings
 
-EV_A3_GPA = 160.21766  # 1 eV/Å^3 in GPa
 NEAR, FAR = 0.9, 1.2  # bond lengths in units of the first minimum of g(r)
 TOP_ATOMS = 8
 SLICE_A = 4.0  # half the thickness of the slices for pictures
@@ -73,11 +73,11 @@ def read_curve(
             {
                 "step": steps[k + per - 1],
                 "displacement_nm": float(position[0] - np.mean(position[part])) / 10,
-                "force_nN": push * EV_A3_GPA / 100,
-                "nominal_stress_GPa": push / geometry.wavelength_A**2 * EV_A3_GPA,
+                "force_nN": push * EV_PER_A3_IN_GPA / 100,
+                "nominal_stress_GPa": push / geometry.wavelength_A**2 * EV_PER_A3_IN_GPA,
                 "contact_area_nm2": contact / 100,
                 "contact_length_nm": float(np.sqrt(contact)) / 10,
-                "contact_stress_GPa": push / contact * EV_A3_GPA if contact > 0 else float("nan"),
+                "contact_stress_GPa": push / contact * EV_PER_A3_IN_GPA if contact > 0 else float("nan"),
                 "temperature_K": float(np.mean(temperature[part])),
                 "energy_drift_meV_per_atom": 1000 * float(np.mean(gained[part])) / geometry.atoms,
                 "contact_atoms": float(np.mean([np.sum(touching[step][1] > -area.depth_A) for step in steps[part]])),

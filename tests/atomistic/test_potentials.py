@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import yaml
 
+from atomistic.constants import COULOMB_EV_A
 from atomistic.errors import InputError
-from atomistic.potentials import COULOMB_EV_A, TABLE_START_A, load_potential
+from atomistic.potentials import TABLE_START_A, load_potential
 
 POTENTIALS = Path(__file__).parents[2] / "config" / "potentials"
 PMMCS = POTENTIALS / "pmmcs.yaml"

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from atomistic.constants import BOLTZMANN_EV_PER_K, COULOMB_EV_A, KE_EV
 from atomistic.errors import InputError
 from atomistic.hardness.asperity import cut_asperity
 from atomistic.hardness.closing import run_closing
@@ -21,14 +22,13 @@ from atomistic.lammps import (
     run_lammps,
     write_data,
 )
-from atomistic.potentials import COULOMB_EV_A, Potential
+from atomistic.potentials import Potential
 from atomistic.settings import GlassSettings, HardnessSettings
 
 QUICK = GlassSettings(atoms=150, melt_ps=1, quench_rate_K_ps=1000, rest_ps=0.5, segment_steps=500)
 MAX_DRIFT = 0.2  # meV per atom and ps, the gate of the closing runs
 MAX_DRIFT_CLOSING = 1.0  # the same for closings of some ps, in which a cut surface has hardly come to rest
 MAX_COULOMB = 0.1  # of a bond's force
-KE_EV = 1.0364269e-4  # u (Å/ps)^2 in eV
 
 
 def free_motion(
@@ -57,7 +57,8 @@ def heated(atoms: Atoms, potential: Potential, temperature_K: float) -> Atoms:
     """The same atoms with Maxwell velocities."""
     rng = np.random.default_rng(np.random.SeedSequence([17]))
     masses = np.array([potential.species[ion].mass_u for ion in atoms.elements])[atoms.types - 1]
-    velocities = rng.normal(size=(len(atoms), 3)) * np.sqrt(8.617333e-5 * temperature_K / (KE_EV * masses))[:, None]
+    speeds = np.sqrt(BOLTZMANN_EV_PER_K * temperature_K / (KE_EV * masses))
+    velocities = rng.normal(size=(len(atoms), 3)) * speeds[:, None]
     momentum = np.sum(velocities * masses[:, None], axis=0) / np.sum(masses)
     return replace(atoms, velocities_A_ps=velocities - momentum)
 

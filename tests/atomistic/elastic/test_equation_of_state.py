@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from atomistic.elastic.equation_of_state import EV_PER_A3_IN_GPA, birch_murnaghan, fit_equation_of_state, vinet
+from atomistic.constants import EV_PER_A3_IN_GPA
+from atomistic.elastic.equation_of_state import birch_murnaghan, fit_equation_of_state, vinet
 from atomistic.errors import InputError
 
 VOLUMES = np.linspace(270, 330, 7)
