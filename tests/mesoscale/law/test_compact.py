@@ -19,7 +19,7 @@ def curve(law=TRUE, low=23.0, high=60.0, points=80):
 
 
 def test_flat_plates_attract_as_hamaker():
-    """model.md: A_H = 0.215e-18 J, gap 10 nm, 1 um^2 gives 11.41 nN; the shield fades with (alpha/h)^3."""
+    """Eq. 10 beyond contact, A_H/(6 pi h^3): 0.215e-18 J at 10 nm over 1 um^2; the shield fades as (alpha/h)^3."""
     attractive, repulsive = force(10.0, Law(0.0, 1e-4, 1e-4, 1.0, 0.215, shield_nm=1e-3), AREA)
     assert attractive == pytest.approx(-11.406, rel=1e-3)
     assert repulsive == 0
