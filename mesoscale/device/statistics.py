@@ -8,7 +8,6 @@ from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, Switch, SwitchState
 from mesoscale.law.compact import Law
 
 QUANTILES = (0.05, 0.16, 0.25, 0.5, 0.75, 0.84, 0.95)
-Z_95 = 1.959963984540054
 
 
 def describe(values: np.ndarray) -> dict[str, Any]:
@@ -28,15 +27,13 @@ def describe(values: np.ndarray) -> dict[str, Any]:
 
 def probability(count: int, total: int) -> dict[str, float | int]:
     """Share of `count` in `total` with its 95 % Wilson interval, which stays sensible at 0 and 1."""
-    share = count / total
-    centre = (share + Z_95**2 / (2 * total)) / (1 + Z_95**2 / total)
-    half = Z_95 / (1 + Z_95**2 / total) * np.sqrt(share * (1 - share) / total + Z_95**2 / (4 * total**2))
-    low = centre - half if count else 0.0  # exact at the ends, where rounding would show
-    high = centre + half if count < total else 1.0
+    from scipy.stats import binomtest  # slow to import
+
+    ends = binomtest(count, total).proportion_ci(0.95, method="wilson")
     return {
-        "value": share,
-        "low": float(low),
-        "high": float(high),
+        "value": count / total,
+        "low": float(ends.low),
+        "high": float(ends.high),
         "count": int(count),
         "samples": int(total),
     }
