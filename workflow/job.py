@@ -20,6 +20,7 @@ from atomistic.errors import InputError as AtomisticInputError
 from mesoscale.errors import InputError as MesoscaleInputError
 from workflow.checksums import file_checksum, is_damaged
 from workflow.ownership import join
+from workflow.schemas import UnfitTable
 
 PACKAGES = (
     "asperity-contact",
@@ -138,7 +139,7 @@ def failures(logs: Path, since: float) -> list[str]:
 
 def _one_line(error: Exception, log_path: Path) -> str:
     message = " ".join(str(error).split())
-    if isinstance(error, (AtomisticInputError, MesoscaleInputError, DamagedResult)):
+    if isinstance(error, (AtomisticInputError, MesoscaleInputError, DamagedResult, UnfitTable)):
         return message
     if isinstance(error, OSError):  # no permission, disk full, file missing: the system's words name the file
         return f"{message}; finished results are kept, run again when this is solved"

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from workflow.checksums import record
+from workflow.schemas import UnfitTable, schema_of
 
 SCHEMA_VERSION = 1
 
@@ -83,31 +84,49 @@ def write_csv(path: str | Path, rows: Iterable[Mapping[str, Any]], columns: Sequ
 
     Raises
     ------
-    ValueError : a row has a column that is not in `columns`, or there is neither row nor column.
+    ValueError : a row has a column that is not in `columns`, there is neither row nor column, or the table does not
+        fit its schema (`workflow.schemas`), which every file under results/ has.
     """
-    rows = list(rows)
+    path = Path(path)
+    rows = [{key: _cell(value) for key, value in row.items()} for row in rows]
     if columns is None:
         if not rows:
             raise ValueError(f"{path}: no rows and no columns given")
         columns = list(rows[0])
+    schema = schema_of(path)
+    if schema is None and "results" in path.parts:
+        raise ValueError(f"{path}: no table of workflow/schemas/ is for this file")
+    if schema is not None and (misfit := schema.misfit(columns, [dict.fromkeys(columns, "") | row for row in rows])):
+        raise ValueError(f"{path}: {misfit}; see workflow/schemas/")
     with atomic_path(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.DictWriter(stream, columns, restval="", lineterminator="\n")
         writer.writeheader()
-        writer.writerows({key: _cell(value) for key, value in row.items()} for row in rows)
+        writer.writerows(rows)
 
 
-def _cell(value: Any) -> Any:
+def _cell(value: Any) -> str:
     if value is None:
         return ""
     if isinstance(value, np.generic):
         value = value.item()
-    return repr(value) if isinstance(value, float) else value
+    return repr(value) if isinstance(value, float) else str(value)
 
 
 def read_csv(path: str | Path) -> list[dict[str, str]]:
-    """Read a CSV result file as one mapping per row (all values text)."""
-    with Path(path).open(newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
+    """Read a CSV result file as one mapping per row (all values text).
+
+    Raises
+    ------
+    UnfitTable : the file does not fit its schema (`workflow.schemas`).
+    """
+    path = Path(path)
+    with path.open(newline="", encoding="utf-8") as stream:
+        reader = csv.DictReader(stream)
+        header, rows = reader.fieldnames or (), list(reader)
+    schema = schema_of(path)
+    if schema is not None and (misfit := schema.misfit(header, rows)):
+        raise UnfitTable(f"{path}: {misfit}; damaged or of another version: delete it and run again")
+    return rows
 
 
 def read_numbers(path: str | Path) -> list[dict[str, float]]:

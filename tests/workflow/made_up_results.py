@@ -1,10 +1,13 @@
 """Small made-up result files of every stage, in the formats that the stages write."""
 
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from workflow.results import Dataset, write_csv, write_h5, write_json, write_text
+from workflow.schemas import schema_of
 
 INPUTS = {  # name: unit, distribution, a, b, origin
     "hamaker": ("1e-18 J", "uniform", 0.18, 0.25, "literature"),
@@ -36,8 +39,20 @@ def write_all(root: Path) -> list[Path]:
     return sorted(path for path in root.rglob("*") if path.is_file())
 
 
+PLAIN = {"number": 1.0, "integer": 1, "boolean": True, "text": "made up"}
+
+
+def _write(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
+    """Write a table; what its rows leave out is filled in by the schema."""
+    schema = schema_of(path)
+    assert schema is not None, path
+    needed = [column for column in schema.columns if not column.optional]
+    plain = {column.name: "" if column.empty else PLAIN[column.type] for column in needed}
+    write_csv(path, [{**plain, **row} for row in rows])
+
+
 def _inputs(root: Path) -> None:
-    write_csv(
+    _write(
         root / "inputs.csv",
         [
             {
@@ -68,13 +83,13 @@ def _curves(root: Path) -> None:
             }
     contact = {"length_nm": 1000.0, "pixels": 128, "convention": "areal", "touching_attracts": False}
     write_h5(root / "curves/nominal.h5", groups, {"cell_area_nm2": 1e6, "contact": contact}, PROVENANCE, facts)
-    rows = [
-        {"run": 0, "node": 0, "seed": 0, "branch": branch, **law, "residual": 0.2, "status": "ok", "hamaker": 0.215}
+    fits = [
+        {"branch": branch, **law, "residual": 0.2, "status": "ok"}
         for branch, law in (("closing", LAW), ("opening", OPENED))
     ]
-    rows.append({**rows[1], "status": "poor_fit"})
-    write_csv(root / "law/parameters.csv", rows)
-    write_csv(root / "law/nominal.csv", [{"curve": "load_7000", **row} for row in rows[:2]])
+    run = {"run": 0, "node": 0, "seed": 0, "hamaker": 0.215}
+    _write(root / "law/parameters.csv", [run | fit for fit in (*fits, {**fits[1], "status": "poor_fit"})])
+    _write(root / "law/nominal.csv", [{"curve": "load_7000", **fit} for fit in fits])
 
 
 def _uncertainty(root: Path) -> None:
@@ -85,10 +100,10 @@ def _uncertainty(root: Path) -> None:
         for name, value in law.items():
             samples[f"{branch}_{name}"] = value * (rms / 8.5 if name.endswith("_nm") else np.ones(200))
     rows = [dict(zip(samples, line, strict=True)) for line in zip(*samples.values(), strict=True)]
-    write_csv(root / "uq/samples.csv", rows)
+    _write(root / "uq/samples.csv", rows)
     outputs = [*LAW, *(f"delta_{name}" for name in LAW)]
     values = [*LAW.values(), *(OPENED[name] - LAW[name] for name in LAW)]
-    write_csv(
+    _write(
         root / "uq/outputs.csv",
         [
             {
@@ -115,7 +130,7 @@ def _uncertainty(root: Path) -> None:
             for name, value in zip(outputs, values, strict=True)
         ],
     )
-    write_csv(
+    _write(
         root / "uq/sensitivity.csv",
         [
             {"output": output, "input": name, "mu_star": i, "paper_mu_star": i, "sobol_total": i / 21}
@@ -124,8 +139,8 @@ def _uncertainty(root: Path) -> None:
         ],
     )
     ratio = {"quantity": "d_c/RMS", "from": "mean (Table 2)", "value": 3.9, "seed_sd": 0.2, "paper": 3.74}
-    write_csv(root / "uq/ratios.csv", [ratio])
-    write_csv(
+    _write(root / "uq/ratios.csv", [ratio])
+    _write(
         root / "uq/validation.csv",
         [{"output": name, "runs": 50, "missing": 0, "q2": 0.9, "q2_low": 0.8, "q2_high": 0.95} for name in outputs],
     )
@@ -169,7 +184,7 @@ def _uncertainty(root: Path) -> None:
 
 def _device(root: Path) -> None:
     from mesoscale.device.behaviour import read_samples, state_rows, stiction_rows, study_switch, switch_path
-    from mesoscale.device.export import TABLE_COLUMNS, law_table
+    from mesoscale.device.export import law_table
     from mesoscale.settings import DeviceSettings
     from workflow.results import read_csv
 
@@ -178,10 +193,10 @@ def _device(root: Path) -> None:
     samples = read_samples(rows, fitted, settings, 2.0, 2.0)
     results, states = study_switch(samples, settings, 7.0)
     write_json(root / "device/switch.json", results, PROVENANCE)
-    write_csv(root / "device/release.csv", state_rows(states))
-    write_csv(root / "device/stiction.csv", stiction_rows(states))
-    write_csv(root / "device/path.csv", switch_path(samples, settings))
-    write_csv(root / "device/law.csv", law_table(samples.nominal, samples.laws), TABLE_COLUMNS)
+    _write(root / "device/release.csv", state_rows(states))
+    _write(root / "device/stiction.csv", stiction_rows(states))
+    _write(root / "device/path.csv", switch_path(samples, settings))
+    _write(root / "device/law.csv", law_table(samples.nominal, samples.laws))
 
 
 def _hardness(root: Path) -> None:
@@ -189,7 +204,7 @@ def _hardness(root: Path) -> None:
     for scale in (1.0, 0.5):
         run = f"small_{scale:g}"
         length = np.linspace(0.5, 4, 20)
-        write_csv(
+        _write(
             root / f"hardness/closing/{run}.csv",
             [{"contact_length_nm": x, "contact_stress_GPa": 10 * scale * min(x / 2, 1)} for x in length],
         )
@@ -215,12 +230,12 @@ def _hardness(root: Path) -> None:
             }
         )
         steps = (100, 200, 300)
-        write_csv(
+        _write(
             root / f"hardness/witness/{run}.csv",
             [{"step": step, "displacement_nm": step / 1000, "exchanged_bonds": step // 10} for step in steps],
         )
         rng = np.random.default_rng(0)
-        write_csv(
+        _write(
             root / f"hardness/snapshots/{run}.csv",
             [
                 {"step": step, "type": 1 + k % 2, "x_nm": x, "y_nm": 1.4, "z_nm": z}
@@ -228,7 +243,7 @@ def _hardness(root: Path) -> None:
                 for k, (x, z) in enumerate(rng.uniform(0, 3, (12, 2)).tolist())
             ],
         )
-    write_csv(root / "hardness/points.csv", points)
+    _write(root / "hardness/points.csv", points)
     fit = {
         "method": "literature",
         "gate": {"passed": False, "reasons": ["only 2 of 9 runs <gave> a hardness"]},
@@ -240,7 +255,7 @@ def _hardness(root: Path) -> None:
 
 
 def _elastic(root: Path) -> None:
-    write_csv(
+    _write(
         root / "elastic/bulk_moduli.csv",
         [
             {
@@ -256,7 +271,7 @@ def _elastic(root: Path) -> None:
             for xc in ("gga", "lda")
         ],
     )
-    write_csv(
+    _write(
         root / "elastic/points.csv",
         [
             {
@@ -307,7 +322,7 @@ def _topography(root: Path) -> None:
     row = {"set": 0, "method": "likelihood"}
     for name, v in (("q0", 0.02), ("slope", 2.9), ("rms", 3.0)):
         row.update({f"{name}_true": v, name: 1.01 * v, f"{name}_low": 0.9 * v, f"{name}_high": 1.1 * v})
-    write_csv(root / "topography/recovery.csv", [row])
+    _write(root / "topography/recovery.csv", [row])
     write_json(root / "topography/parameters.json", {**content, "gate": {"passed": True, "reasons": []}}, PROVENANCE)
 
 
@@ -331,8 +346,8 @@ def _history(root: Path) -> None:
             groups[f"cycle_{cycle:04d}/{branch}"] = {
                 key: Dataset(value, "nN", "made up", ("point",)) for key, value in values.items()
             }
-    write_csv(root / "history/cycles.csv", cycles)
-    write_csv(root / "history/dwell.csv", dwell)
+    _write(root / "history/cycles.csv", cycles)
+    _write(root / "history/dwell.csv", dwell)
     write_h5(root / "history/curves.h5", groups, {"cell_area_nm2": 1e6}, PROVENANCE, facts)
 
 
@@ -354,7 +369,7 @@ def _coupling(root: Path) -> None:
         for load in (1e3, 1e4)
         for prefactor in ("hertz", "paper")
     ]
-    write_csv(root / "coupling/comparison.csv", rows)
+    _write(root / "coupling/comparison.csv", rows)
 
 
 def _studies(root: Path) -> None:
@@ -364,10 +379,10 @@ def _studies(root: Path) -> None:
         for case, worse in (("d_c", 1.0), ("C_r", 3.0))
         for steps in (5, 10, 20, 40)
     ]
-    write_csv(root / "accuracy/contact.csv", rows)
+    _write(root / "accuracy/contact.csv", rows)
     cases = [
         {"stage": "contact", "case": case, "description": "made up", "checks": "finite", "passed": passed}
         | {"detail": "", "wall_s": 1.0}
         for case, passed in (("flat", True), ("spikes", False))
     ]
-    write_csv(root / "stability/contact.csv", cases)
+    _write(root / "stability/contact.csv", cases)

@@ -12,7 +12,7 @@ from workflow.results import write_csv, write_text
 
 @pytest.fixture
 def result(tmp_path):
-    path = tmp_path / "law" / "parameters.csv"
+    path = tmp_path / "law" / "table.csv"
     write_csv(path, [{"d_c_nm": 30.0 + k} for k in range(10)])
     return path
 
@@ -77,7 +77,7 @@ def test_the_checksum_is_in_the_format_of_sha256sum(result):
     done = subprocess.run(
         ["sha256sum", "-c", record_of(result).name], cwd=result.parent, capture_output=True, text=True, check=False
     )
-    assert done.stdout == "parameters.csv: OK\n"
+    assert done.stdout == "table.csv: OK\n"
 
 
 SCENE = """

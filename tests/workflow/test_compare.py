@@ -20,7 +20,7 @@ def folders(tmp_path):
     """The same made-up results twice."""
     first, second = tmp_path / "first", tmp_path / "second"
     rows = [{"run": "a", "d_c_nm": 31.5, "wall_s": 2.0}, {"run": "b", "d_c_nm": 32.5, "wall_s": 2.0}]
-    write_csv(first / "law/parameters.csv", rows)
+    write_csv(first / "law/table.csv", rows)
     write_json(first / "fit.json", {"H_GPa": 5.0, "gate": {"passed": True, "reasons": []}}, PROVENANCE)
     force = Dataset(np.array([1.0, np.nan, 3.0]), "nN", "repulsive force", ("point",))
     write_h5(first / "curves.h5", {"closing": {"force": force}}, {"area_nm2": 4.0}, PROVENANCE)
@@ -33,8 +33,8 @@ def folders(tmp_path):
 def test_what_says_who_made_it_and_how_fast_does_not_count(folders):
     first, second = folders
     other = {"rule": "fit_law", "inputs_hash": "1", "versions": {"numpy": "3"}}
-    table = (second / "law/parameters.csv").read_text()
-    (second / "law/parameters.csv").write_text(table.replace(",2.0", ",7.0"))
+    table = (second / "law/table.csv").read_text()
+    (second / "law/table.csv").write_text(table.replace(",2.0", ",7.0"))
     write_json(second / "fit.json", {"H_GPa": 5.0, "gate": {"passed": True, "reasons": []}}, other)
     with h5py.File(second / "curves.h5", "a") as file:
         file.attrs["inputs_hash"] = "1"
@@ -45,13 +45,13 @@ def test_what_says_who_made_it_and_how_fast_does_not_count(folders):
 
 
 def change_last_digit(folder):
-    text = (folder / "law/parameters.csv").read_text()
-    (folder / "law/parameters.csv").write_text(text.replace("32.5", "32.500000000000004"))
+    text = (folder / "law/table.csv").read_text()
+    (folder / "law/table.csv").write_text(text.replace("32.5", "32.500000000000004"))
 
 
 def rename_column(folder):
-    text = (folder / "law/parameters.csv").read_text()
-    (folder / "law/parameters.csv").write_text(text.replace("d_c_nm", "contact_nm"))
+    text = (folder / "law/table.csv").read_text()
+    (folder / "law/table.csv").write_text(text.replace("d_c_nm", "contact_nm"))
 
 
 def change_nested_value(folder):
@@ -76,8 +76,8 @@ def change_setting(folder):
 @pytest.mark.parametrize(
     ("change", "line"),
     [
-        (change_last_digit, "law/parameters.csv: [1]/d_c_nm '32.5' | '32.500000000000004'"),
-        (rename_column, "law/parameters.csv: [0] keys gone: d_c_nm; new: contact_nm"),
+        (change_last_digit, "law/table.csv: [1]/d_c_nm '32.5' | '32.500000000000004'"),
+        (rename_column, "law/table.csv: [0] keys gone: d_c_nm; new: contact_nm"),
         (change_nested_value, "fit.json: /gate/passed True | False"),
         (change_curve, "curves.h5: /values/closing/force differs by up to 0.5"),
         (change_unit, "curves.h5: /attributes/closing/force/units 'nN' | 'uN'"),

@@ -1,0 +1,76 @@
+"""Every CSV result has a schema; what does not fit it is neither written nor read."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from workflow.results import read_csv, write_csv
+from workflow.schemas import STAGES, UnfitTable, schema_of
+from workflow.schemas.__main__ import PAGE, page
+
+RULES = Path(__file__).parents[2] / "workflow" / "rules"
+ROW = {"landed_fraction": 0.1, "stiction_probability": 0.5, "low": 0.4, "high": 0.6}
+TABLE = "results/mine/device/stiction.csv"
+
+
+def test_every_table_of_the_rules_has_a_schema():
+    rules = "".join(path.read_text() for path in RULES.glob("*.smk"))
+    paths = set(re.findall(r'\{RESULTS\}/([^"\n]*\.csv)"', rules))
+    assert len(paths) > 40
+    names = [re.sub(r"\{\{?[^}]*\}\}?", "x_1", path.replace("{name}", "chunk")) for path in paths]
+    assert not [name for name in names if schema_of(Path(name)) is None]
+
+
+def test_every_schema_belongs_to_a_rule():
+    rules = "".join(path.read_text() for path in RULES.glob("*.smk"))
+    patterns = [path for tables in STAGES.values() for table in tables for path in table.paths]
+    assert not [pattern for pattern in patterns if pattern.partition("*")[0].rpartition("/")[0] not in rules]
+
+
+def test_the_page_of_result_files_is_up_to_date():
+    assert PAGE.read_text(encoding="utf-8") == page(), "run: python -m workflow.schemas"
+
+
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [
+        (ROW | {"heigth": 0.6}, "column heigth is unknown"),
+        ({key: value for key, value in ROW.items() if key != "low"}, "column low is missing"),
+        (ROW | {"high": None}, "row 1 has no value in column high"),
+        (ROW | {"high": "most"}, "row 1, column high: 'most' is no number"),
+    ],
+)
+def test_a_table_that_does_not_fit_is_not_written(tmp_path, row, words):
+    with pytest.raises(ValueError, match=rf"stiction\.csv: {words}"):
+        write_csv(tmp_path / TABLE, [row])
+    assert not (tmp_path / TABLE).exists()
+
+
+def test_a_result_without_a_schema_is_not_written(tmp_path):
+    with pytest.raises(ValueError, match=r"results/mine/new\.csv: no table of workflow/schemas"):
+        write_csv(tmp_path / "results/mine/new.csv", [ROW])
+    write_csv(tmp_path / "elsewhere/new.csv", [ROW])
+
+
+def test_what_was_written_is_read(tmp_path):
+    write_csv(tmp_path / TABLE, [ROW, ROW | {"low": float("nan")}])
+    assert read_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {"low": "nan"}
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda text: text.replace("high", "top"), "column high is missing"),
+        (lambda text: text[:-5], "row 1 ends before column high"),
+        (lambda text: text.replace("0.5", "0.\x005"), r"row 1, column stiction_probability: '0\.\\x005' is no number"),
+        (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, high"),
+        (lambda text: "", "column landed_fraction is missing"),
+    ],
+)
+def test_a_damaged_table_is_refused_in_one_line(tmp_path, change, words):
+    path = tmp_path / TABLE
+    write_csv(path, [ROW])
+    path.write_text(change(path.read_text()))
+    with pytest.raises(UnfitTable, match=rf"{words}; damaged or of another version: delete it and run again"):
+        read_csv(path)

@@ -1,0 +1,97 @@
+"""Tables of the elastic stage and of its anchors."""
+
+from workflow.schemas.table import Column, Table, boolean, integer, number, text
+
+_SCAN: tuple[Column, ...] = (
+    text("structure", "name of the structure"),
+    text("xc", "exchange and correlation: GGA or LDA"),
+    text("ions", "clamped or relaxed"),
+    integer("atoms", "atoms in the cell"),
+)
+_NETWORK: tuple[Column, ...] = (
+    number("density_g_cm3", "g/cm³", "density"),
+    number("coordination_*", "1", "mean coordination number of an element"),
+)
+_BOND_SPREAD = number("bond_spread_A", "Å", "standard deviation of the bond lengths")
+
+TABLES = (
+    Table(
+        ("elastic/points.csv", "elastic/scans/*.csv", "accuracy/anchors/*.csv"),
+        "One volume of an E(V) scan.",
+        (
+            *_SCAN,
+            number("strain", "1", "isotropic strain of every edge"),
+            number("volume_A3", "Å³", "volume of the cell"),
+            number("energy_eV", "eV", "energy of the cell; nan where the calculation failed"),
+            boolean("converged", "whether the calculation converged"),
+            number("wall_s", "s", "run time"),
+            text("detail", "why it failed, or how relaxed ions came to rest", empty=True),
+        ),
+    ),
+    Table(
+        ("elastic/bulk_moduli.csv",),
+        "The equation of state fitted to one scan.",
+        (
+            *_SCAN,
+            number("B_GPa", "GPa", "bulk modulus (Birch–Murnaghan)", empty=True),
+            number("B_prime", "1", "its derivative by pressure", empty=True),
+            number("V0_A3", "Å³", "equilibrium volume of the cell", empty=True),
+            number("B_vinet_GPa", "GPa", "bulk modulus by Vinet's form", empty=True),
+            number("residual_meV", "meV", "root mean square deviation of the energies from the fit", empty=True),
+            integer("points", "volumes used"),
+            text("flags", "why the fit is not trusted", empty=True),
+            text("failed", "volumes that did not converge, and why", empty=True),
+        ),
+    ),
+    Table(
+        ("elastic/quenched/*.csv",),
+        "One attempt to melt and quench a cell.",
+        (
+            text("structure", "name of the structure"),
+            integer("attempt", "number of the attempt, from 0"),
+            *_NETWORK,
+            number("shortest_*_A", "Å", "shortest distance between two elements"),
+            _BOND_SPREAD,
+            integer("defects", "atoms without their valence"),
+            text("status", "accepted, or rejected: why"),
+        ),
+    ),
+    Table(
+        ("elastic/structures.csv",),
+        "One relaxed amorphous structure.",
+        (
+            text("structure", "name of the structure"),
+            integer("atoms", "atoms in the cell"),
+            *_NETWORK,
+            _BOND_SPREAD,
+            integer("steps", "ionic steps of the relaxation"),
+            number("force_left_eV_A", "eV/Å", "largest force left", empty=True),
+            boolean("converged", "whether the forces met their goal"),
+            number("energy_gained_eV", "eV", "energy below the quenched cell", empty=True),
+            number("gap_eV", "eV", "gap between occupied and empty levels", empty=True),
+            text("failure", "why the calculation failed", empty=True),
+            integer("quenches", "attempts to quench it"),
+            text("status", "accepted, or rejected: why"),
+        ),
+    ),
+    Table(
+        ("accuracy/elastic_anchors.csv",),
+        "A crystal computed by the same means as the glasses, beside published values.",
+        (
+            text("structure", "name of the crystal"),
+            text("xc", "exchange and correlation: GGA or LDA"),
+            integer("atoms", "atoms in the cell"),
+            number("B_GPa", "GPa", "bulk modulus", empty=True),
+            number("B_prime", "1", "its derivative by pressure", empty=True),
+            number("residual_meV", "meV", "root mean square deviation of the energies from the fit", empty=True),
+            text("flags", "why the fit is not trusted", empty=True),
+            number("V0_A3", "Å³", "equilibrium volume of V0_atoms atoms", empty=True),
+            integer("V0_atoms", "atoms that the volumes belong to"),
+            text("published", "GGA, LDA or experiment"),
+            number("published_B_GPa", "GPa", "published bulk modulus"),
+            number("published_V0_A3", "Å³", "published equilibrium volume", empty=True),
+            text("published_source", "where it was published"),
+            number("wall_s", "s", "run time of the scan"),
+        ),
+    ),
+)

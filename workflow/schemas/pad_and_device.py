@@ -1,0 +1,90 @@
+"""Tables of pads and of the switch."""
+
+from workflow.schemas.inputs_and_law import BRANCH
+from workflow.schemas.table import Table, integer, number, text
+
+_CASE = text("case", "with_adhesion or without_adhesion")
+
+TABLES = (
+    Table(
+        ("pad/grid.csv",),
+        "One separation at which the cells of a pad are computed.",
+        (
+            number("separation_nm", "nm", "separation"),
+            integer("opened_from", "1 where the pad is opened from there, else 0"),
+        ),
+    ),
+    Table(
+        ("pad/curves.csv",),
+        "One separation of one branch: the mean pressure of the cells.",
+        (
+            BRANCH,
+            number("depth_nm", "nm", "separation from which the pad is opened; empty on closing", empty=True),
+            number("separation_nm", "nm", "separation"),
+            number("repulsive_MPa", "MPa", "repulsive pressure"),
+            number("attractive_MPa", "MPa", "attractive pressure (negative)"),
+            number("net_kPa", "kPa", "sum of both"),
+            number("standard_error_kPa", "kPa", "standard error of net_kPa from the scatter of the cells"),
+        ),
+    ),
+    Table(
+        ("pad/adhesion.csv",),
+        "Pads of one size, opened from one depth.",
+        (
+            number("depth_nm", "nm", "separation from which the pad is opened"),
+            number("closed_to_MPa", "MPa", "net pressure there"),
+            integer("cells", "cells of the pad"),
+            text("method", "groups of cells, or all with the bias taken off"),
+            number("net_adhesion_kPa", "kPa", "largest net attraction on opening, mean over pads"),
+            number("pad_scatter_kPa", "kPa", "standard deviation from pad to pad"),
+            number("standard_error_kPa", "kPa", "standard error of net_adhesion_kPa"),
+        ),
+    ),
+    Table(
+        ("device/release.csv",),
+        "The switch with one sample of the law.",
+        (
+            _CASE,
+            integer("sample", "number of the sample"),
+            number("pull_in_V", "V", "pull-in voltage"),
+            number("release_V", "V", "release voltage (0: stuck)"),
+            number("release_nm", "nm", "separation at release"),
+            integer("stuck", "1 where the switch sticks, else 0"),
+            number("critical_landed_fraction", "1", "landed fraction beyond which the switch sticks"),
+        ),
+    ),
+    Table(
+        ("device/stiction.csv",),
+        "One landed fraction.",
+        (
+            number("landed_fraction", "1", "share of the electrode that lands"),
+            number("stiction_probability", "1", "share of the samples that stick"),
+            number("low", "1", "lower end of its 95 % interval"),
+            number("high", "1", "upper end of its 95 % interval"),
+        ),
+    ),
+    Table(
+        ("device/path.csv",),
+        "One point of the switch's path with the nominal law.",
+        (
+            _CASE,
+            BRANCH,
+            number("separation_nm", "nm", "separation"),
+            number("voltage_squared_V2", "V²", "square of the voltage in equilibrium; negative: none holds it there"),
+            integer("stable", "1 where the equilibrium is stable, else 0"),
+        ),
+    ),
+    Table(
+        ("device/law.csv",),
+        "One gap of one branch.",
+        (
+            BRANCH,
+            number("gap_nm", "nm", "separation"),
+            number("pressure_GPa", "GPa", "nominal contact pressure, positive: repulsive"),
+            number("derivative_GPa_nm", "GPa/nm", "its derivative by the gap"),
+            number("pressure_q05_GPa", "GPa", "5 % quantile over the samples"),
+            number("pressure_q50_GPa", "GPa", "median over the samples"),
+            number("pressure_q95_GPa", "GPa", "95 % quantile over the samples"),
+        ),
+    ),
+)

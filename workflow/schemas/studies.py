@@ -1,0 +1,69 @@
+"""Tables that all stages share: accuracy, stability, and the draws behind the contact model's stability."""
+
+from workflow.schemas.inputs_and_law import INPUT_VALUES, SEED
+from workflow.schemas.table import Table, boolean, integer, number, text
+
+_HARDNESS = "; hardness alone"
+_DETECTION = "; hardness_detection alone"
+
+TABLES = (
+    Table(
+        ("accuracy/*.csv",),
+        "One value of one knob.",
+        (
+            text("stage", "stage of the study"),
+            text("case", "quantity whose error it is"),
+            text("knob", "setting that is varied"),
+            text("value", "its value"),
+            number("error", "1", "error against the reference; `error_metric` says which"),
+            text("error_metric", "what the error is"),
+            text("reference", "what the error is against", empty=True),
+            number("wall_s", "s", "run time", empty=True),
+            number("cpu_s", "s", "processor time", empty=True),
+            number("peak_rss_MB", "MB", "largest memory so far", empty=True),
+            number("hardness_GPa", "GPa", "plateau stress" + _HARDNESS, empty=True, optional=True),
+            number("hardness_lo", "GPa", "lower end of its 68 % interval" + _HARDNESS, empty=True, optional=True),
+            number("hardness_hi", "GPa", "upper end of its 68 % interval" + _HARDNESS, empty=True, optional=True),
+            text("status", "yield, no_yield, or rejected: why" + _HARDNESS, empty=True, optional=True),
+            integer("atom_steps", "atoms times MD steps" + _HARDNESS, empty=True, optional=True),
+            number("bound", "1", "largest rate accepted" + _DETECTION, optional=True),
+            boolean("passed", "whether the rate is within its bound" + _DETECTION, optional=True),
+            integer("trials", "made-up runs behind the rate" + _DETECTION, optional=True),
+            number("noise_GPa", "GPa", "noise of the stress" + _DETECTION, optional=True),
+            number("correlation", "1", "correlation of neighbouring averages" + _DETECTION, optional=True),
+            number("background", "1", "bond exchanges per snapshot before contact" + _DETECTION, optional=True),
+        ),
+    ),
+    Table(
+        ("stability/contact_draws.csv", "stability/contact_draws/chunk_*.csv"),
+        "One cycle with inputs drawn at random.",
+        (
+            integer("draw", "number of the draw"),
+            *INPUT_VALUES,
+            SEED,
+            integer("pixels", "grid points a side"),
+            boolean("passed", "whether every invariant held"),
+            text("broken", "invariants that did not hold", empty=True),
+            integer("steps", "force steps in contact"),
+            integer("most_sweeps", "most sweeps of one step"),
+            integer("sweeps", "sweeps of all steps"),
+            number("force_miss", "1", "by how much the force was missed, relative"),
+            integer("radius_bound_events", "times a radius met its bound"),
+            integer("repeated_steps", "steps that were repeated"),
+            number("wall_s", "s", "run time"),
+        ),
+    ),
+    Table(
+        ("stability/*.csv",),
+        "One hard case.",
+        (
+            text("stage", "stage of the study"),
+            text("case", "name of the case"),
+            text("description", "what is hard about it"),
+            text("checks", "what is checked"),
+            boolean("passed", "whether it passed"),
+            text("detail", "numbers behind the verdict, or why it failed", empty=True),
+            number("wall_s", "s", "run time"),
+        ),
+    ),
+)

@@ -1,0 +1,339 @@
+"""Tables of uncertainty and sensitivity."""
+
+from mesoscale.law.parameters import LAW, LAW_OUTPUTS
+from workflow.schemas.inputs_and_law import INPUT_VALUES, SEED
+from workflow.schemas.table import Column, Table, boolean, integer, number, text
+
+_OUTPUT = text("output", "parameter of the law on closing, or its change on opening (delta_)")
+_UNIT = text("unit", "unit of the output")
+_INPUT = text("input", "name of the uncertain input")
+
+
+def _fitted(empty: bool, status: bool) -> tuple[Column, ...]:
+    columns: list[Column] = []
+    for branch in ("closing", "opening"):
+        columns += [number(f"{branch}_{row.name}", row.unit, f"{row.meaning}, {branch}", empty) for row in LAW]
+        if status:
+            columns.append(text(f"{branch}_status", f"ok, or why the fit of the {branch} is poor or missing"))
+    return tuple(columns)
+
+
+def _in_unit(name: str, meaning: str, ends: str = "", empty: bool = False) -> tuple[Column, ...]:
+    """A number in the output's unit, with the ends of its interval if there is one."""
+    return _with_ends(number(name, "`unit`", meaning, empty), ends)
+
+
+def _with_ends(column: Column, ends: str) -> tuple[Column, ...]:
+    if not ends:
+        return (column,)
+    low = number(f"{column.name}_low", column.unit, f"lower end of its {ends}", column.empty)
+    return column, low, number(f"{column.name}_high", column.unit, f"upper end of its {ends}", column.empty)
+
+
+_QUANTILES = {"q05": "5 % quantile", "q50": "median", "q95": "95 % quantile"}
+_MISSING = integer("missing", "runs without this output")
+
+_OUTPUTS = Table(
+    ("uq/outputs.csv",),
+    "An output of the paper's Table 2.",
+    (
+        _OUTPUT,
+        _UNIT,
+        *_in_unit("mean", "mean by the paper's method, averaged over seeds"),
+        *_in_unit("dev", "standard deviation by the paper's method, averaged over seeds"),
+        *_in_unit("mean_seed_sd", "standard deviation of the mean over seeds"),
+        *_in_unit("dev_seed_sd", "standard deviation of the deviation over seeds"),
+        *_in_unit("paper_mean", "the paper's mean"),
+        *_in_unit("paper_dev", "the paper's deviation"),
+        number("mean_difference_in_seed_sd", "1", "mean minus the paper's, over mean_seed_sd"),
+        number("dev_difference_in_seed_sd", "1", "deviation minus the paper's, over dev_seed_sd"),
+        *_in_unit("paper_mean_exchanged", "the paper's mean with the labels of δC_a and δC_r exchanged"),
+        *_in_unit("paper_dev_exchanged", "the paper's deviation with these labels exchanged"),
+        number("mean_difference_in_seed_sd_exchanged", "1", "mean minus the paper's exchanged one"),
+        number("dev_difference_in_seed_sd_exchanged", "1", "deviation minus the paper's exchanged one"),
+        *_in_unit("centre", "at the central inputs, averaged over seeds"),
+        *_in_unit("centre_seed_sd", "its standard deviation over seeds"),
+        *_in_unit("response_mean", "mean of the exported response, averaged over random surfaces"),
+        *_in_unit("response_dev", "standard deviation of the exported response"),
+        *(
+            number(f"response_{name}", "`unit`", f"{words} of the exported response")
+            for name, words in _QUANTILES.items()
+        ),
+        *_in_unit("cell_dev", "standard deviation of single cells"),
+        *(number(f"cell_{name}", "`unit`", f"{words} of single cells") for name, words in _QUANTILES.items()),
+        *_in_unit("dev_from_mu_star", "deviation that µ* implies, sqrt(sum µ*² / 12)"),
+        number("seed_share", "1", "share of the variance that comes from the random surface"),
+        number("variance_of_mean", "`unit`²", "variance that comes from the inputs"),
+        number("mean_of_variance", "`unit`²", "variance that comes from the random surface"),
+        integer("seeds_used", "seeds with all nodes"),
+        integer("seeds", "seeds computed"),
+        integer("runs", "runs of the design"),
+        _MISSING,
+    ),
+)
+
+_VALIDATION = Table(
+    ("uq/validation.csv",),
+    "An output: the exported response beside direct runs. All but the counts is empty with fewer than three of these.",
+    (
+        _OUTPUT,
+        _UNIT,
+        integer("runs", "direct runs"),
+        _MISSING,
+        *(
+            column
+            for name, words in {"mean": "mean", "dev": "standard deviation", **_QUANTILES}.items()
+            for column in (
+                *_in_unit(f"{name}_direct", f"{words} of the direct runs", "90 % bootstrap interval", True),
+                *_in_unit(f"{name}_response", f"{words} of the response with the scatter of single cells", "", True),
+            )
+        ),
+        *_in_unit("mean_linear", "mean by the paper's method", empty=True),
+        *_in_unit("dev_linear", "standard deviation by the paper's method", empty=True),
+        *_in_unit("rmse", "root mean square error of held-out predictions", empty=True),
+        *_in_unit("bias", "mean error of held-out predictions", empty=True),
+        *_with_ends(number("q2", "1", "1 - rmse² / variance of the direct runs", True), "90 % bootstrap interval"),
+        number("q2_linear", "1", "the same of the paper's linear response", empty=True),
+    ),
+)
+
+_SENSITIVITY = Table(
+    ("uq/sensitivity.csv",),
+    "An output with an input (the paper's Table 3).",
+    (
+        _OUTPUT,
+        _INPUT,
+        _UNIT,
+        *_in_unit("mu_star", "elementary effect by the paper's method, averaged over seeds"),
+        *_in_unit("mu_star_seed_sd", "its standard deviation over seeds"),
+        *_in_unit("paper_mu_star", "the paper's, with the labels of C_a and C_r exchanged"),
+        *_in_unit("paper_mu_star_as_printed", "the paper's, as printed"),
+        number("difference_in_seed_sd", "1", "mu_star minus the paper's, over mu_star_seed_sd"),
+        number("difference_in_seed_sd_as_printed", "1", "the same for the paper's as printed"),
+        *_in_unit("morris_mu_star", "Morris' mean absolute effect through the response", "90 % interval"),
+        *_in_unit("morris_sigma", "standard deviation of the effects: curvature and interaction"),
+        *_with_ends(number("sobol_first", "1", "first-order Sobol' index of the response"), "90 % interval"),
+        *_with_ends(number("sobol_total", "1", "total Sobol' index of the response"), "90 % interval"),
+        number("seed_share", "1", "share of the variance that comes from the random surface"),
+        integer("seeds_used", "seeds with all nodes of level 1"),
+    ),
+)
+
+_RATIOS = Table(
+    ("uq/ratios.csv",),
+    "A length of the law over the RMS roughness. No row where the roughness is fixed.",
+    (
+        text("quantity", "d_c/RMS or rho_r/RMS"),
+        text("from", "means (Table 2) or µ* (Table 3)"),
+        number("value", "1", "ratio, averaged over seeds"),
+        number("seed_sd", "1", "its standard deviation over seeds"),
+        number("paper", "1", "the paper's ratio"),
+        number("difference_in_seed_sd", "1", "value minus the paper's, over seed_sd"),
+        integer("seeds_used", "seeds with all nodes"),
+    ),
+)
+
+_DIRECT = Table(
+    ("uq/*/chunk_*.csv",),
+    "One direct run: cycle and law of its own inputs on its own surface.",
+    (
+        integer("run", "number of the run"),
+        SEED,
+        *INPUT_VALUES,
+        *_fitted(empty=True, status=True),
+        number("first_contact_nm", "nm", "separation of first contact", empty=True),
+        text("curve_status", "ok, unconverged, or failed: why"),
+    ),
+)
+
+_TIMING = Table(
+    ("uq/*/timing_*.csv",),
+    "One job of direct runs.",
+    (
+        integer("cycles", "cycles computed"),
+        number("engine_cpu_s", "s", "processor time of the cycles"),
+        number("job_started_s", "s", "start of the job, system clock"),
+        number("job_ended_s", "s", "end of the job, system clock"),
+        number("peak_rss_MB", "MB", "largest memory"),
+    ),
+)
+
+_BIAS_SHARE = "in true deviations (mean) or relative (dev)"
+_BIAS = Table(
+    ("uq/bias.csv",),
+    "An output: both methods beside brute force.",
+    (
+        _OUTPUT,
+        _UNIT,
+        integer("runs", "direct runs"),
+        _MISSING,
+        integer("replicates", "runs with the same inputs on another surface"),
+        *_in_unit("mean_direct", "true mean", "90 % interval"),
+        *_in_unit("dev_direct", "true standard deviation", "90 % interval"),
+        *_in_unit("input_dev", "standard deviation that comes from the inputs", "90 % interval"),
+        *_in_unit("surface_dev", "standard deviation that comes from the random surface", "90 % interval"),
+        number("surface_share", "1", "share of the variance that comes from the random surface"),
+        integer("level1_seeds", "seeds behind the level-1 estimates"),
+        *(
+            column
+            for method, words in (("level1", "the paper's level 1"), ("response", "the default response"))
+            for name in ("mean", "dev")
+            for column in (
+                *_in_unit(f"{name}_{method}", f"{name} by {words}"),
+                *_with_ends(number(f"{name}_{method}_bias", "1", f"its bias, {_BIAS_SHARE}"), "90 % interval"),
+            )
+        ),
+    ),
+)
+
+_INDICES = Table(
+    ("uq/indices.csv",),
+    "An output with an input: Sobol' indices of the response beside brute force.",
+    (
+        _OUTPUT,
+        _INPUT,
+        *(
+            column
+            for kind, words in (("first", "first-order"), ("total", "total"))
+            for column in (
+                *_with_ends(number(f"{kind}_response", "1", f"{words} index of the response"), "90 % interval"),
+                *_with_ends(number(f"{kind}_direct", "1", f"{words} index by brute force"), "90 % interval"),
+                number(f"{kind}_difference", "1", "response minus brute force"),
+                boolean(f"{kind}_agrees", "whether both agree within 0.02 or the interval", empty=True),
+            )
+        ),
+    ),
+)
+
+_MORRIS = Table(
+    ("uq/morris.csv",),
+    "An output with an input: Morris' effects through the engine.",
+    (
+        _OUTPUT,
+        _INPUT,
+        _UNIT,
+        *_in_unit("morris_mu_star", "mean absolute effect", "90 % interval"),
+        *_in_unit("morris_sigma", "standard deviation of the effects"),
+        integer("trajectories", "trajectories without a missing run"),
+        *_in_unit("one_star_mu_star", "the paper's µ*, of one star, averaged over seeds"),
+        *_in_unit("paper_mu_star", "the paper's"),
+    ),
+)
+
+_PRECISION = Table(
+    ("uq/work_precision.csv",),
+    "A statistic of an output by one method at one cost.",
+    (
+        text("method", "way to propagate the uncertainty"),
+        integer("engine_calls", "cycles that it takes"),
+        number("engine_cpu_s", "s", "processor time of these cycles"),
+        number("fit_cpu_s", "s", "processor time of the fit"),
+        integer("repeats", "repeats with other runs"),
+        _OUTPUT,
+        _UNIT,
+        text("statistic", "mean, dev, q05, q50, q95, sobol_first or q2"),
+        number("value", "`unit`", "mean over repeats"),
+        number("truth", "`unit`", "by all direct runs"),
+        number("error", "1", "root mean square error over repeats (means and quantiles in deviations)"),
+        number("floor", "1", "error of the truth itself"),
+    ),
+)
+
+_EXTREMES = Table(
+    ("uq/extremes.csv",),
+    "A definition of d_c for pads of one area, by one method.",
+    (
+        text("quantity", "first contact, or share of force"),
+        integer("area_in_cells", "area in cells of 1 µm²"),
+        text("method", "cells pressed together, gumbel fitted to single cells, or direct"),
+        number("mean_nm", "nm", "mean separation"),
+        number("low_nm", "nm", "lower end of its 90 % interval"),
+        number("high_nm", "nm", "upper end of its 90 % interval"),
+        number("one_sd_nm", "nm", "standard deviation from one pad to the next"),
+        integer("samples", "cells or surfaces behind it"),
+        number("difference_nm", "nm", "direct minus cells", empty=True),
+    ),
+)
+
+_OVERHEAD = Table(
+    ("uq/overhead.csv",),
+    "All direct runs of the scene (one row).",
+    (
+        integer("cycles", "cycles computed"),
+        integer("jobs", "jobs"),
+        integer("cores", "cores in use"),
+        number("elapsed_s", "s", "from the first start to the last end, without pauses"),
+        number("engine_cpu_s", "s", "processor time of the cycles"),
+        number("engine_s_per_cycle", "s", "processor time of one cycle"),
+        number("overhead", "1", "share of the cores' time that is not the engine's"),
+        number("peak_rss_MB", "MB", "largest memory of a job"),
+    ),
+)
+
+_READING = (text("contact", "reading of the contact model"), text("law", "reading of the law's fit"))
+_AUDIT = Table(
+    ("audit/runs/*.csv",),
+    "One run under one reading of the paper.",
+    (
+        *_READING,
+        SEED,
+        integer("node", "number of the node of the design"),
+        boolean("converged", "whether the cycle converged"),
+        *(number(row.name, row.unit, row.meaning, empty=True) for row in LAW_OUTPUTS),
+    ),
+)
+
+_RANKING = Table(
+    ("audit/ranking.csv",),
+    "A reading of the paper, nearest to its tables first.",
+    (
+        *_READING,
+        *_with_ends(number("distance", "1", "distance to the paper's Tables 2 and 3"), "90 % interval"),
+        number("distance_one_seed_sd", "1", "standard deviation of the distance from one seed to the next"),
+        number("distance_table2", "1", "distance to Table 2"),
+        number("distance_table3", "1", "distance to Table 3"),
+        text("labels", "labels of the doubtful columns: as printed or exchanged"),
+        integer("seeds", "seeds computed"),
+        _MISSING,
+        integer("unconverged", "runs that did not converge"),
+        number("d_c_centre_nm", "nm", "d_c at the central inputs, averaged over seeds"),
+        *(
+            number(f"{kind}_{row.short}", row.unit, f"{words} of {row.short}")
+            for kind, words in {
+                "mean": "mean",
+                "dev": "standard deviation",
+                "mean_seed_sd": "scatter over seeds of the mean",
+                "dev_seed_sd": "scatter over seeds of the deviation",
+            }.items()
+            for row in LAW_OUTPUTS
+        ),
+        *(
+            number(f"mu_star_rms_{name}", "nm", f"µ* of the RMS roughness on {name}", optional=True)
+            for name in ("d_c", "rho_r")
+        ),
+    ),
+)
+
+_SAMPLES = Table(
+    ("uq/samples.csv",),
+    "One sample of the inputs through the exported responses; nan where an output has none.",
+    (*INPUT_VALUES, *_fitted(empty=False, status=False)),
+)
+
+TABLES = (
+    _OUTPUTS,
+    _RATIOS,
+    _SENSITIVITY,
+    _SAMPLES,
+    _VALIDATION,
+    _DIRECT,
+    _TIMING,
+    _BIAS,
+    _INDICES,
+    _MORRIS,
+    _PRECISION,
+    _EXTREMES,
+    _OVERHEAD,
+    _AUDIT,
+    _RANKING,
+)
