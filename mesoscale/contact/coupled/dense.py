@@ -3,9 +3,10 @@
 The pressures p of the known sites make the gap g = g0 + G p complementary to 0 <= p <= limit: g >= 0 where p = 0,
 g = 0 between the bounds, g <= 0 where p = limit. This is a convex quadratic programme. A primal-dual active set, which
 is a semismooth Newton iteration (Hueeber and Wohlmuth, doi:10.1016/j.cma.2004.08.006), solves it with one linear
-system for the sites between the bounds at a time; conjugate gradients solve this system, because they need 10 to 20
-products with a matrix whose factors cost as much as hundreds. `grid` holds the same for whole grids, and what
-takes over where the sets do not come to rest.
+system for the sites between the bounds at a time. Conjugate gradients solve this system, because they need some tens of
+products with a matrix whose factors cost as much as a hundred. These products are in single precision: each step starts
+from gaps in double precision, so that only the number of steps can suffer. `grid` holds the same for whole grids, and
+what takes over where the sets do not come to rest.
 """
 
 import numpy as np
@@ -13,6 +14,7 @@ from numba import njit
 
 NEWTON_STEPS = 40
 FACE_STEPS = 1000
+FACE_SHARE = 1e-3
 FAST = {"contract", "reassoc", "nsz"}  # sums in any order, so that they run in parallel lanes
 
 
@@ -45,7 +47,7 @@ def multiply(matrix, n, x, y):
 def _multiply_block(block, x, y):
     for k in range(x.size):
         row = block[k]
-        total = 0.0
+        total = np.float32(0.0)
         for j in range(x.size):
             total += row[j] * x[j]
         y[k] = total
@@ -90,22 +92,23 @@ def _classify(gap, pressure, displacement, limit, stiffness, n, state):
 
 
 @njit(cache=True)
-def _close_gaps(block, gap, goal, share):
+def _close_gaps(block, gap, goal):
     """Pressures that close the gaps of some sites, by conjugate gradients.
 
-    Ends where the largest gap is below `goal`, or below `share` of the first one.
+    Ends where the largest gap is below `goal`, or below `FACE_SHARE` of the first one: the next step goes on from
+    there, and the block need not be exact.
     """
     size = gap.size
     x = np.zeros(size)
     r = -gap
-    goal = max(goal, share * np.abs(gap).max())
+    goal = max(goal, FACE_SHARE * np.abs(gap).max())
     d = r.copy()
     q = np.empty(size)
     rr = r @ r
     for _ in range(FACE_STEPS):
         if np.abs(r).max() <= goal:
             break
-        _multiply_block(block, d, q)
+        _multiply_block(block, d.astype(np.float32), q)
         dq = d @ q
         if not dq > 0.0:
             break
@@ -138,7 +141,7 @@ def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
     state = np.full(n, 1, np.int8)
     change = np.zeros(n)
     moves = np.empty(n)
-    block = np.empty((0, 0))
+    block = np.empty((0, 0), np.float32)
     for step in range(NEWTON_STEPS):
         moved = _classify(gap, pressure, displacement, limit, stiffness, n, state) > 0 or step == 0
         largest = 0.0
@@ -162,13 +165,12 @@ def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
             continue
         free = np.flatnonzero(state == 1)
         if moved:
-            block = np.empty((count, count))
+            block = np.empty((count, count), np.float32)
             for k in range(count):
                 for j in range(count):
                     block[k, j] = matrix[free[k], free[j]]
         open_gap = gap[free] + displacement[free]
-        share = 1e-3 if moved else 0.0
-        found = _close_gaps(block, open_gap, 0.1 * tolerance * largest / stiffness, share)
+        found = _close_gaps(block, open_gap, 0.1 * tolerance * largest / stiffness)
         change[:] = 0.0
         change[free] = found
         pressure[free] += found

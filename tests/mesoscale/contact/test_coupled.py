@@ -179,7 +179,7 @@ def test_no_repulsion_is_lost_on_closing_and_no_energy_won(case, h_prime):
         assert np.diff(force).min() >= -1e-9 * force.max()
     lost, spent = dissipated(cycle)
     # trapezoids over 20 to 30 points know the work to a per cent
-    assert lost >= (0.0 if settings.model != "plastic" else 0.1 * spent)
+    assert lost >= (-1e-12 * spent if settings.model != "plastic" else 0.1 * spent)
     if settings.model == "plastic":
         second = run_cycle(inputs, settings, 1, heights=cycle.heights)
         assert second.converged
