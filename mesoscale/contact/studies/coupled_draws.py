@@ -66,7 +66,7 @@ def main() -> None:
     """Write the rows of some draws to a file."""
     first, last, file = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
     with file.open("w", newline="") as out:
-        writer = csv.DictWriter(out, COLUMNS)
+        writer: csv.DictWriter[str] = csv.DictWriter(out, COLUMNS)
         writer.writeheader()
         for row in coupled_draw_rows(first, last):
             writer.writerow(row)
