@@ -166,7 +166,7 @@ def run_cycle(
 def contact_on(
     surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, flattened: np.ndarray | None = None
 ) -> "Contact":
-    """A contact on heights in nm (N, N), in the engine of `settings.mechanics`; the other one is neither loaded nor compiled."""
+    """Contact on (N, N) heights in nm by the engine of `settings.mechanics`; the other one is not even compiled."""
     if settings.mechanics == "coupled":
         from mesoscale.contact.coupled.engine import CoupledContact
 

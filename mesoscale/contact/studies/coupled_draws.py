@@ -20,7 +20,17 @@ from mesoscale.settings import ContactSettings
 
 GRIDS = (64, 128, 256)
 SECOND_LOSS = 0.01  # of the first cycle's dissipation, what a second one to the same load may lose
-COLUMNS: tuple[str, ...] = ("draw", "pixels", "case", "passed", "broken", "steps", "repulsion_drop", "second_loss", "cpu_s")
+COLUMNS: tuple[str, ...] = (
+    "draw",
+    "pixels",
+    "case",
+    "passed",
+    "broken",
+    "steps",
+    "repulsion_drop",
+    "second_loss",
+    "cpu_s",
+)
 
 
 def coupled_draw_rows(first: int, last: int) -> Iterator[dict[str, Any]]:
@@ -66,7 +76,7 @@ def main() -> None:
     """Write the rows of some draws to a file."""
     first, last, file = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
     with file.open("w", newline="") as out:
-        writer: csv.DictWriter[str] = csv.DictWriter(out, COLUMNS)
+        writer = csv.DictWriter(out, COLUMNS)
         writer.writeheader()
         for row in coupled_draw_rows(first, last):
             writer.writerow(row)
