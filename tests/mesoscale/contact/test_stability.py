@@ -1,8 +1,11 @@
+import pytest
+
 from mesoscale.contact import run_cycle
-from mesoscale.contact.studies.draws import COLUMNS, draw_inputs, draw_rows
+from mesoscale.contact.studies.draws import COLUMNS, RANGES, draw_inputs, draw_rows
 from mesoscale.contact.studies.stability import draws_by_grid, extreme_cases, judge, study_grid, violations
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
+from tests.mesoscale import paper
 
 SMALL = ContactSettings(pixels=64, length_nm=62.5, max_force_nN=200.0, study_draws=51)
 
@@ -13,6 +16,14 @@ def test_draws_are_the_same_whatever_the_chunk():
     assert [(row["draw"], row["seed"], row["pixels"]) for row in rows] == [(50, seed, 32) for seed in (1, 2, 3)]
     assert all(row["hurst"] == round(draw_inputs(50).hurst, 6) for row in rows)
     assert set(rows[0]) == set(COLUMNS)
+
+
+def test_draws_are_from_table_1():
+    rows = paper.INPUTS.rows()
+    normal = rows.pop("e_star")
+    assert {name: RANGES[name] for name in rows} == {name: (row.a, row.b) for name, row in rows.items()}
+    # 2.895 deviations: the central 99.6 %
+    assert RANGES["e_star"] == pytest.approx((normal.a - 2.895 * normal.b, normal.a + 2.895 * normal.b), rel=1e-4)
 
 
 def test_no_extreme_load_or_height_is_left_out():
