@@ -103,6 +103,8 @@ def test_results_belong_to_the_file_of_one_scene(tmp_path):
 def test_a_shipped_scene_is_known_by_name_wherever_the_project_lies(tmp_path):
     for place in ("here", "there"):
         ownership.claim(tmp_path, tmp_path / place / "paper.yaml", tmp_path / place, write=True)
+    with pytest.raises(ownership.Refused, match="results of shipped scene paper, not of"):
+        ownership.claim(tmp_path, tmp_path / "mine" / "paper.yaml", tmp_path / "there", write=False)
 
 
 # A glass that is quenched in some seconds, in twelve segments

@@ -1,13 +1,14 @@
-"""Hard cases: each recovers known truth, doubts or refuses."""
+"""Hard cases: each recovers known truth, doubts or refuses; another answer than the expected one fails."""
+
+from dataclasses import replace
 
 import pytest
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.studies.stability import CASES, check
+from mesoscale.topography.studies.stability import CASES, TRUTH, check
 
 SLOW = {"4096"}  # a minute; part of `snakemake stability`
-
-
+BY_NAME = {case.name: case for case in CASES}
 QUICK = [case for case in CASES if case.name not in SLOW]
 
 
@@ -15,3 +16,19 @@ QUICK = [case for case in CASES if case.name not in SLOW]
 def test_hard_case(case):
     passed, detail = check(case, TopographySettings())
     assert passed, detail
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "detail"),
+    [
+        ("standard", {"truth": TRUTH.model_copy(update={"rms_nm": 1.2 * TRUTH.rms_nm})}, "rms -0.1"),
+        ("standard", {"expected": "doubts"}, "no doubts: "),
+        ("standard", {"expected": "refuses"}, "was not refused"),
+        ("constant", {"expected": "recovers"}, "rms +inf"),
+        ("saturated", {"word": "another reason"}, "cut off"),
+    ],
+)
+def test_another_answer_fails(name, change, detail):
+    passed, text = check(replace(BY_NAME[name], **change), TopographySettings())
+    assert not passed
+    assert detail in text
