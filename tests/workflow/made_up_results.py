@@ -55,15 +55,7 @@ def _inputs(root: Path) -> None:
     _write(
         root / "inputs.csv",
         [
-            {
-                "parameter": name,
-                "unit": unit,
-                "distribution": kind,
-                "a": a,
-                "b": b,
-                "origin": origin,
-                "file": "f",
-            }
+            {"parameter": name, "unit": unit, "distribution": kind, "a": a, "b": b, "origin": origin}
             for name, (unit, kind, a, b, origin) in INPUTS.items()
         ],
     )
@@ -111,7 +103,6 @@ def _uncertainty(root: Path) -> None:
                 "unit": "nm",
                 "mean": value,
                 "dev": abs(value) / 2,
-                "mean_difference_in_seed_sd": 0.0,
                 "paper_mean_exchanged": value,
                 "paper_dev_exchanged": abs(value) / 3,
                 "centre": value,
@@ -119,8 +110,6 @@ def _uncertainty(root: Path) -> None:
                 "response_mean": value,
                 "response_dev": abs(value) / 2,
                 "response_q05": value / 2,
-            }
-            | {
                 "response_q50": value,
                 "response_q95": 2 * value,
                 "paper_mean": value,
@@ -215,8 +204,6 @@ def _hardness(root: Path) -> None:
                 "geometry": "asperity-flat",
                 "wavelength_nm": 5.8,
                 "status": "yield",
-            }
-            | {
                 "contact_length_nm": 3.0,
                 "hardness_GPa": 10 * scale,
                 "hardness_lo": 9 * scale,
@@ -265,7 +252,6 @@ def _elastic(root: Path) -> None:
                 "B_GPa": 150 + 5 * i,
                 "B_prime": 4,
                 "V0_A3": 300,
-                "flags": "",
             }
             for i in range(4)
             for xc in ("gga", "lda")
@@ -274,14 +260,7 @@ def _elastic(root: Path) -> None:
     _write(
         root / "elastic/points.csv",
         [
-            {
-                "structure": "beta",
-                "xc": "gga",
-                "ions": "clamped",
-                "strain": x,
-                "energy_eV": x * x,
-                "converged": "True",
-            }
+            {"structure": "beta", "xc": "gga", "ions": "clamped", "strain": x, "energy_eV": x * x}
             for x in np.linspace(-0.05, 0.05, 5)
         ],
     )
@@ -331,7 +310,7 @@ def _history(root: Path) -> None:
     for cycle in (1, 2):
         row = {"seed": 1, "cycle": cycle, "held_s": 10.0 * cycle, "closed_nm": 25.0 - cycle, "last_contact_nm": 29.0}
         row |= {"contact_area_nm2": 1e3, "dissipated_nN_nm": 1e4 / cycle**6, "pull_off_nN": 300.0}
-        cycles.append(row | {"release_V": 0.0, "critical_landed_fraction": 0.008, "converged": True})
+        cycles.append(row | {"release_V": 0.0, "critical_landed_fraction": 0.008})
         for time in (0.0, 10.0):
             held = {
                 "held_s": 10 * (cycle - 1) + time,
@@ -362,8 +341,6 @@ def _coupling(root: Path) -> None:
             "contact_area_nm2": 2.0 * load,
             "contact_area_coupled_nm2": load,
             "force_ratio": 1.25,
-            "solver_error": 1e-9,
-            "solved": True,
         }
         for seed in (1, 2)
         for load in (1e3, 1e4)
@@ -380,9 +357,5 @@ def _studies(root: Path) -> None:
         for steps in (5, 10, 20, 40)
     ]
     _write(root / "accuracy/contact.csv", rows)
-    cases = [
-        {"stage": "contact", "case": case, "description": "made up", "checks": "finite", "passed": passed}
-        | {"detail": "", "wall_s": 1.0}
-        for case, passed in (("flat", True), ("spikes", False))
-    ]
+    cases = [{"case": case, "passed": passed} for case, passed in (("flat", True), ("spikes", False))]
     _write(root / "stability/contact.csv", cases)
