@@ -60,11 +60,11 @@ def close_by_separation(
     flats = separations_nm - contact.offset
     closing = np.zeros((2, flats.size))
     opening = np.full((len(depths), 2, flats.size), np.nan)
-    first_contact = contact.touching_separation + contact.offset
+    touching = contact.touching_separation
     settled = True
     changed = 0
     for place, flat in enumerate(flats):
-        if flat < contact.touching_separation or closing[0, place - 1] > 0:
+        if flat < touching:
             moved = _bring_down(contact, flats[place - 1] if place else flat, flat)
             settled &= moved.settled and not moved.stuck
             closing[0, place] = moved.force
@@ -75,7 +75,7 @@ def close_by_separation(
             if changed:  # else nothing has flowed yet: the way back is the way there
                 opening[number, :, :place] = _way_back(contact, flats[:place])
                 contact.move_to(flat, False)
-    return Displacement(first_contact, closing, opening, settled)
+    return Displacement(touching + contact.offset, closing, opening, settled)
 
 
 def _bring_down(contact: Contact, start: float, target: float) -> State:
@@ -100,9 +100,10 @@ def _bring_down(contact: Contact, start: float, target: float) -> State:
 def _way_back(contact: Contact, flats: Array) -> Array:
     """Repulsion and attraction of the surface as flow has left it, without further flow, shape (2, len(flats))."""
     contact.adopt_changes()
+    touching = contact.touching_separation
     forces = np.zeros((2, flats.size))
     for place, flat in enumerate(flats):
-        if flat < contact.touching_separation:
+        if flat < touching:
             forces[0, place] = contact.move_to(flat, False).force
         forces[1, place] = contact.attraction(flat)
     return forces
