@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from ase import Atoms
 from ase.units import Hartree
 
@@ -26,6 +25,7 @@ from atomistic.elastic.dft import FUNCTIONALS, PyscfGamma, Solution, build_cell,
 from atomistic.elastic.equation_of_state import fit_equation_of_state
 from atomistic.elastic.networks import crystal
 from atomistic.elastic.relaxation import strained
+from atomistic.materials import load_material
 
 STRAINS = (0.0, 0.015, -0.015, 0.03, -0.03)  # in the order of the elastic stage
 BASIS = "gth-dzvp-molopt-sr"
@@ -34,9 +34,7 @@ MATERIAL = Path(__file__).parents[1] / "config/materials/silicon_nitride.yaml"
 
 def beta(atoms: int) -> Atoms:
     """β-Si3N4 with 14 atoms per repeat along c."""
-    material = yaml.safe_load(MATERIAL.read_text(encoding="utf-8"))
-    cell = {**material["crystals"]["beta"], "supercell": [1, 1, atoms // 14]}
-    return crystal({**material, "crystals": {"beta": cell}}, "beta")
+    return crystal(load_material(MATERIAL), "beta", (1, 1, atoms // 14))
 
 
 def curve(cell: Atoms, numerics: str, cutoff_Ha: float) -> tuple[list[dict[str, float]], list[Solution]]:

@@ -3,12 +3,13 @@
 E = 3 B (1 − 2ν),   1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂          (Kim et al. 2013, eq. 5)
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
+from atomistic.materials import Material, Polycrystal
 from atomistic.settings import ElasticSettings
 
 
@@ -117,14 +118,14 @@ PAPER = {"mean_GPa": 91.0, "std_GPa": 3.8, "source": "Kim et al. (2013), Table 1
 
 
 def effective_modulus(
-    moduli: Sequence[Modulus], counter_body: Mapping[str, Any], settings: ElasticSettings
+    moduli: Sequence[Modulus], counter_body: Material, settings: ElasticSettings
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """E* as a distribution: mixture of GGA and GGA shifted by LDA − GGA, ν uniform, counter body from experiment.
 
     Parameters
     ----------
     moduli : of the glasses (crystals do not belong here)
-    counter_body : material file of the other body
+    counter_body : the other body, with its `polycrystal`
 
     Returns
     -------
@@ -144,8 +145,8 @@ def effective_modulus(
         )
     if not shift["structures"]:
         reasons.append("no structure has both LDA and GGA: the model-form shift is unknown")
-    other_E = (float(counter_body["young_GPa"]), float(counter_body.get("young_std_GPa", 0.0)))
-    other_nu = float(counter_body["poisson_ratio"])
+    other: Polycrystal = counter_body.part("polycrystal")
+    other_E, other_nu = (other.young_GPa, other.young_std_GPa), other.poisson_ratio
     summary: dict[str, Any] = {
         "ions": settings.ions,
         "structures_used": [m.structure for m in used],
@@ -164,7 +165,7 @@ def effective_modulus(
             "b": settings.poisson_ratio[1],
         },
         "counter_body": {
-            "name": counter_body["name"],
+            "name": counter_body.name,
             "E_GPa": other_E[0],
             "E_std_GPa": other_E[1],
             "nu": other_nu,

@@ -15,13 +15,14 @@ from ase import Atoms
 
 from atomistic.constants import AMU_PER_A3_IN_G_CM3
 from atomistic.errors import InputError
+from atomistic.materials import SEARCHED_A, Core, Material, NetworkGlass, Supercell, Tersoff
 from atomistic.settings import NitrideGlassSettings
 
 START_DISTANCE_A = 1.4  # random start: nothing closer than this
 
 
-def crystal(material: Mapping[str, Any], name: str) -> Atoms:
-    """A crystal of a material file (config/materials), repeated to its supercell.
+def crystal(material: Material, name: str, supercell: Supercell | None = None) -> Atoms:
+    """A crystal of a material, repeated to `supercell`, by default to that of its file.
 
     Raises
     ------
@@ -31,24 +32,23 @@ def crystal(material: Mapping[str, Any], name: str) -> Atoms:
     from ase.build import make_supercell
     from ase.spacegroup import crystal as from_spacegroup
 
-    known = material.get("crystals", {})
+    known = material.crystals
     if name not in known:
         raise InputError(
-            f"elastic.crystals: {material['name']} has no crystal {name!r}; it has {', '.join(known) or 'none'}"
+            f"elastic.crystals: {material.name} has no crystal {name!r}; it has {', '.join(known) or 'none'}"
         )
     data = known[name]
-    symbols, sites = zip(
-        *((element, site) for element, places in data["sites"].items() for site in places), strict=True
-    )
+    repeats = np.array(supercell or data.supercell)
+    symbols, sites = zip(*((element, site) for element, places in data.sites.items() for site in places), strict=True)
     atoms = from_spacegroup(
         list(symbols),
         list(sites),
-        spacegroup=data["spacegroup"],
-        setting=data.get("setting", 1),
-        cellpar=data["cell"],
-        primitive_cell=data.get("primitive", False),
+        spacegroup=data.spacegroup,
+        setting=data.setting,
+        cellpar=data.cell,
+        primitive_cell=data.primitive,
     )
-    atoms = make_supercell(atoms, np.diag(data["supercell"]) if np.ndim(data["supercell"]) == 1 else data["supercell"])
+    atoms = make_supercell(atoms, np.diag(repeats) if repeats.ndim == 1 else repeats)
     atoms.wrap()
     return Atoms(atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True)
 
@@ -69,70 +69,68 @@ class Gate:
         return not self.reasons
 
 
-def examine(atoms: Atoms, criteria: Mapping[str, Any], perfect: bool = False) -> Gate:
+def examine(atoms: Atoms, criteria: NetworkGlass, perfect: bool = False) -> Gate:
     """Measure density, coordination and shortest distances and hold them against `criteria`.
 
     Parameters
     ----------
-    criteria : the `glass` section of a material file: `density_g_cm3` and `coordination` ranges, `shortest_A` per
-        pair of elements, `cutoff_A` of a bond between unlike elements, least `bond_spread_A` of a disordered cell,
-        `valence` of each element
+    criteria : the `network_glass` of a material
     perfect : also reject a cell in which any atom lacks or exceeds its valence
     """
     from ase.neighborlist import neighbor_list
 
     density = float(atoms.get_masses().sum() / atoms.get_volume() * AMU_PER_A3_IN_G_CM3)
     symbols = np.array(atoms.get_chemical_symbols())
-    first, second, distance = neighbor_list("ijd", atoms, 3.0)
+    first, second, distance = neighbor_list("ijd", atoms, SEARCHED_A)
     unlike = symbols[first] != symbols[second]
-    bonds = unlike & (distance < criteria["cutoff_A"])
+    bonds = unlike & (distance < criteria.cutoff_A)
     counts = np.bincount(first[bonds], minlength=len(atoms))
     reasons = []
-    low, high = criteria["density_g_cm3"]
+    low, high = criteria.density_g_cm3
     if not low <= density <= high:
         reasons.append(f"density {density:.2f} outside {low} to {high} g/cm3")
     coordination = {}
-    for element, (low, high) in criteria["coordination"].items():
+    for element, (low, high) in criteria.coordination.items():
         coordination[element] = float(counts[symbols == element].mean()) if np.any(symbols == element) else 0.0
         if not low <= coordination[element] <= high:
             reasons.append(f"coordination of {element} {coordination[element]:.2f} outside {low} to {high}")
     shortest = {}
-    for pair, limit in criteria["shortest_A"].items():
+    for pair, limit in criteria.shortest_A.items():
         a, b = pair.split("-")
         here = distance[(symbols[first] == a) & (symbols[second] == b)]
-        shortest[pair] = float(here.min()) if len(here) else 3.0
+        shortest[pair] = float(here.min()) if len(here) else SEARCHED_A
         if shortest[pair] < limit:
             reasons.append(f"{pair} distance {shortest[pair]:.2f} below {limit} A")
-    defects = int(np.sum(counts != np.array([criteria["valence"][symbol] for symbol in symbols])))
+    defects = int(np.sum(counts != np.array([criteria.valence[symbol] for symbol in symbols])))
     if perfect and defects:
         reasons.append(f"{defects} atoms without their valence")
     spread = float(distance[bonds].std()) if bonds.any() else 0.0
-    if spread < criteria["bond_spread_A"]:
+    if spread < criteria.bond_spread_A:
         reasons.append(f"bond lengths spread by {spread:.3f} A only: crystalline")
     return Gate(density, coordination, shortest, spread, defects, tuple(reasons))
 
 
-def tersoff_table(parameters: Mapping[str, Any]) -> str:
+def tersoff_table(parameters: Tersoff) -> str:
     """Tersoff parameters in the format of LAMMPS (and ASE), one line per triplet.
 
     A pair's own parameters come from the mixing rules of Tersoff, PRB 39, 5566 (1989); `chi` scales the
     attraction of unlike (and, if given, like) pairs.  The cutoff of a triplet i j k is that of i–k.
     """
-    elements = [name for name in parameters if isinstance(parameters[name], Mapping) and "A" in parameters[name]]
-    chi = {frozenset(pair.split("-")): value for pair, value in parameters["chi"].items()}
+    elements = parameters.elements
+    chi = {frozenset(pair.split("-")): value for pair, value in parameters.chi.items()}
     lines = ["# m gamma lambda3 c d costheta0 n beta lambda2 B R D lambda1 A"]
     for i, j, k in product(elements, repeat=3):
-        p, q, r = parameters[i], parameters[j], parameters[k]
-        inner, outer = np.sqrt(p["R"] * r["R"]), np.sqrt(p["S"] * r["S"])
-        attraction = np.sqrt(p["B"] * q["B"]) * chi.get(frozenset((i, j)), 1.0)
-        numbers = [3, 1, 0, p["c"], p["d"], p["h"], p["n"], p["beta"], (p["mu"] + q["mu"]) / 2, attraction]
+        p, q, r = elements[i], elements[j], elements[k]
+        inner, outer = np.sqrt(p.R * r.R), np.sqrt(p.S * r.S)
+        attraction = np.sqrt(p.B * q.B) * chi.get(frozenset((i, j)), 1.0)
+        numbers = [3, 1, 0, p.c, p.d, p.h, p.n, p.beta, (p.mu + q.mu) / 2, attraction]
         numbers += [(inner + outer) / 2, (outer - inner) / 2]
-        numbers += [(p["lambda"] + q["lambda"]) / 2, np.sqrt(p["A"] * q["A"])]
+        numbers += [(p.lambda_ + q.lambda_) / 2, np.sqrt(p.A * q.A)]
         lines.append(" ".join([i, j, k, *(f"{float(x):.10g}" for x in numbers)]))
     return "\n".join(lines) + "\n"
 
 
-def tersoff_calculator(parameters: Mapping[str, Any]):
+def tersoff_calculator(parameters: Tersoff):
     """The same potential as an ASE calculator (slow, but in-process: Hessians, checks on crystals)."""
     from ase.calculators.tersoff import Tersoff, TersoffParameters
 
@@ -143,13 +141,14 @@ def tersoff_calculator(parameters: Mapping[str, Any]):
     return Tersoff(table)
 
 
-def core_commands(cores: Mapping[str, Any], elements: Sequence[str]) -> str:
+def core_commands(cores: Mapping[str, Core], elements: Sequence[str]) -> str:
     """LAMMPS commands of the soft cores k (r_c − r)², every pair without one at zero."""
     by_pair = {frozenset(pair.split("-")): core for pair, core in cores.items()}
     lines = []
     for i, j in combinations_with_replacement(range(len(elements)), 2):
-        core = by_pair.get(frozenset((elements[i], elements[j])), {"k_eV_A2": 0.0, "r_A": 1.0})
-        lines.append(f"pair_coeff {i + 1} {j + 1} harmonic/cut {core['k_eV_A2']} {core['r_A']}")
+        core = by_pair.get(frozenset((elements[i], elements[j])))
+        k_eV_A2, r_A = (core.k_eV_A2, core.r_A) if core else (0.0, 1.0)
+        lines.append(f"pair_coeff {i + 1} {j + 1} harmonic/cut {k_eV_A2} {r_A}")
     return "\n".join(lines) + "\n"
 
 
@@ -177,7 +176,7 @@ def random_structure(
 
 
 def make_glass(
-    material: Mapping[str, Any],
+    material: Material,
     settings: NitrideGlassSettings,
     seed: int,
     work: Path,
@@ -201,7 +200,7 @@ def make_glass(
             progress(attempt / settings.attempts, f"melt and quench, attempt {attempt + 1}")
         quench_seed = int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
         atoms = quench(material, settings, quench_seed, work)
-        verdict = examine(atoms, material["glass"], perfect=True)
+        verdict = examine(atoms, material.part("network_glass"), perfect=True)
         attempts.append(
             {
                 "attempt": attempt,
@@ -218,34 +217,35 @@ def make_glass(
     return atoms, attempts
 
 
-def quench(material: Mapping[str, Any], settings: NitrideGlassSettings, seed: int, work: Path) -> Atoms:
+def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: Path) -> Atoms:
     """One melt and quench at constant volume, then energy minimisation (LAMMPS, `protocols/nitride.in`)."""
     from atomistic.lammps import Atoms as LammpsAtoms
     from atomistic.lammps import Workspace, read_data, run_lammps, write_data
 
-    elements = tuple(material["formula"])
+    elements = tuple(material.formula)
+    network: NetworkGlass = material.part("network_glass")
     start = random_structure(
-        material["formula"],
+        material.formula,
         settings.formula_units,
-        material["glass"]["start_density_g_cm3"],
+        network.start_density_g_cm3,
         seed,
-        material["glass"]["edges"],
+        network.edges,
     )
     symbols = start.get_chemical_symbols()
     types = np.array([elements.index(symbol) + 1 for symbol in symbols])
     identity = {
         "seed": seed,
         "settings": settings.model_dump(),
-        "tersoff": material["tersoff"],
-        "cores": material["cores"],
+        "tersoff": network.tersoff.model_dump(),
+        "cores": {pair: core.model_dump() for pair, core in network.cores.items()},
     }
     workspace = Workspace(work, identity, "nitride.in")
-    (workspace / "potential.tersoff").write_text(tersoff_table(material["tersoff"]), encoding="utf-8")
-    (workspace / "cores.in").write_text(core_commands(material["cores"], elements), encoding="utf-8")
+    (workspace / "potential.tersoff").write_text(tersoff_table(network.tersoff), encoding="utf-8")
+    (workspace / "cores.in").write_text(core_commands(network.cores, elements), encoding="utf-8")
     write_data(
         workspace / "start.data",
         LammpsAtoms(elements, types, start.positions, np.diag(start.cell.array)),
-        material["masses_u"],
+        network.masses_u,
     )
     steps_per_ps = 1000 / settings.timestep_fs
     span = settings.melt_temperature_K - settings.final_temperature_K

@@ -10,6 +10,7 @@ from ase.calculators.calculator import Calculator
 from atomistic.elastic.moduli import Modulus
 from atomistic.elastic.networks import Gate, examine
 from atomistic.elastic.relaxation import UNTOUCHED, Progress, Relaxation, relax_glass
+from atomistic.materials import NetworkGlass
 from atomistic.settings import RelaxationSettings
 
 
@@ -45,7 +46,7 @@ class Structure:
 
 def relaxed_structure(
     quenched: Atoms,
-    criteria: Mapping[str, Any],
+    criteria: NetworkGlass,
     make_calculator: Callable[[], Calculator],
     settings: RelaxationSettings,
     progress: Progress | None = None,
@@ -54,7 +55,7 @@ def relaxed_structure(
 
     Parameters
     ----------
-    criteria : the `glass` section of a material file (see `examine`), with the least `gap_eV` of an insulator
+    criteria : the `network_glass` of a material
     make_calculator : called only if the cell is relaxed
     """
     verdict = examine(quenched, criteria, perfect=True)
@@ -64,7 +65,7 @@ def relaxed_structure(
         atoms, done = relax_glass(quenched, calculator, settings, progress)
         verdict = examine(atoms, criteria)
     reasons = [*verdict.reasons, *filter(None, [done.failure])]
-    if done.gap_eV < criteria["gap_eV"]:
+    if done.gap_eV < criteria.gap_eV:
         reasons.append(f"gap {done.gap_eV:.2f} eV: no insulator")
     return Structure(atoms, calculator, verdict, done, tuple(reasons))
 

@@ -17,10 +17,11 @@ from atomistic.hardness.asperity import (
     top_height,
     with_vacuum,
 )
-from atomistic.hardness.glass import REFERENCES, cations, write_forcefield
+from atomistic.hardness.glass import cations, write_forcefield
 from atomistic.hardness.readout import Geometry, Rows, read_curve, read_relaxed, slice_rows, witness_rows
 from atomistic.hardness.runs import ClosingRun
 from atomistic.lammps import Atoms, Progress, Workspace, read_data, run_lammps, write_data
+from atomistic.materials import Material
 from atomistic.potentials import CONTACT_A, Potential
 from atomistic.settings import AsperitySettings, HardnessSettings
 
@@ -92,6 +93,7 @@ class Closing:
 
 def run_closing(
     run: ClosingRun,
+    material: Material,
     glass: Atoms,
     potential: Potential,
     settings: HardnessSettings,
@@ -103,6 +105,7 @@ def run_closing(
 
     Parameters
     ----------
+    material, glass : oxide of the asperity, and a cell of its glass.
     counter_glass : glass of a counterface of oxide; None: that of the asperity.
     """
     closing, plan = settings.closing, plan_closing(settings, run.asperity)
@@ -183,7 +186,7 @@ def run_closing(
     relaxed = range(1, plan.segments + plan.back + 1)
     if missing := [n for n in relaxed if not (workspace / f"relaxed.{n}").exists()]:
         run_lammps("relax.in", workspace, {"pairs": "pairs", "segment": missing})
-    result = _read(workspace, plan, settings, potential, glass.elements, geometry)
+    result = _read(workspace, plan, settings, material, potential, glass.elements, geometry)
     shutil.rmtree(work)
     return result
 
@@ -192,6 +195,7 @@ def _read(
     workspace: Workspace,
     plan: Plan,
     settings: HardnessSettings,
+    material: Material,
     potential: Potential,
     elements: tuple[str, ...],
     geometry: Geometry,
@@ -206,8 +210,8 @@ def _read(
             return float(np.interp(step, [row["step"] for row in curve], [row["displacement_nm"] for row in curve]))
         return step * plan.timestep * plan.speed / 10
 
-    kinds = [elements.index(ion) + 1 for ion in cations(settings.material, potential)]
-    cutoff = REFERENCES[settings.material].cutoff_A
+    kinds = [elements.index(ion) + 1 for ion in cations(material, potential)]
+    cutoff = material.part("oxide_glass").cutoff_A
     held = 10 * settings.closing.frozen_nm
     frames = [read_relaxed(workspace, n) for n in closing_segments]
     witness = witness_rows(frames, displacement_nm, kinds, cutoff, held, geometry)

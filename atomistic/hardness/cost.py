@@ -2,28 +2,35 @@
 
 from atomistic.hardness.closing import plan_closing
 from atomistic.hardness.runs import planned_runs
+from atomistic.materials import Material
 from atomistic.settings import HardnessSettings
 
-ATOMS_PER_NM3 = {"SiO2": 70.0, "TiO2": 86.0}  # of quenched glass (2.33 and 3.8 g/cm^3)
 MEAN_HEIGHT = -0.405  # of eq. 6, in amplitudes: the mean of min(sin, sin) is -4/pi^2
 ATOM_STEPS_PER_CORE_SECOND = 1.0e6  # measured, tabulated pair potential (docs/hardness.md)
 
 
-def plan_rows(settings: HardnessSettings) -> list[dict[str, float | str]]:
+def plan_rows(
+    settings: HardnessSettings, material: Material, counter_material: Material
+) -> list[dict[str, float | str]]:
     """One row per closing run, and their sum in the last.
 
     `restart_steps` is what a killed run loses at most.
+
+    Parameters
+    ----------
+    material, counter_material : oxides of the asperity and of a counterface of atoms.
     """
+    density, counter_density = (_atoms_per_nm3(oxide) for oxide in (material, counter_material))
     rows: list[dict[str, float | str]] = []
-    edge_nm = (settings.glass.atoms / ATOMS_PER_NM3[settings.material]) ** (1 / 3)
+    edge_nm = (settings.glass.atoms / density) ** (1 / 3)
     for run in planned_runs(settings):
         plan, closing = plan_closing(settings, run.asperity), settings.closing
         wavelength, amplitude = run.asperity.tiles * edge_nm, run.asperity.amplitude_nm
-        atoms = ATOMS_PER_NM3[settings.material] * wavelength**2 * (closing.base_nm + MEAN_HEIGHT * amplitude)
+        atoms = density * wavelength**2 * (closing.base_nm + MEAN_HEIGHT * amplitude)
         if closing.counterface in ("oxide", "asperity"):
             relief = amplitude if closing.counterface == "asperity" else 0
             thickness = closing.counter_base_nm + MEAN_HEIGHT * relief
-            atoms += ATOMS_PER_NM3[closing.counter_material] * wavelength**2 * thickness
+            atoms += counter_density * wavelength**2 * thickness
         seconds = atoms * plan.total_steps / ATOM_STEPS_PER_CORE_SECOND
         rows.append(
             {
@@ -40,3 +47,7 @@ def plan_rows(settings: HardnessSettings) -> list[dict[str, float | str]]:
         )
     total = {key: sum(float(row[key]) for row in rows) for key in ("atom_steps", "core_hours")}
     return [*rows, {"run": "all", **total}]
+
+
+def _atoms_per_nm3(oxide: Material) -> float:
+    return oxide.part("oxide_glass").quenched.atoms_per_nm3

@@ -5,7 +5,6 @@ number of cells and nothing is strained.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,64 +14,38 @@ from scipy.spatial import KDTree
 from atomistic.constants import AVOGADRO
 from atomistic.errors import InputError
 from atomistic.lammps import Atoms, Progress, Workspace, read_data, run_lammps, write_data
+from atomistic.materials import SEARCHED_A, SHORTEST_BOND_A, Material, OxideGlass
 from atomistic.potentials import Potential
 from atomistic.settings import GlassSettings
 
 NEAREST_START_A = 1.5  # random starts keep atoms this far apart
 
 
-@dataclass(frozen=True)
-class Reference:
-    """What experiment says of a glass; the accepted ranges are those of a fast quench."""
-
-    density_g_cm3: float
-    density_range: tuple[float, float]
-    bond_A: float  # first peak of g(r) of cation and oxygen
-    bond_range_A: tuple[float, float]
-    cation_coordination: float
-    coordination_range: tuple[float, float]
-    cutoff_A: float  # first minimum of that g(r)
-    source: str
-
-
-REFERENCES = {
-    "SiO2": Reference(
-        2.20, (2.05, 2.45), 1.61, (1.55, 1.68), 4.0, (3.9, 4.1), 2.2,
-        "Mozzi and Warren, J. Appl. Cryst. 2, 164 (1969); Mei et al., Phys. Rev. Lett. 98, 057802 (2007)",
-    ),
-    "TiO2": Reference(
-        3.8, (3.3, 4.3), 1.96, (1.85, 2.05), 5.5, (4.9, 6.3), 2.6,
-        "Petkov et al., J. Non-Cryst. Solids 231, 17 (1998)",
-    ),
-}  # fmt: skip
-
-
-def cations(material: str, potential: Potential) -> tuple[str, ...]:
+def cations(material: Material, potential: Potential) -> tuple[str, ...]:
     """The cation species of a material."""
-    return tuple(ion for ion in potential.materials[material] if potential.species[ion].charge_e > 0)
+    return tuple(ion for ion in potential.materials[material.formula_text] if potential.species[ion].charge_e > 0)
 
 
 def random_start(
-    material: str, potential: Potential, settings: GlassSettings, seed: int, edge_A: float | None = None
+    material: Material, potential: Potential, settings: GlassSettings, seed: int, edge_A: float | None = None
 ) -> Atoms:
     """Ions at random places of a cube of the experimental density, no two nearer than 1.5 Å.
 
     The number of atoms follows from `settings.atoms`, or from the edge of the cube where one is given.
     """
     formula = _formula(material, potential)
+    reference: OxideGlass = material.part("oxide_glass")
     elements = tuple(formula)
     unit_g = sum(count * potential.species[ion].mass_u for ion, count in formula.items()) / AVOGADRO
     units = max(
         1,
         round(
-            1e-24 * edge_A**3 * REFERENCES[material].density_g_cm3 / unit_g
-            if edge_A
-            else settings.atoms / sum(formula.values())
+            1e-24 * edge_A**3 * reference.density_g_cm3 / unit_g if edge_A else settings.atoms / sum(formula.values())
         ),
     )
     counts = [units * count for count in formula.values()]
     mass_g = sum(n * potential.species[ion].mass_u for n, ion in zip(counts, elements, strict=True)) / AVOGADRO
-    length = edge_A or (mass_g / REFERENCES[material].density_g_cm3 * 1e24) ** (1 / 3)
+    length = edge_A or (mass_g / reference.density_g_cm3 * 1e24) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 1]))
     placed = np.empty((sum(counts), 3))
     for k in range(len(placed)):
@@ -87,15 +60,13 @@ def random_start(
     return Atoms(elements, types, placed, np.full(3, length))
 
 
-def _formula(material: str, potential: Potential) -> Mapping[str, int]:
-    if material not in potential.materials:
+def _formula(material: Material, potential: Potential) -> Mapping[str, int]:
+    if material.formula_text not in potential.materials:
         raise InputError(
-            f"potential {potential.name}: material {material} is not among {', '.join(potential.materials)}; "
-            "choose another potential or material"
+            f"potential {potential.name}: material {material.formula_text} is not among "
+            f"{', '.join(potential.materials)}; choose another potential or material"
         )
-    if material not in REFERENCES:
-        raise InputError(f"material {material}: no reference values of its glass; known are {', '.join(REFERENCES)}")
-    return potential.materials[material]
+    return potential.materials[material.formula_text]
 
 
 def write_forcefield(
@@ -131,7 +102,7 @@ def write_forcefield(
 
 
 def make_glass(
-    material: str,
+    material: Material,
     potential: Potential,
     settings: GlassSettings,
     seed: int,
@@ -143,19 +114,24 @@ def make_glass(
 
     Parameters
     ----------
+    material : an oxide, with the `oxide_glass` that its file in config/materials gives.
     edge_A : edge of the cell, kept throughout, so that the glass tiles beside another one without strain;
         None: the quench is at zero pressure and finds its own.
 
     Returns
     -------
     Atoms at `settings.final_temperature_K`, cell at the volume of the last step.
+
+    Raises
+    ------
+    InputError : the potential does not know the material, or nothing is known of its glass.
     """
     elements = tuple(_formula(material, potential))
     identity = {
         "potential": potential.model_dump(),
         "settings": settings.model_dump(),
         "seed": seed,
-        "of": material,
+        "of": [material.formula_text, material.part("oxide_glass").density_g_cm3],
         "edge": edge_A,
     }
     workspace = Workspace(work, identity, "glass.in")
@@ -210,36 +186,37 @@ def schedule(settings: GlassSettings, fixed_volume: bool = False) -> list[dict]:
     return [*segments, {"ensemble": ensemble, "from": end, "to": end, "steps": steps(settings.rest_ps)}]
 
 
-def glass_properties(material: str, potential: Potential, atoms: Atoms) -> dict:
-    """Density, coordination and bond length of a glass, with the gate that compares them to `REFERENCES`."""
-    reference = REFERENCES[material]
+def glass_properties(material: Material, potential: Potential, atoms: Atoms) -> dict:
+    """Density, coordination and bond length of a glass, with the gate that compares them to its material file."""
+    reference: OxideGlass = material.part("oxide_glass")
+    formula, sources = material.formula_text, "; ".join(material.sources[name] for name in reference.sources)
     mass_g = sum(atoms.count(ion) * potential.species[ion].mass_u for ion in atoms.elements) / AVOGADRO
     density = mass_g / (float(np.prod(atoms.cell_A)) * 1e-24)
     is_cation = np.isin(atoms.types, [atoms.elements.index(ion) + 1 for ion in cations(material, potential)])
     tree = KDTree(atoms.positions_A, boxsize=atoms.cell_A)
-    close = tree.query_pairs(3.0, output_type="ndarray")
+    close = tree.query_pairs(SEARCHED_A, output_type="ndarray")
     mixed = close[is_cation[close[:, 0]] != is_cation[close[:, 1]]]
     distance = atoms.positions_A[mixed[:, 0]] - atoms.positions_A[mixed[:, 1]]
     distance -= atoms.cell_A * np.round(distance / atoms.cell_A)
     r = np.sqrt(np.einsum("ij,ij->i", distance, distance))
-    edges = np.arange(1.2, 3.0, 0.02)
+    edges = np.arange(SHORTEST_BOND_A, SEARCHED_A, 0.02)
     middle = 0.5 * (edges[1:] + edges[:-1])
     density_of_r = np.histogram(r, edges)[0] / middle**2
     smooth = np.convolve(density_of_r, np.ones(3) / 3, mode="same")
     bond = float(middle[np.argmax(smooth)])
     coordination = float(np.sum(r < reference.cutoff_A) / np.sum(is_cation))
     checks = {
-        "density_g_cm3": (density, reference.density_range),
+        "density_g_cm3": (density, reference.density_range_g_cm3),
         "bond_A": (bond, reference.bond_range_A),
         "cation_coordination": (coordination, reference.coordination_range),
     }
     reasons = [
-        f"{material} glass: {name} {value:.3g} outside {low:g}..{high:g} ({reference.source})"
+        f"{formula} glass: {name} {value:.3g} outside {low:g}..{high:g} ({sources})"
         for name, (value, (low, high)) in checks.items()
         if not low <= value <= high
     ]
     return {
-        "material": material,
+        "material": formula,
         "atoms": len(atoms),
         "cell_nm": float(atoms.cell_A[0]) / 10,
         **{name: value for name, (value, _) in checks.items()},

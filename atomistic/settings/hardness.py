@@ -66,7 +66,7 @@ class ClosingSettings(Settings):
         default="repulsive",
         description="atoms of a counterface of oxide: a short-range repulsion alone, or the potential itself",
     )
-    counter_material: Literal["SiO2", "TiO2"] = Field(default="SiO2", description="oxide of the counterface")
+    counter_material: str = Field(default="SiO2", description="oxide of the counterface, by its formula")
     counter_base_nm: float = Field(
         default=2.5, ge=1, le=100, description="thickness of the oxide counterface", json_schema_extra={"unit": "nm"}
     )
@@ -295,7 +295,9 @@ class HardnessSettings(Settings):
     """Size-dependent hardness from molecular dynamics (docs/hardness.md)."""
 
     potential: str = Field(default="pmmcs", description="name of a file in config/potentials, or a path")
-    material: Literal["SiO2", "TiO2"] = Field(default="SiO2", description="oxide of the asperity")
+    material: str = Field(
+        default="SiO2", description="oxide of the asperity: formula of a file in config/materials with an oxide_glass"
+    )
     energy_scales: tuple[Annotated[float, Field(gt=0, le=2)], ...] = Field(
         default=(1.0, 0.5),
         min_length=1,

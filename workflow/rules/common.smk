@@ -4,6 +4,8 @@ import os
 import sys
 from pathlib import Path
 
+from atomistic.errors import InputError
+from atomistic.materials import load_materials, oxide_glasses
 from workflow.scene import ROOT, SceneError, load_scene, locate
 
 # one thread per process: the jobs themselves fill the cores, and results do not depend on their number
@@ -32,6 +34,11 @@ if not (writable.is_dir() and os.access(writable, os.W_OK)):
 
 CONFIG = ROOT / "config"  # data files that ship with the project
 RESOLVED = SCENE.model_dump(mode="json")
+try:
+    MATERIALS = load_materials(CONFIG / "materials")
+except InputError as error:
+    refuse(error)
+OXIDES = oxide_glasses(MATERIALS.values())  # by formula
 ACCURACY = []  # result files of the error-against-run-time studies, filled by the stages' rules
 STABILITY = []  # result files of the stability studies
 
@@ -47,6 +54,11 @@ def named_files(key, *names):
         return locate(SCENE_GIVEN, key, names)
     except SceneError as error:
         refuse(error)
+
+
+def material_path(material):
+    """The file of a material."""
+    return str(CONFIG / "materials" / f"{material.name}.yaml")
 
 
 def needed(stage):

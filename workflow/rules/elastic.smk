@@ -1,17 +1,15 @@
-import yaml
-
 ELASTIC = settings("elastic")
-MATERIALS = CONFIG / "materials"
 GLASSES = [f"a{k:02d}" for k in range(1, ELASTIC["glass"]["structures"] + 1)]
 CRYSTALS = {}  # name → file that holds it
 if needed("elastic"):
-    for key in ("material", "counter_body"):
-        if not (MATERIALS / f"{ELASTIC[key]}.yaml").exists():
-            known = ", ".join(sorted(path.stem for path in MATERIALS.glob("*.yaml")))
-            refuse(f"{SCENE_GIVEN}: elastic.{key}: no material {ELASTIC[key]!r}; known: {known}")
-for path in sorted(MATERIALS.glob("*.yaml")):
-    for crystal in yaml.safe_load(path.read_text(encoding="utf-8")).get("crystals", {}):
-        CRYSTALS.setdefault(crystal, str(path))
+    for key, part in (("material", "network_glass"), ("counter_body", "polycrystal")):
+        known = [name for name, material in MATERIALS.items() if getattr(material, part) is not None]
+        if ELASTIC[key] not in known:
+            refuse(
+                f"{SCENE_GIVEN}: elastic.{key}: no material {ELASTIC[key]!r:.60} with {part}; known: {', '.join(known)}"
+            )
+for material in MATERIALS.values():
+    CRYSTALS |= dict.fromkeys(material.crystals, material_path(material))
 for crystal in ELASTIC["crystals"]:
     if crystal not in CRYSTALS:
         refuse(f"{SCENE_GIVEN}: elastic.crystals: no crystal {crystal!r:.60}; known: {', '.join(CRYSTALS)}")
@@ -19,8 +17,8 @@ VOLUME_SCANS = [f"{name}_{xc}_clamped" for name in ELASTIC["crystals"] for xc in
 VOLUME_SCANS += [f"{name}_GGA_clamped" for name in GLASSES]
 VOLUME_SCANS += [f"{name}_LDA_clamped" for name in GLASSES[: ELASTIC["lda_structures"]]]
 VOLUME_SCANS += [f"{name}_GGA_relaxed" for name in GLASSES[: ELASTIC["relaxed_structures"]]]
-MATERIAL = str(MATERIALS / f"{ELASTIC['material']}.yaml")
-COUNTER_BODY = str(MATERIALS / f"{ELASTIC['counter_body']}.yaml")
+MATERIAL = str(CONFIG / "materials" / f"{ELASTIC['material']}.yaml")
+COUNTER_BODY = str(CONFIG / "materials" / f"{ELASTIC['counter_body']}.yaml")
 
 
 def elastic_settings(*keys):
@@ -177,7 +175,7 @@ def ensemble(wildcards):
 rule measure_elastic_accuracy:
     input:
         unpack(ensemble),
-        material=str(MATERIALS / "silicon_nitride.yaml"),
+        material=material_path(MATERIALS["silicon_nitride"]),
     output:
         table=f"{RESULTS}/accuracy/elastic.csv",
     log:
@@ -190,7 +188,7 @@ rule measure_elastic_accuracy:
 
 rule check_elastic_stability:
     input:
-        material=str(MATERIALS / "silicon_nitride.yaml"),
+        material=material_path(MATERIALS["silicon_nitride"]),
     output:
         table=f"{RESULTS}/stability/elastic.csv",
     log:

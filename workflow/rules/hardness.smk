@@ -14,7 +14,18 @@ def potential_path(name):
     return str(path)
 
 
+def oxide_path(key, formula):
+    """The file of an oxide that `hardness` names by its formula."""
+    if formula not in OXIDES:
+        refuse(
+            f"{SCENE_GIVEN}: hardness.{key} = {formula!r:.60}: no material with oxide_glass; known: {', '.join(OXIDES)}"
+        )
+    return material_path(OXIDES[formula])
+
+
 POTENTIAL = potential_path(HARDNESS["potential"])
+MATERIAL_OF_ASPERITY = oxide_path("material", HARDNESS["material"])
+MATERIAL_OF_COUNTERFACE = oxide_path("closing.counter_material", HARDNESS["closing"]["counter_material"])
 CLOSINGS = {run.name: run for run in planned_runs(SCENE.hardness)}
 COUNTER_GLASS = needs_counter_glass(SCENE.hardness)
 
@@ -41,6 +52,7 @@ rule hardness:
 
 rule make_glass:
     input:
+        material=MATERIAL_OF_ASPERITY,
         potential=POTENTIAL,
     output:
         atoms=f"{RESULTS}/hardness/glass/{{glass}}.data",
@@ -49,7 +61,6 @@ rule make_glass:
         f"{RESULTS}/logs/make_glass_{{glass}}.log",
     priority: 100
     params:
-        material=HARDNESS["material"],
         glass=HARDNESS["glass"],
         seed=lambda wildcards: wildcards.glass,
         work=f"{RESULTS}/work/glass_{{glass}}",
@@ -61,6 +72,7 @@ rule make_glass:
 
 use rule make_glass as make_counter_glass with:
     input:
+        material=MATERIAL_OF_COUNTERFACE,
         potential=POTENTIAL,
         beside=f"{RESULTS}/hardness/glass/{{glass}}.data",
     output:
@@ -69,7 +81,6 @@ use rule make_glass as make_counter_glass with:
     log:
         f"{RESULTS}/logs/make_counter_glass_{{glass}}.log",
     params:
-        material=HARDNESS["closing"]["counter_material"],
         glass=HARDNESS["glass"],
         seed=lambda wildcards: wildcards.glass,
         work=f"{RESULTS}/work/counter_glass_{{glass}}",
@@ -80,6 +91,7 @@ use rule make_glass as make_counter_glass with:
 rule run_closing:
     input:
         unpack(lambda wildcards: of_counter(f"{RESULTS}/hardness/glass/{CLOSINGS[wildcards.run].seed}_counter.data")),
+        material=MATERIAL_OF_ASPERITY,
         potential=POTENTIAL,
         glass=lambda wildcards: f"{RESULTS}/hardness/glass/{CLOSINGS[wildcards.run].seed}.data",
     output:
@@ -138,6 +150,9 @@ rule fit_hardness:
 
 
 rule plan_hardness:
+    input:
+        material=MATERIAL_OF_ASPERITY,
+        counter_material=MATERIAL_OF_COUNTERFACE,
     output:
         plan=f"{RESULTS}/hardness/plan.csv",
     log:

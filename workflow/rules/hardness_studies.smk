@@ -16,6 +16,7 @@ SMALLEST = smallest_run(SCENE.hardness)
 rule vary_closing:
     input:
         unpack(lambda wildcards: of_counter(f"{RESULTS}/hardness/glass/{SMALLEST.seed}_counter.data")),
+        material=MATERIAL_OF_ASPERITY,
         potential=POTENTIAL,
         glass=f"{RESULTS}/hardness/glass/{SMALLEST.seed}.data",
     output:
@@ -74,6 +75,7 @@ rule measure_detection:
 rule check_hardness_stability:
     input:
         potentials=[str(path) for path in sorted((CONFIG / "potentials").glob("*.yaml"))],
+        materials=[material_path(oxide) for oxide in OXIDES.values()],
     output:
         table=f"{RESULTS}/stability/hardness.csv",
     log:
@@ -107,8 +109,16 @@ def study_glass(case):
     return f"{RESULTS}/study/glass/{case}.data"
 
 
+def study_material(wildcards):
+    return oxide_path("material", study_settings(wildcards).material)
+
+
 def study_inputs(wildcards):
-    files = {"glass": study_glass(wildcards.case), "potential": potential_path(study_settings(wildcards).potential)}
+    files = {
+        "material": study_material(wildcards),
+        "glass": study_glass(wildcards.case),
+        "potential": potential_path(study_settings(wildcards).potential),
+    }
     if needs_counter_glass(study_settings(wildcards)):
         files["counter_glass"] = f"{RESULTS}/study/glass/{wildcards.case}_counter.data"
     return files
@@ -126,6 +136,7 @@ rule hardness_study:
 
 use rule make_glass as make_study_glass with:
     input:
+        material=study_material,
         potential=lambda wildcards: potential_path(study_settings(wildcards).potential),
     output:
         atoms=f"{RESULTS}/study/glass/{{case}}.data",
@@ -133,7 +144,6 @@ use rule make_glass as make_study_glass with:
     log:
         f"{RESULTS}/logs/make_study_glass_{{case}}.log",
     params:
-        material=lambda wildcards: study_settings(wildcards).material,
         glass=lambda wildcards: study_settings(wildcards).glass.model_dump(),
         seed=lambda wildcards: study_settings(wildcards).seeds[0],
         work=f"{RESULTS}/work/study_glass_{{case}}",
@@ -143,6 +153,9 @@ use rule make_glass as make_study_glass with:
 
 use rule make_study_glass as make_study_counter_glass with:
     input:
+        material=lambda wildcards: oxide_path(
+            "closing.counter_material", study_settings(wildcards).closing.counter_material
+        ),
         potential=lambda wildcards: potential_path(study_settings(wildcards).potential),
         beside=lambda wildcards: study_glass(wildcards.case),
     output:
@@ -151,7 +164,6 @@ use rule make_study_glass as make_study_counter_glass with:
     log:
         f"{RESULTS}/logs/make_study_counter_glass_{{case}}.log",
     params:
-        material=lambda wildcards: study_settings(wildcards).closing.counter_material,
         glass=lambda wildcards: study_settings(wildcards).glass.model_dump(),
         seed=lambda wildcards: study_settings(wildcards).seeds[0],
         work=f"{RESULTS}/work/study_counter_glass_{{case}}",

@@ -1,18 +1,15 @@
 """Combine E*.  In: elastic/bulk_moduli.csv (GPa), counter body.  Out: e_star.json, e_star.h5, structures.csv."""
 
-from pathlib import Path
-
-import yaml
-
 from atomistic.elastic.moduli import SAMPLE_COLUMNS, effective_modulus
 from atomistic.elastic.structures import structure_rows, trusted_moduli
+from atomistic.materials import load_material
 from atomistic.settings import ElasticSettings
 from workflow.job import job
 from workflow.results import Dataset, read_csv, read_json, write_csv, write_h5, write_json
 
 with job(snakemake) as run:
     settings = ElasticSettings(**snakemake.params.settings)
-    counter_body = yaml.safe_load(Path(snakemake.input.counter_body).read_text(encoding="utf-8"))
+    counter_body = load_material(snakemake.input.counter_body)
     reports = [read_json(path) for path in snakemake.input.structures]
     quenches = [len(read_csv(path)) for path in snakemake.input.attempts]
     moduli = trusted_moduli(read_csv(snakemake.input.moduli), reports)

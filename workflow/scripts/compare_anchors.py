@@ -1,18 +1,14 @@
 """Anchors beside published values.  In: accuracy/anchors/*.csv, materials.  Out: accuracy/elastic_anchors.csv."""
 
-from pathlib import Path
-
-import yaml
-
 from atomistic.elastic.energy_scans import fit_scan
+from atomistic.materials import load_material
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 
 with job(snakemake) as run:
     published = {}
     for path in snakemake.input.materials:
-        for name, data in yaml.safe_load(Path(path).read_text(encoding="utf-8")).get("crystals", {}).items():
-            published[name] = data.get("published", {})
+        published |= {name: data.published for name, data in load_material(path).crystals.items()}
     rows = []
     for path in snakemake.input.points:
         scan = read_csv(path)
@@ -24,12 +20,12 @@ with job(snakemake) as run:
         rows.append(
             {
                 **{key: fit[key] for key in ("structure", "xc", "atoms", "B_GPa", "B_prime", "residual_meV", "flags")},
-                "V0_A3": fit["V0_A3"] * value["atoms"] / atoms if fit["V0_A3"] else None,
-                "V0_atoms": value["atoms"],
+                "V0_A3": fit["V0_A3"] * value.atoms / atoms if fit["V0_A3"] else None,
+                "V0_atoms": value.atoms,
                 "published": kind,
-                "published_B_GPa": value["B_GPa"],
-                "published_V0_A3": value["V0_A3"],
-                "published_source": " ".join(value["source"]),
+                "published_B_GPa": value.B_GPa,
+                "published_V0_A3": value.V0_A3,
+                "published_source": " ".join(value.source),
                 "wall_s": round(sum(float(point["wall_s"]) for point in scan), 1),
             }
         )

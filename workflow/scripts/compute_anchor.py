@@ -3,17 +3,16 @@
 from dataclasses import asdict
 from pathlib import Path
 
-import yaml
-
 from atomistic.elastic.energy_scans import make_calculator, scan_volumes
 from atomistic.elastic.networks import crystal
+from atomistic.materials import load_material
 from atomistic.settings import DftSettings
 from workflow.job import job
 from workflow.results import write_csv
 from workflow.structure_files import ScfStore
 
 with job(snakemake) as run:
-    material = yaml.safe_load(Path(snakemake.input.material).read_text(encoding="utf-8"))
+    material = load_material(snakemake.input.material)
     name, xc = snakemake.wildcards.crystal, snakemake.wildcards.xc
     strains = snakemake.params.settings["strains"]
     atoms = crystal(material, name)
@@ -23,7 +22,7 @@ with job(snakemake) as run:
         xc,
         atoms.cell.array * (1 + max(strains)),
         store,
-        material["crystals"][name].get("cutoff_Ha"),
+        material.crystals[name].cutoff_Ha,
     )
     points = scan_volumes(atoms, calculator, strains, progress=run.progress)
     row = {"structure": name, "xc": xc, "ions": "clamped", "atoms": len(atoms)}

@@ -3,16 +3,16 @@
 from pathlib import Path
 
 import numpy as np
-import yaml
 
 from atomistic.elastic.networks import make_glass
+from atomistic.materials import load_material
 from atomistic.settings import NitrideGlassSettings
 from workflow.job import job
 from workflow.results import write_csv, write_text
 from workflow.structure_files import structure_text
 
 with job(snakemake) as run:
-    material = yaml.safe_load(Path(snakemake.input.material).read_text(encoding="utf-8"))
+    material = load_material(snakemake.input.material)
     settings = NitrideGlassSettings(**snakemake.params.settings["glass"])
     number = int(snakemake.wildcards.amorphous[1:])
     seed = int(np.random.SeedSequence([settings.seed, number]).generate_state(1)[0])

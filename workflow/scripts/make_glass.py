@@ -1,6 +1,6 @@
 """Melt and quench one glass cell.
 
-In:  potential (YAML); beside: data file of the glass whose edge it takes (counterfaces only).
+In:  material, potential (YAML); beside: data file of the glass whose edge it takes (counterfaces only).
 Out: glass (LAMMPS data file, Å), properties (density, coordination, gate).
 """
 
@@ -9,13 +9,14 @@ from pathlib import Path
 
 from atomistic.hardness.glass import glass_properties, make_glass
 from atomistic.lammps import read_data, write_data
+from atomistic.materials import load_material
 from atomistic.potentials import load_potential
 from atomistic.settings import GlassSettings
 from workflow.job import job
 from workflow.results import atomic_path, write_json
 
 with job(snakemake) as run:
-    material, seed = snakemake.params.material, int(snakemake.params.seed)
+    material, seed = load_material(snakemake.input.material), int(snakemake.params.seed)
     settings = GlassSettings.model_validate(snakemake.params.glass)
     potential = load_potential(snakemake.input.potential)
     beside = snakemake.input.get("beside")

@@ -1,26 +1,23 @@
 """Error of B against run time.  In: material; bulk moduli and points if there are any.  Out: accuracy/elastic.csv."""
 
-from pathlib import Path
-
-import yaml
-
 from atomistic.elastic.networks import crystal
 from atomistic.elastic.studies.accuracy import accuracy_points, ensemble_points
+from atomistic.materials import load_material
 from workflow.checks import accuracy_rows
 from workflow.job import job
 from workflow.results import read_csv, write_csv
 
 with job(snakemake) as run:
-    material = yaml.safe_load(Path(snakemake.input.material).read_text(encoding="utf-8"))
-    crystals = material["crystals"]
-    small = crystal({**material, "crystals": {"beta": {**crystals["beta"], "supercell": [1, 1, 1]}}}, "beta")
+    material = load_material(snakemake.input.material)
+    small = crystal(material, "beta", (1, 1, 1))
     points = accuracy_points(small, crystal(material, "beta"), run.progress)
     rows = list(accuracy_rows("elastic", points))
     if snakemake.input.get("moduli"):
         clamped = [
             row
             for row in read_csv(snakemake.input.moduli)
-            if row["structure"] not in crystals and (row["xc"], row["ions"], row["flags"]) == ("GGA", "clamped", "")
+            if row["structure"] not in material.crystals
+            and (row["xc"], row["ions"], row["flags"]) == ("GGA", "clamped", "")
         ]
         names = {row["structure"] for row in clamped}
         cost = sum(float(p["wall_s"]) for p in read_csv(snakemake.input.points) if p["structure"] in names)

@@ -1,9 +1,12 @@
-"""What the closing runs of a scene will cost.  Out: plan.csv."""
+"""What the closing runs of a scene will cost.  In: materials (YAML).  Out: plan.csv."""
 
 from atomistic.hardness.cost import plan_rows
+from atomistic.materials import load_material
 from atomistic.settings import HardnessSettings
 from workflow.job import job
 from workflow.results import write_csv
 
 with job(snakemake) as run:
-    write_csv(snakemake.output.plan, plan_rows(HardnessSettings.model_validate(snakemake.params.settings)))
+    settings = HardnessSettings.model_validate(snakemake.params.settings)
+    material, counter_material = (load_material(snakemake.input[key]) for key in ("material", "counter_material"))
+    write_csv(snakemake.output.plan, plan_rows(settings, material, counter_material))

@@ -2,17 +2,16 @@
 
 from pathlib import Path
 
-import yaml
-
 from atomistic.elastic.energy_scans import make_calculator
 from atomistic.elastic.structures import relaxed_structure
+from atomistic.materials import load_material
 from atomistic.settings import DftSettings, RelaxationSettings
 from workflow.job import job
 from workflow.results import write_json, write_text
 from workflow.structure_files import ScfStore, read_structure, structure_text, write_orbitals
 
 with job(snakemake) as run:
-    material = yaml.safe_load(Path(snakemake.input.material).read_text(encoding="utf-8"))
+    material = load_material(snakemake.input.material)
     relaxation = RelaxationSettings(**snakemake.params.settings["relaxation"])
     dft = relaxation.applied_to(DftSettings(**snakemake.params.settings["dft"]))
     store = ScfStore(Path(snakemake.params.store))
@@ -20,7 +19,7 @@ with job(snakemake) as run:
     largest_cell = quenched.cell.array * 1.02  # the mesh of a cell that would swell by this much
     relaxed = relaxed_structure(
         quenched,
-        material["glass"],
+        material.part("network_glass"),
         lambda: make_calculator(dft, "GGA", largest_cell, store),
         relaxation,
         run.progress,

@@ -1,6 +1,6 @@
 """Close one asperity against its counterface.
 
-In:  potential (YAML), glass (LAMMPS data file), counter_glass where the counterface is of another oxide.
+In:  material, potential (YAML), glass (LAMMPS data file), counter_glass where the counterface is of another oxide.
 Out: curve (GPa, nm), witness (bond exchanges, nm), snapshots (nm), summary (with the unloading, where asked for).
 """
 
@@ -11,6 +11,7 @@ from pathlib import Path
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.runs import planned_runs
 from atomistic.lammps import read_data
+from atomistic.materials import load_material
 from atomistic.potentials import load_potential
 from atomistic.settings import HardnessSettings
 from workflow.job import job
@@ -20,12 +21,20 @@ with job(snakemake) as run:
     settings = HardnessSettings.model_validate(snakemake.params.settings)
     [closing_run] = planned_runs(settings)
     potential = load_potential(snakemake.input.potential)
-    glass = read_data(snakemake.input.glass, tuple(potential.materials[settings.material]))
+    material = load_material(snakemake.input.material)
+    glass = read_data(snakemake.input.glass, tuple(potential.materials[material.formula_text]))
     counter = snakemake.input.get("counter_glass")
     counter_glass = counter and read_data(counter, tuple(potential.materials[settings.closing.counter_material]))
     started = time.perf_counter()
     closing = run_closing(
-        closing_run, glass, potential, settings, Path(snakemake.params.work), run.progress, counter_glass or None
+        closing_run,
+        material,
+        glass,
+        potential,
+        settings,
+        Path(snakemake.params.work),
+        run.progress,
+        counter_glass or None,
     )
     lammps = resource.getrusage(resource.RUSAGE_CHILDREN)
     write_csv(snakemake.output.curve, closing.curve)

@@ -1,6 +1,6 @@
 """Hard cases of the elastic stage: what must hold does hold, and what cannot be trusted says so."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
 from typing import Any
@@ -14,6 +14,7 @@ from atomistic.elastic.energy_scans import fit_scan, scan_volumes
 from atomistic.elastic.moduli import plane_strain_modulus
 from atomistic.elastic.networks import examine
 from atomistic.elastic.relaxation import strained
+from atomistic.materials import NetworkGlass
 from atomistic.settings import ElasticSettings
 
 Verdict = tuple[bool, str]
@@ -85,7 +86,7 @@ def incompressible() -> Verdict:
     return refused and fine, f"E* {e_star[0]:.1f} to {e_star[-1]:.2g} GPa; range up to 0.5 refused: {refused}"
 
 
-def badly_sized(cell: Atoms, criteria: Mapping[str, Any], factor: float) -> Verdict:
+def badly_sized(cell: Atoms, criteria: NetworkGlass, factor: float) -> Verdict:
     """A cell scaled far from its density fails the gate of glasses, and the reason is its density."""
     verdict = examine(strained(cell, factor - 1), criteria)
     return any(reason.startswith("density") for reason in verdict.reasons), "; ".join(verdict.reasons)
@@ -105,7 +106,7 @@ def collapsed_energy(cell: Atoms) -> Verdict:
     return energies[1] > energies[0] + 1, f"{energies[1] - energies[0]:+.1f} eV/atom"
 
 
-def metal(criteria: Mapping[str, Any]) -> Verdict:
+def metal(criteria: NetworkGlass) -> Verdict:
     """Aluminium has no gap: the SCF fails, or the gap is below what a glass must have."""
     atoms = bulk("Al", "fcc", 4.05, cubic=True)
     calculator = PyscfGamma(xc="GGA", basis="gth-dzvp-molopt-sr", cutoff_Ha=40.0, tolerance_Ha=1e-6, max_cycles=30)
@@ -114,7 +115,7 @@ def metal(criteria: Mapping[str, Any]) -> Verdict:
         atoms.get_potential_energy()
     except ScfNotConverged as error:
         return True, str(error)
-    return calculator.gap_eV < criteria["gap_eV"], f"gap {calculator.gap_eV:.2f} eV, {criteria['gap_eV']} are needed"
+    return calculator.gap_eV < criteria.gap_eV, f"gap {calculator.gap_eV:.2f} eV, {criteria.gap_eV} are needed"
 
 
 def too_few_points() -> Verdict:
@@ -126,13 +127,13 @@ def too_few_points() -> Verdict:
     return False, "accepted"
 
 
-def stability_checks(cell: Atoms, criteria: Mapping[str, Any]) -> list[Check]:
+def stability_checks(cell: Atoms, criteria: NetworkGlass) -> list[Check]:
     """Case, description, what is checked, and the check.
 
     Parameters
     ----------
     cell : β-Si3N4, 14 atoms
-    criteria : the `glass` section of its material file
+    criteria : the `network_glass` of its material
     """
     cases: list[tuple[str, str, Callable[..., Verdict], tuple]] = [
         ("strain of ±10 %", "B moves by < 3 % or the fit is flagged", wide_strain, (cell,)),

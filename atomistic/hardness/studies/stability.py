@@ -22,6 +22,7 @@ from atomistic.lammps import (
     run_lammps,
     write_data,
 )
+from atomistic.materials import Material
 from atomistic.potentials import Potential
 from atomistic.settings import GlassSettings, HardnessSettings
 
@@ -72,20 +73,22 @@ def drift_meV_atom_ps(record: np.ndarray, atoms: int, timestep_fs: float) -> flo
 Check = tuple[str, str, str, Callable[[], tuple[bool, str]]]  # case, description, what is checked, the check
 
 
-def stability_checks(potentials: list[Potential], work: Path) -> list[Check]:
+def stability_checks(potentials: list[Potential], oxides: Mapping[str, Material], work: Path) -> list[Check]:
     """Checks of every potential on a glass made here, and of closings with the first one that knows silica.
 
     Parameters
     ----------
+    oxides : materials with an oxide glass by formula.
     work : folder for LAMMPS, which the caller removes in the end.
     """
     glasses = {
-        potential.name: make_glass(next(iter(potential.materials)), potential, QUICK, 1, work / potential.name)
+        potential.name: make_glass(oxides[next(iter(potential.materials))], potential, QUICK, 1, work / potential.name)
         for potential in potentials
     }
     checks = [check for potential in potentials for check in _of_potential(potential, glasses[potential.name], work)]
-    first = next(potential for potential in potentials if "SiO2" in potential.materials)
-    return checks + _of_closing(first, glasses[first.name], work)
+    asperity = oxides[HardnessSettings().material]
+    first = next(potential for potential in potentials if asperity.formula_text in potential.materials)
+    return checks + _of_closing(asperity, first, glasses[first.name], work)
 
 
 def _of_potential(potential: Potential, glass: Atoms, work: Path) -> list[Check]:
@@ -124,7 +127,7 @@ def _of_potential(potential: Potential, glass: Atoms, work: Path) -> list[Check]
     return checks
 
 
-def _of_closing(potential: Potential, glass: Atoms, work: Path) -> list[Check]:
+def _of_closing(material: Material, potential: Potential, glass: Atoms, work: Path) -> list[Check]:
     body = {"counterface": "oxide", "interface": "adhesive"}
     force = {"control": "force", "dwell_ps": 0.2, "max_stress_GPa": 3, "segment_force_steps": 5}
     return [
@@ -139,7 +142,7 @@ def _of_closing(potential: Potential, glass: Atoms, work: Path) -> list[Check]:
                 case,
                 description,
                 f"no atom lost, energy balance within {MAX_DRIFT_CLOSING} meV per atom and ps",
-                lambda settings=changes: _closing(glass, potential, work, settings),
+                lambda settings=changes: _closing(material, glass, potential, work, settings),
             )
             for case, description, changes in (
                 ("snap_in", "an adhesive oxide is let snap onto the asperity", body),
@@ -153,7 +156,9 @@ def _of_closing(potential: Potential, glass: Atoms, work: Path) -> list[Check]:
     ]
 
 
-def _closing(glass: Atoms, potential: Potential, work: Path, changes: Mapping[str, object]) -> tuple[bool, str]:
+def _closing(
+    material: Material, glass: Atoms, potential: Potential, work: Path, changes: Mapping[str, object]
+) -> tuple[bool, str]:
     """A closing of some hundred atoms: LAMMPS stops if it loses one, the curve tells the energy balance."""
     quick = {"base_nm": 1.4, "counter_base_nm": 1.4, "speed_m_s": 200, "anneal_ps": 0.5}
     settings = HardnessSettings.model_validate(
@@ -166,7 +171,7 @@ def _closing(glass: Atoms, potential: Potential, work: Path, changes: Mapping[st
     )
     [run] = planned_runs(settings)
     try:
-        curve = run_closing(run, glass, potential, settings, work / "closing").curve
+        curve = run_closing(run, material, glass, potential, settings, work / "closing").curve
     except InputError as error:
         return False, str(error).split("; details")[0]
     elapsed_ps = (curve[-1]["step"] - curve[0]["step"]) * settings.closing.timestep_fs / 1000

@@ -1,6 +1,7 @@
 """E(V) scans that survive failures, and E* with its parts."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,10 +13,11 @@ from pydantic import ValidationError
 from atomistic.elastic.energy_scans import fit_scan, rejected_points, scan_volumes
 from atomistic.elastic.moduli import Modulus, effective_modulus, plane_strain_modulus, variance_shares
 from atomistic.elastic.relaxation import Rest
+from atomistic.materials import load_material
 from atomistic.settings import DftSettings, ElasticSettings
 
 STRAINS = (-0.03, -0.015, 0.0, 0.015, 0.03)
-TITANIUM = {"name": "titanium", "young_GPa": 116.0, "young_std_GPa": 3.0, "poisson_ratio": 0.32}
+TITANIUM = load_material(Path(__file__).parents[3] / "config" / "materials" / "titanium.yaml")
 
 
 class FailsWhenStretched(EMT):

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import yaml
 
 from atomistic.elastic.networks import (
     core_commands,
@@ -16,14 +15,16 @@ from atomistic.elastic.networks import (
     tersoff_table,
 )
 from atomistic.errors import InputError
+from atomistic.materials import load_material
 
 MATERIALS = Path(__file__).parents[3] / "config" / "materials"
-NITRIDE = yaml.safe_load((MATERIALS / "silicon_nitride.yaml").read_text(encoding="utf-8"))
+NITRIDE = load_material(MATERIALS / "silicon_nitride.yaml")
+GLASS = NITRIDE.part("network_glass")
 
 
 def test_beta_silicon_nitride_has_its_density_and_coordination_but_is_no_glass():
     beta = crystal(NITRIDE, "beta")
-    verdict = examine(beta, NITRIDE["glass"])
+    verdict = examine(beta, GLASS)
     assert len(beta) == 28
     assert verdict.density_g_cm3 == pytest.approx(3.19, abs=0.01)
     assert verdict.coordination == {"Si": 4.0, "N": 3.0}
@@ -35,7 +36,7 @@ def test_collapsed_and_exploded_cells_fail_the_gate():
     for scale in (0.7, 1.4):
         cell = beta.copy()
         cell.set_cell(beta.cell.array * scale, scale_atoms=True)
-        assert any("density" in reason for reason in examine(cell, NITRIDE["glass"]).reasons)
+        assert any("density" in reason for reason in examine(cell, GLASS).reasons)
 
 
 def test_unknown_crystal_is_one_line():
@@ -48,13 +49,13 @@ def test_tersoff_parameters_hold_beta_together_at_its_known_lattice_constants():
     from ase.optimize import BFGS
 
     beta = crystal(NITRIDE, "beta")
-    beta.calc = tersoff_calculator(NITRIDE["tersoff"])
+    beta.calc = tersoff_calculator(GLASS.tersoff)
     cell_and_ions: Any = FrechetCellFilter(beta)
     BFGS(cell_and_ions, logfile=None).run(fmax=0.05, steps=60)
     a, _, c = beta.cell.lengths()
     assert a == pytest.approx(7.40, abs=0.02)  # of this potential; experiment 7.608
     assert c / 2 == pytest.approx(2.94, abs=0.02)
-    assert len(tersoff_table(NITRIDE["tersoff"]).splitlines()) == 9
+    assert len(tersoff_table(GLASS.tersoff).splitlines()) == 9
 
 
 def test_random_start_is_reproducible_and_not_overlapping():
@@ -68,24 +69,24 @@ def test_a_missing_bond_fails_the_gate_of_a_quenched_cell_only():
     beta = crystal(NITRIDE, "beta")
     nitrogen = beta.symbols.indices()["N"][0]
     beta.positions[nitrogen, 2] += 0.9
-    assert examine(beta, NITRIDE["glass"]).defects > 0
-    assert not any("valence" in reason for reason in examine(beta, NITRIDE["glass"]).reasons)
-    assert any("valence" in reason for reason in examine(beta, NITRIDE["glass"], perfect=True).reasons)
+    assert examine(beta, GLASS).defects > 0
+    assert not any("valence" in reason for reason in examine(beta, GLASS).reasons)
+    assert any("valence" in reason for reason in examine(beta, GLASS, perfect=True).reasons)
 
 
 def test_cores_leave_beta_untouched():
     """They mend the glass; a crystal with no like atoms that near must not feel them (but for 0.1 Å)."""
     beta = crystal(NITRIDE, "beta")
-    shortest = examine(beta, NITRIDE["glass"]).shortest_A
-    for pair, core in NITRIDE["cores"].items():
-        assert core["r_A"] < shortest[pair] + 0.1
-    assert core_commands(NITRIDE["cores"], ("Si", "N")).count("harmonic/cut") == 3
-    assert "1 2 harmonic/cut 0.0" in core_commands(NITRIDE["cores"], ("Si", "N"))
+    shortest = examine(beta, GLASS).shortest_A
+    for pair, core in GLASS.cores.items():
+        assert core.r_A < shortest[pair] + 0.1
+    assert core_commands(GLASS.cores, ("Si", "N")).count("harmonic/cut") == 3
+    assert "1 2 harmonic/cut 0.0" in core_commands(GLASS.cores, ("Si", "N"))
 
 
 def test_box_has_the_wanted_density_and_edges():
     box = random_structure({"Si": 3, "N": 4}, 2, 3.1, 7, (0.8, 1.0, 1.25))
-    assert examine(box, NITRIDE["glass"]).density_g_cm3 == pytest.approx(3.1)
+    assert examine(box, GLASS).density_g_cm3 == pytest.approx(3.1)
     a, b, c = box.cell.lengths()
     assert (a / b, c / b) == pytest.approx((0.8, 1.25))
 
@@ -93,8 +94,8 @@ def test_box_has_the_wanted_density_and_edges():
 def test_anchors_have_their_atoms_and_volume_per_formula():
     counts = {}
     for name, unit, volume in (("silicon", 2, 40.05), ("silicon_dioxide", 3, 23.31), ("silicon_nitride", 14, 145.9)):
-        material = yaml.safe_load((MATERIALS / f"{name}.yaml").read_text(encoding="utf-8"))
-        (anchor,) = material["crystals"]
+        material = load_material(MATERIALS / f"{name}.yaml")
+        (anchor,) = material.crystals
         atoms = crystal(material, anchor)
         counts[anchor] = len(atoms)
         assert atoms.get_volume() * unit / len(atoms) == pytest.approx(volume, rel=1e-3)

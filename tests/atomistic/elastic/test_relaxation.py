@@ -4,15 +4,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 from ase.calculators.calculator import CalculationFailed
 
 from atomistic.elastic.networks import crystal, tersoff_calculator
 from atomistic.elastic.relaxation import bond_hessian, relax_glass, relax_ions
+from atomistic.materials import load_material
 from atomistic.settings import RelaxationSettings
 
 MATERIALS = Path(__file__).parents[3] / "config" / "materials"
-NITRIDE = yaml.safe_load((MATERIALS / "silicon_nitride.yaml").read_text(encoding="utf-8"))
+NITRIDE = load_material(MATERIALS / "silicon_nitride.yaml")
 
 
 @pytest.fixture
@@ -20,7 +20,7 @@ def shaken():
     """β-Si3N4 with every atom moved by some 0.1 Å, under the cheap potential."""
     beta = crystal(NITRIDE, "beta")
     beta.rattle(0.05, seed=1)
-    beta.calc = tersoff_calculator(NITRIDE["tersoff"])
+    beta.calc = tersoff_calculator(NITRIDE.part("network_glass").tersoff)
     return beta
 
 

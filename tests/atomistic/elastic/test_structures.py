@@ -4,15 +4,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 from ase.calculators.calculator import CalculationFailed
 
 from atomistic.elastic.networks import crystal, tersoff_calculator
 from atomistic.elastic.structures import relaxed_structure, structure_rows, trusted_moduli
+from atomistic.materials import load_material
 from atomistic.settings import RelaxationSettings
 
 MATERIALS = Path(__file__).parents[3] / "config" / "materials"
-NITRIDE = yaml.safe_load((MATERIALS / "silicon_nitride.yaml").read_text(encoding="utf-8"))
+NITRIDE = load_material(MATERIALS / "silicon_nitride.yaml")
+GLASS = NITRIDE.part("network_glass")
 SETTINGS = RelaxationSettings(force_eV_A=0.2, max_steps=15)
 
 
@@ -25,14 +26,14 @@ def shaken():
 
 
 def tersoff():
-    calculator = tersoff_calculator(NITRIDE["tersoff"])
+    calculator = tersoff_calculator(GLASS.tersoff)
     calculator.gap_eV = 4.0  # the cheap potential has no electrons
     return calculator
 
 
 def test_a_sound_cell_is_relaxed_and_judged_again(shaken):
     # relaxing turns it back into a crystal, which the gate of glasses must see on the relaxed cell
-    relaxed = relaxed_structure(shaken, NITRIDE["glass"], tersoff, SETTINGS)
+    relaxed = relaxed_structure(shaken, GLASS, tersoff, SETTINGS)
     assert relaxed.relaxation.converged
     assert relaxed.relaxation.energy_gained_eV > 0
     assert any("crystalline" in reason for reason in relaxed.reasons)
@@ -44,7 +45,7 @@ def test_no_calculation_is_spent_on_a_cell_with_broken_bonds(shaken):
         pytest.fail("a calculator was made")
 
     shaken.positions[0] += 1.0
-    rejected = relaxed_structure(shaken, NITRIDE["glass"], never, SETTINGS)
+    rejected = relaxed_structure(shaken, GLASS, never, SETTINGS)
     assert rejected.calculator is None
     assert rejected.atoms is shaken
     assert any("without their valence" in reason for reason in rejected.reasons)
@@ -57,7 +58,7 @@ def test_a_failed_calculation_and_a_closed_gap_are_reasons(shaken):
         def calculate(self, *args, **kwargs):
             raise CalculationFailed("SCF not converged in 50 cycles")
 
-    failed = relaxed_structure(shaken, NITRIDE["glass"], lambda: Fails(tersoff().parameters), SETTINGS)
+    failed = relaxed_structure(shaken, GLASS, lambda: Fails(tersoff().parameters), SETTINGS)
     assert any("SCF not converged" in reason for reason in failed.reasons)
 
     def metal():
@@ -65,7 +66,7 @@ def test_a_failed_calculation_and_a_closed_gap_are_reasons(shaken):
         calculator.gap_eV = 0.1
         return calculator
 
-    closed = relaxed_structure(shaken, NITRIDE["glass"], metal, SETTINGS)
+    closed = relaxed_structure(shaken, GLASS, metal, SETTINGS)
     assert "gap 0.10 eV: no insulator" in closed.reasons
 
 

@@ -20,7 +20,8 @@ from atomistic.hardness.studies.stability import half_energy_identity
 from atomistic.lammps import Atoms, Workspace, read_data, write_data
 from atomistic.settings import GlassSettings, HardnessSettings
 
-PMMCS = Path(__file__).parents[3] / "config" / "potentials" / "pmmcs.yaml"
+CONFIG = Path(__file__).parents[3] / "config"
+PMMCS, SILICA = CONFIG / "potentials" / "pmmcs.yaml", CONFIG / "materials" / "silicon_dioxide.yaml"
 GLASS = GlassSettings(atoms=150, melt_ps=1, quench_rate_K_ps=1000, rest_ps=1, segment_steps=300)
 SETTINGS = HardnessSettings.model_validate(
     {
@@ -33,28 +34,32 @@ SETTINGS = HardnessSettings.model_validate(
 
 
 @pytest.fixture(scope="module")
-def glass(potential, tmp_path_factory):
-    return make_glass("SiO2", potential, GLASS, 1, tmp_path_factory.mktemp("glass") / "work")
+def glass(potential, oxides, tmp_path_factory):
+    return make_glass(oxides["SiO2"], potential, GLASS, 1, tmp_path_factory.mktemp("glass") / "work")
 
 
 @pytest.fixture(scope="module")
-def closing(glass, potential, tmp_path_factory):
+def closing(glass, potential, oxides, tmp_path_factory):
     [full, _] = planned_runs(SETTINGS)
-    return run_closing(full, glass, potential, SETTINGS, tmp_path_factory.mktemp("closing") / "work")
+    return run_closing(full, oxides["SiO2"], glass, potential, SETTINGS, tmp_path_factory.mktemp("closing") / "work")
 
 
-def test_quenched_melt_is_silica(glass, potential):
+def test_quenched_melt_is_silica(glass, potential, oxides):
     """Even 150 atoms quenched at 1000 K/ps are a four-fold network with the bond of silica."""
-    found = glass_properties("SiO2", potential, glass)
+    found = glass_properties(oxides["SiO2"], potential, glass)
     assert found["bond_A"] == pytest.approx(1.61, abs=0.03)
     assert found["cation_coordination"] == pytest.approx(4, abs=0.1)
     assert 2.0 < found["density_g_cm3"] < 2.6
     assert glass.count("O") == 2 * glass.count("Si") == 100
 
 
-def test_unknown_material(potential):
+def test_unknown_material(potential, oxides):
+    carbide = oxides["SiO2"].model_copy(update={"formula": {"Si": 1, "C": 1}})
     with pytest.raises(InputError, match="SiC is not among SiO2, TiO2"):
-        make_glass("SiC", potential, GLASS, 1, Path("unused"))
+        make_glass(carbide, potential, GLASS, 1, Path("unused"))
+    bare = oxides["SiO2"].model_copy(update={"oxide_glass": None})
+    with pytest.raises(InputError, match="silicon_dioxide: its file has no section oxide_glass"):
+        make_glass(bare, potential, GLASS, 1, Path("unused"))
 
 
 def test_data_files_keep_every_digit(tmp_path, glass):
@@ -89,18 +94,19 @@ KILLED = """
     import sys
     from pathlib import Path
     sys.path.insert(0, {tests!r})
-    from test_closing import GLASS, PMMCS, SETTINGS
+    from test_closing import GLASS, PMMCS, SETTINGS, SILICA
     from atomistic.hardness.closing import run_closing
     from atomistic.hardness.glass import make_glass
     from atomistic.lammps import read_data
+    from atomistic.materials import load_material
     from atomistic.potentials import load_potential
     from atomistic.hardness.runs import planned_runs
-    potential = load_potential(PMMCS)
+    potential, silica = load_potential(PMMCS), load_material(SILICA)
     if {what!r} == "glass":
-        make_glass("SiO2", potential, GLASS, 1, Path({work!r}))
+        make_glass(silica, potential, GLASS, 1, Path({work!r}))
     else:
         glass = read_data({glass!r}, ("Si", "O"))
-        run_closing(planned_runs(SETTINGS)[0], glass, potential, SETTINGS, Path({work!r}))
+        run_closing(planned_runs(SETTINGS)[0], silica, glass, potential, SETTINGS, Path({work!r}))
 """
 
 
@@ -131,21 +137,21 @@ def lammps_in(work):
     return found
 
 
-def test_killed_quench_resumes_bit_for_bit(glass, potential, tmp_path):
+def test_killed_quench_resumes_bit_for_bit(glass, potential, oxides, tmp_path):
     work = tmp_path / "work"
     kill_after("glass", work, work / "restart.3")
     assert (work / "restart.3").exists()
-    resumed = make_glass("SiO2", potential, GLASS, 1, work)
+    resumed = make_glass(oxides["SiO2"], potential, GLASS, 1, work)
     np.testing.assert_array_equal(resumed.positions_A, glass.positions_A)
     np.testing.assert_array_equal(resumed.cell_A, glass.cell_A)
     assert not work.exists()
 
 
-def test_killed_closing_resumes_bit_for_bit(glass, potential, closing, tmp_path):
+def test_killed_closing_resumes_bit_for_bit(glass, potential, oxides, closing, tmp_path):
     work, glass_file = tmp_path / "work", tmp_path / "glass.data"
     write_data(glass_file, glass, {"Si": 28.085, "O": 15.999})
     kill_after("closing", work, work / "closing" / "restart.2", glass_file)
-    resumed = run_closing(planned_runs(SETTINGS)[0], glass, potential, SETTINGS, work)
+    resumed = run_closing(planned_runs(SETTINGS)[0], oxides["SiO2"], glass, potential, SETTINGS, work)
     assert resumed.curve == closing.curve or all(
         np.array_equal(list(a.values()), list(b.values()), equal_nan=True)
         for a, b in zip(resumed.curve, closing.curve, strict=True)
@@ -166,11 +172,11 @@ def test_half_energies_at_T_move_like_full_ones_at_2T(glass, potential, tmp_path
     assert passed, detail
 
 
-def test_stability_study_passes(potential, tmp_path, monkeypatch):
+def test_stability_study_passes(potential, oxides, tmp_path, monkeypatch):
     """All checks of a potential, and of those of a closing the overlapping start and the snap-in."""
     of_closing = stability._of_closing
     monkeypatch.setattr(stability, "_of_closing", lambda *given: of_closing(*given)[:2])
-    checks = stability.stability_checks([potential], tmp_path / "work")
+    checks = stability.stability_checks([potential], oxides, tmp_path / "work")
     assert {"overlapping_start", "snap_in", "coulomb_slab_pmmcs"} < {case for case, *_ in checks}
     verdicts = {case: check() for case, _, _, check in checks}
     assert {case: detail for case, (passed, detail) in verdicts.items() if not passed} == {}

@@ -33,21 +33,23 @@ def settings(amplitude_nm=0.2, **closing):
 
 
 @pytest.fixture(scope="module")
-def glass(potential, tmp_path_factory):
-    return make_glass("SiO2", potential, GLASS, 1, tmp_path_factory.mktemp("glass") / "work")
+def glass(potential, oxides, tmp_path_factory):
+    return make_glass(oxides["SiO2"], potential, GLASS, 1, tmp_path_factory.mktemp("glass") / "work")
 
 
 @pytest.fixture(scope="module")
-def titania(potential, glass, tmp_path_factory):
+def titania(potential, oxides, glass, tmp_path_factory):
     edge = float(glass.cell_A[0])
-    return make_glass("TiO2", potential, GLASS, 1, tmp_path_factory.mktemp("titania") / "work", edge_A=edge)
+    return make_glass(oxides["TiO2"], potential, GLASS, 1, tmp_path_factory.mktemp("titania") / "work", edge_A=edge)
 
 
 @pytest.fixture
-def close(potential, glass, tmp_path):
+def close(potential, oxides, glass, tmp_path):
     def run(own, counter_glass=None):
         [planned] = planned_runs(own)
-        return run_closing(planned, glass, potential, own, tmp_path / "work", counter_glass=counter_glass)
+        return run_closing(
+            planned, oxides[own.material], glass, potential, own, tmp_path / "work", counter_glass=counter_glass
+        )
 
     return run
 
@@ -132,8 +134,8 @@ def test_the_machine_says_what_starts_several_processes(potential, glass, tmp_pa
     assert witness.read_text().startswith("--quiet -np 3 ")
 
 
-def test_a_counterface_that_would_be_strained_is_refused(close, potential):
-    wrong = random_start("TiO2", potential, GLASS, 1)
+def test_a_counterface_that_would_be_strained_is_refused(close, potential, oxides):
+    wrong = random_start(oxides["TiO2"], potential, GLASS, 1)
     with pytest.raises(InputError, match="would be strained by"):
         close(settings(counterface="oxide", counter_material="TiO2"), wrong)
 
@@ -175,10 +177,10 @@ def test_names_and_needs_of_counterfaces():
         settings(0)
 
 
-def test_the_plan_counts_what_a_run_has(close):
+def test_the_plan_counts_what_a_run_has(close, oxides):
     own = settings(counterface="asperity")
     made = close(own).summary
-    planned = plan_rows(own)[0]
+    planned = plan_rows(own, oxides[own.material], oxides[own.closing.counter_material])[0]
     assert planned["steps"] == made["steps"]
     assert planned["restart_steps"] == made["restart_steps"]
     assert planned["atoms"] == pytest.approx(made["atoms"], rel=0.1)
@@ -188,15 +190,15 @@ def test_the_plan_counts_what_a_run_has(close):
     ("name", "material", "coordination", "bond_A"),
     [("teter", "SiO2", 4.0, 1.61), ("matsui_akaogi", "TiO2", 5.8, 1.93)],
 )
-def test_other_potentials_make_a_glass_and_close(name, material, coordination, bond_A, tmp_path):
+def test_other_potentials_make_a_glass_and_close(name, material, coordination, bond_A, oxides, tmp_path):
     """Coordination and bond of the glass as known for the potential; then the whole chain with it."""
     other = load_potential(POTENTIALS / f"{name}.yaml")
     own = HardnessSettings.model_validate({**settings().model_dump(), "potential": name, "material": material})
-    made = make_glass(material, other, own.glass, 1, tmp_path / "glass")
-    found = glass_properties(material, other, made)
+    made = make_glass(oxides[material], other, own.glass, 1, tmp_path / "glass")
+    found = glass_properties(oxides[material], other, made)
     assert found["cation_coordination"] == pytest.approx(coordination, rel=0.06)
     assert found["bond_A"] == pytest.approx(bond_A, abs=0.05)
     [planned] = planned_runs(own)
-    closing = run_closing(planned, made, other, own, tmp_path / "work")
+    closing = run_closing(planned, oxides[material], made, other, own, tmp_path / "work")
     assert closing.curve[-1]["force_nN"] > 1
     assert np.abs(column(closing.curve, "energy_drift_meV_per_atom")).max() < 3
