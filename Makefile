@@ -1,4 +1,5 @@
 # make run [SCENE=reduced|ci|paper|full|path.yaml] [TARGET=law]   set up, then run a scene
+# make plan [SCENE=…] [TARGET=…]   how many jobs of each rule would run; runs nothing
 # make test | bench | lint | docs
 SCENE ?= reduced
 TARGET ?=
@@ -9,9 +10,12 @@ RUN := $(UV) run --locked --no-sync
 # trust the system's certificates, so that set-up works behind a TLS-inspecting proxy
 export UV_SYSTEM_CERTS := 1
 
-.PHONY: run test bench lint docs setup
+.PHONY: run plan test bench lint docs setup
 run: setup
 	@$(RUN) snakemake --workflow-profile workflow/profiles/local $(TARGET) --config scene="$(SCENE)"
+
+plan: setup
+	@$(RUN) asperity plan --scene "$(SCENE)" $(TARGET)
 
 test: setup
 	$(RUN) pytest --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder

@@ -31,7 +31,7 @@ def main(arguments: list[str] | None = None) -> int:
     commands = parser.add_subparsers(dest="command", required=True)
     for name, words in (
         ("run", "run a scene; results go to ./results/<scene>"),
-        ("plan", "say what would run and what it costs, and run nothing"),
+        ("plan", "say how many jobs of each rule would run, and run nothing"),
         ("open", "open the report of a scene in the browser"),
     ):
         command = commands.add_parser(name, help=words)
@@ -90,7 +90,7 @@ def _snakemake(scene: str, targets: list[str], dry: bool) -> int:
         f"scene={scene}",
     ]
     if dry:
-        command.insert(3, "--dry-run")
+        command[3:3] = ["--dry-run", "--quiet", "rules"]
     # scripts import `workflow`, which is no installed package of that name
     paths = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
