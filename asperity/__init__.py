@@ -4,7 +4,7 @@ From a scan to a switch::
 
     import asperity as asp
 
-    roughness = asp.measure_roughness([asp.read_scan("film.gwy")])
+    roughness = asp.measure_roughness([asp.load_scan("film.gwy")])
     table = asp.input_table(topography=roughness)  # the rest: the paper's Table 1
     settings = asp.ContactSettings(pixels=256)
     cycle = asp.run_cycle(asp.ContactInputs(**table.medians()), settings, seed=1)
@@ -28,7 +28,7 @@ from mesoscale.law.compact import Law, force, pressure
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, LawSettings, TopographySettings
 from mesoscale.topography.analysis import measure_roughness
 from mesoscale.topography.cleaning import Scan, clean
-from mesoscale.topography.loading import read_scan
+from mesoscale.topography.loading import load_scan
 from mesoscale.topography.pressing import contacting_heights
 from mesoscale.uncertainty.runs import MonteCarlo, monte_carlo
 
@@ -55,11 +55,11 @@ __all__ = [
     "force",
     "input_table",
     "laws_of",
+    "load_scan",
     "measure_roughness",
     "monte_carlo",
     "pressure",
     "random_surface",
-    "read_scan",
     "run_cycle",
     "switch_from_settings",
     "work",

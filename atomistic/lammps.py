@@ -74,7 +74,7 @@ def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) ->
     Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def read_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
+def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
     """Read a LAMMPS data file as `write_data` or the LAMMPS command `write_data ... nocoeff` makes it.
 
     Atoms come back in the order of their ids, wrapped into a cell that starts at 0.
@@ -101,7 +101,7 @@ def read_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
     return Atoms(elements, table[order, 1].astype(int), positions, high - low, velocities)
 
 
-def read_dump(path: str | Path) -> list[tuple[int, np.ndarray]]:
+def load_dump(path: str | Path) -> list[tuple[int, np.ndarray]]:
     """Frames of a LAMMPS text dump: (step, table of shape (atoms, columns)) in the order of the file."""
     frames = []
     with Path(path).open(encoding="utf-8") as stream:
@@ -119,7 +119,7 @@ def read_dump(path: str | Path) -> list[tuple[int, np.ndarray]]:
     return frames
 
 
-def read_averages(path: str | Path) -> np.ndarray:
+def load_averages(path: str | Path) -> np.ndarray:
     """Rows of a `fix ave/time` or `fix print` file, shape (rows, columns)."""
     return np.loadtxt(path, comments="#", ndmin=2)
 

@@ -235,13 +235,13 @@ class Material(_Section):
         ------
         InputError : the material has none.
         """
-        found = getattr(self, section)
-        if found is None:
+        data = getattr(self, section)
+        if data is None:
             raise InputError(
                 f"material {self.name}: its file has no section {section}; add one as docs/extending.md says, "
                 "or choose another material"
             )
-        return found
+        return data
 
     @model_validator(mode="after")
     def _consistent(self) -> "Material":

@@ -79,10 +79,10 @@ def cost() -> None:
             print(f"{pixels} {model:10} {spent:7.3f} s, {rows} loads, {area:.0f} sites touch, {peak_MB():.0f} MB")
             if model == "elastic":
                 forces = cycle.closing.repulsive_nN[-rows:][:: max(rows // LOADS, 1)]
-                each = float(np.mean([by_tamaas(heights, settings.length_nm, force)[2] for force in forces]))
-                ratio = each * rows / spent
+                tamaas_s = float(np.mean([by_tamaas(heights, settings.length_nm, force)[2] for force in forces]))
+                ratio = tamaas_s * rows / spent
                 print(
-                    f"{'':15} {each:7.3f} s a load by tamaas ({len(forces)} loads): {ratio:.0f} times as long",
+                    f"{'':15} {tamaas_s:7.3f} s a load by tamaas ({len(forces)} loads): {ratio:.0f} times as long",
                     flush=True,
                 )
 

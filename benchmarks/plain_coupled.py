@@ -38,10 +38,10 @@ def pressures(gap: np.ndarray, limit: np.ndarray, matrix: np.ndarray) -> np.ndar
 def hardness(touching: np.ndarray, inputs: ContactInputs, settings: ContactSettings) -> np.ndarray:
     """H of the cluster of each site (eq. 4); of a cluster of one site where nothing touches."""
     site_area = (settings.length_nm / len(touching)) ** 2
-    found = np.full(touching.size, inputs.h_macro + inputs.h_prime * site_area**-0.25)
+    ceilings = np.full(touching.size, inputs.h_macro + inputs.h_prime * site_area**-0.25)
     for sites in connected_sites(touching, settings.neighbours):
-        found[sites] = inputs.h_macro + inputs.h_prime * (len(sites) * site_area) ** -0.25
-    return found
+        ceilings[sites] = inputs.h_macro + inputs.h_prime * (len(sites) * site_area) ** -0.25
+    return ceilings
 
 
 def walk(h, separations, inputs: ContactInputs, settings: ContactSettings):
@@ -56,9 +56,9 @@ def walk(h, separations, inputs: ContactInputs, settings: ContactSettings):
             p = pressures(h.ravel() + separation, limit, matrix)
             if settings.model == "elastic":
                 break
-            found = hardness(p.reshape(h.shape) > 0, inputs, settings)
-            same = np.array_equal(found[p > 0], limit[p > 0])
-            limit = found
+            ceilings = hardness(p.reshape(h.shape) > 0, inputs, settings)
+            same = np.array_equal(ceilings[p > 0], limit[p > 0])
+            limit = ceilings
             if same:
                 break
         if settings.model == "plastic":

@@ -21,9 +21,9 @@ SPECTRA = """
 import sys
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.loading import read_scan
+from mesoscale.topography.loading import load_scan
 settings = TopographySettings()
-spectra = [trusted_scan(read_scan(path), settings) for path in sys.argv[2:]]
+spectra = [trusted_scan(load_scan(path), settings) for path in sys.argv[2:]]
 if sys.argv[1] == "fit":
     from mesoscale.topography.parameters import analyse
     assert analyse(spectra, settings).estimates

@@ -32,8 +32,8 @@ def differences(first: Path, second: Path) -> Iterator[str]:
             yield f"{name}: only in {first if name in names[0] else second}"
             continue
         contents = [content(folder / name) for folder in (first, second)]
-        if found := first_difference(*contents):
-            yield f"{name}: {found}"
+        if difference := first_difference(*contents):
+            yield f"{name}: {difference}"
 
 
 def _result_files(folder: Path) -> set[str]:
@@ -124,9 +124,9 @@ def main() -> None:
     for folder in (chosen.first, chosen.second):
         if not folder.is_dir():
             parser.error(f"{folder}: no such folder; give two folders of results")
-    found = list(differences(chosen.first, chosen.second))
-    print("\n".join(found) if found else "no difference beyond provenance and machine times")
-    sys.exit(bool(found))
+    lines = list(differences(chosen.first, chosen.second))
+    print("\n".join(lines) if lines else "no difference beyond provenance and machine times")
+    sys.exit(bool(lines))
 
 
 if __name__ == "__main__":

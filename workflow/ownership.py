@@ -54,7 +54,7 @@ def take(results: Path) -> int:
 def _wait_for_jobs(results: Path) -> None:
     jobs = os.open(results / ".jobs", os.O_RDWR | os.O_CREAT, 0o666)
     started = time.monotonic()
-    told = False
+    announced = False
     try:
         while True:
             try:
@@ -64,9 +64,9 @@ def _wait_for_jobs(results: Path) -> None:
                 waited = time.monotonic() - started
             if waited > PATIENCE_S:
                 raise Refused(f"{results}: jobs of an earlier run still work here; wait for them or stop them")
-            if waited > 1 and not told:
+            if waited > 1 and not announced:
                 print(f"{results}: waiting for jobs of a killed run to end", file=sys.stderr, flush=True)
-                told = True
+                announced = True
             time.sleep(0.05)
     finally:
         os.close(jobs)
@@ -85,16 +85,16 @@ def claim(results: Path, scene: Path, shipped: Path, write: bool) -> None:
     Refused : the folder holds the results of another scene.
     """
     place = scene.resolve()
-    own = f"shipped scene {place.stem}" if place.parent == shipped else str(place)
+    owner = f"shipped scene {place.stem}" if place.parent == shipped else str(place)
     note = results / ".scene"
     known = note.read_text(encoding="utf-8").rstrip("\n") if note.is_file() else ""
-    if known and known != own:
+    if known and known != owner:
         raise Refused(
-            f"{results}: these are results of {known}, not of {own}; give one of them another name (key `name`), or "
+            f"{results}: these are results of {known}, not of {owner}; give one of them another name (key `name`), or "
             f"delete {note} if the scene has moved"
         )
     if write:
-        note.write_text(own + "\n", encoding="utf-8")
+        note.write_text(owner + "\n", encoding="utf-8")
 
 
 def join(results: Path) -> int:

@@ -112,7 +112,7 @@ def _cell(value: Any) -> str:
     return repr(value) if isinstance(value, float) else str(value)
 
 
-def read_csv(path: str | Path) -> list[dict[str, str]]:
+def load_csv(path: str | Path) -> list[dict[str, str]]:
     """Read a CSV result file as one mapping per row (all values text).
 
     Raises
@@ -129,9 +129,9 @@ def read_csv(path: str | Path) -> list[dict[str, str]]:
     return rows
 
 
-def read_numbers(path: str | Path) -> list[dict[str, float]]:
+def load_numbers(path: str | Path) -> list[dict[str, float]]:
     """Read a CSV result file of numbers alone; an empty cell is NaN."""
-    return [{name: float(value or "nan") for name, value in row.items()} for row in read_csv(path)]
+    return [{name: float(value or "nan") for name, value in row.items()} for row in load_csv(path)]
 
 
 def write_json(path: str | Path, data: Mapping[str, Any], provenance: Mapping[str, Any] | None = None) -> None:
@@ -157,7 +157,7 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def read_json(path: str | Path) -> dict[str, Any]:
+def load_json(path: str | Path) -> dict[str, Any]:
     """Read a JSON result file."""
     return json.loads(Path(path).read_text(encoding="utf-8"))
 
@@ -224,7 +224,7 @@ def _attributes(values: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def read_h5(
+def load_h5(
     path: str | Path,
 ) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
     """Read an HDF5 result file: datasets by group, root attributes, attributes by group.

@@ -30,7 +30,7 @@ from mesoscale.settings import (
     UncertaintySettings,
 )
 from workflow.report.settings import ReportSettings
-from workflow.scene_yaml import MistakenYaml, read_mapping
+from workflow.scene_yaml import MistakenYaml, load_mapping
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENES = ROOT / "config" / "scenes"
@@ -93,7 +93,7 @@ def load_scene(name_or_path: str) -> Scene:
     """
     path = find_scene(str(name_or_path))
     try:
-        content = read_mapping(path)
+        content = load_mapping(path)
     except MistakenYaml as error:
         raise SceneError(f"{path}: {error}") from None
     content.setdefault("name", path.stem)
@@ -145,7 +145,7 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
     ------
     SceneError : a file is missing, or its path has braces; one line per file.
     """
-    found, mistakes = [], []
+    files, mistakes = [], []
     for name in names:
         places = [name, str(Path(scene).parent / name)]
         path = next((place for place in places if os.path.isfile(place)), None)
@@ -154,10 +154,10 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
         elif set(path) & set("{}"):
             mistakes.append(f"{scene}: {key} = {_cut(path)}: braces mean wildcards to Snakemake; rename the file")
         else:
-            found.append(path)
+            files.append(path)
     if mistakes:
         raise SceneError("\n".join(mistakes))
-    return found
+    return files
 
 
 def _cut(text: str) -> str:

@@ -73,7 +73,7 @@ for tag in ("binary", "timestamp", "omap", "pairs", "set"):
     _Loader.add_constructor(f"tag:yaml.org,2002:{tag}", _plain)
 
 
-def read_mapping(path: Path) -> dict[str, Any]:
+def load_mapping(path: Path) -> dict[str, Any]:
     """Read a YAML file of one mapping.
 
     Raises

@@ -11,7 +11,7 @@ from ase import Atoms
 from ase.calculators.calculator import Calculator
 
 from atomistic.elastic.dft import PyscfGamma, Solution
-from workflow.results import Dataset, atomic_path, read_h5, write_h5
+from workflow.results import Dataset, atomic_path, load_h5, write_h5
 
 
 def structure_text(atoms: Atoms) -> str:
@@ -25,7 +25,7 @@ def structure_text(atoms: Atoms) -> str:
     return "\n".join(lines) + "\n"
 
 
-def read_structure(path: str | Path) -> Atoms:
+def load_structure(path: str | Path) -> Atoms:
     """Read what `structure_text` makes (or any extended XYZ)."""
     from ase.io import read
 
@@ -46,7 +46,7 @@ def write_orbitals(path: str | Path, calculator: Calculator | None, provenance: 
 
 def start_from(calculator: Calculator, path: str | Path) -> None:
     """Let a calculator start from what `write_orbitals` kept."""
-    groups = read_h5(path)[0]
+    groups = load_h5(path)[0]
     if isinstance(calculator, PyscfGamma):
         calculator.history = [Solution(group["overlap"], group["orbitals"]) for group in groups.values()]
 

@@ -220,7 +220,7 @@ def make_glass(
 def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: Path) -> Atoms:
     """One melt and quench at constant volume, then energy minimisation (LAMMPS, `protocols/nitride.in`)."""
     from atomistic.lammps import Atoms as LammpsAtoms
-    from atomistic.lammps import Workspace, read_data, run_lammps, write_data
+    from atomistic.lammps import Workspace, load_data, run_lammps, write_data
 
     elements = tuple(material.formula)
     network: NetworkGlass = material.part("network_glass")
@@ -262,7 +262,7 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
             "quench_steps": round(span / settings.quench_rate_K_ps * steps_per_ps),
         },
     )
-    result = read_data(workspace / "glass.data", elements)
+    result = load_data(workspace / "glass.data", elements)
     workspace.remove()
     return Atoms(
         [elements[t - 1] for t in result.types],

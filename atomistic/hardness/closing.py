@@ -18,9 +18,9 @@ from atomistic.hardness.asperity import (
     with_vacuum,
 )
 from atomistic.hardness.glass import cations, write_forcefield
-from atomistic.hardness.readout import Geometry, Rows, read_curve, read_relaxed, slice_rows, witness_rows
+from atomistic.hardness.readout import Geometry, Rows, load_curve, load_relaxed, slice_rows, witness_rows
 from atomistic.hardness.runs import ClosingRun
-from atomistic.lammps import Atoms, Progress, Workspace, read_data, run_lammps, write_data
+from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
 from atomistic.materials import Material
 from atomistic.potentials import CONTACT_A, Potential
 from atomistic.settings import AsperitySettings, HardnessSettings
@@ -202,8 +202,8 @@ def _read(
 ) -> Closing:
     closing_segments = range(1, plan.segments + 1)
     back_segments = range(plan.segments + 1, plan.segments + plan.back + 1)
-    curve = read_curve(workspace, closing_segments, plan.segment_steps, settings.area, geometry)
-    unloading = read_curve(workspace, back_segments, plan.segment_steps, settings.area, geometry) if plan.back else []
+    curve = load_curve(workspace, closing_segments, plan.segment_steps, settings.area, geometry)
+    unloading = load_curve(workspace, back_segments, plan.segment_steps, settings.area, geometry) if plan.back else []
 
     def displacement_nm(step: int) -> float:
         if plan.dwell_steps:
@@ -213,7 +213,7 @@ def _read(
     kinds = [elements.index(ion) + 1 for ion in cations(material, potential)]
     cutoff = material.part("oxide_glass").cutoff_A
     held = 10 * settings.closing.frozen_nm
-    frames = [read_relaxed(workspace, n) for n in closing_segments]
+    frames = [load_relaxed(workspace, n) for n in closing_segments]
     witness = witness_rows(frames, displacement_nm, kinds, cutoff, held, geometry)
     summary: dict[str, float] = {
         "atoms": geometry.atoms,
@@ -222,7 +222,7 @@ def _read(
         "wavelength_nm": geometry.wavelength_A / 10,
     }
     if plan.back:
-        last = read_relaxed(workspace, plan.segments + plan.back)
+        last = load_relaxed(workspace, plan.segments + plan.back)
         unloaded = witness_rows([frames[0], last], displacement_nm, kinds, cutoff, held, geometry)[-1]
         summary |= {
             "snapshot_exchanged_bonds": witness[-1]["exchanged_bonds"],
@@ -289,7 +289,7 @@ def _prepare(
             "steps": [plan.anneal_steps] * (2 - done),
         }
         run_lammps("anneal.in", workspace, variables, on_step, closing.processes)
-    annealed = read_data(workspace / "annealed.data", glass.elements)
+    annealed = load_data(workspace / "annealed.data", glass.elements)
     kept = remove_strays(annealed, formula_of(glass))
     return with_vacuum(kept, float(annealed.cell_A[2]))
 

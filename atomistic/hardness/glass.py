@@ -13,7 +13,7 @@ from scipy.spatial import KDTree
 
 from atomistic.constants import AVOGADRO
 from atomistic.errors import InputError
-from atomistic.lammps import Atoms, Progress, Workspace, read_data, run_lammps, write_data
+from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
 from atomistic.materials import SEARCHED_A, SHORTEST_BOND_A, Material, OxideGlass
 from atomistic.potentials import Potential
 from atomistic.settings import GlassSettings
@@ -159,7 +159,7 @@ def make_glass(
             **{key: [segment[key] for segment in left] for key in ("ensemble", "from", "to", "steps")},
         }
         run_lammps("glass.in", workspace, variables, on_step)
-    glass = read_data(workspace / "glass.data", elements)
+    glass = load_data(workspace / "glass.data", elements)
     workspace.remove()
     return glass
 

@@ -8,7 +8,7 @@ from scipy.spatial import KDTree
 
 from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.contact_area import contact_area
-from atomistic.lammps import Workspace, read_averages, read_dump
+from atomistic.lammps import Workspace, load_averages, load_dump
 from atomistic.potentials import CONTACT_A
 from atomistic.settings import AreaSettings
 
@@ -31,15 +31,15 @@ class Geometry:
     top_radius_A: float  # the top is looked for within this distance of the axis
 
 
-def read_curve(
+def load_curve(
     workspace: Workspace, segments: range, segment_steps: int, area: AreaSettings, geometry: Geometry
 ) -> Rows:
     """Averages over `area.snapshots` samples of force, contact area and temperature, with the energy balance."""
     rows: dict[int, np.ndarray] = {}
     near: dict[int, np.ndarray] = {}
     for n in segments:  # the last step of a segment may stand in the next one again: the first one counts
-        rows = {int(row[0]): row for row in read_averages(workspace / f"averages.{n}")} | rows
-        near = dict(read_dump(workspace / f"near.{n}")) | near
+        rows = {int(row[0]): row for row in load_averages(workspace / f"averages.{n}")} | rows
+        near = dict(load_dump(workspace / f"near.{n}")) | near
     steps = sorted(rows)
     touching = {step: _beyond(near[step], geometry) for step in steps}
     cell = (geometry.wavelength_A, geometry.wavelength_A)
@@ -108,9 +108,9 @@ def _beyond(near: np.ndarray, geometry: Geometry) -> tuple[np.ndarray, np.ndarra
     return near[below, 2:4], CONTACT_A - distance
 
 
-def read_relaxed(workspace: Workspace, segment: int) -> tuple[int, Frame]:
+def load_relaxed(workspace: Workspace, segment: int) -> tuple[int, Frame]:
     """Step and frame of a relaxed snapshot."""
-    [(step, table)] = read_dump(workspace / f"relaxed.{segment}")
+    [(step, table)] = load_dump(workspace / f"relaxed.{segment}")
     return step, table[:, 1:5]
 
 

@@ -28,7 +28,7 @@ write_gwy(film, asp.Scan(heights, (SIDE_NM, SIDE_NM), "film"))
 # The gate says whether the numbers can be trusted.
 
 # %%
-scan = asp.read_scan(film)
+scan = asp.load_scan(film)
 roughness = asp.measure_roughness([scan])
 print("gate passed:", roughness["gate"]["passed"])
 for name, estimate in roughness["estimates"].items():

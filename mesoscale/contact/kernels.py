@@ -408,10 +408,10 @@ def _release(heights, n, level, peak, reach, asperities, seeds, waiting):
         for part in range(2):
             origin = np.uint64(row * n + (left if part == 0 else 0))
             count = np.uint64(before_edge if part == 0 else width - before_edge)
-            found = 0
+            reached = 0
             for m in range(count):
-                found += (label[origin + m] > 0) | ((label[origin + m] == 0) & (heights[origin + m] < level))
-            if found == 0:
+                reached += (label[origin + m] > 0) | ((label[origin + m] == 0) & (heights[origin + m] < level))
+            if reached == 0:
                 continue
             for m in range(count):
                 site = origin + m
@@ -441,7 +441,7 @@ def _find_yielding(heights, level, asperities, mechanics, rule, flattened, work,
 
     None yields where every site touches: flow keeps the volume, and there is nowhere left to flow to.
     """
-    found = 0
+    yielding = 0
     for k in range(actives):
         number = work.active[k]
         if asperities.sites[number] == 0 or asperities.sites[number] == heights.size:
@@ -451,15 +451,15 @@ def _find_yielding(heights, level, asperities, mechanics, rule, flattened, work,
         ceiling = hardness(area, mechanics) * area
         if force <= ceiling * (1.0 + rule.tolerance):
             continue
-        work.yielding[found] = number
-        work.peak[found] = asperities.peak[number]
+        work.yielding[yielding] = number
+        work.peak[yielding] = asperities.peak[number]
         # the indentation at which eq. 3 gives the limit, R and A unchanged
-        work.goal[found] = level - indentation * (ceiling / force) ** (2.0 / 3.0)
-        work.margin[found] = rule.tolerance * indentation / 3.0
+        work.goal[yielding] = level - indentation * (ceiling / force) ** (2.0 / 3.0)
+        work.margin[yielding] = rule.tolerance * indentation / 3.0
         # no wider than the contact itself (flattened tops have no curvature), no narrower than the floor
-        work.width[found] = max(rule.floor, min(np.sqrt(rule.width * radius), np.sqrt(area / np.pi)))
-        found += 1
-    return found
+        work.width[yielding] = max(rule.floor, min(np.sqrt(rule.width * radius), np.sqrt(area / np.pi)))
+        yielding += 1
+    return yielding
 
 
 @njit(cache=True)
@@ -515,16 +515,16 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, wor
             work.active[actives] = number
             actives += 1
     for sweeps in range(rule.max_sweeps + 1):
-        found = _find_yielding(heights, level, asperities, mechanics, rule, changes.flattened, work, actives)
-        if found == 0:
+        yielding = _find_yielding(heights, level, asperities, mechanics, rule, changes.flattened, work, actives)
+        if yielding == 0:
             return sweeps, True
         if sweeps == rule.max_sweeps:
             return sweeps, False
         if mechanics.flattened_radius:
-            for k in range(found):
+            for k in range(yielding):
                 _flatten(asperities, work.yielding[k], changes)
         flows = 0
-        for k in np.argsort(work.peak[:found]):
+        for k in np.argsort(work.peak[:yielding]):
             goal, margin = work.goal[k], work.margin[k]
             low = 1
             work.low[0] = work.peak[k]

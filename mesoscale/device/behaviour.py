@@ -43,7 +43,7 @@ class LawSamples:
     nominal_from: str
 
 
-def read_samples(
+def samples_of_rows(
     rows: Sequence[Mapping[str, str]],
     fitted: Sequence[Mapping[str, str]],
     settings: DeviceSettings,
@@ -123,7 +123,7 @@ def samples_json(samples: LawSamples, settings: DeviceSettings) -> dict[str, Any
     }
 
 
-def study_switch(
+def drive_switch(
     samples: LawSamples, settings: DeviceSettings, law_pressure_MPa: float | None
 ) -> tuple[dict[str, Any], dict[str, SwitchStates]]:
     """Pull-in, release, stiction and capacitance over the samples, with and without adhesion.

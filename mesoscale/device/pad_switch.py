@@ -105,11 +105,11 @@ def resampled_states(
     InputError : see `solve_on_pad`.
     """
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0x9AD5]))
-    found = []
+    solved = []
     for _ in range(resamples):
         weights = rng.multinomial(cells.count, np.full(cells.count, 1.0 / cells.count)) / cells.count
-        found.append(solve_on_pad(switch, law_of(cells, hamaker, weights), hold_voltage_V))
-    return found
+        solved.append(solve_on_pad(switch, law_of(cells, hamaker, weights), hold_voltage_V))
+    return solved
 
 
 def switch_on_pad(

@@ -70,12 +70,12 @@ def press_scan(
         if it has one.
     inputs : of the contact; RMS height and spectrum are replaced by those of the surfaces.
     """
-    alone = likelihood.fit([trusted_scan(raw, settings)]) if misfit > MAX_MISFIT else None
-    if alone is not None:  # None also where this scan does not determine a spectrum
-        fitted = alone.spectrum(math.inf)
+    fit_of_scan = likelihood.fit([trusted_scan(raw, settings)]) if misfit > MAX_MISFIT else None
+    if fit_of_scan is not None:  # None also where this scan does not determine a spectrum
+        fitted = fit_of_scan.spectrum(math.inf)
     scan = clean(raw, settings)
     for surface, heights, chosen, force in surfaces(scan, fitted, settings, contact):
-        own = replace(inputs, rms=float(np.std(heights)))
-        cycle = run_cycle(own, chosen, contact.nominal_seed, force, heights)
+        scan_inputs = replace(inputs, rms=float(np.std(heights)))
+        cycle = run_cycle(scan_inputs, chosen, contact.nominal_seed, force, heights)
         outcome = fit_cycle(cycle, law)
         yield PressedSurface(scan.name, surface, chosen.pixels, force, cycle, outcome)

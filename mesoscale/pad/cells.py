@@ -74,8 +74,8 @@ def _separation_at(
         separations = np.asarray(start_nm - steps[:size], float)
         repelled = np.zeros(size)
         for heights in surfaces:
-            found = close_by_separation(inputs, contact, heights.copy(), separations, np.empty(0, int))
-            repelled += found.closing[0] / len(surfaces)
+            closed = close_by_separation(inputs, contact, heights.copy(), separations, np.empty(0, int))
+            repelled += closed.closing[0] / len(surfaces)
         if repelled[-1] >= wanted_nN:
             return float(separations[np.argmax(repelled >= wanted_nN)])
     raise InputError(

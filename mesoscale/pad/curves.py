@@ -76,11 +76,11 @@ def adhesion_by_cells(cells: PadCells, sizes: Sequence[int], seed: int = 0) -> l
         closed_MPa = float(cells.closing[:, :, cells.grid.depths[k]].sum(axis=1).mean() * 1e3)
         for size in (size for size in sizes if size <= cells.count // 2):
             groups = net[: cells.count // size * size].reshape(-1, size, net.shape[-1]).mean(axis=1)
-            found = deepest_net_GPa(groups) * 1e6
-            scatter = float(found.std(ddof=1))
+            pull_offs = deepest_net_GPa(groups) * 1e6
+            scatter = float(pull_offs.std(ddof=1))
             rows.append(
                 _adhesion_row(
-                    depth, closed_MPa, size, "groups", float(found.mean()), scatter, scatter / len(found) ** 0.5
+                    depth, closed_MPa, size, "groups", float(pull_offs.mean()), scatter, scatter / len(pull_offs) ** 0.5
                 )
             )
         whole = float(deepest_net_GPa(net.mean(axis=0))) * 1e6

@@ -20,7 +20,7 @@ MAX_PIXELS = 16384**2
 MIN_SIDE = 32
 
 
-def read_scan(path: str | Path, name: str | None = None, channel: str | None = None) -> Scan:
+def load_scan(path: str | Path, name: str | None = None, channel: str | None = None) -> Scan:
     """Read the height channel of an AFM file, in nm.
 
     Parameters

@@ -38,7 +38,7 @@ def to_paper_outputs(parameters: Array) -> Array:
     return np.concatenate([closing, opening - closing], axis=-1)
 
 
-def read_nodes(rows: Iterable[Mapping[str, str]]) -> NodeOutputs:
+def nodes_of_rows(rows: Iterable[Mapping[str, str]]) -> NodeOutputs:
     """Arrange the rows of law/parameters.csv by seed and node."""
     rows = list(rows)
     seeds = sorted({int(row["seed"]) for row in rows})

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 Responses = Sequence[Surrogate | None]
 
 
-def read_direct_runs(rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int) -> tuple[Array, Array]:
+def direct_runs_of_rows(rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int) -> tuple[Array, Array]:
     """Inputs (m, n) and parameters (m, len(FITTED)) of the first `count` runs; NaN where missing."""
     rows = list(islice(rows, count))
     inputs = np.array([[float(row[name]) for name in names] for row in rows]).reshape(len(rows), len(names))

@@ -25,7 +25,7 @@ def film(tmp_path_factory):
 
 
 def test_scan_to_switches_in_ten_lines(film):
-    roughness = asp.measure_roughness([asp.read_scan(film)])
+    roughness = asp.measure_roughness([asp.load_scan(film)])
     table = asp.input_table(topography=roughness)
     cycle = asp.run_cycle(asp.ContactInputs(**table.medians()), SMALL, seed=1)
     switch = asp.drive_switch(asp.DeviceSettings(landed_fraction=1e-3), *asp.laws_of(cycle))
@@ -100,7 +100,7 @@ cycle = asp.run_cycle(asp.ContactInputs(0.215, 91.0, 1.95, 8.375, 0.025, 0.75, 8
                       asp.ContactSettings(pixels=64, length_nm=250.0), seed=1, max_force_nN=500.0)
 print(cycle.converged)
 try:
-    asp.read_scan(sys.argv[1])
+    asp.load_scan(sys.argv[1])
 except asp.MissingExtra as error:
     print(error)
 """

@@ -172,15 +172,15 @@ def _uncertainty(root: Path) -> None:
 
 
 def _device(root: Path) -> None:
-    from mesoscale.device.behaviour import read_samples, state_rows, stiction_rows, study_switch, switch_path
+    from mesoscale.device.behaviour import drive_switch, samples_of_rows, state_rows, stiction_rows, switch_path
     from mesoscale.device.export import law_table
     from mesoscale.settings import DeviceSettings
-    from workflow.results import read_csv
+    from workflow.results import load_csv
 
     settings = DeviceSettings()
-    rows, fitted = read_csv(root / "uq/samples.csv"), read_csv(root / "law/parameters.csv")
-    samples = read_samples(rows, fitted, settings, 2.0, 2.0)
-    results, states = study_switch(samples, settings, 7.0)
+    rows, fitted = load_csv(root / "uq/samples.csv"), load_csv(root / "law/parameters.csv")
+    samples = samples_of_rows(rows, fitted, settings, 2.0, 2.0)
+    results, states = drive_switch(samples, settings, 7.0)
     write_json(root / "device/switch.json", results, PROVENANCE)
     _write(root / "device/release.csv", state_rows(states))
     _write(root / "device/stiction.csv", stiction_rows(states))

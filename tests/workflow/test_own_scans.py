@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from workflow.results import read_csv, read_h5, read_json
+from workflow.results import load_csv, load_h5, load_json
 
 ROOT = Path(__file__).resolve().parents[2]
 AFM = ROOT.parent / "shared" / "afm"
@@ -21,12 +21,12 @@ def test_real_scans_to_force_curves_with_one_command(workflow_in):
     done = workflow_in.run(str(scene), "press_scans", "curves")
     assert done.returncode == 0, done.stderr
     results = workflow_in.folder / "results/mine"
-    found = read_json(results / "topography/parameters.json")
+    found = load_json(results / "topography/parameters.json")
     assert [row["length_nm"] for row in found["scans"]] == pytest.approx([1000.0, 10000.0])
     assert any("no plateau with a power law common" in reason for reason in found["gate"]["reasons"])  # grainy films
-    rows = {(row["scan"], row["surface"]): row for row in read_csv(results / "law/scans.csv")}
+    rows = {(row["scan"], row["surface"]): row for row in load_csv(results / "law/scans.csv")}
     assert len(rows) == 6
     assert all(0 < float(row["d_c_nm"]) < 100 and row["converged"] == "True" for row in rows.values())
-    groups, _, facts = read_h5(results / "curves/nominal.h5")
+    groups, _, facts = load_h5(results / "curves/nominal.h5")
     assert facts["load_7000"]["rms"] == pytest.approx(9.5, abs=1)  # middle of the range that both scans span
     assert (groups["load_7000/closing"]["repulsive_nN"][-1]) == pytest.approx(7000, rel=0.01)

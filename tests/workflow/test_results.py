@@ -11,9 +11,9 @@ import pytest
 from workflow.results import (
     Dataset,
     atomic_path,
-    read_csv,
-    read_h5,
-    read_json,
+    load_csv,
+    load_h5,
+    load_json,
     write_csv,
     write_h5,
     write_json,
@@ -57,7 +57,7 @@ def test_results_follow_the_umask(tmp_path):
 def test_csv_gives_back_every_digit(tmp_path):
     value = np.float64(0.1) + 0.2
     write_csv(tmp_path / "a.csv", [{"force_nN": value, "status": None}])
-    (row,) = read_csv(tmp_path / "a.csv")
+    (row,) = load_csv(tmp_path / "a.csv")
     assert float(row["force_nN"]) == value
     assert row["status"] == ""
 
@@ -76,7 +76,7 @@ def test_csv_quotes_what_needs_it(tmp_path):
 
 def test_json_has_no_nan(tmp_path):
     write_json(tmp_path / "a.json", {"H": np.nan, "interval": np.array([1.0, np.inf])}, {"rule": "fit"})
-    content = read_json(tmp_path / "a.json")
+    content = load_json(tmp_path / "a.json")
     assert content["H"] is None
     assert content["interval"] == [1.0, None]
     assert content["provenance"]["rule"] == "fit"
@@ -94,7 +94,7 @@ def test_h5_is_documented_and_reproducible(tmp_path):
             {},
             {"plastic": {"model": "plastic"}},
         )
-    groups, attributes, group_attributes = read_h5(tmp_path / "a.h5")
+    groups, attributes, group_attributes = load_h5(tmp_path / "a.h5")
     np.testing.assert_array_equal(groups["plastic/closing"]["force"], [0, 1, 2])
     assert attributes["complete"]
     assert group_attributes == {"plastic": {"model": "plastic"}}
@@ -110,7 +110,7 @@ def test_an_incomplete_h5_is_refused(tmp_path):
     with h5py.File(tmp_path / "half.h5", "w") as file:
         file["force"] = [1.0]
     with pytest.raises(ValueError, match="not a complete result file"):
-        read_h5(tmp_path / "half.h5")
+        load_h5(tmp_path / "half.h5")
 
 
 def test_a_dataset_named_like_its_dimension_is_its_coordinate(tmp_path):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from workflow.results import read_csv, write_csv
+from workflow.results import load_csv, write_csv
 from workflow.schemas import STAGES, UnfitTable, schema_of
 from workflow.schemas.__main__ import PAGE, page
 
@@ -55,7 +55,7 @@ def test_a_result_without_a_schema_is_not_written(tmp_path):
 
 def test_what_was_written_is_read(tmp_path):
     write_csv(tmp_path / TABLE, [ROW, ROW | {"low": float("nan")}])
-    assert read_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {"low": "nan"}
+    assert load_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {"low": "nan"}
 
 
 @pytest.mark.parametrize(
@@ -73,4 +73,4 @@ def test_a_damaged_table_is_refused_in_one_line(tmp_path, change, words):
     write_csv(path, [ROW])
     path.write_text(change(path.read_text()))
     with pytest.raises(UnfitTable, match=rf"{words}; damaged or of another version: delete it and run again"):
-        read_csv(path)
+        load_csv(path)

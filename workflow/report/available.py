@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from workflow.report.page import COMPUTED, LITERATURE, Gate
-from workflow.results import read_csv, read_h5, read_json
+from workflow.results import load_csv, load_h5, load_json
 
 Row = dict[str, str]
 
@@ -41,17 +41,17 @@ class Results:
     @cache  # noqa: B019 (one object per report)
     def csv(self, name: str) -> list[Row]:
         """Rows of a CSV file."""
-        return read_csv(self.root / name)
+        return load_csv(self.root / name)
 
     @cache  # noqa: B019
     def json(self, name: str) -> dict[str, Any]:
         """Content of a JSON file."""
-        return read_json(self.root / name)
+        return load_json(self.root / name)
 
     @cache  # noqa: B019
     def h5(self, name: str) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
         """Groups, root attributes and group attributes of an HDF5 file."""
-        return read_h5(self.root / name)
+        return load_h5(self.root / name)
 
     @property
     def response(self) -> str:

@@ -74,7 +74,7 @@ def curves(rows: list[Row]) -> dict[tuple[str, str], list[tuple[str, float, floa
     for row in rows:
         knob = groups.setdefault((row["knob"], row.get("reference", "")), {})
         knob.setdefault(row["value"], []).append(row)
-    found = {}
+    knobs = {}
     for key, values in groups.items():
         points = []
         for value, part in values.items():
@@ -82,8 +82,8 @@ def curves(rows: list[Row]) -> dict[tuple[str, str], list[tuple[str, float, floa
             if np.isfinite(errors).any():
                 points.append((value, float(np.nanmax(errors)), float(np.nanmean(column(part, "wall_s")))))
         if points:
-            found[key] = sorted(points, key=lambda point: point[2])
-    return found
+            knobs[key] = sorted(points, key=lambda point: point[2])
+    return knobs
 
 
 def recommended(stage: str, rows: list[Row]) -> list[tuple[str, ...]]:
@@ -102,12 +102,12 @@ def recommended(stage: str, rows: list[Row]) -> list[tuple[str, ...]]:
 
 def error_against_time(stage: str, rows: list[Row]) -> str | None:
     """One line per knob."""
-    found = {key: points for key, points in curves(rows).items() if any(e > 0 and s > 0 for _, e, s in points)}
-    if not found:
+    drawn = {key: points for key, points in curves(rows).items() if any(e > 0 and s > 0 for _, e, s in points)}
+    if not drawn:
         return None
 
     def plot(axis):
-        for number_, ((knob, _), points) in enumerate(found.items()):
+        for number_, ((knob, _), points) in enumerate(drawn.items()):
             shown = [(seconds, error) for _, error, seconds in points if error > 0 and seconds > 0]
             style = "o-" if number_ < len(SERIES) else "s--"
             axis.plot(*zip(*shown, strict=True), style, color=SERIES[number_ % len(SERIES)], markersize=4, label=knob)

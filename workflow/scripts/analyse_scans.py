@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import analyse_scan, thumbnail
-from mesoscale.topography.loading import read_scan
+from mesoscale.topography.loading import load_scan
 from workflow.checksums import file_checksum
 from workflow.job import job
 from workflow.results import Dataset, write_h5
@@ -20,7 +20,7 @@ with job(snakemake) as run:
     for number, path in enumerate(files):
         stem = Path(path).stem
         name = stem if not settings.scans else f"{snakemake.params.first + number + 1:02d}_{stem}"
-        result = analyse_scan(read_scan(path, name, settings.channel), settings)
+        result = analyse_scan(load_scan(path, name, settings.channel), settings)
         spectrum, flat, cleaned = result.spectrum, result.flat_spectrum, result.cleaned
         groups[name] = {
             "q": Dataset(spectrum.q, "1/nm", "wave vector", ("q",)),

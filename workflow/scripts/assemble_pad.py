@@ -13,13 +13,13 @@ from mesoscale.pad.curves import PadCells, adhesion_by_cells, curve_rows
 from mesoscale.pad.tail import fit_tail, tail_summary
 from mesoscale.settings import DeviceSettings
 from workflow.job import job
-from workflow.results import Dataset, read_csv, read_h5, read_numbers, write_csv, write_h5, write_json
+from workflow.results import Dataset, load_csv, load_h5, load_numbers, write_csv, write_h5, write_json
 
 with job(snakemake) as run:
-    rows = read_numbers(snakemake.input.grid)
+    rows = load_numbers(snakemake.input.grid)
     separation = np.array([row["separation_nm"] for row in rows])
     grid = PadGrid(separation, np.flatnonzero([row["opened_from"] for row in rows]))
-    chunks = [read_h5(path)[0]["cells"] for path in snakemake.input.chunks]
+    chunks = [load_h5(path)[0]["cells"] for path in snakemake.input.chunks]
     area = snakemake.params.length_nm**2
     cells = PadCells(
         grid,
@@ -29,7 +29,7 @@ with job(snakemake) as run:
         np.concatenate([chunk["settled"] for chunk in chunks]).astype(bool),
     )
     device = DeviceSettings(**snakemake.params.device)
-    hamaker = medians(read_csv(snakemake.input.inputs))["hamaker"]
+    hamaker = medians(load_csv(snakemake.input.inputs))["hamaker"]
 
     table = curve_rows(cells)
     write_csv(snakemake.output.table, table)

@@ -10,11 +10,11 @@ from mesoscale.inputs.table import medians
 from mesoscale.pad.cells import PadGrid, close_cells
 from mesoscale.settings import ContactSettings
 from workflow.job import job
-from workflow.results import Dataset, read_csv, read_numbers, write_h5
+from workflow.results import Dataset, load_csv, load_numbers, write_h5
 
 with job(snakemake) as run:
-    inputs, contact = contact_of(medians(read_csv(snakemake.input.inputs)), ContactSettings(**snakemake.params.contact))
-    rows = read_numbers(snakemake.input.grid)
+    inputs, contact = contact_of(medians(load_csv(snakemake.input.inputs)), ContactSettings(**snakemake.params.contact))
+    rows = load_numbers(snakemake.input.grid)
     grid = PadGrid(
         np.array([row["separation_nm"] for row in rows]), np.flatnonzero([row["opened_from"] for row in rows])
     )

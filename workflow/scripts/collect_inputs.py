@@ -10,7 +10,7 @@ import copy
 from mesoscale.inputs.table import COLUMNS, collect, to_rows
 from mesoscale.settings import InputsSettings
 from workflow.job import job
-from workflow.results import read_json, write_csv
+from workflow.results import load_json, write_csv
 
 with job(snakemake) as run:
     given = copy.deepcopy(snakemake.params.settings)
@@ -18,7 +18,7 @@ with job(snakemake) as run:
     for name in [name for name in results if name.startswith("samples_")]:
         given[name.removeprefix("samples_")]["file"] = results.pop(name)  # found beside the scene, perhaps
     settings = InputsSettings(**given)
-    stages = {stage: read_json(path) for stage, path in results.items()}
+    stages = {stage: load_json(path) for stage, path in results.items()}
     files = {stage: "/".join(path.split("/")[-2:]) for stage, path in results.items()}
     table = collect(settings, stages, files, snakemake.params.central_share)
     write_csv(snakemake.output[0], to_rows(table), COLUMNS)

@@ -5,10 +5,10 @@ In: topography/recovery/sets_*.csv.  Out: topography/recovery.csv (one row per s
 
 from mesoscale.topography.studies.recovery import COLUMNS, summary
 from workflow.job import job
-from workflow.results import read_csv, write_csv
+from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
-    rows = [row for path in snakemake.input for row in read_csv(path)]
+    rows = [row for path in snakemake.input for row in load_csv(path)]
     write_csv(snakemake.output[0], rows, COLUMNS)
     for method in ("likelihood", "lines"):
         shares = summary(rows, method)

@@ -5,14 +5,14 @@ from atomistic.elastic.structures import structure_rows, trusted_moduli
 from atomistic.materials import load_material
 from atomistic.settings import ElasticSettings
 from workflow.job import job
-from workflow.results import Dataset, read_csv, read_json, write_csv, write_h5, write_json
+from workflow.results import Dataset, load_csv, load_json, write_csv, write_h5, write_json
 
 with job(snakemake) as run:
     settings = ElasticSettings(**snakemake.params.settings)
     counter_body = load_material(snakemake.input.counter_body)
-    reports = [read_json(path) for path in snakemake.input.structures]
-    quenches = [len(read_csv(path)) for path in snakemake.input.attempts]
-    moduli = trusted_moduli(read_csv(snakemake.input.moduli), reports)
+    reports = [load_json(path) for path in snakemake.input.structures]
+    quenches = [len(load_csv(path)) for path in snakemake.input.attempts]
+    moduli = trusted_moduli(load_csv(snakemake.input.moduli), reports)
     summary, samples = effective_modulus(moduli, counter_body, settings)
     write_csv(snakemake.output.structures, structure_rows(reports, quenches))
     group = {key: Dataset(values, *SAMPLE_COLUMNS[key], ("sample",)) for key, values in samples.items()}

@@ -3,7 +3,7 @@
 from atomistic.elastic.energy_scans import fit_scan
 from atomistic.materials import load_material
 from workflow.job import job
-from workflow.results import read_csv, write_csv
+from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
     published = {}
@@ -11,7 +11,7 @@ with job(snakemake) as run:
         published |= {name: data.published for name, data in load_material(path).crystals.items()}
     rows = []
     for path in snakemake.input.points:
-        scan = read_csv(path)
+        scan = load_csv(path)
         fit = fit_scan(scan)
         known = published[fit["structure"]]
         kind = fit["xc"] if fit["xc"] in known else "experiment"

@@ -8,10 +8,10 @@ from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.settings import ContactSettings, CouplingSettings
 from workflow.job import job
-from workflow.results import read_csv, write_csv
+from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
     settings = CouplingSettings(**snakemake.params.settings)
     contact = ContactSettings(**snakemake.params.contact)
-    inputs, contact = contact_of(medians(read_csv(snakemake.input.inputs)), contact)
+    inputs, contact = contact_of(medians(load_csv(snakemake.input.inputs)), contact)
     write_csv(snakemake.output[0], compare(inputs, contact, settings, run.progress))

@@ -9,10 +9,10 @@ from mesoscale.uncertainty.chunks import node_count
 from mesoscale.uncertainty.designs import collocation_runs
 from mesoscale.uncertainty.studies.audit import AUDIT_COLUMNS, audit_rows
 from workflow.job import job
-from workflow.results import read_csv, write_csv
+from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
-    table = from_rows(read_csv(snakemake.input.inputs))
+    table = from_rows(load_csv(snakemake.input.inputs))
     count = node_count(len(table.rows), 1)
     first = int(snakemake.wildcards.seed) * count
     runs = collocation_runs(table, UncertaintySettings(**snakemake.params.uncertainty), first, first + count)

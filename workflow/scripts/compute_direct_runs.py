@@ -14,11 +14,11 @@ from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
 from mesoscale.uncertainty.designs import DESIGNS
 from mesoscale.uncertainty.runs import compute_rows
 from workflow.job import job
-from workflow.results import read_csv, write_csv
+from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
     runs = DESIGNS[snakemake.wildcards.design](
-        from_rows(read_csv(snakemake.input.inputs)),
+        from_rows(load_csv(snakemake.input.inputs)),
         UncertaintySettings(**snakemake.params.uncertainty),
         *snakemake.params.bounds,
     )

@@ -12,10 +12,10 @@ from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.settings import ContactSettings
 from workflow.job import job
-from workflow.results import Dataset, read_csv, write_h5
+from workflow.results import Dataset, load_csv, write_h5
 
 with job(snakemake) as run:
-    middle = medians(read_csv(snakemake.input.inputs))
+    middle = medians(load_csv(snakemake.input.inputs))
     inputs, settings = contact_of(middle, ContactSettings(**snakemake.params.settings))
     groups, attributes = {}, {}
     for name, chosen, force, cycle in nominal_cycles(inputs, settings, run.progress):

@@ -11,21 +11,21 @@ from mesoscale.settings import ContactSettings, UncertaintySettings
 from mesoscale.uncertainty.designs import collocation_runs
 from mesoscale.uncertainty.runs import compute_all
 from workflow.job import job
-from workflow.results import Dataset, read_csv, write_h5
+from workflow.results import Dataset, load_csv, write_h5
 
 with job(snakemake) as run:
     contact = ContactSettings(**snakemake.params.contact)
     uncertainty = UncertaintySettings(**snakemake.params.uncertainty)
-    runs = collocation_runs(from_rows(read_csv(snakemake.input.inputs)), uncertainty, *snakemake.params.bounds)
+    runs = collocation_runs(from_rows(load_csv(snakemake.input.inputs)), uncertainty, *snakemake.params.bounds)
     groups, attributes = {}, {}
     for item, cycle in compute_all(runs, contact, run.progress):
         name = f"run_{item.index:04d}"
-        facts = {"run": item.index, "node": item.node, "seed": item.seed, **item.values}
+        about_run = {"run": item.index, "node": item.node, "seed": item.seed, **item.values}
         if isinstance(cycle, str):
-            attributes[name] = {**facts, "status": cycle}
+            attributes[name] = {**about_run, "status": cycle}
             continue
         attributes[name] = {
-            **facts,
+            **about_run,
             "status": "ok" if cycle.converged else "unconverged",
             "flags": cycle.flags,
             "first_contact_nm": cycle.first_contact_nm,

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mesoscale.device.behaviour import read_samples, samples_json
+from mesoscale.device.behaviour import samples_json, samples_of_rows
 from mesoscale.device.export import (
     TABLE_COLUMNS,
     law_table,
@@ -18,13 +18,13 @@ from mesoscale.device.export import (
 )
 from mesoscale.settings import DeviceSettings, LawSettings
 from workflow.job import job
-from workflow.results import read_csv, write_csv, write_json, write_text
+from workflow.results import load_csv, write_csv, write_json, write_text
 
 with job(snakemake) as run:
     settings = DeviceSettings(**snakemake.params.settings)
     law = LawSettings(**snakemake.params.law)
-    rows, fitted = read_csv(snakemake.input.samples), read_csv(snakemake.input.parameters)
-    samples = read_samples(rows, fitted, settings, law.rho_a_nm, law.shield_nm)
+    rows, fitted = load_csv(snakemake.input.samples), load_csv(snakemake.input.parameters)
+    samples = samples_of_rows(rows, fitted, settings, law.rho_a_nm, law.shield_nm)
     area_nm2 = snakemake.params.length_nm**2
     write_csv(snakemake.output.table, law_table(samples.nominal, samples.laws), TABLE_COLUMNS)
     write_json(snakemake.output.samples, samples_json(samples, settings), run.provenance)

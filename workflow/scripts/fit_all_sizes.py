@@ -6,13 +6,13 @@ In:  hardness/points.csv, study/hardness.csv (GPa, nm).  Out: size_effect.json (
 from atomistic.hardness.size_effect import free_fit, size_exponents
 from atomistic.settings import HardnessSettings
 from workflow.job import job
-from workflow.results import read_csv, write_json
+from workflow.results import load_csv, write_json
 
 with job(snakemake) as run:
     fit = HardnessSettings.model_validate(snakemake.params.settings).fit
-    own = read_csv(snakemake.input.points)
-    beyond = [row for row in read_csv(snakemake.input.study) if row["case"] in snakemake.params.cases]
-    by_run = {row["run"]: row for row in [*beyond, *own] if row["status"] == "yield"}
+    of_scene = load_csv(snakemake.input.points)
+    beyond = [row for row in load_csv(snakemake.input.study) if row["case"] in snakemake.params.cases]
+    by_run = {row["run"]: row for row in [*beyond, *of_scene] if row["status"] == "yield"}
     points = list(by_run.values())
     write_json(
         snakemake.output.fit,

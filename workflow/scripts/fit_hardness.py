@@ -6,13 +6,13 @@ In:  points.csv (GPa, nm), glass/*.json.  Out: fit.json (H_macro in GPa, H' in G
 from atomistic.hardness.size_effect import fit_size_effect
 from atomistic.settings import HardnessSettings
 from workflow.job import job
-from workflow.results import read_csv, read_json, write_json
+from workflow.results import load_csv, load_json, write_json
 
 with job(snakemake) as run:
     settings = HardnessSettings(**snakemake.params.settings)
-    glasses = [read_json(path) for path in snakemake.input.glasses]
+    glasses = [load_json(path) for path in snakemake.input.glasses]
     write_json(
         snakemake.output.fit,
-        fit_size_effect(read_csv(snakemake.input.points), glasses, settings),
+        fit_size_effect(load_csv(snakemake.input.points), glasses, settings),
         run.provenance,
     )

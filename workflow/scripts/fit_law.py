@@ -7,20 +7,20 @@ from mesoscale.inputs.table import from_rows
 from mesoscale.law.branches import fit_stored
 from mesoscale.settings import LawSettings
 from workflow.job import job
-from workflow.results import read_csv, read_h5, write_csv
+from workflow.results import load_csv, load_h5, write_csv
 
 with job(snakemake) as run:
     settings = LawSettings(**snakemake.params.settings)
-    names = from_rows(read_csv(snakemake.input.inputs)).names
+    names = from_rows(load_csv(snakemake.input.inputs)).names
     rows = []
     for done, path in enumerate(snakemake.input.chunks):
-        curves, root, attributes = read_h5(path)
+        curves, root, attributes = load_h5(path)
         for name in sorted(key for key in attributes if "/" not in key):
-            facts = attributes[name]
-            head = {key: facts[key] for key in ("run", "node", "seed")}
-            values = {key: facts[key] for key in names}
+            attrs = attributes[name]
+            head = {key: attrs[key] for key in ("run", "node", "seed")}
+            values = {key: attrs[key] for key in names}
             rows += [
-                {**head, **row, **values} for row in fit_stored(curves, name, facts, root["cell_area_nm2"], settings)
+                {**head, **row, **values} for row in fit_stored(curves, name, attrs, root["cell_area_nm2"], settings)
             ]
         run.progress((done + 1) / len(snakemake.input.chunks), "curves fitted")
     rows.sort(key=lambda row: row["run"])

@@ -6,14 +6,14 @@ In: curves/nominal.h5 (nm, nN).  Out: law/nominal.csv, one row per curve and bra
 from mesoscale.law.branches import fit_stored
 from mesoscale.settings import LawSettings
 from workflow.job import job
-from workflow.results import read_h5, write_csv
+from workflow.results import load_h5, write_csv
 
 with job(snakemake) as run:
     settings = LawSettings(**snakemake.params.settings)
-    curves, root, attributes = read_h5(snakemake.input.nominal)
+    curves, root, attributes = load_h5(snakemake.input.nominal)
     rows = []
     for name in sorted({key.rpartition("/")[0] for key in curves if "/" in key}):
-        facts = {**root, **attributes.get(name, {})}
-        area = float(facts["cell_area_nm2"])
-        rows += [{"curve": name, **row} for row in fit_stored(curves, name, facts, area, settings)]
+        about_curve = {**root, **attributes.get(name, {})}
+        area = float(about_curve["cell_area_nm2"])
+        rows += [{"curve": name, **row} for row in fit_stored(curves, name, about_curve, area, settings)]
     write_csv(snakemake.output[0], rows)

@@ -12,13 +12,13 @@ from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.settings import ContactSettings, DeviceSettings, HistorySettings, LawSettings
 from workflow.job import job
-from workflow.results import Dataset, read_csv, write_csv, write_h5
+from workflow.results import Dataset, load_csv, write_csv, write_h5
 
 with job(snakemake) as run:
     settings = HistorySettings(**snakemake.params.settings)
     law, device = LawSettings(**snakemake.params.law), DeviceSettings(**snakemake.params.device)
     contact = ContactSettings(**snakemake.params.contact)
-    inputs, contact = contact_of(medians(read_csv(snakemake.input.inputs)), contact)
+    inputs, contact = contact_of(medians(load_csv(snakemake.input.inputs)), contact)
     cycles, dwell, groups, attributes = [], [], {}, {}
     shown = shown_cycles(settings)
     for seed, held in follow_all(inputs, contact, settings, run.progress):

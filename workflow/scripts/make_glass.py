@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 from atomistic.hardness.glass import glass_properties, make_glass
-from atomistic.lammps import read_data, write_data
+from atomistic.lammps import load_data, write_data
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
 from atomistic.settings import GlassSettings
@@ -20,7 +20,7 @@ with job(snakemake) as run:
     settings = GlassSettings.model_validate(snakemake.params.glass)
     potential = load_potential(snakemake.input.potential)
     beside = snakemake.input.get("beside")
-    edge_A = float(read_data(beside, ()).cell_A[0]) if beside else None
+    edge_A = float(load_data(beside, ()).cell_A[0]) if beside else None
     started = time.perf_counter()
     glass = make_glass(material, potential, settings, seed, Path(snakemake.params.work), run.progress, edge_A)
     properties = glass_properties(material, potential, glass)

@@ -9,14 +9,14 @@ from atomistic.hardness.studies.detection import detection_points
 from atomistic.settings import HardnessSettings
 from workflow.checks import accuracy_rows
 from workflow.job import job
-from workflow.results import read_csv, read_numbers, write_csv
+from workflow.results import load_csv, load_numbers, write_csv
 
 with job(snakemake) as run:
     started, cpu = time.perf_counter(), time.process_time()
     points = detection_points(
-        [read_numbers(path) for path in snakemake.input.curves],
-        [read_numbers(path) for path in snakemake.input.witnesses],
-        [float(point["wavelength_nm"]) ** 2 for point in read_csv(snakemake.input.points)],
+        [load_numbers(path) for path in snakemake.input.curves],
+        [load_numbers(path) for path in snakemake.input.witnesses],
+        [float(point["wavelength_nm"]) ** 2 for point in load_csv(snakemake.input.points)],
         HardnessSettings.model_validate(snakemake.params.settings),
     )
     cost = {"wall_s": time.perf_counter() - started, "cpu_s": time.process_time() - cpu}

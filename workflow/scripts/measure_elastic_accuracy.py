@@ -5,7 +5,7 @@ from atomistic.elastic.studies.accuracy import accuracy_points, ensemble_points
 from atomistic.materials import load_material
 from workflow.checks import accuracy_rows
 from workflow.job import job
-from workflow.results import read_csv, write_csv
+from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)
@@ -15,11 +15,11 @@ with job(snakemake) as run:
     if snakemake.input.get("moduli"):
         clamped = [
             row
-            for row in read_csv(snakemake.input.moduli)
+            for row in load_csv(snakemake.input.moduli)
             if row["structure"] not in material.crystals
             and (row["xc"], row["ions"], row["flags"]) == ("GGA", "clamped", "")
         ]
         names = {row["structure"] for row in clamped}
-        cost = sum(float(p["wall_s"]) for p in read_csv(snakemake.input.points) if p["structure"] in names)
+        cost = sum(float(p["wall_s"]) for p in load_csv(snakemake.input.points) if p["structure"] in names)
         rows += accuracy_rows("elastic", ensemble_points([float(row["B_GPa"]) for row in clamped], cost))
     write_csv(snakemake.output.table, rows)

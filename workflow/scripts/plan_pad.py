@@ -5,10 +5,10 @@ from mesoscale.inputs.table import medians
 from mesoscale.pad.cells import plan_grid
 from mesoscale.settings import ContactSettings, PadSettings
 from workflow.job import job
-from workflow.results import read_csv, write_csv
+from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
-    inputs, contact = contact_of(medians(read_csv(snakemake.input.inputs)), ContactSettings(**snakemake.params.contact))
+    inputs, contact = contact_of(medians(load_csv(snakemake.input.inputs)), ContactSettings(**snakemake.params.contact))
     grid = plan_grid(inputs, contact, PadSettings(**snakemake.params.pad))
     depths = set(grid.depths.tolist())
     rows = [

@@ -10,7 +10,7 @@ from mesoscale.topography.parameters import analyse
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import Spectrum
 from workflow.job import job
-from workflow.results import Dataset, read_h5, read_json, write_h5, write_json
+from workflow.results import Dataset, load_h5, load_json, write_h5, write_json
 
 
 def curve_datasets(curves):
@@ -22,13 +22,13 @@ with job(snakemake) as run:
     settings = TopographySettings(**snakemake.params.settings)
     scans, attributes = {}, {}
     for path in snakemake.input.chunks:
-        groups, _, group_attributes = read_h5(path)
+        groups, _, group_attributes = load_h5(path)
         scans.update(groups)
         attributes.update(group_attributes)
 
     truth, typical = None, None
     if snakemake.input.truth:
-        truth = read_json(snakemake.input.truth)
+        truth = load_json(snakemake.input.truth)
         known = truth["truth"]
         typical = RoughSpectrum.from_rms(known["rms_nm"], known["q0"], known["slope"], known["q1"])
     spectra, flat = [], []

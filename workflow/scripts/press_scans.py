@@ -14,22 +14,22 @@ from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.law.pressed_scans import press_scan
 from mesoscale.settings import ContactSettings, LawSettings, TopographySettings
-from mesoscale.topography.loading import read_scan
+from mesoscale.topography.loading import load_scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from workflow.job import job
-from workflow.results import Dataset, read_csv, read_json, write_csv, write_h5
+from workflow.results import Dataset, load_csv, load_json, write_csv, write_h5
 
 with job(snakemake) as run:
     settings = TopographySettings(**snakemake.params.settings)
     law = LawSettings(**snakemake.params.law)
-    fitted = read_json(snakemake.input.parameters)["likelihood"]
+    fitted = load_json(snakemake.input.parameters)["likelihood"]
     spectrum = RoughSpectrum(fitted["plateau_nm4"], fitted["q0"], fitted["slope"], math.inf)
-    central = medians(read_csv(snakemake.input.inputs))
+    central = medians(load_csv(snakemake.input.inputs))
     inputs, contact = contact_of(central, ContactSettings(**snakemake.params.contact))
     groups, attributes, rows = {}, {}, []
     files = list(snakemake.input.scans)
     for number, path in enumerate(files):
-        raw = read_scan(path, f"{number + 1:02d}_{Path(path).stem}", settings.channel)
+        raw = load_scan(path, f"{number + 1:02d}_{Path(path).stem}", settings.channel)
         for pressed in press_scan(raw, spectrum, fitted["misfit"], inputs, settings, contact, law):
             name = f"{pressed.scan}/{pressed.surface}"
             for branch, curve in (("closing", pressed.cycle.closing), ("opening", pressed.cycle.opening)):

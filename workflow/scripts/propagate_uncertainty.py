@@ -10,26 +10,26 @@ from mesoscale.inputs.table import from_rows
 from mesoscale.law.parameters import FITTED
 from mesoscale.settings import LawSettings, UncertaintySettings
 from mesoscale.uncertainty.paper_tables import RATIO_COLUMNS, ratio_rows, table2, table3
-from mesoscale.uncertainty.propagation import output_rows, propagate, read_nodes, surrogate_json
-from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, read_direct_runs, validation_rows
+from mesoscale.uncertainty.propagation import nodes_of_rows, output_rows, propagate, surrogate_json
+from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, direct_runs_of_rows, validation_rows
 from workflow.job import job
-from workflow.results import read_csv, write_csv, write_json
+from workflow.results import load_csv, write_csv, write_json
 
 with job(snakemake) as run:
     settings = UncertaintySettings(**snakemake.params.settings)
     law = LawSettings(**snakemake.params.law)
-    table = from_rows(read_csv(snakemake.input.inputs))
-    nodes = read_nodes(read_csv(snakemake.input.parameters))
-    paper_rows = read_csv(snakemake.input.table2)
+    table = from_rows(load_csv(snakemake.input.inputs))
+    nodes = nodes_of_rows(load_csv(snakemake.input.parameters))
+    paper_rows = load_csv(snakemake.input.table2)
     paper = table2(paper_rows)
 
-    direct = read_direct_runs(
-        (row for path in snakemake.input.direct for row in read_csv(path)), table.names, settings.direct_runs
+    direct = direct_runs_of_rows(
+        (row for path in snakemake.input.direct for row in load_csv(path)), table.names, settings.direct_runs
     )
 
     result = propagate(nodes, table, settings, direct)
     write_csv(snakemake.output.outputs, output_rows(nodes, result, paper, table2(paper_rows, exchanged=True)))
-    ratios = ratio_rows(nodes, result, table, settings.central_share, paper, table3(read_csv(snakemake.input.table3)))
+    ratios = ratio_rows(nodes, result, table, settings.central_share, paper, table3(load_csv(snakemake.input.table3)))
     write_csv(snakemake.output.ratios, ratios, RATIO_COLUMNS)
     constants = {"rho_a_nm": law.rho_a_nm, "alpha_nm": law.shield_nm}
     write_json(

@@ -10,25 +10,25 @@ import numpy as np
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.paper_tables import table3
-from mesoscale.uncertainty.propagation import read_nodes
+from mesoscale.uncertainty.propagation import nodes_of_rows
 from mesoscale.uncertainty.sensitivity import sensitivity_rows
-from mesoscale.uncertainty.validation import read_direct_runs
+from mesoscale.uncertainty.validation import direct_runs_of_rows
 from workflow.job import job
-from workflow.results import read_csv, write_csv
+from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
     settings = UncertaintySettings(**snakemake.params.settings)
-    table = from_rows(read_csv(snakemake.input.inputs))
-    paper = read_csv(snakemake.input.table3)
+    table = from_rows(load_csv(snakemake.input.inputs))
+    paper = load_csv(snakemake.input.table3)
     rows = sensitivity_rows(
-        read_nodes(read_csv(snakemake.input.parameters)),
+        nodes_of_rows(load_csv(snakemake.input.parameters)),
         table,
         settings,
-        np.array([float(row["seed_share"] or "nan") for row in read_csv(snakemake.input.outputs)]),
+        np.array([float(row["seed_share"] or "nan") for row in load_csv(snakemake.input.outputs)]),
         table3(paper),
         table3(paper, as_printed=True),
-        read_direct_runs(
-            (row for path in snakemake.input.direct for row in read_csv(path)), table.names, settings.direct_runs
+        direct_runs_of_rows(
+            (row for path in snakemake.input.direct for row in load_csv(path)), table.names, settings.direct_runs
         ),
     )
     write_csv(snakemake.output[0], rows)

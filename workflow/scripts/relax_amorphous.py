@@ -8,14 +8,14 @@ from atomistic.materials import load_material
 from atomistic.settings import DftSettings, RelaxationSettings
 from workflow.job import job
 from workflow.results import write_json, write_text
-from workflow.structure_files import ScfStore, read_structure, structure_text, write_orbitals
+from workflow.structure_files import ScfStore, load_structure, structure_text, write_orbitals
 
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)
     relaxation = RelaxationSettings(**snakemake.params.settings["relaxation"])
     dft = relaxation.applied_to(DftSettings(**snakemake.params.settings["dft"]))
     store = ScfStore(Path(snakemake.params.store))
-    quenched = read_structure(snakemake.input.structure)
+    quenched = load_structure(snakemake.input.structure)
     largest_cell = quenched.cell.array * 1.02  # the mesh of a cell that would swell by this much
     relaxed = relaxed_structure(
         quenched,

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.runs import planned_runs
-from atomistic.lammps import read_data
+from atomistic.lammps import load_data
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
 from atomistic.settings import HardnessSettings
@@ -22,9 +22,9 @@ with job(snakemake) as run:
     [closing_run] = planned_runs(settings)
     potential = load_potential(snakemake.input.potential)
     material = load_material(snakemake.input.material)
-    glass = read_data(snakemake.input.glass, tuple(potential.materials[material.formula_text]))
+    glass = load_data(snakemake.input.glass, tuple(potential.materials[material.formula_text]))
     counter = snakemake.input.get("counter_glass")
-    counter_glass = counter and read_data(counter, tuple(potential.materials[settings.closing.counter_material]))
+    counter_glass = counter and load_data(counter, tuple(potential.materials[settings.closing.counter_material]))
     started = time.perf_counter()
     closing = run_closing(
         closing_run,

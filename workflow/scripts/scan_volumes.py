@@ -7,8 +7,8 @@ from atomistic.elastic.energy_scans import make_calculator, rejected_points, sca
 from atomistic.elastic.relaxation import relax_ions, strained
 from atomistic.settings import DftSettings, RelaxationSettings
 from workflow.job import job
-from workflow.results import read_json, write_csv
-from workflow.structure_files import ScfStore, read_structure, start_from
+from workflow.results import load_json, write_csv
+from workflow.structure_files import ScfStore, load_structure, start_from
 
 with job(snakemake) as run:
     settings = snakemake.params.settings
@@ -18,7 +18,7 @@ with job(snakemake) as run:
     if relaxed:
         dft = relaxation.applied_to(dft)
     store = ScfStore(Path(snakemake.params.store))
-    atoms = read_structure(snakemake.input.structure)
+    atoms = load_structure(snakemake.input.structure)
     if snakemake.wildcards.xc == "LDA":
         atoms = strained(atoms, settings["lda_centre"])
     largest = atoms.cell.array * (1 + max(settings["strains"]))
@@ -27,7 +27,7 @@ with job(snakemake) as run:
     def relax(trial, hessian):
         return relax_ions(trial, settings["relaxed_force_eV_A"], relaxation.max_steps, hessian)
 
-    reasons = read_json(snakemake.input.report)["gate"]["reasons"] if snakemake.input.get("report") else []
+    reasons = load_json(snakemake.input.report)["gate"]["reasons"] if snakemake.input.get("report") else []
     if not reasons:
         if snakemake.input.get("orbitals"):
             start_from(calculator, snakemake.input.orbitals)

@@ -8,10 +8,10 @@ from mesoscale.inputs.table import from_rows
 from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty.studies.extremes import COLUMNS, extreme_rows
 from workflow.job import job
-from workflow.results import read_csv, write_csv
+from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
-    table = from_rows(read_csv(snakemake.input.inputs))
+    table = from_rows(load_csv(snakemake.input.inputs))
     middle = table.ranges(snakemake.params.central_share).mean(axis=1).tolist()
     inputs, contact = contact_of(
         dict(zip(table.names, middle, strict=True)), ContactSettings(**snakemake.params.contact)

@@ -16,9 +16,9 @@ from atomistic.hardness.runs import planned_runs
 from atomistic.lammps import (
     Atoms,
     Workspace,
-    read_averages,
-    read_data,
-    read_dump,
+    load_averages,
+    load_data,
+    load_dump,
     run_lammps,
     write_data,
 )
@@ -49,7 +49,7 @@ def free_motion(
         "every": every,
     }
     run_lammps("nve.in", workspace, variables)
-    record, end = read_averages(workspace / "energy.dat"), read_data(workspace / "end.data", atoms.elements)
+    record, end = load_averages(workspace / "energy.dat"), load_data(workspace / "end.data", atoms.elements)
     workspace.remove()
     return record, end
 
@@ -202,7 +202,7 @@ def coulomb_difference(glass: Atoms, potential: Potential, work: Path, slab: boo
             "slab": "yes" if slab else "no",
         }
         run_lammps("forces.in", workspace, variables)
-        [(_, table)] = read_dump(workspace / "forces.dump")
+        [(_, table)] = load_dump(workspace / "forces.dump")
         forces.append(table[:, 2:5])
         workspace.remove()
     difference = forces[0] - forces[1]

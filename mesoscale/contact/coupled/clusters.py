@@ -10,13 +10,13 @@ def label(sites, place, pressure, pixels, eight, number):
 
     `place` holds the position of each site of the cell in `sites`, or -1. Returns how many clusters there are.
     """
-    found = 0
+    clusters = 0
     number[:] = -1
     waiting = np.empty(sites.size, np.int32)
     for start in range(sites.size):
         if number[start] >= 0 or not pressure[start] > 0.0:
             continue
-        number[start] = found
+        number[start] = clusters
         waiting[0] = start
         end = 1
         while end > 0:
@@ -29,11 +29,11 @@ def label(sites, place, pressure, pixels, eight, number):
                         continue
                     other = place[(row + rows) % pixels * pixels + (col + cols) % pixels]
                     if other >= 0 and number[other] < 0 and pressure[other] > 0.0:
-                        number[other] = found
+                        number[other] = clusters
                         waiting[end] = other
                         end += 1
-        found += 1
-    return found
+        clusters += 1
+    return clusters
 
 
 @njit(cache=True)

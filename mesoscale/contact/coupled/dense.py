@@ -170,10 +170,10 @@ def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
                 for j in range(count):
                     block[k, j] = matrix[free[k], free[j]]
         open_gap = gap[free] + displacement[free]
-        found = _close_gaps(block, open_gap, 0.1 * tolerance * largest / stiffness)
+        closed_gaps = _close_gaps(block, open_gap, 0.1 * tolerance * largest / stiffness)
         change[:] = 0.0
-        change[free] = found
-        pressure[free] += found
+        change[free] = closed_gaps
+        pressure[free] += closed_gaps
         multiply(matrix, n, change, moves)
         displacement[:n] += moves
     return NEWTON_STEPS, False

@@ -111,7 +111,7 @@ class CoupledContact(Contact):
         if not self.bounded and separation + self.mean <= 0.0:  # no pressure parts the mean planes
             return State(math.inf, self.heights.size, 1, 0, math.inf, 0, False, False)
         rounds, settled = self._solve_rounds() if self.bounded else (0, self._solve())
-        number, found = self._clusters()
+        number, count = self._clusters()
         if with_flow:
             clusters.flatten(
                 self.heights, self.sites, separation, self.displacement, self.pressure, self.limit, self.changes
@@ -119,15 +119,15 @@ class CoupledContact(Contact):
         touching = int(np.count_nonzero(number >= 0))
         hardness = self._hardness(number)
         load = float((self.pressure / hardness).max()) if touching and hardness.all() else 0.0
-        return State(self.force, touching, found, 0, load, rounds, settled, False)
+        return State(self.force, touching, count, 0, load, rounds, settled, False)
 
     def remarks(self) -> dict[str, float]:
         """What says whether the model holds, for the flags of a cycle (`validity`); the contact as it is now."""
-        number, found = self._clusters()
+        number, count = self._clusters()
         touching = number >= 0
-        area = self.mechanics.site_area * max(int(touching.sum()) / max(found, 1), 1.0)
+        area = self.mechanics.site_area * max(int(touching.sum()) / max(count, 1), 1.0)
         hardness = kernels.hardness(area, self.mechanics)
-        yielded = float(np.mean(self.pressure[touching] >= self._hardness(number)[touching])) if found else 0.0
+        yielded = float(np.mean(self.pressure[touching] >= self._hardness(number)[touching])) if count else 0.0
         return {
             "rms_slope": self.roughness.slope,
             "rms_curvature_per_nm": self.roughness.curvature,

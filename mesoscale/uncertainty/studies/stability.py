@@ -18,7 +18,7 @@ from mesoscale.uncertainty.designs import Run
 from mesoscale.uncertainty.propagation import NodeOutputs, output_rows, propagate
 from mesoscale.uncertainty.runs import compute_rows
 from mesoscale.uncertainty.sensitivity import sensitivity_rows
-from mesoscale.uncertainty.validation import read_direct_runs, validation_rows
+from mesoscale.uncertainty.validation import direct_runs_of_rows, validation_rows
 
 Array = NDArray[np.float64]
 Function = Callable[[Array], Array]
@@ -156,7 +156,7 @@ def _failing_engine() -> list[str]:
     runs = [Run(k, -1, k, {**MIDDLE, "e_star": -1.0 if k == 1 else 91.0}) for k in range(3)]
     rows = list(compute_rows(runs, ContactSettings(pixels=128), LawSettings()))
     text = [{key: str(value) for key, value in row.items()} for row in rows]
-    _, y = read_direct_runs(text, list(MIDDLE), 3)
+    _, y = direct_runs_of_rows(text, list(MIDDLE), 3)
     return _unless(
         reported=str(rows[1]["curve_status"]).startswith("failed: "),
         without_numbers=bool(np.isnan(y[1]).all()),
@@ -197,7 +197,7 @@ def _not_identifiable() -> list[str]:
     repulsion = 200.0 * np.maximum(30.0 - h, 0.0)
     fit = fit_branch(h, repulsion, -np.ones_like(h), 1e6, 0.215, 30.0)
     row = {name: "" if np.isnan(value) else value for name, value in zip(FITTED, [*fit.parameters] * 2, strict=True)}
-    _, y = read_direct_runs([{"x0": "0", **{key: str(value) for key, value in row.items()}}], ["x0"], 1)
+    _, y = direct_runs_of_rows([{"x0": "0", **{key: str(value) for key, value in row.items()}}], ["x0"], 1)
     repulsion = [name for name in FITTED if name.endswith(("_C_r_GPa", "_rho_r_nm"))]
     return _unless(
         status_says_so=fit.status.startswith("not_identifiable"),

@@ -17,7 +17,7 @@ from atomistic.hardness.glass import glass_properties, make_glass
 from atomistic.hardness.runs import planned_runs, settings_of_run
 from atomistic.hardness.studies import stability
 from atomistic.hardness.studies.stability import half_energy_identity
-from atomistic.lammps import Atoms, Workspace, read_data, write_data
+from atomistic.lammps import Atoms, Workspace, load_data, write_data
 from atomistic.settings import GlassSettings, HardnessSettings
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -65,7 +65,7 @@ def test_unknown_material(potential, oxides):
 def test_data_files_keep_every_digit(tmp_path, glass):
     path = tmp_path / "glass.data"
     write_data(path, glass, {"Si": 28.085, "O": 15.999})
-    again = read_data(path, glass.elements)
+    again = load_data(path, glass.elements)
     np.testing.assert_array_equal(again.positions_A, glass.positions_A)
     np.testing.assert_array_equal(again.velocities_A_ps, glass.velocities_A_ps)
     np.testing.assert_array_equal(again.types, glass.types)
@@ -97,7 +97,7 @@ KILLED = """
     from test_closing import GLASS, PMMCS, SETTINGS, SILICA
     from atomistic.hardness.closing import run_closing
     from atomistic.hardness.glass import make_glass
-    from atomistic.lammps import read_data
+    from atomistic.lammps import load_data
     from atomistic.materials import load_material
     from atomistic.potentials import load_potential
     from atomistic.hardness.runs import planned_runs
@@ -105,7 +105,7 @@ KILLED = """
     if {what!r} == "glass":
         make_glass(silica, potential, GLASS, 1, Path({work!r}))
     else:
-        glass = read_data({glass!r}, ("Si", "O"))
+        glass = load_data({glass!r}, ("Si", "O"))
         run_closing(planned_runs(SETTINGS)[0], silica, glass, potential, SETTINGS, Path({work!r}))
 """
 

@@ -11,7 +11,7 @@ from atomistic.hardness.closing import clearance_A, plan_closing, run_closing
 from atomistic.hardness.cost import plan_rows
 from atomistic.hardness.glass import glass_properties, make_glass, random_start, write_forcefield
 from atomistic.hardness.runs import geometry, needs_counter_glass, planned_runs
-from atomistic.lammps import Atoms, Workspace, read_data, run_lammps, write_data
+from atomistic.lammps import Atoms, Workspace, load_data, run_lammps, write_data
 from atomistic.potentials import CONTACT_A, contact_energy_and_force, load_potential
 from atomistic.settings import GlassSettings, HardnessSettings
 
@@ -119,7 +119,7 @@ def test_two_processes_move_the_same_atoms(potential, glass, tmp_path):
         write_data(workspace / "start.data", glass, {"Si": 28.085, "O": 15.999})
         variables = {"data": "start.data", "pairs": "pairs", "timestep": 0.001, "steps": 20, "every": 10}
         run_lammps("nve.in", workspace, variables, processes=processes)
-        ends.append(read_data(workspace / "end.data", glass.elements).positions_A)
+        ends.append(load_data(workspace / "end.data", glass.elements).positions_A)
     np.testing.assert_allclose(ends[1], ends[0], atol=1e-9)
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from mesoscale.device.behaviour import (
-    read_samples,
+    drive_switch,
     samples_json,
+    samples_of_rows,
     state_rows,
     stiction_rows,
-    study_switch,
     switch_path,
 )
 from mesoscale.errors import InputError
@@ -37,8 +37,8 @@ def test_study_meets_its_analytic_limits_and_counts_what_it_drops():
     rows[7]["opening_C_r_GPa"] = "-1e-5"
     rows[9]["closing_rho_r_nm"] = ""
     settings = DeviceSettings(landed_fraction=0.005)
-    samples = read_samples(rows, [], settings, 2.0, 2.0)
-    results, states = study_switch(samples, settings, law_pressure_MPa=7.0)
+    samples = samples_of_rows(rows, [], settings, 2.0, 2.0)
+    results, states = drive_switch(samples, settings, law_pressure_MPa=7.0)
     assert results["samples"] == {"used": 298, "dropped": 2}
     assert results["checks"]["pull_in_relative_error"] < 1e-6
     assert results["checks"]["release_relative_error"] < 1e-6
@@ -55,14 +55,14 @@ def test_study_meets_its_analytic_limits_and_counts_what_it_drops():
 
 
 def test_adhesion_scale_reaches_the_samples():
-    half = read_samples(sample_rows(20), [], DeviceSettings(adhesion_scale=0.5), 2.0, 2.0)
-    full = read_samples(sample_rows(20), [], DeviceSettings(), 2.0, 2.0)
+    half = samples_of_rows(sample_rows(20), [], DeviceSettings(adhesion_scale=0.5), 2.0, 2.0)
+    full = samples_of_rows(sample_rows(20), [], DeviceSettings(), 2.0, 2.0)
     np.testing.assert_allclose(half.laws["opening"].C_a_GPa_nm, 0.5 * full.laws["opening"].C_a_GPa_nm)
 
 
 def test_no_usable_sample_is_one_clear_line():
     with pytest.raises(InputError, match="none of 10 samples has positive C_r"):
-        read_samples(sample_rows(10, C_r=-1e-4), [], DeviceSettings(), 2.0, 2.0)
+        samples_of_rows(sample_rows(10, C_r=-1e-4), [], DeviceSettings(), 2.0, 2.0)
 
 
 def test_nominal_law_is_the_mean_over_seeds_of_the_runs_at_central_inputs():
@@ -79,7 +79,7 @@ def test_nominal_law_is_the_mean_over_seeds_of_the_runs_at_central_inputs():
         for node, contact in (("0", "30"), ("0", "34"), ("5", "80"))
         for branch in ("closing", "opening")
     ]
-    samples = read_samples(sample_rows(20), fitted, DeviceSettings(), 2.0, 2.0)
+    samples = samples_of_rows(sample_rows(20), fitted, DeviceSettings(), 2.0, 2.0)
     assert samples.nominal["closing"].d_c_nm == 32.0
     assert samples.nominal_from == "mean of 2 run(s) at central inputs"
     stored = samples_json(samples, DeviceSettings())
@@ -87,5 +87,5 @@ def test_nominal_law_is_the_mean_over_seeds_of_the_runs_at_central_inputs():
     assert len(stored["samples"]["opening_rho_r_nm"]) == 20
     # without a fit at central inputs the samples themselves give it
     fitted[0]["C_r_GPa"] = fitted[2]["C_r_GPa"] = ""
-    fallback = read_samples(sample_rows(20), fitted, DeviceSettings(), 2.0, 2.0)
+    fallback = samples_of_rows(sample_rows(20), fitted, DeviceSettings(), 2.0, 2.0)
     assert "medians" in fallback.nominal_from

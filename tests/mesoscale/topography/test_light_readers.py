@@ -8,13 +8,13 @@ import pytest
 
 from mesoscale.topography.cleaning import Scan
 from mesoscale.topography.light_readers import SUFFIXES
-from mesoscale.topography.loading import read_scan, write_gwy
+from mesoscale.topography.loading import load_scan, write_gwy
 
 ALONE = """
 import sys
 from pathlib import Path
 from mesoscale.topography.light_readers import SUFFIXES, light_reader
-from mesoscale.topography.loading import read_scan
+from mesoscale.topography.loading import load_scan
 
 light = {}
 for suffixes in SUFFIXES.values():
@@ -22,9 +22,9 @@ for suffixes in SUFFIXES.values():
         with light_reader(Path("a." + suffix)) as reader:
             light[suffix] = reader
             assert reader is not None, suffix
-before = read_scan(sys.argv[1])
+before = load_scan(sys.argv[1])
 assert "pandas" not in sys.modules and "scipy.stats" not in sys.modules
-foreign = read_scan(sys.argv[2])  # its suffix lies, so all readers are tried
+foreign = load_scan(sys.argv[2])  # its suffix lies, so all readers are tried
 
 import SurfaceTopography
 from SurfaceTopography.IO import readers
@@ -34,7 +34,7 @@ every = {reader.__name__ for reader in readers}
 assert every >= {reader.__name__ for reader in light.values()}
 full = SurfaceTopography.read_topography(sys.argv[1]).to_unit("nm")
 assert full.detrend("height").rms_height_from_area() > 0  # the library works as ever
-for scan in (before, foreign, read_scan(sys.argv[1])):
+for scan in (before, foreign, load_scan(sys.argv[1])):
     assert (scan.heights_nm == full.heights()).all()
 """
 
@@ -55,5 +55,5 @@ def test_an_empty_file_of_any_suffix_is_refused_in_one_line(tmp_path, suffix):
     path = tmp_path / f"empty.{suffix}"
     path.write_bytes(b"")
     with pytest.raises(InputError, match="empty") as caught:
-        read_scan(path)
+        load_scan(path)
     assert "\n" not in str(caught.value)

@@ -9,7 +9,7 @@ import pytest
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.cleaning import Scan, clean
-from mesoscale.topography.loading import read_scan, write_gwy
+from mesoscale.topography.loading import load_scan, write_gwy
 
 AFM = Path(__file__).resolve().parents[4] / "shared" / "afm"
 
@@ -22,7 +22,7 @@ def gwy(path, heights, lengths=(1000.0, 750.0)):
 def test_gwyddion_round_trip_keeps_heights_size_and_holes(tmp_path):
     heights = np.random.default_rng(0).standard_normal((64, 48))
     heights[3, 4] = np.nan
-    scan = read_scan(gwy(tmp_path / "a.gwy", heights))
+    scan = load_scan(gwy(tmp_path / "a.gwy", heights))
     assert scan.heights_nm == pytest.approx(heights, rel=1e-12, nan_ok=True)
     assert scan.lengths_nm == pytest.approx((1000.0, 750.0))
     assert scan.name == "a"
@@ -30,25 +30,25 @@ def test_gwyddion_round_trip_keeps_heights_size_and_holes(tmp_path):
 
 def test_missing_and_foreign_files_are_named(tmp_path):
     with pytest.raises(InputError, match=r"nothing\.gwy: no such scan"):
-        read_scan(tmp_path / "nothing.gwy")
+        load_scan(tmp_path / "nothing.gwy")
     text = tmp_path / "notes.gwy"
     text.write_text("not a scan")
     with pytest.raises(InputError, match="no reader understands"):
-        read_scan(text)
+        load_scan(text)
 
 
 def test_truncated_file_is_refused(tmp_path):
     path = gwy(tmp_path / "a.gwy", np.zeros((64, 64)))
     path.write_bytes(path.read_bytes()[:2000])
     with pytest.raises(InputError, match=r"a\.gwy"):
-        read_scan(path)
+        load_scan(path)
 
 
 def test_text_without_physical_size_is_refused(tmp_path):
     path = tmp_path / "a.txt"
     np.savetxt(path, np.random.default_rng(0).standard_normal((40, 40)))
     with pytest.raises(InputError, match="no physical size"):
-        read_scan(path)
+        load_scan(path)
 
 
 class Bomb:
@@ -71,7 +71,7 @@ def test_numpy_files_are_refused_and_pickles_never_loaded(tmp_path):
     (tmp_path / "d.gwy").write_bytes(pickle.dumps(Bomb(trace)))
     for name in ("a.npy", "b.npz", "c.pkl", "d.gwy"):
         with pytest.raises(InputError, match=name):
-            read_scan(tmp_path / name)
+            load_scan(tmp_path / name)
     assert not trace.exists()
 
 
@@ -87,10 +87,10 @@ def test_several_height_channels_are_asked_for(tmp_path):
     path = tmp_path / "two.gwy"
     content.tofile(str(path))
     with pytest.raises(InputError, match=r"Height, ZSensor; name one in topography\.channel"):
-        read_scan(path)
-    assert read_scan(path, channel="ZSensor").heights_nm.max() == pytest.approx(1.0)
+        load_scan(path)
+    assert load_scan(path, channel="ZSensor").heights_nm.max() == pytest.approx(1.0)
     with pytest.raises(InputError, match="no height channel 'Phase'"):
-        read_scan(path, channel="Phase")
+        load_scan(path, channel="Phase")
 
 
 def test_cleaning_levels_aligns_fills_and_records(tmp_path):
@@ -124,7 +124,7 @@ def test_too_many_holes_are_refused():
 @pytest.mark.skipif(not AFM.is_dir(), reason="real scans are not shipped")
 @pytest.mark.parametrize(("name", "length", "rms"), [("example_ps.tiff", 1000.0, 3.93), ("di-6.di", 10000.0, 16.85)])
 def test_real_scans_are_read_in_nanometres(name, length, rms):
-    scan = read_scan(AFM / name)
+    scan = load_scan(AFM / name)
     assert scan.lengths_nm == pytest.approx((length, length))
     assert scan.rms_nm == pytest.approx(rms, abs=0.01)
 

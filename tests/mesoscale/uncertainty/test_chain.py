@@ -9,7 +9,7 @@ from mesoscale.uncertainty.designs import collocation_runs, random_runs
 from mesoscale.uncertainty.propagation import NodeOutputs, propagate
 from mesoscale.uncertainty.runs import compute_rows
 from mesoscale.uncertainty.sensitivity import sensitivity_rows
-from mesoscale.uncertainty.validation import read_direct_runs
+from mesoscale.uncertainty.validation import direct_runs_of_rows
 from tests.mesoscale import paper
 
 PAPER = paper.INPUTS
@@ -18,7 +18,7 @@ CONTACT = ContactSettings(pixels=64)
 
 def law_of(runs, names):
     rows = [{key: str(value) for key, value in row.items()} for row in compute_rows(runs, CONTACT, LawSettings())]
-    return read_direct_runs(rows, names, len(rows))
+    return direct_runs_of_rows(rows, names, len(rows))
 
 
 def test_the_correlation_of_the_hardness_fit_reaches_the_engines_inputs():

@@ -18,9 +18,9 @@ from mesoscale.uncertainty.collocation import nodes, to_values
 from mesoscale.uncertainty.paper_tables import table2, table3
 from mesoscale.uncertainty.propagation import (
     NodeOutputs,
+    nodes_of_rows,
     output_rows,
     propagate,
-    read_nodes,
     surrogate_json,
 )
 from mesoscale.uncertainty.sensitivity import pick_freeze, sensitivity_rows, sobol_indices
@@ -193,7 +193,7 @@ def test_nodes_are_read_by_seed_and_branch():
         for branch in ("closing", "opening")
     ]
     rows[-1]["C_r_GPa"] = ""
-    given = read_nodes(rows)
+    given = nodes_of_rows(rows)
     assert given.seeds == [4, 5]
     assert given.values[1, 1].tolist() == [51.0] * 8
     assert np.isnan(given.values[1, 2, 6])

@@ -66,11 +66,11 @@ def describe(results: Results) -> Section | None:
 
 def nominal_models(results: Results) -> str | None:
     """Figure 4: the three models of plasticity up to 1e4 nN."""
-    groups, _, facts = results.h5("curves/nominal.h5")
+    groups, _, curve_attributes = results.h5("curves/nominal.h5")
     present = [model for model in MODELS if f"{model}/closing" in groups]
     if not present:
         return None
-    top = max(float(facts[model]["max_force_nN"]) for model in present) / 1e3
+    top = max(float(curve_attributes[model]["max_force_nN"]) for model in present) / 1e3
 
     def plot(axis):
         for model in present:
@@ -83,7 +83,7 @@ def nominal_models(results: Results) -> str | None:
                 color = color if model == "plastic" else SOFT
                 axis.plot(separation, force, style, color=color, label=name)
         axis.axhline(0, color=SOFT, linewidth=0.8)
-        reach = float(facts[present[-1]]["first_contact_nm"])
+        reach = float(curve_attributes[present[-1]]["first_contact_nm"])
         axis.set(xlim=(None, reach + 8), ylim=(-0.12 * top, 1.04 * top))
         axis.set(xlabel="mean separation (nm)", ylabel="force on 1 µm² (µN)")
         axis.legend()
@@ -93,7 +93,7 @@ def nominal_models(results: Results) -> str | None:
 
 def nominal_loads(results: Results) -> str | None:
     """Figure 11: cycles to various largest loads, with the fitted law as thin lines."""
-    groups, attributes, facts = results.h5("curves/nominal.h5")
+    groups, attributes, curve_attributes = results.h5("curves/nominal.h5")
     loads = sorted({name.split("/")[0] for name in groups if name.startswith("load_")}, key=_load)
     if not loads:
         return None
@@ -112,11 +112,12 @@ def nominal_loads(results: Results) -> str | None:
                     row = law.fit_of(fits, load, branch)
                     if row is not None:
                         h = np.linspace(separation.min(), separation.max(), 300)
-                        fitted = area * law.pressure(h, row, number(facts[load]["hamaker"]), *constants) / 1e3
+                        hamaker = number(curve_attributes[load]["hamaker"])
+                        fitted = area * law.pressure(h, row, hamaker, *constants) / 1e3
                         panel.plot(h, fitted, "-", color=INK, linewidth=0.6)
             panel.axhline(0, color=SOFT, linewidth=0.8)
             panel.set(xlabel="mean separation (nm)", ylabel="force on 1 µm² (µN)")
-        contact = float(facts[loads[0]]["first_contact_nm"])
+        contact = float(curve_attributes[loads[0]]["first_contact_nm"])
         highest = max(_load(load) for load in loads) / 1e3
         deepest = max(-float(_total(groups[f"{load}/opening"])[1].min()) for load in loads)
         near = max(deepest, 0.05 * highest)

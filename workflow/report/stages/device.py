@@ -14,8 +14,8 @@ def describe(results: Results) -> Section | None:
     """The switch, its release and its stiction."""
     if not results.has("device/switch.json", "device/release.csv", "device/path.csv", "device/stiction.csv"):
         return None
-    found = results.json("device/switch.json")
-    switch = found["switch"]
+    switches = results.json("device/switch.json")
+    switch = switches["switch"]
     section = Section(
         "device",
         "The law in a switch",
@@ -34,23 +34,25 @@ def describe(results: Results) -> Section | None:
         "Voltage at which the switch is in balance, from the law at central inputs.",
         wide=True,
     )
-    section.blocks.append(Table("The switch", ("quantity", "with adhesion", "without adhesion"), _switch_lines(found)))
+    section.blocks.append(
+        Table("The switch", ("quantity", "with adhesion", "without adhesion"), _switch_lines(switches))
+    )
     section.notes += [
-        f"{found['samples']['dropped']} of {found['samples']['dropped'] + found['samples']['used']} "
+        f"{switches['samples']['dropped']} of {switches['samples']['dropped'] + switches['samples']['used']} "
         "samples of the law were left out because their repulsion or adhesion had the wrong sign (a "
         "limit of the response).",
         "Numerical folds against the analytic ones without adhesion: relative error "
-        f"{show(found['checks']['pull_in_relative_error'], 2)} (pull-in), "
-        f"{show(found['checks']['release_relative_error'], 2)} (release).",
+        f"{show(switches['checks']['pull_in_relative_error'], 2)} (pull-in), "
+        f"{show(switches['checks']['release_relative_error'], 2)} (release).",
     ]
     section.files += ["device/switch.json", "device/law.csv", "device/law.json"]
     section.files += ["device/asperity_contact.sub", "device/asperity_contact.va"]
-    section.gates.append(_gate(found))
+    section.gates.append(_gate(switches))
     return section
 
 
-def _switch_lines(found: dict[str, Any]) -> list[tuple[str, ...]]:
-    cases = [found["with_adhesion"], found["without_adhesion"]]
+def _switch_lines(switches: dict[str, Any]) -> list[tuple[str, ...]]:
+    cases = [switches["with_adhesion"], switches["without_adhesion"]]
 
     def spread(case: dict[str, Any], key: str) -> str:
         quantiles = case[key]["quantiles"]
@@ -70,7 +72,7 @@ def _switch_lines(found: dict[str, Any]) -> list[tuple[str, ...]]:
         ("separation held closed (nm)", *(spread(case, "hold_nm") for case in cases)),
         ("pressure on the landed part (MPa)", *(spread(case, "hold_pressure_MPa") for case in cases)),
     ]
-    capacitance = found["capacitance_fF"]
+    capacitance = switches["capacitance_fF"]
     up = show(capacitance["up"], 4)
     down = {key: spread(capacitance, key) for key in ("down_plate", "down_rough")}
     return [
@@ -159,7 +161,7 @@ def release_distribution(results: Results) -> str:
     return draw("release", "Release voltage and probability of stiction", plot, (9.4, 3.7), columns=2)
 
 
-def _gate(found: dict[str, Any]) -> Gate:
-    errors = found["checks"].items()
+def _gate(switches: dict[str, Any]) -> Gate:
+    errors = switches["checks"].items()
     off = [f"{name.replace('_', ' ')} {show(value)}" for name, value in errors if not number(value) < 1e-6]
-    return Gate("device", not off, (*off, *found["warnings"]))
+    return Gate("device", not off, (*off, *switches["warnings"]))

@@ -72,8 +72,8 @@ def describe(results: Results) -> Section | None:
 
 def history_curves(results: Results) -> str:
     """Closing and opening of the first surface, a few of its cycles."""
-    groups, _, facts = results.h5("history/curves.h5")
-    names = sorted(name for name in facts if "/" not in name)
+    groups, _, curve_attributes = results.h5("history/curves.h5")
+    names = sorted(name for name in curve_attributes if "/" not in name)
 
     def plot(axis):
         for place, name in enumerate(names):
@@ -81,7 +81,7 @@ def history_curves(results: Results) -> str:
             for branch, style in (("closing", "-"), ("opening", "--")):
                 curve = groups[f"{name}/{branch}"]
                 force = (curve["repulsive_nN"] + curve["attractive_nN"]) / 1e3
-                label = f"cycle {int(facts[name]['cycle'])}" if branch == "closing" else None
+                label = f"cycle {int(curve_attributes[name]['cycle'])}" if branch == "closing" else None
                 axis.plot(curve["separation_nm"], force, style, color=color, label=label, linewidth=1.5)
         first = groups[f"{names[0]}/closing"]
         contact = float(first["separation_nm"][first["repulsive_nN"] > 0].max())

@@ -74,7 +74,7 @@ def band(results: Results) -> str:
 
 def _wells(results: Results) -> dict[str, tuple[np.ndarray, ...]]:
     """By branch: separation less d_c (nm) and the 5, 50 and 95 % quantiles of the samples' pressure there (kPa)."""
-    rows, found = results.csv("uq/samples.csv"), {}
+    rows, bands = results.csv("uq/samples.csv"), {}
     rho_a, shield = constants(results)
     scale = number(results.json("device/switch.json")["adhesion_scale"])
     for branch in COLORS:
@@ -85,8 +85,8 @@ def _wells(results: Results) -> dict[str, tuple[np.ndarray, ...]]:
         quantiles = np.nanquantile(1e6 * (repulsive + scale * attractive), [0.05, 0.5, 0.95], axis=0)
         # up to where half of the samples push
         start = int(np.flatnonzero(quantiles[1] > 0).max(initial=0))
-        found[branch] = (beyond[start:], *quantiles[:, start:])
-    return found
+        bands[branch] = (beyond[start:], *quantiles[:, start:])
+    return bands
 
 
 def pressure(h: np.ndarray, row: Row, hamaker: float, rho_a: float, shield: float) -> np.ndarray:

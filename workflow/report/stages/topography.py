@@ -14,8 +14,8 @@ def describe(results: Results) -> Section | None:
     """Figures 9 and 10, and the roughness parameters."""
     if not results.has("topography/spectra.h5", "topography/parameters.json"):
         return None
-    found = results.json("topography/parameters.json")
-    synthetic = bool(found.get("synthetic"))
+    parameters = results.json("topography/parameters.json")
+    synthetic = bool(parameters.get("synthetic"))
     section = Section(
         "topography",
         "Surface topography",
@@ -26,7 +26,7 @@ def describe(results: Results) -> Section | None:
             if synthetic
             else "Spectra of the measured scans. "
         )
-        + f"The Hurst exponent follows the convention `{found['convention']}`.",
+        + f"The Hurst exponent follows the convention `{parameters['convention']}`.",
         SYNTHETIC if synthetic else results.origin_of("topography"),
     )
     section.add(maps(results), "Height maps after levelling, in nm about their mean.", "Figure 9", wide=True)
@@ -43,14 +43,14 @@ def describe(results: Results) -> Section | None:
     )
     section.add(
         recovered_sets(results),
-        f"Truth and {float(found.get('confidence', 0.9)):.0%} intervals of many sets of synthetic scans with random "
-        "truth and artefacts.",
+        f"Truth and {float(parameters.get('confidence', 0.9)):.0%} intervals of many sets of synthetic scans with "
+        "random truth and artefacts.",
         wide=True,
     )
     paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20) by 2H + 1", "rms": "1.82 to 14.17", "slope": "2.84"}
-    truth = found.get("truth") or {}
+    truth = parameters.get("truth") or {}
     lines = []
-    for name, estimate in found.get("estimates", {}).items():
+    for name, estimate in parameters.get("estimates", {}).items():
         true = truth.get(name, truth.get(f"{name}_nm"))
         lines.append(
             (
@@ -89,12 +89,12 @@ def describe(results: Results) -> Section | None:
 
 def maps(results: Results) -> str | None:
     """Figure 9: height maps of the scans."""
-    groups, _, facts = results.h5("topography/spectra.h5")
+    groups, _, scan_attributes = results.h5("topography/spectra.h5")
     names = [name for name in sorted(groups) if name.startswith("scans/") and "heights" in groups[name]]
     if not names:
         return None
     # one of each size first, then more up to six
-    names.sort(key=lambda name: (float(facts[name].get("length_x_nm", 0)), name))
+    names.sort(key=lambda name: (float(scan_attributes[name].get("length_x_nm", 0)), name))
     shown = names if len(names) <= 6 else names[:3] + names[-3:]
     columns = min(3, len(shown))
     rows = -(-len(shown) // columns)
@@ -102,10 +102,10 @@ def maps(results: Results) -> str | None:
     def plot(*axes):
         for axis, name in zip(axes, shown, strict=False):
             heights = _thin(groups[name]["heights"])
-            size = float(facts[name]["length_x_nm"]) / 1e3
+            size = float(scan_attributes[name]["length_x_nm"]) / 1e3
             limit = float(np.quantile(np.abs(heights), 0.995))
             axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), cmap="cividis", vmin=-limit, vmax=limit)
-            rms = float(facts[name].get("rms_nm", np.nan))
+            rms = float(scan_attributes[name].get("rms_nm", np.nan))
             axis.set_title(f"{name.removeprefix('scans/')}: RMS {rms:.2f} nm", fontsize=9)
             axis.set_xlabel("µm", fontsize=8)
             axis.grid(False)
@@ -117,7 +117,7 @@ def maps(results: Results) -> str | None:
 
 def spectra(results: Results) -> str | None:
     """Figure 10: spectra of all scans, pooled spectrum, fits, and the truth of synthetic scans."""
-    groups, attributes, facts = results.h5("topography/spectra.h5")
+    groups, attributes, scan_attributes = results.h5("topography/spectra.h5")
     names = [name for name in groups if name.startswith("scans/")]
     if not names:
         return None
@@ -136,7 +136,8 @@ def spectra(results: Results) -> str | None:
         for name in sorted(names):
             q, psd = groups[name]["q"], groups[name]["psd"]
             low, high = (
-                float(facts[name].get(key, end)) for key, end in (("trusted_low", 0), ("trusted_high", np.inf))
+                float(scan_attributes[name].get(key, end))
+                for key, end in (("trusted_low", 0), ("trusted_high", np.inf))
             )
             trusted = (q >= low) & (q <= high)
             axis.loglog(q, psd, color=SOFT, linewidth=0.5, alpha=0.6, zorder=1)
@@ -167,12 +168,12 @@ def spectra(results: Results) -> str | None:
 
 def recovery(results: Results) -> str | None:
     """Truth of the synthetic scans beside what the analysis found, with its intervals."""
-    found = results.json("topography/parameters.json")
-    truth, estimates = found.get("truth") or {}, found.get("estimates", {})
-    scans = [row for row in found.get("scans", []) if row.get("true_rms_nm") and row.get("rms_spectrum_nm")]
+    parameters = results.json("topography/parameters.json")
+    truth, estimates = parameters.get("truth") or {}, parameters.get("estimates", {})
+    scans = [row for row in parameters.get("scans", []) if row.get("true_rms_nm") and row.get("rms_spectrum_nm")]
     if not truth or not estimates or not scans:
         return None
-    level = f"{float(found.get('confidence', 0.9)):.0%}"
+    level = f"{float(parameters.get('confidence', 0.9)):.0%}"
 
     def plot(common, places):
         for place, name in enumerate(("q0", "slope", "rms")):
@@ -200,19 +201,19 @@ def pressed(results: Results) -> str | None:
     """Closing curves of the measured scans themselves and of random surfaces of their statistics."""
     if not results.has("curves/scans.h5"):
         return None
-    groups, _, facts = results.h5("curves/scans.h5")
-    scans = sorted({name.split("/")[0] for name in facts})[:3]
+    groups, _, scan_attributes = results.h5("curves/scans.h5")
+    scans = sorted({name.split("/")[0] for name in scan_attributes})[:3]
     styles = {"measured": (BLUE, "-"), "own spectrum": (ORANGE, "--"), "eq. 9": (GREEN, ":")}
 
     def plot(*axes):
         for axis, scan in zip(axes, scans, strict=True):
             for surface, (color, style) in styles.items():
                 name = f"{scan}/{surface}"
-                curve, area = groups[f"{name}/closing"], float(facts[name]["cell_area_nm2"])
+                curve, area = groups[f"{name}/closing"], float(scan_attributes[name]["cell_area_nm2"])
                 touching = curve["repulsive_nN"] > 0
                 pressure = 1e3 * curve["repulsive_nN"][touching] / area  # MPa
                 axis.semilogy(curve["separation_nm"][touching], pressure, style, color=color, label=surface)
-            axis.set_title(f"{scan}: RMS {float(facts[f'{scan}/measured']['rms_nm']):.1f} nm", fontsize=9)
+            axis.set_title(f"{scan}: RMS {float(scan_attributes[f'{scan}/measured']['rms_nm']):.1f} nm", fontsize=9)
             axis.set(xlabel="separation (nm)", ylabel="nominal pressure (MPa)")
             axis.legend(fontsize=8)
 
