@@ -55,7 +55,7 @@ def _multiply_block(block, x, y):
 
 @njit(cache=True)
 def residual(gap, pressure, displacement, limit, stiffness, n):
-    """Largest |p - min(max(p - k g, 0), limit)| over the largest pressure: 0 where all conditions are met."""
+    """Largest abs(p - min(max(p - k g, 0), limit)) over the largest pressure: 0 where all conditions are met."""
     worst = 0.0
     largest = 0.0
     for k in range(n):

@@ -1,7 +1,7 @@
 """Pressures between bounds on a whole grid: active sets, with the half-space applied by FFT.
 
 The problem is that of `dense`. Here the linear system of each step is solved by conjugate gradients that are
-preconditioned with the stiffness of the free half-space, E* |q| / 2 (Vollebregt, doi:10.1007/s10957-013-0433-z).
+preconditioned with the stiffness of the free half-space, E* abs(q) / 2 (Vollebregt, doi:10.1007/s10957-013-0433-z).
 """
 
 from collections.abc import Callable
@@ -86,7 +86,7 @@ def solve(
 def residual(
     gap: np.ndarray, pressure: np.ndarray, displacement: np.ndarray, limit: np.ndarray, stiffness: float
 ) -> float:
-    """Largest |p - min(max(p - k g, 0), limit)| over the largest pressure: 0 where all conditions are met."""
+    """Largest abs(p - min(max(p - k g, 0), limit)) over the largest pressure: 0 where all conditions are met."""
     wanted = np.clip(pressure - stiffness * (gap + displacement), 0.0, limit)
     worst, largest = float(np.abs(pressure - wanted).max()), float(pressure.max())
     if largest > 0.0:

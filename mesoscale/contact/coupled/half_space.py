@@ -1,6 +1,6 @@
 """The elastic half-space under a periodic cell: its Green's function, as a table and by FFT.
 
-A pressure of wave vector q bends the surface by 2 / (E* |q|) times itself (K. L. Johnson, Contact Mechanics, 1985,
+A pressure of wave vector q bends the surface by 2 / (E* abs(q)) times itself (K. L. Johnson, Contact Mechanics, 1985,
 section 13.2). The mean is left out: it shifts the half-space as a whole, and the separation of the mean planes is
 what is prescribed.
 """
@@ -12,13 +12,13 @@ from scipy import fft
 
 
 def wave_numbers(pixels: int) -> np.ndarray:
-    """|q| L / 2 pi of the modes of a real transform, shape (pixels, pixels // 2 + 1)."""
+    """abs(q) L / 2 pi of the modes of a real transform, shape (pixels, pixels // 2 + 1)."""
     return np.hypot(np.fft.fftfreq(pixels, 1 / pixels)[:, None], np.fft.rfftfreq(pixels, 1 / pixels)[None, :])
 
 
 @lru_cache(maxsize=4)
 def _compliance(pixels: int) -> np.ndarray:
-    """1 / |q| in units of L / 2 pi; 0 for the mean."""
+    """1 / abs(q) in units of L / 2 pi; 0 for the mean."""
     number = wave_numbers(pixels)
     number[0, 0] = np.inf
     return 1.0 / number
