@@ -33,7 +33,7 @@ def load_structure(path: str | Path) -> Atoms:
 
 
 def write_orbitals(path: str | Path, calculator: Calculator | None, provenance: Mapping[str, Any]) -> None:
-    """Keep the orbitals a calculator ended with, for the next job to start from; none of a foreign engine."""
+    """Keep the orbitals a calculator ended with, for the next job to start from; other engines: nothing stored."""
     groups = {}
     if isinstance(calculator, PyscfGamma) and calculator.history:
         overlap, orbitals = calculator.history[-1]

@@ -216,7 +216,7 @@ def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> n
         known = np.stack([(old.overlap - last.overlap).ravel() for old in older])
         gram = known @ known.T
         gram += GUESS_DAMPING * np.trace(gram) * np.eye(len(older))
-        weights = np.linalg.lstsq(gram, known @ (overlap - last.overlap).ravel())[0]  # the same geometry twice: none
+        weights = np.linalg.lstsq(gram, known @ (overlap - last.overlap).ravel())[0]  # tolerates repeated geometries
         c = (1 - weights.sum()) * c
         for weight, old in zip(weights, older, strict=True):
             left, _, right = np.linalg.svd(old.orbitals.T @ old.overlap @ last.orbitals)

@@ -89,8 +89,8 @@ def scan_volumes(
     """Energy of a structure at each isotropic strain.
 
     A calculation that fails is reported in its point and the scan goes on.  Ions that relax start from where those of
-    the nearest strains came to rest, with the Hessian found there; what the forces left still hold is taken off the
-    energy.
+    the nearest strains came to rest, with the Hessian found there; the energy that is still
+    recoverable from the residual forces is subtracted.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def scan_volumes(
     hessian: np.ndarray | None = None
     order = scan_order(strains)
     if relax is not None:
-        order.append(order[0])  # the first to come to rest did so without neighbours: once more, between them
+        order.append(order[0])  # repeat the first strain with its neighbours as initial guess
     for done, strain in enumerate(order):
         if progress:
             progress(done / len(order), f"strain {strain:+.3f}")

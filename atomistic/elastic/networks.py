@@ -186,7 +186,7 @@ def make_glass(
 
     Parameters
     ----------
-    seed : of the structure; attempt k uses an own stream of it
+    seed : of the structure; attempt k has its own stream
     work : a directory for LAMMPS
 
     Returns

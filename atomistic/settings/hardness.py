@@ -194,7 +194,7 @@ class AreaSettings(Settings):
         default=3,
         gt=0,
         le=5,
-        description="distance of two atoms that counts as 0 where the counterface is of atoms",
+        description="distance of two atoms that defines zero gap for atomic counterfaces",
         json_schema_extra={"unit": "A"},
     )
     other_depths_A: tuple[Annotated[float, Field(gt=0, le=2)], ...] = Field(

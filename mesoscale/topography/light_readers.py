@@ -47,7 +47,7 @@ def light_reader(path: Path) -> Iterator[type[Any] | None]:
         try:
             module = importlib.import_module(f"{PACKAGES[1]}.{name}")
             reader = getattr(module, f"{name}Reader")
-        except (ImportError, AttributeError):  # built otherwise than thought: to be imported whole
+        except (ImportError, AttributeError):  # unexpected layout: import all of it
             reader = None
         yield reader
     finally:

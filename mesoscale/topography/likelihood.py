@@ -141,7 +141,7 @@ class _Data:
         return shape, self.psd * np.exp(-shape)
 
 
-def past_the_blur(spectra: Sequence[TrustedSpectrum], q0: float) -> list[TrustedSpectrum]:
+def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[TrustedSpectrum]:
     """Raise the lower bound of scans that begin beyond the knee, to where the blur is a small correction.
 
     On the plateau the window's blur does nothing; at the first shells of a scan too small to show the plateau

@@ -57,7 +57,7 @@ def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) ->
     cutoff = max((item.spectrum.nyquist for item in spectra), default=0.0)
     fitted = likelihood.fit(spectra)
     if fitted is not None:
-        spectra = likelihood.past_the_blur(spectra, fitted.q0)
+        spectra = likelihood.skip_blurred_shells(spectra, fitted.q0)
         fitted = likelihood.fit(spectra) or fitted
     line_fit = line_fits.fit_lines(spectra)
     reasons = _doubts(spectra, fitted, line_fit, settings)

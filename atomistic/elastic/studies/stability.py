@@ -1,4 +1,4 @@
-"""Hard cases of the elastic stage: what must hold does hold, and what cannot be trusted says so."""
+"""Hard cases of the elastic stage: invariant checks, and what cannot be trusted says so."""
 
 from collections.abc import Callable
 from dataclasses import asdict

@@ -1,4 +1,4 @@
-"""Molecular dynamics in hard cases, on a glass of some hundred atoms: what must hold does hold."""
+"""Molecular dynamics in hard cases, on a glass of some hundred atoms: invariant checks."""
 
 import shutil
 from collections.abc import Callable, Mapping
