@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from mesoscale.device.statistics import describe, probability
-from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, Switch, switch_from_settings
+from mesoscale.device.switch import GPA, NM, Switch, switch_from_settings
 from mesoscale.errors import InputError
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import PadLaw, law_of
@@ -162,6 +162,5 @@ def _doubts(content: dict[str, Any], spread: dict[str, Any], stuck: int) -> list
 
 
 def _voltage_squared(switch: Switch, separation_nm: Array, pressure_GPa: Array) -> Array:
-    spring = switch.spring_N_per_m * (switch.gap_nm - separation_nm) * NM
-    electric_gap = (separation_nm + switch.dielectric_nm) * NM
-    return 2 * electric_gap**2 / (VACUUM_PERMITTIVITY * switch.area_m2) * (spring + switch.area_m2 * pressure_GPa * GPA)
+    force = switch.net_force_N(separation_nm, None) + switch.area_m2 * pressure_GPa * GPA
+    return switch.balancing_V2(separation_nm, force)

@@ -52,9 +52,13 @@ class Switch:
 
     def voltage_squared(self, separation_nm: np.ndarray, law: Law | None) -> np.ndarray:
         """W(s) in V^2; negative where adhesion holds the switch without any voltage."""
+        return self.balancing_V2(separation_nm, self.net_force_N(separation_nm, law))
+
+    def balancing_V2(self, separation_nm: np.ndarray, opening_force_N: np.ndarray) -> np.ndarray:
+        """Square of the voltage (V^2) whose attraction balances a force that opens the switch."""
         electric_gap = (separation_nm + self.dielectric_nm) * NM
         factor = 2 * electric_gap**2 / (VACUUM_PERMITTIVITY * self.area_m2)
-        return factor * self.net_force_N(separation_nm, law)
+        return factor * opening_force_N
 
     def capacitance_F(self, separation_nm: np.ndarray) -> np.ndarray:
         """Parallel-plate capacitance at a mean separation."""

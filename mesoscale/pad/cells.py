@@ -1,6 +1,6 @@
 """The cells of a pad: which separations they are brought to, and their forces there."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,6 +35,12 @@ class PadGrid:
     def depth_nm(self) -> Array:
         """Separations from which the pad is opened, falling, shape (k,)."""
         return self.separation_nm[self.depths]
+
+
+def grid_of_rows(rows: Sequence[Mapping[str, float]]) -> PadGrid:
+    """The grid from the rows of pad/grid.csv."""
+    separation = np.array([row["separation_nm"] for row in rows])
+    return PadGrid(separation, np.flatnonzero([row["opened_from"] for row in rows]))
 
 
 def plan_grid(inputs: ContactInputs, contact: ContactSettings, pad: PadSettings) -> PadGrid:

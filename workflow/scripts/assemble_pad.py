@@ -8,7 +8,7 @@ import numpy as np
 
 from mesoscale.device.pad_switch import switch_on_pad
 from mesoscale.inputs.table import medians
-from mesoscale.pad.cells import PadGrid
+from mesoscale.pad.cells import grid_of_rows
 from mesoscale.pad.curves import PadCells, adhesion_by_cells, curve_rows
 from mesoscale.pad.tail import fit_tail, tail_summary
 from mesoscale.settings import DeviceSettings
@@ -16,9 +16,7 @@ from workflow.job import job
 from workflow.results import Dataset, load_csv, load_h5, load_numbers, write_csv, write_h5, write_json
 
 with job(snakemake) as run:
-    rows = load_numbers(snakemake.input.grid)
-    separation = np.array([row["separation_nm"] for row in rows])
-    grid = PadGrid(separation, np.flatnonzero([row["opened_from"] for row in rows]))
+    grid = grid_of_rows(load_numbers(snakemake.input.grid))
     chunks = [load_h5(path)[0]["cells"] for path in snakemake.input.chunks]
     area = snakemake.params.length_nm**2
     cells = PadCells(
@@ -34,7 +32,7 @@ with job(snakemake) as run:
     table = curve_rows(cells)
     write_csv(snakemake.output.table, table)
     datasets = {
-        "separation_nm": Dataset(separation, "nm", "mean separation", ("separation",)),
+        "separation_nm": Dataset(grid.separation_nm, "nm", "mean separation", ("separation",)),
         "depth_nm": Dataset(grid.depth_nm, "nm", "separation from which the pad is opened", ("depth",)),
         "closing_GPa": Dataset(
             cells.closing.mean(axis=0), "GPa", "repulsive and attractive pressure", ("force", "separation")

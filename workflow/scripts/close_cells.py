@@ -7,17 +7,14 @@ import numpy as np
 
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
-from mesoscale.pad.cells import PadGrid, close_cells
+from mesoscale.pad.cells import close_cells, grid_of_rows
 from mesoscale.settings import ContactSettings
 from workflow.job import job
 from workflow.results import Dataset, load_csv, load_numbers, write_h5
 
 with job(snakemake) as run:
     inputs, contact = contact_of(medians(load_csv(snakemake.input.inputs)), ContactSettings(**snakemake.params.contact))
-    rows = load_numbers(snakemake.input.grid)
-    grid = PadGrid(
-        np.array([row["separation_nm"] for row in rows]), np.flatnonzero([row["opened_from"] for row in rows])
-    )
+    grid = grid_of_rows(load_numbers(snakemake.input.grid))
     seeds = range(*snakemake.params.seeds)
     cells = list(close_cells(inputs, contact, grid, seeds, run.progress))
     group = {
