@@ -15,14 +15,24 @@ from mesoscale.settings import ContactSettings
 
 @dataclass
 class Asperity:
-    sites: np.ndarray  # flat indices
+    """One set of connected touching sites.
+
+    Attributes
+    ----------
+    sites : flat indices.
+    area : the one of eq. 4, nm^2.
+    elastic_force : eq. 3, nN.
+    carried : force of its parts before they merged, nN; 0 with merge: as_one.
+    """
+
+    sites: np.ndarray
     peak: tuple[int, int]
     indentation: float
     radius: float
-    area: float  # the one of eq. 4
-    elastic_force: float  # eq. 3
+    area: float
+    elastic_force: float
     hardness: float
-    carried: float  # by its parts before they merged, 0 with merge: as_one
+    carried: float
 
 
 def connected_sites(touching: np.ndarray, neighbours: int) -> list[np.ndarray]:

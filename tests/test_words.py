@@ -1,8 +1,10 @@
 """Every word has one meaning (docs/architecture.md, Words); this search finds no other use."""
 
+import ast
 import io
 import re
 import tokenize
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -56,4 +58,22 @@ def test_names_say_what_they_hold():
         for token in tokenize.generate_tokens(io.StringIO(path.read_text(encoding="utf-8")).readline):
             if token.type == tokenize.NAME and token.string in VAGUE_NAMES:
                 uses.append(f"{path.relative_to(ROOT)}:{token.start[0]}: {token.string}")
+    assert uses == []
+
+
+def _is_record(node):
+    kinds = [*node.bases, *node.decorator_list] if isinstance(node, ast.ClassDef) else []
+    return any(word in ast.unparse(kind) for kind in kinds for word in ("dataclass", "NamedTuple", "Settings"))
+
+
+def test_fields_are_described_in_the_docstring_of_their_class():
+    """One form, which `help()` shows: neither a comment behind the field nor a string below it."""
+    uses = []
+    for path in CODE:
+        lines = path.read_text(encoding="utf-8").splitlines()
+        for record in filter(_is_record, ast.walk(ast.parse("\n".join(lines)))):
+            for field, below in pairwise([*record.body, record]):
+                commented = isinstance(field, ast.AnnAssign) and "#" in lines[field.lineno - 1]
+                if commented or (isinstance(field, ast.AnnAssign) and isinstance(below, ast.Expr)):
+                    uses.append(f"{path.relative_to(ROOT)}:{field.lineno}: {record.name}.{ast.unparse(field.target)}")
     assert uses == []

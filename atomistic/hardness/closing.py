@@ -30,16 +30,24 @@ MAX_STRAIN = 0.01  # of a counterface whose cell differs from the asperity's
 
 @dataclass(frozen=True)
 class Plan:
-    """Steps and lengths of a closing in LAMMPS units (Å, ps)."""
+    """Steps and lengths of a closing in LAMMPS units (Å, ps).
+
+    Attributes
+    ----------
+    speed : of the counterface (Å/ps); 0 where the force is controlled.
+    segments : pieces of the closing, each with a restart file at its end.
+    back : pieces of the unloading after them.
+    dwell_steps : rest at each force; 0 where the speed is controlled.
+    """
 
     timestep: float
-    speed: float  # 0 where the force is controlled
+    speed: float
     sample_steps: int
     segment_steps: int
-    segments: int  # closing
-    back: int  # segments of unloading after them
+    segments: int
+    back: int
     anneal_steps: int
-    dwell_steps: int  # 0 where the speed is controlled
+    dwell_steps: int
 
     @property
     def total_steps(self) -> int:

@@ -24,9 +24,14 @@ UNLOADED = (  # of a run with dynamic unloading: what stays, beside the snapshot
 
 @dataclass(frozen=True)
 class Hardness:
-    """What a run says about hardness; stresses in GPa, lengths in nm, NaN where there is nothing to say."""
+    """What a run says about hardness; stresses in GPa, lengths in nm, NaN where there is nothing to say.
 
-    status: str  # yield, no_yield, or "rejected: why"
+    Attributes
+    ----------
+    status : yield, no_yield, or "rejected: why".
+    """
+
+    status: str
     contact_length_nm: float = float("nan")
     contact_area_nm2: float = float("nan")
     hardness_GPa: float = float("nan")

@@ -21,14 +21,21 @@ Frame = np.ndarray  # rows (type, x, y, z), ordered by atom id
 
 @dataclass(frozen=True)
 class Geometry:
-    """Where the contact is: periodic cell, axis of the contact, atoms below and above; lengths in Å."""
+    """Where the contact is: periodic cell, axis of the contact, atoms below and above; lengths in Å.
+
+    Attributes
+    ----------
+    axis_A : x and y of the peak (or of the sphere's centre).
+    lower : atoms of the asperity; ids above belong to the counterface.
+    top_radius_A : the top is looked for within this distance of the axis.
+    """
 
     wavelength_A: float
-    axis_A: float  # x and y of the peak (or of the sphere's centre)
-    lower: int  # atoms of the asperity; ids above belong to the counterface
+    axis_A: float
+    lower: int
     atoms: int
     bodies: int
-    top_radius_A: float  # the top is looked for within this distance of the axis
+    top_radius_A: float
 
 
 def load_curve(

@@ -18,14 +18,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Branch:
-    """One branch of a force-separation curve; arrays of one length, in the order they were traversed."""
+    """One branch of a force-separation curve; arrays of one length, in the order they were traversed.
 
-    separation_nm: np.ndarray  # mean plane to flat
+    Attributes
+    ----------
+    separation_nm : from the surface's mean plane to the flat.
+    attractive_nN : attraction is negative.
+    contact_area_nm2 : number of contacting sites times the area of a site.
+    sweeps : flow sweeps of the step that ends here.
+    """
+
+    separation_nm: np.ndarray
     repulsive_nN: np.ndarray
-    attractive_nN: np.ndarray  # negative: attraction
-    contact_area_nm2: np.ndarray  # contacting sites x site area
+    attractive_nN: np.ndarray
+    contact_area_nm2: np.ndarray
     asperities: np.ndarray
-    sweeps: np.ndarray  # flow sweeps of the step that ends here
+    sweeps: np.ndarray
 
 
 BRANCH_COLUMNS = {
@@ -41,18 +49,28 @@ BRANCH_COLUMNS = {
 
 @dataclass(frozen=True)
 class Cycle:
-    """Closing and opening of one surface."""
+    """Closing and opening of one surface.
+
+    Attributes
+    ----------
+    first_contact_nm : separation at which the surface first touches on closing.
+    last_contact_nm : separation at which it last touches on opening.
+    converged : every step converged and the requested force was reached within 1 %.
+    length_nm : side of the surface.
+    heights : (N, N) surface afterwards, nm (only if asked for).
+    flattened : (N, N) sites of asperities that have yielded (unloading_radius: flattened).
+    """
 
     closing: Branch
     opening: Branch
-    first_contact_nm: float  # separation at which the surface first touches on closing
-    last_contact_nm: float  # separation at which it last touches on opening
+    first_contact_nm: float
+    last_contact_nm: float
     flags: dict[str, int | bool | str | float]
-    converged: bool  # every step converged and the requested force was reached within 1 %
+    converged: bool
     inputs: ContactInputs
-    length_nm: float  # side of the surface
-    heights: np.ndarray | None = None  # (N, N) surface afterwards, nm (only if asked for)
-    flattened: np.ndarray | None = None  # (N, N) sites of asperities that have yielded (unloading_radius: flattened)
+    length_nm: float
+    heights: np.ndarray | None = None
+    flattened: np.ndarray | None = None
 
     @property
     def cell_area_nm2(self) -> float:

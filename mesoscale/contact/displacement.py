@@ -24,16 +24,20 @@ SMALLEST_STEP = 1e-3
 
 @dataclass(frozen=True)
 class Displacement:
-    """Forces of one surface at given separations."""
+    """Forces of one surface at given separations.
+
+    Attributes
+    ----------
+    first_contact_nm : separation at which the surface first touches on closing (nm).
+    closing : repulsive and attractive force (nN, attraction negative) while closing, shape (2, n).
+    opening : the same while opening from each depth, shape (k, 2, n); NaN at separations below the depth.
+    settled : whether flow came to rest at every separation.
+    """
 
     first_contact_nm: float
-    """Separation at which the surface first touches on closing (nm)."""
     closing: Array
-    """Repulsive and attractive force (nN, attraction negative) while closing, shape (2, n)."""
     opening: Array
-    """The same while opening from each depth, shape (k, 2, n); NaN at separations below the depth."""
     settled: bool
-    """Whether flow came to rest at every separation."""
 
 
 def close_by_separation(

@@ -32,28 +32,43 @@ class Row(NamedTuple):
 
 @dataclass
 class Path:
-    """Rows in the order of falling separation, and what happened on the way."""
+    """Rows in the order of falling separation, and what happened on the way.
+
+    Attributes
+    ----------
+    reached : whether the wanted end was reached, up to a jump of the force.
+    load : largest force of an asperity over its yield force.
+    full : whether every site has touched.
+    """
 
     rows: list[Row] = field(default_factory=list)
     unconverged: int = 0
     bounds: int = 0
     repeated: int = 0
-    reached: bool = True  # the wanted end, up to a jump of the force
-    load: float = 0.0  # largest force of an asperity over its yield force
-    full: bool = False  # every site has touched
+    reached: bool = True
+    load: float = 0.0
+    full: bool = False
 
 
 class State(NamedTuple):
-    """What a move led to."""
+    """What a move led to.
 
-    force: float  # nN
+    Attributes
+    ----------
+    force : repulsive force, nN.
+    bounds : asperities whose radius is bounded.
+    load : largest force of an asperity over its yield force.
+    stuck : whether flow has no end: nowhere left to flow to, or (return mapping) the sweeps ran out.
+    """
+
+    force: float
     sites: int
     asperities: int
-    bounds: int  # asperities whose radius is bounded
-    load: float  # largest force of an asperity over its yield force
+    bounds: int
+    load: float
     sweeps: int
     settled: bool
-    stuck: bool  # flow has no end: nowhere left to flow to, or (return mapping) the sweeps ran out
+    stuck: bool
 
 
 class Contact:

@@ -20,13 +20,21 @@ from mesoscale.settings import ContactSettings, HistorySettings
 
 @dataclass(frozen=True)
 class HeldCycle:
-    """One cycle of a history."""
+    """One cycle of a history.
 
-    number: int  # counted from 1
+    Attributes
+    ----------
+    number : which cycle, counted from 1.
+    held_s : time under load since the first cycle at which the contact was solved, shape (k + 1,).
+    hold : the contact at these times; separations from the mean plane.
+    missed : times at which the force could not be brought back exactly (it jumps).
+    """
+
+    number: int
     cycle: Cycle
-    held_s: np.ndarray  # time under load since the first cycle at which the contact was solved, shape (k + 1,)
-    hold: list[Row] = field(repr=False)  # the contact at these times; separations from the mean plane
-    missed: int  # times at which the force could not be brought back exactly (it jumps)
+    held_s: np.ndarray
+    hold: list[Row] = field(repr=False)
+    missed: int
 
 
 def hardness_factor(held_s: np.ndarray | float, settings: HistorySettings) -> np.ndarray:
@@ -85,10 +93,15 @@ def check(contact: ContactSettings, settings: HistorySettings) -> None:
 
 @dataclass
 class Hold:
-    """Keeps the force of a contact while its hardness falls; what `run_cycle` calls between the branches."""
+    """Keeps the force of a contact while its hardness falls; what `run_cycle` calls between the branches.
+
+    Attributes
+    ----------
+    times : time under load, s; the first is the start of this hold.
+    """
 
     settings: HistorySettings
-    times: np.ndarray  # s under load; the first is the start of this hold
+    times: np.ndarray
     rows: list[Row] = field(default_factory=list)
     missed: int = 0
 

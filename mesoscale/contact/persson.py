@@ -87,11 +87,18 @@ def plastic_area(pressure: ArrayLike, e_star: float, gradient: float, hardness: 
 
 @dataclass(frozen=True)
 class PlasticContact:
-    """Contact by `contact_with_hardness`; shares of area, arrays of the shape of the nominal pressure."""
+    """Contact by `contact_with_hardness`; shares of area, arrays of the shape of the nominal pressure.
 
-    elastic: Array  # in elastic contact
-    plastic: Array  # at the hardness of the finest waves
-    kept: Array  # in contact if contact that has yielded kept its area and the hardness at which it did
+    Attributes
+    ----------
+    elastic : share in elastic contact.
+    plastic : share at the hardness of the finest waves.
+    kept : share in contact if contact that has yielded kept its area and the hardness at which it did.
+    """
+
+    elastic: Array
+    plastic: Array
+    kept: Array
 
     @property
     def area(self) -> Array:

@@ -29,20 +29,24 @@ RESAMPLES = 200
 
 @dataclass(frozen=True)
 class PadStates:
-    """What the switch does on one pad."""
+    """What the switch does on one pad.
+
+    Attributes
+    ----------
+    pull_in_V : voltage at which the open switch snaps shut.
+    hold_nm : separation while held closed (nm).
+    hold_MPa : contact pressure while held closed (MPa).
+    release_V : voltage at which the closed switch lets go; 0 where it sticks.
+    stuck : whether it stays closed without voltage.
+    deepest_net_kPa : largest net adhesive pressure of the pad on opening from the held state (kPa).
+    """
 
     pull_in_V: float
-    """Voltage at which the open switch snaps shut."""
     hold_nm: float
-    """Separation while held closed (nm)."""
     hold_MPa: float
-    """Contact pressure while held closed (MPa)."""
     release_V: float
-    """Voltage at which the closed switch lets go; 0 where it sticks."""
     stuck: bool
-    """Whether it stays closed without voltage."""
     deepest_net_kPa: float
-    """Largest net adhesive pressure of the pad on opening from the held state (kPa)."""
 
 
 def solve_on_pad(switch: Switch, law: PadLaw, hold_voltage_V: float | None) -> PadStates:

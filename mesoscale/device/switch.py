@@ -30,11 +30,11 @@ class Switch:
 
     Attributes
     ----------
-    spring_N_per_m : stiffness k against a uniform load
-    gap_nm : separation g at rest
-    area_m2 : electrode area A
-    dielectric_nm : thickness t divided by the relative permittivity
-    landed_fraction : share phi of the area that feels the contact law
+    spring_N_per_m : stiffness k against a uniform load.
+    gap_nm : separation g at rest.
+    area_m2 : electrode area A.
+    dielectric_nm : thickness t divided by the relative permittivity.
+    landed_fraction : share phi of the area that feels the contact law.
     """
 
     spring_N_per_m: float
@@ -95,14 +95,14 @@ class SwitchStates:
 
     Attributes
     ----------
-    pull_in_V : voltage at the first fold on the way down; NaN where the switch closes without snapping
-    pull_in_nm : separation at that fold
-    release_V : voltage at which the closed switch lets go; 0 where it never does
-    release_nm : separation at that fold
-    stuck : True where the closed switch stays closed at 0 V
-    critical_fraction : landed fraction above which the switch sticks; inf without any net adhesion
-    hold_nm : separation at the hold voltage
-    hold_pressure_GPa : contact pressure there
+    pull_in_V : voltage at the first fold on the way down; NaN where the switch closes without snapping.
+    pull_in_nm : separation at that fold.
+    release_V : voltage at which the closed switch lets go; 0 where it never does.
+    release_nm : separation at that fold.
+    stuck : True where the closed switch stays closed at 0 V.
+    critical_fraction : landed fraction above which the switch sticks; inf without any net adhesion.
+    hold_nm : separation at the hold voltage.
+    hold_pressure_GPa : contact pressure there.
     """
 
     pull_in_V: np.ndarray
@@ -120,8 +120,8 @@ def solve_switch(switch: Switch, closing: Law, opening: Law, hold_voltage_V: flo
 
     Parameters
     ----------
-    closing, opening : laws of the two branches with parameters of shape (samples,)
-    hold_voltage_V : voltage of the closed switch; None takes each sample's pull-in voltage
+    closing, opening : laws of the two branches with parameters of shape (samples,).
+    hold_voltage_V : voltage of the closed switch; None takes each sample's pull-in voltage.
     """
     samples = max(samples_of(closing), samples_of(opening))
     every = np.arange(samples)

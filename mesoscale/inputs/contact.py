@@ -10,22 +10,26 @@ from mesoscale.settings import ContactSettings
 
 @dataclass(frozen=True)
 class ContactInputs:
-    """The seven inputs of Table 1; their accepted ranges stand in `mesoscale.inputs.definitions`."""
+    """The seven inputs of Table 1; their accepted ranges stand in `mesoscale.inputs.definitions`.
+
+    Attributes
+    ----------
+    hamaker : Hamaker constant, aJ = 1e-18 J = nN nm; 0: no attraction.
+    e_star : effective elastic modulus E* of both bodies, GPa.
+    h_macro : hardness of large asperities, GPa.
+    h_prime : size effect of hardness H', GPa nm^0.5.
+    q0 : roll-off wave vector of the surface, 1/nm.
+    hurst : Hurst exponent of the surface.
+    rms : RMS height of the surface, nm.
+    """
 
     hamaker: float
-    """Hamaker constant, aJ = 1e-18 J = nN nm; 0: no attraction."""
     e_star: float
-    """Effective elastic modulus E* of both bodies, GPa."""
     h_macro: float
-    """Hardness of large asperities, GPa."""
     h_prime: float
-    """Size effect of hardness H', GPa nm^0.5."""
     q0: float
-    """Roll-off wave vector of the surface, 1/nm."""
     hurst: float
-    """Hurst exponent of the surface."""
     rms: float
-    """RMS height of the surface, nm."""
 
     def __post_init__(self):
         for field in fields(self):

@@ -7,30 +7,34 @@ from mesoscale.errors import InputError
 
 @dataclass(frozen=True)
 class InputDefinition:
-    """What an uncertain input is, and how it enters the contact model."""
+    """What an uncertain input is, and how it enters the contact model.
+
+    Attributes
+    ----------
+    name : key in the settings and in result files.
+    label : in words.
+    symbol : as the report and the exported responses show it.
+    unit : unit of its values; 1 where there is none.
+    low : smallest value that is accepted.
+    high : largest value that is accepted.
+    zero : whether 0 is accepted besides.
+    stage : stage that can compute it (hardness, elastic, topography), or literature.
+    literature : default range where no stage computes it, uniform, from the paper's Table 1.
+    setting : field of `ContactSettings` that it replaces; empty: a field of `ContactInputs` of its name.
+    optional : left out unless a scene gives it.
+    """
 
     name: str
-    """Key in the settings and in result files."""
     label: str
-    """In words."""
     symbol: str
-    """As the report and the exported responses show it."""
     unit: str
-    """Unit of its values; 1 where there is none."""
     low: float
-    """Smallest value that is accepted."""
     high: float
-    """Largest value that is accepted."""
     zero: bool = False
-    """Whether 0 is accepted besides."""
     stage: str = "literature"
-    """Stage that can compute it (hardness, elastic, topography), or literature."""
     literature: tuple[float, float] | None = None
-    """Default range where no stage computes it, uniform, from the paper's Table 1."""
     setting: str = ""
-    """Field of `ContactSettings` that it replaces; empty: a field of `ContactInputs` of its name."""
     optional: bool = False
-    """Left out unless a scene gives it."""
 
     @property
     def accepted(self) -> str:

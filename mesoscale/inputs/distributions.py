@@ -12,20 +12,24 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Distribution:
-    """A one-dimensional distribution of one of the kinds of `InputRow.distribution`."""
+    """A one-dimensional distribution of one of the kinds of `InputRow.distribution`.
+
+    Attributes
+    ----------
+    kind : uniform, normal, truncated_normal, samples or fixed.
+    a : lower end, mean or fixed value.
+    b : upper end or standard deviation.
+    low : lower truncation.
+    high : upper truncation.
+    values : sorted samples, shape (n,), of kind `samples`.
+    """
 
     kind: str
-    """uniform, normal, truncated_normal, samples or fixed."""
     a: float = np.nan
-    """Lower end, mean or fixed value."""
     b: float = np.nan
-    """Upper end or standard deviation."""
     low: float = -np.inf
-    """Lower truncation."""
     high: float = np.inf
-    """Upper truncation."""
     values: Array = field(default_factory=lambda: np.empty(0))
-    """Sorted samples, shape (n,), of kind `samples`."""
 
     def quantile(self, probability: ArrayLike) -> Array:
         """The value below which a share `probability` (any shape, in [0, 1]) lies."""
@@ -55,24 +59,32 @@ class Distribution:
 
 @dataclass(frozen=True)
 class UncertainInput:
-    """One row of the table of inputs."""
+    """One row of the table of inputs.
+
+    Attributes
+    ----------
+    origin : literature, hardness, elastic or topography.
+    source : reference or result file.
+    """
 
     name: str
     unit: str
     distribution: Distribution
     origin: str
-    """literature, hardness, elastic or topography."""
     source: str
-    """Reference or result file."""
 
 
 @dataclass(frozen=True)
 class InputTable:
-    """The uncertain inputs in use with their dependence."""
+    """The uncertain inputs in use with their dependence.
+
+    Attributes
+    ----------
+    correlation : Spearman's rank correlation, shape (n, n).
+    """
 
     rows: tuple[UncertainInput, ...]
     correlation: Array
-    """Spearman's rank correlation, shape (n, n)."""
 
     @property
     def names(self) -> list[str]:

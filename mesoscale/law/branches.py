@@ -22,12 +22,16 @@ TOUCH = {"closing": "first_contact_nm", "opening": "last_contact_nm"}
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one cycle gave."""
+    """What one cycle gave.
+
+    Attributes
+    ----------
+    status : ok, unconverged, or failed: why.
+    """
 
     closing: LawFit
     opening: LawFit
     status: str = "ok"
-    """ok, unconverged, or failed: why."""
 
     @property
     def outputs(self) -> Array:

@@ -17,22 +17,26 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Law:
-    """Parameters of the law; each a number or an array, all broadcasting with the separation."""
+    """Parameters of the law; each a number or an array, all broadcasting with the separation.
+
+    Attributes
+    ----------
+    d_c_nm : mean separation at initial contact (nm).
+    C_a_GPa_nm : attraction per penetration (GPa/nm).
+    C_r_GPa : repulsion prefactor (GPa).
+    rho_r_nm : repulsion length (nm).
+    hamaker : Hamaker constant (1e-18 J = nN nm).
+    rho_a_nm : attraction length (nm), fixed by the paper.
+    shield_nm : alpha of eq. 12 (nm).
+    """
 
     d_c_nm: ArrayLike
-    """Mean separation at initial contact (nm)."""
     C_a_GPa_nm: ArrayLike
-    """Attraction per penetration (GPa/nm)."""
     C_r_GPa: ArrayLike
-    """Repulsion prefactor (GPa)."""
     rho_r_nm: ArrayLike
-    """Repulsion length (nm)."""
     hamaker: ArrayLike
-    """Hamaker constant (1e-18 J = nN nm)."""
     rho_a_nm: float = 2.0
-    """Attraction length (nm), fixed by the paper."""
     shield_nm: float = 2.0
-    """alpha of eq. 12 (nm)."""
 
 
 def pressure(separation_nm: ArrayLike, law: Law) -> tuple[Array, Array]:

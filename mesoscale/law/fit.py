@@ -23,19 +23,23 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LawFit:
-    """The law fitted to one branch; parameters that the curve does not determine are NaN."""
+    """The law fitted to one branch; parameters that the curve does not determine are NaN.
+
+    Attributes
+    ----------
+    covariance : covariance of (C_a_GPa_nm, C_r_GPa, rho_r_nm), d_c given, shape (3, 3).
+    residual : root mean square misfit of attraction and repulsion over the window, relative to the largest repulsive
+        force (1).
+    status : `ok`, or why numbers are missing or doubtful.
+    """
 
     d_c_nm: float
     C_a_GPa_nm: float
     C_r_GPa: float
     rho_r_nm: float
     covariance: Array = field(default_factory=lambda: np.full((3, 3), np.nan))
-    """Covariance of (C_a_GPa_nm, C_r_GPa, rho_r_nm), d_c given, shape (3, 3)."""
     residual: float = np.nan
-    """Root mean square misfit of attraction and repulsion over the window, relative to the largest
-    repulsive force (1)."""
     status: str = "ok"
-    """`ok`, or why numbers are missing or doubtful."""
 
     @property
     def parameters(self) -> Array:

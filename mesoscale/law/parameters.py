@@ -5,21 +5,25 @@ from dataclasses import dataclass, replace
 
 @dataclass(frozen=True)
 class LawParameter:
-    """One number of the law, or its change on opening."""
+    """One number of the law, or its change on opening.
+
+    Attributes
+    ----------
+    name : column of result files and field of `Law` and `LawFit`, with its unit as suffix.
+    short : name in the paper's tables.
+    symbol : as the report shows it.
+    meaning : in words.
+    power : the report and the paper show it in units of 10^power.
+    any_sign : whether it may be zero or negative; other responses are fitted to the logarithm.
+    """
 
     name: str
-    """Column of result files and field of `Law` and `LawFit`, with its unit as suffix."""
     short: str
-    """Name in the paper's tables."""
     symbol: str
-    """As the report shows it."""
     unit: str
     meaning: str
-    """In words."""
     power: int = 0
-    """The report and the paper show it in units of 10^power."""
     any_sign: bool = False
-    """Whether it may be zero or negative; other responses are fitted to the logarithm."""
 
 
 LAW = (

@@ -24,12 +24,16 @@ MAX_PILOT_STEPS = 4000
 
 @dataclass(frozen=True)
 class PadGrid:
-    """Separations that all cells of a pad share."""
+    """Separations that all cells of a pad share.
+
+    Attributes
+    ----------
+    separation_nm : from far to near, shape (n,).
+    depths : positions in `separation_nm` from which the pad is opened, shape (k,).
+    """
 
     separation_nm: Array
-    """From far to near, shape (n,)."""
     depths: NDArray[np.int_]
-    """Positions in `separation_nm` from which the pad is opened, shape (k,)."""
 
     @property
     def depth_nm(self) -> Array:

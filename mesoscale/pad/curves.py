@@ -20,18 +20,22 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class PadCells:
-    """Pressures of all computed cells at the separations they share; far to near."""
+    """Pressures of all computed cells at the separations they share; far to near.
+
+    Attributes
+    ----------
+    grid : separations and depths.
+    first_contact_nm : first contact of each cell, shape (cells,).
+    closing : repulsive and attractive pressure (GPa, attraction negative), shape (cells, 2, n).
+    opening : the same while opening from each depth, shape (cells, k, 2, n); NaN below the depth.
+    settled : whether flow came to rest in each cell, shape (cells,).
+    """
 
     grid: PadGrid
-    """Separations and depths."""
     first_contact_nm: Array
-    """First contact of each cell, shape (cells,)."""
     closing: Array
-    """Repulsive and attractive pressure (GPa, attraction negative), shape (cells, 2, n)."""
     opening: Array
-    """The same while opening from each depth, shape (cells, k, 2, n); NaN below the depth."""
     settled: NDArray[np.bool_]
-    """Whether flow came to rest in each cell, shape (cells,)."""
 
     @property
     def count(self) -> int:

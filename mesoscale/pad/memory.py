@@ -20,18 +20,21 @@ class PadLaw:
 
     Between depths, repulsion and attraction are interpolated in logarithm at equal distance from the depth: an
     exponential repulsion, which rough contacts come near to, is interpolated exactly.
+
+    Attributes
+    ----------
+    separation_nm : from near to far, shape (n,).
+    closing : repulsive and attractive pressure (GPa, attraction negative), shape (2, n).
+    depth_nm : separations from which the pad was opened, rising, shape (k,).
+    opening : as `closing`, from each depth, shape (k, 2, n); NaN below the depth.
+    hamaker : Hamaker constant (1e-18 J), for separations beyond the table.
     """
 
     separation_nm: Array
-    """From near to far, shape (n,)."""
     closing: Array
-    """Repulsive and attractive pressure (GPa, attraction negative), shape (2, n)."""
     depth_nm: Array
-    """Separations from which the pad was opened, rising, shape (k,)."""
     opening: Array
-    """As `closing`, from each depth, shape (k, 2, n); NaN below the depth."""
     hamaker: float
-    """Hamaker constant (1e-18 J), for separations beyond the table."""
 
     def closing_GPa(self, separation_nm: ArrayLike) -> Array:
         """Net pressure while closing (GPa, positive: pushed apart), any shape.

@@ -17,18 +17,22 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Tail:
-    """Gumbel's distribution of the first contacts of cells."""
+    """Gumbel's distribution of the first contacts of cells.
+
+    Attributes
+    ----------
+    location_nm : mode.
+    scale_nm : beta: the first contact of a pad rises by it per factor e of area.
+    covariance : of location and scale, from a bootstrap over cells (nm^2), shape (2, 2).
+    cells : cells fitted.
+    p_value : of the Cramer-von Mises test with fitted parameters, by a parametric bootstrap; small: not Gumbel.
+    """
 
     location_nm: float
-    """Mode."""
     scale_nm: float
-    """beta: the first contact of a pad rises by it per factor e of area."""
     covariance: Array
-    """Of location and scale, from a bootstrap over cells (nm^2), shape (2, 2)."""
     cells: int
-    """Cells fitted."""
     p_value: float
-    """Of the Cramer-von Mises test with fitted parameters, by a parametric bootstrap; small: not Gumbel."""
 
     def first_contact_nm(self, cells: ArrayLike) -> Array:
         """Mean separation at which the first of so many cells touches, and its deviation over pads, shape (2, ...)."""

@@ -24,14 +24,18 @@ MORRIS_LEVELS = 8
 
 @dataclass(frozen=True)
 class Run:
-    """One cycle to compute."""
+    """One cycle to compute.
+
+    Attributes
+    ----------
+    node : node of the collocation grid; -1 elsewhere.
+    values : inputs by name.
+    """
 
     index: int
     node: int
-    """Node of the collocation grid; -1 elsewhere."""
     seed: int
     values: dict[str, float]
-    """Inputs by name."""
 
 
 def collocation_runs(table: InputTable, settings: UncertaintySettings, first: int, last: int) -> list[Run]:

@@ -15,16 +15,20 @@ CONFIDENCE = 0.9
 
 @dataclass(frozen=True)
 class Effects:
-    """Elementary effects of one output, inputs scaled to [0, 1]; each of shape (n,)."""
+    """Elementary effects of one output, inputs scaled to [0, 1]; each of shape (n,).
+
+    Attributes
+    ----------
+    mu_star : mean of their sizes.
+    half_width : half of the 90 % interval of mu_star (bootstrap over trajectories).
+    sigma : their standard deviation: interaction, curvature and, through an engine, the surface.
+    trajectories : those in use; a trajectory with a missing number is left out.
+    """
 
     mu_star: Array
-    """Mean of their sizes."""
     half_width: Array
-    """Half of the 90 % interval of mu_star (bootstrap over trajectories)."""
     sigma: Array
-    """Their standard deviation: interaction, curvature and, through an engine, the surface."""
     trajectories: int
-    """Those in use; a trajectory with a missing number is left out."""
 
 
 def trajectory_points(inputs: int, trajectories: int, seed: int) -> Array:

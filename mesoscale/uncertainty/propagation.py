@@ -20,11 +20,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class NodeOutputs:
-    """The law at every node for every surface seed."""
+    """The law at every node for every surface seed.
+
+    Attributes
+    ----------
+    values : shape (seeds, nodes, len(FITTED)): the closing parameters, then the opening ones; NaN where missing.
+    """
 
     seeds: list[int]
     values: Array
-    """Shape (seeds, nodes, len(FITTED)): the closing parameters, then the opening ones; NaN where missing."""
 
     @property
     def paper_outputs(self) -> Array:
@@ -133,22 +137,27 @@ def _regression(x: Array, y: Array, ranges: Array, transform: str, settings: Unc
 
 @dataclass(frozen=True)
 class Propagation:
-    """Responses and what the samples of the inputs become through them."""
+    """Responses and what the samples of the inputs become through them.
+
+    Attributes
+    ----------
+    samples : samples of the inputs, shape (m, n).
+    outputs : closing and opening parameters of every sample through the exported responses, shape (m, len(FITTED)).
+    cells : the same of single cells, with the scatter from one surface to the next; NaN without direct runs.
+    responses : one per entry of FITTED; None where no seed has all nodes.
+    scatter : joint scatter of single cells about the responses that exist; None with too few direct runs.
+    by_seed : mean and deviation of the outputs of Table 2 of every seed's own response, shape (seeds, 2, len(OUTPUTS)).
+    variances : var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear responses, shape (2,
+        len(OUTPUTS)).
+    """
 
     samples: Array
-    """Samples of the inputs, shape (m, n)."""
     outputs: Array
-    """Closing and opening parameters of every sample through the exported responses, shape (m, len(FITTED))."""
     cells: Array
-    """The same of single cells, with the scatter from one surface to the next; NaN without direct runs."""
     responses: list[Surrogate | None]
-    """One per entry of FITTED; None where no seed has all nodes."""
     scatter: Scatter | None
-    """Joint scatter of single cells about the responses that exist; None with too few direct runs."""
     by_seed: Array
-    """Mean and deviation of the outputs of Table 2 of every seed's own response, shape (seeds, 2, len(OUTPUTS))."""
     variances: Array
-    """Var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear responses, shape (2, len(OUTPUTS))."""
 
     @property
     def seed_share(self) -> Array:

@@ -65,20 +65,24 @@ def jackknife(statistic: Callable[[NDArray[np.int_]], Array], count: int, groups
 
 @dataclass(frozen=True)
 class Reference:
-    """What direct runs tell about the outputs of Table 2, free of responses."""
+    """What direct runs tell about the outputs of Table 2, free of responses.
+
+    Attributes
+    ----------
+    missing : runs without a number, shape (len(OUTPUTS),); left out, never filled in.
+    statistics : mean, dev, q05, q50, q95, each of shape (len(OUTPUTS),).
+    surface_variance : E[Var(Y|X)]: the surface's part of the variance, shape (len(OUTPUTS),).
+    input_variance : var(E[Y|X]): the inputs' part, shape (len(OUTPUTS),).
+    first : first-order indices of E[Y|X], shape (len(OUTPUTS), n).
+    """
 
     runs: int
     replicates: int
     missing: NDArray[np.int_]
-    """Runs without a number, shape (len(OUTPUTS),); left out, never filled in."""
     statistics: dict[str, Estimate]
-    """mean, dev, q05, q50, q95, each of shape (len(OUTPUTS),)."""
     surface_variance: Estimate
-    """E[Var(Y|X)]: the surface's part of the variance, shape (len(OUTPUTS),)."""
     input_variance: Estimate
-    """Var(E[Y|X]): the inputs' part, shape (len(OUTPUTS),)."""
     first: Estimate
-    """First-order indices of E[Y|X], shape (len(OUTPUTS), n)."""
 
 
 def reference(x: Array, y: Array, replicates: Array) -> Reference:

@@ -72,16 +72,20 @@ def compute_rows(
 
 @dataclass(frozen=True)
 class MonteCarlo:
-    """Laws of surfaces and inputs drawn at random; arrays of one entry per sample kept, shape (m,)."""
+    """Laws of surfaces and inputs drawn at random; arrays of one entry per sample kept, shape (m,).
+
+    Attributes
+    ----------
+    inputs : inputs by name, in the units of the table.
+    closing : laws of closing; each parameter has shape (m,).
+    opening : laws of opening.
+    failed : why the other samples are left out, one entry each.
+    """
 
     inputs: dict[str, Array]
-    """Inputs by name, in the units of the table."""
     closing: Law
-    """Laws of closing; each parameter has shape (m,)."""
     opening: Law
-    """Laws of opening."""
     failed: tuple[str, ...]
-    """Why the other samples are left out, one entry each."""
 
 
 def monte_carlo(

@@ -39,16 +39,20 @@ def basis_matrix(u: Array, degrees: NDArray[np.int_]) -> Array:
 
 @dataclass(frozen=True)
 class Surrogate:
-    """y = transform( sum_t coefficient_t prod_k P_{degree_tk}(u_k) ), u = 2 (x - low)/(high - low) - 1."""
+    """y = transform( sum_t coefficient_t prod_k P_{degree_tk}(u_k) ), u = 2 (x - low)/(high - low) - 1.
+
+    Attributes
+    ----------
+    ranges : range of each input, shape (n, 2).
+    degrees : shape (terms, n); the first row is the constant.
+    coefficients : shape (terms,).
+    transform : identity, or log: the sum is the logarithm of the output.
+    """
 
     ranges: Array
-    """Range of each input, shape (n, 2)."""
     degrees: NDArray[np.int_]
-    """Shape (terms, n); the first row is the constant."""
     coefficients: Array
-    """Shape (terms,)."""
     transform: str = "identity"
-    """identity, or log: the sum is the logarithm of the output."""
 
     def scaled(self, x: Array) -> Array:
         """Inputs (m, n) scaled to [-1, 1]; an input of zero width maps to 0."""
@@ -105,16 +109,19 @@ class Scatter:
 
     transform(cell) = transform(response) + z, z normal. The transforms are not those of the responses: d_c has an
     identity response and a scatter in proportion to it (all lengths scale with RMS).
+
+    Attributes
+    ----------
+    transforms : log (cell = response exp(z)) or identity (cell = response + z), one per output.
+    mean : mean of z, shape (n,); below zero for log, as the response is the mean of the cells, not of their logarithm.
+    covariance : of z, shape (n, n).
+    runs : direct runs behind it.
     """
 
     transforms: tuple[str, ...]
-    """log (cell = response exp(z)) or identity (cell = response + z), one per output."""
     mean: Array
-    """Mean of z, shape (n,); below zero for log, as the response is the mean of the cells, not of their logarithm."""
     covariance: Array
-    """Of z, shape (n, n)."""
     runs: int
-    """Direct runs behind it."""
 
 
 def joint_scatter(responses: Sequence[Surrogate], direct: tuple[Array, Array], fitted: bool) -> Scatter | None:

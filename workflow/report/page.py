@@ -29,13 +29,17 @@ class Table:
 
 @dataclass(frozen=True)
 class Gate:
-    """Whether a number can be trusted, and why not."""
+    """Whether a number can be trusted, and why not.
+
+    Attributes
+    ----------
+    used : whether anything else on the page depends on the stage.
+    """
 
     stage: str
     passed: bool
     reasons: Sequence[str] = ()
     used: bool = True
-    """Whether anything else on the page depends on the stage."""
 
 
 @dataclass

@@ -21,20 +21,24 @@ class UnfitTable(ValueError):
 
 @dataclass(frozen=True)
 class Column:
-    """One column, or a family of columns."""
+    """One column, or a family of columns.
+
+    Attributes
+    ----------
+    name : as in the header; a star stands for what tells the members of a family apart.
+    type : A key of PARSERS.
+    unit : 1 where there is none; empty for text.
+    meaning : one line.
+    empty : whether a cell may be empty.
+    optional : whether the column may be absent.
+    """
 
     name: str
-    """As in the header; a star stands for what tells the members of a family apart."""
     type: str
-    """A key of PARSERS."""
     unit: str
-    """1 where there is none; empty for text."""
     meaning: str
-    """One line."""
     empty: bool = False
-    """Whether a cell may be empty."""
     optional: bool = False
-    """Whether the column may be absent."""
 
     def covers(self, name: str) -> bool:
         """Whether a column of this name in a header is this one."""
@@ -63,12 +67,16 @@ def text(name: str, meaning: str, empty: bool = False, optional: bool = False) -
 
 @dataclass(frozen=True)
 class Table:
-    """The schema of one kind of CSV file."""
+    """The schema of one kind of CSV file.
+
+    Attributes
+    ----------
+    paths : where such files lie inside results/<scene>/; a star stands for a name.
+    row : what one row is.
+    """
 
     paths: tuple[str, ...]
-    """Where such files lie inside results/<scene>/; a star stands for a name."""
     row: str
-    """What one row is."""
     columns: tuple[Column, ...]
 
     def is_at(self, path: PurePath) -> bool:

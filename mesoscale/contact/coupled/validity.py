@@ -17,11 +17,18 @@ KAPPA = 2.0  # area of an elastic contact over force / (E* h'), as Pastewka and 
 
 
 class Roughness(NamedTuple):
-    """What the spectrum of a periodic surface says about it."""
+    """What the spectrum of a periodic surface says about it.
 
-    slope: float  # RMS of the gradient
-    curvature: float  # RMS of the Laplacian, 1/nm
-    flattening: float  # pressure that makes it flat, over E*
+    Attributes
+    ----------
+    slope : RMS of the gradient.
+    curvature : RMS of the Laplacian, 1/nm.
+    flattening : pressure that makes it flat, over E*.
+    """
+
+    slope: float
+    curvature: float
+    flattening: float
 
 
 def roughness(heights: np.ndarray, length: float) -> Roughness:

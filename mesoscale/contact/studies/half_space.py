@@ -27,11 +27,17 @@ MISSING = (
 
 @dataclass(frozen=True)
 class HalfSpace:
-    """A rough surface pressed by a rigid flat against an elastic half-space."""
+    """A rough surface pressed by a rigid flat against an elastic half-space.
 
-    separation_nm: float  # mean plane of the surface to the flat, as in the contact model
+    Attributes
+    ----------
+    separation_nm : mean plane of the surface to the flat, as in the contact model.
+    error : relative error of the solver.
+    """
+
+    separation_nm: float
     contact_area_nm2: float
-    error: float  # of the solver, relative
+    error: float
     wall_s: float
 
 

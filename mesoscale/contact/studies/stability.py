@@ -25,7 +25,12 @@ Check = tuple[str, str, str, Callable[[], tuple[bool, str]]]
 
 @dataclass(frozen=True)
 class Case:
-    """One extreme case."""
+    """One extreme case.
+
+    Attributes
+    ----------
+    too_much : a load that the hardness of the whole surface does not carry.
+    """
 
     name: str
     description: str
@@ -34,7 +39,7 @@ class Case:
     heights: np.ndarray | None = None
     cycles: int = 1
     refused: bool = False
-    too_much: bool = False  # a load that the hardness of the whole surface does not carry
+    too_much: bool = False
 
 
 def violations(

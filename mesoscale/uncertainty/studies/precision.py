@@ -36,29 +36,37 @@ METRICS = {
 
 @dataclass(frozen=True)
 class Method:
-    """One way to come from engine calls to statistics."""
+    """One way to come from engine calls to statistics.
+
+    Attributes
+    ----------
+    nodes : one per repeat, for responses from nodes.
+    blocks : direct runs in use, one array per repeat.
+    response : false: statistics of the runs themselves.
+    """
 
     name: str
     calls: int
     settings: UncertaintySettings
     nodes: tuple[NodeOutputs, ...] = ()
-    """One per repeat, for responses from nodes."""
     blocks: tuple[NDArray[np.int_], ...] = ()
-    """Direct runs in use, one array per repeat."""
     response: bool = True
-    """False: statistics of the runs themselves."""
 
 
 @dataclass(frozen=True)
 class MethodResult:
-    """Statistics of the outputs by one repeat of a method."""
+    """Statistics of the outputs by one repeat of a method.
+
+    Attributes
+    ----------
+    statistics : by name of STATISTICS, shape (len(OUTPUTS),).
+    first : first-order indices, shape (len(OUTPUTS), n).
+    q2 : shape (len(OUTPUTS),).
+    """
 
     statistics: dict[str, Array]
-    """By name of STATISTICS, shape (len(OUTPUTS),)."""
     first: Array
-    """First-order indices, shape (len(OUTPUTS), n)."""
     q2: Array
-    """Shape (len(OUTPUTS),)."""
     fit_s: float
 
 

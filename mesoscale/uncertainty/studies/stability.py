@@ -34,13 +34,17 @@ MIDDLE = {
 
 @dataclass(frozen=True)
 class Answer:
-    """Rows of the three result tables for one output in the places of all."""
+    """Rows of the three result tables for one output in the places of all.
+
+    Attributes
+    ----------
+    responses : outputs that have a response.
+    """
 
     output: dict[str, Any]
     sensitivity: list[dict[str, Any]]
     validation: dict[str, Any]
     responses: int
-    """Outputs that have a response."""
 
 
 def _table(*distributions: Distribution, correlation: Array | None = None) -> InputTable:
