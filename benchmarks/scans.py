@@ -14,18 +14,18 @@ import time
 from pathlib import Path
 
 from mesoscale.settings import SyntheticScanSettings
-from mesoscale.topography.loading import write_gwy
+from mesoscale.topography.measurements.loading import write_gwy
 from mesoscale.topography.synthetic_scans import synthetic_scans
 
 SPECTRA = """
 import sys
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.loading import load_scan
+from mesoscale.topography.measurements.loading import load_scan
 settings = TopographySettings()
 spectra = [trusted_scan(load_scan(path), settings) for path in sys.argv[2:]]
 if sys.argv[1] == "fit":
-    from mesoscale.topography.parameters import analyse
+    from mesoscale.topography.description.parameters import analyse
     assert analyse(spectra, settings).estimates
 """
 

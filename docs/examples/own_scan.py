@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import asperity as asp
-from mesoscale.topography.loading import write_gwy
+from mesoscale.topography.measurements.loading import write_gwy
 
 TRUTH = asp.ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.7, rms=5.0)
 folder = tempfile.TemporaryDirectory()

@@ -12,10 +12,10 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.branches import Outcome, fit_cycle
 from mesoscale.law.fit import row_of
 from mesoscale.settings import ContactSettings, LawSettings, TopographySettings
-from mesoscale.topography import likelihood
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.cleaning import Scan, clean
-from mesoscale.topography.parameters import MAX_MISFIT
+from mesoscale.topography.description import likelihood
+from mesoscale.topography.description.parameters import MAX_MISFIT
+from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.pressing import surfaces
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.cleaning import Scan, clean
-from mesoscale.topography.likelihood import TrustedSpectrum, trusted_range
-from mesoscale.topography.parameters import Topography, analyse, inputs
+from mesoscale.topography.description.likelihood import TrustedSpectrum, trusted_range
+from mesoscale.topography.description.parameters import Topography, analyse, inputs
+from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, mean_square
 from mesoscale.topography.spectrum import (
     Spectrum,

@@ -8,7 +8,7 @@ import scipy.fft
 
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings, TopographySettings
-from mesoscale.topography.cleaning import Scan
+from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
 from mesoscale.topography.spectrum import radial_spectrum
 from mesoscale.topography.synthesis import synthesize_spectrum

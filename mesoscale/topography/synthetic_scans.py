@@ -8,7 +8,7 @@ import numpy as np
 import scipy.fft
 
 from mesoscale.settings import SyntheticScanSettings
-from mesoscale.topography.cleaning import Scan
+from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 
 PERIOD = 1.25  # side of the periodic surface over side of the scan cut from it, so that scans are not periodic

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import asperity as asp
-from mesoscale.topography.loading import write_gwy
+from mesoscale.topography.measurements.loading import write_gwy
 
 TABLE_1 = Path(__file__).parents[2] / "config" / "paper" / "table1.csv"
 SMALL = asp.ContactSettings(pixels=64, length_nm=250.0, max_force_nN=500.0)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from mesoscale.topography.cleaning import Scan
-from mesoscale.topography.loading import write_gwy
+from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.loading import write_gwy
 
 MATERIAL = """
 inputs:

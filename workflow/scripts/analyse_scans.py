@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import analyse_scan, thumbnail
-from mesoscale.topography.loading import load_scan
+from mesoscale.topography.measurements.loading import load_scan
 from workflow.checksums import file_checksum
 from workflow.job import job
 from workflow.results import Dataset, write_h5

@@ -6,7 +6,7 @@ Out: topography/spectra.h5 (figures 9 and 10), topography/parameters.json (1/nm,
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import CURVES, fit_curves, parameters, pooled_curve, scan_rows, trusted
-from mesoscale.topography.parameters import analyse
+from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import Spectrum
 from workflow.job import job

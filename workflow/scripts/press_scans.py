@@ -14,7 +14,7 @@ from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.law.pressed_scans import press_scan
 from mesoscale.settings import ContactSettings, LawSettings, TopographySettings
-from mesoscale.topography.loading import load_scan
+from mesoscale.topography.measurements.loading import load_scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from workflow.job import job
 from workflow.results import Dataset, load_csv, load_json, write_csv, write_h5

@@ -6,7 +6,7 @@ In: nothing.  Out: topography/scans/*.gwy (Gwyddion files, metres), topography/t
 from pathlib import Path
 
 from mesoscale.settings import SyntheticScanSettings
-from mesoscale.topography.loading import write_gwy
+from mesoscale.topography.measurements.loading import write_gwy
 from mesoscale.topography.synthetic_scans import synthetic_scans
 from workflow.job import job
 from workflow.results import atomic_path, write_json

@@ -8,9 +8,9 @@ import numpy as np
 
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.cleaning import Scan, clean
-from mesoscale.topography.likelihood import trusted_range
-from mesoscale.topography.parameters import analyse
+from mesoscale.topography.description.likelihood import trusted_range
+from mesoscale.topography.description.parameters import analyse
+from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.spectrum import radial_spectrum
 from mesoscale.topography.synthetic_scans import synthetic_scans
 

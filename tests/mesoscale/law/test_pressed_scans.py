@@ -8,8 +8,8 @@ import pytest
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.pressed_scans import press_scan
 from mesoscale.settings import ContactSettings, LawSettings, TopographySettings
-from mesoscale.topography.cleaning import Scan
-from mesoscale.topography.parameters import MAX_MISFIT
+from mesoscale.topography.description.parameters import MAX_MISFIT
+from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.pressing import SURFACES
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.synthesis import synthesize

@@ -7,7 +7,7 @@ from mesoscale.contact import run_cycle
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings, TopographySettings
-from mesoscale.topography.cleaning import Scan
+from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.pressing import SURFACES, contacting_heights, periodic_part, surfaces
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.synthesis import synthesize

@@ -7,9 +7,9 @@ import pytest
 
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.cleaning import Scan
-from mesoscale.topography.likelihood import TrustedSpectrum, blur
-from mesoscale.topography.parameters import analyse, inputs
+from mesoscale.topography.description.likelihood import TrustedSpectrum, blur
+from mesoscale.topography.description.parameters import analyse, inputs
+from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, slope_from_hurst
 from mesoscale.topography.spectrum import Spectrum
 from mesoscale.topography.synthetic_scans import synthetic_scans

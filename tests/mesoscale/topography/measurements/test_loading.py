@@ -8,10 +8,10 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.cleaning import Scan, clean
-from mesoscale.topography.loading import load_scan, write_gwy
+from mesoscale.topography.measurements.cleaning import Scan, clean
+from mesoscale.topography.measurements.loading import load_scan, write_gwy
 
-AFM = Path(__file__).resolve().parents[4] / "shared" / "afm"
+AFM = Path(__file__).resolve().parents[5] / "shared" / "afm"
 
 
 def gwy(path, heights, lengths=(1000.0, 750.0)):

@@ -11,8 +11,8 @@ import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
-from mesoscale.topography.cleaning import Scan
-from mesoscale.topography.light_readers import light_reader
+from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.light_readers import light_reader
 
 REFUSED_FORMATS = frozenset({"npy", "npz"})  # NumPy files hold no physical size and may hold pickles
 MAGIC_BYTES = 512

@@ -6,15 +6,15 @@ import sys
 import numpy as np
 import pytest
 
-from mesoscale.topography.cleaning import Scan
-from mesoscale.topography.light_readers import SUFFIXES
-from mesoscale.topography.loading import load_scan, write_gwy
+from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.light_readers import SUFFIXES
+from mesoscale.topography.measurements.loading import load_scan, write_gwy
 
 ALONE = """
 import sys
 from pathlib import Path
-from mesoscale.topography.light_readers import SUFFIXES, light_reader
-from mesoscale.topography.loading import load_scan
+from mesoscale.topography.measurements.light_readers import SUFFIXES, light_reader
+from mesoscale.topography.measurements.loading import load_scan
 
 light = {}
 for suffixes in SUFFIXES.values():

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography import likelihood, line_fits
-from mesoscale.topography.likelihood import LikelihoodFit, TrustedSpectrum
-from mesoscale.topography.line_fits import LineFit
+from mesoscale.topography.description import likelihood, line_fits
+from mesoscale.topography.description.likelihood import LikelihoodFit, TrustedSpectrum
+from mesoscale.topography.description.line_fits import LineFit
 from mesoscale.topography.roughness_spectrum import Convention, hurst_from_slope, mean_square
 
 MAX_MISFIT = 0.3  # RMS logarithmic residual of pooled bins above which equation 9 does not describe them

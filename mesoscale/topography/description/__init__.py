@@ -1,0 +1,1 @@
+"""What the measurements say about the surface: its spectrum, its heights, and the parameters in use."""

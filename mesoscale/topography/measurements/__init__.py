@@ -1,0 +1,1 @@
+"""What instruments measured: files and their formats, levelling, and what each instrument can see."""
