@@ -9,7 +9,14 @@ project = "Asperity"
 author = copyright = "The Asperity developers"
 release = importlib.metadata.version("asperity-contact")
 
-extensions = ["myst_nb", "sphinx.ext.apidoc", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
+extensions = [
+    "myst_nb",
+    "sphinx.ext.apidoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+]
 exclude_patterns = ["_build", "conf.py", "api/*/modules.rst"]
 html_theme = "furo"
 html_title = "Asperity"

@@ -300,7 +300,7 @@ def _document(model: BaseModel, depth: int, explained: set[type[BaseModel]]) -> 
 
 
 if __name__ == "__main__":
-    from workflow.schema import SCHEMA, scene_schema
+    from workflow.scene_schema import SCHEMA, scene_schema
 
     DEFAULTS.write_text(documented_defaults(), encoding="utf-8")
     SCHEMA.write_text(scene_schema(), encoding="utf-8")

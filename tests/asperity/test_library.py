@@ -109,3 +109,9 @@ except asp.MissingExtra as error:
     first, second = shown.stdout.splitlines()
     assert first == "True"
     assert "asperity-contact[scans]" in second
+
+
+def test_the_reference_lists_every_name():
+    page = (Path(__file__).parents[2] / "docs/api.md").read_text(encoding="utf-8")
+    listed = page.partition(".. autosummary::")[2].partition("```")[0].split()
+    assert listed == asperity.__all__

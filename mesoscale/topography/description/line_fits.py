@@ -101,13 +101,13 @@ def pooled(data: Points) -> tuple[np.ndarray, np.ndarray]:
     """
     bins, index = np.unique(data.bin, return_inverse=True)
     scans, member = np.unique(data.scan, return_inverse=True)
-    design = np.zeros((len(data.log_c) + 1, len(bins) + len(scans)))
+    equations = np.zeros((len(data.log_c) + 1, len(bins) + len(scans)))
     rows = np.arange(len(data.log_c))
-    design[rows, index] = 1
-    design[rows, len(bins) + member] = 1
-    design[-1, len(bins) :] = 1  # levels sum to zero: the pooled spectrum is that of the typical place
+    equations[rows, index] = 1
+    equations[rows, len(bins) + member] = 1
+    equations[-1, len(bins) :] = 1  # levels sum to zero: the pooled spectrum is that of the typical place
     right = np.append(data.log_c, 0.0)
-    solution = np.linalg.lstsq(design, right, rcond=None)[0]
+    solution = np.linalg.lstsq(equations, right, rcond=None)[0]
     count = np.bincount(index)
     return np.bincount(index, data.log_q) / count, solution[: len(bins)]
 
