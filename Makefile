@@ -1,5 +1,5 @@
 # make run [SCENE=reduced|ci|paper|full|path.yaml] [TARGET=law]   set up, then run a scene
-# make plan [SCENE=…] [TARGET=…]   how many jobs of each rule would run; runs nothing
+# make plan [SCENE=…] [TARGET=…]   which jobs would run and how long they take; runs nothing
 # make test | bench | lint | docs
 SCENE ?= reduced
 TARGET ?=
@@ -12,7 +12,7 @@ export UV_SYSTEM_CERTS := 1
 
 .PHONY: run plan test bench lint docs setup
 run: setup
-	@$(RUN) snakemake --workflow-profile workflow/profiles/local $(TARGET) --config scene="$(SCENE)"
+	@$(RUN) asperity run --scene "$(SCENE)" $(TARGET)
 
 plan: setup
 	@$(RUN) asperity plan --scene "$(SCENE)" $(TARGET)

@@ -31,7 +31,7 @@ def main(arguments: list[str] | None = None) -> int:
     commands = parser.add_subparsers(dest="command", required=True)
     for name, words in (
         ("run", "run a scene; results go to ./results/<scene>"),
-        ("plan", "say how many jobs of each rule would run, and run nothing"),
+        ("plan", "say which jobs would run and how long they take, and run nothing"),
         ("open", "open the report of a scene in the browser"),
     ):
         command = commands.add_parser(name, help=words)
@@ -89,8 +89,7 @@ def _snakemake(scene: str, targets: list[str], dry: bool) -> int:
         "--config",
         f"scene={scene}",
     ]
-    if dry:
-        command[3:3] = ["--dry-run", "--quiet", "rules"]
+    command[3:3] = ["--dry-run", "--quiet", "rules"] if dry else ["--resources", f"mem_mb={_memory_MB()}"]
     # scripts import `workflow`, which is no installed package of that name
     paths = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
@@ -98,6 +97,13 @@ def _snakemake(scene: str, targets: list[str], dry: bool) -> int:
         return subprocess.run(command, env=environment, check=False).returncode
     except KeyboardInterrupt:
         return 130
+
+
+def _memory_MB() -> int:
+    """Memory of this machine, which jobs share."""
+    import psutil
+
+    return psutil.virtual_memory().total // 10**6
 
 
 def _refuse(message: str) -> int:

@@ -114,4 +114,4 @@ except asp.MissingExtra as error:
 def test_the_reference_lists_every_name():
     page = (Path(__file__).parents[2] / "docs/api.md").read_text(encoding="utf-8")
     listed = page.partition(".. autosummary::")[2].partition("```")[0].split()
-    assert listed == asperity.__all__
+    assert listed == asp.__all__

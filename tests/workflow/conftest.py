@@ -1,5 +1,6 @@
 """Running the real workflow in a folder of its own."""
 
+import itertools
 import os
 import signal
 import subprocess
@@ -61,17 +62,9 @@ class Workflow:
         done = self.run(scene, *targets, options=("--dry-run", "--quiet", "rules"))
         assert done.returncode == 0, done.stdout + done.stderr
         lines = (done.stdout + done.stderr).splitlines()
-        if "job" not in [line.split(" ")[0] for line in lines if "count" in line]:
-            return {}
-        start = next(number for number, line in enumerate(lines) if line.startswith("job") and "count" in line)
-        table = {}
-        for line in lines[start + 2 :]:
-            if not line.strip():
-                break
-            rule, count = line.split()
-            table[rule] = int(count)
-        table.pop("total", None)
-        return table
+        start = next((number for number, line in enumerate(lines) if line.startswith("job ")), len(lines))
+        rows = [line.split() for line in itertools.takewhile(str.strip, lines[start + 1 :])]
+        return {rule: int(count) for rule, count, *_ in rows}
 
     def kill_when(self, scene: str, condition: Callable[[], bool], timeout_s: float = 600) -> bool:
         """Start a run and SIGKILL it with all its children once `condition()` holds; False if it ended first."""

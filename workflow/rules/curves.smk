@@ -11,6 +11,8 @@ rule compute_nominal:
     log:
         f"{RESULTS}/logs/compute_nominal.log",
     threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
     params:
         settings=settings("contact"),
     message:

@@ -23,6 +23,8 @@ rule compute_runs:
     log:
         f"{RESULTS}/logs/compute_runs_{{chunk}}.log",
     threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
         uncertainty=RUN_SETTINGS,

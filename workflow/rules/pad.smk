@@ -19,6 +19,8 @@ rule plan_pad:
     log:
         f"{RESULTS}/logs/plan_pad.log",
     threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
         pad=GRID_SETTINGS,
@@ -37,6 +39,8 @@ rule close_cells:
     log:
         f"{RESULTS}/logs/close_cells_{{chunk}}.log",
     threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
         seeds=lambda wildcards: [SCENE.pad.first_seed + run for run in CELL_CHUNKS[wildcards.chunk]],

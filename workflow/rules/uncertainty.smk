@@ -30,6 +30,8 @@ rule compute_direct_runs:
     wildcard_constraints:
         design="direct|replicate|morris",
     threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
         law=settings("law"),

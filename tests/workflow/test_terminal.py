@@ -1,0 +1,85 @@
+"""What a run says: its cost before, a line for each job, the time left."""
+
+import logging
+from types import SimpleNamespace
+
+import pytest
+
+from workflow.cost import Costs, machine_MB, relative_speed, wall_seconds
+from workflow.scene import load_scene
+from workflow.terminal import Terminal, duration
+
+
+class OneSecondEach:
+    """Costs of a scene in which every job takes a second, but one that nobody has measured."""
+
+    def seconds(self, rule, wildcards):
+        return None if rule == "unheard_of" else 1.0
+
+
+def job(name):
+    return SimpleNamespace(rule=SimpleNamespace(name=name, norun=False), wildcards_dict={})
+
+
+def send(terminal, event, **about):
+    record = logging.makeLogRecord({"msg": "", "event": event, **about})
+    terminal.emit(record)
+
+
+@pytest.mark.parametrize("dry", [True, False])
+def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry, monkeypatch):
+    monkeypatch.setattr("workflow.terminal.relative_speed", lambda: 1.0)
+    jobs = [job("fit_law"), job("fit_law"), job("unheard_of")]
+    snakemake = SimpleNamespace(dryrun=dry, cores=2, dag=SimpleNamespace(needrun_jobs=lambda: jobs))
+    terminal = Terminal(snakemake, OneSecondEach(), "nothing to do")
+    send(terminal, "run_info")
+    send(terminal, "job_info", jobid=7, rule_name="fit_law", rule_msg="fit the law")
+    send(terminal, "job_finished", job_id=7)
+    said = capsys.readouterr().err
+    assert "3 jobs, about 1 s on 2 cores, and unheard_of, whose time nobody has measured" in said
+    assert ("fit_law         2        2 s" in said) == dry
+    assert ("1 of 3  fit the law (1 s), about 1 s left" in said) == (not dry)
+
+
+def test_nothing_to_do_names_the_report(capsys):
+    terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do; the report is there")
+    terminal.emit(logging.makeLogRecord({"msg": "Nothing to be done (all requested files are present)."}))
+    assert capsys.readouterr().err == "nothing to do; the report is there\n"
+
+
+@pytest.mark.parametrize("scene", ["ci", "paper", "reduced", "full"])
+def test_every_job_of_a_shipped_scene_has_a_measured_cost(workflow_in, scene):
+    done = workflow_in.run(scene, options=("--dry-run", "--quiet", "rules"))
+    assert "nobody has measured" not in done.stderr
+    assert " on " in done.stderr.splitlines()[-1]
+
+
+def test_a_contact_beyond_the_memory_of_the_machine_is_refused_with_its_key(workflow_in, tmp_path):
+    scene = tmp_path / "huge.yaml"
+    scene.write_text("contact: {pixels: 16384, mechanics: coupled}\n")
+    if machine_MB() > 38200:
+        pytest.skip("this machine has the memory")
+    done = workflow_in.run(str(scene), options=("--dry-run",))
+    assert done.returncode == 1
+    assert "contact.pixels = 16384: a contact needs 38.2 GB of memory" in done.stderr
+
+
+def test_costs_grow_with_what_a_job_does():
+    paper = load_scene("paper")
+    coarse = paper.model_copy(update={"contact": paper.contact.model_copy(update={"pixels": 512})})
+    small, large = Costs(coarse, {}), Costs(paper, {})
+    assert large.seconds("compute_runs", {}) > 2 * small.seconds("compute_runs", {})
+    assert small.seconds("no_such_rule", {}) is None
+
+
+def test_jobs_side_by_side_take_no_less_than_the_longest():
+    assert wall_seconds([1.0, 1.0, 1.0, 1.0], cores=2) == 2.0
+    assert wall_seconds([5.0, 1.0], cores=2) == 5.0
+
+
+def test_speed_is_a_positive_number():
+    assert 0.01 < relative_speed() < 100
+
+
+def test_durations_as_people_say_them():
+    assert [duration(seconds) for seconds in (0.2, 8, 89, 180, 9000)] == ["1 s", "8 s", "89 s", "3 min", "2.5 h"]

@@ -1,0 +1,153 @@
+"""What the jobs of a scene cost before they run: seconds of one core by rule, and memory of a contact.
+
+The figures were measured on one idle core of the development machine; `relative_speed` sets another machine against it.
+"""
+
+import statistics
+import time
+from collections.abc import Callable, Iterable, Mapping
+
+import numpy as np
+import psutil
+from scipy import fft
+
+from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, plan_rows
+from atomistic.materials import Material
+from mesoscale.settings import ContactSettings
+from workflow.scene import Scene
+
+START_S = 2.0  # Snakemake's start of a job, and the packages
+GRID = 1024**2  # sites of the reference
+CYCLE_S = {"asperity": (0.005, 0.065), "coupled": (0.02, 2.5)}  # of any cycle; of one on the reference grid, besides
+FITTED_RUN_S = 0.004  # law of a run and its row
+CELL_S = 2.4  # a pad's cell over a cycle: it opens from several depths
+SCAN_S = 0.8  # analysis of a scan of the reference grid
+SCF_S = 9.0  # one volume of 28 atoms at 100 hartree
+RELAXATION_STEP_S = 8.0  # the same, tightly converged and with forces
+QUENCH_S = 24.0  # quenches until a network of 28 atoms passes its gates
+PROCESS_MB = 600.0  # a job is two processes with their packages
+SITE_MB = {"asperity": 62e-6, "coupled": 140e-6}  # 4096^2 sites take 1.1 GB, 1024^2 coupled ones 323 MB
+TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
+
+
+class Costs:
+    """Costs of the jobs of one scene; `oxides` are the glasses that hardness names by formula."""
+
+    def __init__(self, scene: Scene, oxides: Mapping[str, Material]) -> None:
+        self.scene = scene
+        self.atom_steps: dict[str, float] = {}  # by closing run
+        if "hardness" in scene.stages():
+            bodies = (scene.hardness.material, scene.hardness.closing.counter_material)
+            rows = plan_rows(scene.hardness, *(oxides[formula] for formula in bodies))
+            self.atom_steps = {str(row["run"]): float(row["atom_steps"]) for row in rows[:-1]}
+
+    def seconds(self, rule: str, wildcards: Mapping[str, str]) -> float | None:
+        """Seconds of one core; None for a rule that nobody has measured."""
+        cost = _SECONDS.get(rule)
+        return None if cost is None else START_S + cost(self, wildcards)
+
+    @property
+    def cycle_s(self) -> float:
+        """Seconds of one closing and opening."""
+        fixed, growing = CYCLE_S[self.scene.contact.mechanics]
+        return fixed + growing * self.scene.contact.pixels**2 / GRID
+
+    @property
+    def scf_size(self) -> float:
+        """Cost of a glass cell over that of 28 atoms."""
+        return (self.scene.elastic.glass.formula_units / 4) ** 1.3
+
+    def make_glass(self, wildcards: Mapping[str, str]) -> float:
+        """Melt, quench and rest."""
+        glass = self.scene.hardness.glass
+        cooling_ps = (glass.melt_temperature_K - glass.final_temperature_K) / glass.quench_rate_K_ps
+        steps = 1e3 * (glass.melt_ps + cooling_ps + glass.rest_ps) / glass.timestep_fs
+        return steps * glass.atoms / ATOM_STEPS_PER_CORE_SECOND
+
+    def run_closing(self, wildcards: Mapping[str, str]) -> float:
+        """Closing of one asperity."""
+        return self.atom_steps[wildcards["run"]] / ATOM_STEPS_PER_CORE_SECOND
+
+    def scan_volumes(self, wildcards: Mapping[str, str]) -> float:
+        """Energy against volume; relaxed ions need some eight times the clamped ones."""
+        elastic = self.scene.elastic
+        energies = len(elastic.strains) * (8 if wildcards["ions"] == "relaxed" else 1)
+        return SCF_S * energies * self.scf_size * elastic.dft.cutoff_Ha / 100
+
+    def relax_amorphous(self, wildcards: Mapping[str, str]) -> float:
+        """Relaxation of the ions of a glass."""
+        relaxation = self.scene.elastic.relaxation
+        return RELAXATION_STEP_S * (1 + relaxation.max_steps) * self.scf_size * relaxation.cutoff_Ha / 100
+
+    def compute_runs(self, wildcards: Mapping[str, str]) -> float:
+        """A chunk of cycles of a design."""
+        return self.scene.uncertainty.chunk_runs * (self.cycle_s + FITTED_RUN_S)
+
+    def analyse_scans(self, wildcards: Mapping[str, str]) -> float:
+        """A chunk of scans."""
+        return self.scene.topography.scans_per_job * SCAN_S * self.scene.topography.synthetic.pixels**2 / GRID
+
+    def plan_pad(self, wildcards: Mapping[str, str]) -> float:
+        """Pilot cells, closed again for each longer range."""
+        return 2 * self.scene.pad.pilot_cells * CELL_S * self.cycle_s
+
+    def close_cells(self, wildcards: Mapping[str, str]) -> float:
+        """A chunk of the pad's cells."""
+        return min(self.scene.pad.chunk_cells, self.scene.pad.cells) * CELL_S * self.cycle_s
+
+
+def _constant(seconds: float) -> Callable[[Costs, Mapping[str, str]], float]:
+    return lambda costs, wildcards: seconds
+
+
+_SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
+    **dict.fromkeys(("write_scene", "collect_inputs", "export_law", "combine_e_star"), _constant(0.0)),
+    **dict.fromkeys(("find_hardness", "fit_hardness", "fit_bulk_moduli", "fit_law", "fit_nominal_law"), _constant(0.5)),
+    "make_crystal": _constant(0.0),
+    "make_glass": Costs.make_glass,
+    "run_closing": Costs.run_closing,
+    "make_amorphous": lambda costs, wildcards: QUENCH_S * costs.scf_size,
+    "relax_amorphous": Costs.relax_amorphous,
+    "scan_volumes": Costs.scan_volumes,
+    "scan_relaxed_volumes": Costs.scan_volumes,
+    "write_synthetic_scans": _constant(5.0),
+    "analyse_scans": Costs.analyse_scans,
+    "pool_spectra": _constant(3.0),
+    "compute_nominal": lambda costs, wildcards: len(costs.scene.contact.nominal_loads_nN) * costs.cycle_s,
+    "compute_runs": Costs.compute_runs,
+    "compute_direct_runs": Costs.compute_runs,
+    "propagate_uncertainty": _constant(7.0),
+    "rank_sensitivity": _constant(8.0),
+    "plan_pad": Costs.plan_pad,
+    "close_cells": Costs.close_cells,
+    "assemble_pad": _constant(4.0),
+    "solve_switch": _constant(2.0),
+    "render_report": _constant(2.5),
+}
+
+
+def contact_MB(contact: ContactSettings) -> int:
+    """Memory of a process that closes and opens a contact, in MB."""
+    return round(PROCESS_MB + SITE_MB[contact.mechanics] * contact.pixels**2)
+
+
+def machine_MB() -> int:
+    """Memory of this machine, in MB."""
+    return psutil.virtual_memory().total // 10**6
+
+
+def wall_seconds(job_seconds: Iterable[float], cores: int) -> float:
+    """Time that jobs take side by side: all cores busy, but no less than the longest job."""
+    each = list(job_seconds)
+    return max([sum(each) / cores, *each])
+
+
+def relative_speed() -> float:
+    """Speed of this machine over the development machine's, by the Fourier transform of a reference grid."""
+    heights = np.random.default_rng(0).normal(size=(1024, 1024))
+    seconds = []
+    for _ in range(5):
+        started = time.process_time()
+        fft.rfft2(heights)
+        seconds.append(time.process_time() - started)
+    return TRANSFORM_S / statistics.median(seconds)

@@ -1,0 +1,115 @@
+"""What a run says in the terminal: its plan, and a line for each finished job with the clock and the time left."""
+
+import logging
+import sys
+import time
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+from snakemake.exceptions import WorkflowError
+
+from workflow.cost import Costs, relative_speed, wall_seconds
+
+
+class Terminal(logging.Handler):
+    """Turns Snakemake's messages about jobs into the terminal's lines.
+
+    Parameters
+    ----------
+    workflow : Snakemake's, of which it asks what is to run, on how many cores, and whether anything runs at all.
+    costs : of the scene.
+    nothing_to_do : what to say when every result is there.
+    """
+
+    def __init__(self, workflow: Any, costs: Costs, nothing_to_do: str) -> None:
+        super().__init__()
+        self._workflow, self._costs, self._nothing_to_do = workflow, costs, nothing_to_do
+        self._speed = relative_speed()
+        self._planned = False
+        self._jobs = self._done = 0
+        self._counts: Counter[str] = Counter()  # of the jobs that have not finished, by rule
+        self._seconds_left: Counter[str] = Counter()
+        self._running: dict[int, tuple[str, str, float]] = {}  # rule, message and start by number of the job
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print what a message of Snakemake means for the user."""
+        event, about = getattr(record, "event", None), record.__dict__
+        if event == "run_info" and not self._planned:
+            self._planned = True
+            self._plan()
+        elif event == "job_info" and not self._workflow.dryrun:
+            message = about["rule_msg"] or about["rule_name"]
+            self._running[about["jobid"]] = about["rule_name"], message, time.monotonic()
+        elif event == "job_finished":
+            self._finish(about["job_id"])
+        elif event is None and record.getMessage().startswith("Nothing to be done"):
+            _say(self._nothing_to_do)
+
+    def _plan(self) -> None:
+        jobs = self._waiting()
+        self._counts = Counter(rule for rule, _ in jobs)
+        unknown = sorted({rule for rule, wildcards in jobs if self._costs.seconds(rule, wildcards) is None})
+        seconds = [(rule, (self._costs.seconds(rule, wildcards) or 0.0) / self._speed) for rule, wildcards in jobs]
+        for rule, cost in seconds:
+            self._seconds_left[rule] += cost
+        self._jobs = len(jobs)
+        wall = duration(wall_seconds([cost for _, cost in seconds], self._cores)) if jobs else "no time"
+        besides = f", and {', '.join(unknown)}, whose time nobody has measured" if unknown else ""
+        if self._workflow.dryrun:
+            rows = [
+                ("job", "count", "one core"),
+                *((rule, str(count), self._time(rule)) for rule, count in self._counts.items()),
+            ]
+            width = max(len(row[0]) for row in rows)
+            _say("\n".join(f"{rule:<{width}}  {count:>5}  {cost:>9}" for rule, count, cost in rows) + "\n")
+        _say(f"{self._jobs} jobs, about {wall} on {self._cores} cores{besides}")
+
+    @property
+    def _cores(self) -> int:
+        try:
+            return self._workflow.cores
+        except WorkflowError:  # a cluster's jobs have no common number
+            return self._workflow.nodes
+
+    def _waiting(self) -> list[tuple[str, Mapping[str, str]]]:
+        jobs = self._workflow.dag.needrun_jobs()
+        return [(job.rule.name, dict(job.wildcards_dict)) for job in jobs if not job.rule.norun]
+
+    def _time(self, rule: str) -> str:
+        return duration(self._seconds_left[rule]) if self._seconds_left[rule] else "?"
+
+    def _finish(self, number: int) -> None:
+        rule, message, started = self._running.pop(number, ("", "", 0.0))
+        if rule not in self._counts:  # a target that only gathers
+            return
+        self._done += 1
+        self._seconds_left[rule] -= self._seconds_left[rule] / self._counts[rule]
+        self._counts[rule] -= 1
+        left = sum(self._seconds_left.values()) / self._cores
+        rest = f", about {duration(left)} left" if self._done < self._jobs else ""
+        count = f"{self._done:>{len(str(self._jobs))}} of {self._jobs}"
+        _say(f"{time.strftime('%H:%M:%S')}  {count}  {message} ({duration(time.monotonic() - started)}){rest}")
+
+
+def duration(seconds: float) -> str:
+    """A time as people say it: 8 s, 3 min, 2.5 h."""
+    if seconds < 90:
+        return f"{max(1, round(seconds))} s"
+    return f"{seconds / 60:.0f} min" if seconds < 90 * 60 else f"{seconds / 3600:.1f} h"
+
+
+def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: str) -> None:
+    """Let `Terminal` tell what goes on instead of Snakemake, whose warnings and errors stay."""
+
+    def is_needed(record: logging.LogRecord) -> bool:
+        in_detail = workflow.dryrun and getattr(record, "event", None) == "job_info"  # --dry-run without --quiet
+        return record.levelno > logging.INFO or in_detail
+
+    for handler in logger.handlers:
+        handler.addFilter(is_needed)
+    logger.addHandler(Terminal(workflow, costs, nothing_to_do))
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
