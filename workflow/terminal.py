@@ -3,7 +3,7 @@
 import logging
 import sys
 import time
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Mapping
 from typing import Any
 
@@ -29,7 +29,7 @@ class Terminal(logging.Handler):
         self._planned = False
         self._jobs = self._done = 0
         self._counts: Counter[str] = Counter()  # of the jobs that have not finished, by rule
-        self._seconds_left: Counter[str] = Counter()
+        self._seconds_left: defaultdict[str, float] = defaultdict(float)
         self._running: dict[int, tuple[str, str, float]] = {}  # rule, message and start by number of the job
 
     def emit(self, record: logging.LogRecord) -> None:
