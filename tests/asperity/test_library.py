@@ -71,7 +71,7 @@ def test_more_samples_extend_fewer():
         (lambda: asp.monte_carlo(asp.input_table(), SMALL, 2, seed=0.5), "seed = 0.5"),
         (lambda: asp.measure_roughness([]), "none given"),
         (lambda: asp.input_table(roughness=asp.InputRow(a=1, b=2)), "roughness"),
-        (lambda: asp.input_table(hurst=asp.InputRow(a=0.5, b=50)), "hurst spans"),
+        (lambda: asp.input_table(hurst=asp.InputRow(a=0.5, b=50)), "hurst: spans"),
         (lambda: asp.Scan(np.zeros(9), (1.0, 1.0), "line"), "a map"),
         (lambda: asp.Scan(np.zeros((9, 9)), (1e-6, 1e-6), "metres"), "another unit"),
     ],

@@ -2,6 +2,8 @@
 
 import fcntl
 
+import pytest
+
 
 def errors(done):
     return [line for line in (done.stdout + done.stderr).splitlines() if line.startswith("ERROR")]
@@ -22,6 +24,31 @@ def test_a_mistake_in_a_scene(workflow_in):
     assert done.returncode != 0
     (line,) = errors(done)
     assert "contact.pixels = 1" in line
+
+
+@pytest.mark.parametrize(
+    ("scene", "words"),
+    [
+        ("inputs: {rms: {a: -2, b: 15}}", "inputs.rms: spans -2 .. 15 nm; accepted is"),
+        ("inputs: {gap_cutoff: {a: 0.15, b: 30}}", "inputs.gap_cutoff: spans 0.15 .. 30 nm; accepted is"),
+        (
+            "{inputs: {gap_cutoff: {a: 0.15, b: 0.3}}, contact: {gap_cutoff_nm: 0.2}}",
+            "contact.gap_cutoff_nm and inputs.gap_cutoff give the same number",
+        ),
+        (
+            "inputs: {correlations: [{first: rms, second: q0, rank: 0.9}, {first: q0, second: hurst, rank: 0.9}, "
+            "{first: rms, second: hurst, rank: -0.9}]}",
+            "correlation",
+        ),
+    ],
+)
+def test_inputs_that_contradict_physics_or_each_other(workflow_in, scene, words):
+    path = workflow_in.folder / "mine.yaml"
+    path.write_text(scene)
+    done = workflow_in.run(str(path))
+    assert done.returncode != 0
+    (line,) = errors(done)
+    assert words in line
 
 
 def test_no_permission_to_write(workflow_in):

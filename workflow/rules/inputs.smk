@@ -1,3 +1,7 @@
+from mesoscale.errors import InputError as MesoscaleInputError
+from mesoscale.inputs.definitions import BY_NAME
+from mesoscale.inputs.table import check_literature
+
 STAGE_RESULT = {
     "hardness": f"{RESULTS}/hardness/fit.json",
     "elastic": f"{RESULTS}/elastic/e_star.json",
@@ -9,6 +13,18 @@ SAMPLES = {
     for name, row in SCENE.inputs.rows().items()
     if row.origin == "literature" and row.distribution == "samples"
 }
+for name, row in SCENE.inputs.rows().items():
+    if BY_NAME[name].setting in SCENE.contact.model_fields_set:
+        refuse(f"{SCENE_GIVEN}: contact.{BY_NAME[name].setting} and inputs.{name} give the same number; leave one out")
+if workflow.is_main_process:
+    found = {
+        name: row.model_copy(update={"file": SAMPLES.get(f"samples_{name}")})
+        for name, row in SCENE.inputs.rows().items()
+    }
+    try:
+        check_literature(SCENE.inputs.model_copy(update=found), SCENE.uncertainty.central_share)
+    except MesoscaleInputError as error:
+        refuse(f"{SCENE_GIVEN}: {error}")
 
 
 rule inputs:

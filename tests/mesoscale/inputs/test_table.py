@@ -94,7 +94,7 @@ def test_missing_entry_of_a_stage_is_named():
 
 def test_range_across_a_physical_bound_is_refused():
     settings = PAPER.model_copy(update={"rms": InputRow(distribution="normal", a=3, b=2)})
-    with pytest.raises(InputError, match=r"rms spans -.*accepted is 0 or 1e-05"):
+    with pytest.raises(InputError, match=r"inputs.rms: spans -.*accepted is 0 or 1e-05"):
         collect(settings, {}, {}, 0.999)
 
 
