@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from ase import Atoms
 from ase.calculators.calculator import CalculationFailed, Calculator, all_changes
+from ase.stress import full_3x3_to_voigt_6_stress
 from ase.units import Bohr, Hartree
 
 FUNCTIONALS = {
@@ -25,6 +26,9 @@ Store = MutableMapping[str, dict[str, np.ndarray]]
 """Finished calculations by key; the caller decides whether it lives in memory or on disk."""
 
 
+COARSE = 0.6  # mesh on which an SCF without a former one starts, over the mesh itself: a fifth of the points
+COARSE_TOLERANCE_HA = 1e-3
+SINGLE_PRECISION_HA = 1e-7  # SCF tolerance from which orbitals on the grid need no double precision
 HISTORY = 5  # former solutions a start is extrapolated from
 GUESS_DAMPING = 1e-7  # of the weights' normal equations
 
@@ -88,7 +92,7 @@ class PyscfGamma(Calculator):
 
     parameters: Any  # a dictionary with attributes (ASE)
 
-    implemented_properties = ["energy", "forces"]  # noqa: RUF012 (ASE's interface)
+    implemented_properties = ["energy", "forces", "stress"]  # noqa: RUF012 (ASE's interface)
     default_parameters: dict[str, Any] = {  # noqa: RUF012
         "xc": "GGA",
         "basis": "gth-dzvp-molopt-sr",
@@ -114,10 +118,10 @@ class PyscfGamma(Calculator):
         assert self.atoms is not None
         p = self.parameters
         mesh = p.mesh or commensurate_mesh(self.atoms.cell.array, p.cutoff_Ha)
-        wanted = "forces" if "forces" in properties else "energy"
+        wanted = next((name for name in ("stress", "forces") if name in properties), "energy")
         key = self._key(mesh, wanted)
         if key not in self.store:
-            self.store[key] = self._solve(mesh, wanted == "forces")
+            self.store[key] = self._solve(mesh, wanted)
             self.scf_runs += 1
         solved = self.store[key]
         self.scf_cycles = int(solved["cycles"])
@@ -128,8 +132,10 @@ class PyscfGamma(Calculator):
         self.history = [*self.history, Solution(solved["overlap"], solved["orbitals"])][-HISTORY:]
         energy = float(solved["energy_Ha"]) * Hartree
         self.results: dict[str, Any] = {"energy": energy, "free_energy": energy}
-        if wanted == "forces":
+        if wanted != "energy":
             self.results["forces"] = solved["forces"] * Hartree / Bohr
+        if wanted == "stress":
+            self.results["stress"] = full_3x3_to_voigt_6_stress(solved["stress"] * Hartree / Bohr**3)
 
     def check_state(self, atoms, tol=1e-15):
         return super().check_state(atoms, tol=tol)
@@ -143,7 +149,8 @@ class PyscfGamma(Calculator):
             digest.update(np.ascontiguousarray(array).tobytes())
         return digest.hexdigest()[:32]
 
-    def _solve(self, mesh, forces: bool) -> dict[str, np.ndarray]:
+    def _mean_field(self, mesh) -> Any:
+        """PySCF's calculation of the structure at hand on a mesh."""
         from pyscf.pbc import dft
 
         p = self.parameters
@@ -159,7 +166,7 @@ class PyscfGamma(Calculator):
         if p.numerics == "cached-grid":
             from atomistic.elastic.gamma_scf import CachedGrid
 
-            mf._numint = CachedGrid(cell)
+            mf._numint = CachedGrid(cell, np.float32 if p.tolerance_Ha >= SINGLE_PRECISION_HA else np.float64)
         elif p.numerics == "multigrid":
             mf = mf.multigrid_numint()
         else:
@@ -168,6 +175,11 @@ class PyscfGamma(Calculator):
             mf.get_jk = lambda cell=None, dm=None, hermi=1, kpt=None, kpts_band=None, with_j=True, with_k=False, **_: (
                 fft(dm, hermi, kpt, kpts_band, with_j, False)
             )
+        return mf
+
+    def _solve(self, mesh, wanted: str) -> dict[str, np.ndarray]:
+        p = self.parameters
+        mf = self._mean_field(mesh)
         overlap = np.asarray(mf.get_ovlp())
         mf.get_ovlp = lambda *_: overlap  # asked for again and again
         energy = mf.kernel(self._guess(mf.cell, overlap))
@@ -183,22 +195,33 @@ class PyscfGamma(Calculator):
             "overlap": overlap,
             "gap_Ha": np.array(levels[~filled].min() - levels[filled].max() if not filled.all() else np.inf),
         }
-        if forces and converged:
-            if p.numerics == "cached-grid":
-                solved["forces"] = mf._numint.forces(mf)
-            elif p.numerics == "multigrid":
-                solved["forces"] = -mf.nuc_grad_method().kernel()
-            else:
-                raise NotImplementedError("forces with numerics 'fftdf'")
+        if wanted == "energy" or not converged:
+            return solved
+        if p.numerics == "cached-grid":
+            solved["forces"], stress = mf._numint.forces_and_stress(mf, with_stress=wanted == "stress")
+            if stress is not None:
+                solved["stress"] = stress
+        elif p.numerics == "multigrid" and wanted == "forces":
+            solved["forces"] = -mf.nuc_grad_method().kernel()
+        else:
+            raise NotImplementedError(f"{wanted} with numerics {p.numerics!r}; use 'cached-grid'")
         return solved
 
-    def _guess(self, cell, overlap: np.ndarray) -> np.ndarray | None:
-        """Density matrix of extrapolated orbitals; None if there are none that fit."""
+    def _guess(self, cell, overlap: np.ndarray) -> Any:
+        """Density matrix of extrapolated orbitals; where none fit, that of a loose SCF on a coarse mesh."""
         from pyscf import lib
 
         shape = (cell.nao, cell.nelectron // 2)
         c = extrapolated_orbitals([old for old in self.history if old.orbitals.shape == shape], overlap)
-        return None if c is None else lib.tag_array(2 * c @ c.T, mo_coeff=c, mo_occ=np.full(c.shape[1], 2.0))
+        if c is not None:
+            return lib.tag_array(2 * c @ c.T, mo_coeff=c, mo_occ=np.full(c.shape[1], 2.0))
+        if self.parameters.numerics != "cached-grid":
+            return None
+        coarse = self._mean_field(tuple(int(np.ceil(COARSE * n)) for n in cell.mesh))
+        coarse.get_ovlp = lambda *_: overlap
+        coarse.conv_tol, coarse.conv_tol_grad = COARSE_TOLERANCE_HA, 10 * np.sqrt(COARSE_TOLERANCE_HA)
+        coarse.kernel()  # where it does not converge the fine mesh goes on from where it ended
+        return coarse.make_rdm1()
 
 
 def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> np.ndarray | None:

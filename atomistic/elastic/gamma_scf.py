@@ -1,7 +1,7 @@
 """Γ-point Kohn–Sham potential with all orbitals kept on one uniform grid, for PySCF's `RKS`.
 
 PySCF's multigrid evaluates every pair of Gaussians again in each cycle.  For cells of tens of atoms the orbital
-values on the grid fit into memory (8 B × grid points × orbitals; 0.7 GB for 28 atoms of Si3N4 at 100 Ha), so here
+values on the grid fit into memory (4 or 8 B × grid points × orbitals; 0.4 GB for 28 atoms of Si3N4 at 100 Ha), so here
 they are computed once per geometry and everything after that is matrix algebra and FFTs::
 
     ρ(r) = Σ_i |Σ_µ C_µi φ_µ(r)|²,   V_µν = Σ_r w φ_µ(r) v(r) φ_ν(r),
@@ -11,7 +11,7 @@ with the GTH local pseudopotential v_loc, v_Hartree and all gradients by FFT.  F
 exactly, on the same grid.  For GGA, ∇ρ here is the derivative of the gridded density (as in PySCF's multigrid and
 in plane-wave codes), whereas FFTDF takes it from orbital gradients: the two differ by the error of the mesh.
 Because gradient and divergence are each other's negative adjoints on the grid, V is the exact derivative of the
-discrete energy, and so are the forces.  Atomic units throughout.
+discrete energy, and so are forces and stress.  Atomic units throughout.
 """
 
 from functools import cached_property
@@ -26,11 +26,13 @@ from pyscf.pbc.gto.pseudo import pp_int
 from pyscf.pbc.lib.kpts_helper import is_gamma_point
 from scipy.linalg.blas import ssyrk  # pyright: ignore[reportAttributeAccessIssue]  (generated at run time)
 
-from atomistic.elastic.orbitals_on_grid import atom_orbitals, collocate, pulay_force
+from atomistic.elastic.orbitals_on_grid import atom_orbitals, collocate, pulay_terms
 
 if TYPE_CHECKING:
     from pyscf.pbc.gto import Cell
 
+STEP_OF_K = 1e-4  # 1/bohr; the error of a slope by it is (step × 30 bohr)²/6, some 1e-6
+STEP_OF_STRAIN = 1e-4
 BLOCK = 4096  # grid points per matrix product: a block of 364 orbitals stays in the cache
 
 
@@ -43,16 +45,19 @@ class CachedGrid(MultiGridNumInt2):
     Parameters
     ----------
     cell : built PySCF cell, all atoms with GTH pseudopotentials; its `mesh` is the grid
+    precision : of the orbitals on the grid and of products with them; single precision rounds the energy by some 1e-7
+        hartree per atom, much the same for neighbouring geometries, and leaves 1e-8 hartree from cycle to cycle
     """
 
-    def __init__(self, cell: "Cell"):
+    def __init__(self, cell: "Cell", precision: type[np.floating] = np.float64):
         super().__init__(cell)
+        self.precision = precision
         self.mesh = np.array(cell.mesh)
         self.points = int(np.prod(self.mesh))
         self.weight = cell.vol / self.points
         self.lattice = cell.lattice_vectors()
         self.atoms = atom_orbitals(cell)
-        self.orbitals = collocate(self.atoms, self.lattice, tuple(self.mesh), cell.nao)
+        self.orbitals = collocate(self.atoms, self.lattice, tuple(self.mesh), cell.nao, precision)
         self.wave_vectors = _wave_vectors(cell, self.mesh)
         g2 = np.einsum("xijk,xijk->ijk", self.wave_vectors[1], self.wave_vectors[1])
         self.coulomb = np.divide(4 * np.pi, g2, out=np.zeros_like(g2), where=g2 > 0)
@@ -102,10 +107,12 @@ class CachedGrid(MultiGridNumInt2):
     def density(self, density_matrix: np.ndarray) -> np.ndarray:
         """ρ on the grid, shape (grid points,)."""
         factor, sign = self.occupied_orbitals(density_matrix)
+        rows, sign = factor.T.astype(self.precision), sign.astype(self.precision)
         rho = np.empty(self.points)
         for start in range(0, self.points, BLOCK):
-            waves = factor.T @ self.orbitals[:, start : start + BLOCK]
-            rho[start : start + BLOCK] = np.einsum("ig,ig,i->g", waves, waves, sign)
+            waves = rows @ self.orbitals[:, start : start + BLOCK]
+            np.multiply(waves, waves, out=waves)
+            rho[start : start + BLOCK] = sign @ waves
         return rho
 
     @cached_property
@@ -182,23 +189,36 @@ class CachedGrid(MultiGridNumInt2):
     def get_rho(self, cell, dm, grids=None, kpts=None, max_memory=2000):
         return self.density(dm)
 
-    # -- forces
+    # -- forces and stress
     def forces(self, mf: Any, remove_net: bool = True) -> np.ndarray:
         """Forces of a converged calculation, shape (atoms, 3), hartree/bohr.
 
         Exact derivative of the discrete energy.  The grid breaks translation symmetry a little ("egg box"), so
         they sum to ~1e-3; `remove_net` subtracts the mean.
         """
+        return self.forces_and_stress(mf, remove_net, with_stress=False)[0]
+
+    def forces_and_stress(
+        self, mf: Any, remove_net: bool = True, with_stress: bool = True
+    ) -> tuple[np.ndarray, np.ndarray | None]:
+        """Forces as `forces` gives them, and the stress dE/dε / V, shape (3, 3), hartree/bohr³, tension positive.
+
+        The strain moves grid, ions and orbitals together at fixed fractional coordinates, as a scan on a fixed mesh
+        does, so the stress is the exact slope of such a scan.
+        """
         cell = self.cell
-        dm = mf.make_rdm1()
+        dm = np.asarray(mf.make_rdm1())
         energy_weighted = (mf.mo_coeff * (mf.mo_occ * mf.mo_energy)) @ mf.mo_coeff.T
-        gradient = ewald_methods.ewald_nuc_grad(cell) + pp_int.vppnl_nuc_grad(cell, np.asarray(dm))
-        kinetic = -np.asarray(cell.pbc_intor("int1e_ipkin", kpt=np.zeros(3)))
-        overlap = -np.asarray(cell.pbc_intor("int1e_ipovlp", kpt=np.zeros(3)))
-        factor, _ = self.occupied_orbitals(dm)
-        rho = self.density(dm)
+        gradient = ewald_methods.ewald_nuc_grad(cell) + pp_int.vppnl_nuc_grad(cell, dm)
+        # Γ, and for the stress a small step along each axis of k: Σ_L L <∇µ|ν_L> is the slope of Σ_L exp(ikL) <∇µ|ν_L>
+        k_points = np.vstack([np.zeros(3), STEP_OF_K * np.eye(3)]) if with_stress else np.zeros((1, 3))
+        kinetic = [-np.asarray(m) for m in cell.pbc_intor("int1e_ipkin", kpts=k_points)]
+        overlap = [-np.asarray(m) for m in cell.pbc_intor("int1e_ipovlp", kpts=k_points)]
+        factor, _ = self.occupied_orbitals(mf.make_rdm1())
+        rho = self.density(mf.make_rdm1())
         v, _, _ = self.potential(mf.xc, rho)
-        waves = (factor.T @ self.orbitals) * (self.weight * v)
+        waves = factor.T.astype(self.precision) @ self.orbitals
+        waves *= (self.weight * v).astype(self.precision)
         spectrum = self._spectrum(rho)
         slices = cell.aoslice_by_atom()
         # half spectrum: every wave vector but those in the planes k_z = 0 and Nyquist stands for two
@@ -206,15 +226,81 @@ class CachedGrid(MultiGridNumInt2):
         twice[0] = 1.0
         if self.mesh[2] % 2 == 0:
             twice[-1] = 1.0
+        strained = np.zeros((3, 3))  # dE/dε
         for atom in range(cell.natm):
             a, b = slices[atom, 2:]
-            gradient[atom] += 2 * np.einsum("xuv,uv->x", kinetic[:, a:b], np.asarray(dm)[a:b])
-            gradient[atom] -= 2 * np.einsum("xuv,uv->x", overlap[:, a:b], energy_weighted[a:b])
-            gradient[atom] -= 2 * pulay_force(self.atoms[atom], self.lattice, tuple(self.mesh), factor[a:b] @ waves)
+            gradient[atom] += 2 * np.einsum("xuv,uv->x", kinetic[0][:, a:b].real, dm[a:b])
+            gradient[atom] -= 2 * np.einsum("xuv,uv->x", overlap[0][:, a:b].real, energy_weighted[a:b])
+            pulay = pulay_terms(
+                self.atoms[atom], self.lattice, tuple(self.mesh), factor[a:b].astype(self.precision) @ waves
+            )
+            gradient[atom] -= 2 * pulay[0]
+            strained += 2 * pulay[1:]
             form = self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
             product = np.imag(form * spectrum.conj()) * twice
             gradient[atom] += np.einsum("xijk,ijk->x", self.wave_vectors[1], product) / self.points
-        return -(gradient - gradient.mean(axis=0)) if remove_net else -gradient
+        forces = -(gradient - gradient.mean(axis=0)) if remove_net else -gradient
+        if not with_stress:
+            return forces, None
+        strained += self._strain_slope_of_pairs(kinetic, dm) - self._strain_slope_of_pairs(overlap, energy_weighted)
+        strained += self._strain_slope_of_fields(mf.xc, rho, spectrum, twice)
+        strained += self._strain_slope_of_ions(dm)
+        return forces, (strained + strained.T) / (2 * cell.vol)
+
+    def _strain_slope_of_pairs(self, slopes: list[np.ndarray], dm: np.ndarray) -> np.ndarray:
+        """dE/dε of Σ D <µ|O|ν>, where O is 1 or the kinetic energy: from the vectors between µ and ν.
+
+        Parameters
+        ----------
+        slopes : derivatives by the position of µ at Γ and a small step along each axis of k, (3, orbitals, orbitals)
+        """
+        centres = np.repeat(self.cell.atom_coords(), np.diff(self.cell.aoslice_by_atom()[:, 2:]).ravel(), axis=0)
+        at_gamma = slopes[0].real * dm
+        total = (at_gamma.sum(axis=1) - at_gamma.sum(axis=2)) @ centres
+        for axis, matrix in enumerate(slopes[1:]):
+            total[:, axis] += np.einsum("xuv,uv->x", matrix.imag, dm) / STEP_OF_K
+        return -total  # towards µ is away from ν
+
+    def _strain_slope_of_fields(self, xc_code: str, rho: np.ndarray, spectrum: np.ndarray, twice: np.ndarray):
+        """dE/dε of Hartree, local pseudopotential and exchange-correlation with the values of ρ on the grid held.
+
+        Parameters
+        ----------
+        spectrum, twice : half spectrum of ρ, and how many wave vectors each plane of it stands for
+        """
+        g = self.wave_vectors[1]
+        g2 = np.einsum("xijk,xijk->ijk", g, g)
+        # energies per G² as (d/dG²) times -2 G_a G_b
+        coulomb = self.coulomb * abs(spectrum) ** 2 * twice * (self.weight / self.points)
+        by_g2 = -0.5 * np.divide(coulomb, g2, out=np.zeros_like(g2), where=g2 > 0)
+        slope = {s: local_pseudopotential_slope(self.cell._pseudo[s], g2) for s in self.cell._pseudo}
+        for atom in range(self.cell.natm):
+            form = slope[self.cell.atom_symbol(atom)] * self._phase(self.cell.atom_coords()[atom])
+            by_g2 += np.real(form * spectrum.conj()) * twice / self.points
+        total = -2 * np.einsum("ijk,xijk,yijk->xy", by_g2, g, g, optimize=True)
+        total += 0.5 * coulomb.sum() * np.eye(3)
+        if self._xc_type(xc_code) == "LDA":
+            energy = self.eval_xc_eff(xc_code, rho, deriv=0, xctype="LDA")[0]
+        else:
+            fields = np.concatenate([rho[None], self.gradient(rho)])
+            energy, potential = self.eval_xc_eff(xc_code, fields, deriv=1, xctype="GGA")[:2]
+            total -= self.weight * fields[1:] @ potential[1:4].T
+        return total + self.weight * (rho @ energy) * np.eye(3)
+
+    def _strain_slope_of_ions(self, dm: np.ndarray) -> np.ndarray:
+        """dE/dε of the ions' Coulomb energy and of the nonlocal pseudopotential, by central differences."""
+        total = np.zeros((3, 3))
+        for a, b in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)):
+            for sign in (1, -1):
+                strain = np.eye(3)
+                strain[a, b] += 0.5 * sign * STEP_OF_STRAIN
+                strain[b, a] += 0.5 * sign * STEP_OF_STRAIN
+                cell = self.cell.set_geom_(
+                    self.cell.atom_coords() @ strain, "B", a=self.lattice @ strain, inplace=False
+                )
+                energy = cell.energy_nuc() + np.sum(np.asarray(pp_int.get_pp_nl(cell)).real * dm)
+                total[a, b] += 0.5 * sign * energy / STEP_OF_STRAIN
+        return total + np.triu(total, 1).T
 
 
 def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
@@ -235,6 +321,20 @@ def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
         -4 * np.pi * charge * gauss, g2, out=np.full_like(g2, 2 * np.pi * charge * radius**2), where=g2 > 0
     )
     return coulomb + (2 * np.pi) ** 1.5 * radius**3 * gauss * polynomial
+
+
+def local_pseudopotential_slope(pseudo: list, g2: np.ndarray) -> np.ndarray:
+    """Derivative of `local_pseudopotential` by the squared length of G; zero at G = 0."""
+    charge = sum(pseudo[0])
+    radius, n, c = pseudo[1:4]
+    c = list(c[:n]) + [0.0] * (4 - n)
+    x2 = g2 * radius**2
+    polynomial = c[0] + c[1] * (3 - x2) + c[2] * (15 - 10 * x2 + x2**2) + c[3] * (105 - 105 * x2 + 21 * x2**2 - x2**3)
+    slope = -c[1] + c[2] * (2 * x2 - 10) + c[3] * (42 * x2 - 105 - 3 * x2**2)
+    gauss = np.exp(-0.5 * x2)
+    inverse = np.divide(1.0, g2, out=np.zeros_like(g2), where=g2 > 0)
+    coulomb = 4 * np.pi * charge * gauss * inverse * (0.5 * radius**2 + inverse)
+    return coulomb + (2 * np.pi) ** 1.5 * radius**5 * gauss * (slope - 0.5 * polynomial)
 
 
 def _wave_vectors(cell: "Cell", mesh: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

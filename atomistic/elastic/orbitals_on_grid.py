@@ -1,4 +1,5 @@
-"""Contracted Gaussian orbitals on a uniform periodic grid: values, and the force a potential exerts on them.
+"""Contracted Gaussian orbitals on a uniform periodic grid: values, and the force and stress a potential
+exerts on them.
 
 Atomic units throughout (bohr, hartree).  The orbitals are PySCF's: real solid harmonics times contracted
 Gaussians, in PySCF's order, summed over all periodic images within `radius`.  Along a grid line the Gaussians
@@ -91,18 +92,27 @@ def atom_orbitals(cell: "Cell", precision: float | None = None) -> list[AtomOrbi
     return atoms
 
 
-def collocate(orbitals: list[AtomOrbitals], lattice: np.ndarray, mesh: tuple[int, int, int], n_orbitals: int):
+def collocate(
+    orbitals: list[AtomOrbitals],
+    lattice: np.ndarray,
+    mesh: tuple[int, int, int],
+    n_orbitals: int,
+    precision: type[np.floating] = np.float64,
+):
     """Values of all orbitals on the grid, shape (orbitals, grid points), grid in C order of `mesh`."""
-    values = np.zeros((n_orbitals, int(np.prod(mesh))))
+    values = np.zeros((n_orbitals, int(np.prod(mesh))), dtype=precision)
     for atom in orbitals:
         _collocate_atom(values, lattice, np.array(mesh), *_arguments(atom, lattice, mesh))
     return values
 
 
-def pulay_force(
+def pulay_terms(
     atom: AtomOrbitals, lattice: np.ndarray, mesh: tuple[int, int, int], potential_density: np.ndarray
 ) -> np.ndarray:
-    """Sum over grid points and orbitals µ of ∇φ_µ(r) times the potential density of µ at r, shape (3,).
+    """What a potential does to the orbitals of one atom when it moves or the lattice is strained, shape (4, 3).
+
+    Row 0 is the sum over grid points and orbitals µ of ∇φ_µ(r) times the potential density of µ at r; row 1 + b is
+    the same sum weighted by component b of r as seen from the atom (bohr).
 
     Parameters
     ----------
@@ -270,8 +280,8 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
     n_radial, n_primitives = contraction.shape
     longest = high[2] - low[2] + 2
     gaussians = np.empty((n_primitives, longest))
-    f, slope, x, y, z, radial, a0, a1, a2, a3, a4 = np.empty((11, longest))
-    total = np.zeros(3)
+    f, slope, x, y, z, radial, gx, gy, gz, a0, a1, a2, a3, a4 = np.empty((14, longest))
+    total = np.zeros((4, 3))
     for i in range(low[0], high[0] + 1):
         for j in range(low[1], high[1] + 1):
             origin, step, middle, begin, end = _closest(centre, lattice, mesh, i, j, radius)
@@ -286,7 +296,9 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
                 y[k] = origin[1] + (begin + k) * step[1]
                 z[k] = origin[2] + (begin + k) * step[2]
             radial[:n] = 0.0  # Σ R'/r S_lm field: the part of the gradient that points along r
-            gx = gy = gz = 0.0
+            gx[:n] = 0.0
+            gy[:n] = 0.0
+            gz[:n] = 0.0
             for s in range(n_radial):
                 f[:n] = 0.0
                 slope[:n] = 0.0
@@ -308,9 +320,9 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
                     _take_line(a2, field[a + 2, start:stop], begin, n)
                     for k in range(n):
                         radial[k] += slope[k] * P0 * (x[k] * a0[k] + y[k] * a1[k] + z[k] * a2[k])
-                        gx += f[k] * P0 * a0[k]
-                        gy += f[k] * P0 * a1[k]
-                        gz += f[k] * P0 * a2[k]
+                        gx[k] += f[k] * P0 * a0[k]
+                        gy[k] += f[k] * P0 * a1[k]
+                        gz[k] += f[k] * P0 * a2[k]
                 else:
                     _take_line(a0, field[a, start:stop], begin, n)
                     _take_line(a1, field[a + 1, start:stop], begin, n)
@@ -323,14 +335,29 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
                             + D1 * (2.0 * z[k] * z[k] - x[k] * x[k] - y[k] * y[k]) * a2[k]
                             + D2 * (x[k] * x[k] - y[k] * y[k]) * a4[k]
                         )
-                        gx += f[k] * (D0 * (y[k] * a0[k] + z[k] * a3[k]) + 2.0 * x[k] * (D2 * a4[k] - D1 * a2[k]))
-                        gy += f[k] * (D0 * (x[k] * a0[k] + z[k] * a1[k]) - 2.0 * y[k] * (D2 * a4[k] + D1 * a2[k]))
-                        gz += f[k] * (D0 * (y[k] * a1[k] + x[k] * a3[k]) + 4.0 * D1 * z[k] * a2[k])
+                        gx[k] += f[k] * (D0 * (y[k] * a0[k] + z[k] * a3[k]) + 2.0 * x[k] * (D2 * a4[k] - D1 * a2[k]))
+                        gy[k] += f[k] * (D0 * (x[k] * a0[k] + z[k] * a1[k]) - 2.0 * y[k] * (D2 * a4[k] + D1 * a2[k]))
+                        gz[k] += f[k] * (D0 * (y[k] * a1[k] + x[k] * a3[k]) + 4.0 * D1 * z[k] * a2[k])
             for k in range(n):
-                gx += radial[k] * x[k]
-                gy += radial[k] * y[k]
-                gz += radial[k] * z[k]
-            total[0] += gx
-            total[1] += gy
-            total[2] += gz
+                gx[k] += radial[k] * x[k]
+                gy[k] += radial[k] * y[k]
+                gz[k] += radial[k] * z[k]
+            _add_moments(total, 0, gx, x, y, z, n)
+            _add_moments(total, 1, gy, x, y, z, n)
+            _add_moments(total, 2, gz, x, y, z, n)
     return total
+
+
+@numba.njit(cache=True, fastmath={"contract", "reassoc"}, error_model="numpy")
+def _add_moments(total, axis, slope, x, y, z, n):
+    """Add Σ slope and Σ slope (x, y, z) to the column `axis`."""
+    s = sx = sy = sz = 0.0
+    for k in range(n):
+        s += slope[k]
+        sx += slope[k] * x[k]
+        sy += slope[k] * y[k]
+        sz += slope[k] * z[k]
+    total[0, axis] += s
+    total[1, axis] += sx
+    total[2, axis] += sy
+    total[3, axis] += sz

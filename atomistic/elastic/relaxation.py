@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from ase import Atoms
@@ -13,6 +13,7 @@ from atomistic.settings import RelaxationSettings
 Progress = Callable[[float, str], None]
 BOND_A = 2.3
 STRETCH_EV_A2, BEND_EV_A2, FLOOR_EV_A2 = 25.0, 4.0, 2.0  # of a Si-N bond, about; only the speed depends on them
+CELL_STIFFNESS_EV_A3 = 1.5  # 240 GPa; likewise
 
 
 def strained(atoms: Atoms, strain: float) -> Atoms:
@@ -63,6 +64,34 @@ def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndar
     hessian : to start from, eV/Å²; None is a spring on every bond.  With ASE's own start, a multiple of the unit
         matrix, a cell takes about three times as many steps
     """
+    return _minimise(atoms, atoms, force_eV_A, max_steps, bond_hessian(atoms) if hessian is None else hessian)
+
+
+def relax_cell(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndarray | None = None) -> Rest:
+    """Quasi-Newton relaxation of ions and cell together until forces and all stresses nearly vanish.
+
+    Parameters
+    ----------
+    force_eV_A : largest force left on an atom; a stress counts as the force that its strain exerts on a coordinate as
+        stiff as a bond, in a cell of 28 atoms 0.1 eV/Å for 0.2 GPa
+    hessian : of the ions, to start from, eV/Å²
+
+    Returns
+    -------
+    As `relax_ions`; the Hessian is that of the ions alone
+    """
+    from ase.filters import FrechetCellFilter
+
+    n = 3 * len(atoms)
+    scale = np.sqrt(atoms.get_volume() * CELL_STIFFNESS_EV_A3 / STRETCH_EV_A2)
+    whole = STRETCH_EV_A2 * np.eye(n + 9)
+    whole[:n, :n] = bond_hessian(atoms) if hessian is None else hessian
+    rest = _minimise(FrechetCellFilter(atoms, exp_cell_factor=scale), atoms, force_eV_A, max_steps, whole)
+    return rest._replace(hessian_eV_A2=rest.hessian_eV_A2[:n, :n])
+
+
+def _minimise(target: Any, atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndarray) -> Rest:
+    """BFGS on what moves, the atoms themselves or a filter of them."""
     from ase.optimize import BFGS
 
     class Cautious(BFGS):
@@ -74,16 +103,17 @@ def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndar
             curvature, modes = np.linalg.eigh(self.state.hessian)
             self.state.hessian = modes * np.maximum(abs(curvature), FLOOR_EV_A2) @ modes.T
 
-    with Cautious(atoms, logfile=None, maxstep=0.15) as optimizer:
-        optimizer.H0 = bond_hessian(atoms) if hessian is None else hessian
+    with Cautious(target, logfile=None, maxstep=0.15) as optimizer:
+        optimizer.H0 = hessian
         converged = bool(optimizer.run(fmax=force_eV_A, steps=max_steps))
-        forces = atoms.get_forces()
+        forces = target.get_forces()
         final = np.asarray(optimizer.H0)
         if optimizer.state is not None:
-            optimizer.update(atoms.positions.ravel(), forces.ravel(), optimizer.pos0, optimizer.forces0)
+            optimizer.update(target.get_positions().ravel(), forces.ravel(), optimizer.pos0, optimizer.forces0)
             final = np.asarray(optimizer.H)
         depth = 0.5 * float(forces.ravel() @ np.linalg.solve(final, forces.ravel()))
-        return Rest(int(optimizer.nsteps), float(np.linalg.norm(forces, axis=1).max()), converged, final, depth)
+        left = float(np.linalg.norm(atoms.get_forces(), axis=1).max())
+        return Rest(int(optimizer.nsteps), left, converged, final, depth)
 
 
 def extrapolated_ions(rested: Mapping[float, Atoms], strain: float) -> Atoms:

@@ -5,7 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 from ase.build import bulk
+from ase.units import Hartree
 
+from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.elastic.dft import FUNCTIONALS, PyscfGamma, ScfNotConverged, Solution, build_cell, extrapolated_orbitals
 from atomistic.elastic.orbitals_on_grid import atom_orbitals, collocate
 
@@ -61,6 +63,43 @@ def test_forces_are_the_slope_of_the_energy():
     assert atoms.get_forces()[0, 0] == pytest.approx(-(energies[0] - energies[1]) / 0.01, abs=0.1)
 
 
+@pytest.mark.parametrize("xc", ["LDA", "GGA"])
+def test_stress_is_the_slope_of_the_energy_on_the_strained_grid(xc):
+    """A distorted cell without any symmetry, with d orbitals; every component, by central differences."""
+    atoms = silicon(0.1)
+    atoms.set_cell(atoms.cell.array @ np.array([[1.02, 0.01, 0.03], [0, 0.98, 0.015], [0, 0, 1.01]]), scale_atoms=True)
+    calculator = PyscfGamma(xc=xc, basis="gth-dzvp-molopt-sr", mesh=MESH, tolerance_Ha=1e-10)
+    atoms.calc = calculator
+    stress = atoms.get_stress(voigt=False)
+    for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
+        energies = []
+        for sign in (1, -1):
+            shear = np.eye(3)
+            shear[a, b] += sign * 1e-3
+            shear[b, a] += sign * 1e-3
+            strained = atoms.copy()
+            strained.set_cell(atoms.cell.array @ shear, scale_atoms=True)
+            strained.calc = calculator
+            energies.append(strained.get_potential_energy())
+        slope = (energies[0] - energies[1]) / (4e-3 * atoms.get_volume())
+        # third-order elasticity: strain² times some 1000 GPa; single precision on the grid: 1e-6 eV of 4e-3 of strain
+        assert stress[a, b] * EV_PER_A3_IN_GPA == pytest.approx(slope * EV_PER_A3_IN_GPA, abs=0.01)
+
+
+def test_single_precision_rounds_energies_of_a_scan_by_less_than_their_tolerance():
+    shifts = []
+    for strain in (-0.02, 0.0, 0.02):
+        energies = []
+        for tolerance in (1e-7, 0.99e-7):  # single precision, and just below it double
+            atoms = silicon(0.05)
+            atoms.set_cell(atoms.cell.array * (1 + strain), scale_atoms=True)
+            atoms.calc = PyscfGamma(basis="gth-dzvp-molopt-sr", mesh=MESH, tolerance_Ha=tolerance)
+            energies.append(atoms.get_potential_energy() / Hartree)
+        shifts.append(energies[0] - energies[1])
+    assert max(map(abs, shifts)) < 5e-7
+    assert np.ptp(shifts) < 2e-7
+
+
 def test_replayed_series_is_the_same_to_the_last_bit_and_computes_nothing():
     store: dict = {}
     runs = []
@@ -77,8 +116,8 @@ def test_replayed_series_is_the_same_to_the_last_bit_and_computes_nothing():
 
 
 def test_unconverged_scf_is_an_error_not_an_energy():
-    atoms = silicon()
-    atoms.calc = PyscfGamma(basis="gth-szv", mesh=MESH, max_cycles=1)
+    atoms = silicon(0.1)  # the perfect crystal leaves the SCF nothing to do
+    atoms.calc = PyscfGamma(basis="gth-szv", mesh=MESH, tolerance_Ha=1e-11, max_cycles=1)
     with pytest.raises(ScfNotConverged, match="not converged in 1 cycles"):
         atoms.get_potential_energy()
 

@@ -1,0 +1,201 @@
+"""How a structure answers to small strains: elastic constants with ions clamped and relaxed; eV and Å inside.
+
+Each strain is one calculation with clamped ions: its stress gives the clamped constants, its forces say where the ions
+want to go.  What they gain by going there needs the Hessian K of the ions only along the six directions K⁻¹Λ, Λ the
+slope of the forces by the strain:
+
+    C_relaxed = C_clamped − Λᵀ K⁻¹ Λ / V          (Wu, Vanderbilt and Hamann, Phys. Rev. B 72, 035105 (2005), eq. 17)
+
+K is measured by small displacements along a growing set of directions W that starts from a rough Hessian M: W = M⁻¹Λ,
+then M⁻¹ of what is left.  The gain inside W is found exactly (Galerkin), so it is a lower bound, and its error is of
+second order in what is left.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from ase import Atoms
+from ase.calculators.calculator import Calculator
+
+from atomistic.constants import EV_PER_A3_IN_GPA
+from atomistic.elastic.tensor import Stiffness, deformation, fit_stiffness, green_lagrange, strain_states
+from atomistic.errors import InputError
+
+Progress = Callable[[float, str], None]
+NEGLIGIBLE = 0.01  # part of a direction that earlier ones leave: less is noise and not measured again
+
+
+class InternalStrain(NamedTuple):
+    """What ions gain by following a strain.
+
+    Attributes
+    ----------
+    softening_eV : (6, 6) ΛᵀK⁻¹Λ
+    left_eV : (6,) estimate of what the directions tried leave out of its diagonal
+    calculations : displacements computed
+    softest_eV_A2 : least curvature along the directions tried
+    """
+
+    softening_eV: np.ndarray
+    left_eV: np.ndarray
+    calculations: int
+    softest_eV_A2: float
+
+
+@dataclass(frozen=True)
+class Response:
+    """Elastic constants of a structure, GPa.
+
+    Attributes
+    ----------
+    clamped : with ions at fixed fractional coordinates
+    relaxed : (6, 6) with ions that follow
+    relaxed_left : (6,) estimate by how much the diagonal of `relaxed` is still too high
+    calculations : strained and displaced states computed
+    softest_eV_A2 : least curvature met along the ions' displacements
+    """
+
+    clamped: Stiffness
+    relaxed: np.ndarray
+    relaxed_left: np.ndarray
+    calculations: int
+    softest_eV_A2: float
+
+
+def elastic_response(
+    atoms: Atoms,
+    calculator: Calculator,
+    hessian: np.ndarray,
+    strain: float,
+    displacement_A: float,
+    rounds: int,
+    tolerance_GPa: float,
+    progress: Progress | None = None,
+) -> Response:
+    """Elastic constants of a structure at rest, with clamped and with relaxed ions.
+
+    Parameters
+    ----------
+    atoms : a structure whose forces nearly vanish
+    hessian : (3n, 3n) rough Hessian of the ions, eV/Å²; the better, the fewer displacements
+    strain : size of the strains
+    displacement_A : largest displacement of an atom where the Hessian is measured
+    rounds, tolerance_GPa : at most so many times six directions; fewer once no constant can fall by more than this
+
+    Raises
+    ------
+    InputError
+        strain beyond elasticity, a calculator without stress, or ions at a saddle
+    CalculationFailed
+        where the engine fails
+    """
+    states = strain_states(strain)
+    if "stress" not in calculator.implemented_properties:
+        raise InputError(
+            f"elastic constants: {type(calculator).__name__} gives no stress; choose an engine that does "
+            "(elastic.dft.numerics: cached-grid)"
+        )
+    stresses, forces = [], []
+    for done, state in enumerate(states):
+        if progress:
+            progress(0.5 * done / len(states), f"strain {done + 1} of {len(states)}")
+        stress, force = strained_state(atoms, calculator, state)
+        stresses.append(stress)
+        forces.append(force)
+    clamped = fit_stiffness(states, stresses)
+    eta = np.array([green_lagrange(state) for state in states])
+    follow = np.linalg.lstsq(np.hstack([np.ones((len(eta), 1)), eta]), np.array(forces), rcond=None)[0][1:]
+    volume = atoms.get_volume()
+
+    def push(direction: np.ndarray) -> np.ndarray:
+        """K times a direction, by central differences."""
+        step = displacement_A / np.linalg.norm(direction.reshape(-1, 3), axis=1).max()
+        sides = [_forces(atoms, calculator, sign * step * direction) for sign in (1, -1)]
+        return (sides[1] - sides[0]) / (2 * step)
+
+    inside = internal_strain(follow.T, push, hessian, rounds, tolerance_GPa / EV_PER_A3_IN_GPA * volume, progress)
+    unit = EV_PER_A3_IN_GPA
+    return Response(
+        Stiffness(clamped.C * unit, clamped.stress * unit, clamped.error * unit),
+        (clamped.C - inside.softening_eV / volume) * unit,
+        inside.left_eV / volume * unit,
+        len(states) + 2 * inside.calculations,
+        inside.softest_eV_A2,
+    )
+
+
+def strained_state(atoms: Atoms, calculator: Calculator, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cauchy's stress (6,), eV/Å³, and forces (3n,), eV/Å, pulled back to the unstrained frame, ions clamped."""
+    F = deformation(strain)
+    trial = Atoms(atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True)
+    trial.set_cell(atoms.cell.array @ F, scale_atoms=True)
+    trial.calc = calculator
+    stress = np.asarray(trial.get_stress())
+    return stress, (trial.get_forces() @ F).ravel()
+
+
+def _forces(atoms: Atoms, calculator: Calculator, moved: np.ndarray) -> np.ndarray:
+    trial = Atoms(atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True)
+    trial.positions += moved.reshape(-1, 3)
+    trial.calc = calculator
+    return trial.get_forces().ravel()
+
+
+def internal_strain(
+    slope: np.ndarray,
+    push: Callable[[np.ndarray], np.ndarray],
+    hessian: np.ndarray,
+    rounds: int,
+    tolerance_eV: float,
+    progress: Progress | None = None,
+) -> InternalStrain:
+    """What ions gain by following a strain, by block Galerkin steps.
+
+    Parameters
+    ----------
+    slope : (3n, 6) Λ, the forces per strain, eV/Å
+    push : K times a displacement (3n,), eV/Å²
+    hessian : (3n, 3n) rough K, positive definite
+
+    Raises
+    ------
+    InputError
+        if the ions lie at a saddle, not at a minimum
+    """
+    size = len(slope)
+    rigid = np.tile(np.eye(3), (size // 3, 1)) / np.sqrt(size / 3)
+    slope = slope - rigid @ (rigid.T @ slope)
+    directions, pushed = np.empty((size, 0)), np.empty((size, 0))
+    left, softening, softest = slope, np.zeros((6, 6)), float("inf")
+    for done in range(rounds):
+        trial = np.linalg.solve(hessian, left)
+        trial -= rigid @ (rigid.T @ trial)
+        wanting = np.flatnonzero(np.einsum("ij,ij->j", left, trial) >= tolerance_eV)
+        if not len(wanting):
+            break
+        for k in wanting:
+            fresh = trial[:, k] - directions @ (directions.T @ trial[:, k])
+            fresh -= directions @ (directions.T @ fresh)
+            norm = np.linalg.norm(fresh)
+            if norm < NEGLIGIBLE * np.linalg.norm(trial[:, k]):
+                continue  # by symmetry, or because another strain brought it
+            if progress:
+                progress(0.5 + 0.5 * done / rounds, f"displacement {directions.shape[1] + 1}")
+            directions = np.hstack([directions, fresh[:, None] / norm])
+            pushed = np.hstack([pushed, push(fresh / norm)[:, None]])
+        pushed -= rigid @ (rigid.T @ pushed)
+        curvature = directions.T @ pushed
+        curvature = 0.5 * (curvature + curvature.T)
+        softest = float(np.linalg.eigvalsh(curvature)[0])
+        if softest <= 0:
+            raise InputError(
+                f"elastic constants: the ions lie at a saddle, curvature {softest:.2g} eV/A2 along a displacement; "
+                "relax them further"
+            )
+        weights = np.linalg.solve(curvature, directions.T @ slope)
+        softening = (directions.T @ slope).T @ weights
+        left = slope - pushed @ weights
+    estimate = np.einsum("ij,ij->j", left, np.linalg.solve(hessian, left))
+    return InternalStrain(0.5 * (softening + softening.T), estimate, directions.shape[1], softest)
