@@ -47,13 +47,18 @@ def law_table(nominal: Mapping[str, Law], samples: Mapping[str, Law], points: in
             }
 
 
-def spice_subcircuit(nominal: Mapping[str, Law], area_nm2: float) -> str:
-    """SPICE subcircuit `asperity_contact` (ngspice, LTspice): the law as one behavioural source."""
+def spice_subcircuit(nominal: Mapping[str, Law], area_nm2: float, note: str = "") -> str:
+    """SPICE subcircuit `asperity_contact` (ngspice, LTspice): the law as one behavioural source.
+
+    Parameters
+    ----------
+    note : one line for the header: how well the law holds the adhesion of its curves.
+    """
     defaults = " ".join(f"{name}={value:.12g}" for name, value in _instance_parameters(nominal).items())
     pick = {name: f"(opening > 0.5 ? {name}_opening : {name}_closing)" for name in PARAMETERS}
     return f"""* Force-separation law of a rough metal-dielectric contact (Asperity; eqs 10-13 of
 * Kim et al., Modelling Simul. Mater. Sci. Eng. 21 (2013) 085002).
-*
+* {note}
 * nodes     s      mean separation, 1 V = 1 nm
 *           force  force on the moving electrode, 1 V = 1 nN, positive = pushed away
 * branch    opening=0: first closing, opening=1: after the largest load
@@ -96,8 +101,8 @@ quit
 """
 
 
-def verilog_module(nominal: Mapping[str, Law], area_nm2: float) -> str:
-    """Verilog-A module `asperity_contact` on a kinematic node; parameters as in the SPICE subcircuit."""
+def verilog_module(nominal: Mapping[str, Law], area_nm2: float, note: str = "") -> str:
+    """Verilog-A module `asperity_contact` on a kinematic node; parameters and note as in the SPICE subcircuit."""
     lines = []
     for name, value in _instance_parameters(nominal).items():
         bounds = "" if name.startswith(("d_c", "C_a", "hamaker")) else " from (0:inf)"
@@ -105,6 +110,7 @@ def verilog_module(nominal: Mapping[str, Law], area_nm2: float) -> str:
     parameters = "\n".join(lines)
     return f"""// Force-separation law of a rough metal-dielectric contact (Asperity; eqs 10-13 of
 // Kim et al., Modelling Simul. Mater. Sci. Eng. 21 (2013) 085002).
+// {note}
 // s: mean separation (position in m) of the moving electrode above ref; the branch carries the force in N.
 // opening = 0: first closing; 1: after the largest load.
 // Lengths in nm, pressures in GPa, hamaker in 1e-18 J.

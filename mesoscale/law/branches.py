@@ -12,6 +12,7 @@ from mesoscale.errors import InputError
 from mesoscale.law.compact import Law
 from mesoscale.law.fit import LawFit, contact_separation, fit_branch, row_of
 from mesoscale.law.parameters import PARAMETERS
+from mesoscale.law.wells import well_row
 from mesoscale.settings import LawSettings
 
 Array = NDArray[np.float64]
@@ -98,31 +99,57 @@ def fit_curve(
     return fit_branch(separation_nm, repulsive_nN, attractive_nN, cell_area_nm2, hamaker, d_c, settings)
 
 
+@dataclass(frozen=True)
+class StoredFit:
+    """The law fitted to one branch of a stored curve.
+
+    Attributes
+    ----------
+    curve : separation (nm, rising), repulsive and attractive pressure (GPa), shapes (n,); None: no such branch.
+    hamaker : Hamaker constant (1e-18 J).
+    curve_status : ok, unconverged, or failed: why.
+    """
+
+    branch: str
+    fit: LawFit
+    curve: tuple[Array, Array, Array] | None
+    hamaker: float
+    curve_status: str
+
+    @property
+    def row(self) -> dict[str, Any]:
+        """Columns of the tables in law/."""
+        return {"branch": self.branch, **row_of(self.fit), "curve_status": self.curve_status}
+
+    def well_row(self, settings: LawSettings) -> dict[str, Any]:
+        """Columns of law/wells.csv."""
+        known = np.isfinite(self.fit.parameters).all()
+        law = law_of_fit(self.fit, self.hamaker, settings) if known else None
+        return {"branch": self.branch, **well_row(self.fit, law, self.curve)}
+
+
 def fit_stored(
     curves: Mapping[str, Mapping[str, Array]],
     name: str,
     attributes: Mapping[str, Any],
     cell_area_nm2: float,
     settings: LawSettings,
-) -> Iterator[dict[str, Any]]:
-    """Rows of the tables in law/ for both branches of a stored curve.
+) -> Iterator[StoredFit]:
+    """The law fitted to both branches of a stored curve.
 
     Parameters
     ----------
-    curves : datasets by group `<name>/closing` and `<name>/opening`; a missing group gives a row without fit.
-    facts : the curve's attributes: hamaker, first_contact_nm, last_contact_nm, status.
+    curves : datasets by group `<name>/closing` and `<name>/opening`; a missing group gives no curve and no fit.
+    attributes : the curve's: hamaker, first_contact_nm, last_contact_nm, status.
     """
     for branch, touch in TOUCH.items():
-        fit = NO_FIT
+        fit, pressures = NO_FIT, None
         if f"{name}/{branch}" in curves:
             curve = curves[f"{name}/{branch}"]
-            fit = fit_curve(
-                curve["separation_nm"],
-                curve["repulsive_nN"],
-                curve["attractive_nN"],
-                cell_area_nm2,
-                float(attributes["hamaker"]),
-                attributes.get(touch),
-                settings,
-            )
-        yield {"branch": branch, **row_of(fit), "curve_status": attributes.get("status", "")}
+            forces = curve["repulsive_nN"], curve["attractive_nN"]
+            hamaker, touched = float(attributes["hamaker"]), attributes.get(touch)
+            fit = fit_curve(curve["separation_nm"], *forces, cell_area_nm2, hamaker, touched, settings)
+            order = np.argsort(curve["separation_nm"], kind="stable")
+            repulsive, attractive = (force[order] / cell_area_nm2 for force in forces)
+            pressures = (curve["separation_nm"][order], repulsive, attractive)
+        yield StoredFit(branch, fit, pressures, float(attributes.get("hamaker", np.nan)), attributes.get("status", ""))

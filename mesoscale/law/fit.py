@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from mesoscale.checks import checked_array
 from mesoscale.errors import InputError
 from mesoscale.law.compact import shielded_hamaker
+from mesoscale.law.intervals import NO_ESTIMATE, Estimate, estimates
 from mesoscale.law.parameters import PARAMETERS
 from mesoscale.settings import LawSettings
 
@@ -31,6 +32,7 @@ class LawFit:
     residual : root mean square misfit of attraction and repulsion over the window, relative to the largest repulsive
         force (1).
     status : `ok`, or why numbers are missing or doubtful.
+    estimates : C_a_GPa_nm, C_r_GPa and rho_r_nm, d_c given, with errors whose intervals hold what they claim.
     """
 
     d_c_nm: float
@@ -40,6 +42,7 @@ class LawFit:
     covariance: Array = field(default_factory=lambda: np.full((3, 3), np.nan))
     residual: float = np.nan
     status: str = "ok"
+    estimates: tuple[Estimate, Estimate, Estimate] = (NO_ESTIMATE, NO_ESTIMATE, NO_ESTIMATE)
 
     @property
     def parameters(self) -> Array:
@@ -145,7 +148,9 @@ def fit_branch(
     covariance = _covariance(depth, f_r, weights, C_r, rho, C_a_var, points=min(int(inside.sum()), len(h_r)))
     residual = float(np.sqrt(np.mean((f_r - C_r * np.expm1(depth / rho)) ** 2) + misfit_a**2) / scale)
 
-    fit = LawFit(float(d_c_nm), C_a, C_r, rho, covariance, residual)
+    curve = (h, repulsive, attractive)
+    known = _estimates(curve, (h_r, weights), float(d_c_nm), (C_a, C_r, rho), hamaker, settings)
+    fit = LawFit(float(d_c_nm), C_a, C_r, rho, covariance, residual, estimates=known)
     if at_bound:
         why = "the curve is a straight line, only C_r/rho_r is determined" if at_bound > 0 else "a step at the end"
         return _without_repulsion(fit, f"not_identifiable: {why}")
@@ -233,6 +238,50 @@ def _covariance(depth: Array, f: Array, weights: Array, C_r: float, rho: float, 
     inverse = np.linalg.pinv((jacobian / norms).T @ (jacobian / norms))
     covariance[1:, 1:] = variance * inverse / np.outer(norms, norms)
     return covariance
+
+
+def _estimates(
+    curve: tuple[Array, Array, Array],
+    window: tuple[Array, Array],
+    d_c: float,
+    fitted: tuple[float, float, float],
+    hamaker: float,
+    settings: LawSettings,
+) -> tuple[Estimate, Estimate, Estimate]:
+    """C_a, C_r and rho_r with the errors that the scatter of the curve's points gives them.
+
+    Parameters
+    ----------
+    curve : separation, repulsion and attraction of the branch, rising in separation, shapes (n,).
+    window : separations and weights of the repulsion's grid, shapes (m,).
+    fitted : C_a, C_r and rho_r.
+    """
+    h, repulsive, attractive = curve
+    C_a, C_r, rho = fitted
+
+    def repulsion(x: Array) -> tuple[Array, Array]:
+        depth = np.maximum(d_c - x, 0.0) / rho
+        return C_r * np.expm1(depth), np.stack([np.expm1(depth), -C_r * np.exp(depth) * depth / rho], axis=1)
+
+    def attraction(x: Array) -> tuple[Array, Array]:
+        arm = np.maximum(d_c + settings.rho_a_nm - x, 0.0)
+        return shielded_hamaker(x, hamaker, settings.shield_nm) - C_a * arm, -arm[:, None]
+
+    # with the first point beyond the window: the last piece of the resampled curve ends there
+    grid, weights = window
+    near = slice(0, int((h < d_c).sum()) + 1)
+    C_r_known, rho_known = estimates(
+        h[near], repulsive[near], *repulsion(h[near]), grid, *repulsion(grid), weights, (C_r, rho), True
+    )
+    if not np.isfinite(C_a):
+        return NO_ESTIMATE, C_r_known, rho_known
+    top = min(d_c + settings.rho_a_nm, h.max())
+    grid = np.linspace(h.min(), top, settings.points)
+    near = slice(0, int((h < top).sum()) + 1)
+    (C_a_known,) = estimates(
+        h[near], attractive[near], *attraction(h[near]), grid, *attraction(grid), np.ones_like(grid), (C_a,), False
+    )
+    return C_a_known, C_r_known, rho_known
 
 
 def _free_contact_separation(

@@ -30,6 +30,7 @@ rule export_law:
     input:
         samples=f"{RESULTS}/uq/samples.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
+        wells=f"{RESULTS}/law/wells.csv",
     output:
         table=report(f"{RESULTS}/device/law.csv", caption="../captions/device_law.rst", category="Device"),
         samples=f"{RESULTS}/device/law.json",

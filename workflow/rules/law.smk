@@ -12,6 +12,7 @@ RUN_SETTINGS = {
 rule law:
     input:
         f"{RESULTS}/law/parameters.csv",
+        f"{RESULTS}/law/wells.csv",
         f"{RESULTS}/law/nominal.csv",
 
 
@@ -41,6 +42,7 @@ rule fit_law:
         chunks=[f"{RESULTS}/curves/runs/chunk_{chunk}.h5" for chunk in RUN_CHUNKS],
     output:
         parameters=report(f"{RESULTS}/law/parameters.csv", caption="../captions/law.rst", category="Law"),
+        wells=f"{RESULTS}/law/wells.csv",
     log:
         f"{RESULTS}/logs/fit_law.log",
     threads: 1

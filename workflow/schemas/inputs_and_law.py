@@ -2,6 +2,7 @@
 
 from mesoscale.inputs.definitions import INPUTS
 from mesoscale.law.parameters import LAW
+from mesoscale.law.wells import SHARES, interval_column
 from workflow.schemas.table import Column, Table, boolean, integer, number, text
 
 INPUT_VALUES = tuple(number(row.name, row.unit, f"{row.label} of the run", optional=row.optional) for row in INPUTS)
@@ -48,6 +49,45 @@ TABLES = (
             *_FIT,
             _CURVE_STATUS,
             *INPUT_VALUES,
+        ),
+    ),
+    Table(
+        ("law/wells.csv",),
+        "The adhesion of one branch of one run by its law and by its curve, and what is known of the law's numbers.",
+        (
+            integer("run", "number of the run"),
+            integer("node", "number of the node of the design; 0 is its centre"),
+            SEED,
+            BRANCH,
+            number(
+                "attraction_residual",
+                "1",
+                "root mean square misfit of the attraction up to d_c + ρ_a, relative to the largest attraction",
+                empty=True,
+            ),
+            text(
+                "attraction_status",
+                "ok, misses_well and the factor where depths differ by more than 25 %, no_well, no_law, or no_curve",
+            ),
+            number(
+                "well_law_kPa", "kPa", "deepest net attraction by the law; times the area, its pull-off", empty=True
+            ),
+            number("well_curve_kPa", "kPa", "the same by the curve", empty=True),
+            number("well_law_at_nm", "nm", "separation of the law's well", empty=True),
+            number("well_curve_at_nm", "nm", "separation of the curve's well", empty=True),
+            number("energy_law_uJ_m2", "µJ/m²", "work from the balance of forces outward by the law", empty=True),
+            number("energy_curve_uJ_m2", "µJ/m²", "the same by the curve", empty=True),
+            *(
+                number(
+                    interval_column(row.name, end, share),
+                    row.unit,
+                    f"{end} end of the {share:.0%} interval of {row.symbol}, d_c given",
+                    empty=True,
+                )
+                for row in LAW[1:]
+                for share in SHARES
+                for end in ("low", "high")
+            ),
         ),
     ),
     Table(

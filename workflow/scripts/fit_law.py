@@ -1,6 +1,7 @@
 """Fit the force-separation law to both branches of every curve of the runs.
 
-In: inputs.csv, curves/runs/chunk_NNN.h5 (nm, nN).  Out: law/parameters.csv, one row per run and branch.
+In: inputs.csv, curves/runs/chunk_NNN.h5 (nm, nN).  Out: law/parameters.csv and law/wells.csv, one row
+per run and branch.
 """
 
 from mesoscale.inputs.table import from_rows
@@ -12,16 +13,17 @@ from workflow.results import load_csv, load_h5, write_csv
 with job(snakemake) as run:
     settings = LawSettings(**snakemake.params.settings)
     names = from_rows(load_csv(snakemake.input.inputs)).names
-    rows = []
+    rows, wells = [], []
     for done, path in enumerate(snakemake.input.chunks):
         curves, root, attributes = load_h5(path)
         for name in sorted(key for key in attributes if "/" not in key):
             attrs = attributes[name]
             head = {key: attrs[key] for key in ("run", "node", "seed")}
             values = {key: attrs[key] for key in names}
-            rows += [
-                {**head, **row, **values} for row in fit_stored(curves, name, attrs, root["cell_area_nm2"], settings)
-            ]
+            for stored in fit_stored(curves, name, attrs, root["cell_area_nm2"], settings):
+                rows.append({**head, **stored.row, **values})
+                wells.append({**head, **stored.well_row(settings)})
         run.progress((done + 1) / len(snakemake.input.chunks), "curves fitted")
-    rows.sort(key=lambda row: row["run"])
-    write_csv(snakemake.output.parameters, rows)
+    for table, path in ((rows, snakemake.output.parameters), (wells, snakemake.output.wells)):
+        table.sort(key=lambda row: row["run"])
+        write_csv(path, table)

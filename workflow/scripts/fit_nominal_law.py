@@ -15,5 +15,5 @@ with job(snakemake) as run:
     for name in sorted({key.rpartition("/")[0] for key in curves if "/" in key}):
         about_curve = {**root, **attributes.get(name, {})}
         area = float(about_curve["cell_area_nm2"])
-        rows += [{"curve": name, **row} for row in fit_stored(curves, name, about_curve, area, settings)]
+        rows += [{"curve": name, **stored.row} for stored in fit_stored(curves, name, about_curve, area, settings)]
     write_csv(snakemake.output[0], rows)

@@ -5,6 +5,7 @@ import numpy as np
 from mesoscale.law.compact import Law
 from mesoscale.law.compact import pressure as law_pressure
 from mesoscale.law.parameters import PARAMETERS
+from mesoscale.law.wells import MOST_MISSED, missed_wells
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
 from workflow.report.numbers import column, number
@@ -35,6 +36,13 @@ def gates(results: Results) -> list[Gate]:
             f"{len(missing)} of {len(rows)} curves gave no law ({', '.join(kinds)}); their surfaces are left out of "
             "the mean, which favours the surfaces that could be fitted."
         )
+    if results.has("law/wells.csv"):
+        missed, known = missed_wells(results.csv("law/wells.csv"))
+        if missed:
+            reasons.append(
+                f"{missed} of {known} laws miss the depth of their curve's adhesion well by more than "
+                f"{MOST_MISSED:.0%} (law/wells.csv, column attraction_status): take release and stiction from the pad."
+            )
     checks = results.csv("uq/validation.csv") if results.has("uq/validation.csv") else []
     lost = max((int(row["missing"]) for row in checks), default=0)
     if lost:

@@ -1,0 +1,156 @@
+"""The adhesion well by the law and by the curve it was fitted to, and what is known of the law's numbers.
+
+`LawFit.residual` is relative to the largest repulsion, beside which a misfit of the attraction cannot show. Release and
+stiction hang on the well alone, so the attraction is judged here by itself.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.law.compact import Law, pressure
+from mesoscale.law.fit import LawFit
+from mesoscale.law.parameters import PARAMETERS
+
+Array = NDArray[np.float64]
+
+MOST_MISSED = 0.25
+"""Relative distance of the law's well depth from the curve's beyond which the law misses it."""
+POINTS = 2000
+"""Separations at which the law's well is sought: 40 nm in steps of 0.02 nm, a hundredth of rho_a."""
+SHARES = (0.68, 0.90)
+"""Probabilities that the stated intervals hold the parameter."""
+MICRO = 1e6
+"""GPa to kPa, and GPa nm, which is J/m^2, to uJ/m^2."""
+
+
+def interval_column(name: str, end: str, share: float) -> str:
+    """Column of the low or high end of a parameter's interval."""
+    return f"{name}_{end}{share * 100:.0f}"
+
+
+WELL_COLUMNS = (
+    "attraction_residual",
+    "attraction_status",
+    "well_law_kPa",
+    "well_curve_kPa",
+    "well_law_at_nm",
+    "well_curve_at_nm",
+    "energy_law_uJ_m2",
+    "energy_curve_uJ_m2",
+    *(interval_column(name, end, share) for name in PARAMETERS[1:] for share in SHARES for end in ("low", "high")),
+)
+
+
+@dataclass(frozen=True)
+class Well:
+    """The deepest net attraction of a branch.
+
+    Attributes
+    ----------
+    depth_GPa : largest net attractive pressure, positive; times the area, the pull-off force.
+    at_nm : separation where it is.
+    energy_GPa_nm : work per area (1 GPa nm = 1 J/m^2) from the balance of both forces outward, positive.
+    """
+
+    depth_GPa: float
+    at_nm: float
+    energy_GPa_nm: float
+
+
+def well_of(separation_nm: Array, net_GPa: Array) -> Well:
+    """The well of a net pressure, shape (n,), at rising separations."""
+    lowest = int(np.argmin(net_GPa))
+    pushes = np.flatnonzero(net_GPa[: lowest + 1] > 0)
+    start = int(pushes[-1]) + 1 if pushes.size else 0
+    energy = -np.trapezoid(np.minimum(net_GPa[start:], 0.0), separation_nm[start:])
+    return Well(max(-float(net_GPa[lowest]), 0.0), float(separation_nm[lowest]), float(energy))
+
+
+def well_of_law(law: Law, low_nm: float, high_nm: float) -> Well:
+    """The well of a law between two separations, its two kinks among the points."""
+    at = np.linspace(low_nm, high_nm, POINTS)
+    kinks = np.array([float(np.asarray(law.d_c_nm)), float(np.asarray(law.d_c_nm)) + law.rho_a_nm])
+    at = np.unique(np.concatenate([at, kinks[(kinks > low_nm) & (kinks < high_nm)]]))
+    attractive, repulsive = pressure(at, law)
+    return well_of(at, attractive + repulsive)
+
+
+def attraction_status(by_law: Well, by_curve: Well) -> str:
+    """`ok`, `no_well`, or by how much the law misses the well of its curve."""
+    if by_curve.depth_GPa <= 0:
+        return "no_well"
+    ratio = by_law.depth_GPa / by_curve.depth_GPa
+    if abs(ratio - 1.0) <= MOST_MISSED:
+        return "ok"
+    return f"misses_well: {ratio:.3g} times the curve's"
+
+
+def well_row(fit: LawFit, law: Law | None, curve: tuple[Array, Array, Array] | None) -> dict[str, Any]:
+    """Row of law/wells.csv without run, seed and branch; empty where there is no curve or it gave no law.
+
+    Parameters
+    ----------
+    law : of the fit, None if it has no numbers.
+    curve : separation (nm, rising), repulsive and attractive pressure (GPa) of the branch, shapes (n,).
+    """
+    row: dict[str, Any] = dict.fromkeys(WELL_COLUMNS) | {"attraction_status": "no_curve"}
+    if curve is None:
+        return row
+    separation_nm, repulsive_GPa, attractive_GPa = curve
+    by_curve = well_of(separation_nm, repulsive_GPa + attractive_GPa)
+    row |= {
+        "attraction_status": "no_law",
+        "well_curve_kPa": by_curve.depth_GPa * MICRO,
+        "well_curve_at_nm": by_curve.at_nm,
+        "energy_curve_uJ_m2": by_curve.energy_GPa_nm * MICRO,
+    }
+    if law is not None:
+        ours = well_of_law(law, float(separation_nm[0]), float(separation_nm[-1]))
+        row |= {
+            "attraction_residual": attraction_residual(law, separation_nm, attractive_GPa),
+            "attraction_status": attraction_status(ours, by_curve),
+            "well_law_kPa": ours.depth_GPa * MICRO,
+            "well_law_at_nm": ours.at_nm,
+            "energy_law_uJ_m2": ours.energy_GPa_nm * MICRO,
+        }
+    for name, known in zip(PARAMETERS[1:], fit.estimates, strict=True):
+        for share in SHARES:
+            low, high = known.interval(share)
+            for end, value in (("low", low), ("high", high)):
+                row[interval_column(name, end, share)] = value if math.isfinite(value) else None
+    return row
+
+
+def attraction_residual(law: Law, separation_nm: Array, attractive_GPa: Array) -> float:
+    """Root mean square misfit of the attraction up to d_c + rho_a, over its largest value there (1)."""
+    top = float(np.asarray(law.d_c_nm)) + law.rho_a_nm
+    at = np.linspace(separation_nm[0], max(min(top, separation_nm[-1]), separation_nm[0]), 200)
+    curve = np.interp(at, separation_nm, attractive_GPa)
+    misfit = pressure(at, law)[0] - curve
+    largest = float(np.abs(curve).max())
+    return float(np.sqrt(np.mean(misfit**2))) / largest if largest > 0 else 0.0
+
+
+def well_note(rows: Sequence[Mapping[str, str]]) -> str:
+    """One line on how well the laws of the runs at central inputs, else of all runs, hold the adhesion on opening."""
+    opening = [row for row in rows if row["branch"] == "opening" and row["well_law_kPa"] and row["well_curve_kPa"]]
+    central = [row for row in opening if row["node"] == "0"] or opening
+    if not central:
+        return "adhesion well on opening: no curve to compare with"
+    law, curve = (float(np.mean([float(row[key]) for row in central])) for key in ("well_law_kPa", "well_curve_kPa"))
+    missed = sum(row["attraction_status"].startswith("misses_well") for row in opening)
+    verdict = "OK" if missed == 0 else f"MISSED by more than {MOST_MISSED:.0%} on {missed} of {len(opening)} curves"
+    return f"adhesion well on opening: {law:.4g} kPa by the law, {curve:.4g} kPa by the curves; {verdict}"
+
+
+def missed_wells(rows: Iterable[Mapping[str, str]]) -> tuple[int, int]:
+    """Branches whose law misses the well of its curve, and branches with a law and a well."""
+    known = [
+        row["attraction_status"] for row in rows if row["attraction_status"] not in ("no_curve", "no_law", "no_well")
+    ]
+    return sum(status != "ok" for status in known), len(known)
