@@ -1,15 +1,15 @@
 """The cells of a pad: which separations they are brought to, and their forces there."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact.displacement import Displacement, close_by_separation
-from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
+from mesoscale.pad.surfaces import FilmPieces
 from mesoscale.settings import ContactSettings, PadSettings
 
 Array = NDArray[np.float64]
@@ -55,8 +55,9 @@ def plan_grid(inputs: ContactInputs, contact: ContactSettings, pad: PadSettings)
     InputError : the pilot cells never reach the pressure.
     """
     seeds = range(pad.first_seed, pad.first_seed + pad.pilot_cells)
-    surfaces = [random_surface(inputs, contact, seed) for seed in seeds]
-    first = np.array([float(heights.mean() - heights.min()) for heights in surfaces])
+    pieces = FilmPieces(inputs, contact)
+    surfaces = [pieces.surface(seed) for seed in seeds]
+    first = np.array([-float(heights.min()) for heights in surfaces])
     typical, deviation = float(first.mean()), float(first.std(ddof=1))
     wanted = pad.max_pressure_MPa * 1e-3 * contact.length_nm**2
     lowest = _separation_at(inputs, contact, surfaces, wanted, float(first.max()), pad)
@@ -84,7 +85,7 @@ def _separation_at(
         separations = np.asarray(start_nm - steps[:size], float)
         repelled = np.zeros(size)
         for heights in surfaces:
-            closed = close_by_separation(inputs, contact, heights.copy(), separations, np.empty(0, int))
+            closed = _close(inputs, contact, heights.copy(), PadGrid(separations, np.empty(0, int)))
             repelled += closed.closing[0] / len(surfaces)
         if repelled[-1] >= wanted_nN:
             return float(separations[np.argmax(repelled >= wanted_nN)])
@@ -92,6 +93,13 @@ def _separation_at(
         f"pad.max_pressure_MPa = {pad.max_pressure_MPa:g}: {pad.pilot_cells} cells closed by {steps[-1]:g} nm carry "
         f"{repelled[-1] / contact.length_nm**2 * 1e3:.3g} MPa; lower it"
     )
+
+
+def _close(inputs: ContactInputs, contact: ContactSettings, heights: Array, grid: PadGrid) -> Displacement:
+    """One cell closed to separations from the mean plane of the film, in which its heights are given."""
+    plane = float(heights.mean())
+    closed = close_by_separation(inputs, contact, heights, grid.separation_nm + plane, grid.depths)
+    return replace(closed, first_contact_nm=closed.first_contact_nm - plane)
 
 
 def close_cells(
@@ -102,8 +110,8 @@ def close_cells(
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[Displacement]:
     """Forces of each cell at the separations of the pad, while closing and while opening from each depth."""
+    pieces = FilmPieces(inputs, contact)
     for done, seed in enumerate(seeds):
-        heights = random_surface(inputs, contact, seed)
-        yield close_by_separation(inputs, contact, heights, grid.separation_nm, grid.depths)
+        yield _close(inputs, contact, pieces.surface(seed), grid)
         if progress:
             progress((done + 1) / len(seeds), f"{done + 1} of {len(seeds)} cells")

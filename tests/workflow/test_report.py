@@ -108,7 +108,8 @@ def test_gates_tell_what_failed_and_text_is_escaped(files, page):
     found = {gate.stage: gate for section in sections for gate in section.gates}
     assert not found["hardness"].passed
     assert found["law"].passed
-    (remark,) = found["law"].reasons
+    remark, well = found["law"].reasons
+    assert "2 of 2 laws miss" in well
     assert remark.startswith("1 of 3 fits miss their curve by up to 20% of its largest pressure; they are used as")
     assert "gate failed" in page
     assert "&lt;gave&gt;" in page

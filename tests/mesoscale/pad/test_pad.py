@@ -5,10 +5,12 @@ import pytest
 from scipy import stats
 
 from mesoscale.contact import ContactInputs
+from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.pad.cells import PadGrid, close_cells, plan_grid
 from mesoscale.pad.curves import adhesion_by_cells, assemble
 from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.pad.surfaces import FilmPieces
 from mesoscale.pad.tail import fit_tail
 from mesoscale.settings import ContactSettings, PadSettings
 
@@ -131,3 +133,18 @@ def test_the_tail_notices_another_distribution():
 def test_too_few_cells_are_refused():
     with pytest.raises(InputError, match="at least 8"):
         fit_tail(np.arange(5.0))
+
+
+def test_cells_are_pieces_of_a_film():
+    """Mean planes and RMS heights scatter as those of square pieces cut out of films of four times the side."""
+    small = ContactSettings(pixels=64)
+    large = ContactSettings(pixels=256, length_nm=4000.0)
+    pieces = FilmPieces(MIDDLE, small)
+    ours = np.array([pieces.surface(seed) for seed in range(300)])
+    films = [random_surface(MIDDLE, large, seed) for seed in range(40)]
+    cut = np.concatenate([film.reshape(4, 64, 4, 64).swapaxes(1, 2).reshape(16, 64, 64) for film in films])
+    for of_surface in (lambda h: h.mean(axis=(1, 2)), lambda h: h.std(axis=(1, 2))):
+        # a deviation from 300 pieces is known to 4 %; a cut piece also holds parts of waves longer than itself
+        assert of_surface(ours).std() == pytest.approx(of_surface(cut).std(), rel=0.35)
+    assert np.mean(ours**2) == pytest.approx(MIDDLE.rms**2, rel=0.02)
+    assert np.mean(cut**2) == pytest.approx(MIDDLE.rms**2, rel=0.02)
