@@ -104,7 +104,7 @@ def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: st
 
     def is_needed(record: logging.LogRecord) -> bool:
         in_detail = workflow.dryrun and getattr(record, "event", None) == "job_info"  # --dry-run without --quiet
-        return record.levelno > logging.INFO or in_detail
+        return record.levelno > logging.INFO or in_detail or workflow.output_settings.verbose
 
     for handler in logger.handlers:
         handler.addFilter(is_needed)
