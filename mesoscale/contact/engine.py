@@ -87,6 +87,10 @@ class Contact:
     # that merge carry less than apart, and cycles gain energy (seen at 0.9, not at 0.8: docs/contact.md)
     BEARING_SHARE = 0.8
 
+    # whether the last steps of a path aim at its end: a step beyond may fall back below the largest force where a
+    # cluster that grows softens, and be taken for one that fell short; the paper's paths go beyond
+    AIMS_AT_END = False
+
     def __init__(self, surface: np.ndarray, inputs, settings: ContactSettings, flattened: np.ndarray | None = None):
         self.n = surface.shape[0]
         self.heights = surface.reshape(-1)
@@ -371,6 +375,8 @@ def trace(
         # far below first contact, as on a flat surface, the roughness is no measure of a step
         largest = max(scale, 0.1 * (path.rows[0].separation - separation)) / 30.0
         step = min(step * min(2.0, max(0.5, wanted / rise if rise > 0 else 2.0)), largest)
+        if contact.AIMS_AT_END and rise > 0 and force + wanted > final:
+            step = min(step, (path.rows[-2].separation - separation) * (final - force) / rise)
     return path
 
 

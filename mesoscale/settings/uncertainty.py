@@ -73,3 +73,9 @@ class UncertaintySettings(Settings):
         le=10**6,
         description="direct runs repeated on another surface each: the surface's share of the variance",
     )
+    model_form_pairs: int = Field(
+        default=100,
+        ge=10,
+        le=10**6,
+        description="direct runs computed with both mechanics of the contact (target `model_form`)",
+    )

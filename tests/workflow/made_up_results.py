@@ -35,6 +35,7 @@ def write_all(root: Path) -> list[Path]:
     _topography(root)
     _history(root)
     _coupling(root)
+    _model_form(root)
     _studies(root)
     return sorted(path for path in root.rglob("*") if path.is_file())
 
@@ -350,6 +351,16 @@ def _coupling(root: Path) -> None:
         for prefactor in ("hertz", "paper")
     ]
     _write(root / "coupling/comparison.csv", rows)
+
+
+def _model_form(root: Path) -> None:
+    pairs = {"pairs": 100, "asperity_mean": 2.0, "asperity_dev": 1.0, "coupled_mean": 5.0, "coupled_dev": 1.0}
+    found = {"shift": 3.0, "shift_low": 2.5, "shift_high": 3.5, "cost_ratio": 25.0}
+    rows = [
+        {"quantity": "rho_r_nm", "unit": "nm", **pairs, **found, "correlation": 0.9, "saving": 2.5},
+        {"quantity": "pull_off_nN", "unit": "nN", **pairs, **found, "ratio": 2.5, "ratio_low": 2, "ratio_high": 3},
+    ]
+    _write(root / "uq/model_form.csv", rows)
 
 
 def _studies(root: Path) -> None:

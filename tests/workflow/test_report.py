@@ -24,7 +24,7 @@ from workflow.report.studies import recommended
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 SECTIONS = ("inputs", "hardness", "elastic", "topography", "curves", "uncertainty", "sensitivity", "device")
-ON_TOP = ("history", "coupling", "accuracy", "stability")
+ON_TOP = ("model-form", "history", "coupling", "accuracy", "stability")
 
 
 @pytest.fixture(scope="module")
@@ -165,6 +165,11 @@ def test_history_and_coupling_say_their_answer(page):
     assert "The last cycle loses 1.6 % of the energy that the first one lost" in page
     assert "0.500 ± 0" in page
     assert "1.25 ± 0" in page
+
+
+def test_model_form_says_what_shifts_and_what_the_cheap_engine_saves(page):
+    assert "3.00 [2.50, 3.50]" in page
+    assert "costs 25 times as much" in page
 
 
 def test_hardness_shows_its_witness_and_what_it_cost(page):

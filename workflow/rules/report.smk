@@ -53,11 +53,11 @@ def kept_files():
 
 
 def studies_at_hand():
-    """Accuracy and stability tables already present, with their checksums.
+    """Tables of studies already present, with their checksums.
 
     As parameters, not inputs: they are shown without being scheduled, and a new one renews the page.
     """
-    found = [] if SCENE.report.studies else [*ACCURACY, *STABILITY]
+    found = rules.model_form.input + ([] if SCENE.report.studies else [*ACCURACY, *STABILITY])
     return {name: file_checksum(name) for name in found if Path(name).is_file()}
 
 

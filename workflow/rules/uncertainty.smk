@@ -7,6 +7,9 @@ def direct_files(design, runs, name="chunk"):
     return [f"{RESULTS}/uq/{design}/{name}_{chunk}.csv" for chunk in full_chunks(runs, SCENE.uncertainty.chunk_runs)]
 
 
+PAIR_CHUNKS = full_chunks(SCENE.uncertainty.model_form_pairs, 20)
+
+
 rule uq:
     input:
         f"{RESULTS}/uq/outputs.csv",
@@ -198,6 +201,48 @@ rule study_uncertainty_stability:
 
 
 STABILITY.append(f"{RESULTS}/stability/uncertainty.csv")
+
+
+# Asperities on their own and coupled, side by side
+rule model_form:
+    input:
+        f"{RESULTS}/uq/model_form.csv",
+
+
+rule compute_pairs:
+    input:
+        inputs=f"{RESULTS}/inputs.csv",
+    output:
+        f"{RESULTS}/uq/model_form/pairs_{{chunk}}.csv",
+    log:
+        f"{RESULTS}/logs/compute_pairs_{{chunk}}.log",
+    wildcard_constraints:
+        chunk=r"\d+",
+    threads: 1
+    params:
+        contact=settings("contact"),
+        law=settings("law"),
+        uncertainty=RUN_SETTINGS,
+        bounds=lambda wildcards: PAIR_CHUNKS[wildcards.chunk],
+    message:
+        "compute contact cycles with both mechanics, chunk {wildcards.chunk}"
+    script:
+        "../scripts/compute_pairs.py"
+
+
+rule compare_mechanics:
+    input:
+        expand(rules.compute_pairs.output[0], chunk=PAIR_CHUNKS),
+    output:
+        f"{RESULTS}/uq/model_form.csv",
+    log:
+        f"{RESULTS}/logs/compare_mechanics.log",
+    params:
+        seed=SCENE.uncertainty.sample_seed,
+    message:
+        "compare the mechanics of the contact"
+    script:
+        "../scripts/compare_mechanics.py"
 
 
 rule extremes:

@@ -67,7 +67,7 @@ def residual(gap, pressure, displacement, limit, stiffness, n):
 
 
 @njit(cache=True)
-def _classify(gap, pressure, displacement, limit, stiffness, n, state):
+def classify(gap, pressure, displacement, limit, stiffness, n, state):
     """Sort the sites into those apart (0), between the bounds (1) and at the limit (2); returns how many moved.
 
     From one bound to the other a site goes by way of the state between: where steps jump over it, all sites at the
@@ -143,7 +143,7 @@ def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
     moves = np.empty(n)
     block = np.empty((0, 0), np.float32)
     for step in range(NEWTON_STEPS):
-        moved = _classify(gap, pressure, displacement, limit, stiffness, n, state) > 0 or step == 0
+        moved = classify(gap, pressure, displacement, limit, stiffness, n, state) > 0 or step == 0
         largest = 0.0
         count = 0
         for k in range(n):

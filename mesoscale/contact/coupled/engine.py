@@ -32,6 +32,7 @@ class CoupledContact(Contact):
     DENSE_PER_PIXEL = 16
     DENSE = 4096
     NEAR_GAP = 2.0  # nm: sites this near count with their displacement in the attraction (error 0.2 %: docs)
+    AIMS_AT_END = True
     ROUNDS = 40
     FALLING_ROUNDS = 10  # from here on hardness may only fall, so that the rounds come to an end
 
@@ -211,7 +212,8 @@ class CoupledContact(Contact):
         self.pressure, self.displacement, _, _ = grid.project(
             apply, norm, gap, self.limit, self.stiffness, self.TOLERANCE, self.pressure
         )
-        worst = grid.residual(gap, self.pressure, self.displacement, self.limit, self.stiffness)
+        sites = self.sites.size
+        worst = dense.residual(gap, self.pressure, self.displacement, self.limit, self.stiffness, sites)
         return worst <= self.SETTLED
 
     def _highest(self, force: float) -> float:

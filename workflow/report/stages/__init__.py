@@ -12,6 +12,7 @@ from workflow.report.stages import (
     hardness,
     history,
     inputs,
+    model_form,
     pad,
     sensitivity,
     topography,
@@ -19,4 +20,17 @@ from workflow.report.stages import (
 )
 
 # in the order of the data's flow
-STAGES = (inputs, hardness, elastic, topography, contact, uncertainty, sensitivity, pad, device, history, coupling)
+STAGES = (
+    inputs,
+    hardness,
+    elastic,
+    topography,
+    contact,
+    uncertainty,
+    sensitivity,
+    model_form,
+    pad,
+    device,
+    history,
+    coupling,
+)
