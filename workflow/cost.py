@@ -113,6 +113,8 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "write_synthetic_scans": _constant(5.0),
     "analyse_scans": Costs.analyse_scans,
     "pool_spectra": _constant(3.0),
+    "draw_surface": _constant(2.0),
+    "judge_scans": lambda costs, wildcards: 3.0 + 3.0 * len(costs.scene.topography.scans),
     "compute_nominal": lambda costs, wildcards: len(costs.scene.contact.nominal_loads_nN) * costs.cycle_s,
     "compute_runs": Costs.compute_runs,
     "compute_direct_runs": Costs.compute_runs,

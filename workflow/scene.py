@@ -146,8 +146,9 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
     SceneError : a file is missing, or its path has braces; one line per file.
     """
     files, mistakes = [], []
+    beside = _folder_of(scene)
     for name in names:
-        places = [name, str(Path(scene).parent / name)]
+        places = [name, os.path.normpath(beside / name)]
         path = next((place for place in places if os.path.isfile(place)), None)
         if path is None:
             mistakes.append(f"{scene}: {key} = {_cut(name)}: no such file here or beside the scene; correct the path")
@@ -158,6 +159,29 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
     if mistakes:
         raise SceneError("\n".join(mistakes))
     return files
+
+
+def files_of(scene: str, names: Iterable[str]) -> list[str]:
+    """The names that a scene gives, a folder (as seen from here, else beside the scene) replaced by its files.
+
+    Parameters
+    ----------
+    scene : name or path of the scene
+    """
+    files: list[str] = []
+    for name in names:
+        places = [Path(name), _folder_of(scene) / name]
+        folder = next((place for place in places if place.is_dir()), None)
+        if folder is None:
+            files.append(name)
+        else:
+            files += sorted(str(path) for path in folder.iterdir() if path.is_file() and path.name[0] != ".")
+    return files
+
+
+def _folder_of(scene: str) -> Path:
+    """Folder of a scene's file, which is given by name or by path."""
+    return SCENES if scene in _shipped() else Path(scene).parent
 
 
 def _cut(text: str) -> str:

@@ -21,6 +21,11 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
 
     pixels, length, q1, wanted = settings.pixels, settings.length_nm, settings.q1_per_nm, settings.surface
     other = wanted.counterface
+    if wanted.heights:
+        from mesoscale.topography.height_synthesis import synthesize_heights
+
+        rms, psd = math.hypot(inputs.rms, other.rms_nm if other else 0.0), surface_spectrum(inputs, settings)
+        return -synthesize_heights(pixels, length, psd, wanted.heights, rms, seed, q1)
     if wanted.spectrum is None and other is None:
         heights = synthesize(pixels, length, inputs.q0, inputs.hurst, inputs.rms, seed, settings.convention, q1)
     else:
@@ -45,10 +50,20 @@ def surface_spectrum(inputs: ContactInputs, settings: ContactSettings) -> Callab
     if wanted.spectrum is None:
         spectra = [rough(inputs.rms, inputs.q0, inputs.hurst).psd]
     else:
-        spectra = [SpectrumTable(wanted.spectrum.q, wanted.spectrum.psd).scaled(inputs.rms, cutoff).psd]
+        table = SpectrumTable(wanted.spectrum.q, wanted.spectrum.psd)
+        if wanted.spectrum.q0 is not None and wanted.spectrum.hurst is not None:
+            there = _form(table.q, wanted.spectrum.q0, slope_from_hurst(wanted.spectrum.hurst, settings.convention))
+            here = _form(table.q, inputs.q0, slope_from_hurst(inputs.hurst, settings.convention))
+            table = SpectrumTable(table.q, table.values * here / there)
+        spectra = [table.scaled(inputs.rms, cutoff).psd]
     if wanted.counterface is not None:
         spectra.append(rough(wanted.counterface.rms_nm, wanted.counterface.q0, wanted.counterface.hurst).psd)
     return lambda q: np.sum([c(q) for c in spectra], axis=0)
+
+
+def _form(q: np.ndarray, q0: float, slope: float) -> np.ndarray:
+    """Eq. 9 without plateau height and end."""
+    return np.maximum(q / q0, 1.0) ** -slope
 
 
 def shortest_wave(settings: ContactSettings) -> float:

@@ -8,7 +8,7 @@ from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import TABLE_1, Correlation, InputRow, InputsSettings
 from mesoscale.settings.law import LawSettings
 from mesoscale.settings.pad import PadSettings
-from mesoscale.settings.topography import SyntheticScanSettings, TopographySettings
+from mesoscale.settings.topography import InstrumentSettings, SyntheticScanSettings, TopographySettings
 from mesoscale.settings.uncertainty import UncertaintySettings
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "HistorySettings",
     "InputRow",
     "InputsSettings",
+    "InstrumentSettings",
     "LawSettings",
     "PadSettings",
     "Settings",

@@ -30,12 +30,22 @@ class SpectrumSettings(Settings):
         json_schema_extra={"unit": "nm^4"},
     )
 
+    q0: Positive | None = Field(
+        default=None,
+        description="with `hurst`: eq. 9 nearest to the points; the inputs' q0 and hurst then bend the spectrum by the "
+        "ratio of their eq. 9 to this one; null: they are unused",
+        json_schema_extra={"unit": "1/nm"},
+    )
+    hurst: float | None = Field(default=None, gt=0, le=2, description="its Hurst exponent, in contact.convention")
+
     @model_validator(mode="after")
     def _a_function(self) -> "SpectrumSettings":
         if len(self.psd) != len(self.q):
             raise ValueError(f"psd has {len(self.psd)} values, q has {len(self.q)}; accepted are lists of one length")
         if any(later <= earlier for earlier, later in zip(self.q, self.q[1:], strict=False)):
             raise ValueError("q is not in rising order")
+        if (self.q0 is None) != (self.hurst is None):
+            raise ValueError("q0 and hurst go together; give both or neither")
         return self
 
 
@@ -55,3 +65,15 @@ class SurfaceSettings(Settings):
         description="of the heights, peaks counted positive; 0 with kurtosis 3: normal distribution",
     )
     kurtosis: float = Field(default=3.0, ge=1, le=50, description="fourth standardised moment")
+    heights: tuple[Annotated[float, Field(ge=-1000, le=1000)], ...] = Field(
+        default=(),
+        max_length=111,
+        description="measured heights: their values in units of the RMS at the normal variables -5, -4.9, ... 6 (as "
+        "topography/parameters.json has them); empty: normal, or by skewness and kurtosis",
+    )
+
+    @model_validator(mode="after")
+    def _one_distribution(self) -> "SurfaceSettings":
+        if self.heights and (len(self.heights) != 111 or (self.skewness, self.kurtosis) != (0.0, 3.0)):
+            raise ValueError("heights: accepted are 111 values, with skewness 0 and kurtosis 3")
+        return self

@@ -9,6 +9,7 @@ import scipy.fft
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.profiles import Profile
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
 from mesoscale.topography.spectrum import radial_spectrum
 from mesoscale.topography.synthesis import synthesize_spectrum
@@ -19,6 +20,11 @@ SURFACES = {
     "own spectrum": "a Gaussian surface with the scan's own spectrum: what its other statistics do",
     "eq. 9": "a Gaussian surface with the fitted power law up to the pixels: what the microscope does not see",
 }
+
+
+def has_square_pixels(data: Scan | Profile) -> bool:
+    """Can this be pressed: a scan whose pixels are square?"""
+    return isinstance(data, Scan) and abs(data.pixel_nm[0] / data.pixel_nm[1] - 1) <= OBLONG
 
 
 def contacting_heights(scan: Scan) -> tuple[np.ndarray, float]:

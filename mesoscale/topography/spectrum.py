@@ -5,7 +5,7 @@ vectors is the mean square height (Parseval).  Averaging C over directions gives
 its slope is the physical quantity from which either convention of the Hurst exponent follows.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.fft
@@ -25,6 +25,7 @@ class Spectrum:
         sections and windows count for the area they really cover).
     spacing : width of a shell, 1/nm.
     nyquist : largest wave vector that the pixels resolve along both axes, 1/nm.
+    sharp : window and shells lift nothing any more (a converted line profile): nothing to correct.
     """
 
     q: np.ndarray
@@ -32,6 +33,7 @@ class Spectrum:
     modes: np.ndarray
     spacing: float
     nyquist: float
+    sharp: bool = False
 
 
 def power_spectrum(heights: np.ndarray, lengths_nm: tuple[float, float]) -> np.ndarray:
@@ -172,4 +174,4 @@ def log_bins(spectrum: Spectrum, per_decade: int = 12) -> Spectrum:
     modes = np.bincount(index, spectrum.modes)
     q = np.exp(np.bincount(index, spectrum.modes * np.log(spectrum.q)) / modes)
     psd = np.bincount(index, spectrum.modes * spectrum.psd) / modes
-    return Spectrum(q, psd, modes, spectrum.spacing, spectrum.nyquist)
+    return replace(spectrum, q=q, psd=psd, modes=modes)

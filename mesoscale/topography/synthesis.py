@@ -59,7 +59,7 @@ def synthesize(
     """
     check_number("q0", q0, 1e-7, 1e3, "1/nm")
     check_number("hurst", hurst, 1e-6, 2.0, "1")
-    squared, step = _squared_waves(pixels, length_nm, q1)
+    squared, step = squared_waves(pixels, length_nm, q1)
     amplitude = np.empty(len(squared) + 1)
     amplitude[0] = 0.0
     # (q/q0)^(-s/2) for q > q0, as exp/log: NumPy has fast vector code for these but not for power
@@ -68,7 +68,7 @@ def synthesize(
         np.minimum(decay, np.inf, out=decay).clip(min=0.0) * (-0.25 * slope_from_hurst(hurst, convention)),
         out=amplitude[1:],
     )
-    return _filtered_noise(pixels, amplitude, rms, seed)
+    return filtered_noise(pixels, amplitude, rms, seed)
 
 
 def synthesize_spectrum(
@@ -79,17 +79,17 @@ def synthesize_spectrum(
     `RoughSpectrum.psd` and `SpectrumTable.psd` are such functions, their sum the spectrum of two rough surfaces.
     The rest is as in `synthesize`; the same seed gives the same noise.
     """
-    squared, step = _squared_waves(pixels, length_nm, q1)
+    squared, step = squared_waves(pixels, length_nm, q1)
     amplitude = np.concatenate([[0.0], np.sqrt(psd(step * np.sqrt(squared)))])
     if not np.isfinite(amplitude).all() or not amplitude.any():
         raise InputError(
             f"the spectrum has no power on a surface of {length_nm:g} nm with {pixels} pixels a side; accepted are "
             f"spectra that reach between {step:g} and {np.pi * pixels / length_nm:g} 1/nm"
         )
-    return _filtered_noise(pixels, amplitude, rms, seed)
+    return filtered_noise(pixels, amplitude, rms, seed)
 
 
-def _squared_waves(pixels: int, length_nm: float, q1: float | None) -> tuple[Array, float]:
+def squared_waves(pixels: int, length_nm: float, q1: float | None) -> tuple[Array, float]:
     """Squared wave numbers 1, 2, ... up to the cut-off, and the wave vector of wave number 1 (1/nm)."""
     check_number("length_nm", length_nm, MIN_LENGTH_NM, MAX_LENGTH_NM, "nm")
     if isinstance(pixels, bool) or not isinstance(pixels, Integral) or pixels < 3:
@@ -106,7 +106,7 @@ def _squared_waves(pixels: int, length_nm: float, q1: float | None) -> tuple[Arr
     return np.arange(1, last + 1, dtype=float), step
 
 
-def _filtered_noise(pixels: int, amplitude: Array, rms: float, seed: int) -> Array:
+def filtered_noise(pixels: int, amplitude: Array, rms: float, seed: int) -> Array:
     """The surface whose waves of squared wave number n have noise times `amplitude[n]`, scaled to `rms`."""
     check_seed(seed)
     check_number("rms", rms, 1e-5, 1e6, "nm", zero=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 from atomistic.errors import InputError
 from atomistic.materials import load_materials, oxide_glasses
 from workflow.cost import contact_MB, machine_MB
-from workflow.scene import ROOT, SceneError, load_scene, locate
+from workflow.scene import ROOT, SceneError, files_of, load_scene, locate
 
 # one thread per process: the jobs themselves fill the cores, and results do not depend on their number
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):

@@ -6,6 +6,7 @@ rule coupling:
 
 rule compare_half_space:
     input:
+        **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/coupling/comparison.csv",

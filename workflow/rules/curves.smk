@@ -5,6 +5,7 @@ rule curves:
 
 rule compute_nominal:
     input:
+        **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         curves=f"{RESULTS}/curves/nominal.h5",

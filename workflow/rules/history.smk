@@ -6,6 +6,7 @@ rule history:
 
 rule follow_history:
     input:
+        **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         cycles=f"{RESULTS}/history/cycles.csv",

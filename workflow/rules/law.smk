@@ -18,6 +18,7 @@ rule law:
 
 rule compute_runs:
     input:
+        **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/curves/runs/chunk_{{chunk}}.h5",

@@ -13,6 +13,7 @@ rule pad:
 
 rule plan_pad:
     input:
+        **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/pad/grid.csv",
@@ -32,6 +33,7 @@ rule plan_pad:
 
 rule close_cells:
     input:
+        **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
         grid=f"{RESULTS}/pad/grid.csv",
     output:

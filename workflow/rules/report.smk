@@ -17,6 +17,7 @@ def report_inputs():
         files += [f"elastic/{name}" for name in ("points.csv", "bulk_moduli.csv", "e_star.json", "e_star.h5")]
     if needed("topography"):
         files += ["topography/spectra.h5", "topography/parameters.json"]
+        files += [str(Path(path).relative_to(RESULTS)) for path in JUDGED]
         if SCENE.topography.press_scans:
             files += ["curves/scans.h5", "law/scans.csv"]
     if SCENE.history.cycles > 0:

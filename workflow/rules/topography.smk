@@ -11,7 +11,7 @@ def scan_files():
         names = [f"small_{k + 1:02d}" for k in range(synthetic.small_scans)]
         names += [f"large_{k + 1:02d}" for k in range(synthetic.large_scans)]
         return [f"{SCAN_FOLDER}/{name}.gwy" for name in names]
-    return named_files("topography.scans", *TOPOGRAPHY.scans)
+    return named_files("topography.scans", *files_of(SCENE_GIVEN, TOPOGRAPHY.scans))
 
 
 SCAN_FILES = scan_files() if needed("topography") or not TOPOGRAPHY.scans else list(TOPOGRAPHY.scans)
@@ -19,11 +19,20 @@ SCAN_CHUNKS = [
     SCAN_FILES[k : k + TOPOGRAPHY.scans_per_job] for k in range(0, len(SCAN_FILES), TOPOGRAPHY.scans_per_job)
 ]
 
+# what jobs that make random surfaces need where the surface is measured: its description
+SURFACE = {"topography": f"{RESULTS}/topography/parameters.json"} if "topography" in SCENE.inputs.origins() else {}
+
+
+# measured scans judge their description by pressing, where the contact uses it
+JUDGED = [f"{RESULTS}/topography/judged.csv"] if TOPOGRAPHY.scans and SURFACE else []
+
 
 rule topography:
     input:
+        JUDGED,
         f"{RESULTS}/topography/spectra.h5",
         f"{RESULTS}/topography/parameters.json",
+        f"{RESULTS}/topography/surface.png",
 
 
 if not TOPOGRAPHY.scans:
@@ -74,10 +83,44 @@ rule pool_spectra:
         f"{RESULTS}/logs/pool_spectra.log",
     params:
         settings=settings("topography"),
+        cell_nm=SCENE.contact.length_nm,
     message:
-        "fit roll-off, slope and RMS to the spectra"
+        "describe the surface behind the spectra"
     script:
         "../scripts/pool_spectra.py"
+
+
+rule draw_surface:
+    input:
+        spectra=f"{RESULTS}/topography/spectra.h5",
+        parameters=f"{RESULTS}/topography/parameters.json",
+    output:
+        f"{RESULTS}/topography/surface.png",
+    log:
+        f"{RESULTS}/logs/draw_surface.log",
+    message:
+        "draw the surface and its spectrum"
+    script:
+        "../scripts/draw_surface.py"
+
+
+rule judge_scans:
+    input:
+        chunks=rules.pool_spectra.input.chunks,
+        scans=SCAN_FILES,
+        parameters=f"{RESULTS}/topography/parameters.json",
+        inputs=f"{RESULTS}/inputs.csv",
+    output:
+        f"{RESULTS}/topography/judged.csv",
+    log:
+        f"{RESULTS}/logs/judge_scans.log",
+    params:
+        settings=settings("topography"),
+        contact=settings("contact"),
+    message:
+        "press the scans beside surfaces made from the others' description"
+    script:
+        "../scripts/judge_scans.py"
 
 
 rule press_scans:

@@ -24,6 +24,7 @@ rule sensitivity:
 
 rule compute_direct_runs:
     input:
+        **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         runs=f"{RESULTS}/uq/{{design}}/chunk_{{chunk}}.csv",
@@ -96,6 +97,7 @@ rule audit:
 
 rule compute_audit:
     input:
+        **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/audit/runs/{{reading}}_{{seed}}.csv",
@@ -252,6 +254,7 @@ rule extremes:
 
 rule study_extremes:
     input:
+        **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/uq/extremes.csv",

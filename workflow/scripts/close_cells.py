@@ -8,12 +8,14 @@ import numpy as np
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.pad.cells import close_cells, grid_of_rows
-from mesoscale.settings import ContactSettings
+from workflow.contact_settings import contact_settings
 from workflow.job import job
 from workflow.results import Dataset, load_csv, load_numbers, write_h5
 
 with job(snakemake) as run:
-    inputs, contact = contact_of(medians(load_csv(snakemake.input.inputs)), ContactSettings(**snakemake.params.contact))
+    inputs, contact = contact_of(
+        medians(load_csv(snakemake.input.inputs)), contact_settings(snakemake.params.contact, snakemake)
+    )
     grid = grid_of_rows(load_numbers(snakemake.input.grid))
     seeds = range(*snakemake.params.seeds)
     cells = list(close_cells(inputs, contact, grid, seeds, run.progress))

@@ -4,10 +4,11 @@ In: inputs.csv.  Out: audit/runs/READING_SEED.csv.
 """
 
 from mesoscale.inputs.table import from_rows
-from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
+from mesoscale.settings import LawSettings, UncertaintySettings
 from mesoscale.uncertainty.chunks import node_count
 from mesoscale.uncertainty.designs import collocation_runs
 from mesoscale.uncertainty.studies.audit import AUDIT_COLUMNS, audit_rows
+from workflow.contact_settings import contact_settings
 from workflow.job import job
 from workflow.results import load_csv, write_csv
 
@@ -19,7 +20,7 @@ with job(snakemake) as run:
     rows = audit_rows(
         snakemake.wildcards.reading,
         runs,
-        ContactSettings(**snakemake.params.contact),
+        contact_settings(snakemake.params.contact, snakemake),
         LawSettings(**snakemake.params.law),
         run.progress,
     )

@@ -10,9 +10,10 @@ import time
 import psutil
 
 from mesoscale.inputs.table import from_rows
-from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
+from mesoscale.settings import LawSettings, UncertaintySettings
 from mesoscale.uncertainty.designs import DESIGNS
 from mesoscale.uncertainty.runs import compute_rows
+from workflow.contact_settings import contact_settings
 from workflow.job import job
 from workflow.results import load_csv, write_csv
 
@@ -24,7 +25,10 @@ with job(snakemake) as run:
     )
     rows = list(
         compute_rows(
-            runs, ContactSettings(**snakemake.params.contact), LawSettings(**snakemake.params.law), run.progress
+            runs,
+            contact_settings(snakemake.params.contact, snakemake),
+            LawSettings(**snakemake.params.law),
+            run.progress,
         )
     )
     # apart from the results, which are the same for the same seeds

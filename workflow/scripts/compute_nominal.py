@@ -10,13 +10,13 @@ from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.contact.nominal import nominal_cycles
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
-from mesoscale.settings import ContactSettings
+from workflow.contact_settings import contact_settings
 from workflow.job import job
 from workflow.results import Dataset, load_csv, write_h5
 
 with job(snakemake) as run:
     middle = medians(load_csv(snakemake.input.inputs))
-    inputs, settings = contact_of(middle, ContactSettings(**snakemake.params.settings))
+    inputs, settings = contact_of(middle, contact_settings(snakemake.params.settings, snakemake))
     groups, attributes = {}, {}
     for name, chosen, force, cycle in nominal_cycles(inputs, settings, run.progress):
         attributes[name] = {

@@ -7,14 +7,15 @@ from dataclasses import fields
 
 from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.inputs.table import from_rows
-from mesoscale.settings import ContactSettings, UncertaintySettings
+from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.designs import collocation_runs
 from mesoscale.uncertainty.runs import compute_all
+from workflow.contact_settings import contact_settings
 from workflow.job import job
 from workflow.results import Dataset, load_csv, write_h5
 
 with job(snakemake) as run:
-    contact = ContactSettings(**snakemake.params.contact)
+    contact = contact_settings(snakemake.params.contact, snakemake)
     uncertainty = UncertaintySettings(**snakemake.params.uncertainty)
     runs = collocation_runs(from_rows(load_csv(snakemake.input.inputs)), uncertainty, *snakemake.params.bounds)
     groups, attributes = {}, {}

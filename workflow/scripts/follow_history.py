@@ -10,14 +10,15 @@ from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.device.lifetime import DWELL_COLUMNS, cycle_row, dwell_rows, follow_all, shown_cycles
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
-from mesoscale.settings import ContactSettings, DeviceSettings, HistorySettings, LawSettings
+from mesoscale.settings import DeviceSettings, HistorySettings, LawSettings
+from workflow.contact_settings import contact_settings
 from workflow.job import job
 from workflow.results import Dataset, load_csv, write_csv, write_h5
 
 with job(snakemake) as run:
     settings = HistorySettings(**snakemake.params.settings)
     law, device = LawSettings(**snakemake.params.law), DeviceSettings(**snakemake.params.device)
-    contact = ContactSettings(**snakemake.params.contact)
+    contact = contact_settings(snakemake.params.contact, snakemake)
     inputs, contact = contact_of(medians(load_csv(snakemake.input.inputs)), contact)
     cycles, dwell, groups, attributes = [], [], {}, {}
     shown = shown_cycles(settings)

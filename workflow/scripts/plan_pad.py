@@ -3,12 +3,15 @@
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.pad.cells import plan_grid
-from mesoscale.settings import ContactSettings, PadSettings
+from mesoscale.settings import PadSettings
+from workflow.contact_settings import contact_settings
 from workflow.job import job
 from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
-    inputs, contact = contact_of(medians(load_csv(snakemake.input.inputs)), ContactSettings(**snakemake.params.contact))
+    inputs, contact = contact_of(
+        medians(load_csv(snakemake.input.inputs)), contact_settings(snakemake.params.contact, snakemake)
+    )
     grid = plan_grid(inputs, contact, PadSettings(**snakemake.params.pad))
     depths = set(grid.depths.tolist())
     rows = [

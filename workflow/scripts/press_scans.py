@@ -13,9 +13,10 @@ from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.law.pressed_scans import press_scan
-from mesoscale.settings import ContactSettings, LawSettings, TopographySettings
+from mesoscale.settings import LawSettings, TopographySettings
 from mesoscale.topography.measurements.loading import load_scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
+from workflow.contact_settings import contact_settings
 from workflow.job import job
 from workflow.results import Dataset, load_csv, load_json, write_csv, write_h5
 
@@ -25,7 +26,7 @@ with job(snakemake) as run:
     fitted = load_json(snakemake.input.parameters)["likelihood"]
     spectrum = RoughSpectrum(fitted["plateau_nm4"], fitted["q0"], fitted["slope"], math.inf)
     central = medians(load_csv(snakemake.input.inputs))
-    inputs, contact = contact_of(central, ContactSettings(**snakemake.params.contact))
+    inputs, contact = contact_of(central, contact_settings(snakemake.params.contact, snakemake))
     groups, attributes, rows = {}, {}, []
     files = list(snakemake.input.scans)
     for number, path in enumerate(files):

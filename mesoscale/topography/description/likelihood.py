@@ -21,6 +21,11 @@ BINS_PER_DECADE = 12  # the discrepancy is shared within a bin of this width
 # dilation lowers C by exp(-a k^b), k = R sqrt(2 pi q^6 C) the tip's radius times the curvature per octave;
 # measured on slopes 2.3-3.8, RMS 3 and 8 nm, tips of 2-10 nm: one curve to 3 % (docs/topography.md)
 TIP_BIAS = (0.5, 1.3)
+# beyond k = 0.5 the same comparison (slopes 2.4-4.2, tips of 5-20 nm) gives 0.45 k, to 0.15 at 1.5 and 0.2 at 2.5
+BLUNT_BIAS = 0.45
+BLUNT_ERROR = 0.3  # of that correction
+MOST_CURVED = 2.0
+LEVELLED_ERROR = 0.5  # of ln C in the first shells, after their blur is taken out
 
 
 def tip_bias(curvature: np.ndarray) -> np.ndarray:
@@ -47,6 +52,7 @@ class TrustedSpectrum:
     limit : what ends the range above: `tip`, `noise` or `pixels`.
     tip_radius_nm : radius used for the tip's correction.
     rms_nm : RMS of the cleaned heights.
+    reach : where the range would end without the tip, 1/nm; between `high` and here the tip's correction is large.
     """
 
     name: str
@@ -56,6 +62,7 @@ class TrustedSpectrum:
     limit: str
     tip_radius_nm: float
     rms_nm: float = 0.0
+    reach: float = 0.0
 
     @property
     def trusted(self) -> np.ndarray:
@@ -70,6 +77,39 @@ class TrustedSpectrum:
         for _ in range(5):
             bias = tip_bias(self.tip_radius_nm * np.sqrt(2 * np.pi * smooth * np.exp(bias)) * q**3)
         return psd * np.exp(bias)
+
+
+def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The trusted shells with those beyond its ends that can be corrected, at a price.
+
+    Above, up to where the roughness is MOST_CURVED times as curved as the tip; below, down to the first shell.
+
+    Returns
+    -------
+    use : (m,) bool, the shells.
+    psd : (m,) C with the tip's bias taken out, nm^4.
+    error : (m,) error of ln C that the correction leaves; 0 in the trusted range.
+    """
+    q, psd = item.spectrum.q, item.spectrum.psd
+    smooth = np.exp(_running_mean(np.log(psd), q))
+    curvature = bias = np.zeros_like(q)
+    for _ in range(12):
+        curvature = item.tip_radius_nm * np.sqrt(2 * np.pi * smooth * np.exp(bias)) * q**3
+        bias = np.where(curvature < 0.5, tip_bias(curvature), BLUNT_BIAS * np.minimum(curvature, 2 * MOST_CURVED))
+    use = (q >= item.low) & (q <= max(item.high, item.reach))
+    blunt = curvature > MOST_CURVED
+    if (blunt & use).any():
+        use &= q < q[blunt & use][0]
+    error = np.where(q > item.high, BLUNT_ERROR * bias, 0.0)
+    psd = psd * np.exp(bias)
+    if not item.spectrum.sharp and use.sum() > 3:  # the longest waves, that levelling and window change
+        long = (q < item.low) & (q > 0.9 * item.spectrum.spacing)
+        start = np.flatnonzero(use)[: max(4, int(np.sum(use & (q < 3 * item.low))))]
+        slope = float(np.clip(-np.polyfit(np.log(q[start]), np.log(psd[start]), 1)[0], 0.0, 6.0))
+        psd = np.where(long, psd * np.exp(-blur(slope, q / item.spectrum.spacing)), psd)
+        error = np.where(long, LEVELLED_ERROR, error)
+        use |= long
+    return use, psd, error
 
 
 @dataclass(frozen=True)
@@ -117,11 +157,12 @@ class _Data:
             bins = np.floor(np.log10(s.q[ok]) * BINS_PER_DECADE).astype(int)
             size_class = round(float(np.log(s.spacing)) * 20)  # scans of one size share their discrepancies
             columns = (s.q[ok], s.psd[ok], s.modes[ok], bins)
-            whole = (number, size_class, item.tip_radius_nm, s.spacing)
+            whole = (number, size_class, item.tip_radius_nm, 0.0 if s.sharp else s.spacing)
             parts.append([*columns, *(np.full(int(ok.sum()), value) for value in whole)])
         joined = [np.concatenate(column) for column in zip(*parts, strict=True)]
         self.q, self.psd, self.modes, bins, scan, size_class, self.tip, spacing = joined
-        self.shell = self.q / spacing
+        with np.errstate(divide="ignore"):
+            self.shell = self.q / spacing  # infinite where nothing is blurred
         self.scan = scan.astype(int)
         self.scans = len(spectra)
         _, self.bin = np.unique(np.stack([size_class, bins]), axis=1, return_inverse=True)
@@ -148,7 +189,9 @@ def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[T
     it is large, and mixes plateau and power law.
     """
     return [
-        replace(item, low=max(item.low, SMALL_BLUR_SHELL * item.spectrum.spacing)) if item.low > q0 / 2 else item
+        replace(item, low=max(item.low, SMALL_BLUR_SHELL * item.spectrum.spacing))
+        if item.low > q0 / 2 and not item.spectrum.sharp
+        else item
         for item in spectra
     ]
 
@@ -280,6 +323,8 @@ def trusted_range(
     noise_margin: float = 20.0,
     tip_margin: float = 0.5,
     rms_nm: float = 0.0,
+    shortest_wave_nm: float | None = None,
+    noise_psd: float = 0.0,
 ) -> TrustedSpectrum:
     """Bound a spectrum to what the instrument resolves.
 
@@ -289,23 +334,30 @@ def trusted_range(
     - *noise*: C falls under `noise_margin` times its level at the Nyquist wave vector, which bounds noise and
       short waves folded back by the pixels;
     - *tip*: the roughness of an octave is curved like the tip, R sqrt(2 pi q^6 C) > `tip_margin` (dilation
-      takes 20 % of C there; the fit corrects the known part).
+      takes 20 % of C there; the fit corrects the known part);
+    - *filter*: the instrument's shortest wave, where `shortest_wave_nm` states one.
+
+    `noise_psd` (nm^4) is a stated white level; the level at Nyquist counts where it is higher.
     """
     q, psd = spectrum.q, spectrum.psd
     low = lowest_shell * spectrum.spacing
     tail = float(np.median(psd[q > 0.93 * spectrum.nyquist])) if len(q) > 20 else float(psd[-1])
+    tail = max(tail, noise_psd)
     smooth = np.exp(_running_mean(np.log(psd), q))
     limits = {"pixels": 0.7 * spectrum.nyquist}
+    if shortest_wave_nm:
+        limits["filter"] = 2 * np.pi / shortest_wave_nm
     above = q > low
     noisy = above & (smooth < noise_margin * tail)
     if noisy.any():
         limits["noise"] = float(q[noisy][0])
+    reach = min(limits.values())
     if tip_radius_nm > 0:
         blunt = above & (tip_radius_nm * np.sqrt(2 * np.pi * smooth) * q**3 > tip_margin)
         if blunt.any():
             limits["tip"] = float(q[blunt][0])
     limit = min(limits, key=lambda key: limits[key])
-    return TrustedSpectrum(name, spectrum, low, limits[limit], limit, tip_radius_nm, rms_nm)
+    return TrustedSpectrum(name, spectrum, low, limits[limit], limit, tip_radius_nm, rms_nm, reach)
 
 
 def _running_mean(values: np.ndarray, q: np.ndarray, width: float = 0.12) -> np.ndarray:

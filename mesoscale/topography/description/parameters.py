@@ -8,6 +8,7 @@ import numpy as np
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description import likelihood, line_fits
+from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.likelihood import LikelihoodFit, TrustedSpectrum
 from mesoscale.topography.description.line_fits import LineFit
 from mesoscale.topography.roughness_spectrum import Convention, hurst_from_slope, mean_square
@@ -40,7 +41,7 @@ class Topography:
     q1, q1_limited : end of the power law (1/nm), or of what the finest trusted scan resolves.
     cutoff : wave vector up to which RMS heights are integrated: the finest Nyquist wave vector, 1/nm.
     estimates : q0 (1/nm), slope, hurst, rms (nm) of the method in use; empty where not identifiable.
-    reasons : why the parameters should not be used; empty when the gate is passed.
+    doubts : why the parameters of eq. 9 should not be used; none when they describe the surface.
     """
 
     likelihood: LikelihoodFit | None
@@ -49,7 +50,12 @@ class Topography:
     q1_limited: bool
     cutoff: float
     estimates: dict[str, Estimate]
-    reasons: tuple[str, ...]
+    doubts: tuple[Doubt, ...]
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """The doubts in words."""
+        return tuple(doubt.text for doubt in self.doubts)
 
 
 def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) -> Topography:
@@ -60,7 +66,7 @@ def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) ->
         spectra = likelihood.skip_blurred_shells(spectra, fitted.q0)
         fitted = likelihood.fit(spectra) or fitted
     line_fit = line_fits.fit_lines(spectra)
-    reasons = _doubts(spectra, fitted, line_fit, settings)
+    doubts = _doubts(spectra, fitted, line_fit, settings)
     estimates: dict[str, Estimate] = {}
     if fitted is not None and fitted.misfit > MAX_MISFIT:
         estimates = _separate_estimates(spectra, cutoff, settings)
@@ -70,7 +76,7 @@ def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) ->
         estimates = _line_estimates(spectra, line_fit, cutoff, settings)
     q1 = line_fit.q1 if line_fit else max((item.high for item in spectra), default=0.0)
     limited = line_fit.q1_limited if line_fit else True
-    return Topography(fitted, line_fit, q1, limited, cutoff, estimates, reasons)
+    return Topography(fitted, line_fit, q1, limited, cutoff, estimates, doubts)
 
 
 def inputs(topography: Topography, settings: TopographySettings) -> dict[str, dict[str, Any]]:
@@ -88,36 +94,43 @@ def _doubts(
     fitted: LikelihoodFit | None,
     line_fit: LineFit | None,
     settings: TopographySettings,
-) -> tuple[str, ...]:
+) -> tuple[Doubt, ...]:
     """Why the parameters are not identifiable or not to be trusted, in words with numbers."""
     if fitted is None:
-        return ("not identifiable: too few wave vectors between the scan's size and what the instrument resolves",)
-    reasons = []
+        text = "not identifiable: too few wave vectors between the scan's size and what the instrument resolves"
+        return (Doubt("too_few_waves", text, "scan more pixels or a larger area, or state a sharper tip", fatal=True),)
+    doubts = []
     highest = max(item.high for item in spectra)
     lowest = min(item.low for item in spectra)
     if fitted.power_gain < MIN_GAIN or fitted.slope < 0.5:
-        reasons.append("not identifiable: no power law, the spectrum is flat (noise, or pixels too coarse)")
+        text = "not identifiable: no power law, the spectrum is flat (noise, or pixels too coarse)"
+        doubts.append(Doubt("flat_spectrum", text, "scan with less noise and finer pixels", "slope", fatal=True))
     if fitted.plateau_gain < MIN_GAIN or fitted.q0 < 1.2 * lowest:
-        reasons.append(f"q0 is not identifiable: no plateau down to {lowest:.2g} /nm; add scans of a larger area")
+        text = f"q0 is not identifiable: no plateau down to {lowest:.2g} /nm; add scans of a larger area"
+        doubts.append(Doubt("no_plateau", text, "add scans of a larger area", "q0"))
     if highest < MIN_SPAN * fitted.q0:
-        reasons.append(
+        text = (
             f"slope is not identifiable: the trusted range ends at {highest:.2g} /nm, less than "
             f"{MIN_SPAN:g} times q0 ({fitted.q0:.2g} /nm); add finer scans or use a sharper tip"
         )
+        doubts.append(Doubt("short_range", text, "add finer scans or use a sharper tip", "slope"))
     if fitted.misfit > MAX_MISFIT:
-        reasons.append(
+        text = (
             f"no plateau with a power law common to the scans: the fit misses the spectra by a factor "
             f"{np.exp(fitted.misfit):.2g} (RMS); the ranges are those of the scans, each on its own"
         )
+        doubts.append(Doubt("no_common_power_law", text, "use the measured spectrum (topography.description)"))
     hurst = hurst_from_slope(fitted.slope, settings.convention)
     if not 0 < hurst < 1:
         other: Convention = "profile" if settings.convention == "areal" else "areal"
         inside = 0 < hurst_from_slope(fitted.slope, other) < 1
         hint = f" (with topography.convention and contact.convention: {other} it is in)" if inside else ""
-        reasons.append(f"H = {hurst:.2f} is outside 0 ... 1 in convention {settings.convention}{hint}")
+        text = f"H = {hurst:.2f} is outside 0 ... 1 in convention {settings.convention}{hint}"
+        doubts.append(Doubt("hurst_outside", text, "use the measured spectrum (topography.description)", "slope"))
     if settings.method == "lines" and line_fit is None:
-        reasons.append("not identifiable by line fits: no plateau followed by a power law")
-    return tuple(reasons)
+        text = "not identifiable by line fits: no plateau followed by a power law"
+        doubts.append(Doubt("no_line_fit", text, "set topography.method to likelihood"))
+    return tuple(doubts)
 
 
 def _likelihood_estimates(

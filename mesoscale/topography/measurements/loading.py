@@ -1,9 +1,13 @@
-"""Scans from AFM files, through the readers of SurfaceTopography, and Gwyddion files for synthetic ones.
+"""Scans and line profiles from files, through the readers of SurfaceTopography; Gwyddion files for synthetic scans.
 
 Files come from strangers: readers that may run code (pickles inside NumPy files) are never tried.
 """
 
+import re
 import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +15,91 @@ import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
+from mesoscale.settings import InstrumentSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.containers import is_container, stated_radius, unpacked
 from mesoscale.topography.measurements.light_readers import light_reader
+from mesoscale.topography.measurements.profiles import Profile, profile_of
+from mesoscale.topography.measurements.text_units import column_units
 
 REFUSED_FORMATS = frozenset({"npy", "npz"})  # NumPy files hold no physical size and may hold pickles
 MAGIC_BYTES = 512
 MAX_PIXELS = 16384**2
 MIN_SIDE = 32
+NM = {"m": 1e9, "mm": 1e6, "um": 1e3, "µm": 1e3, "μm": 1e3, "nm": 1.0, "Å": 0.1, "pm": 1e-3}
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A scan or a line profile with the limits of its instrument.
+
+    Attributes
+    ----------
+    data : as loaded, before levelling.
+    tip_radius_nm : 0 for an instrument without tip.
+    radius_stated : whether the scene or the file states the radius; otherwise it is the scene's default.
+    shortest_wave_nm, noise_nm : further limits; None where nothing is stated.
+    """
+
+    data: Scan | Profile
+    tip_radius_nm: float
+    radius_stated: bool
+    shortest_wave_nm: float | None = None
+    noise_nm: float | None = None
+
+
+def load_measurements(
+    path: str | Path, name: str | None = None, settings: TopographySettings | None = None
+) -> list[Measurement]:
+    """Everything that a file holds of one surface, in nm: a scan, a line profile, or all of a container.
+
+    Parameters
+    ----------
+    path : file of any format that SurfaceTopography reads, NumPy's own excepted, or a container (.zip).
+    name : what to call it; by default the file's name. Measurements of a container add their own.
+    settings : the channel to take, and the limits of the instruments.
+
+    Raises
+    ------
+    InputError : as `load_scan`, a container that cannot be trusted, or a profile without unit.
+    """
+    path, settings = Path(path), settings or TopographySettings()
+    if not is_container(path):
+        instrument = _instrument(path.name, settings)
+        data = _load(path, name or path.stem, instrument.channel or settings.channel, instrument.unit, True)
+        return [_limited(data, instrument, settings)]
+    _check_present(path)
+    measurements = []
+    with unpacked(path) as members:
+        for number, member in enumerate(members):
+            instrument = _instrument(member.name, settings)
+            label = re.sub(r"[^\w.-]+", "_", f"{name or path.stem}_{number + 1}_{Path(member.name).stem}")
+            unit, channel = instrument.unit or member.unit, instrument.channel or settings.channel
+            try:
+                data = _load(member.path, label, channel, unit, True, member.sizes)
+            except InputError as error:
+                raise InputError(str(error).replace(str(member.path), f"{path}: {member.name}")) from None
+            if isinstance(data, Profile):
+                data = replace(data, bow=member.bow, tip_radius_nm=data.tip_radius_nm or member.tip_radius_nm)
+            measurements.append(_limited(data, instrument, settings))
+    if not measurements:
+        raise InputError(f"{path}: its list of measurements is empty")
+    return measurements
+
+
+def _instrument(name: str, settings: TopographySettings) -> InstrumentSettings:
+    """The instrument that the scene states for a name; one without limits where it states none."""
+    fits = (item for item in settings.instruments if fnmatch(name, item.files))
+    return next(fits, InstrumentSettings(files="*"))
+
+
+def _limited(data: Scan | Profile, instrument: InstrumentSettings, settings: TopographySettings) -> Measurement:
+    radius = instrument.tip_radius_nm
+    if radius is None and isinstance(data, Profile):
+        radius = data.tip_radius_nm
+    stated = radius is not None or isinstance(data, Scan)  # topography.tip_radius_nm is a scanning probe's
+    used = settings.tip_radius_nm if radius is None else radius
+    return Measurement(data, used, stated, instrument.shortest_wave_nm, instrument.noise_nm)
 
 
 def load_scan(path: str | Path, name: str | None = None, channel: str | None = None) -> Scan:
@@ -35,21 +117,50 @@ def load_scan(path: str | Path, name: str | None = None, channel: str | None = N
     InputError : file missing, unreadable or of unknown format; no or several height channels; no physical
         size or unit; pixels not on a regular two-dimensional grid.
     """
-    path = Path(path)
+    data = _load(Path(path), name or Path(path).stem, channel, None)
+    assert isinstance(data, Scan)  # profiles are refused
+    return data
+
+
+def _check_present(path: Path) -> bytes:
+    """The first bytes of a file that is there and can be read."""
     if not path.is_file():
         raise InputError(f"{path}: no such scan; correct topography.scans in the scene")
     try:
         with path.open("rb") as stream:
-            start = stream.read(MAGIC_BYTES)
+            return stream.read(MAGIC_BYTES)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); make the file readable") from None
+
+
+def _load(
+    path: Path,
+    name: str,
+    channel: str | None,
+    unit: str | None,
+    profiles: bool = False,
+    sizes: tuple[float, ...] | None = None,
+) -> Scan | Profile:
+    start = _check_present(path)
+
+    def read(reader: Any) -> Scan | Profile:
+        try:
+            info, note = _height_channel(path, list(reader.channels), channel)
+            if info.dim == 1 and profiles:
+                return _profile(path, name, info, unit)
+            return _scan(path, name, info, note, unit, sizes)
+        finally:
+            close = getattr(reader, "close", None)
+            if close:
+                close()
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # readers warn of metadata that nothing here uses
         with light_reader(path) as light:
             reader = _opened(light, path)
             if reader is not None:
-                return _read(reader, path, name, channel)
-        return _read(_open(path, start), path, name, channel)
+                return read(reader)
+        return read(_open(path, start))
 
 
 def _opened(reader: type[Any] | None, path: Path) -> Any:
@@ -58,16 +169,6 @@ def _opened(reader: type[Any] | None, path: Path) -> Any:
         return reader(str(path)) if reader else None
     except Exception:  # readers of foreign formats fail in many ways
         return None
-
-
-def _read(reader: Any, path: Path, name: str | None, channel: str | None) -> Scan:
-    try:
-        info, note = _height_channel(path, list(reader.channels), channel)
-        return _scan(path, name or path.stem, info, note)
-    finally:
-        close = getattr(reader, "close", None)
-        if close:
-            close()
 
 
 def _open(path: Path, start: bytes) -> Any:
@@ -122,20 +223,24 @@ def _height_channel(path: Path, channels: list[Any], wanted: str | None) -> tupl
     return heights[0], ""
 
 
-def _scan(path: Path, name: str, info: Any, note: str) -> Scan:
+def _scan(
+    path: Path, name: str, info: Any, note: str, stated_unit: str | None, stated_sizes: tuple[float, ...] | None
+) -> Scan:
     sizes, unit, grid = info.physical_sizes, info.unit, info.nb_grid_pts
     if info.dim != 2 or (grid is not None and len(grid) != 2):
         raise InputError(f"{path}: not a two-dimensional map; give a scan, not a line profile")
+    given: dict[str, Any] = {}
+    if sizes is None and stated_sizes is not None:
+        sizes = given["physical_sizes"] = stated_sizes
+    if not unit and stated_unit is not None:
+        unit = given["unit"] = stated_unit
     if sizes is None or len(sizes) != 2 or not all(np.isfinite(s) and s > 0 for s in sizes):
         raise InputError(f"{path}: has no physical size; save it in a format that carries size and unit (.gwy)")
     if not unit:
         raise InputError(f"{path}: has no length unit; save it in a format that carries size and unit (.gwy)")
     if grid is not None and int(np.prod(grid)) > MAX_PIXELS:
         raise InputError(f"{path}: {grid[0]} x {grid[1]} pixels; at most {MAX_PIXELS} pixels are accepted")
-    try:
-        topography = info.topography()
-    except Exception as error:
-        raise InputError(f"{path}: heights cannot be read ({_first_line(error)}); is the file complete?") from None
+    topography = _heights(path, lambda: info.topography(**given))
     if not getattr(topography, "is_uniform", True):
         raise InputError(f"{path}: points are not on a regular grid; give a scan on a grid")
     try:
@@ -148,6 +253,32 @@ def _scan(path: Path, name: str, info: Any, note: str) -> Scan:
     lengths = tuple(float(s) for s in topography.physical_sizes)
     steps = (f"read channel {info.name}", note) if note else (f"read channel {info.name}",)
     return Scan(heights, (lengths[0], lengths[1]), name, steps)
+
+
+def _profile(path: Path, name: str, info: Any, stated_unit: str | None) -> Profile:
+    """Positions and heights of a line, by the unit of the file, of its columns, or of the scene."""
+    unit = info.unit or stated_unit
+    factors = (NM[unit], NM[unit]) if unit in NM else column_units(path, NM)
+    if factors is None:
+        raise InputError(
+            f"{path}: a profile without length unit; state it in topography.instruments "
+            f"(files: {path.name!r}, unit: um) or in the heads of its columns"
+        )
+    line = _heights(path, info.topography)
+    x, z = (np.ma.filled(np.ma.asarray(v, dtype=float), np.nan) for v in line.positions_and_heights())
+    try:
+        profile = profile_of(x * factors[0], z * factors[1], name)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    radius = stated_radius(info.info.get("instrument", {}).get("parameters", {}).get("tip_radius"))
+    return replace(profile, tip_radius_nm=radius, steps=(f"read channel {info.name}", *profile.steps))
+
+
+def _heights(path: Path, read: Callable[[], Any]) -> Any:
+    try:
+        return read()
+    except Exception as error:
+        raise InputError(f"{path}: heights cannot be read ({_first_line(error)}); is the file complete?") from None
 
 
 def write_gwy(path: str | Path, scan: Scan) -> None:

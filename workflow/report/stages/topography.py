@@ -6,6 +6,7 @@ import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SKY, SOFT, draw
+from workflow.report.measured_surface import describe_surface
 from workflow.report.numbers import SYMBOLS, number, show
 from workflow.report.page import SYNTHETIC, Section, Table
 
@@ -84,6 +85,7 @@ def describe(results: Results) -> Section | None:
         section.blocks.append(Table("Law of the measured scans, closing", header, lines))
         section.files += ["curves/scans.h5", "law/scans.csv"]
     section.gates += results.gate_of("topography", "topography/parameters.json")
+    describe_surface(results, parameters, section)
     return section
 
 

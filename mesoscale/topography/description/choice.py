@@ -1,0 +1,214 @@
+"""Which description of a surface is used, by which evidence, and what it hands on to the random surfaces."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mesoscale.settings import TopographySettings
+from mesoscale.topography.description.doubts import Doubt
+from mesoscale.topography.description.heights import HeightTest, common_heights, not_gaussian
+from mesoscale.topography.description.one_spectrum import OneSpectrum
+from mesoscale.topography.description.parameters import Topography, inputs
+from mesoscale.topography.roughness_spectrum import hurst_from_slope
+
+DESCRIPTIONS = {
+    "power_law": "plateau and power law of eq. 9, normal heights",
+    "measured_spectrum": "the measured spectrum with its band, normal heights",
+    "measured_heights": "the measured spectrum with its band, and the measured distribution of heights",
+}
+EXTENSION_DECADES = 1.0  # the last slope is carried on this far beyond what is measured
+END_DECADES = 0.5  # over which that slope is taken
+HURST_ENDS = (0.05, 1.95)  # of the bending exponent; it is a coordinate, the spectrum itself is the measured one
+SLOWEST_BEND, FASTEST_BEND = 0.02, 0.7  # of ln q0
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The description in use.
+
+    Attributes
+    ----------
+    name : a key of `DESCRIPTIONS`.
+    evidence : rows with `test`, `outcome` and `passed`, in the order they were asked.
+    overridden : the scene set it.
+    """
+
+    name: str
+    evidence: tuple[dict[str, Any], ...]
+    overridden: bool
+
+
+def choose(
+    topography: Topography, one: OneSpectrum | None, tests: Sequence[HeightTest], settings: TopographySettings
+) -> Choice:
+    """The first description that the measurements do not contradict, or the scene's."""
+    power_law = not topography.doubts
+    strange = not_gaussian(tests)
+    known = one is not None
+    if not tests:
+        heights = "no map of heights: not tested"
+    else:
+        heights = strange or f"as Gaussian surfaces of the same spectrum ({len(tests)} scans)"
+    evidence = (
+        {
+            "test": "spectrum has the shape of eq. 9",
+            "outcome": "; ".join(topography.reasons) or _fitted(topography),
+            "passed": power_law,
+        },
+        {
+            "test": "heights and highest point are a Gaussian surface's",
+            "outcome": heights,
+            "passed": not strange,
+        },
+        {
+            "test": "spectrum is measured band by band",
+            "outcome": f"{int((one.count > 0).sum())} bands of {one.first:.2g} to {one.q[-1]:.2g} /nm" if one else "no",
+            "passed": known,
+        },
+    )
+    if settings.description != "auto":
+        return Choice(settings.description, evidence, overridden=True)
+    if strange and known:
+        return Choice("measured_heights", evidence, overridden=False)
+    return Choice("power_law" if power_law or not known else "measured_spectrum", evidence, overridden=False)
+
+
+def _fitted(topography: Topography) -> str:
+    fitted = topography.likelihood
+    return f"misses the bands by {np.expm1(fitted.misfit):.0%} (RMS)" if fitted else ""
+
+
+def surface_of(
+    choice: Choice,
+    topography: Topography,
+    one: OneSpectrum | None,
+    quantiles: Sequence[np.ndarray],
+    settings: TopographySettings,
+    cell_nm: float,
+) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    """What random surfaces are made from: entries of `contact.surface`, and distributions of q0, hurst and rms.
+
+    With a measured spectrum the RMS height is that of the waves that fit on a cell of side `cell_nm`, and q0 and hurst
+    are coordinates that bend the spectrum about the eq. 9 nearest to it, as far as its band allows.
+    """
+    if choice.name == "power_law" or one is None:
+        return {}, inputs(topography, settings)
+    low = 2 * np.pi / cell_nm
+    drawn = one.draws(places=settings.ranges == "scatter")
+    ends = [(1 - settings.confidence) / 2, (1 + settings.confidence) / 2]
+    q, psd = _table(one, low)
+    rms = np.sqrt(one.moment(0, low=low, psd=drawn) + _tail(one, low))
+    pivot_q0, pivot_hurst = _nearest(topography, one, settings)
+    bend_q0, bend_hurst = _bends(one, pivot_q0, drawn, settings)
+    hurst = np.clip([pivot_hurst - bend_hurst, pivot_hurst + bend_hurst], *HURST_ENDS)
+    surface: dict[str, Any] = {
+        "spectrum": {"q": q.tolist(), "psd": psd.tolist(), "q0": pivot_q0, "hurst": pivot_hurst},
+        "heights": [],
+    }
+    if choice.name == "measured_heights" and len(quantiles):
+        surface["heights"] = list(common_heights(quantiles))
+    ranges = {
+        "q0": [pivot_q0 * np.exp(-bend_q0), pivot_q0 * np.exp(bend_q0)],
+        "hurst": hurst,
+        "rms": np.quantile(rms, ends),
+    }
+    rows = {name: {"distribution": "uniform", "a": float(a), "b": float(b)} for name, (a, b) in ranges.items()}
+    return surface, rows
+
+
+def _table(one: OneSpectrum, low: float) -> tuple[np.ndarray, np.ndarray]:
+    """The measured spectrum from the longest wave of a cell on, with its last slope carried on."""
+    q, psd = one.q, one.psd
+    slope = _end_slope(one)
+    beyond = one.q[-1] * 10 ** np.linspace(0.1, EXTENSION_DECADES, 10)
+    q, psd = np.concatenate([q, beyond]), np.concatenate([psd, psd[-1] * (beyond / one.q[-1]) ** slope])
+    if low > q[0]:  # longer waves do not fit on the cell
+        first = float(np.exp(np.interp(np.log(low), np.log(q), np.log(psd))))
+        q, psd = np.concatenate([[low], q[q > low]]), np.concatenate([[first], psd[q > low]])
+    return q, psd
+
+
+def _end_slope(one: OneSpectrum) -> float:
+    """Logarithmic slope of the end of the measured spectrum; at least as steep as keeps the RMS height finite."""
+    end = one.q > one.q[-1] * 10 ** -(END_DECADES + 0.01)
+    return min(float(np.polyfit(np.log(one.q[end]), one.log_psd[end], 1)[0]), -2.1)
+
+
+def _tail(one: OneSpectrum, low: float) -> float:
+    """Mean square height of the continuation, nm^2."""
+    slope, q, end = _end_slope(one), max(float(one.q[-1]), low), float(one.q[-1]) * 10**EXTENSION_DECADES
+    if end <= q:
+        return 0.0
+    scale = float(one.psd[-1]) * float(one.q[-1]) ** -slope
+    return 2 * np.pi * scale * (q ** (slope + 2) - end ** (slope + 2)) / -(slope + 2)
+
+
+def _nearest(topography: Topography, one: OneSpectrum, settings: TopographySettings) -> tuple[float, float]:
+    """q0 and Hurst exponent about which the spectrum is bent."""
+    fitted = topography.likelihood
+    if fitted is None:
+        return float(np.sqrt(one.q[0] * one.q[-1])), 0.8
+    hurst = float(np.clip(hurst_from_slope(fitted.slope, settings.convention), 0.2, 1.8))
+    return float(np.clip(fitted.q0, one.q[0], one.q[-1])), hurst
+
+
+def _bends(one: OneSpectrum, q0: float, drawn: np.ndarray, settings: TopographySettings) -> tuple[float, float]:
+    """How far ln q0 and the Hurst exponent may be from the pivot, at the settings' confidence."""
+    from scipy.special import ndtri
+
+    reach = float(ndtri(0.5 + settings.confidence / 2))
+    logs, log_q = np.log(drawn), np.log(one.q)
+    long, short = one.q <= q0, one.q >= q0
+    slopes = np.polyfit(log_q[short], logs[:, short].T, 1)[0] if short.sum() > 2 else np.array([-3.0, -3.4])
+    bend_hurst = max(reach * float(np.std(slopes)) / 2, 0.02)
+    fall = max(abs(float(np.mean(slopes))), 1.0)
+    if long.sum() > 1 and short.sum() > 2:
+        step = logs[:, short].mean(axis=1) - logs[:, long].mean(axis=1)
+        bend_q0 = reach * float(np.std(step)) / fall
+    else:
+        bend_q0 = 0.1
+    return float(np.clip(bend_q0, SLOWEST_BEND, FASTEST_BEND)), bend_hurst
+
+
+def description_doubts(
+    topography: Topography,
+    choice: Choice,
+    one: OneSpectrum | None,
+    attributes: Mapping[str, Mapping[str, Any]],
+    disagreements: Sequence[str],
+) -> list[Doubt]:
+    """Doubts of the measurements besides those of eq. 9, which only count where eq. 9 is used."""
+    doubts = []
+    for name, values in attributes.items():
+        share, skewness = (float(values.get(f"alignment_{key}", 0.0)) for key in ("share", "skewness"))
+        if share > MOST_ALIGNED or abs(skewness) > MOST_SKEWED:
+            text = (
+                f"{name}: aligning the scan lines by their medians took {share:.0%} of the RMS height and changed the "
+                f"skewness by {skewness:+.2f}"
+            )
+            remedy = "if the lines have no offsets, set topography.line_alignment to none"
+            doubts.append(Doubt("alignment_took_roughness", text, remedy, "rms"))
+        if values.get("radius_stated") is not None and not values["radius_stated"]:
+            text = f"{name}: neither scene nor file states the tip radius; taken is {values['tip_radius_nm']:g} nm"
+            doubts.append(Doubt("tip_not_stated", text, "state it in topography.instruments", "spectrum"))
+    for text in disagreements:
+        remedy = "check their units, height scales and places; the band of the spectrum holds both"
+        doubts.append(Doubt("measurements_disagree", text, remedy, "spectrum"))
+    bridged = (one.count == 0) & (np.cumsum(one.count) > 0) if one is not None else np.zeros(0, dtype=bool)
+    if one is not None and bridged.any():
+        gap = one.q[bridged]
+        text = f"nothing is measured from {gap[0]:.2g} to {gap[-1]:.2g} /nm; the spectrum is bridged there"
+        doubts.append(Doubt("gap", text, "add scans of the sizes between", "spectrum"))
+    if one is not None and len(one.names) == 1:
+        text = "one measurement: how much places differ is unknown, the ranges hold its own error only"
+        doubts.append(Doubt("one_place", text, "measure other places of the surface", "rms"))
+    if choice.name != "power_law" and topography.doubts:
+        text = f"eq. 9 does not describe this surface ({topography.doubts[0].text}); used: {DESCRIPTIONS[choice.name]}"
+        doubts.append(Doubt("no_power_law", text, "", "q0"))
+    return doubts
+
+
+MOST_SKEWED = 0.3  # skewness that aligning lines may add without a word
+MOST_ALIGNED = 0.1  # share of the RMS height that aligning lines may take without a word

@@ -1,0 +1,125 @@
+"""How the heights of scans are distributed, and whether a Gaussian surface of their spectrum has such heights."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesoscale.topography.height_synthesis import Z
+from mesoscale.topography.roughness_spectrum import SpectrumTable
+from mesoscale.topography.spectrum import radial_spectrum
+from mesoscale.topography.synthesis import synthesize_spectrum
+
+GAUSSIANS = 39  # surfaces that a scan is set beside
+SECTIONS, FRACTION = 9, 0.75
+MIN_SIGNIFICANCE = 2.0  # standard deviations of all scans together
+MIN_SKEWNESS, MIN_EXCESS, MIN_TALLER = 0.3, 0.15, 0.15  # smaller ones hardly change a contact
+TAIL = 1.0  # the last normal variable's width over which the tail's slope is fitted
+
+
+@dataclass(frozen=True)
+class HeightTest:
+    """Statistics of a scan's heights beside Gaussian surfaces of its own spectrum.
+
+    Attributes
+    ----------
+    skewness, kurtosis, highest : of the scan; highest point above the mean plane in units of the RMS height.
+    expected, spread : (3,) mean and standard deviation of the same on `GAUSSIANS` Gaussian surfaces.
+    """
+
+    name: str
+    skewness: float
+    kurtosis: float
+    highest: float
+    expected: np.ndarray
+    spread: np.ndarray
+
+    @property
+    def away(self) -> np.ndarray:
+        """(3,) distance from the Gaussian surfaces in their standard deviations."""
+        return (np.array([self.skewness, self.kurtosis, self.highest]) - self.expected) / self.spread
+
+
+def compare_heights(name: str, heights: np.ndarray, lengths_nm: tuple[float, float]) -> HeightTest:
+    """Set the central square of a scan's levelled heights (nx, ny; nm) beside Gaussian surfaces."""
+    n = min(heights.shape)
+    i, j = ((side - n) // 2 for side in heights.shape)
+    square = np.asarray(heights[i : i + n, j : j + n], dtype=float)
+    side = min(lengths_nm)
+    spectrum = radial_spectrum(square, (side, side), SECTIONS, FRACTION, flat=0.0)
+    psd = SpectrumTable(spectrum.q, spectrum.psd).psd
+    gaussian = np.array([moments(synthesize_spectrum(n, side, psd, 1.0, seed)) for seed in range(GAUSSIANS)])
+    skewness, kurtosis, highest = moments(square)
+    return HeightTest(name, skewness, kurtosis, highest, gaussian.mean(axis=0), gaussian.std(axis=0, ddof=1))
+
+
+def moments(heights: np.ndarray) -> tuple[float, float, float]:
+    """Skewness, kurtosis, and the highest point in units of the RMS height."""
+    z = heights - heights.mean()
+    z /= np.sqrt(np.mean(z**2))
+    return float(np.mean(z**3)), float(np.mean(z**4)), float(z.max())
+
+
+def not_gaussian(tests: Sequence[HeightTest]) -> str:
+    """In words what of the heights no Gaussian surface has; empty where nothing stands out.
+
+    A statistic stands out where the scans together are MIN_SIGNIFICANCE standard deviations away, and far enough to
+    change a contact.
+    """
+    if not tests:
+        return ""
+    together = np.sum([test.away for test in tests], axis=0) / np.sqrt(len(tests))
+    skewness, kurtosis, highest = (
+        np.mean([getattr(test, key) for test in tests]) for key in ("skewness", "kurtosis", "highest")
+    )
+    expected = np.mean([test.expected for test in tests], axis=0)
+    far = (
+        abs(skewness - expected[0]) > MIN_SKEWNESS,
+        abs(kurtosis - expected[1]) > MIN_EXCESS * expected[1],
+        abs(highest / expected[2] - 1) > MIN_TALLER,
+    )
+    words = (
+        f"skewness {skewness:.2f} where Gaussian surfaces have {expected[0]:.2f}",
+        f"kurtosis {kurtosis:.2f} where they have {expected[1]:.2f}",
+        f"highest point {highest:.2f} RMS where they reach {expected[2]:.2f}",
+    )
+    return "; ".join(
+        f"{word} ({away:+.1f} standard deviations)"
+        for word, away, enough in zip(words, together, far, strict=True)
+        if enough and abs(away) > MIN_SIGNIFICANCE
+    )
+
+
+def height_quantiles(heights: np.ndarray) -> np.ndarray:
+    """Heights of a scan in units of its RMS at each normal variable of `Z`, with the tails carried on straight."""
+    from scipy.special import ndtr
+
+    values = np.sort(heights, axis=None)
+    values = (values - values.mean()) / values.std()
+    count = len(values)
+    place = (np.arange(count) + 0.5) / count
+    table = np.interp(ndtr(Z), place, values)
+    for side in (1, -1):
+        end = _normal(1 - 0.5 / count)
+        outside, near = side * Z > end, (side * Z <= end) & (side * Z >= end - TAIL)
+        slope = max(np.polyfit(Z[near], table[near], 1)[0], 0.0)
+        edge = Z[near][-1] if side > 0 else Z[near][0]
+        start = table[near][-1] if side > 0 else table[near][0]
+        table[outside] = start + slope * (Z[outside] - edge)
+    return np.maximum.accumulate(table)
+
+
+def common_heights(quantiles: Sequence[np.ndarray]) -> tuple[float, ...]:
+    """The height map of a surface from those of its scans (each (len(Z),)), of mean 0 and variance 1."""
+    table = np.mean(quantiles, axis=0)
+    density = np.exp(-(Z**2) / 2)
+    density /= density.sum()
+    table = table - np.sum(density * table)
+    table /= np.sqrt(np.sum(density * table**2))
+    return tuple(float(value) for value in np.round(table, 6))
+
+
+def _normal(probability: float) -> float:
+    from scipy.special import ndtri
+
+    return float(ndtri(probability))

@@ -1,0 +1,250 @@
+"""One spectrum of a surface over all scales, from everything that was measured on it.
+
+Each measurement gives ln C on common bands of log q. Places differ, and so do instruments: measurement k is the
+surface's spectrum f times a factor of its own, ln C_kb = f_b + a_k + error, with a_k of an unknown variance. This
+mixed linear model (Henderson 1975, doi:10.2307/2529430) joins ranges that merely overlap without a jump where one
+begins or ends; the variance is found by expectation maximisation. Changes of the logarithmic slope from band to band
+are held small, which carries f over a gap between instruments with an uncertainty that grows into it.
+"""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mesoscale.errors import InputError
+from mesoscale.topography.description.likelihood import DISCREPANCY, TrustedSpectrum, with_ends
+
+BANDS_PER_DECADE = 10
+CONVERSION = 0.15  # error of ln C of a line profile that no averaging removes: isotropy and smoothing are assumed
+DIFFERENT_FILMS = 100.0  # ratio of C, a factor of 10 in RMS height, beyond which two files are not of one surface
+KINK = 0.35  # standard deviation of the change of slope times the band's width, from band to band
+DRAWS = 500
+ROUNDS = 200
+
+
+@dataclass(frozen=True)
+class Overlap:
+    """Two measurements where both see the surface.
+
+    Attributes
+    ----------
+    first, second : their names.
+    low, high : shared wave vectors, 1/nm.
+    ratio : C of the second over that of the first, geometric mean over the shared bands.
+    expected : factor within which they should agree, by their own errors alone, at 90 %.
+    """
+
+    first: str
+    second: str
+    low: float
+    high: float
+    ratio: float
+    expected: float
+
+    @property
+    def agrees(self) -> bool:
+        """Do they agree within their own errors?"""
+        return bool(max(self.ratio, 1 / self.ratio) <= self.expected)
+
+
+@dataclass(frozen=True)
+class OneSpectrum:
+    """The spectrum of a surface on bands.
+
+    Attributes
+    ----------
+    q : (m,) centres of the bands, 1/nm, from waves twice as long as the longest measurement on.
+    log_psd : (m,) ln C of the typical place, C in nm^4.
+    covariance : (m, m) of log_psd.
+    place_sd : standard deviation of ln C between places and instruments, common to all bands; 0 for one measurement.
+    count : (m,) measurements behind each band; 0 in a gap between instruments and before the first.
+    names : measurements that take part.
+    """
+
+    q: np.ndarray
+    log_psd: np.ndarray
+    covariance: np.ndarray
+    place_sd: float
+    count: np.ndarray
+    names: tuple[str, ...]
+
+    @property
+    def psd(self) -> np.ndarray:
+        """(m,) C of the typical place, nm^4."""
+        return np.exp(self.log_psd)
+
+    @property
+    def log_sd(self) -> np.ndarray:
+        """(m,) standard deviation of ln C of the typical place."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def first(self) -> float:
+        """Smallest wave vector that is measured, 1/nm."""
+        return float(self.q[self.count > 0][0])
+
+    def band(self, confidence: float) -> tuple[np.ndarray, np.ndarray]:
+        """(m,) lower and upper end of C of the typical place, nm^4."""
+        reach = _quantile(confidence) * self.log_sd
+        return np.exp(self.log_psd - reach), np.exp(self.log_psd + reach)
+
+    def draws(self, places: bool, count: int = DRAWS) -> np.ndarray:
+        """(count, m) spectra C in nm^4 that the measurements allow: of the typical place, or of a place anywhere."""
+        rng = np.random.default_rng(0)  # the same draws whenever they are asked for
+        values, vectors = np.linalg.eigh(self.covariance)
+        factor = vectors * np.sqrt(np.maximum(values, 0.0))
+        logs = self.log_psd + rng.standard_normal((count, len(self.q))) @ factor.T
+        if places:
+            logs += self.place_sd * rng.standard_normal((count, 1))
+        return np.exp(logs)
+
+    def moment(self, power: int, low: float = 0.0, high: float = np.inf, psd: np.ndarray | None = None) -> np.ndarray:
+        """Integral of 2 pi q C q^power over low .. high (1/nm) for spectra (..., m); C is flat below the first band.
+
+        Power 0 is the mean square height (nm^2), 2 the mean square slope, 4 that of the Laplacian (1/nm^2).
+        """
+        psd = self.psd if psd is None else psd
+        edges = np.concatenate([[max(low, 0.0)], [v for v in self.q if low < v < high], [min(high, self.q[-1])]])
+        if edges[-1] <= edges[0]:
+            return np.zeros(psd.shape[:-1])
+        fine = np.unique(
+            np.concatenate([np.geomspace(max(a, 1e-12), b, 9) for a, b in itertools.pairwise(edges) if b > a])
+        )
+        place = np.interp(np.log(fine), np.log(self.q), np.arange(len(self.q)))
+        left = np.clip(place.astype(int), 0, len(self.q) - 2)
+        share = place - left
+        logs = np.log(psd)
+        values = np.exp(logs[..., left] * (1 - share) + logs[..., left + 1] * share)
+        below = 2 * np.pi * psd[..., 0] * fine[0] ** (power + 2) / (power + 2) if low == 0 else 0.0
+        return np.trapezoid(2 * np.pi * fine ** (power + 1) * values, fine, axis=-1) + below
+
+    def statistics(self, confidence: float) -> dict[str, dict[str, Any]]:
+        """RMS height, slope and curvature of all waves that are measured, with intervals of the typical place.
+
+        Curvature is half the RMS Laplacian, the mean of both principal ones.
+        """
+        ends = [(1 - confidence) / 2, (1 + confidence) / 2]
+        drawn, first = self.draws(places=False), self.first
+        result = {}
+        for name, power, factor, unit in (("rms", 0, 1.0, "nm"), ("slope", 2, 1.0, "1"), ("curvature", 4, 0.5, "1/nm")):
+            value = factor * float(np.sqrt(self.moment(power, first)))
+            low, high = np.quantile(factor * np.sqrt(self.moment(power, first, psd=drawn)), ends)
+            result[f"rms_{name}" if name != "rms" else "rms_height"] = {
+                "value": value,
+                "interval": [float(low), float(high)],
+                "unit": unit,
+            }
+        return result
+
+
+def merge(spectra: Sequence[TrustedSpectrum]) -> OneSpectrum | None:
+    """The spectrum behind all measurements; None where none has two bands to offer."""
+    measured = [(item.name, *_on_bands(item)) for item in spectra]
+    measured = [entry for entry in measured if len(entry[1])]
+    if sum(len(entry[1]) for entry in measured) < 4:
+        return None
+    seen = np.concatenate([entry[1] for entry in measured])
+    # waves twice as long as the longest measurement still tilt and bow it
+    names = {entry[0] for entry in measured}
+    longest = min(item.spectrum.spacing for item in spectra if item.name in names) / 2
+    bands = np.arange(min(seen.min(), int(np.floor(np.log10(longest) * BANDS_PER_DECADE))), seen.max() + 1)
+    index = np.concatenate([np.searchsorted(bands, entry[1]) for entry in measured])
+    values = np.concatenate([entry[2] for entry in measured])
+    weight = 1 / np.concatenate([entry[3] for entry in measured])
+    owner = np.concatenate([np.full(len(entry[1]), k) for k, entry in enumerate(measured)])
+    m, places = len(bands), len(measured)
+    system = np.zeros((len(values), m + places))
+    system[np.arange(len(values)), index] = 1.0
+    system[np.arange(len(values)), m + owner] = 1.0
+    normal, right = system.T @ (weight[:, None] * system), system.T @ (weight * values)
+    bends = np.diff(np.eye(m), 2, axis=0) / KINK
+    normal[:m, :m] += bends.T @ bends
+    shared = np.bincount(index, minlength=m) > 1
+    variance = 0.1 if shared.any() else 0.0
+    for _ in range(ROUNDS):
+        penalty = np.zeros(m + places)
+        penalty[m:] = 1 / max(variance, 1e-6)
+        covariance = np.linalg.inv(normal + np.diag(penalty))
+        solution = covariance @ right
+        if variance == 0:
+            break
+        offsets = solution[m:]
+        new = float(np.mean(offsets**2 + np.diag(covariance)[m:]))
+        if abs(new - variance) < 1e-6 * variance + 1e-9:
+            break
+        variance = new
+    centres = 10 ** ((bands + 0.5) / BANDS_PER_DECADE)
+    return OneSpectrum(
+        centres,
+        solution[:m],
+        covariance[:m, :m],
+        float(np.sqrt(variance)),
+        np.sum([(bands >= entry[1][0]) & (bands <= entry[1][-1]) for entry in measured], axis=0),
+        tuple(entry[0] for entry in measured),
+    )
+
+
+def _on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Numbers of the bands that a measurement reaches, ln C at their centres, and its variance."""
+    inside, corrected, error = with_ends(item)
+    nothing = np.empty(0, dtype=int), np.empty(0), np.empty(0)
+    if inside.sum() < 3:
+        return nothing
+    q, psd, modes = item.spectrum.q[inside], corrected[inside], item.spectrum.modes[inside]
+    grid = np.floor(np.log10(q) * BANDS_PER_DECADE).astype(int)
+    numbers, index = np.unique(grid, return_inverse=True)
+    worth = np.bincount(index, modes)
+    centre = np.bincount(index, modes * np.log(q)) / worth
+    level = np.log(np.bincount(index, modes * psd) / worth)
+    if len(numbers) < 2:
+        return nothing
+    wanted = (numbers + 0.5) / BANDS_PER_DECADE * np.log(10)
+    # a band that is only half covered is read at its centre along the measurement's own slope
+    slope = np.gradient(level, centre)
+    floor = DISCREPANCY if not item.spectrum.sharp else CONVERSION
+    tip = np.bincount(index, modes * error[inside]) / worth
+    return numbers, level + slope * (wanted - centre), 1 / worth + floor**2 + tip**2
+
+
+def overlaps(spectra: Sequence[TrustedSpectrum], confidence: float = 0.9) -> list[Overlap]:
+    """Every pair of measurements of different size or kind that sees common bands, the largest shared range first."""
+    bands = [(item, *_on_bands(item)) for item in spectra]
+    pairs = []
+    for i, (first, numbers, level, variance) in enumerate(bands):
+        for second, other, other_level, other_variance in bands[i + 1 :]:
+            common, a, b = np.intersect1d(numbers, other, return_indices=True)
+            if len(common) == 0:
+                continue
+            weight = 1 / (variance[a] + other_variance[b])
+            difference = float(np.sum(weight * (other_level[b] - level[a])) / weight.sum())
+            # errors of neighbouring bands go together: no more certain than a typical band
+            spread = float(np.sqrt(1 / weight.mean()))
+            edges = 10 ** (np.array([common[0], common[-1] + 1]) / BANDS_PER_DECADE)
+            expected = float(np.exp(_quantile(confidence) * spread))
+            pairs.append(Overlap(first.name, second.name, edges[0], edges[1], float(np.exp(difference)), expected))
+    return sorted(pairs, key=lambda item: item.low / item.high)
+
+
+def refuse_different_films(pairs: Sequence[Overlap]) -> None:
+    """Refuse measurements that cannot be of one surface.
+
+    Raises
+    ------
+    InputError : naming the two that differ most.
+    """
+    worst = max(pairs, key=lambda pair: abs(np.log(pair.ratio)), default=None)
+    if worst is not None and max(worst.ratio, 1 / worst.ratio) > DIFFERENT_FILMS * worst.expected:
+        raise InputError(
+            f"topography.scans: {worst.first} and {worst.second} cannot be one surface: between {worst.low:.2g} and "
+            f"{worst.high:.2g} /nm their spectra differ by a factor of {max(worst.ratio, 1 / worst.ratio):.3g}; "
+            f"accepted is {DIFFERENT_FILMS:g}; give the files of one film, or correct a unit or a height scale"
+        )
+
+
+def _quantile(confidence: float) -> float:
+    from scipy.special import ndtri
+
+    return float(ndtri(0.5 + confidence / 2))

@@ -1,0 +1,105 @@
+"""Heights along a line, as a stylus or a side view in an electron microscope gives them, made ready for a spectrum."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from mesoscale.checks import MAX_LENGTH_NM, MIN_LENGTH_NM, check_number, checked_array
+from mesoscale.errors import InputError
+from mesoscale.settings import TopographySettings
+
+MIN_POINTS = 64
+MAX_POINTS = 4_000_000
+MAX_STEP = 8.0  # largest gap between points over their mean distance that is bridged by a straight line
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Heights measured at even steps along a line.
+
+    Attributes
+    ----------
+    heights_nm : (n,) heights.
+    length_nm : n times the step.
+    name : what messages and results call the profile.
+    resampled : the points were not at even steps and were interpolated.
+    bow : the instrument's own bow is part of the heights, so that a parabola is taken off.
+    tip_radius_nm : as the file states it; None where it does not.
+    steps : what has been done to the heights so far, in order, in words.
+    """
+
+    heights_nm: np.ndarray
+    length_nm: float
+    name: str
+    resampled: bool = False
+    bow: bool = False
+    tip_radius_nm: float | None = None
+    steps: tuple[str, ...] = field(default=())
+
+    def __post_init__(self):
+        heights = checked_array(f"{self.name}: heights_nm", self.heights_nm, "nm")
+        if heights.ndim != 1:
+            raise InputError(f"{self.name}: heights_nm has shape {heights.shape}; accepted is a line (n,)")
+        check_number(f"{self.name}: length_nm", self.length_nm, MIN_LENGTH_NM, MAX_LENGTH_NM, "nm")
+
+    @property
+    def step_nm(self) -> float:
+        """Distance of neighbouring points."""
+        return self.length_nm / len(self.heights_nm)
+
+    @property
+    def rms_nm(self) -> float:
+        """RMS height about the mean."""
+        return float(np.std(self.heights_nm))
+
+
+def profile_of(positions_nm: np.ndarray, heights_nm: np.ndarray, name: str) -> Profile:
+    """A profile at even steps from points (n,) in any order.
+
+    Uneven points are joined by straight lines and read at their mean distance.
+
+    Raises
+    ------
+    InputError : too few points, points without extent, or a hole among them.
+    """
+    count = len(positions_nm)
+    if not MIN_POINTS <= count <= MAX_POINTS:
+        raise InputError(f"{name}: a line of {count} points; accepted are {MIN_POINTS} .. {MAX_POINTS}")
+    known = np.isfinite(positions_nm) & np.isfinite(heights_nm)
+    order = np.argsort(positions_nm[known], kind="stable")
+    x, z = positions_nm[known][order], heights_nm[known][order]
+    if len(x) < MIN_POINTS or x[-1] <= x[0]:
+        raise InputError(f"{name}: {len(x)} points with a position and a height; at least {MIN_POINTS} are needed")
+    gaps = np.diff(x)
+    step = (x[-1] - x[0]) / (len(x) - 1)
+    if gaps.max() > MAX_STEP * step:
+        raise InputError(
+            f"{name}: a hole of {gaps.max():.3g} nm between points that are {step:.3g} nm apart; "
+            "give the longer part alone"
+        )
+    # text files round positions: a step that is even to 1 % is even
+    even = np.abs(gaps - step).max() < 0.01 * step + 1e-4 * (x[-1] - x[0]) / len(x)
+    rounded = np.abs(x - (x[0] + step * np.arange(len(x)))).max() < 0.05 * step
+    if even or rounded:
+        return Profile(z, len(x) * step, name)
+    heights = np.interp(x[0] + step * np.arange(len(x)), x, z)
+    note = f"read at even steps of {step:.3g} nm between {len(x)} uneven points"
+    return Profile(heights, len(x) * step, name, resampled=True, steps=(note,))
+
+
+def clean_profile(profile: Profile, settings: TopographySettings) -> Profile:
+    """Subtract a line, or a parabola where the instrument bows; the step is recorded.
+
+    Raises
+    ------
+    InputError : all heights are the same.
+    """
+    if np.ptp(profile.heights_nm) == 0:
+        raise InputError(f"{profile.name}: all heights are equal; this is no measurement of a surface")
+    heights, steps = profile.heights_nm - profile.heights_nm.mean(), profile.steps
+    if settings.detrend != "none":
+        order = 2 if profile.bow or settings.detrend == "quadratic" else 1
+        x = np.linspace(-1, 1, len(heights))
+        heights = heights - np.polynomial.Polynomial.fit(x, heights, order)(x)
+        steps = (*steps, f"subtracted a {'line' if order == 1 else 'parabola'}")
+    return replace(profile, heights_nm=heights, steps=steps)

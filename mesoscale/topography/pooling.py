@@ -1,0 +1,132 @@
+"""From the records of all measurements to the parameters, the description and the curves of the surface."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mesoscale.settings import TopographySettings
+from mesoscale.topography.curves import fit_curves, pooled_curve
+from mesoscale.topography.description.choice import Choice, choose, description_doubts, surface_of
+from mesoscale.topography.description.doubts import Doubt
+from mesoscale.topography.description.heights import HeightTest, compare_heights
+from mesoscale.topography.description.likelihood import TrustedSpectrum
+from mesoscale.topography.description.one_spectrum import OneSpectrum, Overlap, merge, overlaps, refuse_different_films
+from mesoscale.topography.description.parameters import Topography, analyse
+from mesoscale.topography.records import is_profile, trusted_record
+from mesoscale.topography.roughness_spectrum import RoughSpectrum
+from mesoscale.topography.spectrum import Spectrum
+
+ENDS = ("spacing", "nyquist")
+
+
+@dataclass(frozen=True)
+class Pooled:
+    """All that the measurements say of their surface.
+
+    Attributes
+    ----------
+    spectra : of each measurement, shortest first.
+    one : the spectrum over all scales; None where there is not enough for one.
+    tests : of the heights of each scan.
+    pairs : measurements that see common bands.
+    surface, rows : entries of `contact.surface`, distributions of q0, hurst and rms.
+    doubts : those that touch what is used.
+    """
+
+    spectra: list[TrustedSpectrum]
+    topography: Topography
+    one: OneSpectrum | None
+    tests: list[HeightTest]
+    pairs: list[Overlap]
+    choice: Choice
+    surface: dict[str, Any]
+    rows: dict[str, dict[str, Any]]
+    doubts: list[Doubt]
+
+
+def pool(
+    arrays: Mapping[str, Mapping[str, np.ndarray]],
+    attributes: Mapping[str, Mapping[str, Any]],
+    settings: TopographySettings,
+    cell_nm: float,
+) -> Pooled:
+    """Describe the surface behind all records.
+
+    Parameters
+    ----------
+    arrays, attributes : records by name (`records.record`).
+    cell_nm : side of the surfaces that the contact model will make.
+
+    Raises
+    ------
+    InputError : measured files that cannot be of one surface.
+    """
+    spectra = [trusted_record(name, data, attributes[name], settings) for name, data in arrays.items()]
+    topography = analyse(spectra, settings)
+    pairs = overlaps(spectra, settings.confidence)
+    if settings.scans:
+        refuse_different_films(pairs)
+    one = merge(spectra)
+    tests = [
+        compare_heights(
+            name,
+            data["heights"],
+            (float(attributes[name]["length_x_nm"]), float(attributes[name]["length_y_nm"])),
+        )
+        for name, data in arrays.items()
+        if not is_profile(attributes[name]) and np.ptp(data["heights"]) > 0
+    ]
+    choice = choose(topography, one, tests, settings)
+    quantiles = [data["quantiles"] for data in arrays.values() if "quantiles" in data]
+    surface, rows = surface_of(choice, topography, one, quantiles, settings, cell_nm)
+    apart = _disagreements(pairs, one) if settings.scans else []
+    doubts = description_doubts(topography, choice, one, attributes, apart) if settings.scans else []
+    if choice.name == "power_law":
+        doubts = [*topography.doubts, *doubts]
+    else:
+        doubts = [*(doubt for doubt in topography.doubts if doubt.fatal), *doubts]
+    return Pooled(spectra, topography, one, tests, pairs, choice, surface, rows, doubts)
+
+
+def _disagreements(pairs: Sequence[Overlap], one: OneSpectrum | None) -> list[str]:
+    """In words the measurements of different size or instrument that differ by more than places do."""
+    between = 1.645 * np.sqrt(2) * one.place_sd if one else 0.0
+    worst = [pair for pair in pairs if abs(np.log(pair.ratio)) > np.hypot(np.log(pair.expected), between)]
+    worst.sort(key=lambda pair: -abs(np.log(pair.ratio)))
+    return [
+        f"{pair.first} and {pair.second} differ by a factor of {max(pair.ratio, 1 / pair.ratio):.2g} in C from "
+        f"{pair.low:.2g} to {pair.high:.2g} /nm, expected is {pair.expected:.2g}"
+        for pair in worst[:3]
+    ]
+
+
+def result_curves(
+    pooled: Pooled,
+    arrays: Mapping[str, Mapping[str, np.ndarray]],
+    attributes: Mapping[str, Mapping[str, Any]],
+    settings: TopographySettings,
+    typical: RoughSpectrum | None,
+) -> dict[str, dict[str, np.ndarray]]:
+    """Groups of curves over q for spectra.h5; units and meanings stand in `curves.CURVES`."""
+    flat = [
+        Spectrum(data["flat_q"], data["flat_psd"], data["flat_modes"], *(attributes[name][key] for key in ENDS))
+        for name, data in arrays.items()
+        if "flat_q" in data
+    ]
+    lowest = min(item.spectrum.q[0] for item in pooled.spectra)
+    groups = {"pooled": pooled_curve([item.spectrum for item in pooled.spectra])}
+    if flat:
+        groups["pooled_flat"] = pooled_curve(flat)
+    groups["fits"] = dict(fit_curves(pooled.topography, lowest, typical))
+    if pooled.one is not None and settings.scans:
+        low, high = pooled.one.band(settings.confidence)
+        groups["one_spectrum"] = {
+            "q": pooled.one.q,
+            "psd": pooled.one.psd,
+            "band_low": low,
+            "band_high": high,
+            "measurements": pooled.one.count,
+        }
+    return groups

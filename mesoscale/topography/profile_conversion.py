@@ -1,0 +1,148 @@
+"""From the spectrum along a line to the two-dimensional one of an isotropic surface.
+
+A line across an isotropic surface of spectrum C(q) has the spectrum (Nayak 1971, doi:10.1115/1.3451608; Jacobs, Junge
+and Pastewka 2017, doi:10.1088/2051-672X/aa51f8)
+
+    C1(k) = integral of C(sqrt(k^2 + p^2)) over all p = 2 integral_k^inf C(q) q dq / sqrt(q^2 - k^2),
+
+nm^3 at k in 1/nm. Its inverse takes a derivative of noisy data, and what a power law turns into, a factor, fails on a
+plateau. So C is sought instead whose C1 fits: straight between nodes in log q and log C, by Whittle's (Gamma)
+likelihood, with changes of the logarithmic slope from node to node held small.
+"""
+
+import numpy as np
+
+from mesoscale.topography.measurements.profiles import Profile
+from mesoscale.topography.spectrum import FLOOR, Spectrum, flat_window
+
+NODES_PER_DECADE = 10
+BINS_PER_DECADE = 20
+KINK = 0.35  # standard deviation of the change of slope times the node distance, from node to node
+SLOPE, SLOPE_SD = -0.75, 1.5  # what the logarithmic slope may be where a line hardly determines it (its plateau)
+SLOPE_REACH = 5  # nodes that share one such slope
+TAIL_DECADES = 1.5  # C is continued this far beyond the data, because short waves lift C1 everywhere
+QUADRATURE = 160
+ROUNDS = 60
+HANN_COVER = 18 / 35  # independent modes per wave number under a Hann window, (sum w^2)^2 / (n sum w^4)
+
+
+def line_spectrum(profile: Profile) -> tuple[np.ndarray, np.ndarray]:
+    """Spectrum along a levelled profile, Hann window: k (m,) in 1/nm and C1 (m,) in nm^3.
+
+    The sum of C1 2 pi / L over positive and negative k is the mean square height.
+    """
+    n = len(profile.heights_nm)
+    window = flat_window(n, 0.0)
+    z = np.fft.rfft((profile.heights_nm - profile.heights_nm.mean()) * window)
+    c1 = np.abs(z) ** 2 * profile.step_nm**2 / (2 * np.pi * profile.length_nm * np.mean(window**2))
+    k = 2 * np.pi * np.fft.rfftfreq(n, profile.step_nm)
+    last = n // 2 if n % 2 == 0 else len(k)  # at an even Nyquist number there is half a mode
+    return k[1:last], np.maximum(c1[1:last], FLOOR)
+
+
+def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
+    """Two-dimensional spectrum of the isotropic surface that a levelled profile runs across.
+
+    Parameters
+    ----------
+    low, high : wave vectors between which the profile is trusted, 1/nm; others do not enter.
+
+    Returns
+    -------
+    spectrum : at nodes even in log q between these; `modes` is what its error is worth, the smoothing's share of
+        the information left out.
+    """
+    k, c1 = line_spectrum(profile)
+    step = 2 * np.pi / profile.length_nm
+    inside = (k >= low) & (k <= high)
+    k, c1 = k[inside], c1[inside]
+    c1 = c1 / _blur(k, c1, step)
+    bins, modes, means = _binned(k, c1)
+    distance = np.log(10) / NODES_PER_DECADE
+    count = max(4, int(np.ceil(np.log(bins[-1] / bins[0]) / distance)) + 1)
+    tail = int(TAIL_DECADES * NODES_PER_DECADE)
+    nodes = np.log(bins[0]) + distance * np.arange(count + tail)
+    heights, covariance = _solve(nodes, bins, means, modes)
+    keep = (nodes >= np.log(low) - 1e-9) & (nodes <= np.log(high) + 1e-9)
+    variance = np.diag(covariance)[keep]
+    worth = 1 / variance
+    worth *= min(1.0, modes.sum() / worth.sum())
+    nyquist = np.pi / profile.step_nm
+    return Spectrum(np.exp(nodes[keep]), np.exp(heights[keep]), worth, step, nyquist, sharp=True)
+
+
+def projected(q: np.ndarray, psd: np.ndarray, k: np.ndarray) -> np.ndarray:
+    """C1 (nm^3) at k (1/nm) of a spectrum given by points (q in 1/nm, C in nm^4), zero beyond the last."""
+    at, weight = _points(k, float(q[-1]))
+    return np.sum(weight * np.exp(np.interp(np.log(at), np.log(q), np.log(psd))), axis=1)
+
+
+def _points(k: np.ndarray, end: float) -> tuple[np.ndarray, np.ndarray]:
+    """Where C is read for C1 at each k (m,), and with which weight: (m, QUADRATURE) each; q = k cosh t."""
+    reach = np.arccosh(np.maximum(end / k, 1 + 1e-9))
+    t, w = np.polynomial.legendre.leggauss(QUADRATURE)
+    t = 0.5 * (t + 1)[None, :] * reach[:, None]
+    at = k[:, None] * np.cosh(t)
+    return at, at * w[None, :] * reach[:, None]  # 2 * (reach / 2)
+
+
+def _binned(k: np.ndarray, c1: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Bins even in log k: mean k, independent modes and mean C1 of each."""
+    grid = np.floor(np.log10(k) * BINS_PER_DECADE).astype(int)
+    _, index = np.unique(grid, return_inverse=True)
+    count = np.bincount(index)
+    centre = np.exp(np.bincount(index, np.log(k)) / count)
+    return centre, np.maximum(count * HANN_COVER, 0.5), np.bincount(index, c1) / count
+
+
+def _blur(k: np.ndarray, c1: np.ndarray, step: float) -> np.ndarray:
+    """What the window adds to a falling spectrum: it spreads each wave number by a variance of a third."""
+    slope = np.clip(-np.polyfit(np.log(k), np.log(c1), 1)[0], 0.0, 6.0) if len(k) > 3 else 0.0
+    return 1 + slope * (slope + 1) / 6 * (step / k) ** 2
+
+
+def _solve(nodes: np.ndarray, k: np.ndarray, c1: np.ndarray, modes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """ln C at the nodes (ln q) with its covariance, by damped Fisher scoring."""
+    at, weight = _points(k, float(np.exp(nodes[-1])))
+    place = (np.log(at) - nodes[0]) / (nodes[1] - nodes[0])
+    left = np.clip(place.astype(int), 0, len(nodes) - 2)
+    right_share = np.clip(place - left, 0.0, 1.0)
+    bends = np.diff(np.eye(len(nodes)), 2, axis=0) / KINK
+    rise = np.diff(np.eye(len(nodes)), axis=0) / (nodes[1] - nodes[0])
+    prior = bends.T @ bends + rise.T @ rise / (SLOPE_SD**2 * SLOPE_REACH)
+    pull = rise.sum(axis=0) * SLOPE / (SLOPE_SD**2 * SLOPE_REACH)
+    rows = np.repeat(np.arange(len(k)), at.shape[1])
+
+    def model(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        c = weight * np.exp(y[left] * (1 - right_share) + y[left + 1] * right_share)
+        mean = c.sum(axis=1)
+        slope = np.zeros((len(k), len(y)))
+        np.add.at(slope, (rows, left.ravel()), (c * (1 - right_share)).ravel())
+        np.add.at(slope, (rows, left.ravel() + 1), (c * right_share).ravel())
+        return mean, slope / mean[:, None]
+
+    def cost(y: np.ndarray, mean: np.ndarray) -> float:
+        return float(np.sum(modes * (c1 / mean + np.log(mean))) + 0.5 * y @ prior @ y - pull @ y)
+
+    # start from a power law: C = C1 / (2 k) to a factor of order one
+    fall = np.polyfit(np.log(k), np.log(c1), 1)
+    y = np.polyval(fall, nodes) - nodes - np.log(2)
+    mean, slope = model(y)
+    for _ in range(ROUNDS):
+        gradient = slope.T @ (modes * (c1 / mean - 1)) - prior @ y + pull
+        information = slope.T @ (modes[:, None] * slope) + prior
+        move = np.linalg.solve(information + 1e-9 * np.eye(len(y)), gradient)
+        size, before = 1.0, cost(y, mean)
+        while size > 1e-4:
+            trial = y + size * move
+            trial_mean, trial_slope = model(trial)
+            if cost(trial, trial_mean) <= before:
+                break
+            size /= 2
+        done = size <= 1e-4 or float(np.abs(size * move).max()) < 1e-6
+        if size > 1e-4:
+            y, mean, slope = trial, trial_mean, trial_slope
+        if done:
+            break
+    information = slope.T @ (modes[:, None] * slope) + prior
+    return y, np.linalg.inv(information + 1e-9 * np.eye(len(y)))

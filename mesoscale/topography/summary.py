@@ -1,0 +1,222 @@
+"""The content of topography/parameters.json: what is known of the surface, by name."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from mesoscale.errors import InputError
+from mesoscale.settings import TopographySettings
+from mesoscale.topography.analysis import trusted_scan
+from mesoscale.topography.description.choice import DESCRIPTIONS
+from mesoscale.topography.description.likelihood import TrustedSpectrum
+from mesoscale.topography.description.parameters import Topography, analyse, inputs
+from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.pooling import Pooled
+from mesoscale.topography.roughness_spectrum import hurst_from_slope, mean_square
+
+UNITS = {"q0": "1/nm", "slope": "1", "hurst": "1", "rms": "nm"}
+TIP_RADIUS_ERROR = 0.2  # relative, of a stated radius; it moves the wave vector at which the tip ends the range
+
+
+def measure_roughness(scans: Sequence[Scan], settings: TopographySettings | None = None) -> dict[str, Any]:
+    """Roll-off wave vector q0 (1/nm), Hurst exponent and RMS height (nm) of raw scans of one surface.
+
+    Returns
+    -------
+    content : as topography/parameters.json: `estimates` by name with value, interval and scatter, `inputs` (what the
+        table of inputs takes) and `gate` (`passed`, `reasons`: why not to trust them).
+
+    Raises
+    ------
+    InputError : no scan, or one that cannot be used.
+    """
+    settings = settings or TopographySettings()
+    if not scans:
+        raise InputError("scans: none given; at least one is needed")
+    topography = analyse([trusted_scan(scan, settings) for scan in scans], settings)
+    return eq9_parameters(topography, [], settings, None)
+
+
+def scan_rows(
+    spectra: Sequence[TrustedSpectrum],
+    topography: Topography,
+    attributes: Mapping[str, Mapping[str, Any]],
+    truth: Mapping[str, Any] | None,
+) -> list[dict[str, Any]]:
+    """One row per scan: size, RMS from heights and from the spectrum, trusted range and what limits it."""
+    spectrum_rms = {}
+    fitted = topography.likelihood
+    if fitted is not None:
+        used = [item.name for item in spectra if item.trusted.sum() >= 3]
+        spectrum_rms = dict(zip(used, fitted.scan_rms(topography.cutoff), strict=True))
+    rows = []
+    for item in spectra:
+        loaded = attributes[item.name]
+        line = "length_y_nm" not in loaded
+        row = {
+            "name": item.name,
+            "file": loaded["file"],
+            "sha256": loaded["sha256"],
+            "length_nm": loaded["length_x_nm"] if line else min(loaded["length_x_nm"], loaded["length_y_nm"]),
+            "pixels": f"{loaded['pixels_x']}" if line else f"{loaded['pixels_x']} x {loaded['pixels_y']}",
+            "rms_heights_nm": loaded["rms_nm"],
+            "rms_spectrum_nm": spectrum_rms.get(item.name, float("nan")),
+            "trusted_low": item.low,
+            "trusted_high": item.high,
+            "limit": item.limit,
+            "steps": loaded["steps"],
+        }
+        if line:
+            row["kind"] = "profile"
+        if "tip_radius_nm" in loaded:
+            row["tip_radius_nm"] = loaded["tip_radius_nm"]
+        if truth is not None:
+            row["true_rms_nm"] = truth["scans"][item.name]["rms_nm"]
+        rows.append(row)
+    return rows
+
+
+def parameters(
+    pooled: Pooled, rows: Sequence[Mapping[str, Any]], settings: TopographySettings, truth: Mapping[str, Any] | None
+) -> dict[str, Any]:
+    """Content of topography/parameters.json."""
+    content = eq9_parameters(pooled.topography, rows, settings, truth)
+    doubts = pooled.doubts
+    used = pooled.choice.name
+    stopping = [doubt for doubt in doubts if doubt.fatal or (used == "power_law" and doubt in pooled.topography.doubts)]
+    passed = bool(pooled.rows) and (not stopping or settings.on_doubt == "warn")
+    content["description"] = {
+        "name": used,
+        "meaning": DESCRIPTIONS[used],
+        "overridden": pooled.choice.overridden,
+        "evidence": list(pooled.choice.evidence),
+    }
+    content["trusted_end"] = trusted_end(pooled.spectra)
+    content["one_spectrum"] = _one(pooled, settings)
+    content["surface"] = pooled.surface
+    content["inputs"] = pooled.rows if passed else {}
+    content["gate"] = {"passed": passed, "reasons": [doubt.text for doubt in stopping]}
+    content["doubts"] = [doubt.plain() for doubt in doubts]
+    return content
+
+
+def _one(pooled: Pooled, settings: TopographySettings) -> dict[str, Any] | None:
+    one = pooled.one
+    if one is None:
+        return None
+    return {
+        "from_q": one.first,
+        "to_q": float(one.q[-1]),
+        "place_sd": one.place_sd,
+        "measurements": list(one.names),
+        **one.statistics(settings.confidence),
+        "overlaps": [
+            {
+                "first": pair.first,
+                "second": pair.second,
+                "from_q": pair.low,
+                "to_q": pair.high,
+                "ratio": pair.ratio,
+                "expected_within": pair.expected,
+                "agrees": pair.agrees,
+            }
+            for pair in pooled.pairs[:MOST_PAIRS]
+        ],
+    }
+
+
+MOST_PAIRS = 40  # of many alike scans the rest repeats them
+
+
+def trusted_end(spectra: Sequence[TrustedSpectrum]) -> dict[str, Any]:
+    """Where the measured spectrum ends: the largest trusted wave vector, what ends it, and how sure that is.
+
+    The interval holds the ends of the other measurements of that kind, and for a tip what an error of its radius
+    makes of the wave vector at which the roughness is as curved as the tip.
+    """
+    finest = max(spectra, key=lambda item: item.high)
+    ends = [item.high for item in spectra if item.high > 0.5 * finest.high]
+    shift = 1.0
+    if finest.limit == "tip":
+        q, psd = finest.spectrum.q, finest.spectrum.psd
+        near = (q > 0.6 * finest.high) & (q < 1.2 * finest.high)
+        slope = np.polyfit(np.log(q[near]), np.log(psd[near]), 1)[0] if near.sum() > 3 else -3.0
+        shift = (1 + TIP_RADIUS_ERROR) ** (1 / max(3 + slope / 2, 0.5))  # R q^3 sqrt(C) is held
+    return {
+        "value": finest.high,
+        "unit": "1/nm",
+        "interval": [min(ends) / shift, finest.high * shift],
+        "limit": finest.limit,
+        "measurement": finest.name,
+    }
+
+
+def eq9_parameters(
+    topography: Topography,
+    rows: Sequence[Mapping[str, Any]],
+    settings: TopographySettings,
+    truth: Mapping[str, Any] | None,
+) -> dict[str, Any]:
+    """What eq. 9 says of the surface: estimates, fits, inputs and gate."""
+    doubts = list(topography.reasons)
+    passed = bool(topography.estimates) and (not doubts or settings.on_doubt == "warn")
+    likelihood, line = topography.likelihood, topography.line_fit
+    content: dict[str, Any] = {
+        "synthetic": truth is not None,
+        "convention": settings.convention,
+        "method": settings.method,
+        "ranges": settings.ranges,
+        "confidence": settings.confidence,
+        "tip_radius_nm": settings.tip_radius_nm,
+        "estimates": {
+            name: {**estimate.plain(), "unit": UNITS[name]} for name, estimate in topography.estimates.items()
+        },
+        "q1": {"value": topography.q1, "unit": "1/nm", "instrument_limited": topography.q1_limited},
+        "integrated_to_q": topography.cutoff,
+        "likelihood": None,
+        "lines": None,
+        "scans": list(rows),
+        "inputs": inputs(topography, settings) if passed else {},
+        "gate": {"passed": passed, "reasons": doubts},
+    }
+    if likelihood is not None:
+        fitted = likelihood.spectrum(topography.cutoff)
+        content["likelihood"] = {
+            "plateau_nm4": likelihood.plateau,
+            "q0": likelihood.q0,
+            "slope": likelihood.slope,
+            "rms_nm": fitted.rms_nm,
+            "rms_slope": fitted.rms_slope,
+            "covariance": likelihood.covariance,
+            "amplitude_sd": likelihood.amplitude_sd,
+            "dispersion": likelihood.dispersion,
+            "misfit": likelihood.misfit,
+            "plateau_gain": likelihood.plateau_gain,
+            "power_gain": likelihood.power_gain,
+            "hurst_profile": hurst_from_slope(likelihood.slope, "profile"),
+            "hurst_areal": hurst_from_slope(likelihood.slope, "areal"),
+        }
+    if line is not None:
+        scale = mean_square(1.0, line.q0, line.slope, topography.cutoff)
+        content["lines"] = {
+            "plateau_nm4": line.plateau,
+            "q0": line.q0,
+            "q0_departure": line.departure,
+            "q1": line.q1,
+            "slope": line.slope,
+            "slope_bounds": [line.slope_low, line.slope_high],
+            "hurst_bounds": [
+                hurst_from_slope(value, settings.convention) for value in (line.slope_low, line.slope_high)
+            ],
+            "rms_nm": line.rms(topography.cutoff),
+            "rms_bounds_nm": [float(np.sqrt(level * scale)) for level in (line.plateau_low, line.plateau_high)],
+            "hurst_profile": hurst_from_slope(line.slope, "profile"),
+            "hurst_areal": hurst_from_slope(line.slope, "areal"),
+        }
+    if truth is not None:
+        content["truth"] = {
+            **truth["truth"],
+            "hurst": hurst_from_slope(truth["truth"]["slope"], settings.convention),
+        }
+    return content

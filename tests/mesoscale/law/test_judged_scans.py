@@ -1,0 +1,56 @@
+"""The scans as judges of their description."""
+
+import numpy as np
+
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.law.judged_scans import COLUMNS, judge
+from mesoscale.settings import ContactSettings, TopographySettings
+from mesoscale.topography.analysis import trusted_scan
+from mesoscale.topography.height_synthesis import synthesize_heights
+from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.roughness_spectrum import RoughSpectrum
+from tests.mesoscale.topography.test_height_synthesis import SKEWED
+
+INPUTS = ContactInputs(hamaker=0.2, e_star=91, h_macro=2, h_prime=8, q0=0.05, hurst=0.5, rms=4)
+SETTINGS = TopographySettings(scans=("a",), line_alignment="none", tip_radius_nm=0)
+SPECTRUM = RoughSpectrum.from_rms(4.0, 0.05, 3.0, 5.0)
+
+
+def grainy(count):
+    """Scans of one grainy surface, cut from larger ones: not periodic."""
+    for seed in range(count):
+        larger = synthesize_heights(256, 2000.0, SPECTRUM.psd, SKEWED, 4.0, 100 + seed)
+        yield Scan(larger[:128, :128], (1000.0, 1000.0), f"g{seed}")
+
+
+def judged(scans, name):
+    spectra = [trusted_scan(scan, SETTINGS) for scan in scans]
+    return list(judge(scans, spectra, name, INPUTS, SETTINGS, ContactSettings()))
+
+
+def test_scans_agree_with_the_description_that_the_others_make():
+    rows = judged(list(grainy(4)), "measured_heights")
+    assert set(rows[0]) == set(COLUMNS)
+    assert all(row["left_out"] for row in rows)
+    assert np.mean([row["inside"] for row in rows]) >= 0.85
+
+
+def test_a_gaussian_description_of_tall_grains_is_found_out():
+    grains, plain = (
+        np.median(
+            [
+                row["pressed"] / row["median"]
+                for row in judged(list(grainy(4)), name)
+                if row["quantity"] == "first_contact"
+            ]
+        )
+        for name in ("measured_heights", "measured_spectrum")
+    )
+    assert abs(grains - 1) < 0.15
+    assert plain > 1.1 * grains
+
+
+def test_a_lone_scan_judges_the_description_made_from_itself():
+    rows = judged(list(grainy(1)), "measured_heights")
+    assert not any(row["left_out"] for row in rows)
+    assert {row["quantity"] for row in rows} == {"rms", "first_contact", "separation_1uN", "separation_7uN", "area_7uN"}

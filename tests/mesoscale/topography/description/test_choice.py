@@ -1,0 +1,117 @@
+"""Which description is chosen by which evidence, and what it hands on."""
+
+import numpy as np
+import pytest
+
+from mesoscale.contact.surface import random_surface
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.settings import ContactSettings, SyntheticScanSettings, TopographySettings
+from mesoscale.topography.height_synthesis import synthesize_heights
+from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.loading import Measurement
+from mesoscale.topography.pooling import pool
+from mesoscale.topography.records import record
+from mesoscale.topography.roughness_spectrum import RoughSpectrum
+from mesoscale.topography.summary import parameters, scan_rows
+from mesoscale.topography.synthetic_scans import surface_patch, synthetic_scans
+from tests.mesoscale.topography.test_height_synthesis import SKEWED
+
+SETTINGS = TopographySettings(scans=("a",), line_alignment="none", tip_radius_nm=0)
+
+
+def described(scans, settings=SETTINGS, cell_nm=1000.0):
+    arrays, attributes = {}, {}
+    for scan in scans:
+        arrays[scan.name], attributes[scan.name] = record(Measurement(scan, settings.tip_radius_nm, True), settings)
+        attributes[scan.name] |= {"file": "a", "sha256": "b"}
+    pooled = pool(arrays, attributes, settings, cell_nm)
+    rows = scan_rows(pooled.spectra, pooled.topography, attributes, None)
+    return pooled, parameters(pooled, rows, settings, None)
+
+
+def patches(slope, q0, count=3):
+    truth = RoughSpectrum.from_rms(4.0, q0, slope, 5.0)
+    return [
+        Scan(surface_patch(truth, 256, 1000.0, np.random.default_rng(seed)), (1000.0, 1000.0), f"s{seed}")
+        for seed in range(count)
+    ]
+
+
+def grainy(count=3):
+    psd = RoughSpectrum.from_rms(4.0, 0.05, 3.0, 5.0).psd
+    return [
+        Scan(synthesize_heights(256, 1000.0, psd, SKEWED, 4.0, seed), (1000.0, 1000.0), f"g{seed}")
+        for seed in range(count)
+    ]
+
+
+def test_a_fractal_gaussian_surface_is_described_by_the_power_law():
+    truth = SyntheticScanSettings(pixels=256, small_scans=3, large_scans=3, large_length_nm=4000.0, rms_variation=0.0)
+    settings = SETTINGS.model_copy(update={"tip_radius_nm": 5.0, "line_alignment": "median"})
+    pooled, content = described([item.scan for item in synthetic_scans(truth)], settings)
+    assert pooled.choice.name == "power_law"
+    assert pooled.surface == {}
+    assert content["inputs"]["q0"]["a"] < 0.025 < content["inputs"]["q0"]["b"]
+    assert content["gate"]["passed"]
+
+
+def test_a_slope_beyond_the_power_law_is_no_dead_end():
+    pooled, content = described(patches(8.0, 0.05))
+    assert pooled.choice.name == "measured_spectrum"
+    assert content["gate"]["passed"]
+    assert 0 < content["inputs"]["hurst"]["a"] < content["inputs"]["hurst"]["b"] < 2
+    assert content["inputs"]["rms"]["a"] < 4.0 < content["inputs"]["rms"]["b"]
+    assert any(doubt["code"] == "no_power_law" for doubt in content["doubts"])
+
+
+def test_tall_grains_choose_the_measured_heights():
+    pooled, content = described(grainy())
+    assert pooled.choice.name == "measured_heights"
+    assert len(content["surface"]["heights"]) == 111
+
+
+def test_noise_says_nothing_and_is_refused():
+    rng = np.random.default_rng(0)
+    noise = [Scan(rng.standard_normal((128, 128)), (500.0, 500.0), f"n{k}") for k in range(2)]
+    _, content = described(noise)
+    assert not content["gate"]["passed"]
+    assert content["inputs"] == {}
+    assert any("not identifiable" in reason for reason in content["gate"]["reasons"])
+
+
+@pytest.mark.parametrize("name", ["power_law", "measured_spectrum", "measured_heights"])
+def test_a_scene_can_set_the_description(name):
+    pooled, content = described(grainy(), SETTINGS.model_copy(update={"description": name, "on_doubt": "warn"}))
+    assert pooled.choice.name == name
+    assert content["description"]["overridden"]
+
+
+def test_random_surfaces_follow_what_was_measured():
+    """Spectrum and summit of surfaces made from the handed-on description are those of the scans."""
+    scans = grainy(4)
+    _, content = described(scans)
+    middle = {name: (row["a"] + row["b"]) / 2 for name, row in content["inputs"].items()}
+    inputs = ContactInputs(hamaker=0.2, e_star=91, h_macro=2, h_prime=8, **middle)
+    settings = ContactSettings(pixels=256, length_nm=1000.0, surface=content["surface"])
+    highest = [-random_surface(inputs, settings, seed).min() for seed in range(6)]
+    measured = [(scan.heights_nm - scan.heights_nm.mean()).max() for scan in scans]
+    assert np.mean(highest) == pytest.approx(np.mean(measured), rel=0.15)
+
+
+def test_the_inputs_bend_the_measured_spectrum():
+    _, content = described(patches(8.0, 0.05))
+    settings = ContactSettings(pixels=128, surface=content["surface"])
+    pivot = content["surface"]["spectrum"]
+    base = {"hamaker": 0.2, "e_star": 91.0, "h_macro": 2.0, "h_prime": 8.0, "rms": 4.0, "q0": pivot["q0"]}
+    flat, steep = (
+        random_surface(ContactInputs(**base, hurst=pivot["hurst"] + shift), settings, 1) for shift in (-0.15, 0.15)
+    )
+    roughness = [np.std(np.diff(surface, axis=0)) for surface in (flat, steep)]
+    assert roughness[0] > 1.02 * roughness[1]
+
+
+def test_the_trusted_end_is_offered_with_its_uncertainty():
+    _, content = described(grainy())
+    end = content["trusted_end"]
+    assert end["interval"][0] <= end["value"] <= end["interval"][1]
+    assert end["limit"] in ("tip", "noise", "pixels")

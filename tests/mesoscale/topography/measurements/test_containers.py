@@ -1,0 +1,112 @@
+"""Containers of contact.engineering: read whole, and harmless whatever is inside."""
+
+import json
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mesoscale.errors import InputError
+from mesoscale.settings import InstrumentSettings, TopographySettings
+from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.loading import load_measurements, write_gwy
+from mesoscale.topography.measurements.profiles import Profile
+
+DIAMOND = Path(__file__).resolve().parents[4] / "config/measurements/uncd_diamond.zip"
+LINE = "\n".join(f"{0.002 * k:.4f} {0.001 * np.sin(k / 9):.7f}" for k in range(300))
+ENTRY = "  - {name: line, unit: um, datafile: {original: line.txt}, size: !!python/tuple [0.6]}\n"
+META = "surfaces:\n- topographies:\n" + ENTRY
+
+
+def container(path, meta=META, name="meta.yml", **files):
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(name, meta)
+        for file, content in ({"line.txt": LINE} | files).items():
+            archive.writestr(file, content)
+    return path
+
+
+def refused(path, words):
+    with pytest.raises(InputError, match=words) as caught:
+        load_measurements(path)
+    assert "\n" not in str(caught.value)
+    assert path.name in str(caught.value)
+
+
+def test_the_diamond_film_is_read_with_each_instrument():
+    instruments = (
+        InstrumentSettings(files="*stylus*", tip_radius_nm=5000),
+        InstrumentSettings(files="80_*", tip_radius_nm=0),
+    )
+    tem, afm, stylus = load_measurements(DIAMOND, settings=TopographySettings(instruments=instruments))
+    assert isinstance(afm.data, Scan)
+    assert afm.data.lengths_nm == pytest.approx((100.0, 100.0))
+    assert isinstance(stylus.data, Profile)
+    assert stylus.data.length_nm == pytest.approx(298783.6, rel=1e-3)
+    assert stylus.data.bow  # the container says that curvature is the instrument's
+    assert (tem.tip_radius_nm, stylus.tip_radius_nm) == (0, 5000)
+    assert tem.data.resampled
+
+
+def test_both_kinds_of_lists_are_read(tmp_path):
+    (old,) = load_measurements(container(tmp_path / "old.zip"))
+    listed = {"surfaces": [{"topographies": [{"name": "line", "unit": "um", "datafile": {"original": "line.txt"}}]}]}
+    (new,) = load_measurements(container(tmp_path / "new.zip", json.dumps(listed), "index.json"))
+    assert old.data.heights_nm == pytest.approx(new.data.heights_nm)
+    assert old.data.rms_nm == pytest.approx(1 / np.sqrt(2), rel=0.02)
+
+
+def test_a_map_in_a_container_is_a_scan(tmp_path):
+    write_gwy(tmp_path / "a.gwy", Scan(np.random.default_rng(0).standard_normal((64, 64)), (500.0, 500.0), "a"))
+    meta = "surfaces:\n- topographies:\n  - {name: map, datafile: {original: a.gwy}}\n"
+    files = {"a.gwy": (tmp_path / "a.gwy").read_bytes()}
+    (result,) = load_measurements(container(tmp_path / "map.zip", meta, **files))
+    assert result.data.lengths_nm == pytest.approx((500.0, 500.0))
+
+
+@pytest.mark.parametrize("tag", ["object/apply:os.system", "object/new:pathlib.Path", "name:os.system", "module:os"])
+def test_code_in_the_list_is_never_run(tmp_path, tag):
+    trace = tmp_path / "executed"
+    meta = META + f"evil: !!python/{tag} ['touch {trace}']\n"
+    refused(container(tmp_path / "evil.zip", meta), "more than plain values")
+    assert not trace.exists()
+
+
+def test_a_bomb_is_not_unpacked(tmp_path):
+    refused(container(tmp_path / "bomb.zip", **{"line.txt": b"0" * 200 * 2**20}), "unpacks to more than")
+
+
+@pytest.mark.parametrize(
+    ("meta", "words"),
+    [
+        (META.replace("line.txt", "other.txt"), "which the container lacks"),
+        (META.replace("[0.6]", "[-1.0]"), "size ="),
+        (META.replace("[0.6]", "[1.0, 2.0, 3.0]"), "size ="),
+        (META.replace("unit: um, ", ""), "without length unit"),
+        (META.replace("{original: line.txt}", "{squeezed: line.nc}"), "without an original data file"),
+        (META + META.removeprefix("surfaces:\n"), "holds 2 surfaces"),
+        ("surfaces: 3\n", "lists no surfaces"),
+        ("surfaces:\n- topographies: []\n", "empty"),
+        ("a: [" * 3000, "plain values|cannot"),
+        ("{" + "x" * 5 * 2**20, "unpacks to more than"),
+    ],
+)
+def test_strange_lists_are_refused_in_one_line(tmp_path, meta, words):
+    refused(container(tmp_path / "strange.zip", meta), words)
+
+
+def test_a_name_cannot_leave_the_folder(tmp_path):
+    outside = META.replace("line.txt", "../../line.txt")
+    (result,) = load_measurements(container(tmp_path / "a.zip", outside, **{"../../line.txt": LINE}))
+    assert result.data.rms_nm > 0
+    assert not (tmp_path.parent / "line.txt").exists()
+
+
+def test_what_is_no_archive_is_refused(tmp_path):
+    path = tmp_path / "a.zip"
+    path.write_bytes(b"PK\x03\x04 not really")
+    refused(path, "cannot be unpacked")
+    with zipfile.ZipFile(tmp_path / "b.zip", "w") as archive:
+        archive.writestr("notes.txt", "hello")
+    refused(tmp_path / "b.zip", "neither index.json nor meta.yml")

@@ -1,0 +1,109 @@
+"""What describes the measured surface: the evidence, the doubts, the spectrum over all scales, the scans as judges."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from workflow.report.available import Results
+from workflow.report.drawing import draw
+from workflow.report.numbers import show
+from workflow.report.page import Gate, Section, Table
+from workflow.report.surface_picture import draw_one_spectrum
+
+JUDGED = "topography/judged.csv"
+QUANTITIES = {
+    "rms": "RMS (nm)",
+    "first_contact": "first contact (nm)",
+    "separation_1uN": "separation at 1 µN on a cell (nm)",
+    "separation_7uN": "separation at 7 µN on a cell (nm)",
+    "area_7uN": "area at 7 µN (nm²)",
+}
+
+
+def describe_surface(results: Results, parameters: Mapping[str, Any], section: Section) -> None:
+    """Add the description of the surface, its evidence and its judgement to the section on topography."""
+    description = parameters.get("description")
+    if not description:
+        return
+    section.lead += f" Random surfaces follow {description['meaning']}" + (
+        " (set by the scene)." if description["overridden"] else " (chosen by the tests below)."
+    )
+    rows = [(row["test"], row["outcome"], "yes" if row["passed"] else "no") for row in description["evidence"]]
+    section.blocks.append(Table("Which description of the surface", ("question", "answer", "passed"), rows))
+    for doubt in parameters.get("doubts", []):
+        remedy = f" To do: {doubt['remedy']}." if doubt["remedy"] else ""
+        section.notes.append(f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}.{remedy}")
+    if parameters.get("synthetic"):
+        return
+    section.add(
+        _one_spectrum(results, parameters),
+        "One spectrum over all scales from all measurements, with its band. Grey is what levelling, tip, noise or "
+        "pixels disturb; line profiles are converted to the spectrum of an isotropic surface.",
+    )
+    _statistics(parameters, section)
+    if results.has(JUDGED):
+        _judgement(results, section)
+
+
+def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None:
+    groups, _, attributes = results.h5("topography/spectra.h5")
+    if "one_spectrum" not in groups:
+        return None
+
+    def plot(axis: Any) -> None:
+        draw_one_spectrum(axis, groups, attributes, parameters)
+
+    return draw("one_spectrum", "Spectrum over all scales", plot, (5.6, 4.4))
+
+
+def _statistics(parameters: Mapping[str, Any], section: Section) -> None:
+    one = parameters.get("one_spectrum")
+    if not one:
+        return
+    header = ("what", "unit", "value", f"{float(parameters['confidence']):.0%} interval")
+    names = {"rms_height": "RMS height", "rms_slope": "RMS slope", "rms_curvature": "RMS curvature"}
+    rows = [
+        (text, one[key]["unit"], show(one[key]["value"]), " to ".join(show(end) for end in one[key]["interval"]))
+        for key, text in names.items()
+    ]
+    ends = f"{show(one['from_q'])} to {show(one['to_q'])} /nm"
+    section.blocks.append(Table(f"The measured surface, all waves from {ends}", header, rows))
+    if one["overlaps"]:
+        header = ("measurements", "shared q (1/nm)", "ratio of C", "expected within", "agree")
+        rows = [
+            (
+                f"{pair['first']}, {pair['second']}",
+                f"{show(pair['from_q'])} to {show(pair['to_q'])}",
+                show(pair["ratio"]),
+                f"a factor of {show(pair['expected_within'])}",
+                "yes" if pair["agrees"] else "no",
+            )
+            for pair in one["overlaps"][:12]
+        ]
+        section.blocks.append(Table("Where measurements overlap", header, rows))
+
+
+def _judgement(results: Results, section: Section) -> None:
+    rows = results.csv(JUDGED)
+    if not rows:
+        return
+    lines = [
+        (
+            row["scan"],
+            QUANTITIES.get(row["quantity"], row["quantity"]),
+            show(float(row["pressed"])),
+            f"{show(float(row['low']))} to {show(float(row['high']))}",
+            "yes" if row["inside"] == "True" else "no",
+            "without it" if row["left_out"] == "True" else "from it",
+        )
+        for row in rows
+    ]
+    header = ("scan", "quantity", "pressed", "description, 90 % interval", "inside", "description made")
+    section.blocks.append(Table("The scans pressed, beside surfaces made from their description", header, lines))
+    outside = [row for row in rows if row["quantity"] == "first_contact" and row["inside"] != "True"]
+    reasons = [
+        f"{row['scan']} touches first at {show(float(row['pressed']))} nm, its description says "
+        f"{show(float(row['low']))} to {show(float(row['high']))} nm"
+        for row in outside
+    ]
+    section.gates.append(Gate("pressing the scans", not reasons, reasons))
+    section.files.append(JUDGED)

@@ -1,0 +1,70 @@
+"""A picture of the measured surface for the eye: one map in nm with its colour bar, and the spectrum."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from workflow.report.drawing import BLUE, INK, ORANGE, SKY, SOFT, STYLE
+
+
+def surface_picture(
+    groups: Mapping[str, Mapping[str, np.ndarray]],
+    attributes: Mapping[str, Mapping[str, Any]],
+    parameters: Mapping[str, Any],
+    path: Path,
+) -> None:
+    """Write the picture (PNG) of a surface from the content of spectra.h5 and parameters.json."""
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(10.0, 4.2), layout="constrained")
+        left, right = figure.subplots(1, 2, width_ratios=(1, 1.2))
+        _draw_map(figure, left, groups, attributes)
+        draw_one_spectrum(right, groups, attributes, parameters)
+        figure.savefig(path, dpi=130, format="png", metadata={"Software": None})
+
+
+def _draw_map(figure: Figure, axis: Any, groups: Mapping[str, Any], attributes: Mapping[str, Any]) -> None:
+    """The largest scan, or the longest profile where there is no scan."""
+    names = sorted((name for name in groups if name.startswith("scans/")), key=lambda n: attributes[n]["length_x_nm"])
+    maps = [name for name in names if "heights" in groups[name]]
+    name = (maps or names)[-1]
+    size = float(attributes[name]["length_x_nm"]) / 1e3
+    axis.set(title=f"{name.removeprefix('scans/')}: RMS {float(attributes[name]['rms_nm']):.3g} nm", xlabel="µm")
+    axis.title.set_fontsize(9)
+    if maps:
+        heights = groups[name]["heights"]
+        limit = float(np.quantile(np.abs(heights), 0.995)) or 1.0
+        extent = (0, size, 0, float(attributes[name]["length_y_nm"]) / 1e3)
+        image = axis.imshow(heights.T, origin="lower", extent=extent, cmap="cividis", vmin=-limit, vmax=limit)
+        figure.colorbar(image, ax=axis, label="height (nm)")
+        axis.grid(False)
+    else:
+        line = groups[name]["line"]
+        axis.plot(np.linspace(0, size, len(line)), line, color=BLUE, linewidth=0.8)
+        axis.set(ylabel="height (nm)")
+
+
+def draw_one_spectrum(
+    axis: Any, groups: Mapping[str, Any], attributes: Mapping[str, Any], parameters: Mapping[str, Any]
+) -> None:
+    """All spectra with their trusted parts, and the one over all scales with its band."""
+    for name in sorted(name for name in groups if name.startswith("scans/")):
+        q, psd = groups[name]["q"], groups[name]["psd"]
+        low, high = float(attributes[name]["trusted_low"]), float(attributes[name]["trusted_high"])
+        trusted = (q >= low) & (q <= high)
+        axis.loglog(q, psd, color=SOFT, linewidth=0.6, alpha=0.7, zorder=1)
+        axis.loglog(q[trusted], psd[trusted], color=SKY, linewidth=1.2, zorder=2)
+    axis.plot([], [], color=SKY, label="measurements, trusted range")
+    axis.plot([], [], color=SOFT, label="limited by levelling, tip, noise or pixels")
+    one = groups.get("one_spectrum")
+    if one is not None:
+        level = f"{float(parameters['confidence']):.0%}"
+        axis.fill_between(one["q"], one["band_low"], one["band_high"], color=ORANGE, alpha=0.25, linewidth=0)
+        axis.loglog(one["q"], one["psd"], color=ORANGE, label=f"one spectrum, {level} band", zorder=3)
+    end = parameters["trusted_end"]
+    axis.axvline(end["value"], color=INK, linewidth=0.8, linestyle="--", label=f"trusted end ({end['limit']})")
+    axis.set(xlabel="wave vector q (1/nm)", ylabel="PSD (nm⁴)")
+    axis.legend(fontsize=8)
