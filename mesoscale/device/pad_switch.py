@@ -4,20 +4,24 @@ The force balance is that of `mesoscale.device.switch` with the whole electrode 
 extrapolated: a held state beyond the computed closing, or an opening from a depth that was not computed, is refused.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from mesoscale.device.beam_switch import solve_beam
 from mesoscale.device.statistics import describe, probability
-from mesoscale.device.switch import GPA, NM, Switch, switch_from_settings
+from mesoscale.device.switch import GPA, NM, Switch, solve_switch, switch_from_settings
 from mesoscale.errors import InputError
+from mesoscale.law.branches import law_of_fit
+from mesoscale.law.fit import fit_branch
+from mesoscale.law.wells import attraction_status, well_of, well_of_law
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import PadLaw, law_of
 from mesoscale.pad.tail import Tail
-from mesoscale.settings import DeviceSettings
+from mesoscale.settings import DeviceSettings, LawSettings
 
 Array = NDArray[np.float64]
 
@@ -143,11 +147,49 @@ def switch_on_pad(
     }
     stuck = sum(state.stuck for state in resampled)
     reasons = _doubts(content, spread, stuck)
+    try:
+        bending = asdict(solve_beam(settings, law_of(cells, hamaker))) if settings.spring_N_per_m is None else None
+    except InputError as error:
+        bending = None
+        reasons.append(str(error))
     return {
         **content,
         "mean": asdict(mean),
+        "beam": bending,
+        "by_law": law_on_pad(switch, cells, hamaker, mean.hold_nm, settings.hold_voltage_V),
         "estimate": {**spread, "stuck": probability(stuck, RESAMPLES)},
         "gate": {"passed": not reasons, "reasons": reasons},
+    }
+
+
+def law_on_pad(
+    switch: Switch, cells: PadCells, hamaker: float, hold_nm: float, hold_voltage_V: float | None
+) -> dict[str, Any] | None:
+    """The compact law fitted to the mean curves of the pad, and the switch on it: what the form of the law alone does.
+
+    The opening is that from the computed depth nearest to the held state. None where a branch gives no law.
+    """
+    number = int(np.argmin(np.abs(cells.grid.depth_nm - hold_nm)))
+    settings, laws, wells = LawSettings(), [], []
+    for branch in (cells.closing, cells.opening[:, number]):
+        mean = branch.mean(axis=0)
+        known = np.isfinite(mean[0])
+        at, (repulsive, attractive) = cells.grid.separation_nm[known][::-1], mean[:, known][:, ::-1]
+        fit = fit_branch(at, repulsive, attractive, 1.0, hamaker, settings=settings)
+        if not np.isfinite(fit.parameters).all():
+            return None
+        law = law_of_fit(fit, hamaker, settings)
+        laws.append(law)
+        wells.append((well_of_law(law, float(at[0]), float(at[-1])), well_of(at, repulsive + attractive)))
+    states = solve_switch(replace(switch, landed_fraction=1.0), laws[0], laws[1], hold_voltage_V)
+    by_law, by_curve = wells[1]
+    return {
+        "opened_from_nm": float(cells.grid.depth_nm[number]),
+        "release_V": float(states.release_V[0]),
+        "hold_nm": float(states.hold_nm[0]),
+        "well_law_kPa": by_law.depth_GPa * 1e6,
+        "well_curve_kPa": by_curve.depth_GPa * 1e6,
+        "well_status": attraction_status(by_law, by_curve),
     }
 
 

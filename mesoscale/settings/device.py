@@ -52,6 +52,20 @@ class DeviceSettings(Settings):
         description="electrode area; null is the whole beam, length times width",
         json_schema_extra={"unit": "um^2"},
     )
+    bow_nm: float = Field(
+        default=0.0,
+        ge=-1e5,
+        le=1e5,
+        description="how much farther from the dielectric the beam is in its middle than at its ends, at rest",
+        json_schema_extra={"unit": "nm"},
+    )
+    tilt_nm: float = Field(
+        default=0.0,
+        ge=0,
+        le=1e5,
+        description="how much farther from the dielectric one end of the beam is than the other",
+        json_schema_extra={"unit": "nm"},
+    )
     dielectric_nm: float = Field(
         default=200.0, ge=0, le=1e5, description="thickness of the dielectric", json_schema_extra={"unit": "nm"}
     )

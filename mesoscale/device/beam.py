@@ -1,0 +1,127 @@
+"""A fixed-fixed beam over a dielectric: bending, tension and local loads, by cubic Hermite elements.
+
+The separation s(x) of beam and dielectric is s = rest + u. In balance, for every virtual deflection v,
+
+    int EI u'' v'' + N u' v' dx = int b [p(s) - q(s)] v dx
+
+with p the contact pressure (positive: apart) and q the electrostatic pull. Nodal values are exact for uniform loads.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_banded
+
+from mesoscale.settings import DeviceSettings
+
+Array = NDArray[np.float64]
+Load = Callable[[Array], tuple[Array, Array]]
+"""Pressure (Pa, positive: apart) and its derivative (Pa/m) at separations (m), all of shape (elements, points)."""
+
+NM = 1e-9
+GAUSS = np.polynomial.legendre.leggauss(4)
+BANDS = 3
+"""Half bandwidth: two nodes of an element have a deflection and a slope."""
+
+
+@dataclass(frozen=True)
+class Beam:
+    """A clamped beam and its shape at rest.
+
+    Attributes
+    ----------
+    length_m, width_m : sides of the electrode.
+    bending_N_m2 : EI.
+    tension_N : axial force.
+    rest_m : separation at rest at the integration points, shape (elements, points).
+    at_m : positions of these points along the beam.
+    """
+
+    length_m: float
+    width_m: float
+    bending_N_m2: float
+    tension_N: float
+    rest_m: Array
+    at_m: Array
+
+    @property
+    def elements(self) -> int:
+        """Number of elements."""
+        return len(self.rest_m)
+
+    @property
+    def weights_m(self) -> Array:
+        """Length that each integration point stands for, shape (points,)."""
+        return 0.5 * self.length_m / self.elements * GAUSS[1]
+
+    def deflection_m(self, nodal: Array) -> Array:
+        """Deflection at the integration points from nodal values (nodes, 2), shape (elements, points)."""
+        ends = np.concatenate([nodal[:-1], nodal[1:]], axis=1)
+        return ends @ _shapes(self.length_m / self.elements)[0]
+
+    def step(self, nodal: Array, load: Load, inertia: float = 0.0, other: Array | None = None) -> tuple[Array, Array]:
+        """One Newton step towards balance, and the answer to another load on top, both of shape (nodes, 2).
+
+        Parameters
+        ----------
+        inertia : added stiffness per area (Pa/m) that holds the beam back; 0 for a plain step.
+        other : pressure (Pa) at the integration points; None: no other load.
+        """
+        size = self.length_m / self.elements
+        shape, stiffness = _shapes(size)[0], _stiffness(size, self.bending_N_m2, self.tension_N)
+        ends = np.concatenate([nodal[:-1], nodal[1:]], axis=1)
+        pressure, slope = load(self.rest_m + ends @ shape)
+        weights = self.width_m * self.weights_m
+        forces = [(pressure * weights) @ shape.T - ends @ stiffness]
+        forces.append(np.zeros_like(forces[0]) if other is None else (other * weights) @ shape.T)
+        matrix = stiffness + np.einsum("ep,ip,jp->eij", (inertia - slope) * weights, shape, shape)
+        unknowns = 2 * len(nodal)
+        bands, right = np.zeros((2 * BANDS + 1, unknowns)), np.zeros((unknowns, 2))
+        first = 2 * np.arange(self.elements)
+        for i in range(4):
+            for side in range(2):
+                np.add.at(right, (first + i, side), forces[side][:, i])
+            for j in range(4):
+                np.add.at(bands, (BANDS + i - j, first + j), matrix[:, i, j])
+        inner = solve_banded((BANDS, BANDS), bands[:, 2:-2], right[2:-2])
+        clamped = np.zeros((2, 2))
+        both = np.concatenate([clamped, inner, clamped])
+        return both[:, 0].reshape(-1, 2), both[:, 1].reshape(-1, 2)
+
+
+def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
+    """The beam that the settings describe, with its bow and tilt at rest."""
+    length, width = settings.length_um * 1e-6, settings.width_um * 1e-6
+    thickness = settings.thickness_um * 1e-6
+    bending = settings.youngs_modulus_GPa * 1e9 * width * thickness**3 / 12.0
+    tension = settings.residual_stress_MPa * 1e6 * (1.0 - settings.poisson_ratio) * width * thickness
+    middles = (np.arange(elements) + 0.5)[:, None] * length / elements
+    at = middles + 0.5 * length / elements * GAUSS[0]
+    share = at / length
+    rest = settings.gap_um * 1e-6 + NM * (
+        settings.bow_nm * 0.5 * (1.0 - np.cos(2.0 * np.pi * share)) + settings.tilt_nm * (share - 0.5)
+    )
+    return Beam(length, width, bending, tension, rest, at)
+
+
+def _shapes(size: float) -> tuple[Array, Array]:
+    """Hermite's shapes on an element of this size and their weights at the integration points, shape (4, points)."""
+    x = 0.5 * (GAUSS[0] + 1.0)
+    shapes = [1 - 3 * x**2 + 2 * x**3, size * (x - 2 * x**2 + x**3), 3 * x**2 - 2 * x**3, size * (x**3 - x**2)]
+    return np.stack(shapes), GAUSS[1]
+
+
+def _stiffness(size: float, bending: float, tension: float) -> Array:
+    """Bending and tension of an element, shape (4, 4)."""
+    h = size
+    bend = np.array([[12, 6 * h], [6 * h, 4 * h**2]])
+    pull = np.array([[36, 3 * h], [3 * h, 4 * h**2]])
+    # the other end: forces opposed, slopes alike
+    across = np.array([[-12, 6 * h], [-6 * h, 2 * h**2]])
+    drawn = np.array([[-36, 3 * h], [-3 * h, -(h**2)]])
+    turned = np.array([[1, -1], [-1, 1]])
+    bend = np.block([[bend, across], [across.T, turned * bend]])
+    pull = np.block([[pull, drawn], [drawn.T, turned * pull]])
+    return bending / h**3 * bend + tension / (30.0 * h) * pull
