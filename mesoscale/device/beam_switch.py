@@ -21,10 +21,12 @@ Array = NDArray[np.float64]
 
 CONTACT_GPa = 1e-6
 """A place has landed where it is pushed with more than 1 kPa, a tenth of the pull of the default switch's spring."""
-MOST_STEPS = 3000
+MOST_STEPS = 6000
 LARGEST_STEP_NM = 20.0
-"""Step of the creeping beam, where nothing is near; near contact one of 1 nm."""
+"""Step of a place of the creeping beam that is far from contact; in contact `LARGEST_CHANGE_NM`."""
 LARGEST_CHANGE_NM = 1.0
+SHARE_OF_WAY = 0.25
+"""A place that is about to land moves by this share of its way."""
 SETTLED_NM = 1e-3
 """Last step of a beam in balance, a thousandth of the length over which the pressure of a pad changes."""
 SETTLED_Pa = 1.0
@@ -173,15 +175,16 @@ class _Moving:
         InputError : no balance within the allowed number of steps.
         """
         inertia, least, last = 1e9, 0.0, np.zeros(len(self.nodal))
-        contact = self.pad.law.separation_nm[-1]
+        law = self.pad.law
+        contact = float(law.separation_nm[law.closing[0] > CONTACT_GPa].max())
         for _ in range(MOST_STEPS):
             change, _ = self.beam.step(self.nodal, lambda s: self.load(s, self.voltage**2), inertia)
             moved = self.beam.deflection_m(change) / NM
             s = self.separation_nm()
-            allowed = np.where(np.minimum(s, s + moved) > contact, LARGEST_STEP_NM, LARGEST_CHANGE_NM)
+            allowed = np.clip(SHARE_OF_WAY * (s - contact), LARGEST_CHANGE_NM, LARGEST_STEP_NM)
             excess = float((np.abs(moved) / allowed).max())
             if excess > 1.0:
-                inertia = max(3.0 * inertia, 1e6)
+                inertia = max(min(max(1.2 * excess, 1.5), 10.0) * inertia, 1e6)
                 if inertia < 1e25:
                     continue
             self.nodal = self.nodal + change

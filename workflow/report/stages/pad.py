@@ -36,6 +36,9 @@ def describe(results: Results) -> Section | None:
     section.blocks.append(
         Table("The switch, its whole electrode flat on the pad", ("quantity", "value"), _lines(switch))
     )
+    section.blocks.append(
+        Table("Release voltage, cause by cause", ("model", "release (V)", "note"), _causes(results, switch))
+    )
     test = f"Gumbel's distribution (test: p = {tail['p_value']:.2g})"
     if tail["accepted"]:
         section.notes.append(
@@ -47,13 +50,49 @@ def describe(results: Results) -> Section | None:
             f"First contacts of the cells do not follow {test}: where a large pad first touches is not known."
         )
     section.notes.append(
-        "The inputs are the central ones: the interval holds the finite number of computed cells alone. A bowed or "
-        "tilted electrode touches with less of its area."
+        "The inputs are the central ones: the interval holds the finite number of computed cells alone. The bending "
+        "electrode has the scene's bow and tilt (device.bow_nm, device.tilt_nm)."
     )
     section.files += ["pad/curves.csv", "pad/curves.h5", "pad/adhesion.csv", "pad/tail.json", "device/pad_switch.json"]
     gate = switch["gate"]
     section.gates.append(Gate("pad", gate["passed"], gate["reasons"]))
     return section
+
+
+def _causes(results: Results, switch: dict) -> list[tuple[str, str, str]]:
+    """The number of one cell's law beside that of the pad, step by step."""
+    lines = []
+    if results.has("device/switch.json"):
+        old = results.json("device/switch.json")
+        stuck = old["with_adhesion"]["stiction_probability"]["value"]
+        middle = old["with_adhesion"]["release_V"]["quantiles"].get("0.5")
+        lines.append(
+            (
+                f"law of one cell, landed fraction {old['switch']['landed_fraction']:g}",
+                "–" if middle is None else show(middle),
+                f"{stuck:.0%} of the samples stick; median of the others",
+            )
+        )
+    by_law = switch.get("by_law")
+    if by_law:
+        lines.append(
+            (
+                "the same form of law fitted to the pad, whole electrode flat",
+                show(by_law["release_V"]),
+                f"its well: {show(by_law['well_law_kPa'])} kPa, the pad's {show(by_law['well_curve_kPa'])} kPa",
+            )
+        )
+    if switch["mean"] is not None:
+        low, middle, high = (switch["estimate"]["release_V"]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
+        note = "with memory; interval of the computed cells; 0 where it sticks"
+        lines.append(("curves of the pad, whole electrode flat", f"{show(middle)} [{show(low)}, {show(high)}]", note))
+    if beam := switch.get("beam"):
+        note = (
+            f"{beam['landed_share']:.0%} of it has landed at {show(beam['hold_V'])} V, {beam['landed_at_release']:.1%} "
+            "before it lets go"
+        )
+        lines.append(("curves of the pad, electrode bends", show(beam["release_V"]), note))
+    return lines
 
 
 def _lines(switch: dict) -> list[tuple[str, str]]:
