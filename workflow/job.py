@@ -105,8 +105,13 @@ def without_machine_times(content: Any) -> Any:
 def job(snakemake: Any) -> Iterator[Job]:
     """Run a script's body: a failure is one line on the console, with the traceback in the rule's log."""
     log_path = Path(snakemake.log[0])  # results/<scene>/logs/...
-    log_path.parent.mkdir(parents=True, exist_ok=True)
-    with os.fdopen(join(log_path.parent.parent)), log_path.open("w", encoding="utf-8") as log:
+    try:
+        log_path.parent.mkdir(parents=True, exist_ok=True)
+        opened = log_path.open("w", encoding="utf-8")
+    except OSError as error:
+        print(f"ERROR {snakemake.rule}: {error}; free the disk or the folder, then run again", file=sys.stderr)
+        sys.exit(1)
+    with os.fdopen(join(log_path.parent.parent)), opened as log:
         inputs = [str(path) for path in snakemake.input]
         running = Job(snakemake.rule, dict(snakemake.wildcards), inputs, dict(snakemake.params), log)
         try:

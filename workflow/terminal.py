@@ -5,6 +5,7 @@ import sys
 import time
 from collections import Counter, defaultdict
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from snakemake.exceptions import WorkflowError
@@ -43,6 +44,8 @@ class Terminal(logging.Handler):
             self._running[about["jobid"]] = about["rule_name"], message, time.monotonic()
         elif event == "job_finished":
             self._finish(about["job_id"])
+        elif event == "job_error":
+            _say_if_silent(about)
         elif event is None and record.getMessage().startswith("Nothing to be done"):
             _say(self._nothing_to_do)
 
@@ -90,6 +93,17 @@ class Terminal(logging.Handler):
         rest = f", about {duration(left)} left" if self._done < self._jobs else ""
         count = f"{self._done:>{len(str(self._jobs))}} of {self._jobs}"
         _say(f"{time.strftime('%H:%M:%S')}  {count}  {message} ({duration(time.monotonic() - started)}){rest}")
+
+
+def _say_if_silent(about: Mapping[str, Any]) -> None:
+    """A job that says nothing before it ends was ended by the system."""
+    log = Path(next(iter(about["log"]), ""))
+    last = log.read_text(encoding="utf-8", errors="replace").rstrip().rpartition("\n")[2] if log.is_file() else ""
+    if not last.startswith("ERROR "):
+        _say(
+            f"ERROR {about['rule_name']}: ended by the system without a word, probably out of memory: run again with "
+            "fewer --cores, or lower contact.pixels"
+        )
 
 
 def duration(seconds: float) -> str:

@@ -49,7 +49,7 @@ class DftSettings(Settings):
         default="cached-grid", description="how PySCF's potential is evaluated: ours (fast), or one of its own"
     )
     basis: str = Field(
-        default="gth-dzvp-molopt-sr", pattern=r"^[a-z0-9-]{1,60}$", description="GTH basis set by PySCF's name"
+        default="gth-dzvp-molopt-sr", pattern=r"^gth-[a-z0-9-]{1,56}$", description="GTH basis set by PySCF's name"
     )
     cutoff_Ha: float = Field(
         default=100,
@@ -79,7 +79,7 @@ class RelaxationSettings(Settings):
 
     basis: str = Field(
         default="gth-dzvp-molopt-sr",
-        pattern=r"^[a-z0-9-]{1,60}$",
+        pattern=r"^gth-[a-z0-9-]{1,56}$",
         description="GTH basis set during relaxation, by PySCF's name",
     )
     cutoff_Ha: float = Field(

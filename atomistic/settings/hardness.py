@@ -328,4 +328,6 @@ class HardnessSettings(Settings):
                 f"asperities: {flat[0]} has amplitude 0: a flat against a {self.closing.counterface} has no contact "
                 "length; give an amplitude or set closing.counterface to sphere"
             )
+        if len({asperity.name for asperity in self.asperities}) < len(self.asperities):
+            raise ValueError("asperities: two have the same name; their results would be the same files")
         return self

@@ -1,6 +1,6 @@
 """Settings of the contact model."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -149,7 +149,7 @@ class ContactSettings(Settings):
         description="largest force of the model comparison (figure 4)",
         json_schema_extra={"unit": "nN"},
     )
-    nominal_loads_nN: list[float] = Field(
+    nominal_loads_nN: list[Annotated[float, Field(gt=0, le=1e12)]] = Field(
         default=[1e3, 3e3, 7e3, 1e4, 2e4, 5e4],
         min_length=1,
         description="largest forces of the load series (figure 11)",

@@ -24,7 +24,9 @@ class InputRow(Settings):
     low: float | None = Field(default=None, description="lower truncation of truncated_normal")
     high: float | None = Field(default=None, description="upper truncation of truncated_normal")
     file: str | None = Field(default=None, description="CSV with one sample a row in a column named like the input")
-    source: str = Field(default="", description="where the literature values come from, shown in the report")
+    source: str = Field(
+        default="", max_length=500, description="where the literature values come from, shown in the report"
+    )
 
     @model_validator(mode="after")
     def _complete(self) -> "InputRow":

@@ -35,6 +35,17 @@ def test_a_mistake_in_a_scene(workflow_in):
             "{inputs: {gap_cutoff: {a: 0.15, b: 0.3}}, contact: {gap_cutoff_nm: 0.2}}",
             "contact.gap_cutoff_nm and inputs.gap_cutoff give the same number",
         ),
+        ("{contact: {pixels: 64}, inputs: {q0: {a: 0.5, b: 0.9}}}", "inputs.q0.b = 0.9 1/nm lies beyond what the grid"),
+        (
+            "uncertainty: {audit_readings: [zzz]}",
+            "uncertainty.audit_readings: 'zzz' is no reading; accepted: all, mended",
+        ),
+        ("elastic: {dft: {basis: sto-3g}}", 'elastic.dft.basis = "sto-3g": accepted is text of the form ^gth-'),
+        ("contact: {nominal_loads_nN: [-1]}", "contact.nominal_loads_nN.0 = -1: accepted is"),
+        (
+            "hardness: {asperities: [{name: a, tiles: 2, amplitude_nm: 0.4}, {name: a, tiles: 3, amplitude_nm: 0.6}]}",
+            "asperities: two have the same name",
+        ),
         (
             "inputs: {correlations: [{first: rms, second: q0, rank: 0.9}, {first: q0, second: hurst, rank: 0.9}, "
             "{first: rms, second: hurst, rank: -0.9}]}",
@@ -42,7 +53,7 @@ def test_a_mistake_in_a_scene(workflow_in):
         ),
     ],
 )
-def test_inputs_that_contradict_physics_or_each_other(workflow_in, scene, words):
+def test_inputs_that_contradict_physics_or_each_other_or_do_not_exist(workflow_in, scene, words):
     path = workflow_in.folder / "mine.yaml"
     path.write_text(scene)
     done = workflow_in.run(str(path))

@@ -47,6 +47,17 @@ def test_nothing_to_do_names_the_report(capsys):
     assert capsys.readouterr().err == "nothing to do; the report is there\n"
 
 
+def test_a_job_that_the_system_ended_is_named(capsys, tmp_path):
+    terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do")
+    killed, failed = tmp_path / "killed.log", tmp_path / "failed.log"
+    killed.write_text("  compute_runs 000: 20%\n")
+    failed.write_text("ERROR compute_runs 001: the reason\n")
+    for log in (killed, failed):
+        send(terminal, "job_error", rule_name="compute_runs", log=[str(log)])
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("ERROR compute_runs: ended by the system without a word, probably out of memory")
+
+
 @pytest.mark.parametrize("scene", ["ci", "paper", "reduced", "full"])
 def test_every_job_of_a_shipped_scene_has_a_measured_cost(workflow_in, scene):
     done = workflow_in.run(scene, options=("--dry-run", "--quiet", "rules"))

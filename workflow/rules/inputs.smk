@@ -1,3 +1,5 @@
+import math
+
 from mesoscale.errors import InputError as MesoscaleInputError
 from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.table import check_literature
@@ -25,6 +27,12 @@ if workflow.is_main_process:
         check_literature(SCENE.inputs.model_copy(update=found), SCENE.uncertainty.central_share)
     except MesoscaleInputError as error:
         refuse(f"{SCENE_GIVEN}: {error}")
+    q0, nyquist = SCENE.inputs.q0, math.pi * SCENE.contact.pixels / SCENE.contact.length_nm
+    if q0.distribution == "uniform" and q0.b is not None and q0.b > nyquist:
+        refuse(
+            f"{SCENE_GIVEN}: inputs.q0.b = {q0.b:g} 1/nm lies beyond what the grid resolves ({nyquist:.3g} 1/nm: pi "
+            "contact.pixels / contact.length_nm); take more pixels, a smaller side or a smaller q0"
+        )
 
 
 rule inputs:

@@ -1,3 +1,4 @@
+from mesoscale.errors import InputError as MesoscaleInputError
 from mesoscale.uncertainty.chunks import full_chunks
 from mesoscale.uncertainty.studies.readings import audited_readings
 
@@ -8,6 +9,10 @@ def direct_files(design, runs, name="chunk"):
 
 
 PAIR_CHUNKS = full_chunks(SCENE.uncertainty.model_form_pairs, 20)
+try:
+    AUDITED = audited_readings(SCENE.uncertainty.audit_readings)
+except MesoscaleInputError as error:
+    refuse(f"{SCENE_GIVEN}: uncertainty.{error}")
 
 
 rule uq:
@@ -122,7 +127,7 @@ rule rank_readings:
         table3=str(CONFIG / "paper" / "table3.csv"),
         runs=[
             f"{RESULTS}/audit/runs/{reading}_{seed}.csv"
-            for reading in audited_readings(SCENE.uncertainty.audit_readings)
+            for reading in AUDITED
             for seed in range(SCENE.uncertainty.audit_seeds)
         ],
     output:

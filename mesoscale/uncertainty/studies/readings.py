@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from itertools import product
 
+from mesoscale.errors import InputError
+
 CHOICES: dict[str, tuple[str, ...]] = {
     "convention": ("profile", "areal"),
     "flow_pair": ("paper", "wide"),
@@ -35,9 +37,18 @@ def audited_readings(names: Sequence[str]) -> list[str]:
 
     ``mended`` are the nearest reading and what mends it, named with the values of `MENDED` at the end.
     R = A/(2 pi delta) with Hertz's area takes several times as long; config/studies/all_readings.yaml has all.
+
+    Raises
+    ------
+    InputError : a name that is no reading.
     """
     if list(names) == ["all"]:
         return contact_readings()
     if list(names) == ["mended"]:
         return [".".join((NEAREST, *values)) for values in product(*MENDED.values())]
+    known = [*contact_readings(), *(".".join((NEAREST, *values)) for values in product(*MENDED.values()))]
+    if unknown := sorted(set(names) - set(known)):
+        raise InputError(
+            f"audit_readings: {unknown[0]!r:.60} is no reading; accepted: all, mended, or names as {NEAREST}"
+        )
     return list(names) or [name for name in contact_readings() if ".curvature." in name]
