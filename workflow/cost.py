@@ -19,6 +19,7 @@ from workflow.scene import Scene
 START_S = 2.0  # Snakemake's start of a job, and the packages
 GRID = 1024**2  # sites of the reference
 CYCLE_S = {"asperity": (0.005, 0.065), "coupled": (0.02, 2.5)}  # of any cycle; of one on the reference grid, besides
+CHAIN_S = 10.0  # a posterior of some twenty curves; scene calibration
 FITTED_RUN_S = 0.004  # law of a run and its row
 CELL_S = 2.4  # a pad's cell over a cycle: it opens from several depths
 SCAN_S = 0.8  # analysis of a scan of the reference grid
@@ -83,6 +84,16 @@ class Costs:
         """A chunk of cycles of a design."""
         return self.scene.uncertainty.chunk_runs * (self.cycle_s + FITTED_RUN_S)
 
+    def observe_cycles(self, wildcards: Mapping[str, str]) -> float:
+        """A chunk of the cycles behind a calibration."""
+        return self.scene.measurements.chunk_runs * (self.cycle_s + FITTED_RUN_S)
+
+    def sample_posterior(self, wildcards: Mapping[str, str]) -> float:
+        """Chains of all tables and of subsets of them, and the cycles where the posterior lies."""
+        measurements = self.scene.measurements
+        chains = 2 * len(measurements.tables) + 1 + measurements.rounds
+        return CHAIN_S * chains + measurements.rounds * measurements.local_runs * (self.cycle_s + FITTED_RUN_S)
+
     def analyse_scans(self, wildcards: Mapping[str, str]) -> float:
         """A chunk of scans."""
         return self.scene.topography.scans_per_job * SCAN_S * self.scene.topography.synthetic.pixels**2 / GRID
@@ -125,6 +136,9 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "assemble_pad": _constant(4.0),
     "solve_switch": _constant(2.0),
     "render_report": _constant(2.5),
+    "collect_priors": _constant(0.0),
+    "observe_cycles": Costs.observe_cycles,
+    "sample_posterior": Costs.sample_posterior,
 }
 
 

@@ -24,6 +24,7 @@ from mesoscale.settings import (
     HistorySettings,
     InputsSettings,
     LawSettings,
+    MeasurementsSettings,
     PadSettings,
     Settings,
     TopographySettings,
@@ -66,11 +67,22 @@ class Scene(Settings):
     device: DeviceSettings = DeviceSettings()
     history: HistorySettings = HistorySettings()
     coupling: CouplingSettings = CouplingSettings()
+    measurements: MeasurementsSettings = MeasurementsSettings()
     report: ReportSettings = ReportSettings()
 
     def stages(self) -> set[str]:
         """The stages among hardness, elastic and topography that this scene computes."""
         return (set(self.inputs.origins()) & set(COMPUTED)) | set(self.compute)
+
+    @model_validator(mode="after")
+    def _measurements_for_a_calibration(self) -> "Scene":
+        if "calibration" in self.inputs.origins() and not self.measurements.tables:
+            names = [name for name, row in self.inputs.rows().items() if row.origin == "calibration"]
+            raise ValueError(
+                f"inputs: {', '.join(names)} of origin calibration, but measurements.tables is empty; name the tables "
+                "of measurements, or take another origin"
+            )
+        return self
 
     @model_validator(mode="after")
     def _one_exponent_convention(self) -> "Scene":

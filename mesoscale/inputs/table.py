@@ -46,7 +46,12 @@ def collect(
             where = f"{source}: inputs.{name}"
             given = _distribution(entry, where)
             for other, rank in entry.get("correlation", {}).items():
-                if other in settings.rows():
+                partner = settings.rows().get(other)
+                if row.origin == "calibration":  # a posterior has its own correlations, among its own inputs
+                    if partner is not None and partner.origin == "calibration":
+                        pairs.pop((other, name), None)
+                        pairs[name, other] = float(rank)
+                elif partner is not None:
                     pairs.setdefault((name, other), float(rank))
         _check_range(name, given, where, central_share)
         rows.append(UncertainInput(name, BY_NAME[name].unit, given, row.origin, source))
@@ -55,13 +60,13 @@ def collect(
 
 
 def check_literature(settings: InputsSettings, central_share: float) -> None:
-    """Check what needs no stage: the literature rows and the correlations that the settings give.
+    """Check what needs no stage: the literature rows, priors among them, and the correlations that the settings give.
 
     Raises
     ------
     InputError : as `collect` does for these rows.
     """
-    rows = settings.rows()
+    rows = settings.priors().rows()
     for name, row in rows.items():
         if row.origin == "literature":
             _check_range(name, _literature(name, row), f"inputs.{name}", central_share)
@@ -104,6 +109,8 @@ def _literature(name: str, row: InputRow) -> Distribution:
 
 
 def _distribution(entry: Mapping[str, Any], where: str) -> Distribution:
+    if entry.get("distribution") == "samples":  # of the calibration
+        return Distribution("samples", values=np.sort(np.asarray(entry["values"], float)))
     numbers: dict[str, Any] = {
         key: float(entry[key]) for key in ("a", "b", "low", "high") if entry.get(key) is not None
     }

@@ -7,6 +7,7 @@ from mesoscale.settings.device import DeviceSettings
 from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import TABLE_1, Correlation, InputRow, InputsSettings
 from mesoscale.settings.law import LawSettings
+from mesoscale.settings.measurements import MeasurementsSettings, MeasurementTable
 from mesoscale.settings.pad import PadSettings
 from mesoscale.settings.topography import InstrumentSettings, SyntheticScanSettings, TopographySettings
 from mesoscale.settings.uncertainty import UncertaintySettings
@@ -22,6 +23,8 @@ __all__ = [
     "InputsSettings",
     "InstrumentSettings",
     "LawSettings",
+    "MeasurementTable",
+    "MeasurementsSettings",
     "PadSettings",
     "Settings",
     "SyntheticScanSettings",

@@ -11,8 +11,13 @@ from mesoscale.settings.base import Settings
 class InputRow(Settings):
     """One uncertain input: where its distribution comes from and, for literature, what it is."""
 
-    origin: Literal["literature", "hardness", "elastic", "topography"] = Field(
-        default="literature", description="where the distribution comes from: this file, or the result of that stage"
+    origin: Literal["literature", "hardness", "elastic", "topography", "calibration"] = Field(
+        default="literature",
+        description="where the distribution comes from: this file, the result of that stage, or the calibration with "
+        "the scene's measurements",
+    )
+    prior: Literal["literature", "hardness", "elastic", "topography"] = Field(
+        default="literature", description="origin calibration: where its prior comes from: this file, or that stage"
     )
     distribution: Literal["uniform", "normal", "truncated_normal", "samples", "fixed"] = Field(
         default="uniform",
@@ -28,12 +33,21 @@ class InputRow(Settings):
         default="", max_length=500, description="where the literature values come from, shown in the report"
     )
 
+    @property
+    def prior_origin(self) -> str:
+        """Where the distribution comes from, before any calibration."""
+        return self.prior if self.origin == "calibration" else self.origin
+
     @model_validator(mode="after")
     def _complete(self) -> "InputRow":
         given = {key for key in ("a", "b", "low", "high", "file") if getattr(self, key) is not None}
-        if self.origin != "literature":
+        if self.prior != "literature" and self.origin != "calibration":
+            raise ValueError(f"prior {self.prior} with origin {self.origin}; only origin calibration has a prior")
+        if self.prior_origin != "literature":
             if given:
-                raise ValueError(f"origin {self.origin} takes no {', '.join(sorted(given))}; that stage gives them")
+                raise ValueError(
+                    f"origin {self.prior_origin} takes no {', '.join(sorted(given))}; that stage gives them"
+                )
             return self
         wanted = {
             "uniform": {"a", "b"},
@@ -94,10 +108,10 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
                 raise ValueError(f"correlations: {pair.first} with itself; name two inputs")
         for name, row in self.rows().items():
             stage = BY_NAME[name].stage
-            if row.origin not in ("literature", stage):
+            if row.prior_origin not in ("literature", stage):
                 if stage == "literature":
-                    raise ValueError(f"{name}: no stage computes it; origin must be literature")
-                raise ValueError(f"{name}: origin {row.origin}; accepted: literature, {stage}")
+                    raise ValueError(f"{name}: no stage computes it; origin must be literature or calibration")
+                raise ValueError(f"{name}: origin {row.prior_origin}; accepted: literature, {stage}, calibration")
         return self
 
     def rows(self) -> dict[str, InputRow]:
@@ -107,4 +121,12 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
 
     def origins(self) -> set[str]:
         """Where the inputs come from; cheap, so that a workflow can decide which stages to run."""
-        return {row.origin for row in self.rows().values()}
+        return {origin for row in self.rows().values() for origin in (row.origin, row.prior_origin)}
+
+    def priors(self) -> "InputsSettings":
+        """The inputs before any calibration."""
+        rows = {
+            name: row.model_copy(update={"origin": row.prior_origin, "prior": "literature"})
+            for name, row in self.rows().items()
+        }
+        return self.model_copy(update=rows)

@@ -8,12 +8,13 @@ STAGE_RESULT = {
     "hardness": f"{RESULTS}/hardness/fit.json",
     "elastic": f"{RESULTS}/elastic/e_star.json",
     "topography": f"{RESULTS}/topography/parameters.json",
+    "calibration": f"{RESULTS}/calibration/posterior.json",
 }
 INPUT_STAGES = {stage: path for stage, path in STAGE_RESULT.items() if stage in SCENE.inputs.origins()}
 SAMPLES = {
     f"samples_{name}": named_files(f"inputs.{name}.file", row.file)[0]
     for name, row in SCENE.inputs.rows().items()
-    if row.origin == "literature" and row.distribution == "samples"
+    if row.prior_origin == "literature" and row.distribution == "samples"
 }
 for name, row in SCENE.inputs.rows().items():
     if BY_NAME[name].setting in SCENE.contact.model_fields_set:

@@ -22,6 +22,9 @@ def report_inputs():
             files += ["curves/scans.h5", "law/scans.csv"]
     if SCENE.history.cycles > 0:
         files += [f"history/{name}" for name in ("cycles.csv", "dwell.csv", "curves.h5")]
+    if SCENE.measurements.tables:
+        files += ["calibration/posterior.json"]
+        files += [f"calibration/{name}.csv" for name in CALIBRATION_TABLES]
     if SCENE.coupling.surfaces > 0:
         files += ["coupling/comparison.csv"]
     studies = [*ACCURACY, *STABILITY] if SCENE.report.studies else []

@@ -6,7 +6,16 @@ The writer and the reader of results hold every table to its schema; docs/result
 
 from pathlib import PurePath
 
-from workflow.schemas import elastic, hardness, inputs_and_law, pad_and_device, studies, topography, uncertainty
+from workflow.schemas import (
+    calibration,
+    elastic,
+    hardness,
+    inputs_and_law,
+    pad_and_device,
+    studies,
+    topography,
+    uncertainty,
+)
 from workflow.schemas.table import Table, UnfitTable
 
 __all__ = ["STAGES", "Table", "UnfitTable", "schema_of"]
@@ -17,6 +26,7 @@ STAGES: dict[str, tuple[Table, ...]] = {
     "Topography": topography.TABLES,
     "Inputs, contact and law": inputs_and_law.TABLES,
     "Uncertainty": uncertainty.TABLES,
+    "Calibration": calibration.TABLES,
     "Pad and device": pad_and_device.TABLES,
     "Studies of all stages": studies.TABLES,
 }

@@ -5,6 +5,7 @@ Every module offers `describe(results) -> Section | None`; None where the scene 
 """
 
 from workflow.report.stages import (
+    calibration,
     contact,
     coupling,
     device,
@@ -22,6 +23,7 @@ from workflow.report.stages import (
 # in the order of the data's flow
 STAGES = (
     inputs,
+    calibration,
     hardness,
     elastic,
     topography,

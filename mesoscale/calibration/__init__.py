@@ -1,0 +1,1 @@
+"""Measurements in, posteriors of the inputs out (docs/calibration.md)."""

@@ -1,0 +1,281 @@
+"""What measurements teach: information gained, contradictions, what the model can give, what to measure next."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.calibration.likelihood import Posterior, posterior_of
+from mesoscale.calibration.measurements import CURVES, Measurements, by_specimen
+from mesoscale.calibration.observables import CURVES as BRANCHES
+from mesoscale.calibration.observables import NAMES, curve_names, force_levels_nN
+from mesoscale.calibration.posterior import Calibration, Cycles, draw
+from mesoscale.calibration.surfaces import SCALAR_COLUMNS
+from mesoscale.errors import InputError
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.settings import MeasurementsSettings
+
+Array = NDArray[np.float64]
+
+REPLICATES = 200
+"""Made-up data sets behind a probability; it is known to 0.015 at 0.05."""
+CONFLICT = 0.01
+"""Probability below which measurements contradict what else is known."""
+OUTLIER = 0.01
+"""The same for the least likely of all specimens."""
+MARGIN = 0.5
+"""A value farther outside than this share of the range that the model gives over the prior is refused."""
+DRAWS = 1000
+
+
+def information_bits(z: Array, others: Array | None = None) -> float:
+    """Information gained from the state of knowledge of `others` (None: the prior, standard normal) to that of z.
+
+    Kullback-Leibler divergence of normal distributions with the samples' means and covariances; of a posterior with
+    several modes it is a lower bound of what was learned.
+    """
+    size = z.shape[1]
+    mean, covariance = z.mean(axis=0), np.cov(z, rowvar=False).reshape(size, size)
+    from_mean = np.zeros(size) if others is None else others.mean(axis=0)
+    from_covariance = np.eye(size) if others is None else np.cov(others, rowvar=False).reshape(size, size)
+    inverse = np.linalg.inv(from_covariance)
+    off = from_mean - mean
+    log_ratio = np.linalg.slogdet(from_covariance)[1] - np.linalg.slogdet(covariance)[1]
+    nats = 0.5 * (np.trace(inverse @ covariance) + off @ inverse @ off - size + log_ratio)
+    return float(nats / np.log(2))
+
+
+def learned(
+    result: Calibration,
+    tables: Sequence[Measurements],
+    max_force_nN: float,
+    settings: MeasurementsSettings,
+) -> list[dict[str, Any]]:
+    """What each table taught: one row per kind, with bits and contradictions."""
+
+    def given(chosen: Sequence[Measurements]) -> Posterior:
+        return posterior_of(
+            result.posterior.table,
+            chosen,
+            result.responses,
+            result.laws,
+            result.switch,
+            max_force_nN,
+            result.expected,
+        )
+
+    rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 0xCC]))
+    rows = []
+    for data in tables:
+        only = given([data])
+        rest = [other for other in tables if other is not data]
+        alone = draw(only, settings).z if rest else result.chain.z
+        without = draw(given(rest), settings).z if rest else rng.standard_normal(result.chain.z.shape)
+        probability = predictive_probability(only, only.inputs(without), rng)
+        rows.append(
+            {
+                "kind": data.kind,
+                "file": data.file,
+                "rows": len(data),
+                "alone_bits": information_bits(alone),
+                "added_bits": information_bits(result.chain.z, without if rest else None),
+                "probability": probability,
+                "verdict": _verdict(data, probability, bool(rest)),
+            }
+        )
+    return rows
+
+
+def _verdict(data: Measurements, probability: float, beside_others: bool) -> str:
+    others = "what the other measurements and the prior lead to" if beside_others else "the prior"
+    if probability >= CONFLICT:
+        return "agrees with " + others
+    return (
+        f"contradicts {others}: {'no' if probability == 0 else 'few'} made-up data sets are as unlikely; an error that "
+        "is too small, another contact area, a prior too narrow, or the model itself"
+    )
+
+
+def predictive_probability(data: Posterior, x: Array, rng: np.random.Generator) -> float:
+    """Share of made-up data sets that are less likely than the measured ones, given samples x (m, n) of the inputs.
+
+    Box, J. R. Statist. Soc. A 143, 383 (1980): the predictive density at the data is compared with those of its draws.
+    """
+    points = x[rng.integers(len(x), size=REPLICATES)]
+
+    def log_predictive(some: Posterior) -> float:
+        logs = _comparable(some).log_likelihood(points)
+        return float(np.logaddexp.reduce(logs))
+
+    measured = log_predictive(data)
+    made_up = [log_predictive(data.simulated(point[None], rng)) for point in points]
+    return float(np.mean(np.array(made_up) <= measured))
+
+
+def _comparable(data: Posterior) -> Posterior:
+    """The data on surfaces without the part of their likelihood that no input decides: points about their curve."""
+    if data.surfaces is None:
+        return data
+    surfaces = data.surfaces
+    constant = sum(
+        float(information @ np.linalg.pinv(precision, rcond=1e-10, hermitian=True) @ information)
+        for precision, information in zip(surfaces.precision, surfaces.information, strict=True)
+    )
+    return replace(data, surfaces=replace(surfaces, constant=constant))
+
+
+def outliers(result: Calibration) -> list[str]:
+    """Specimens that the posterior cannot explain, in words."""
+    surfaces, responses = result.posterior.surfaces, result.posterior.surface_responses
+    if surfaces is None or responses is None:
+        return []
+    chosen = result.x[:: max(1, len(result.x) // 50)]
+    shares = np.mean([surfaces.misfits(responses(point[None])) for point in chosen], axis=0)
+    limit = OUTLIER / len(shares)
+    return [
+        f"specimen {name} lies far from the others (probability {share:.1g}); its data are used as they are"
+        for name, share in zip(surfaces.specimens, shares, strict=True)
+        if share < limit
+    ]
+
+
+def check_range(tables: Sequence[Measurements], table: InputTable, cycles: Cycles, max_force_nN: float) -> None:
+    """Refuse measurements that the model cannot give anywhere in the prior.
+
+    Raises
+    ------
+    InputError
+    """
+    samples = dict(zip(table.names, table.sample(2000, 1).T, strict=True))
+    for data in tables:
+        if data.kind in CURVES:
+            _check_curves(data, cycles, max_force_nN)
+        elif data.kind in SCALAR_COLUMNS:
+            _check_values(data, data.kind, cycles.y[:, NAMES.index(SCALAR_COLUMNS[data.kind])])
+        elif data.kind == "modulus":
+            _check_values(data, "e_star", samples["e_star"])
+        elif data.kind == "hardness":
+            area = np.median(data.columns["area"])
+            _check_values(data, "hardness", samples["h_macro"] + samples["h_prime"] * area**-0.25)
+
+
+def _check_values(data: Measurements, column: str, model: Array) -> None:
+    low, high = np.nanmin(model), np.nanmax(model)
+    width = MARGIN * (high - low)
+    values, errors = data.columns[column], data.columns[f"{column}_error"]
+    wrong = np.flatnonzero((values - 3 * errors > high + width) | (values + 3 * errors < low - width))
+    if wrong.size:
+        raise InputError(
+            f"{data.file}: row {wrong[0] + 1}, {column} = {values[wrong[0]]:.4g}: the model gives {low:.3g} .. "
+            f"{high:.3g} anywhere in the prior; look at unit and columns, or widen the inputs"
+        )
+
+
+def _check_curves(data: Measurements, cycles: Cycles, max_force_nN: float) -> None:
+    """By how much the separation changes between two forces, whatever the zero."""
+    levels = np.log(force_levels_nN(max_force_nN))
+    names = curve_names(BRANCHES[data.kind])
+    curves = cycles.y[:, [NAMES.index(name) for name in names]]
+    curves = curves[np.isfinite(curves).all(axis=1)]
+    separations = np.column_stack([np.zeros(len(curves)), -np.cumsum(curves[:, 1:], axis=1)])
+    for specimen, rows in by_specimen(data).items():
+        force, separation = data.columns["force"][rows], data.columns["separation"][rows]
+        inside = (force >= np.exp(levels[0])) & (force <= np.exp(levels[-1]))
+        if inside.sum() < 2:
+            continue  # refused where it is used, with the range of forces
+        low, high = np.argmin(np.where(inside, force, np.inf)), np.argmax(np.where(inside, force, -np.inf))
+        ends = np.log(force[[low, high]])
+        spans = np.array([np.interp(ends[0], levels, row) - np.interp(ends[1], levels, row) for row in separations])
+        span = separation[low] - separation[high]
+        width = MARGIN * np.ptp(spans)
+        if not spans.min() - width <= span <= spans.max() + width:
+            raise InputError(
+                f"{data.file}: curve {specimen}: separation changes by {span:.4g} nm from {force[low]:.4g} to "
+                f"{force[high]:.4g} nN, the model gives {spans.min():.3g} .. {spans.max():.3g} nm anywhere in the "
+                "prior; look at units, columns and contact area"
+            )
+
+
+def candidates(max_force_nN: float) -> dict[str, tuple[str, Measurements]]:
+    """What could be measured next, by kind: in words, and as a table whose values are made up later."""
+    forces = np.geomspace(*force_levels_nN(max_force_nN)[[0, -1]], 30)
+    curve = {"separation": np.linspace(10, 0, 30), "force": forces, "separation_error": np.full(30, 0.2)}
+    one, ten = np.ones(1), np.ones(10)
+
+    def table(kind: str, columns: dict[str, Array]) -> Measurements:
+        rows = len(next(iter(columns.values())))
+        names = ("next",) * rows if kind in CURVES else tuple(f"next {k}" for k in range(rows))
+        return Measurements(kind, columns, names, False, 0.0, "next")
+
+    return {
+        "closing_curves": ("one curve, 30 points to 0.2 nm", table("closing_curves", curve)),
+        "opening_curves": ("one curve, 30 points to 0.2 nm", table("opening_curves", curve)),
+        "contact_begin": (
+            "ten surfaces to 0.5 nm",
+            table("contact_begin", {"contact_begin": 30 * ten, "contact_begin_error": 0.5 * ten}),
+        ),
+        "pull_off": ("ten surfaces to 10 %", table("pull_off", {"pull_off": 100 * ten, "pull_off_error": 10 * ten})),
+        "hardness": (
+            "one indent of 100 nm2 to 5 %",
+            table("hardness", {"area": 100 * one, "hardness": 4 * one, "hardness_error": 0.2 * one}),
+        ),
+        "modulus": ("one to 3 GPa", table("modulus", {"e_star": 90 * one, "e_star_error": 3 * one})),
+        "release": ("one switch to 0.5 V", table("release", {"release": 20 * one, "release_error": 0.5 * one})),
+        "sticking": ("twenty switches", table("sticking", {"stuck": 10 * one, "switches": 20 * one})),
+    }
+
+
+def next_measurements(result: Calibration, max_force_nN: float, seed: int) -> list[dict[str, Any]]:
+    """Expected width of the release voltage's 90 % interval after one more measurement of each kind.
+
+    Data are made up at samples of the posterior, and the posterior is weighed by their likelihood (pre-posterior
+    analysis: Raiffa and Schlaifer, Applied Statistical Decision Theory, 1961). A switch that sticks counts with a
+    negative voltage (`mesoscale.calibration.switches`).
+    """
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xCD]))
+    x = result.x[rng.integers(len(result.x), size=DRAWS)]
+    hamaker = x[:, result.posterior.table.names.index("hamaker")]
+    with_switch = replace(result.posterior, switch=result.switch, law_responses=result.laws)
+    volts = with_switch.switch_voltages(x, hamaker)["release"][0]
+    order = np.argsort(volts)
+    now = _width(volts[order], np.full(DRAWS, 1 / DRAWS))
+    rows = []
+    for kind, (words, data) in candidates(max_force_nN).items():
+        posterior = posterior_of(
+            result.posterior.table,
+            [data],
+            result.responses,
+            result.laws,
+            result.switch,
+            max_force_nN,
+            result.expected,
+        )
+        widths, effective = [], []
+        for point in rng.integers(DRAWS, size=REPLICATES // 2):
+            logs = posterior.simulated(x[point][None], rng).log_likelihood(x)
+            weights = np.exp(logs - logs.max())
+            weights /= weights.sum()
+            effective.append(1 / (weights**2).sum())
+            widths.append(_width(volts[order], weights[order]))
+        mean, error = np.mean(widths), np.std(widths) / np.sqrt(len(widths))
+        rows.append(
+            {
+                "kind": kind,
+                "measurement": words,
+                "width_now_V": now,
+                "width_then_V": mean,
+                "reduction": 1 - mean / now,
+                "standard_error": error / now,
+                "effective_samples": float(np.median(effective)),
+            }
+        )
+    return sorted(rows, key=lambda row: -row["reduction"])
+
+
+def _width(values: Array, weights: Array) -> float:
+    """Width of the central 90 % of sorted, weighted values."""
+    shares = np.cumsum(weights) - 0.5 * weights
+    low, high = np.interp([0.05, 0.95], shares, values)
+    return float(high - low)

@@ -1,0 +1,215 @@
+"""Prior and likelihood of the inputs, given all tables of measurements."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammaln, log_ndtr, ndtr
+
+from mesoscale.calibration.measurements import Measurements
+from mesoscale.calibration.observables import LAWS
+from mesoscale.calibration.responses import Responses
+from mesoscale.calibration.surfaces import Expected, SurfaceData, surface_data
+from mesoscale.calibration.switches import SwitchModel, law_values
+from mesoscale.inputs.distributions import InputTable
+
+Array = NDArray[np.float64]
+
+DRAWS = 12
+"""Pads drawn to know the scatter between switches at given inputs; in pairs of opposite sign."""
+SMALLEST_SCATTER_V = 1e-3
+"""Of switches: keeps a sharp threshold of sticking differentiable."""
+SWITCH_KINDS = ("release", "pull_in", "sticking")
+
+
+@dataclass(frozen=True)
+class DirectData:
+    """Values that the inputs alone decide: hardness points and elastic moduli."""
+
+    kind: str
+    values: Array
+    variances: Array
+    area_nm2: Array
+    """Hardness: contact areas; else empty."""
+    discrepancy: float
+
+    def model(self, table: dict[str, Array]) -> Array:
+        """Predictions from inputs by name, shape (m, values)."""
+        if self.kind == "modulus":
+            return np.repeat(table["e_star"][:, None], len(self.values), axis=1)
+        return table["h_macro"][:, None] + table["h_prime"][:, None] * self.area_nm2**-0.25
+
+    def log_likelihood(self, table: dict[str, Array]) -> Array:
+        """Shape (m,); the model's own error is one share for all values."""
+        model = self.model(table)
+        return normal_with_common(self.values - model, self.variances, self.discrepancy * model)
+
+    def simulated(self, table: dict[str, Array], rng: np.random.Generator) -> "DirectData":
+        """Data with the same errors, drawn at one point."""
+        model = self.model(table)[0] * (1 + self.discrepancy * rng.standard_normal())
+        return replace(self, values=model + np.sqrt(self.variances) * rng.standard_normal(model.shape))
+
+
+def normal_with_common(residuals: Array, variances: Array, common: Array) -> Array:
+    """Logarithm of a normal density with covariance diag(variances) + common common^T, over the last axis."""
+    variances = np.broadcast_to(variances, residuals.shape)
+    common = np.broadcast_to(common, residuals.shape)
+    own = (residuals**2 / variances).sum(axis=-1)
+    cross = (residuals * common / variances).sum(axis=-1)
+    gain = 1 + (common**2 / variances).sum(axis=-1)
+    return -0.5 * (own - cross**2 / gain + np.log(gain) + np.log(2 * np.pi * variances).sum(axis=-1))
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """Density of the inputs in the space where their prior is standard normal."""
+
+    table: InputTable
+    """The prior."""
+    surfaces: SurfaceData | None
+    surface_responses: Responses | None
+    """Of the observables that `surfaces` sees."""
+    direct: tuple[DirectData, ...]
+    switches: tuple[Measurements, ...]
+    switch: SwitchModel | None
+    law_responses: Responses | None
+    """Of the laws; for the switch."""
+
+    @property
+    def free(self) -> NDArray[np.int_]:
+        """Inputs that have a width; the others are not sampled."""
+        return np.flatnonzero([np.ptp(row.distribution.span(0.999)) > 0 for row in self.table.rows])
+
+    def inputs(self, z: Array) -> Array:
+        """Inputs (m, n) from points z (m, free) where their prior is standard normal."""
+        every = np.zeros((len(z), len(self.table.rows)))
+        every[:, self.free] = z
+        return self.table.transform(np.clip(ndtr(every), 1e-15, 1 - 1e-15))  # an unbounded prior stays finite
+
+    def log_likelihood(self, x: Array) -> Array:
+        """Logarithm of the likelihood at inputs x (m, n), shape (m,)."""
+        named = dict(zip(self.table.names, x.T, strict=True))
+        result = np.zeros(len(x))
+        if self.surfaces is not None and self.surface_responses is not None:
+            result += self.surfaces.log_likelihood(self.surface_responses(x))
+        for data in self.direct:
+            result += data.log_likelihood(named)
+        if self.switches:
+            result += self._switches(x, named["hamaker"])
+        return result
+
+    def log_density(self, z: Array) -> Array:
+        """Logarithm of the posterior density up to a constant, shape (m,)."""
+        return self.log_likelihood(self.inputs(z)) - 0.5 * (z**2).sum(axis=1)
+
+    def simulated(self, x: Array, rng: np.random.Generator) -> "Posterior":
+        """The posterior of made-up data at inputs x of shape (1, n), with the same errors as the measured ones."""
+        surfaces = self.surfaces
+        if surfaces is not None and self.surface_responses is not None:
+            surfaces = surfaces.simulated(self.surface_responses(x), rng)
+        named = dict(zip(self.table.names, x.T, strict=True))
+        direct = tuple(data.simulated(named, rng) for data in self.direct)
+        switches = []
+        if self.switches:
+            voltages = self.switch_voltages(x, named["hamaker"])
+            for data in self.switches:
+                mean, sd = (values[0] for values in voltages["pull_in" if data.kind == "pull_in" else "release"])
+                if data.kind == "sticking":
+                    margin = mean / np.hypot(sd, data.discrepancy * abs(mean))
+                    total = data.columns["switches"]
+                    drawn = {"stuck": rng.binomial(total.astype(int), ndtr(-margin)).astype(float), "switches": total}
+                else:
+                    error = data.columns[f"{data.kind}_error"]
+                    spread = np.hypot(error, sd) * rng.standard_normal(error.shape)
+                    values = mean + data.discrepancy * abs(mean) * rng.standard_normal() + spread
+                    drawn = {data.kind: values, f"{data.kind}_error": error}
+                switches.append(replace(data, columns=drawn))
+        return replace(self, surfaces=surfaces, direct=direct, switches=tuple(switches))
+
+    def _switches(self, x: Array, hamaker: Array) -> Array:
+        voltages = self.switch_voltages(x, hamaker)
+        result = np.zeros(len(x))
+        for data in self.switches:
+            mean, sd = voltages["pull_in" if data.kind == "pull_in" else "release"]
+            if data.kind == "sticking":
+                spread = np.hypot(sd, data.discrepancy * np.abs(mean))
+                stuck, total = data.columns["stuck"].sum(), data.columns["switches"].sum()
+                margin = mean / spread
+                result += gammaln(total + 1) - gammaln(stuck + 1) - gammaln(total - stuck + 1)
+                result += stuck * log_ndtr(-margin) + (total - stuck) * log_ndtr(margin)
+                continue
+            measured = data.columns[data.kind]
+            variances = data.columns[f"{data.kind}_error"] ** 2 + sd[:, None] ** 2
+            common = (data.discrepancy * np.abs(mean))[:, None]
+            result += normal_with_common(measured - mean[:, None], variances, common)
+        return result
+
+    def switch_voltages(self, x: Array, hamaker: Array) -> dict[str, tuple[Array, Array]]:
+        """Mean and deviation between switches of pull-in and release (with sign, V), shape (m,) each.
+
+        Raises
+        ------
+        ValueError : the posterior was made without a switch.
+        """
+        if self.switch is None or self.law_responses is None:
+            raise ValueError("no switch in this posterior")
+        prediction = self.law_responses(x)
+        values = law_values(prediction)
+        # a switch averages many cells: the scatter of its law falls with their number
+        root = np.linalg.cholesky(prediction.scatter + 1e-12 * np.eye(len(LAWS))) / np.sqrt(self.switch.cells)
+        half = np.random.default_rng(0x5EED).standard_normal((DRAWS // 2, len(LAWS)))
+        shifts = np.einsum("mjk,dk->dmj", root, np.concatenate([half, -half]))
+        is_log = np.array([row.scale != "length" for row in LAWS])
+        drawn = np.where(is_log, values * np.exp(np.where(is_log, shifts, 0.0)), values + shifts)
+        laws = self.switch.laws(drawn.reshape(-1, len(LAWS)), np.tile(hamaker, DRAWS))
+        voltages = {}
+        for name, volts in (("pull_in", self.switch.pull_in_V(laws[0])), ("release", self.switch.release_V(laws[1]))):
+            draws = volts.reshape(DRAWS, -1)
+            voltages[name] = draws.mean(axis=0), np.maximum(draws.std(axis=0), SMALLEST_SCATTER_V)
+        return voltages
+
+
+def direct_data(tables: Iterable[Measurements]) -> tuple[DirectData, ...]:
+    """Hardness points and moduli among the tables."""
+    found = []
+    for table in tables:
+        if table.kind == "hardness":
+            area = table.columns["area"]
+            values, errors = table.columns["hardness"], table.columns["hardness_error"]
+        elif table.kind == "modulus":
+            area = np.empty(0)
+            values, errors = table.columns["e_star"], table.columns["e_star_error"]
+        else:
+            continue
+        found.append(DirectData(table.kind, values, errors**2, area, table.discrepancy))
+    return tuple(found)
+
+
+def posterior_of(
+    table: InputTable,
+    tables: Sequence[Measurements],
+    responses: Responses | None,
+    law_responses: Responses | None,
+    switch: SwitchModel | None,
+    max_force_nN: float,
+    expected: Expected,
+) -> Posterior:
+    """The posterior given some tables of measurements.
+
+    Parameters
+    ----------
+    responses : of the observables that the tables see, and perhaps more.
+
+    Raises
+    ------
+    InputError : see `surface_data`.
+    """
+    surfaces = surface_data(tables, max_force_nN, expected)
+    picked = None
+    if surfaces is not None:
+        if responses is None:
+            raise ValueError("data on surfaces need responses")
+        picked = responses.pick(surfaces.names)
+    switches = tuple(data for data in tables if data.kind in SWITCH_KINDS)
+    return Posterior(table, surfaces, picked, direct_data(tables), switches, switch, law_responses)

@@ -1,0 +1,213 @@
+"""Tables of measurements: the CSV files, their units, and what is refused."""
+
+import csv
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.errors import InputError
+from mesoscale.settings.measurements import MeasurementTable
+
+Array = NDArray[np.float64]
+
+UNITS = {
+    "length": {"nm": 1.0, "um": 1e3, "pm": 1e-3, "A": 0.1},
+    "force": {"nN": 1.0, "uN": 1e3, "mN": 1e6, "pN": 1e-3},
+    "area": {"nm2": 1.0, "um2": 1e6},
+    "pressure": {"GPa": 1.0, "MPa": 1e-3},
+    "voltage": {"V": 1.0, "mV": 1e-3},
+    "count": {"": 1.0},
+}
+"""Units by quantity with their factor to the first one."""
+
+COLUMNS: dict[str, dict[str, str]] = {
+    "closing_curves": {
+        "separation": "length",
+        "force": "force",
+        "separation_error": "length",
+        "force_error": "force",
+    },
+    "opening_curves": {
+        "separation": "length",
+        "force": "force",
+        "separation_error": "length",
+        "force_error": "force",
+    },
+    "contact_begin": {"contact_begin": "length", "contact_begin_error": "length"},
+    "pull_off": {"pull_off": "force", "pull_off_error": "force"},
+    "hardness": {"area": "area", "hardness": "pressure", "hardness_error": "pressure"},
+    "modulus": {"e_star": "pressure", "e_star_error": "pressure"},
+    "release": {"release": "voltage", "release_error": "voltage"},
+    "pull_in": {"pull_in": "voltage", "pull_in_error": "voltage"},
+    "sticking": {"stuck": "count", "switches": "count"},
+}
+"""Quantities of each kind of table with what they measure; the column's name ends with the unit."""
+OPTIONAL = ("separation_error", "force_error")
+"""One of them is needed."""
+CURVES = ("closing_curves", "opening_curves")
+ON_SURFACES = (*CURVES, "contact_begin", "pull_off")
+"""Kinds that name, or may name, the specimen; the same name means the same surface."""
+FEWEST_POINTS = 5
+"""Of a curve: its law has four numbers, one more tells whether they fit (a zero that is unknown replaces one)."""
+
+
+@dataclass(frozen=True)
+class Measurements:
+    """The data of one table, in nm, nN, nm^2, GPa and V."""
+
+    kind: str
+    columns: dict[str, Array]
+    """By quantity, shape (rows,)."""
+    specimens: tuple[str, ...]
+    """Specimen of every row; made up where the table names none."""
+    zero_known: bool
+    """Curves: whether separations count from the mean plane."""
+    discrepancy: float
+    """See `MeasurementTable.discrepancy`."""
+    file: str
+    """As it is named in messages."""
+
+    def __len__(self) -> int:
+        return len(self.specimens)
+
+
+def load_measurements(table: MeasurementTable, path: str | Path | None = None) -> Measurements:
+    """Load one table.
+
+    Parameters
+    ----------
+    path : where the file lies, if not at `table.file`.
+
+    Raises
+    ------
+    InputError : the file is missing, a column or its unit is missing or unknown, a value is no number, an error is not
+        positive, columns look swapped, or a curve has fewer points than unknowns.
+    """
+    file = table.file
+    try:
+        with Path(path or file).open(newline="", encoding="utf-8-sig") as stream:
+            reader = csv.DictReader(line for line in stream if line.strip() and not line.startswith("#"))
+            header = [name.strip() for name in reader.fieldnames or ()]
+            rows = [[(value or "").strip() for value in row.values() if not isinstance(value, list)] for row in reader]
+    except (OSError, UnicodeDecodeError) as error:
+        why = error.strerror if isinstance(error, OSError) else "no text"
+        raise InputError(f"{file}: cannot be read ({why}); give a CSV file") from None
+    if not rows:
+        raise InputError(f"{file}: has no rows; give a header and at least one measurement")
+    places = _places(file, table.kind, header)
+    columns = {
+        quantity: factor
+        * np.array([_number(file, line, header[place], row, place) for line, row in enumerate(rows, 1)])
+        for quantity, (place, factor) in places.items()
+    }
+    named = header.index("specimen") if "specimen" in header else None
+    if named is None and table.kind in CURVES:
+        raise InputError(f"{file}: no column specimen; name the specimen of every point, one curve each")
+    specimens = tuple(f"{table.kind} {line}" if named is None else row[named] for line, row in enumerate(rows, 1))
+    loaded = Measurements(table.kind, columns, specimens, table.zero == "known", table.discrepancy, file)
+    _check(loaded)
+    return loaded
+
+
+def _places(file: str, kind: str, header: Sequence[str]) -> dict[str, tuple[int, float]]:
+    """Column and factor of every quantity."""
+    places = {}
+    for quantity, measure in COLUMNS[kind].items():
+        names = {f"{quantity}_{unit}" if unit else quantity: factor for unit, factor in UNITS[measure].items()}
+        matches = [(place, names[name]) for place, name in enumerate(header) if name in names]
+        if len(matches) > 1:
+            raise InputError(f"{file}: column {quantity} stands there twice; leave one")
+        if matches:
+            places[quantity] = matches[0]
+            continue
+        near = [name for name in header if name == quantity or name.startswith(f"{quantity}_")]
+        near = [name for name in near if not name.startswith(f"{quantity}_error")]
+        if near and near[0] == quantity:
+            raise InputError(f"{file}: column {quantity} has no unit; name it {' or '.join(names)}")
+        if near:
+            raise InputError(f"{file}: column {near[0]}: unknown unit; name it {' or '.join(names)}")
+        if quantity not in OPTIONAL:
+            raise InputError(f"{file}: no column {quantity} with its unit; name it {' or '.join(names)}")
+    if kind in CURVES and not any(name in places for name in OPTIONAL):
+        raise InputError(f"{file}: no errors; give separation_error_nm or force_error_nN or both")
+    return places
+
+
+def _number(file: str, line: int, header: Sequence[str], row: Sequence[str], place: int) -> float:
+    text = row[place] if place < len(row) else ""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"{file}: row {line}, column {header[place]} = {text[:40]!r}: accepted is a finite number")
+    return value
+
+
+def _check(data: Measurements) -> None:
+    for name, values in data.columns.items():
+        if name.endswith("_error"):
+            wrong = np.flatnonzero(values <= 0)
+            if data.kind in CURVES:  # one of the two errors may be zero
+                wrong = np.flatnonzero(values < 0)
+            if wrong.size:
+                raise InputError(
+                    f"{data.file}: row {wrong[0] + 1}, {name} = {values[wrong[0]]:g}: an error is positive; give one "
+                    "standard deviation"
+                )
+    if data.kind in CURVES:
+        _check_curves(data)
+        return
+    if data.kind == "sticking":
+        stuck, switches = data.columns["stuck"], data.columns["switches"]
+        wrong = np.flatnonzero((switches < 1) | (stuck < 0) | (stuck > switches) | (stuck % 1 > 0) | (switches % 1 > 0))
+        if wrong.size:
+            raise InputError(
+                f"{data.file}: row {wrong[0] + 1}: {stuck[wrong[0]]:g} stuck of {switches[wrong[0]]:g} switches; "
+                "accepted are whole numbers, stuck at most switches; are the columns swapped?"
+            )
+        return
+    value = next(iter(name for name in data.columns if f"{name}_error" in data.columns))
+    wrong = np.flatnonzero(data.columns[value] <= 0)
+    if wrong.size and data.kind != "contact_begin":
+        raise InputError(
+            f"{data.file}: row {wrong[0] + 1}, {value} = {data.columns[value][wrong[0]]:g}: accepted is a positive "
+            "number" + ("; a switch that stuck belongs to a table of kind sticking" if data.kind == "release" else "")
+        )
+    if (data.columns[f"{value}_error"] > data.columns[value]).all():
+        raise InputError(
+            f"{data.file}: {value}_error exceeds {value} in every row; are the columns swapped? A value that is known "
+            "no better than that teaches nothing"
+        )
+
+
+def _check_curves(data: Measurements) -> None:
+    total = sum(data.columns.get(name, np.zeros(len(data))) for name in OPTIONAL)
+    if (np.asarray(total) <= 0).any():
+        raise InputError(f"{data.file}: row {int(np.argmin(total)) + 1}: both errors are zero; one must be positive")
+    for specimen, points in by_specimen(data).items():
+        if len(points) < FEWEST_POINTS:
+            raise InputError(
+                f"{data.file}: curve {specimen} has {len(points)} points; a curve has four unknowns, so at least "
+                f"{FEWEST_POINTS} are needed"
+            )
+        separation, force = (data.columns[name][points] for name in ("separation", "force"))
+        if np.ptp(separation) == 0 or np.ptp(force) == 0:
+            raise InputError(f"{data.file}: curve {specimen}: separation or force does not change; give a curve")
+        if np.corrcoef(separation, force)[0, 1] > 0:
+            raise InputError(
+                f"{data.file}: curve {specimen}: force rises with separation; count repulsion positive and separation "
+                "away from the contact, and look whether columns are swapped"
+            )
+
+
+def by_specimen(data: Measurements) -> Mapping[str, NDArray[np.int_]]:
+    """Rows of every specimen, in order of appearance."""
+    rows: dict[str, list[int]] = {}
+    for row, specimen in enumerate(data.specimens):
+        rows.setdefault(specimen, []).append(row)
+    return {specimen: np.array(places) for specimen, places in rows.items()}

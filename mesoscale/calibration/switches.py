@@ -1,0 +1,98 @@
+"""Pull-in and release voltages as the inputs predict them, for many inputs at once.
+
+The equilibrium path is that of `mesoscale.device.switch`: W(s) = V^2 is the voltage that balances spring and contact at
+the separation s. Release is its lowest point between the repulsive wall and the barrier; it is kept with its sign, so
+that a switch that sticks lies below zero by as much as its spring lacks.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.calibration.observables import LAWS, Observable
+from mesoscale.calibration.responses import Prediction
+from mesoscale.device.contact_law import column, onset_nm, scale_adhesion
+from mesoscale.device.switch import Switch, switch_from_settings
+from mesoscale.law.compact import Law
+from mesoscale.law.parameters import PARAMETERS
+from mesoscale.settings import DeviceSettings, LawSettings
+
+Array = NDArray[np.float64]
+
+INNER, OUTER = 120, 60
+"""Separations in and beyond contact; release is then within 1e-3 of `drive_switch` (tests)."""
+
+
+@dataclass(frozen=True)
+class SwitchModel:
+    """The switch on the laws that responses predict."""
+
+    switch: Switch
+    adhesion_scale: float
+    law: LawSettings
+    cells: float
+    """Cells that a landed switch averages."""
+
+    @classmethod
+    def of(cls, device: DeviceSettings, law: LawSettings, cell_area_nm2: float) -> "SwitchModel":
+        """The switch that the settings describe."""
+        switch = switch_from_settings(device)
+        landed = switch.landed_fraction * switch.area_m2 * 1e18
+        return cls(switch, device.adhesion_scale, law, max(landed / cell_area_nm2, 1.0))
+
+    def laws(self, values: Array, hamaker: Array) -> tuple[Law, Law]:
+        """Laws of closing and opening from values (m, 8) of the observables LAWS."""
+        count = len(PARAMETERS)
+        laws = [
+            Law(
+                **dict(zip(PARAMETERS, part.T, strict=True)),
+                hamaker=hamaker,
+                rho_a_nm=self.law.rho_a_nm,
+                shield_nm=self.law.shield_nm,
+            )
+            for part in (values[:, :count], values[:, count:])
+        ]
+        return scale_adhesion(laws[0], self.adhesion_scale), scale_adhesion(laws[1], self.adhesion_scale)
+
+    def release_V(self, opening: Law) -> Array:
+        """Release voltages with sign: below zero by the square root of what keeps a stuck switch closed, shape (m,)."""
+        law = column(opening)
+        d_c, onset = np.asarray(law.d_c_nm), onset_nm(law)
+        depth = np.minimum(12 * np.asarray(law.rho_r_nm), d_c + 0.9 * self.switch.dielectric_nm)
+        inner = d_c - np.maximum(depth, 1e-6) * np.linspace(1, 0, INNER) ** 2
+        near = d_c + (onset - d_c) * np.linspace(0, 1, 25)[1:]
+        grid = np.concatenate([inner, near, self._outside(onset)], axis=1)
+        path = self.switch.voltage_squared(grid, law)
+        wall = np.argmax(np.where(grid <= d_c, path, -np.inf), axis=1)
+        barrier = np.argmax(np.where(grid >= onset, path, -np.inf), axis=1)
+        places = np.arange(grid.shape[1])
+        between = (places >= wall[:, None]) & (places <= barrier[:, None])
+        return signed_root(np.where(between, path, np.inf).min(axis=1))
+
+    def pull_in_V(self, closing: Law) -> Array:
+        """Pull-in voltages, shape (m,)."""
+        law = column(closing)
+        grid = self._outside(onset_nm(law))
+        return signed_root(self.switch.voltage_squared(grid, law).max(axis=1))
+
+    def _outside(self, onset: Array) -> Array:
+        """Separations from the onset of contact to rest, with the fold of an ideal plate among them, shape (m, p)."""
+        thin = self.switch.dielectric_nm
+        ratio = (self.switch.gap_nm + thin) / (onset + thin)
+        far = (onset + thin) * ratio ** np.linspace(0, 1, OUTER)[1:] - thin
+        fold = np.clip(np.full_like(onset, (2 * self.switch.gap_nm - thin) / 3), onset, self.switch.gap_nm)
+        return np.sort(np.concatenate([far, fold], axis=1), axis=1)
+
+
+def signed_root(squares: Array) -> Array:
+    """Square root of the size with the sign."""
+    return np.sign(squares) * np.sqrt(np.abs(squares))
+
+
+def law_values(prediction: Prediction, observables: Sequence[Observable] = LAWS) -> Array:
+    """Means over random surfaces of the law's parameters, in their units, shape (m, 8)."""
+    is_log = np.array([row.scale != "length" for row in observables])
+    half_variance = 0.5 * np.einsum("mkk->mk", prediction.scatter)
+    return np.where(is_log, np.exp(np.where(is_log, prediction.mean + half_variance, 0.0)), prediction.mean)

@@ -1,0 +1,88 @@
+"""Settings of measurements and of the calibration with them."""
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from mesoscale.settings.base import Settings
+
+KINDS = (
+    "closing_curves",
+    "opening_curves",
+    "contact_begin",
+    "pull_off",
+    "hardness",
+    "modulus",
+    "release",
+    "pull_in",
+    "sticking",
+)
+"""Kinds of measurement; docs/calibration.md has the columns of each."""
+
+
+class MeasurementTable(Settings):
+    """One table of measurements."""
+
+    kind: Literal[
+        "closing_curves",
+        "opening_curves",
+        "contact_begin",
+        "pull_off",
+        "hardness",
+        "modulus",
+        "release",
+        "pull_in",
+        "sticking",
+    ] = Field(description="what was measured")
+    file: str = Field(description="CSV file, its columns named with their units (docs/calibration.md)")
+    zero: Literal["unknown", "known"] = Field(
+        default="unknown",
+        description="curves: whether separations count from the mean plane, or from a zero that is unknown for each "
+        "specimen",
+    )
+    discrepancy: float = Field(
+        default=0.0,
+        ge=0,
+        le=1000,
+        description="standard deviation of the model's own error, common to all data of the table: in nm for curves "
+        "and contact_begin, else a share of the value",
+    )
+    source: str = Field(default="", description="where the measurements come from, shown in the report")
+
+
+class MeasurementsSettings(Settings):
+    """Measurements and the calibration of the inputs with them (docs/calibration.md); off without tables."""
+
+    tables: tuple[MeasurementTable, ...] = Field(
+        default=(), description="tables of measurements, one of each kind at most; none: the stage is not run"
+    )
+    runs: int = Field(
+        default=800, ge=50, le=10**6, description="contact cycles over the whole prior behind the responses"
+    )
+    chunk_runs: int = Field(default=100, ge=1, le=100000, description="contact cycles per job and file")
+    local_runs: int = Field(
+        default=300, ge=20, le=10**6, description="contact cycles where the posterior lies, added at a time"
+    )
+    rounds: int = Field(
+        default=3, ge=0, le=20, description="how often they are added at most, until response_error is met"
+    )
+    response_error: float = Field(
+        default=0.5,
+        gt=0,
+        le=10,
+        description="error of the responses that is small enough, in standard deviations of the posterior prediction",
+    )
+    walkers: int = Field(default=32, ge=16, le=1000, description="walkers of each of four independent ensembles")
+    max_steps: int = Field(
+        default=4000, ge=200, le=10**6, description="steps of each ensemble after which sampling is given up"
+    )
+    samples: int = Field(default=4000, ge=200, le=10**6, description="samples of the posterior that are kept")
+    seed: int = Field(default=1, ge=0, le=2**31, description="seed of the sampling and of the surfaces of its cycles")
+
+    @model_validator(mode="after")
+    def _one_table_of_a_kind(self) -> "MeasurementsSettings":
+        kinds = [table.kind for table in self.tables]
+        twice = sorted({kind for kind in kinds if kinds.count(kind) > 1})
+        if twice:
+            raise ValueError(f"tables: {', '.join(twice)} given twice; put all data of a kind into one table")
+        return self

@@ -1,0 +1,79 @@
+"""Tables of measurements: units, and what is refused in one line."""
+
+import numpy as np
+import pytest
+
+from mesoscale.calibration.measurements import load_measurements
+from mesoscale.errors import InputError
+from mesoscale.settings import MeasurementTable
+
+CURVE = "specimen,separation_nm,force_nN,separation_error_nm\n"
+POINTS = "".join(f"a,{40 - k},{200 * 1.5**k},0.1\n" for k in range(6))
+
+
+def load(tmp_path, kind, text, **more):
+    file = tmp_path / "data.csv"
+    file.write_text(text, encoding="utf-8")
+    return load_measurements(MeasurementTable(kind=kind, file=str(file), **more))
+
+
+def test_units_are_converted(tmp_path):
+    data = load(tmp_path, "pull_off", "pull_off_uN,pull_off_error_nN\n0.2,20\n")
+    assert data.columns["pull_off"] == pytest.approx([200.0])
+    assert data.columns["pull_off_error"] == pytest.approx([20.0])
+    curve = load(tmp_path, "closing_curves", "# by hand\n" + CURVE + POINTS)
+    assert len(curve) == 6
+    assert curve.columns["separation"][0] == 40
+
+
+def test_rows_without_specimen_are_surfaces_of_their_own(tmp_path):
+    data = load(tmp_path, "pull_off", "pull_off_nN,pull_off_error_nN\n200,20\n210,20\n")
+    assert len(set(data.specimens)) == 2
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "words"),
+    [
+        ("pull_off", "pull_off,pull_off_error_nN\n200,20\n", "no unit"),
+        ("pull_off", "pull_off_kg,pull_off_error_nN\n200,20\n", "unknown unit"),
+        ("pull_off", "pull_off_nN,pull_off_error_nN\n200,-20\n", "an error is positive"),
+        ("pull_off", "pull_off_nN,pull_off_error_nN\n200,0\n", "an error is positive"),
+        ("pull_off", "pull_off_nN,pull_off_error_nN\n20,200\n5,90\n", "swapped"),
+        ("pull_off", "pull_off_nN,pull_off_error_nN\n-200,20\n", "positive"),
+        ("pull_off", "pull_off_nN,pull_off_error_nN\n", "no rows"),
+        ("pull_off", "pull_off_nN,pull_off_error_nN\nabc,3\n", "finite number"),
+        ("pull_off", "pull_off_nN,pull_off_uN,pull_off_error_nN\n1,1,3\n", "twice"),
+        ("closing_curves", "specimen,separation_nm,force_nN\na,1,2\n", "no errors"),
+        ("closing_curves", "separation_nm,force_nN,force_error_nN\n1,2,1\n", "specimen"),
+        ("closing_curves", CURVE + "a,30,200,0.1\na,29,400,0.1\n", "2 points"),
+        ("closing_curves", CURVE + "".join(f"a,{k},{200 * 1.5**k},0.1\n" for k in range(6)), "rises with separation"),
+        ("sticking", "stuck,switches\n20,3\n", "swapped"),
+        ("release", "release_V,release_error_V\n0,1\n", "sticking"),
+        ("hardness", "hardness_GPa,hardness_error_GPa\n4,0.2\n", "no column area"),
+    ],
+)
+def test_one_line_says_what_is_wrong(tmp_path, kind, text, words):
+    with pytest.raises(InputError, match=words) as error:
+        load(tmp_path, kind, text)
+    assert "\n" not in str(error.value)
+    assert "data.csv" in str(error.value)
+
+
+def test_missing_file(tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        load_measurements(MeasurementTable(kind="pull_off", file=str(tmp_path / "none.csv")))
+
+
+def test_one_table_of_a_kind():
+    from mesoscale.settings import MeasurementsSettings
+
+    table = MeasurementTable(kind="pull_off", file="a.csv")
+    with pytest.raises(InputError, match="given twice"):
+        MeasurementsSettings(tables=(table, table))
+
+
+def test_errors_of_one_coordinate_are_enough(tmp_path):
+    text = "specimen,separation_nm,force_nN,force_error_nN\n" + POINTS
+    data = load(tmp_path, "opening_curves", text, zero="known")
+    assert data.zero_known
+    assert np.allclose(data.columns["force_error"], 0.1)

@@ -1,0 +1,243 @@
+"""Responses, likelihood and sampling against exact results and made-up truths."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mesoscale.calibration.learning import (
+    check_range,
+    information_bits,
+    learned,
+    next_measurements,
+    outliers,
+    predictive_probability,
+)
+from mesoscale.calibration.likelihood import normal_with_common, posterior_of
+from mesoscale.calibration.measurements import Measurements
+from mesoscale.calibration.observables import OBSERVABLES, force_levels_nN
+from mesoscale.calibration.posterior import Calibration, draw, expected_of, responses_of
+from mesoscale.calibration.sampling import sample
+from mesoscale.calibration.switches import SwitchModel, law_values
+from mesoscale.device.switch import drive_switch
+from mesoscale.errors import InputError
+from mesoscale.settings import DeviceSettings, LawSettings, MeasurementsSettings
+from tests.mesoscale.calibration.conftest import MAX_FORCE_NN, made_up_observables
+
+SETTINGS = MeasurementsSettings(max_steps=1200, samples=1500)
+TRUTH = np.array([[0.21, 91.0, 1.5, 8.0, 0.022, 0.8, 5.0]])
+
+
+@pytest.fixture(scope="module")
+def parts(prior, cycles):
+    responses, laws = responses_of(prior, cycles)
+    switch = SwitchModel.of(DeviceSettings(), LawSettings(), 1e6)
+    return responses, laws, switch, expected_of(cycles)
+
+
+def given(prior, parts, *tables):
+    responses, laws, switch, expected = parts
+    return posterior_of(prior, tables, responses, laws, switch, MAX_FORCE_NN, expected)
+
+
+def result_of(prior, parts, *tables):
+    posterior = given(prior, parts, *tables)
+    chain = draw(posterior, SETTINGS)
+    responses, laws, switch, expected = parts
+    return Calibration(posterior, chain, posterior.inputs(chain.z), responses, laws, expected, switch)
+
+
+def pull_offs(values, share=0.1):
+    values = np.asarray(values, float)
+    columns = {"pull_off": values, "pull_off_error": share * values}
+    return Measurements("pull_off", columns, tuple(f"p{k}" for k in range(len(values))), False, 0.0, "pull_off.csv")
+
+
+def hardness(values, error=0.1, area=100.0):
+    values = np.asarray(values, float)
+    columns = {"area": np.full_like(values, area), "hardness": values, "hardness_error": np.full_like(values, error)}
+    return Measurements("hardness", columns, tuple(f"h{k}" for k in range(len(values))), False, 0.0, "hardness.csv")
+
+
+def modulus(value, error):
+    columns = {"e_star": np.array([value]), "e_star_error": np.array([error])}
+    return Measurements("modulus", columns, ("m",), False, 0.0, "modulus.csv")
+
+
+def curves(count, rng, zero_known=False, error=0.1, x=TRUTH, discrepancy=0.0):
+    y = made_up_observables(np.repeat(x, count, axis=0), rng)
+    forces = np.geomspace(*force_levels_nN(MAX_FORCE_NN)[[0, -1]], 12)
+    rows, names = [], []
+    for k, row in enumerate(y):
+        levels = row[0] - np.concatenate([[0], np.cumsum(row[1:6])])
+        points = np.interp(np.log(forces), np.log(force_levels_nN(MAX_FORCE_NN)), levels)
+        zero = 0.0 if zero_known else rng.uniform(-50, 50)
+        rows.append(points + zero + error * rng.standard_normal(12))
+        names += [f"c{k}"] * 12
+    columns = {
+        "separation": np.concatenate(rows),
+        "force": np.tile(forces, count),
+        "separation_error": np.full(12 * count, error),
+    }
+    return Measurements("closing_curves", columns, tuple(names), zero_known, discrepancy, "curves.csv")
+
+
+def test_responses_find_mean_and_scatter(prior, parts):
+    """A fresh set of runs: standardised differences have mean 0 and variance 1 within the noise of 4000 runs."""
+    x = prior.sample(4000, 11)
+    y = made_up_observables(x, np.random.default_rng(11))[:, : len(OBSERVABLES)]
+    prediction = parts[0](x)
+    is_log = np.array([row.scale != "length" for row in OBSERVABLES])
+    off = np.where(is_log, np.log(y), y) - prediction.mean
+    sd = np.sqrt(np.einsum("mkk->mk", prediction.scatter) * (1 + prediction.error[:, None]))
+    assert np.abs((off / sd).mean(axis=0)).max() < 0.12  # 900 runs know the mean to 0.03, a region of them less
+    assert np.abs((off / sd).std(axis=0) - 1).max() < 0.08
+
+
+def test_common_error_is_the_dense_normal_density():
+    rng = np.random.default_rng(0)
+    r, v, c = rng.standard_normal(6), rng.uniform(0.5, 2, 6), rng.standard_normal(6)
+    dense = np.diag(v) + np.outer(c, c)
+    exact = -0.5 * (r @ np.linalg.solve(dense, r) + np.linalg.slogdet(2 * np.pi * dense)[1])
+    assert normal_with_common(r, v, c) == pytest.approx(exact, rel=1e-12)
+
+
+def test_surface_likelihood_is_the_dense_normal_density(prior, parts):
+    """Pull-off forces of several surfaces: all numbers at once in one dense covariance."""
+    data = pull_offs([60.0, 75.0, 90.0])
+    data = replace(data, discrepancy=0.2)
+    posterior = given(prior, parts, data)
+    x = prior.sample(5, 1)
+    prediction = parts[0].pick(["pull_off_nN"])(x)
+    for k in range(5):
+        scatter = prediction.scatter[k, 0, 0]
+        shared = 0.2**2 + prediction.error[k] * scatter
+        dense = np.eye(3) * (scatter + 0.1**2) + shared
+        off = np.log([60.0, 75.0, 90.0]) - prediction.mean[k, 0]
+        exact = -0.5 * (off @ np.linalg.solve(dense, off) + np.linalg.slogdet(2 * np.pi * dense)[1])
+        assert posterior.log_likelihood(x[k : k + 1])[0] == pytest.approx(exact, rel=1e-8)
+
+
+def test_an_unknown_zero_changes_nothing(prior, parts):
+    data = curves(2, np.random.default_rng(4))
+    moved = replace(data, columns={**data.columns, "separation": data.columns["separation"] + 123.0})
+    x = prior.sample(20, 2)
+    a, b = (given(prior, parts, some).log_likelihood(x) for some in (data, moved))
+    assert a - a[0] == pytest.approx(b - b[0], abs=1e-5)
+
+
+def test_sampler_finds_a_normal_posterior():
+    """Mean and variance of a normal likelihood times the standard normal prior, to 5 standard errors of 400 draws."""
+    chain = sample(lambda z: -0.5 * ((z[:, 0] - 2) / 0.1) ** 2, 3, 32, 3000, 4000, 1)
+    assert chain.converged
+    assert chain.z[:, 0].mean() == pytest.approx(2 / 1.01, abs=5 * 0.0995 / 20)
+    assert chain.z[:, 1].std() == pytest.approx(1, abs=0.1)
+
+
+def test_sampler_finds_both_modes_with_their_weights():
+    chain = sample(
+        lambda z: np.logaddexp(np.log(0.7) - 50 * (z[:, 0] - 1) ** 2, np.log(0.3) - 50 * (z[:, 0] + 1) ** 2),
+        2, 32, 4000, 4000, 2,
+    )  # fmt: skip
+    assert (chain.z[:, 0] > 0).mean() == pytest.approx(0.7, abs=0.1)
+
+
+def test_a_chain_that_is_too_short_says_so():
+    chain = sample(lambda z: -0.5 * ((z[:, 0] - 3) / 1e-4) ** 2, 6, 16, 200, 500, 1)
+    assert not chain.converged
+    assert "R-hat" in chain.reason or "independent draws" in chain.reason
+
+
+def test_curves_pull_off_and_hardness_find_the_truth(prior, parts):
+    rng = np.random.default_rng(8)
+    y = made_up_observables(np.repeat(TRUTH, 10, axis=0), rng)
+    result = result_of(
+        prior,
+        parts,
+        curves(10, rng),
+        pull_offs(y[:, 13]),
+        hardness(1.5 + 8.0 * 100**-0.25 + 0.1 * rng.standard_normal(4)),
+    )
+    assert result.chain.converged
+    off = (result.x.mean(axis=0) - TRUTH[0]) / result.x.std(axis=0)
+    assert np.abs(off).max() < 3
+    assert result.x[:, 6].std() < 0.4 * prior.sample(4000, 1)[:, 6].std()
+    assert information_bits(result.chain.z) > 3
+
+
+def test_nothing_learned_gives_the_prior_back(prior, parts):
+    result = result_of(prior, parts, modulus(91.0, 500.0))
+    assert result.chain.converged
+    assert information_bits(result.chain.z) < 0.15
+    assert result.x[:, 6].std() == pytest.approx(3.75, rel=0.1)
+
+
+def test_bits_of_one_modulus_are_those_of_two_normal_distributions(prior, parts):
+    """Prior 91 +- 3.8 and a datum 91 +- 3.8: half the variance, 0.5 (ln 2 - 0.5) nats; no more than noise besides."""
+    result = result_of(prior, parts, modulus(91.0, 3.8))
+    k = list(result.posterior.free).index(prior.names.index("e_star"))
+    assert information_bits(result.chain.z[:, [k]]) == pytest.approx(0.5 * (np.log(2) - 0.5) / np.log(2), abs=0.04)
+
+
+def test_contradictions_and_outliers_are_named(prior, parts):
+    rng = np.random.default_rng(5)
+    data = [hardness([3.9, 4.0, 4.1]), modulus(130.0, 2.0)]
+    rows = learned(result_of(prior, parts, *data), data, MAX_FORCE_NN, SETTINGS)
+    assert "agrees" in rows[0]["verdict"]
+    assert "contradicts" in rows[1]["verdict"]
+    assert rows[1]["probability"] < 0.01
+    values = made_up_observables(np.repeat(TRUTH, 12, axis=0), rng)[:, 13]
+    values[4] *= 40
+    named = outliers(result_of(prior, parts, pull_offs(values)))
+    assert len(named) == 1
+    assert "p4" in named[0]
+
+
+def test_predictive_probability_is_uniform_under_the_prior(prior, parts):
+    """Data drawn from the prior: probabilities below 0.2 come up in about a fifth of 40 cases (4 standard errors)."""
+    rng = np.random.default_rng(6)
+    template = given(prior, parts, pull_offs([70.0, 80.0]))
+    x = prior.sample(40, 5)
+    shares = [predictive_probability(template.simulated(row[None], rng), prior.sample(300, 9), rng) for row in x]
+    assert abs(np.mean(np.array(shares) < 0.2) - 0.2) < 4 * np.sqrt(0.16 / 40)
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        (pull_offs([1e9]), "the model gives"),
+        (hardness([400.0]), "the model gives"),
+        (modulus(5000.0, 10.0), "the model gives"),
+    ],
+)
+def test_measurements_outside_the_model_are_refused(prior, cycles, table, words):
+    with pytest.raises(InputError, match=words):
+        check_range([table], prior, cycles, MAX_FORCE_NN)
+
+
+def test_swapped_columns_of_a_curve_are_refused(prior, cycles):
+    data = curves(1, np.random.default_rng(1))
+    columns = {**data.columns, "separation": data.columns["force"][::-1], "force": 200 + 10 * np.arange(12.0)}
+    with pytest.raises(InputError, match="look at units, columns"):
+        check_range([replace(data, columns=columns)], prior, cycles, MAX_FORCE_NN)
+
+
+def test_release_is_that_of_the_device_stage(prior, parts):
+    """On laws that the responses predict: the coarser grid stays within 1e-3."""
+    _, laws, switch, _ = parts
+    x = prior.sample(200, 4)
+    closing, opening = switch.laws(law_values(laws(x)), x[:, prior.names.index("hamaker")])
+    states = drive_switch(DeviceSettings(), closing, opening)
+    volts = switch.release_V(opening)
+    free = ~states.stuck
+    assert (volts[~free] <= 0.05).all()
+    assert volts[free] == pytest.approx(states.release_V[free], rel=2e-3, abs=0.05)
+    assert switch.pull_in_V(closing) == pytest.approx(states.pull_in_V, rel=1e-3)
+
+
+def test_a_hardness_indent_is_worth_nothing_where_hardness_does_not_enter(prior, parts):
+    """Of the made-up surfaces no observable depends on the large-scale hardness; a curve teaches more of the switch."""
+    result = result_of(prior, parts, modulus(91.0, 3.0))
+    rows = {row["kind"]: row for row in next_measurements(result, MAX_FORCE_NN, 1)}
+    assert rows["release"]["reduction"] > 0.2
+    assert abs(rows["modulus"]["reduction"]) < 0.1

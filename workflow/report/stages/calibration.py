@@ -1,0 +1,132 @@
+"""What measurements say about the inputs: prior and posterior, what each taught, what to measure next."""
+
+import numpy as np
+
+from workflow.report.available import Results
+from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
+from workflow.report.numbers import SYMBOLS, column, number, show
+from workflow.report.page import COMPUTED, Gate, Section, Table
+
+
+def describe(results: Results) -> Section | None:
+    """Measurements in, posterior out."""
+    if not results.has("calibration/posterior.json", "calibration/summary.csv", "calibration/learned.csv"):
+        return None
+    posterior = results.json("calibration/posterior.json")
+    gate = posterior["gate"]
+    section = Section(
+        "calibration",
+        "Calibration with measurements",
+        "What the tables of measurements say about the inputs, by Bayes' rule: the scatter of single surfaces is that "
+        "of the model, and its responses count with their own error.",
+        COMPUTED,
+    )
+    section.gates.append(Gate("calibration", bool(gate["passed"]), [*gate["reasons"], *posterior["remarks"]]))
+    section.files += [f"calibration/{name}" for name in ("posterior.json", "samples.csv", "summary.csv", "learned.csv")]
+    if not gate["passed"]:
+        section.notes.append("The chain has not converged, so there is no posterior.")
+        return section
+    rows = results.csv("calibration/summary.csv")
+    lines = [
+        (
+            f"{SYMBOLS.get(row['parameter'], row['parameter'])} ({row['unit']})",
+            _interval(row, "prior"),
+            _interval(row, "posterior"),
+            show(row["bits"], 2),
+        )
+        for row in rows
+    ]
+    header = ("input", "prior, median and 5 to 95 %", "posterior", "learned (bits)")
+    section.blocks.append(Table("Inputs before and after the measurements", header, lines))
+    section.add(prior_and_posterior(results), "Inputs before (orange) and after (blue) the measurements.", wide=True)
+    lines = [
+        (
+            row["kind"].replace("_", " "),
+            row["rows"],
+            show(row["alone_bits"], 2),
+            show(row["added_bits"], 2),
+            show(row["probability"], 2),
+            row["verdict"],
+        )
+        for row in results.csv("calibration/learned.csv")
+    ]
+    header = ("measurement", "rows", "alone (bits)", "added to the others (bits)", "probability", "verdict")
+    section.blocks.append(Table("What each measurement taught", header, lines))
+    lines = [
+        (
+            row["quantity"] + (f" at {show(row['force_nN'])} nN" if row["force_nN"] else "") + f" ({row['unit']})",
+            _interval(row, "prior"),
+            _interval(row, "posterior"),
+        )
+        for row in results.csv("calibration/predictive.csv")
+    ]
+    header = ("quantity", "before, median and 5 to 95 %", "after")
+    section.blocks.append(Table("What the next surface and the next switch show", header, lines))
+    section.add(predicted_curves(results), "Closing and opening (dashed) of the next surface, 5 to 95 %.")
+    lines = [
+        (
+            row["kind"].replace("_", " "),
+            row["measurement"],
+            show(row["width_then_V"]),
+            f"{number(row['reduction']):.0%}",
+        )
+        for row in results.csv("calibration/next.csv")
+    ]
+    header = ("measurement", "what", "expected width of the release voltage's 90 % (V)", "reduction")
+    section.blocks.append(Table("What to measure next", header, lines))
+    chain = posterior["chain"]
+    section.notes.append(
+        f"{show(posterior['information_bits'], 2)} bits in all. Chain: R-hat {chain['r_hat']:.4f}, "
+        f"{chain['independent_draws']:.0f} independent draws. Behind the responses are {posterior['cycles']} "
+        "contact cycles; their error, which is part of the posterior's width, is at most "
+        f"{show(posterior['response_error_share'], 2)} of it."
+    )
+    if posterior["points_left_out"]:
+        section.notes.append(
+            f"{posterior['points_left_out']} points of curves lie outside the forces of the responses and are left out."
+        )
+    section.files += [f"calibration/{name}" for name in ("next.csv", "predictive.csv", "responses.csv")]
+    return section
+
+
+def _interval(row: dict[str, str], state: str) -> str:
+    return f"{show(row[f'{state}_q50'])} [{show(row[f'{state}_q05'])}, {show(row[f'{state}_q95'])}]"
+
+
+def prior_and_posterior(results: Results) -> str:
+    """Medians and 90 % intervals of all inputs, each on the scale of its prior."""
+    rows = results.csv("calibration/summary.csv")
+
+    def plot(axis):
+        for place, row in enumerate(rows):
+            low, high = number(row["prior_q05"]), number(row["prior_q95"])
+            for state, shift, color in (("prior", -0.15, ORANGE), ("posterior", 0.15, BLUE)):
+                ends = [(number(row[f"{state}_{q}"]) - low) / ((high - low) or 1) for q in ("q05", "q50", "q95")]
+                axis.plot([ends[0], ends[2]], 2 * [place + shift], color=color)
+                axis.plot(ends[1], place + shift, "o", color=color, markersize=4)
+        axis.set(yticks=np.arange(len(rows)), ylim=(len(rows) - 0.5, -0.5))
+        axis.set(xlabel="share of the prior's 90 % interval")
+        axis.set_yticklabels([SYMBOLS.get(row["parameter"], row["parameter"]) for row in rows])
+        for edge in (0, 1):
+            axis.axvline(edge, color=SOFT, linewidth=0.8)
+
+    return draw("calibrated", "Prior and posterior of the inputs", plot, (6.4, 3.2))
+
+
+def predicted_curves(results: Results) -> str:
+    """Separation against net force of the next surface, before and after."""
+    rows = results.csv("calibration/predictive.csv")
+
+    def plot(axis):
+        for branch, style in (("closing", "-"), ("opening", "--")):
+            part = [row for row in rows if row["quantity"] == f"{branch} separation"]
+            force = column(part, "force_nN")
+            for state, color in (("prior", ORANGE), ("posterior", BLUE)):
+                axis.plot(column(part, f"{state}_q50"), force, style, color=color, label=f"{state}, {branch}")
+                if branch == "closing":
+                    low, high = column(part, f"{state}_q05"), column(part, f"{state}_q95")
+                    axis.fill_betweenx(force, low, high, color=color, alpha=0.2, linewidth=0)
+        axis.set(yscale="log", xlabel="mean separation (nm)", ylabel="net force (nN)")
+        axis.legend(fontsize=8.5)
+
+    return draw("predicted", "Curves of the next surface before and after the measurements", plot)

@@ -1,0 +1,79 @@
+# Measurements in, posterior of the inputs out; only in scenes with measurements.tables
+from mesoscale.uncertainty.chunks import chunk_bounds
+
+MEASUREMENT_FILES = {
+    table.kind: named_files(f"measurements.tables.{k}.file", table.file)[0]
+    for k, table in enumerate(SCENE.measurements.tables)
+}
+MEASUREMENT_CHUNKS = chunk_bounds(SCENE.measurements.runs, SCENE.measurements.chunk_runs)
+CALIBRATION_TABLES = ("samples", "summary", "learned", "next", "predictive", "responses")
+PRIORS = SCENE.inputs.priors()
+
+
+rule calibrate:
+    input:
+        f"{RESULTS}/calibration/posterior.json",
+
+
+rule collect_priors:
+    input:
+        **{stage: path for stage, path in STAGE_RESULT.items() if stage in PRIORS.origins()},
+        **SAMPLES,
+    output:
+        f"{RESULTS}/calibration/priors.csv",
+    log:
+        f"{RESULTS}/logs/collect_priors.log",
+    params:
+        settings=PRIORS.model_dump(mode="json"),
+        central_share=SCENE.uncertainty.central_share,
+    message:
+        "collect what is known of the inputs before the measurements"
+    script:
+        "../scripts/collect_inputs.py"
+
+
+rule observe_cycles:
+    input:
+        **SURFACE,
+        inputs=f"{RESULTS}/calibration/priors.csv",
+    output:
+        f"{RESULTS}/calibration/cycles/chunk_{{chunk}}.csv",
+    log:
+        f"{RESULTS}/logs/observe_cycles_{{chunk}}.log",
+    threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
+    params:
+        contact=settings("contact"),
+        law=settings("law"),
+        seed=SCENE.measurements.seed,
+        bounds=lambda wildcards: MEASUREMENT_CHUNKS[wildcards.chunk],
+    message:
+        f"compute what can be measured of contact cycles, chunk {{wildcards.chunk}} of {len(MEASUREMENT_CHUNKS)}"
+    script:
+        "../scripts/observe_cycles.py"
+
+
+rule sample_posterior:
+    input:
+        **MEASUREMENT_FILES,
+        **SURFACE,
+        priors=f"{RESULTS}/calibration/priors.csv",
+        cycles=[f"{RESULTS}/calibration/cycles/chunk_{chunk}.csv" for chunk in MEASUREMENT_CHUNKS],
+    output:
+        **{name: f"{RESULTS}/calibration/{name}.csv" for name in CALIBRATION_TABLES},
+        posterior=f"{RESULTS}/calibration/posterior.json",
+    log:
+        f"{RESULTS}/logs/sample_posterior.log",
+    threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
+    params:
+        settings=settings("measurements"),
+        contact=settings("contact"),
+        law=settings("law"),
+        device=settings("device"),
+    message:
+        "sample the posterior of the inputs"
+    script:
+        "../scripts/sample_posterior.py"

@@ -1,0 +1,19 @@
+"""Compute a chunk of contact cycles over the prior and keep what can be measured of them.
+
+In: calibration/priors.csv.  Out: calibration/cycles/chunk_NNN.csv (inputs, seed, observables and laws; nm, nN, GPa).
+"""
+
+from mesoscale.calibration.posterior import FIRST_SEED, observe_runs
+from mesoscale.inputs.table import from_rows
+from mesoscale.settings import LawSettings, UncertaintySettings
+from mesoscale.uncertainty.designs import random_runs
+from workflow.contact_settings import contact_settings
+from workflow.job import job
+from workflow.results import load_csv, write_csv
+
+with job(snakemake) as run:
+    table = from_rows(load_csv(snakemake.input.inputs))
+    draws = UncertaintySettings(sample_seed=snakemake.params.seed)
+    runs = random_runs(table, draws, *snakemake.params.bounds, FIRST_SEED)
+    contact, law = contact_settings(snakemake.params.contact, snakemake), LawSettings(**snakemake.params.law)
+    write_csv(snakemake.output[0], observe_runs(runs, contact, law, run.progress))

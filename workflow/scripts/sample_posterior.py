@@ -1,0 +1,49 @@
+"""Sample the posterior of the inputs, given the scene's measurements.
+
+In: the tables of measurements, calibration/priors.csv, calibration/cycles/chunk_NNN.csv.
+Out: calibration/posterior.json, and what it means: samples.csv, summary.csv (prior and posterior of the inputs),
+learned.csv (bits, contradictions), next.csv (what to measure), predictive.csv, responses.csv (their error).
+"""
+
+from mesoscale.calibration.learning import check_range, learned, next_measurements, outliers
+from mesoscale.calibration.measurements import load_measurements
+from mesoscale.calibration.posterior import calibrate, cycles_of_rows
+from mesoscale.calibration.summary import (
+    LEARNED_COLUMNS,
+    NEXT_COLUMNS,
+    PREDICTIVE_COLUMNS,
+    RESPONSE_COLUMNS,
+    SUMMARY_COLUMNS,
+    posterior_json,
+    predictive_rows,
+    sample_rows,
+    summary_rows,
+)
+from mesoscale.inputs.table import from_rows
+from mesoscale.settings import DeviceSettings, LawSettings, MeasurementsSettings
+from workflow.contact_settings import contact_settings
+from workflow.job import job
+from workflow.results import load_csv, write_csv, write_json
+
+with job(snakemake) as run:
+    settings = MeasurementsSettings(**snakemake.params.settings)
+    contact, law = contact_settings(snakemake.params.contact, snakemake), LawSettings(**snakemake.params.law)
+    tables = [load_measurements(table, snakemake.input[table.kind]) for table in settings.tables]
+    prior = from_rows(load_csv(snakemake.input.priors))
+    rows = [row for path in snakemake.input.cycles for row in load_csv(path)]
+    cycles = cycles_of_rows(rows, prior.names)
+    check_range(tables, prior, cycles, contact.max_force_nN)
+    device = DeviceSettings(**snakemake.params.device)
+    result = calibrate(prior, tables, cycles, contact, law, device, settings, run.progress)
+
+    write_csv(snakemake.output.responses, result.checks, RESPONSE_COLUMNS)
+    converged = result.chain.converged
+    lessons = learned(result, tables, contact.max_force_nN, settings) if converged else []
+    write_csv(snakemake.output.learned, lessons, LEARNED_COLUMNS)
+    further = next_measurements(result, contact.max_force_nN, settings.seed) if converged else []
+    write_csv(snakemake.output.next, further, NEXT_COLUMNS)
+    write_csv(snakemake.output.predictive, predictive_rows(result, contact.max_force_nN), PREDICTIVE_COLUMNS)
+    write_csv(snakemake.output.summary, summary_rows(result), SUMMARY_COLUMNS)
+    write_csv(snakemake.output.samples, sample_rows(result), [*prior.names, "log_likelihood"])
+    content = posterior_json(result, tables, lessons, outliers(result) if converged else [])
+    write_json(snakemake.output.posterior, content, run.provenance)
