@@ -1,4 +1,4 @@
-"""The command `asperity`: run, plan, new, schema, open; thin over Snakemake."""
+"""The command `asperity`: run, plan, new, schema, open, serve; thin over Snakemake."""
 
 import argparse
 import importlib.util
@@ -43,7 +43,13 @@ def main(arguments: list[str] | None = None) -> int:
         "file", help="for instance film.yaml"
     )
     commands.add_parser("schema", help="print the JSON Schema of a scene")
+    server = commands.add_parser("serve", help="offer contact cycle, law, pad and switch over UM-Bridge")
+    server.add_argument("--host", default="127.0.0.1", help="address to listen on; default: this machine alone")
+    server.add_argument("--port", type=int, default=4242)
+    server.add_argument("--workers", type=int, default=1, help="processes that evaluate; default: 1")
     given = parser.parse_args(arguments)
+    if given.command == "serve":
+        return _serve(given.host, given.port, given.workers)
     if given.command == "schema":
         print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
         return 0
@@ -52,6 +58,21 @@ def main(arguments: list[str] | None = None) -> int:
     if given.command == "open":
         return _open(given.scene)
     return _snakemake(given.scene, given.target, given.cores, dry=given.command == "plan")
+
+
+def _serve(host: str, port: int, workers: int) -> int:
+    from asperity.server import serve
+    from mesoscale.errors import InputError
+    from mesoscale.extras import MissingExtra
+
+    if workers < 1 or not 0 < port < 65536:
+        return _refuse(f"--workers {workers}, --port {port}: accepted are at least 1 worker and a port of 1 .. 65535")
+    print(f"serving at http://{host}:{port}; Ctrl-C ends it", flush=True)
+    try:
+        serve(host, port, workers)
+    except (InputError, MissingExtra) as error:
+        return _refuse(str(error))
+    return 0
 
 
 def _new(file: Path) -> int:

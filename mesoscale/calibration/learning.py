@@ -27,7 +27,7 @@ OUTLIER = 0.01
 """The same for the least likely of all specimens."""
 MARGIN = 0.5
 """A value farther outside than this share of the range that the model gives over the prior is refused."""
-DRAWS = 1000
+DRAWS = 500
 
 
 def information_bits(z: Array, others: Array | None = None) -> float:

@@ -1,0 +1,215 @@
+"""The models that `asperity serve` offers over UM-Bridge: contact cycle, law, pad and switch (docs/umbridge.md).
+
+A model takes lists of numbers in stated units and a configuration, and gives lists of numbers. It calls the library
+and changes nothing: the same inputs give the same digits.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from mesoscale.calibration.observables import LEVELS, force_levels_nN, separations_at
+from mesoscale.checks import check_seed
+from mesoscale.contact import ContactInputs, Cycle, run_cycle
+from mesoscale.device.switch import drive_switch
+from mesoscale.errors import InputError
+from mesoscale.law.branches import laws_of
+from mesoscale.law.compact import Law
+from mesoscale.law.parameters import PARAMETERS
+from mesoscale.pad.cells import PadGrid, close_cells
+from mesoscale.pad.curves import assemble
+from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings, Settings
+
+Numbers = Sequence[Sequence[float]]
+Config = Mapping[str, Any]
+
+INPUTS = tuple(field.name for field in fields(ContactInputs))
+PAD_SEPARATIONS_NM = (40.0, 35.0, 30.0, 28.0)
+
+
+@dataclass(frozen=True)
+class Model:
+    """One model of the server."""
+
+    name: str
+    about: str
+    inputs: tuple[str, ...]
+    """What the numbers of the only input list are."""
+    outputs: tuple[str, ...]
+    """What each output list is."""
+    config: tuple[str, ...]
+    """Keys that the configuration may have."""
+    evaluate: Callable[[Sequence[float], Config], list[list[float]]]
+    output_sizes: Callable[[Config], list[int]]
+
+    def __call__(self, parameters: Any, config: Any) -> list[list[float]]:
+        """Evaluate.
+
+        Raises
+        ------
+        InputError : wrong shape, unknown key of the configuration, values out of range, no finite result.
+        """
+        checked = self.checked_config(config)
+        if not isinstance(parameters, list) or len(parameters) != 1 or not isinstance(parameters[0], list):
+            raise InputError(f"{self.name}: input must be one list of {len(self.inputs)} numbers: {self._named()}")
+        values = parameters[0]
+        good = all(isinstance(x, (int, float)) and not isinstance(x, bool) for x in values)
+        if len(values) != len(self.inputs) or not good:
+            raise InputError(f"{self.name}: input must be one list of {len(self.inputs)} numbers: {self._named()}")
+        result = self.evaluate([float(x) for x in values], checked)
+        if not all(np.isfinite(part).all() for part in result):
+            raise InputError(
+                f"{self.name}: no finite result at these inputs (JSON has no NaN); look at {self._named()}"
+            )
+        return result
+
+    def checked_config(self, config: Any) -> Config:
+        """The configuration, with its keys checked.
+
+        Raises
+        ------
+        InputError
+        """
+        if not isinstance(config, dict):
+            raise InputError(f"{self.name}: config must be a mapping with keys of {', '.join(self.config)}")
+        unknown = sorted(set(config) - set(self.config))
+        if unknown:
+            raise InputError(f"{self.name}: config.{unknown[0]}: unknown key; accepted: {', '.join(self.config)}")
+        return config
+
+    def _named(self) -> str:
+        return ", ".join(self.inputs)
+
+
+def _settings(kind: type[Settings], config: Config, key: str) -> Any:
+    given = config.get(key, {})
+    if not isinstance(given, dict):
+        raise InputError(f"config.{key}: must be a mapping of settings")
+    return kind(**given)
+
+
+def _cycle(values: Sequence[float], config: Config) -> Cycle:
+    seed = config.get("seed", 1)
+    check_seed(seed)
+    contact = _settings(ContactSettings, config, "contact")
+    return run_cycle(ContactInputs(**dict(zip(INPUTS, values, strict=True))), contact, seed)
+
+
+def _contact_cycle(values: Sequence[float], config: Config) -> list[list[float]]:
+    cycle = _cycle(values, config)
+    forces = force_levels_nN(_settings(ContactSettings, config, "contact").max_force_nN)
+    net = cycle.opening.repulsive_nN + cycle.opening.attractive_nN
+    return [
+        [float(cycle.first_contact_nm), float(cycle.last_contact_nm), float(-net.min())],
+        separations_at(cycle.closing, forces).tolist(),
+        separations_at(cycle.opening, forces).tolist(),
+    ]
+
+
+def _law(values: Sequence[float], config: Config) -> list[list[float]]:
+    laws = laws_of(_cycle(values, config), _settings(LawSettings, config, "law"))
+    return [[float(np.asarray(getattr(law, name))) for name in PARAMETERS] for law in laws]
+
+
+def _separations(config: Config) -> list[float]:
+    given = config.get("separations_nm", PAD_SEPARATIONS_NM)
+    if not isinstance(given, (list, tuple)) or not given or not all(isinstance(x, (int, float)) for x in given):
+        raise InputError("config.separations_nm: must be a list of falling separations in nm")
+    return [float(x) for x in given]
+
+
+def _pad(values: Sequence[float], config: Config) -> list[list[float]]:
+    count, first = config.get("cells", 16), config.get("seed", 1000)
+    check_seed(first)
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 100_000:
+        raise InputError(f"config.cells = {count!r}: accepted is a whole number, 1 .. 100000")
+    contact = _settings(ContactSettings, config, "contact")
+    separations = np.array(_separations(config))
+    grid = PadGrid(separations, np.array([len(separations) - 1]))
+    inputs = ContactInputs(**dict(zip(INPUTS, values, strict=True)))
+    cells = list(close_cells(inputs, contact, grid, range(first, first + count)))
+    pad = assemble(grid, cells, contact.length_nm**2)
+    return [
+        (1e3 * pad.closing.mean(axis=0).sum(axis=0)).tolist(),
+        (1e3 * pad.opening[:, 0].mean(axis=0).sum(axis=0)).tolist(),
+    ]
+
+
+def _switch(values: Sequence[float], config: Config) -> list[list[float]]:
+    law = _settings(LawSettings, config, "law")
+    count = len(PARAMETERS)
+    laws = [
+        Law(
+            **dict(zip(PARAMETERS, np.array(part)[:, None], strict=True)),
+            hamaker=np.array([values[-1]]),
+            rho_a_nm=law.rho_a_nm,
+            shield_nm=law.shield_nm,
+        )
+        for part in (values[:count], values[count : 2 * count])
+    ]
+    states = drive_switch(_settings(DeviceSettings, config, "device"), *laws)
+    return [[float(states.pull_in_V[0]), float(states.release_V[0]), float(states.stuck[0])]]
+
+
+_BRANCHES = tuple(f"{branch} {name}" for branch in ("closing", "opening") for name in PARAMETERS)
+MODELS = {
+    model.name: model
+    for model in (
+        Model(
+            "contact_cycle",
+            "one surface closed and opened",
+            INPUTS,
+            (
+                "first contact (nm), last contact (nm), pull-off (nN)",
+                "separations (nm) of closing at net forces from 2 to 50 % of the largest, evenly in logarithm",
+                "the same of opening",
+            ),
+            ("seed", "contact"),
+            _contact_cycle,
+            lambda config: [3, LEVELS, LEVELS],
+        ),
+        Model(
+            "law",
+            "the compact law fitted to a cycle",
+            INPUTS,
+            tuple(f"{branch}: {', '.join(PARAMETERS)}" for branch in ("closing", "opening")),
+            ("seed", "contact", "law"),
+            _law,
+            lambda config: [len(PARAMETERS)] * 2,
+        ),
+        Model(
+            "pad",
+            "cells under one plane",
+            INPUTS,
+            (
+                "mean net pressure (MPa) of closing at separations_nm",
+                "the same of opening from the last separation",
+            ),
+            ("seed", "cells", "separations_nm", "contact"),
+            _pad,
+            lambda config: [len(_separations(config))] * 2,
+        ),
+        Model(
+            "switch",
+            "a switch on a law",
+            (*_BRANCHES, "hamaker"),
+            ("pull-in (V), release (V; 0: stuck), stuck (1 or 0)",),
+            ("law", "device"),
+            _switch,
+            lambda config: [3],
+        ),
+    )
+}
+"""All models by name."""
+
+
+def evaluate(name: str, parameters: Any, config: Any) -> list[list[float]]:
+    """Evaluate a model by its name; what a worker process runs.
+
+    Raises
+    ------
+    InputError : see `Model`.
+    """
+    return MODELS[name](parameters, config)

@@ -1,0 +1,160 @@
+"""The UM-Bridge server, with the real client of the umbridge package, and mistreated."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+
+import numpy as np
+import pytest
+
+from asperity.models import MODELS, evaluate
+
+umbridge = pytest.importorskip("umbridge")
+
+CENTRE = [0.215, 91.0, 1.95, 8.4, 0.025, 0.75, 8.5]
+CONTACT = {"contact": {"pixels": 64, "max_force_nN": 2000}}
+CLOSING, OPENING = [30.0, 1e-4, 5e-4, 3.0], [28.0, 1e-4, 5e-4, 3.0]
+
+
+@pytest.fixture(scope="module")
+def server():
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "asperity", "serve", "--port", str(port), "--workers", "2"], stdout=subprocess.PIPE
+    )
+    url = f"http://127.0.0.1:{port}"
+    for _ in range(600):
+        try:
+            urllib.request.urlopen(f"{url}/Info", timeout=1).close()
+            break
+        except OSError:
+            time.sleep(0.1)
+    yield url, process
+    process.send_signal(signal.SIGINT)
+    process.wait(20)
+
+
+def post(url, path, body):
+    request = urllib.request.Request(
+        f"{url}/{path}", data=body if isinstance(body, bytes) else json.dumps(body).encode()
+    )
+    try:
+        with urllib.request.urlopen(request, timeout=120) as answer:
+            return answer.status, json.load(answer)
+    except urllib.error.HTTPError as error:
+        return error.code, json.load(error)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "config"),
+    [
+        ("contact_cycle", CENTRE, {"seed": 3, **CONTACT}),
+        ("law", CENTRE, {"seed": 3, "contact": {"pixels": 128}}),
+        ("pad", CENTRE, {"cells": 2, "separations_nm": [40.0, 30.0], "contact": {"pixels": 64}}),
+        ("switch", [*CLOSING, *OPENING, 0.215], {}),
+    ],
+)
+def test_client_gets_the_librarys_digits(server, name, values, config):
+    model = umbridge.HTTPModel(server[0], name)
+    assert model([values], config) == evaluate(name, [values], config)
+    assert model.get_input_sizes(config) == [len(values)]
+    assert model.get_output_sizes(config) == [len(part) for part in evaluate(name, [values], config)]
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "words"),
+    [
+        ("Evaluate", b"{", "no JSON"),
+        ("Evaluate", b"\xff\xfe", "no JSON"),
+        ("Evaluate", b"[" * 100_000, "no JSON"),
+        ("Evaluate", [], "JSON object"),
+        ("Evaluate", {}, "no such model"),
+        ("Evaluate", {"name": "none"}, "no such model"),
+        ("Evaluate", {"name": "switch"}, "one list of 9 numbers"),
+        ("Evaluate", {"name": "switch", "input": [[1, 2]]}, "one list of 9 numbers"),
+        ("Evaluate", {"name": "switch", "input": [["a"] * 9]}, "one list of 9 numbers"),
+        ("Evaluate", {"name": "contact_cycle", "input": [[*CENTRE[:-1], -1]]}, "rms = -1"),
+        ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"sed": 1}}, "unknown key"),
+        ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"seed": -1}}, "seed = -1"),
+        ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": 5}, "mapping"),
+        ("InputSizes", {"name": "none"}, "no such model"),
+        ("OutputSizes", {"name": "pad", "config": {"separations_nm": "x"}}, "list of falling separations"),
+    ],
+)
+def test_a_malformed_request_gets_one_line(server, path, body, words):
+    status, answer = post(server[0], path, body)
+    assert status == 400
+    assert words in answer["error"]["message"]
+    assert "\n" not in answer["error"]["message"]
+    assert server[1].poll() is None
+
+
+def children(pid):
+    found = []
+    for entry in os.listdir("/proc"):
+        if entry.isdigit():
+            try:
+                with open(f"/proc/{entry}/stat") as stat, open(f"/proc/{entry}/cmdline") as line:
+                    if int(stat.read().rpartition(")")[2].split()[1]) == pid and "spawn_main" in line.read():
+                        found.append(int(entry))
+            except OSError:
+                continue
+    return found
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="needs /proc")
+def test_a_killed_worker_is_replaced(server):
+    url, process = server
+    model = umbridge.HTTPModel(url, "switch")
+    values = [*CLOSING, *OPENING, 0.215]
+    first = model([values])
+    workers = children(process.pid)
+    assert workers
+    for worker in workers:
+        os.kill(worker, signal.SIGKILL)
+    assert model([values]) == first
+
+
+def test_a_client_that_goes_away_leaves_the_server_well(server):
+    url = server[0]
+    host, port = url.removeprefix("http://").split(":")
+    body = json.dumps({"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"pixels": 256}}}).encode()
+    for cut in (len(body), len(body) // 2):
+        client = socket.create_connection((host, int(port)))
+        client.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body) + body[:cut])
+        client.close()
+    assert umbridge.HTTPModel(url, "switch")([[*CLOSING, *OPENING, 0.215]])[0][0] > 0
+
+
+@pytest.mark.skipif(not os.path.isfile("/proc/net/tcp"), reason="needs /proc")
+def test_only_the_local_address_listens(server):
+    port = int(server[0].rpartition(":")[2])
+    with open("/proc/net/tcp") as table:
+        addresses = [line.split()[1] for line in table.readlines()[1:] if line.split()[3] == "0A"]
+    mine = [address for address in addresses if address.endswith(f":{port:04X}")]
+    assert mine == [f"0100007F:{port:04X}"]
+
+
+def test_a_foreign_library_propagates_through_it(server):
+    """OpenTURNS sends a design through the switch by way of the client: release falls with the adhesion."""
+    openturns = pytest.importorskip("openturns")
+    model = umbridge.HTTPModel(server[0], "switch")
+
+    def release(point):
+        return [model([[*CLOSING, OPENING[0], float(point[0]), *OPENING[2:], 0.215]])[0][1]]
+
+    function = openturns.PythonFunction(1, 1, release)
+    volts = np.array(function(openturns.Sample(np.array([[0.0], [1e-6], [1e-5]]))))[:, 0]
+    assert (np.diff(volts) < 0).all()
+
+
+def test_every_model_says_what_it_takes():
+    assert all(model.about and model.inputs and model.outputs and model.config for model in MODELS.values())
