@@ -31,16 +31,20 @@ PAD_SEPARATIONS_NM = (40.0, 35.0, 30.0, 28.0)
 
 @dataclass(frozen=True)
 class Model:
-    """One model of the server."""
+    """One model of the server.
+
+    Attributes
+    ----------
+    name, about, inputs : what the numbers of the only input list are.
+    outputs : what each output list is.
+    config : keys that the configuration may have.
+    """
 
     name: str
     about: str
     inputs: tuple[str, ...]
-    """What the numbers of the only input list are."""
     outputs: tuple[str, ...]
-    """What each output list is."""
     config: tuple[str, ...]
-    """Keys that the configuration may have."""
     evaluate: Callable[[Sequence[float], Config], list[list[float]]]
     output_sizes: Callable[[Config], list[int]]
 

@@ -19,7 +19,7 @@ from workflow.scene import Scene
 START_S = 2.0  # Snakemake's start of a job, and the packages
 GRID = 1024**2  # sites of the reference
 CYCLE_S = {"asperity": (0.005, 0.065), "coupled": (0.02, 2.5)}  # of any cycle; of one on the reference grid, besides
-CHAIN_S = 10.0  # a posterior of some twenty curves; scene calibration
+CHAIN_S = 10.0  # a posterior of some twenty curves; scene made_up
 FITTED_RUN_S = 0.004  # law of a run and its row
 CELL_S = 2.4  # a pad's cell over a cycle: it opens from several depths
 SCAN_S = 0.8  # analysis of a scan of the reference grid

@@ -71,7 +71,7 @@ def learned(
     for data in tables:
         only = given([data])
         rest = [other for other in tables if other is not data]
-        alone = draw(only, settings).z if rest else result.chain.z
+        by_itself = draw(only, settings).z if rest else result.chain.z
         without = draw(given(rest), settings).z if rest else rng.standard_normal(result.chain.z.shape)
         probability = predictive_probability(only, only.inputs(without), rng)
         rows.append(
@@ -79,7 +79,7 @@ def learned(
                 "kind": data.kind,
                 "file": data.file,
                 "rows": len(data),
-                "alone_bits": information_bits(alone),
+                "alone_bits": information_bits(by_itself),
                 "added_bits": information_bits(result.chain.z, without if rest else None),
                 "probability": probability,
                 "verdict": _verdict(data, probability, bool(rest)),
@@ -200,7 +200,8 @@ def _check_curves(data: Measurements, cycles: Cycles, max_force_nN: float) -> No
 
 def candidates(max_force_nN: float) -> dict[str, tuple[str, Measurements]]:
     """What could be measured next, by kind: in words, and as a table whose values are made up later."""
-    forces = np.geomspace(*force_levels_nN(max_force_nN)[[0, -1]], 30)
+    levels = force_levels_nN(max_force_nN)
+    forces = np.geomspace(levels[0], levels[-1], 30)
     curve = {"separation": np.linspace(10, 0, 30), "force": forces, "separation_error": np.full(30, 0.2)}
     one, ten = np.ones(1), np.ones(10)
 

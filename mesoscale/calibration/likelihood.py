@@ -25,13 +25,17 @@ SWITCH_KINDS = ("release", "pull_in", "sticking")
 
 @dataclass(frozen=True)
 class DirectData:
-    """Values that the inputs alone decide: hardness points and elastic moduli."""
+    """Values that the inputs alone decide: hardness points and elastic moduli.
+
+    Attributes
+    ----------
+    kind, values, variances, area_nm2 : hardness: contact areas; else empty.
+    """
 
     kind: str
     values: Array
     variances: Array
     area_nm2: Array
-    """Hardness: contact areas; else empty."""
     discrepancy: float
 
     def model(self, table: dict[str, Array]) -> Array:
@@ -55,26 +59,30 @@ def normal_with_common(residuals: Array, variances: Array, common: Array) -> Arr
     """Logarithm of a normal density with covariance diag(variances) + common common^T, over the last axis."""
     variances = np.broadcast_to(variances, residuals.shape)
     common = np.broadcast_to(common, residuals.shape)
-    own = (residuals**2 / variances).sum(axis=-1)
+    separate = (residuals**2 / variances).sum(axis=-1)
     cross = (residuals * common / variances).sum(axis=-1)
     gain = 1 + (common**2 / variances).sum(axis=-1)
-    return -0.5 * (own - cross**2 / gain + np.log(gain) + np.log(2 * np.pi * variances).sum(axis=-1))
+    return -0.5 * (separate - cross**2 / gain + np.log(gain) + np.log(2 * np.pi * variances).sum(axis=-1))
 
 
 @dataclass(frozen=True)
 class Posterior:
-    """Density of the inputs in the space where their prior is standard normal."""
+    """Density of the inputs in the space where their prior is standard normal.
+
+    Attributes
+    ----------
+    table : the prior.
+    surfaces, surface_responses : of the observables that `surfaces` sees.
+    direct, switches, switch, law_responses : of the laws; for the switch.
+    """
 
     table: InputTable
-    """The prior."""
     surfaces: SurfaceData | None
     surface_responses: Responses | None
-    """Of the observables that `surfaces` sees."""
     direct: tuple[DirectData, ...]
     switches: tuple[Measurements, ...]
     switch: SwitchModel | None
     law_responses: Responses | None
-    """Of the laws; for the switch."""
 
     @property
     def free(self) -> NDArray[np.int_]:
@@ -172,7 +180,7 @@ class Posterior:
 
 def direct_data(tables: Iterable[Measurements]) -> tuple[DirectData, ...]:
     """Hardness points and moduli among the tables."""
-    found = []
+    data = []
     for table in tables:
         if table.kind == "hardness":
             area = table.columns["area"]
@@ -182,8 +190,8 @@ def direct_data(tables: Iterable[Measurements]) -> tuple[DirectData, ...]:
             values, errors = table.columns["e_star"], table.columns["e_star_error"]
         else:
             continue
-        found.append(DirectData(table.kind, values, errors**2, area, table.discrepancy))
-    return tuple(found)
+        data.append(DirectData(table.kind, values, errors**2, area, table.discrepancy))
+    return tuple(data)
 
 
 def posterior_of(

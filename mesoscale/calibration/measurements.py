@@ -57,19 +57,23 @@ FEWEST_POINTS = 5
 
 @dataclass(frozen=True)
 class Measurements:
-    """The data of one table, in nm, nN, nm^2, GPa and V."""
+    """The data of one table, in nm, nN, nm^2, GPa and V.
+
+    Attributes
+    ----------
+    kind, columns : by quantity, shape (rows,).
+    specimens : specimen of every row; made up where the table names none.
+    zero_known : curves: whether separations count from the mean plane.
+    discrepancy : See `MeasurementTable.discrepancy`.
+    file : as it is named in messages.
+    """
 
     kind: str
     columns: dict[str, Array]
-    """By quantity, shape (rows,)."""
     specimens: tuple[str, ...]
-    """Specimen of every row; made up where the table names none."""
     zero_known: bool
-    """Curves: whether separations count from the mean plane."""
     discrepancy: float
-    """See `MeasurementTable.discrepancy`."""
     file: str
-    """As it is named in messages."""
 
     def __len__(self) -> int:
         return len(self.specimens)

@@ -25,13 +25,18 @@ LOWEST_SHARE, HIGHEST_SHARE = 0.02, 0.5
 
 @dataclass(frozen=True)
 class Observable:
-    """A number that one surface gives."""
+    """A number that one surface gives.
+
+    Attributes
+    ----------
+    name : column of result files.
+    unit, scale : what has a response: `length`, its ratio to the RMS height; `log_length`, the logarithm of that;
+        `log`.
+    """
 
     name: str
-    """Column of result files."""
     unit: str
     scale: str
-    """What has a response: `length`, its ratio to the RMS height; `log_length`, the logarithm of that; `log`."""
 
 
 def curve_names(branch: str) -> list[str]:

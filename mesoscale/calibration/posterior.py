@@ -33,29 +33,37 @@ CENTRAL_SHARE = 0.999
 
 @dataclass(frozen=True)
 class Cycles:
-    """Contact cycles behind the responses."""
+    """Contact cycles behind the responses.
+
+    Attributes
+    ----------
+    x : inputs, shape (m, n).
+    y : observables and laws in the order of NAMES, shape (m, k); NaN where missing.
+    """
 
     x: Array
-    """Inputs, shape (m, n)."""
     y: Array
-    """Observables and laws in the order of NAMES, shape (m, k); NaN where missing."""
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """What the measurements say."""
+    """What the measurements say.
+
+    Attributes
+    ----------
+    posterior, chain, x : samples of the inputs, shape (s, n).
+    responses : of all observables.
+    laws, expected, switch, checks : the responses where the posterior lies, one row per round and observable.
+    """
 
     posterior: Posterior
     chain: Chain
     x: Array
-    """Samples of the inputs, shape (s, n)."""
     responses: Responses
-    """Of all observables."""
     laws: Responses
     expected: Expected
     switch: SwitchModel
     checks: list[dict[str, Any]] = field(default_factory=list)
-    """The responses where the posterior lies, one row per round and observable."""
     cycles: int = 0
 
     @property
@@ -139,7 +147,8 @@ def calibrate(
     needs_cycles = any(data.kind in (*ON_SURFACES, *SWITCH_KINDS) for data in tables)
     checks: list[dict[str, Any]] = []
     rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 0xCB]))
-    for turn in range(settings.rounds + 1):
+    turn = 0
+    while True:
         responses, laws = responses_of(table, cycles)
         posterior = posterior_of(table, tables, responses, laws, switch, contact.max_force_nN, expected)
         chain = draw(posterior, settings, progress)
@@ -160,6 +169,7 @@ def calibrate(
         for row, bias in zip(rows, response_bias(posterior, added), strict=True):
             row |= bias
         cycles = Cycles(np.vstack([cycles.x, added.x]), np.vstack([cycles.y, added.y]))
+        turn += 1
     return Calibration(
         posterior, chain, posterior.inputs(chain.z), responses, laws, expected, switch, checks, len(cycles.x)
     )
@@ -194,8 +204,8 @@ def response_errors(posterior: Posterior, chain: Chain, turn: int) -> list[dict[
         return []
     responses, names = seen
     prediction = responses(posterior.inputs(chain.z[:: max(1, len(chain.z) // 500)]))
-    own = np.einsum("mkk->mk", prediction.scatter) * prediction.error[:, None]
-    error, width = np.sqrt(own.mean(axis=0)), prediction.mean.std(axis=0)
+    known = np.einsum("mkk->mk", prediction.scatter) * prediction.error[:, None]
+    error, width = np.sqrt(known.mean(axis=0)), prediction.mean.std(axis=0)
     return [
         {
             "round": turn,

@@ -34,39 +34,47 @@ MEAN_LOG_CHI2 = -1.2703628
 
 @dataclass(frozen=True)
 class Prediction:
-    """Observables at m points: lengths in nm, others as the logarithm of their value."""
+    """Observables at m points: lengths in nm, others as the logarithm of their value.
+
+    Attributes
+    ----------
+    mean : averaged over random surfaces, shape (m, k).
+    scatter : covariance of single surfaces, shape (m, k, k).
+    error : variance of the mean by the finite number of cycles, as a share of the scatter, shape (m,).
+    """
 
     mean: Array
-    """Averaged over random surfaces, shape (m, k)."""
     scatter: Array
-    """Covariance of single surfaces, shape (m, k, k)."""
     error: Array
-    """Variance of the mean by the finite number of cycles, as a share of the scatter, shape (m,)."""
 
 
 @dataclass(frozen=True)
 class Responses:
-    """Fitted responses of several observables."""
+    """Fitted responses of several observables.
+
+    Attributes
+    ----------
+    observables, ranges : ranges of the inputs, shape (n, 2).
+    rms_column : which input is the RMS height, the unit of all lengths.
+    degrees : terms, shape (t, n).
+    coefficients : shape (t, k).
+    covariance : of the coefficients for scatter 1, shape (t, t).
+    axes : principal axes of the residuals as columns, in the unit of the responses, shape (k, c).
+    spread : coefficients of ln variance along each axis, in 1 and the scaled inputs, shape (1 + n, c).
+    runs : cycles behind them.
+    dropped : cycles left out because they lack an observable.
+    """
 
     observables: tuple[Observable, ...]
     ranges: Array
-    """Ranges of the inputs, shape (n, 2)."""
     rms_column: int
-    """Which input is the RMS height, the unit of all lengths."""
     degrees: Degrees
-    """Terms, shape (t, n)."""
     coefficients: Array
-    """Shape (t, k)."""
     covariance: Array
-    """Of the coefficients for scatter 1, shape (t, t)."""
     axes: Array
-    """Principal axes of the residuals as columns, in the unit of the responses, shape (k, c)."""
     spread: Array
-    """Coefficients of ln variance along each axis, in 1 and the scaled inputs, shape (1 + n, c)."""
     runs: int
-    """Cycles behind them."""
     dropped: int
-    """Cycles left out because they lack an observable."""
 
     def pick(self, names: Sequence[str]) -> "Responses":
         """The responses of some observables, in their order."""
@@ -198,17 +206,17 @@ def _fit(u: Array, target: Array, degrees: Degrees) -> tuple[Array, Array, Array
     """
     basis = basis_matrix(u, degrees)
     weights = np.ones(len(u))
-    coefficients = covariance = spread = left_out = axes = np.empty(0)
+    coefficients = covariance = spread = left_out = axes = np.empty((0, 0))
     for _ in range(2):
         root = np.sqrt(weights)[:, None]
-        covariance = np.linalg.pinv((basis * root).T @ (basis * root), hermitian=True)
+        covariance = np.asarray(np.linalg.pinv((basis * root).T @ (basis * root), hermitian=True), float)
         coefficients = covariance @ (basis.T @ (weights[:, None] * target))
         leverage = weights * np.einsum("mt,tu,mu->m", basis, covariance, basis, optimize=True)
         left_out = (target - basis @ coefficients) / np.maximum(1 - leverage, 1e-3)[:, None]
         sd = np.sqrt((left_out**2).mean(axis=0) + SMALLEST_SD**2)
         axes = sd[:, None] * np.linalg.eigh(np.corrcoef(left_out / sd, rowvar=False).reshape(len(sd), -1))[1]
-        along = np.linalg.solve(axes, left_out.T).T
-        spread = _spread(u, along)
+        on_axes = np.linalg.solve(axes, left_out.T).T
+        spread = _spread(u, on_axes)
         # the axis of largest scatter stands last; its scatter weighs the runs
         weights = np.exp(-(u @ spread[1:, -1]))
     return coefficients, covariance, spread, left_out, axes
@@ -220,11 +228,11 @@ def _spread(u: Array, residuals: Array) -> Array:
     Fisher scoring of a generalised linear model with gamma errors and logarithmic link (McCullagh and Nelder,
     Generalized Linear Models, 1989, section 8.3).
     """
-    design = np.column_stack([np.ones(len(u)), u])
-    inverse = np.linalg.pinv(design)
+    terms = np.column_stack([np.ones(len(u)), u])
+    inverse = np.linalg.pinv(terms)
     squares = residuals**2 + SMALLEST_SD**2
     coefficients = inverse @ (np.log(squares) - MEAN_LOG_CHI2)
     for _ in range(SCORING_STEPS):
-        ratio = squares / np.exp(design @ coefficients)
+        ratio = squares / np.exp(terms @ coefficients)
         coefficients = coefficients + np.clip(inverse @ (ratio - 1), -1.0, 1.0)
     return coefficients

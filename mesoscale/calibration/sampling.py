@@ -27,24 +27,28 @@ FEWEST_EFFECTIVE = 400.0
 
 @dataclass(frozen=True)
 class Chain:
-    """What the ensembles gave."""
+    """What the ensembles gave.
+
+    Attributes
+    ----------
+    z : draws, shape (s, n).
+    log_likelihood : shape (s,).
+    converged, r_hat : largest over the inputs: ensembles and their halves against each other.
+    effective : independent draws behind the worst input.
+    steps : of each ensemble, after burn-in.
+    acceptance, autocorrelation : longest autocorrelation time, in steps.
+    reason : why it has not converged, in words; empty if it has.
+    """
 
     z: Array
-    """Draws, shape (s, n)."""
     log_likelihood: Array
-    """Shape (s,)."""
     converged: bool
     r_hat: float
-    """Largest over the inputs: ensembles and their halves against each other."""
     effective: float
-    """Independent draws behind the worst input."""
     steps: int
-    """Of each ensemble, after burn-in."""
     acceptance: float
     autocorrelation: float
-    """Longest autocorrelation time, in steps."""
     reason: str
-    """Why it has not converged, in words; empty if it has."""
 
 
 def sample(
@@ -88,15 +92,15 @@ def sample(
         )
         sampler.random_state = np.random.RandomState([seed, ensemble]).get_state()
         samplers.append((sampler, start))
-    diagnosis = None
-    for done in range(BLOCK, max_steps + 1, BLOCK):
+    done, diagnosis = 0, (np.inf, 0.0, np.inf)
+    while done < max_steps:
+        done += BLOCK
         samplers = [(sampler, sampler.run_mcmc(start, BLOCK)) for sampler, start in samplers]
         diagnosis = _diagnose([sampler for sampler, _ in samplers], done // 2)
         if progress:
             progress(done / max_steps, f"step {done}, R-hat {diagnosis[0]:.3f}, {diagnosis[1]:.0f} independent draws")
         if diagnosis[0] < LARGEST_R_HAT and diagnosis[1] > FEWEST_EFFECTIVE:
             break
-    assert diagnosis is not None
     r_hat, effective, longest = diagnosis
     half = done // 2
     draws = np.concatenate([sampler.get_chain(discard=half, flat=True) for sampler, _ in samplers])

@@ -32,23 +32,28 @@ LARGEST_RELATIVE_ERROR = 0.5
 
 @dataclass(frozen=True)
 class SurfaceData:
-    """All data measured on surfaces."""
+    """All data measured on surfaces.
+
+    Attributes
+    ----------
+    names : observables that the data see, k of them.
+    specimens : their names, s of them.
+    precision : A of each specimen, shape (s, k, k).
+    information : b of each, shape (s, k).
+    constant : sum of c and of the logarithms of 2 pi times the errors' variances.
+    model_error : covariance of the model's own error, shape (k, k).
+    left_out : points of curves outside the range of forces of the responses.
+    points : numbers used.
+    """
 
     names: tuple[str, ...]
-    """Observables that the data see, k of them."""
     specimens: tuple[str, ...]
     precision: Array
-    """A of each specimen, shape (s, k, k)."""
     information: Array
-    """b of each, shape (s, k)."""
     constant: float
-    """Sum of c and of the logarithms of 2 pi times the errors' variances."""
     model_error: Array
-    """Covariance of the model's own error, shape (k, k)."""
     left_out: int
-    """Points of curves outside the range of forces of the responses."""
     points: int
-    """Numbers used."""
 
     def log_likelihood(self, prediction: Prediction) -> Array:
         """Logarithm of the likelihood at m points, shape (m,).
@@ -67,11 +72,11 @@ class SurfaceData:
         factor = np.linalg.cholesky(eye + turned @ self.precision @ root)
         half = np.linalg.solve(factor, np.broadcast_to(turned, factor.shape))
         lowered = half @ self.precision
-        along = np.einsum("msjk,sk->msj", half, self.information)
-        result = 0.5 * (along**2).sum(axis=(1, 2)) - np.log(np.einsum("mskk->msk", factor)).sum(axis=(1, 2))
+        pulled = np.einsum("msjk,sk->msj", half, self.information)
+        result = 0.5 * (pulled**2).sum(axis=(1, 2)) - np.log(np.einsum("mskk->msk", factor)).sum(axis=(1, 2))
         result -= 0.5 * self.constant
         total_precision = self.precision.sum(axis=0) - np.einsum("msij,msik->mjk", lowered, lowered, optimize=True)
-        total_information = self.information.sum(axis=0) - np.einsum("msjk,msj->mk", lowered, along)
+        total_information = self.information.sum(axis=0) - np.einsum("msjk,msj->mk", lowered, pulled)
         common = self._model_error_at(mean) + prediction.error[:, None, None] * scatter
         common_root = np.linalg.cholesky(common + 1e-12 * np.einsum("mkk->mk", scatter)[:, :, None] * eye)
         factor = np.linalg.cholesky(eye + np.swapaxes(common_root, 1, 2) @ total_precision @ common_root)
@@ -123,13 +128,17 @@ class SurfaceData:
 
 @dataclass(frozen=True)
 class Expected:
-    """What the prior expects of the observables: where measured curves are linearised that do not determine them."""
+    """What the prior expects of the observables: where measured curves are linearised that do not determine them.
+
+    Attributes
+    ----------
+    names, mean : as `Prediction` has them, shape (k,).
+    covariance : shape (k, k).
+    """
 
     names: tuple[str, ...]
     mean: Array
-    """As `Prediction` has them, shape (k,)."""
     covariance: Array
-    """Shape (k, k)."""
 
     def pick(self, names: Sequence[str]) -> tuple[Array, Array]:
         """Mean and covariance of some observables."""
@@ -158,11 +167,11 @@ def surface_data(tables: Iterable[Measurements], max_force_nN: float, expected: 
     for table in tables:
         for specimen, rows in by_specimen(table).items():
             if table.kind in CURVE_KINDS:
-                design, values, variances, dropped = _curve(table, specimen, rows, max_force_nN)
+                projection, values, variances, dropped = _curve(table, specimen, rows, max_force_nN)
                 left_out += dropped
                 first = names.index(curve_names(CURVES[table.kind])[0])
                 columns = np.zeros((len(values), len(names)))
-                columns[:, first : first + LEVELS] = design
+                columns[:, first : first + LEVELS] = projection
             else:
                 values, variances = _scalars(table, rows)
                 columns = np.zeros((len(values), len(names)))
@@ -204,12 +213,12 @@ def _curve(
             "contact.max_force_nN to the largest measured force"
         )
     log_force = np.log(force[usable])
-    design = np.stack([np.interp(log_force, np.log(levels), row) for row in np.eye(LEVELS)], axis=1)
+    projection = np.stack([np.interp(log_force, np.log(levels), row) for row in np.eye(LEVELS)], axis=1)
     bend = np.polynomial.Polynomial.fit(log_force, separation[usable], min(2, int(usable.sum()) - 2))
     slope = bend.deriv()(log_force) / force[usable]
     variances = own_error[usable] ** 2 + (slope * force_error[usable]) ** 2
     floor = np.median(variances) * 1e-4 + 1e-12  # where a fitted slope crosses zero
-    return design, separation[usable], np.maximum(variances, floor), int((~usable).sum())
+    return projection, separation[usable], np.maximum(variances, floor), int((~usable).sum())
 
 
 def _scalars(table: Measurements, rows: NDArray[np.int_]) -> tuple[Array, Array]:
@@ -262,14 +271,18 @@ def _linearised(
     f = mean.copy()
     for _ in range(GAUSS_NEWTON_STEPS):
         physical, slopes = _separations(names, f)
-        design = columns @ slopes
-        pull = design.T @ weights @ (values - columns @ physical) + stiffness @ (mean - f)
-        step = np.linalg.solve(design.T @ weights @ design + stiffness, pull)
+        projection = columns @ slopes
+        pull = projection.T @ weights @ (values - columns @ physical) + stiffness @ (mean - f)
+        step = np.linalg.solve(projection.T @ weights @ projection + stiffness, pull)
         f = f + step * min(1.0, 1.0 / np.abs(step / np.sqrt(np.diag(covariance))).max())
     physical, slopes = _separations(names, f)
-    design = columns @ slopes
-    values = values - columns @ physical + design @ f
-    return design.T @ weights @ design, design.T @ weights @ values, float(values @ weights @ values) + constant
+    projection = columns @ slopes
+    values = values - columns @ physical + projection @ f
+    return (
+        projection.T @ weights @ projection,
+        projection.T @ weights @ values,
+        float(values @ weights @ values) + constant,
+    )
 
 
 def _model_error(tables: Sequence[Measurements], names: Sequence[str]) -> Array:

@@ -27,13 +27,17 @@ INNER, OUTER = 120, 60
 
 @dataclass(frozen=True)
 class SwitchModel:
-    """The switch on the laws that responses predict."""
+    """The switch on the laws that responses predict.
+
+    Attributes
+    ----------
+    switch, adhesion_scale, law, cells : cells that a landed switch averages.
+    """
 
     switch: Switch
     adhesion_scale: float
     law: LawSettings
     cells: float
-    """Cells that a landed switch averages."""
 
     @classmethod
     def of(cls, device: DeviceSettings, law: LawSettings, cell_area_nm2: float) -> "SwitchModel":

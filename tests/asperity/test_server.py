@@ -144,7 +144,7 @@ def test_only_the_local_address_listens(server):
 
 
 def test_a_foreign_library_propagates_through_it(server):
-    """OpenTURNS sends a design through the switch by way of the client: release falls with the adhesion."""
+    """OpenTURNS sends a sample through the switch by way of the client: release falls with the adhesion."""
     openturns = pytest.importorskip("openturns")
     model = umbridge.HTTPModel(server[0], "switch")
 

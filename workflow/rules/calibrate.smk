@@ -6,7 +6,6 @@ MEASUREMENT_FILES = {
     for k, table in enumerate(SCENE.measurements.tables)
 }
 MEASUREMENT_CHUNKS = chunk_bounds(SCENE.measurements.runs, SCENE.measurements.chunk_runs)
-CALIBRATION_TABLES = ("samples", "summary", "learned", "next", "predictive", "responses")
 PRIORS = SCENE.inputs.priors()
 
 
@@ -61,7 +60,12 @@ rule sample_posterior:
         priors=f"{RESULTS}/calibration/priors.csv",
         cycles=[f"{RESULTS}/calibration/cycles/chunk_{chunk}.csv" for chunk in MEASUREMENT_CHUNKS],
     output:
-        **{name: f"{RESULTS}/calibration/{name}.csv" for name in CALIBRATION_TABLES},
+        samples=f"{RESULTS}/calibration/samples.csv",
+        summary=f"{RESULTS}/calibration/summary.csv",
+        learned=f"{RESULTS}/calibration/learned.csv",
+        next=f"{RESULTS}/calibration/next.csv",
+        predictive=f"{RESULTS}/calibration/predictive.csv",
+        responses=f"{RESULTS}/calibration/responses.csv",
         posterior=f"{RESULTS}/calibration/posterior.json",
     log:
         f"{RESULTS}/logs/sample_posterior.log",

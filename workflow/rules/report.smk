@@ -23,8 +23,8 @@ def report_inputs():
     if SCENE.history.cycles > 0:
         files += [f"history/{name}" for name in ("cycles.csv", "dwell.csv", "curves.h5")]
     if SCENE.measurements.tables:
-        files += ["calibration/posterior.json"]
-        files += [f"calibration/{name}.csv" for name in CALIBRATION_TABLES]
+        tables = ("samples", "summary", "learned", "next", "predictive", "responses")
+        files += ["calibration/posterior.json", *(f"calibration/{table}.csv" for table in tables)]
     if SCENE.coupling.surfaces > 0:
         files += ["coupling/comparison.csv"]
     studies = [*ACCURACY, *STABILITY] if SCENE.report.studies else []

@@ -14,6 +14,6 @@ from workflow.results import load_csv, write_csv
 with job(snakemake) as run:
     table = from_rows(load_csv(snakemake.input.inputs))
     draws = UncertaintySettings(sample_seed=snakemake.params.seed)
-    runs = random_runs(table, draws, *snakemake.params.bounds, FIRST_SEED)
+    runs = random_runs(table, draws, *snakemake.params.bounds, first_surface=FIRST_SEED)
     contact, law = contact_settings(snakemake.params.contact, snakemake), LawSettings(**snakemake.params.law)
     write_csv(snakemake.output[0], observe_runs(runs, contact, law, run.progress))

@@ -1,6 +1,6 @@
 """Made-up measurements of known truth: the engine's surfaces with drawn errors.
 
-`python -m mesoscale.calibration.studies.made_up FOLDER` writes the tables of the shipped example, scene `calibration`.
+`python -m mesoscale.calibration.studies.made_up FOLDER` writes the tables of the shipped example, scene `made_up`.
 """
 
 import csv
@@ -45,7 +45,8 @@ def made_up(truth: Mapping[str, float], contact: ContactSettings, curves: int, s
     """
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0xDA]))
     inputs, chosen = contact_of(truth, contact)
-    forces = np.geomspace(*force_levels_nN(contact.max_force_nN)[[0, -1]], POINTS)
+    levels = force_levels_nN(contact.max_force_nN)
+    forces = np.geomspace(levels[0], levels[-1], POINTS)
     closing: Rows = []
     pull_off: Rows = []
     for k in range(curves):
