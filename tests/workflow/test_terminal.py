@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from workflow.cost import Costs, machine_MB, relative_speed, wall_seconds
 from workflow.scene import load_scene
-from workflow.terminal import Terminal, duration
+from workflow.terminal.cost import Costs, machine_MB, relative_speed, wall_seconds
+from workflow.terminal.progress import Terminal, duration
 
 
 class OneSecondEach:
@@ -28,7 +28,7 @@ def send(terminal, event, **about):
 
 @pytest.mark.parametrize("dry", [True, False])
 def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry, monkeypatch):
-    monkeypatch.setattr("workflow.terminal.relative_speed", lambda: 1.0)
+    monkeypatch.setattr("workflow.terminal.progress.relative_speed", lambda: 1.0)
     jobs = [job("fit_law"), job("fit_law"), job("unheard_of")]
     snakemake = SimpleNamespace(dryrun=dry, cores=2, dag=SimpleNamespace(needrun_jobs=lambda: jobs))
     terminal = Terminal(snakemake, OneSecondEach(), "nothing to do")

@@ -7,18 +7,16 @@ Every module offers `describe(results) -> Section | None`; None where the scene 
 from workflow.report.stages import (
     calibration,
     contact,
-    coupling,
     device,
     elastic,
     hardness,
-    history,
     inputs,
-    model_form,
     pad,
     sensitivity,
     topography,
     uncertainty,
 )
+from workflow.report.stages.studies import coupling, history, model_form
 
 # in the order of the data's flow
 STAGES = (

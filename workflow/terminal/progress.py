@@ -10,7 +10,7 @@ from typing import Any
 
 from snakemake.exceptions import WorkflowError
 
-from workflow.cost import Costs, relative_speed, wall_seconds
+from workflow.terminal.cost import Costs, relative_speed, wall_seconds
 
 
 class Terminal(logging.Handler):

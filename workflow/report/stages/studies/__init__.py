@@ -1,0 +1,1 @@
+"""What the page says about optional studies that no report waits for."""
