@@ -81,8 +81,8 @@ def fit_stiffness(strains: Sequence[np.ndarray], stresses: Sequence[np.ndarray])
         if the strains leave a constant undetermined
     """
     eta = np.array([green_lagrange(strain) for strain in strains]).reshape(-1, 6)
-    design = np.hstack([np.ones((len(eta), 1)), eta / max(float(abs(eta).max(initial=0.0)), 1e-30)])
-    rank = int(np.linalg.matrix_rank(design, tol=1e-6))
+    equations = np.hstack([np.ones((len(eta), 1)), eta / max(float(abs(eta).max(initial=0.0)), 1e-30)])
+    rank = int(np.linalg.matrix_rank(equations, tol=1e-6))
     if rank < 7:
         raise InputError(
             f"elastic constants: {len(eta)} strain states determine {rank} of 7 unknowns of each stress component; "

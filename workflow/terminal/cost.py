@@ -154,8 +154,8 @@ def machine_MB() -> int:
 
 def wall_seconds(job_seconds: Iterable[float], cores: int) -> float:
     """Time that jobs take side by side: all cores busy, but no less than the longest job."""
-    each = list(job_seconds)
-    return max([sum(each) / cores, *each])
+    seconds = list(job_seconds)
+    return max([sum(seconds) / cores, *seconds])
 
 
 def relative_speed() -> float:
