@@ -18,6 +18,7 @@ from mesoscale.errors import InputError
 from mesoscale.law.branches import law_of_fit
 from mesoscale.law.fit import fit_branch
 from mesoscale.law.wells import attraction_status, well_of, well_of_law
+from mesoscale.pad.compact import fit_compact, tabulated
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import PadLaw, law_of
 from mesoscale.pad.tail import Tail
@@ -156,10 +157,19 @@ def switch_on_pad(
         **content,
         "mean": asdict(mean),
         "beam": bending,
+        "by_compact": compact_on_pad(switch, law_of(cells, hamaker), settings.hold_voltage_V),
         "by_law": law_on_pad(switch, cells, hamaker, mean.hold_nm, settings.hold_voltage_V),
         "estimate": {**spread, "stuck": probability(stuck, RESAMPLES)},
         "gate": {"passed": not reasons, "reasons": reasons},
     }
+
+
+def compact_on_pad(switch: Switch, law: PadLaw, hold_voltage_V: float | None) -> dict[str, Any] | None:
+    """The switch on the closed form of the pad; None where the curves give none, or it presses the pad too hard."""
+    try:
+        return asdict(solve_on_pad(switch, tabulated(fit_compact(law)[0], law), hold_voltage_V))
+    except InputError:
+        return None
 
 
 def law_on_pad(

@@ -62,7 +62,10 @@ rule assemble_pad:
         table=f"{RESULTS}/pad/curves.csv",
         adhesion=f"{RESULTS}/pad/adhesion.csv",
         tail=f"{RESULTS}/pad/tail.json",
+        compact=f"{RESULTS}/pad/compact.json",
         switch=f"{RESULTS}/device/pad_switch.json",
+        verilog=f"{RESULTS}/device/rough_pad.va",
+        spice=f"{RESULTS}/device/rough_pad.sub",
     log:
         f"{RESULTS}/logs/assemble_pad.log",
     threads: 1

@@ -1,19 +1,23 @@
 """Assemble the pad from its cells, and drive the switch with it.
 
 In: inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN).
-Out: pad/curves.h5 and pad/curves.csv (MPa against nm), pad/adhesion.csv, pad/tail.json, device/pad_switch.json.
+Out: pad/curves.h5 and pad/curves.csv (MPa against nm), pad/adhesion.csv, pad/tail.json, pad/compact.json,
+device/pad_switch.json, device/rough_pad.va, device/rough_pad.sub.
 """
 
 import numpy as np
 
+from mesoscale.device.pad_export import spice_pad, verilog_pad
 from mesoscale.device.pad_switch import switch_on_pad
 from mesoscale.inputs.table import medians
 from mesoscale.pad.cells import grid_of_rows
+from mesoscale.pad.compact import compact_summary
 from mesoscale.pad.curves import PadCells, adhesion_by_cells, curve_rows
+from mesoscale.pad.memory import law_of
 from mesoscale.pad.tail import fit_tail, tail_summary
 from mesoscale.settings import DeviceSettings
 from workflow.job import job
-from workflow.results import Dataset, load_csv, load_h5, load_numbers, write_csv, write_h5, write_json
+from workflow.results import Dataset, load_csv, load_h5, load_numbers, write_csv, write_h5, write_json, write_text
 
 with job(snakemake) as run:
     grid = grid_of_rows(load_numbers(snakemake.input.grid))
@@ -32,20 +36,25 @@ with job(snakemake) as run:
     table = curve_rows(cells)
     write_csv(snakemake.output.table, table)
     datasets = {
-        "separation_nm": Dataset(grid.separation_nm, "nm", "mean separation", ("separation",)),
-        "depth_nm": Dataset(grid.depth_nm, "nm", "separation from which the pad is opened", ("depth",)),
+        "separation_nm": Dataset(grid.separation_nm, "nm", "mean separation", ("separation_nm",)),
+        "depth_nm": Dataset(grid.depth_nm, "nm", "separation from which the pad is opened", ("depth_nm",)),
+        "force": Dataset(np.arange(2), "1", "0: repulsive, 1: attractive", ("force",)),
         "closing_GPa": Dataset(
-            cells.closing.mean(axis=0), "GPa", "repulsive and attractive pressure", ("force", "separation")
+            cells.closing.mean(axis=0), "GPa", "repulsive and attractive pressure", ("force", "separation_nm")
         ),
         "opening_GPa": Dataset(
             cells.opening.mean(axis=0),
             "GPa",
             "repulsive and attractive pressure while opening from each depth",
-            ("depth", "force", "separation"),
+            ("depth_nm", "force", "separation_nm"),
         ),
     }
     write_h5(snakemake.output.curves, {"pad": datasets}, {"cells": cells.count, "hamaker": hamaker}, run.provenance)
     write_csv(snakemake.output.adhesion, adhesion_by_cells(cells, [2**k for k in range(20)]))
     tail = fit_tail(cells.first_contact_nm)
     write_json(snakemake.output.tail, tail_summary(tail, area), run.provenance)
+    law = law_of(cells, hamaker)
+    write_json(snakemake.output.compact, compact_summary(law), run.provenance)
+    write_text(snakemake.output.verilog, verilog_pad(law, cells.count))
+    write_text(snakemake.output.spice, spice_pad(law, cells.count))
     write_json(snakemake.output.switch, switch_on_pad(cells, hamaker, device, area, tail), run.provenance)

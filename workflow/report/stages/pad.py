@@ -82,6 +82,9 @@ def _causes(results: Results, switch: dict) -> list[tuple[str, str, str]]:
                 f"its well: {show(by_law['well_law_kPa'])} kPa, the pad's {show(by_law['well_curve_kPa'])} kPa",
             )
         )
+    if compact := switch.get("by_compact"):
+        note = f"its well: {show(compact['deepest_net_kPa'])} kPa; pad/compact.json"
+        lines.append(("closed form with memory, whole electrode flat", show(compact["release_V"]), note))
     if switch["mean"] is not None:
         low, middle, high = (switch["estimate"]["release_V"]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
         note = "with memory; interval of the computed cells; 0 where it sticks"

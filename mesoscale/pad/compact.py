@@ -1,0 +1,163 @@
+"""A closed form for a pad that closes, opens and remembers how deep it was closed.
+
+With s the separation, D the deepest closing so far, r = s - D and p_0 = 1 MPa,
+
+    closing     p_c(s) = exp(-c0 - c1 s - c2 s^2)                      heights with a Gaussian tail
+    opening     p_c(D) g,   g = exp(-(b0 + b1 D) r - b2 r^2)           elastic rebound, stiffer the less was pressed
+    attraction  -A_H / (6 pi s^3) - beta p_0 (p_c(D) / p_0)^m g^n      n near 1/2: as the rim of what still touches
+
+(while closing, D = s and g = 1). The near attraction of a rough contact is in proportion to its load, so m is near 1.
+Without the far attraction the well on opening is at g^(1-n) = n a, with a the attraction over the load at D; its depth
+is a^2 p_c(D) / 4 for n = 1/2.
+"""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesoscale.errors import InputError
+from mesoscale.pad.memory import PadLaw
+
+Array = NDArray[np.float64]
+
+UNIT_GPa = 1e-3
+"""p_0 of the attraction."""
+CLOSING_FLOOR = 1e-4
+"""Closing is fitted down to this share of its largest repulsion: beyond, few of the computed cells touch."""
+OPENING_FLOOR = 1e-2
+"""Opening is fitted down to this share of the repulsion at the depth."""
+FEWEST = 8
+
+
+@dataclass(frozen=True)
+class CompactPad:
+    """The closed form.
+
+    Attributes
+    ----------
+    c0, c1_per_nm, c2_per_nm2 : closing, p_c in GPa.
+    b0_per_nm, b1_per_nm2, b2_per_nm2 : opening.
+    beta, m, n : attraction.
+    hamaker : Hamaker constant (1e-18 J).
+    """
+
+    c0: float
+    c1_per_nm: float
+    c2_per_nm2: float
+    b0_per_nm: float
+    b1_per_nm2: float
+    b2_per_nm2: float
+    beta: float
+    m: float
+    n: float
+    hamaker: float
+
+    def closing_GPa(self, separation_nm: ArrayLike) -> tuple[Array, Array]:
+        """Repulsion and attraction (negative) while closing."""
+        s = np.asarray(separation_nm, float)
+        return self.opening_GPa(s, s)
+
+    def opening_GPa(self, separation_nm: ArrayLike, deepest_nm: ArrayLike) -> tuple[Array, Array]:
+        """Repulsion and attraction (negative) at separations not below the deepest closing."""
+        s, deep = np.asarray(separation_nm, float), np.asarray(deepest_nm, float)
+        load = np.exp(-self.c0 - self.c1_per_nm * deep - self.c2_per_nm2 * deep**2)
+        risen = s - deep
+        decay = (self.b0_per_nm + self.b1_per_nm2 * deep) * risen + self.b2_per_nm2 * risen**2
+        far = self.hamaker / (6.0 * np.pi * np.maximum(s, 1.0) ** 3)
+        near = self.beta * UNIT_GPa * (load / UNIT_GPa) ** self.m * np.exp(-self.n * decay)
+        return load * np.exp(-decay), -far - near
+
+    def well_kPa(self, deepest_nm: float) -> float:
+        """Largest net attraction on opening from a depth (kPa)."""
+        s = deepest_nm + np.linspace(0.0, 30.0, 3001)
+        return max(-float(np.add(*self.opening_GPa(s, deepest_nm)).min()), 0.0) * 1e6
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """Root mean square misfits: of the logarithm for each part (1)."""
+
+    closing: float
+    opening: float
+    attraction_closing: float
+    attraction_opening: float
+
+
+def fit_compact(law: PadLaw) -> tuple[CompactPad, Residuals]:
+    """The closed form fitted to the curves of a pad, part by part by linear least squares of logarithms.
+
+    Raises
+    ------
+    InputError : too few separations or depths in contact.
+    """
+    s, repulsive = law.separation_nm, law.closing[0]
+    far = law.hamaker / (6.0 * np.pi * s**3)
+    near = -law.closing[1] - far
+    used = (repulsive > CLOSING_FLOOR * repulsive.max()) & (near > 0)
+    if used.sum() < FEWEST or law.depth_nm.size < 3:
+        raise InputError(
+            f"pad: {int(used.sum())} separations in contact and {law.depth_nm.size} depths; accepted for a closed form "
+            f"are at least {FEWEST} and 3; lower pad.step_nm or raise pad.depths"
+        )
+    at = s[used]
+    c, closing = _solve(np.stack([np.ones(at.size), at, at**2], axis=1), -np.log(repulsive[used]))
+    load = np.exp(-c[0] - c[1] * at - c[2] * at**2)
+    (log_beta, m), attraction = _solve(
+        np.stack([np.ones(at.size), np.log(load / UNIT_GPa)], axis=1), np.log(near[used] / UNIT_GPa)
+    )
+    rows, decays, kept, fallen = [], [], [], []
+    for depth, (pushes, pulls) in zip(law.depth_nm, law.opening, strict=True):
+        above = np.isfinite(pushes)
+        risen, share = s[above] - depth, pushes[above] / pushes[above][0]
+        pull = -pulls[above] - far[above]
+        use = (risen > 0) & (share > OPENING_FLOOR) & (pull > 0)
+        rows.append(np.stack([risen, depth * risen, risen**2], axis=1)[use])
+        decays.append(-np.log(share[use]))
+        fallen.append(-np.log(pull[use] / pull[0]))
+        kept.append(rows[-1])
+    b, opening = _solve(np.concatenate(rows), np.concatenate(decays))
+    decay = np.concatenate(kept) @ b
+    (n,), attraction_opening = _solve(decay[:, None], np.concatenate(fallen))
+    fitted = CompactPad(*c.tolist(), *b.tolist(), float(np.exp(log_beta)), float(m), float(n), law.hamaker)
+    return fitted, Residuals(closing, opening, attraction, attraction_opening)
+
+
+def _solve(columns: Array, wanted: Array) -> tuple[Array, float]:
+    """Least squares and its root mean square misfit."""
+    best = np.linalg.lstsq(columns, wanted, rcond=None)[0]
+    return best, float(np.sqrt(np.mean((columns @ best - wanted) ** 2)))
+
+
+def compact_summary(law: PadLaw) -> dict[str, Any]:
+    """Content of pad/compact.json: the closed form, its residuals, and its well beside the curves' for each depth.
+
+    Curves that give no closed form leave the reason.
+    """
+    try:
+        fitted, residuals = fit_compact(law)
+    except InputError as error:
+        return {"parameters": None, "status": str(error)}
+    wells = []
+    for depth, branch in zip(law.depth_nm, law.opening, strict=True):
+        curve = max(-float(np.nanmin(branch.sum(axis=0))), 0.0) * 1e6
+        wells.append(
+            {
+                "depth_nm": float(depth),
+                "closed_to_MPa": float(law.closing_GPa(depth)) * 1e3,
+                "well_compact_kPa": fitted.well_kPa(float(depth)),
+                "well_curve_kPa": curve,
+            }
+        )
+    return {"parameters": asdict(fitted), "status": "ok", "residuals": asdict(residuals), "wells": wells}
+
+
+def tabulated(compact: CompactPad, law: PadLaw) -> PadLaw:
+    """The closed form at the separations and depths of a pad's curves, for what is driven by such curves."""
+    s = law.separation_nm
+    opening = np.full(law.opening.shape, np.nan)
+    for k, depth in enumerate(law.depth_nm):
+        above = s >= depth - 1e-9
+        opening[k][:, above] = compact.opening_GPa(s[above], depth)
+    return PadLaw(s, np.stack(compact.closing_GPa(s)), law.depth_nm, opening, compact.hamaker)
