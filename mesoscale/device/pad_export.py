@@ -12,6 +12,8 @@ from mesoscale.pad.memory import PadLaw
 
 START_NM = 200.0
 """Separation from which closing counts; a pad is not in contact so far out."""
+FOLLOWING = 1e3
+"""Conductance of following (S): large beside the 1e-12 S that simulators add to every node."""
 LEAK = 1e-15
 """Conductance of the leak over that of following: the state falls by 1e-15 of itself per time constant."""
 
@@ -44,7 +46,7 @@ module rough_pad(s, ref);
     analog begin
         separation = Pos(s, ref) * 1.0e9;
         further = {START_NM:.1f} - separation - V(closed);
-        I(closed) <+ follow * ddt(V(closed)) + {LEAK:g} * V(closed) - max(further, 0.0);
+        I(closed) <+ {FOLLOWING:.1f} * (follow * ddt(V(closed)) + {LEAK:g} * V(closed) - max(further, 0.0));
 
         deepest = min({START_NM:.1f} - V(closed), separation);
         risen = separation - deepest;
@@ -75,9 +77,9 @@ def spice_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
 * follow    time constant (s) of that state: much shorter than any motion; integrate by backward Euler
 *           (.options method=gear maxord=1), because what overshoots is remembered
 .subckt rough_pad s force params: area={area_nm2:.12g} follow=1e-9 {defaults}
-Cclosed closed 0 {{follow}}
-Rleak closed 0 {1 / LEAK:g}
-Bclosed 0 closed I = max({START_NM:g} - V(s) - V(closed), 0)
+Cclosed closed 0 {{{FOLLOWING:g}*follow}}
+Rleak closed 0 {1 / (FOLLOWING * LEAK):g}
+Bclosed 0 closed I = {FOLLOWING:g} * max({START_NM:g} - V(s) - V(closed), 0)
 Bdeepest deepest 0 V = min({START_NM:g} - V(closed), V(s))
 Brisen risen 0 V = V(s) - V(deepest)
 Bload load 0 V = {load}
