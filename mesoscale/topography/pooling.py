@@ -14,6 +14,7 @@ from mesoscale.topography.description.heights import HeightTest, compare_heights
 from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.one_spectrum import OneSpectrum, Overlap, merge, overlaps, refuse_different_films
 from mesoscale.topography.description.parameters import Topography, analyse
+from mesoscale.topography.description.tip_error import with_radius_error
 from mesoscale.topography.records import is_profile, trusted_record
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import Spectrum
@@ -68,6 +69,7 @@ def pool(
     pairs = overlaps(spectra, settings.confidence)
     if settings.scans:
         refuse_different_films(pairs)
+        topography = with_radius_error(topography, spectra, settings)
     one = merge(spectra)
     tests = [
         compare_heights(
@@ -122,11 +124,8 @@ def result_curves(
     groups["fits"] = dict(fit_curves(pooled.topography, lowest, typical))
     if pooled.one is not None and settings.scans:
         low, high = pooled.one.band(settings.confidence)
-        groups["one_spectrum"] = {
-            "q": pooled.one.q,
-            "psd": pooled.one.psd,
-            "band_low": low,
-            "band_high": high,
-            "measurements": pooled.one.count,
-        }
+        curves = {"q": pooled.one.q, "psd": pooled.one.psd, "band_low": low, "band_high": high}
+        curves["measurements"] = pooled.one.count
+        measured = pooled.one.q >= pooled.one.first
+        groups["one_spectrum"] = {key: values[measured] for key, values in curves.items()}
     return groups

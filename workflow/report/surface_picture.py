@@ -8,7 +8,10 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from workflow.report.drawing import BLUE, INK, ORANGE, SKY, SOFT, STYLE
+from workflow.report.drawing import INK, ORANGE, SKY, SOFT
+
+# the page's figures take their colours from the page; a picture alone has them itself
+PLAIN = {INK: "#222222", SOFT: "#b5b5b5", SKY: "#56b4e9", ORANGE: "#d55e00"}
 
 
 def surface_picture(
@@ -18,11 +21,11 @@ def surface_picture(
     path: Path,
 ) -> None:
     """Write the picture (PNG) of a surface from the content of spectra.h5 and parameters.json."""
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context({"font.size": 10, "axes.axisbelow": True}):
         figure = Figure(figsize=(10.0, 4.2), layout="constrained")
         left, right = figure.subplots(1, 2, width_ratios=(1, 1.2))
         _draw_map(figure, left, groups, attributes)
-        draw_one_spectrum(right, groups, attributes, parameters)
+        draw_one_spectrum(right, groups, attributes, parameters, PLAIN)
         figure.savefig(path, dpi=130, format="png", metadata={"Software": None})
 
 
@@ -40,31 +43,38 @@ def _draw_map(figure: Figure, axis: Any, groups: Mapping[str, Any], attributes: 
         extent = (0, size, 0, float(attributes[name]["length_y_nm"]) / 1e3)
         image = axis.imshow(heights.T, origin="lower", extent=extent, cmap="cividis", vmin=-limit, vmax=limit)
         figure.colorbar(image, ax=axis, label="height (nm)")
-        axis.grid(False)
     else:
         line = groups[name]["line"]
-        axis.plot(np.linspace(0, size, len(line)), line, color=BLUE, linewidth=0.8)
+        axis.plot(np.linspace(0, size, len(line)), line, color="#0072b2", linewidth=0.8)
         axis.set(ylabel="height (nm)")
 
 
 def draw_one_spectrum(
-    axis: Any, groups: Mapping[str, Any], attributes: Mapping[str, Any], parameters: Mapping[str, Any]
+    axis: Any,
+    groups: Mapping[str, Any],
+    attributes: Mapping[str, Any],
+    parameters: Mapping[str, Any],
+    colors: Mapping[str, str] | None = None,
 ) -> None:
-    """All spectra with their trusted parts, and the one over all scales with its band."""
+    """All spectra with their trusted parts, and the one over all scales with its band.
+
+    `colors` replace the page's marker colours.
+    """
+    ink, soft, sky, orange = ((colors or {}).get(color, color) for color in (INK, SOFT, SKY, ORANGE))
     for name in sorted(name for name in groups if name.startswith("scans/")):
         q, psd = groups[name]["q"], groups[name]["psd"]
         low, high = float(attributes[name]["trusted_low"]), float(attributes[name]["trusted_high"])
         trusted = (q >= low) & (q <= high)
-        axis.loglog(q, psd, color=SOFT, linewidth=0.6, alpha=0.7, zorder=1)
-        axis.loglog(q[trusted], psd[trusted], color=SKY, linewidth=1.2, zorder=2)
-    axis.plot([], [], color=SKY, label="measurements, trusted range")
-    axis.plot([], [], color=SOFT, label="limited by levelling, tip, noise or pixels")
+        axis.loglog(q, psd, color=soft, linewidth=0.6, alpha=0.7, zorder=1)
+        axis.loglog(q[trusted], psd[trusted], color=sky, linewidth=1.2, zorder=2)
+    axis.plot([], [], color=sky, label="measurements, trusted range")
+    axis.plot([], [], color=soft, label="limited by levelling, tip, noise or pixels")
     one = groups.get("one_spectrum")
     if one is not None:
         level = f"{float(parameters['confidence']):.0%}"
-        axis.fill_between(one["q"], one["band_low"], one["band_high"], color=ORANGE, alpha=0.25, linewidth=0)
-        axis.loglog(one["q"], one["psd"], color=ORANGE, label=f"one spectrum, {level} band", zorder=3)
+        axis.fill_between(one["q"], one["band_low"], one["band_high"], color=orange, alpha=0.25, linewidth=0)
+        axis.loglog(one["q"], one["psd"], color=orange, label=f"one spectrum, {level} band", zorder=3)
     end = parameters["trusted_end"]
-    axis.axvline(end["value"], color=INK, linewidth=0.8, linestyle="--", label=f"trusted end ({end['limit']})")
+    axis.axvline(end["value"], color=ink, linewidth=0.8, linestyle="--", label=f"trusted end ({end['limit']})")
     axis.set(xlabel="wave vector q (1/nm)", ylabel="PSD (nm⁴)")
     axis.legend(fontsize=8)

@@ -20,11 +20,11 @@ def closing_words(results: Path) -> Iterator[str]:
     picture = results / "topography/surface.png"
     if picture.is_file():
         yield f"a picture is in {picture}"
+    if (results / "topography/judged.csv").is_file():
+        yield from judgement(load_csv(results / "topography/judged.csv"))
     for doubt in content["doubts"]:
         remedy = f"; {doubt['remedy']}" if doubt["remedy"] else ""
         yield f"DOUBT ({doubt['code']}, about {doubt['about']}): {doubt['text']}{remedy}"
-    if (results / "topography/judged.csv").is_file():
-        yield from judgement(load_csv(results / "topography/judged.csv"))
 
 
 def judgement(rows: list[dict[str, str]]) -> Iterator[str]:

@@ -21,6 +21,7 @@ BANDS_PER_DECADE = 10
 CONVERSION = 0.15  # error of ln C of a line profile that no averaging removes: isotropy and smoothing are assumed
 DIFFERENT_FILMS = 100.0  # ratio of C, a factor of 10 in RMS height, beyond which two files are not of one surface
 KINK = 0.35  # standard deviation of the change of slope times the band's width, from band to band
+MOST_BIASED = 0.3  # of ln C, where hardly one amplitude is behind it
 DRAWS = 500
 ROUNDS = 200
 
@@ -198,7 +199,8 @@ def _on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     numbers, index = np.unique(grid, return_inverse=True)
     worth = np.bincount(index, modes)
     centre = np.bincount(index, modes * np.log(q)) / worth
-    level = np.log(np.bincount(index, modes * psd) / worth)
+    # the logarithm of a mean of few amplitudes is on average too small: by 1 / 2n for n of them
+    level = np.log(np.bincount(index, modes * psd) / worth) + np.minimum(0.5 / worth, MOST_BIASED)
     if len(numbers) < 2:
         return nothing
     wanted = (numbers + 0.5) / BANDS_PER_DECADE * np.log(10)

@@ -206,9 +206,10 @@ def _line_estimates(
     error = np.full(3, np.inf)
     if n >= 2:
         error = np.sqrt((n - 1) / n * np.sum((np.array(left_out) - np.mean(left_out, axis=0)) ** 2, axis=0))
-    reach = _normal_quantile(settings.confidence) * error
-    if not np.all(np.isfinite(reach)):  # one scan says nothing about scatter between scans
-        reach = np.zeros(3)
+    reach = np.zeros(3)  # one scan says nothing about scatter between scans
+    if n >= 2:
+        freedom = _decisive(np.array(left_out))
+        reach = np.array([_student_quantile(settings.confidence, k) for k in freedom]) * error
     low, high = values - reach, values + reach
     level = np.sqrt(np.array([fitted.plateau_low, fitted.plateau_high]) / fitted.plateau) * fitted.rms(cutoff)
     intervals = [
@@ -222,6 +223,17 @@ def _line_estimates(
         rms=Estimate(fitted.rms(cutoff), intervals[2], _union(intervals[2], level)),
         settings=settings,
     )
+
+
+def _decisive(left_out: np.ndarray) -> np.ndarray:
+    """Degrees of freedom of a jackknife in which few scans decide, from the estimates (n, k) without each scan.
+
+    Satterthwaite's, (sum s^2)^2 / sum s^4 for contributions of variance s^2. For normal d of variance s^2 the mean of
+    3 (sum d^2)^2 is 3 (sum s^2)^2 + 6 sum s^4, that of sum d^4 is 3 sum s^4: hence the 3 and the 2.
+    """
+    square = (left_out - left_out.mean(axis=0)) ** 2
+    fourth = np.maximum(np.sum(square**2, axis=0), 1e-300)
+    return np.clip(3 * np.sum(square, axis=0) ** 2 / fourth - 2, 1, len(left_out) - 1)
 
 
 def _with_hurst(q0: Estimate, slope: Estimate, rms: Estimate, settings: TopographySettings) -> dict[str, Estimate]:
@@ -259,7 +271,7 @@ def _normal_quantile(confidence: float) -> float:
     return float(ndtri(0.5 + confidence / 2))
 
 
-def _student_quantile(confidence: float, freedom: int) -> float:
+def _student_quantile(confidence: float, freedom: float) -> float:
     from scipy.special import stdtrit
 
     return float(stdtrit(freedom, 0.5 + confidence / 2))

@@ -10,8 +10,11 @@ from mesoscale.topography.profile_conversion import isotropic_spectrum, line_spe
 
 LOWEST_WAVE = 2.5  # wave numbers below are changed by the window and the line taken off
 LOWEST_WAVE_BOW = 4.0  # and by a parabola
-EVEN_SHARE, RESAMPLED_SHARE = 0.7, 0.5  # of Nyquist; straight lines between uneven points smooth
+# of Nyquist: short waves folded back lift C1, which is shallow, by 6 % at the first of these (slope 2.84);
+# straight lines between uneven points smooth
+EVEN_SHARE, RESAMPLED_SHARE = 0.35, 0.5
 NOISE_MARGIN = 20.0
+SMOOTHED = 8  # wave numbers to each side, at least: single ones scatter by as much as they are
 TIP_MARGIN = 0.5
 
 
@@ -57,7 +60,7 @@ def _noise_limit(
     level = float(np.median(c1[k > 0.93 * nyquist])) / np.log(2)
     if noise_nm is not None:
         level = noise_nm**2 * profile.step_nm / (2 * np.pi)
-    width = np.maximum(0.12 * k, 3 * (k[1] - k[0]))
+    width = np.maximum(0.25 * k, SMOOTHED * (k[1] - k[0]))
     first, last = np.searchsorted(k, k - width), np.searchsorted(k, k + width)
     total = np.concatenate([[0.0], np.cumsum(c1)])
     smooth = (total[last] - total[first]) / (last - first)

@@ -10,7 +10,7 @@ from mesoscale.settings import TopographySettings
 
 MIN_POINTS = 64
 MAX_POINTS = 4_000_000
-MAX_STEP = 8.0  # largest gap between points over their mean distance that is bridged by a straight line
+MAX_STEP = 16.0  # largest gap between points over their mean distance that is bridged by a straight line
 
 
 @dataclass(frozen=True)

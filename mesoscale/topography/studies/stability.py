@@ -13,6 +13,7 @@ from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description.parameters import Topography, analyse
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
+from mesoscale.topography.studies.file_cases import FILE_CASES, check_files
 from mesoscale.topography.synthetic_scans import surface_patch, synthetic_scans
 
 Check = tuple[str, str, str, Callable[[], tuple[bool, str]]]
@@ -164,8 +165,17 @@ CASES = (
 
 
 def stability_checks(settings: TopographySettings) -> list[Check]:
-    """The hard cases as checks."""
-    return [
+    """The hard cases as checks: scans, then files."""
+    files: list[Check] = [
+        (
+            case.name,
+            case.description,
+            f"refuses naming {case.word!r}" if case.word else "recovers",
+            partial(check_files, case),
+        )
+        for case in FILE_CASES
+    ]
+    scans: list[Check] = [
         (
             case.name,
             case.description,
@@ -174,6 +184,7 @@ def stability_checks(settings: TopographySettings) -> list[Check]:
         )
         for case in CASES
     ]
+    return scans + files
 
 
 def check(case: Case, settings: TopographySettings) -> tuple[bool, str]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from mesoscale.settings import TopographySettings
+from mesoscale.topography.studies.file_cases import FILE_CASES, check_files
 from mesoscale.topography.studies.stability import CASES, TRUTH, check
 
 SLOW = {"4096"}  # a minute; part of `snakemake stability`
@@ -16,6 +17,19 @@ QUICK = [case for case in CASES if case.name not in SLOW]
 def test_hard_case(case):
     passed, detail = check(case, TopographySettings())
     assert passed, detail
+
+
+@pytest.mark.parametrize("case", FILE_CASES, ids=lambda case: case.name)
+def test_hard_files(case):
+    passed, detail = check_files(case)
+    assert passed, detail
+
+
+def test_there_are_thirty_hard_cases_and_another_answer_of_files_fails():
+    assert len(CASES) + len(FILE_CASES) >= 30
+    by_name = {case.name: case for case in FILE_CASES}
+    assert not check_files(replace(by_name["level"], word="another reason"))[0]
+    assert not check_files(replace(by_name["container"], word="refused"))[0]
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,54 @@
+"""What an error of the tips' radii makes of the parameters: part of their intervals."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mesoscale.settings import TopographySettings
+from mesoscale.topography.description.likelihood import TrustedSpectrum, trusted_range
+from mesoscale.topography.description.parameters import Estimate, Topography, analyse
+
+RADIUS_ERROR = 0.2  # relative; a radius is anywhere within, as a maker states it or a worn tip has it
+WIDTH_OF_UNIFORM = np.sqrt(3.0)  # half the width of a uniform distribution over its standard deviation
+
+
+def with_radius_error(
+    topography: Topography, spectra: Sequence[TrustedSpectrum], settings: TopographySettings
+) -> Topography:
+    """The same estimates with intervals that hold an error of RADIUS_ERROR in every tip's radius.
+
+    All is analysed again with radii smaller and larger by that; half of the difference, as the half width of a uniform
+    distribution, is added to the interval in quadrature.
+    """
+    if not topography.estimates or not any(item.tip_radius_nm > 0 for item in spectra):
+        return topography
+    other = [
+        analyse([_with_radius(item, factor) for item in spectra], settings).estimates
+        for factor in (1 - RADIUS_ERROR, 1 + RADIUS_ERROR)
+    ]
+    estimates = {}
+    for name, estimate in topography.estimates.items():
+        values = [entry[name].value for entry in other if name in entry]
+        estimates[name] = _widened(name, estimate, values, settings.confidence) if len(values) == 2 else estimate
+    return replace(topography, estimates=estimates)
+
+
+def _with_radius(item: TrustedSpectrum, factor: float) -> TrustedSpectrum:
+    """A measurement as trusted with another radius of its tip."""
+    radius = factor * item.tip_radius_nm
+    high = min(trusted_range(item.name, item.spectrum, radius).high, item.reach) if radius > 0 else item.high
+    return replace(item, tip_radius_nm=radius, high=max(high, 2 * item.low))
+
+
+def _widened(name: str, estimate: Estimate, values: Sequence[float], confidence: float) -> Estimate:
+    from scipy.special import ndtri
+
+    log = name in ("q0", "rms")
+    centre, ends, shifted = (np.log(v) if log else np.asarray(v) for v in (estimate.value, estimate.interval, values))
+    error = float(ndtri(0.5 + confidence / 2)) * abs(float(shifted[1] - shifted[0])) / 2 / WIDTH_OF_UNIFORM
+    low = centre - np.hypot(centre - ends[0], error)
+    high = centre + np.hypot(ends[1] - centre, error)
+    interval = (float(np.exp(low)), float(np.exp(high))) if log else (float(low), float(high))
+    scatter = min(interval[0], estimate.scatter[0]), max(interval[1], estimate.scatter[1])
+    return Estimate(estimate.value, interval, scatter)

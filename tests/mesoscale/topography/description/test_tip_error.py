@@ -1,0 +1,30 @@
+"""An error of the tip's radius is part of the intervals."""
+
+from mesoscale.settings import SyntheticScanSettings, TopographySettings
+from mesoscale.topography.analysis import trusted_scan
+from mesoscale.topography.description.parameters import analyse
+from mesoscale.topography.description.tip_error import with_radius_error
+from mesoscale.topography.synthetic_scans import synthetic_scans
+
+
+def test_a_radius_told_too_large_leaves_the_truth_inside():
+    """A tip of 5 nm told as 6: the slope alone is biased, its interval holds the error of the radius."""
+    truth = SyntheticScanSettings(pixels=512, small_scans=4, large_scans=2, rms_variation=0.0)
+    settings = TopographySettings(tip_radius_nm=6.0)
+    spectra = [trusted_scan(item.scan, settings) for item in synthetic_scans(truth)]
+    plain = analyse(spectra, settings)
+    wider = with_radius_error(plain, spectra, settings)
+    for name, true in {"q0": truth.q0, "slope": truth.slope, "rms": truth.rms_nm}.items():
+        low, high = wider.estimates[name].interval
+        assert low < true < high
+        assert low <= plain.estimates[name].interval[0] < plain.estimates[name].interval[1] <= high
+    lengths = [ends[1] - ends[0] for ends in (item.estimates["slope"].interval for item in (plain, wider))]
+    assert lengths[1] > 1.1 * lengths[0]
+
+
+def test_without_a_tip_nothing_changes():
+    settings = TopographySettings(tip_radius_nm=0.0)
+    truth = SyntheticScanSettings(pixels=128, small_scans=1, large_scans=1, tip_radius_nm=0.0)
+    spectra = [trusted_scan(item.scan, settings) for item in synthetic_scans(truth)]
+    plain = analyse(spectra, settings)
+    assert with_radius_error(plain, spectra, settings) is plain
