@@ -21,6 +21,7 @@ KINK = 0.35  # standard deviation of the change of slope times the node distance
 SLOPE, SLOPE_SD = -0.75, 1.5  # what the logarithmic slope may be where a line hardly determines it (its plateau)
 SLOPE_REACH = 5  # nodes that share one such slope
 TAIL_DECADES = 1.5  # C is continued this far beyond the data, because short waves lift C1 everywhere
+BIAS = 0.25  # error of ln C that no averaging removes: its mean about the knee, on slopes 2.3 to 3.6 (60 lines each)
 QUADRATURE = 160
 ROUNDS = 60
 HANN_COVER = 18 / 35  # independent modes per wave number under a Hann window, (sum w^2)^2 / (n sum w^4)
@@ -67,6 +68,7 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     variance = np.diag(covariance)[keep]
     worth = 1 / variance
     worth *= min(1.0, modes.sum() / worth.sum())
+    worth /= 1 + worth * BIAS**2
     nyquist = np.pi / profile.step_nm
     return Spectrum(np.exp(nodes[keep]), np.exp(heights[keep]), worth, step, nyquist, sharp=True)
 

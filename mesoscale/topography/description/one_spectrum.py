@@ -18,7 +18,6 @@ from mesoscale.errors import InputError
 from mesoscale.topography.description.likelihood import DISCREPANCY, TrustedSpectrum, with_ends
 
 BANDS_PER_DECADE = 10
-CONVERSION = 0.15  # error of ln C of a line profile that no averaging removes: isotropy and smoothing are assumed
 DIFFERENT_FILMS = 100.0  # ratio of C, a factor of 10 in RMS height, beyond which two files are not of one surface
 KINK = 0.35  # standard deviation of the change of slope times the band's width, from band to band
 MOST_BIASED = 0.3  # of ln C, where hardly one amplitude is behind it
@@ -206,9 +205,8 @@ def _on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     wanted = (numbers + 0.5) / BANDS_PER_DECADE * np.log(10)
     # a band that is only half covered is read at its centre along the measurement's own slope
     slope = np.gradient(level, centre)
-    floor = DISCREPANCY if not item.spectrum.sharp else CONVERSION
     tip = np.bincount(index, modes * error[inside]) / worth
-    return numbers, level + slope * (wanted - centre), 1 / worth + floor**2 + tip**2
+    return numbers, level + slope * (wanted - centre), 1 / worth + DISCREPANCY**2 + tip**2
 
 
 def overlaps(spectra: Sequence[TrustedSpectrum], confidence: float = 0.9) -> list[Overlap]:
