@@ -59,6 +59,13 @@ class Published(_Section):
     source: tuple[str, ...] = Field(min_length=1)
 
 
+class PublishedConstants(_Section):
+    """Known elastic constants of a crystal, GPa, in the axes of its file; those of a functional or of experiment."""
+
+    values_GPa: dict[Annotated[str, Field(pattern=r"^C[1-6][1-6]$")], float] = Field(min_length=1)
+    source: str
+
+
 class Crystal(_Section):
     """A crystal by its space group; lengths in Å, angles in degrees."""
 
@@ -71,6 +78,7 @@ class Crystal(_Section):
     source: str
     cutoff_Ha: Positive | None = Field(default=None, description="of the density; None: that of the scene")
     published: dict[Literal["GGA", "LDA", "experiment"], Published] = Field(default={})
+    constants: dict[Literal["GGA", "experiment"], PublishedConstants] = Field(default={})
 
     @model_validator(mode="after")
     def _has_volume(self) -> "Crystal":

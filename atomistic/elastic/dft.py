@@ -55,7 +55,13 @@ def commensurate_mesh(cell: np.ndarray, cutoff_Ha: float) -> tuple[int, int, int
 
 
 def build_cell(atoms: Atoms, xc: str, basis: str, mesh: tuple[int, int, int], precision: float = 1e-8):
-    """PySCF cell of an ASE structure; positions stay in the cell they were given in."""
+    """PySCF cell of an ASE structure; positions stay in the cell they were given in.
+
+    Raises
+    ------
+    CalculationFailed
+        for an odd number of electrons, which no closed shell holds
+    """
     from pyscf.pbc import gto
 
     cell: Any = gto.Cell()  # PySCF declares its attributes as None
@@ -68,6 +74,10 @@ def build_cell(atoms: Atoms, xc: str, basis: str, mesh: tuple[int, int, int], pr
     cell.mesh = list(mesh)
     cell.verbose = 0
     cell.build(dump_input=False, parse_arg=False)
+    if cell.nelectron % 2:
+        raise CalculationFailed(
+            f"{atoms.get_chemical_formula()} has an odd number of electrons: closed shells only; give it another atom"
+        )
     return cell
 
 

@@ -3,7 +3,7 @@
 E = 3 B (1 − 2ν),   1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂          (Kim et al. 2013, eq. 5)
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -82,21 +82,38 @@ def variance_shares(
         weights_nu / 2,
         weights_E / weights_E.sum(),
     ]
-    B, f, n, E = np.meshgrid(*values, indexing="ij")
-    grid = plane_strain_modulus(B + f, n, E, other_nu)
-    weight = np.einsum("i,j,k,l->ijkl", *weights)
-    mean = float((weight * grid).sum())
-    variance = float((weight * (grid - mean) ** 2).sum())
     names = ("structure", "functional", "poisson_ratio", "counter_body")
+    axes = dict(zip(names, zip(values, weights, strict=True), strict=True))
+    return grid_shares(axes, lambda B, f, n, E: plane_strain_modulus(B + f, n, E, other_nu))
+
+
+def grid_shares(axes: Mapping[str, tuple[np.ndarray, np.ndarray]], function: Callable[..., np.ndarray]):
+    """Mean, standard deviation and first-order and total shares of the variance of a function of independent inputs.
+
+    Parameters
+    ----------
+    axes : values and weights (adding to one) of each input; a grid of all of them makes the analysis exact
+    """
+    values, weights = zip(*axes.values(), strict=True)
+    grid = np.asarray(function(*(axis.ravel() for axis in np.meshgrid(*values, indexing="ij"))))
+    grid = grid.reshape([len(v) for v in values])
+
+    def average(array: np.ndarray, over: Sequence[int]) -> np.ndarray:
+        for axis in sorted(over, reverse=True):
+            array = np.tensordot(array, weights[axis], (axis, 0))
+        return array
+
+    every = range(len(weights))
+    mean = float(average(grid, every))
+    variance = float(average((grid - mean) ** 2, every))
     shares = {}
-    for axis, name in enumerate(names):
-        others = tuple(k for k in range(4) if k != axis)
-        conditional = np.tensordot(grid, np.einsum("i,j,k->ijk", *(weights[k] for k in others)), (others, (0, 1, 2)))
-        first = float(weights[axis] @ (conditional - mean) ** 2)
-        over = np.average(grid, axis=axis, weights=weights[axis])
-        rest = np.einsum("i,j,k->ijk", *(weights[k] for k in others))
-        total = variance - float((rest * (over - mean) ** 2).sum())
-        shares[name] = {"first_order": first / variance, "total": total / variance} if variance > 0 else {}
+    for axis, name in enumerate(axes):
+        rest = [k for k in every if k != axis]
+        first = float(weights[axis] @ (average(grid, rest) - mean) ** 2)
+        without = (average(grid, [axis]) - mean) ** 2
+        for k in sorted(range(len(rest)), reverse=True):
+            without = np.tensordot(without, weights[rest[k]], (k, 0))
+        shares[name] = {"first_order": first / variance, "total": 1 - float(without) / variance} if variance else {}
     return {"mean_GPa": mean, "std_GPa": float(np.sqrt(variance)), "shares": shares}
 
 
@@ -151,9 +168,9 @@ def effective_modulus(
         "ions": settings.ions,
         "structures_used": [m.structure for m in used],
         "kept_out": [{**asdict(m)} for m in moduli if not m.trusted],
-        "B_GGA_GPa": _spread([m.B_GPa for m in used]),
+        "B_GGA_GPa": spread([m.B_GPa for m in used]),
         "B_GPa_by_kind": {
-            f"{xc} {ions}": _spread([m.B_GPa for m in moduli if m.xc == xc and m.ions == ions and m.trusted])
+            f"{xc} {ions}": spread([m.B_GPa for m in moduli if m.xc == xc and m.ions == ions and m.trusted])
             for xc in ("GGA", "LDA")
             for ions in ("clamped", "relaxed")
         },
@@ -211,7 +228,8 @@ def _standard_error(B: np.ndarray, delta: float, settings: ElasticSettings, othe
     return float(np.sqrt((len(B) - 1) / len(B) * np.sum((np.array(means) - np.mean(means)) ** 2)))
 
 
-def _spread(values: Sequence[float]) -> dict[str, Any]:
+def spread(values: Sequence[float] | np.ndarray) -> dict[str, Any]:
+    """Mean, standard deviation and number of values of structures; None where there are too few."""
     array = np.array(values, float)
     return {
         "mean": float(array.mean()) if len(array) else None,
@@ -228,4 +246,4 @@ def _ratio(moduli: Sequence[Modulus]) -> dict[str, Any]:
 
     clamped = dict(by_structure("clamped"))
     ratios = {s: B / clamped[s] for s, B in by_structure("relaxed") if s in clamped}
-    return {**_spread(list(ratios.values())), "by_structure": ratios}
+    return {**spread(list(ratios.values())), "by_structure": ratios}

@@ -1,7 +1,13 @@
 """Settings of the atomistic stages, a module each: every key with its default, unit and accepted range."""
 
 from atomistic.settings.base import Settings
-from atomistic.settings.elastic import DftSettings, ElasticSettings, NitrideGlassSettings, RelaxationSettings
+from atomistic.settings.elastic import (
+    DftSettings,
+    ElasticSettings,
+    NitrideGlassSettings,
+    RelaxationSettings,
+    TensorSettings,
+)
 from atomistic.settings.hardness import (
     AreaSettings,
     AsperitySettings,
@@ -24,5 +30,6 @@ __all__ = [
     "NitrideGlassSettings",
     "RelaxationSettings",
     "Settings",
+    "TensorSettings",
     "YieldSettings",
 ]

@@ -113,6 +113,36 @@ class RelaxationSettings(Settings):
         )
 
 
+class TensorSettings(Settings):
+    """Elastic constants of the first glasses from small strains, for bulk and shear modulus (docs/elastic.md)."""
+
+    structures: int = Field(default=6, ge=1, le=1000, description="glasses whose elastic constants are computed")
+    strain: float = Field(default=0.005, gt=0, le=0.03, description="size of the six strains, taken with both signs")
+    displacement_A: float = Field(
+        default=0.03,
+        gt=0,
+        le=0.2,
+        description="largest displacement of an atom where the ions' Hessian is measured",
+        json_schema_extra={"unit": "A"},
+    )
+    rounds: int = Field(default=3, ge=1, le=20, description="times six directions the ions may follow a strain along")
+    tolerance_GPa: float = Field(
+        default=1.0,
+        gt=0,
+        le=100,
+        description="what ions that follow may still take from a constant when no more directions are sought",
+        json_schema_extra={"unit": "GPa"},
+    )
+    force_eV_A: float = Field(
+        default=0.1,
+        gt=0,
+        le=5,
+        description="largest force left when ions and cell relax before",
+        json_schema_extra={"unit": "eV/A"},
+    )
+    max_steps: int = Field(default=25, ge=1, le=500, description="steps of that relaxation")
+
+
 class ElasticSettings(Settings):
     """Effective modulus E* from density functional theory (docs/elastic.md)."""
 
@@ -162,6 +192,10 @@ class ElasticSettings(Settings):
         default=(0.15, 0.25),
         description="range of the glass's Poisson ratio (Kim et al. 2013)",
     )
+    poisson: Literal["literature", "computed"] = Field(
+        default="literature",
+        description="Poisson's ratio from the range above (the paper), or with B from elastic constants of the glasses",
+    )
     min_structures: int = Field(
         default=4,
         ge=2,
@@ -173,6 +207,7 @@ class ElasticSettings(Settings):
     glass: NitrideGlassSettings = NitrideGlassSettings()
     dft: DftSettings = DftSettings()
     relaxation: RelaxationSettings = RelaxationSettings()
+    tensor: TensorSettings = TensorSettings()
 
     @field_validator("poisson_ratio")
     @classmethod
@@ -180,6 +215,15 @@ class ElasticSettings(Settings):
         if not -1 < value[0] < value[1] < 0.5:
             raise ValueError("two increasing numbers between -1 and 0.5: at 0.5 a solid has no finite E = 3B(1-2ν)")
         return value
+
+    @model_validator(mode="after")
+    def _stress_at_hand(self) -> "ElasticSettings":
+        if self.poisson == "computed" and self.dft.engine == "pyscf" and self.dft.numerics != "cached-grid":
+            raise ValueError(
+                f"poisson 'computed' needs the stress, which dft.numerics {self.dft.numerics!r} does not give; "
+                "use 'cached-grid'"
+            )
+        return self
 
     @field_validator("strains")
     @classmethod

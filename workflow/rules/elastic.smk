@@ -140,8 +140,48 @@ rule fit_bulk_moduli:
         "../scripts/fit_bulk_moduli.py"
 
 
+TENSORS = GLASSES[: ELASTIC["tensor"]["structures"]] if ELASTIC["poisson"] == "computed" else []
+
+
+rule measure_tensor:
+    input:
+        unpack(relaxed_glass),
+        material=lambda wildcards: CRYSTALS.get(wildcards.structure, MATERIAL),
+        structure=f"{RESULTS}/elastic/structures/{{structure}}.xyz",
+    output:
+        tensor=f"{RESULTS}/elastic/tensors/{{structure}}.json",
+    log:
+        f"{RESULTS}/logs/measure_tensor_{{structure}}.log",
+    priority: 94
+    params:
+        settings=elastic_settings("tensor", "relaxation", "dft"),
+        store=f"{RESULTS}/work/scf/tensor_{{structure}}",
+    message:
+        "elastic constants of {wildcards.structure}"
+    script:
+        "../scripts/measure_tensor.py"
+
+
+rule average_tensors:
+    input:
+        tensors=[f"{RESULTS}/elastic/tensors/{name}.json" for name in TENSORS],
+    output:
+        table=f"{RESULTS}/elastic/isotropic_moduli.csv",
+    log:
+        f"{RESULTS}/logs/average_tensors.log",
+    message:
+        "bulk and shear modulus, E and Poisson's ratio from elastic constants"
+    script:
+        "../scripts/average_tensors.py"
+
+
+# the glasses' own Poisson's ratios, where they are wanted
+ISOTROPIC = {"isotropic": f"{RESULTS}/elastic/isotropic_moduli.csv"} if TENSORS else {}
+
+
 rule combine_e_star:
     input:
+        **ISOTROPIC,
         moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
         structures=[f"{RESULTS}/elastic/structures/{name}.json" for name in GLASSES],
         attempts=[f"{RESULTS}/elastic/quenched/{name}.csv" for name in GLASSES],
@@ -237,3 +277,25 @@ rule compare_anchors:
         "compare the anchors with published values"
     script:
         "../scripts/compare_anchors.py"
+
+
+# Elastic constants of crystals beside published ones: an hour of one core
+
+
+rule constants:
+    input:
+        f"{RESULTS}/accuracy/elastic_constants.csv",
+
+
+rule compare_constants:
+    input:
+        tensors=[f"{RESULTS}/elastic/tensors/{crystal}.json" for crystal in ("beta", "silicon")],
+        materials=sorted({CRYSTALS[crystal] for crystal in ("beta", "silicon")}),
+    output:
+        table=f"{RESULTS}/accuracy/elastic_constants.csv",
+    log:
+        f"{RESULTS}/logs/compare_constants.log",
+    message:
+        "compare elastic constants of crystals with published ones"
+    script:
+        "../scripts/compare_constants.py"

@@ -44,6 +44,23 @@ TABLES = (
         ),
     ),
     Table(
+        ("elastic/isotropic_moduli.csv",),
+        "Isotropic moduli of one structure from its elastic constants, ions clamped or relaxed.",
+        (
+            text("structure", "name of the structure"),
+            integer("atoms", "atoms in the cell"),
+            number("density_g_cm3", "g/cm³", "density at rest, without stress"),
+            text("ions", "clamped or relaxed"),
+            number("B_GPa", "GPa", "bulk modulus, mean of Voigt's and Reuss's bounds", empty=True),
+            number("G_GPa", "GPa", "shear modulus, mean of Voigt's and Reuss's bounds", empty=True),
+            number("E_GPa", "GPa", "Young's modulus", empty=True),
+            number("nu", "1", "Poisson's ratio", empty=True),
+            number("B_error_GPa", "GPa", "half of the distance between the bounds of B", empty=True),
+            number("G_error_GPa", "GPa", "half of the distance between the bounds of G", empty=True),
+            text("flags", "why they are not trusted", empty=True),
+        ),
+    ),
+    Table(
         ("elastic/quenched/*.csv",),
         "One attempt to melt and quench a cell.",
         (
@@ -72,6 +89,23 @@ TABLES = (
             text("failure", "why the calculation failed", empty=True),
             integer("quenches", "attempts to quench it"),
             text("status", "accepted, or rejected: why"),
+        ),
+    ),
+    Table(
+        ("accuracy/elastic_constants.csv",),
+        "An elastic constant or isotropic modulus of a crystal beside a published value; GPa, but for Poisson's ratio.",
+        (
+            text("structure", "name of the crystal"),
+            integer("atoms", "atoms in the cell"),
+            text("quantity", "C11 and so on; B, G, E and nu of the isotropic polycrystal"),
+            number("relaxed", "GPa or 1", "value with relaxed ions"),
+            number("clamped", "GPa or 1", "value with clamped ions"),
+            number("breach", "GPa", "how far apart constants are that symmetry makes equal", empty=True),
+            number("asymmetry_GPa", "GPa", "largest half difference of C_ij and C_ji"),
+            text("published", "GGA or experiment"),
+            number("published_value", "GPa or 1", "published value, moduli from published constants"),
+            number("deviation", "1", "of the value with relaxed ions from the published one"),
+            text("published_source", "where it was published"),
         ),
     ),
     Table(

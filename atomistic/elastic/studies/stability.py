@@ -8,20 +8,26 @@ from typing import Any
 import numpy as np
 from ase import Atoms
 from ase.build import bulk
+from ase.calculators.calculator import CalculationFailed, Calculator
 
 from atomistic.elastic.dft import PyscfGamma, ScfNotConverged, build_cell, commensurate_mesh
 from atomistic.elastic.energy_scans import fit_scan, scan_volumes
+from atomistic.elastic.joint_moduli import measure_constants
 from atomistic.elastic.moduli import plane_strain_modulus
-from atomistic.elastic.networks import examine
-from atomistic.elastic.relaxation import strained
+from atomistic.elastic.networks import examine, tersoff_calculator
+from atomistic.elastic.relaxation import bond_hessian, relax_cell, strained
+from atomistic.elastic.response import elastic_response
+from atomistic.elastic.tensor import fit_stiffness, isotropic, strain_states
+from atomistic.errors import InputError
 from atomistic.materials import NetworkGlass
-from atomistic.settings import ElasticSettings
+from atomistic.settings import ElasticSettings, TensorSettings
 
 Verdict = tuple[bool, str]
 Check = tuple[str, str, str, Callable[[], Verdict]]
 CUTOFF_HA = 50.0
 SMALL = "gth-szv-molopt-sr"
 SMALL_STRAIN = 0.06  # of the experimental cell: about where that basis has its minimum
+MAX_TURNED = 1e-3  # of G: what a rotation may change
 MAX_WIDE = 0.03  # of B: what five more per cent of strain may change
 
 
@@ -127,6 +133,95 @@ def too_few_points() -> Verdict:
     return False, "accepted"
 
 
+def _under_tersoff(cell: Atoms, criteria: NetworkGlass) -> Atoms:
+    atoms = strained(cell, 0.0)
+    atoms.calc = tersoff_calculator(criteria.tersoff)
+    return atoms
+
+
+def refused(call: Callable[[], Any], words: str) -> Verdict:
+    """One line that names what is wrong."""
+    try:
+        call()
+    except InputError as error:
+        return words in str(error), str(error)
+    return False, "accepted"
+
+
+def turned_crystal(cell: Atoms, criteria: NetworkGlass) -> Verdict:
+    """The isotropic moduli of a crystal do not depend on how it is turned."""
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+    turn *= np.linalg.det(turn)
+    means = []
+    for axes in (np.eye(3), turn):
+        atoms = strained(cell, 0.0)
+        atoms.set_cell(atoms.cell.array @ axes, scale_atoms=True)
+        atoms.calc = tersoff_calculator(criteria.tersoff)
+        rest = relax_cell(atoms, 5e-3, 100)
+        means.append(isotropic(elastic_response(atoms, atoms.calc, rest.hessian_eV_A2, 2e-3, 0.01, 8, 0.01).relaxed))
+    apart = abs(means[0].G / means[1].G - 1)
+    return apart < MAX_TURNED, f"G {means[0].G:.2f} and {means[1].G:.2f} GPa, {apart:.1e} apart"
+
+
+def saddle(cell: Atoms, criteria: NetworkGlass) -> Verdict:
+    """Bonds stretched beyond their inflection push ions away from where they are: a saddle, and refused."""
+    atoms = _under_tersoff(strained(cell, 0.2), criteria)
+    return refused(lambda: elastic_response(atoms, atoms.calc, bond_hessian(cell), 2e-3, 0.01, 3, 0.01), "saddle")
+
+
+def unstable_body() -> Verdict:
+    """A matrix with a negative eigenvalue has no moduli; the strain that lowers the energy is named."""
+    C = np.diag([100.0, 100, 100, 30, 30, -2])
+    return refused(lambda: isotropic(C), "unstable")
+
+
+def broken_by_shear(cell: Atoms, criteria: NetworkGlass) -> Verdict:
+    """A shear that breaks bonds leaves atoms without their valence: the gate names them."""
+    sheared = strained(cell, 0.0)
+    sheared.set_cell(cell.cell.array @ np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1.0]]), scale_atoms=True)
+    verdict = examine(sheared, criteria, perfect=True)
+    return verdict.defects > 0 and not verdict.passed, "; ".join(verdict.reasons)
+
+
+def metallic_defect(cell: Atoms, criteria: NetworkGlass) -> Verdict:
+    """A missing silicon atom leaves levels in the gap: it closes, or the SCF fails, and the structure is out."""
+    broken = cell[[k for k in range(len(cell)) if k != 0]]
+    engine = PyscfGamma(basis=SMALL, cutoff_Ha=CUTOFF_HA, tolerance_Ha=1e-6)
+    broken.calc = engine
+    try:
+        broken.get_potential_energy()
+    except ScfNotConverged as error:
+        return True, str(error)
+    return engine.gap_eV < criteria.gap_eV, f"gap {engine.gap_eV:.2f} eV, {criteria.gap_eV} are needed"
+
+
+def odd_electrons(cell: Atoms) -> Verdict:
+    """A missing nitrogen atom leaves an odd number of electrons: no closed shell, one line."""
+    broken = cell[[k for k in range(len(cell)) if k != len(cell) - 1]]
+    broken.calc = PyscfGamma(basis=SMALL, cutoff_Ha=CUTOFF_HA)
+    try:
+        broken.get_potential_energy()
+    except CalculationFailed as error:
+        return "odd" in str(error), str(error)
+    return False, "an energy"
+
+
+def costs_only_itself(cell: Atoms) -> Verdict:
+    """An SCF that fails while constants are measured is named in the structure's row; nothing is raised."""
+    engine = PyscfGamma(basis=SMALL, cutoff_Ha=CUTOFF_HA, max_cycles=2)
+    found = measure_constants(cell, engine, TensorSettings())
+    return found.response is None and "not converged" in found.failure, found.failure
+
+
+def without_stress(cell: Atoms) -> Verdict:
+    """A calculator without stress is refused before anything is computed."""
+
+    class Blind(Calculator):
+        implemented_properties = ["energy", "forces"]  # noqa: RUF012
+
+    return refused(lambda: elastic_response(cell, Blind(), np.eye(3 * len(cell)), 0.005, 0.01, 1, 1.0), "no stress")
+
+
 def stability_checks(cell: Atoms, criteria: NetworkGlass) -> list[Check]:
     """Case, description, what is checked, and the check.
 
@@ -146,5 +241,20 @@ def stability_checks(cell: Atoms, criteria: NetworkGlass) -> list[Check]:
         ("exploded cell", "fails the gate by density", badly_sized, (cell, criteria, 2.0)),
         ("SCF of a collapsed cell", "far above equilibrium, or an error", collapsed_energy, (cell,)),
         ("metal", "not converged, or gap too small", metal, (criteria,)),
+        ("metallic defect", "not converged, or gap too small", metallic_defect, (cell, criteria)),
+        ("odd number of electrons", "one line", odd_electrons, (cell,)),
+        ("strain beyond elasticity", "refused", refused, (partial(strain_states, 0.1), "no longer proportional")),
+        (
+            "too few strain states",
+            "refused; says how many unknowns",
+            refused,
+            (partial(fit_stiffness, strain_states(0.01)[:8], np.zeros((8, 6))), "of 7 unknowns"),
+        ),
+        ("unstable structure", "refused; strain named", unstable_body, ()),
+        ("saddle instead of a minimum", "refused", saddle, (cell, criteria)),
+        ("shear that breaks bonds", "fails the gate by valence", broken_by_shear, (cell, criteria)),
+        ("calculator without stress", "refused", without_stress, (cell,)),
+        ("SCF fails in a strained state", "named in the row, nothing raised", costs_only_itself, (cell,)),
+        ("turned crystal", "same moduli within 1e-3", turned_crystal, (cell, criteria)),
     ]
     return [(case, judge.__doc__ or "", checks, partial(judge, *arguments)) for case, checks, judge, arguments in cases]

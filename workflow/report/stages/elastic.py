@@ -46,10 +46,29 @@ def describe(results: Results) -> Section | None:
     ]
     header = ("structure", "functional", "ions", "B (GPa)", "B′", "V₀ (Å³)", "flags")
     section.blocks.append(Table("Equation of state of every structure", header, lines))
+    if results.has("elastic/isotropic_moduli.csv"):
+        section.blocks.append(isotropic_table(results))
+        literature = summary["by_literature_poisson"]
+        section.notes.append(
+            "With Poisson's ratio from the literature and the bulk modulus alone, the paper's way, E* would be "
+            f"{show(literature['mean_GPa'])} ± {show(literature['std_GPa'])} GPa."
+        )
+        section.files.append("elastic/isotropic_moduli.csv")
     section.notes += summary.get("notes", [])
     section.files += ["elastic/points.csv", "elastic/bulk_moduli.csv", "elastic/e_star.json"]
     section.gates += results.gate_of("elastic", "elastic/e_star.json")
     return section
+
+
+def isotropic_table(results: Results) -> Table:
+    """Moduli of every structure from its elastic constants."""
+    columns = ("B_GPa", "G_GPa", "E_GPa", "nu", "B_error_GPa", "G_error_GPa")
+    lines = [
+        (row["structure"], row["ions"], *(show(row.get(key), 3) for key in columns), row.get("flags", "") or "–")
+        for row in results.csv("elastic/isotropic_moduli.csv")
+    ]
+    header = ("structure", "ions", "B (GPa)", "G (GPa)", "E (GPa)", "ν", "± B", "± G", "flags")
+    return Table("Isotropic moduli from elastic constants; ± is half of the distance between the bounds", header, lines)
 
 
 def elastic_distribution(results: Results) -> str | None:

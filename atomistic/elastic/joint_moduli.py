@@ -1,0 +1,197 @@
+"""E* from bulk and shear moduli of the same structures, so that Poisson's ratio is theirs and not assumed."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from ase import Atoms
+from ase.calculators.calculator import CalculationFailed, Calculator
+
+from atomistic.constants import AMU_PER_A3_IN_G_CM3
+from atomistic.elastic.moduli import grid_shares, plane_strain_modulus, spread
+from atomistic.elastic.relaxation import Rest, relax_cell, strained
+from atomistic.elastic.response import Response, elastic_response
+from atomistic.elastic.tensor import isotropic, poisson, young
+from atomistic.errors import InputError
+from atomistic.materials import Material, Polycrystal
+from atomistic.settings import ElasticSettings, TensorSettings
+
+Progress = Callable[[float, str], None]
+IONS = ("clamped", "relaxed")
+ASSUMPTIONS = (
+    "Poisson's ratio is computed: bulk and shear modulus of each structure come from its elastic constants.",
+    "LDA scales bulk and shear modulus by one factor, that of the bulk modulus under clamped ions.",
+    "Anisotropy is what a small cell leaves of the difference between Voigt's and Reuss's bounds; the size of the cell "
+    "beyond it and broken bonds are not in the interval.",
+)
+
+
+class Measured(NamedTuple):
+    """Elastic constants of a structure at rest, or why there are none.
+
+    Attributes
+    ----------
+    atoms : ions and cell as they came to rest
+    """
+
+    atoms: Atoms
+    rest: Rest | None
+    response: Response | None
+    failure: str
+
+    def report(self, name: str) -> dict[str, Any]:
+        """What elastic/tensors/NAME.json says; GPa in Voigt's order xx, yy, zz, yz, xz, xy."""
+        found, rest = self.response, self.rest
+        return {
+            "structure": name,
+            "atoms": len(self.atoms),
+            "density_g_cm3": float(self.atoms.get_masses().sum() / self.atoms.get_volume() * AMU_PER_A3_IN_G_CM3),
+            "steps": rest.steps if rest else 0,
+            "force_left_eV_A": rest.force_left_eV_A if rest else None,
+            "calculations": found.calculations if found else 0,
+            "softest_eV_A2": found.softest_eV_A2 if found else None,
+            "stress_left_GPa": found.clamped.stress.tolist() if found else None,
+            "error_GPa": float(found.clamped.error.max()) if found else None,
+            "still_softer_GPa": found.relaxed_left.tolist() if found else None,
+            "C_clamped_GPa": found.clamped.C.tolist() if found else None,
+            "C_relaxed_GPa": found.relaxed.tolist() if found else None,
+            "failure": self.failure,
+        }
+
+
+def measure_constants(
+    atoms: Atoms, calculator: Calculator, settings: TensorSettings, progress: Progress | None = None
+) -> Measured:
+    """Relax ions and cell, then elastic constants; whatever fails costs this structure only and is named."""
+    atoms = strained(atoms, 0.0)
+    atoms.calc = calculator
+    rest = None
+    try:
+        rest = relax_cell(atoms, settings.force_eV_A, settings.max_steps)
+        if not rest.converged:
+            left = f"{rest.force_left_eV_A:.2f} eV/A left on an atom"
+            return Measured(atoms, rest, None, f"ions and cell not at rest after {rest.steps} steps, {left}")
+        found = elastic_response(
+            atoms,
+            calculator,
+            rest.hessian_eV_A2,
+            settings.strain,
+            settings.displacement_A,
+            settings.rounds,
+            settings.tolerance_GPa,
+            progress,
+        )
+    except (CalculationFailed, NotImplementedError, InputError, np.linalg.LinAlgError, FloatingPointError) as error:
+        return Measured(atoms, rest, None, str(error))
+    return Measured(atoms, rest, found, "")
+
+
+def isotropic_rows(report: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Rows of elastic/isotropic_moduli.csv of one structure, clamped and relaxed, from its `Measured.report`."""
+    rows = []
+    for ions in IONS:
+        flags = [*filter(None, [report["failure"]])]
+        values = dict.fromkeys(("B_GPa", "G_GPa", "E_GPa", "nu", "B_error_GPa", "G_error_GPa"))
+        if not report["failure"]:
+            try:
+                mean = isotropic(np.array(report[f"C_{ions}_GPa"]))
+                values = dict(zip(values, (mean.B, mean.G, mean.E, mean.nu, mean.B_error, mean.G_error), strict=True))
+            except InputError as error:
+                flags.append(str(error))
+        head = {key: report[key] for key in ("structure", "atoms", "density_g_cm3")}
+        rows.append({**head, "ions": ions, **values, "flags": "; ".join(flags)})
+    return rows
+
+
+def with_computed_poisson(
+    by_literature: Mapping[str, Any],
+    rows: Sequence[Mapping[str, str]],
+    counter_body: Material,
+    settings: ElasticSettings,
+) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """E* from the structures' own bulk and shear moduli, ions relaxed.
+
+    Parameters
+    ----------
+    by_literature : what `effective_modulus` found with Poisson's ratio from its range; kept beside the result
+    rows : of elastic/isotropic_moduli.csv
+
+    Returns
+    -------
+    As `effective_modulus`
+    """
+    other: Polycrystal = counter_body.part("polycrystal")
+    pairs = {
+        ions: np.array(
+            [
+                [float(row[key]) for key in ("B_GPa", "G_GPa", "B_error_GPa", "G_error_GPa")]
+                for row in rows
+                if row["ions"] == ions and not row["flags"]
+            ]
+        ).reshape(-1, 4)
+        for ions in IONS
+    }
+    used = pairs["relaxed"]
+    shift = by_literature["LDA_minus_GGA"]["mean_GPa"]
+    clamped_B = by_literature["B_GPa_by_kind"]["GGA clamped"]["mean"]
+    reasons = []
+    if len(used) < settings.min_structures:
+        reasons.append(
+            f"{len(used)} amorphous structures with trusted elastic constants, {settings.min_structures} are needed"
+        )
+    if not np.isfinite(shift) or not clamped_B:
+        reasons.append("no structure has both LDA and GGA: the model-form shift is unknown")
+    summary = {
+        **by_literature,
+        "ions": "relaxed",
+        "structures_used": [row["structure"] for row in rows if row["ions"] == "relaxed" and not row["flags"]],
+        "poisson_ratio": {"distribution": "computed", **spread(poisson(used[:, 0], used[:, 1]))},
+        "isotropic_moduli": {
+            ions: {
+                "B_GPa": spread(p[:, 0]),
+                "G_GPa": spread(p[:, 1]),
+                "E_GPa": spread(young(p[:, 0], p[:, 1])),
+                "nu": spread(poisson(p[:, 0], p[:, 1])),
+            }
+            for ions, p in pairs.items()
+        },
+        "by_literature_poisson": {
+            key: by_literature.get(key) for key in ("mean_GPa", "std_GPa", "shares", "quantiles_GPa", "ions", "gate")
+        },
+        "notes": [by_literature["notes"][0], *ASSUMPTIONS],
+        "gate": {"passed": not reasons, "reasons": reasons},
+        "inputs": {},
+        "mean_GPa": float("nan"),
+        "std_GPa": float("nan"),
+    }
+    if not len(used):
+        return summary, {}
+    factor = 1 + shift / clamped_B if np.isfinite(shift) and clamped_B else 1.0
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    normal, normal_weights = np.polynomial.hermite_e.hermegauss(9)
+
+    def modulus(structure, anisotropy, scale, counter_E):
+        B, G, B_error, G_error = used[np.asarray(structure, int)].T
+        B, G = scale * (B + anisotropy * B_error).T, scale * (G + anisotropy * G_error).T
+        return plane_strain_modulus(B, poisson(B, G), counter_E, other.poisson_ratio), B, G
+
+    axes = {
+        "structure": (np.arange(len(used)), np.full(len(used), 1 / len(used))),
+        "anisotropy": (nodes, weights / 2),  # uniform between the bounds
+        "functional": (np.array([1.0, factor]), np.full(2, 0.5)),
+        "counter_body": (other.young_GPa + other.young_std_GPa * normal, normal_weights / normal_weights.sum()),
+    }
+    summary |= grid_shares(axes, lambda *values: modulus(*values)[0])
+    rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 52]))
+    n = settings.samples
+    lda = rng.integers(0, 2, n)
+    counter = rng.normal(other.young_GPa, other.young_std_GPa, n)
+    e_star, B, G = modulus(rng.integers(0, len(used), n), rng.uniform(-1, 1, n), np.where(lda, factor, 1.0), counter)
+    quantiles = (0.025, 0.16, 0.5, 0.84, 0.975)
+    summary["quantiles_GPa"] = dict(zip(map(str, quantiles), np.quantile(e_star, quantiles).tolist(), strict=True))
+    means = [modulus(k, 0.0, 0.5 * (1 + factor), other.young_GPa)[0] for k in range(len(used))]
+    summary["standard_error_of_mean_GPa"] = (
+        float(np.std(means, ddof=1) / np.sqrt(len(used))) if len(used) > 1 else float("nan")
+    )
+    summary["inputs"] = {"e_star": {"distribution": "normal", "a": summary["mean_GPa"], "b": summary["std_GPa"]}}
+    return summary, {"e_star_GPa": e_star, "B_GPa": B, "nu": poisson(B, G), "counter_E_GPa": counter, "xc": lda}

@@ -1,0 +1,44 @@
+"""Constants of crystals beside published ones."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from atomistic.elastic.studies.constants import beside_published, full_matrix
+from atomistic.elastic.tensor import isotropic
+from atomistic.materials import load_material
+
+MATERIALS = Path(__file__).parents[3] / "config" / "materials"
+BETA = load_material(MATERIALS / "silicon_nitride.yaml").crystals["beta"]
+SILICON = load_material(MATERIALS / "silicon.yaml").crystals["silicon"]
+
+
+def report(C, failure=""):
+    made = {"structure": "x", "atoms": 28, "error_GPa": 0.1, "failure": failure}
+    return {**made, "C_relaxed_GPa": C.tolist(), "C_clamped_GPa": (1.1 * C).tolist()}
+
+
+def test_published_moduli_are_those_their_authors_state():
+    """B 259 GPa of β-Si3N4 (Vogelgesang et al. 2000); C66 is (C11 - C12)/2."""
+    C = full_matrix(BETA.constants["experiment"].values_GPa, "hexagonal")
+    assert pytest.approx(259, abs=0.5) == isotropic(C).B
+    assert C[5, 5] == pytest.approx(BETA.constants["experiment"].values_GPa["C66"], abs=1)
+    cubic = full_matrix(SILICON.constants["experiment"].values_GPa, "cubic")
+    assert pytest.approx(97.9, abs=0.2) == isotropic(cubic).B
+
+
+def test_deviations_and_breaches_of_symmetry_are_measured():
+    C = full_matrix(SILICON.constants["GGA"].values_GPa, "cubic") * 1.05
+    C[4, 4] += 2
+    rows = {(row["published"], row["quantity"]): row for row in beside_published(report(C), SILICON)}
+    assert rows["GGA", "C11"]["deviation"] == pytest.approx(0.05)
+    assert rows["GGA", "C11"]["breach"] == pytest.approx(0)
+    assert rows["GGA", "C44"]["breach"] == pytest.approx(2)
+    assert rows["GGA", "C44"]["relaxed"] == pytest.approx(1.05 * 74.3 + 2 / 3)
+    assert rows["GGA", "B"]["deviation"] == pytest.approx(0.05)
+    assert rows["experiment", "C12"]["published_value"] == 63.9
+
+
+def test_a_crystal_that_failed_has_no_rows():
+    assert list(beside_published(report(np.eye(6), "SCF not converged"), BETA)) == []

@@ -1,0 +1,130 @@
+"""E* from the structures' own bulk and shear moduli; a structure that fails costs only itself."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ase.calculators.calculator import CalculationFailed, Calculator
+
+from atomistic.elastic.joint_moduli import Measured, isotropic_rows, measure_constants, with_computed_poisson
+from atomistic.elastic.moduli import Modulus, effective_modulus, grid_shares, plane_strain_modulus
+from atomistic.elastic.networks import crystal, tersoff_calculator
+from atomistic.elastic.tensor import poisson, young
+from atomistic.materials import load_material
+from atomistic.settings import ElasticSettings, TensorSettings
+
+MATERIALS = Path(__file__).parents[3] / "config" / "materials"
+NITRIDE = load_material(MATERIALS / "silicon_nitride.yaml")
+TITANIUM = load_material(MATERIALS / "titanium.yaml")
+SETTINGS = ElasticSettings(poisson="computed", min_structures=2, samples=50_000)
+
+
+def row(name, B, G, ions="relaxed", error=0.0, flags=""):
+    values = {"B_GPa": B, "G_GPa": G, "B_error_GPa": 0.0, "G_error_GPa": error}
+    return {"structure": name, "ions": ions, "flags": flags, **{key: str(value) for key, value in values.items()}}
+
+
+def literature(shift=20.0):
+    moduli = [Modulus(f"a{k}", "GGA", "clamped", 230.0 + k, True) for k in range(4)]
+    moduli += [Modulus(f"a{k}", "LDA", "clamped", 230.0 + k + shift, True) for k in range(4)]
+    return effective_modulus(moduli, TITANIUM, SETTINGS)[0]
+
+
+def test_e_star_is_that_of_eq_5_with_the_structures_own_poisson_ratio():
+    summary, samples = with_computed_poisson(literature(), [row("a0", 150, 90), row("a1", 150, 90)], TITANIUM, SETTINGS)
+    factor = 1 + 20.0 / 231.5
+    other = TITANIUM.part("polycrystal")
+    expected = [
+        plane_strain_modulus(150 * f, poisson(150, 90), other.young_GPa, other.poisson_ratio) for f in (1, factor)
+    ]
+    assert summary["mean_GPa"] == pytest.approx(np.mean(expected), rel=2e-3)  # but for the counter body's scatter
+    assert samples["nu"] == pytest.approx(poisson(150, 90))
+    assert summary["shares"]["structure"]["total"] == pytest.approx(0, abs=1e-12)
+    assert summary["gate"]["passed"]
+    assert summary["isotropic_moduli"]["relaxed"]["E_GPa"]["mean"] == pytest.approx(young(150, 90))
+    assert summary["by_literature_poisson"]["mean_GPa"] == pytest.approx(literature()["mean_GPa"])
+
+
+def test_shares_add_to_one_and_mean_and_scatter_are_those_of_the_samples():
+    rows = [row("a0", 150, 80, error=4), row("a1", 170, 95, error=6), row("a2", 160, 70, error=2)]
+    summary, samples = with_computed_poisson(literature(), rows, TITANIUM, SETTINGS)
+    assert sum(share["first_order"] for share in summary["shares"].values()) == pytest.approx(1, abs=0.02)
+    e_star = samples["e_star_GPa"]
+    assert summary["mean_GPa"] == pytest.approx(e_star.mean(), abs=5 * e_star.std() / np.sqrt(len(e_star)))
+    assert summary["std_GPa"] == pytest.approx(e_star.std(), rel=0.02)
+
+
+def test_flagged_and_clamped_rows_do_not_enter_and_too_few_fail_the_gate():
+    rows = [row("a0", 150, 80), row("a1", 999, 1, flags="unstable"), row("a0", 300, 200, ions="clamped")]
+    summary, samples = with_computed_poisson(literature(), rows, TITANIUM, SETTINGS)
+    assert summary["structures_used"] == ["a0"]
+    assert set(np.round(samples["nu"], 6)) == {round(poisson(150, 80), 6)}
+    assert "1 amorphous structures with trusted elastic constants, 2 are needed" in summary["gate"]["reasons"]
+    nothing, empty = with_computed_poisson(literature(), rows[1:2], TITANIUM, SETTINGS)
+    assert np.isnan(nothing["mean_GPa"])
+    assert all(len(values) == 0 for values in empty.values())
+
+
+def test_shares_of_a_product_are_exact():
+    axes = {name: (np.array([-1.0, 1.0]) * size, np.full(2, 0.5)) for name, size in (("a", 1), ("b", 2), ("c", 3))}
+    found = grid_shares(axes, lambda a, b, c: a * b + c)
+    assert (found["mean_GPa"], found["std_GPa"] ** 2) == pytest.approx((0, 4 + 9))
+    assert found["shares"]["a"] == pytest.approx({"first_order": 0, "total": 4 / 13})
+    assert found["shares"]["c"] == pytest.approx({"first_order": 9 / 13, "total": 9 / 13})
+
+
+@pytest.fixture(scope="module")
+def measured():
+    atoms = crystal(NITRIDE, "beta", (1, 1, 1))
+    calculator = tersoff_calculator(NITRIDE.part("network_glass").tersoff)
+    return measure_constants(atoms, calculator, TensorSettings(force_eV_A=0.01, max_steps=60))
+
+
+def test_constants_of_a_crystal_under_the_cheap_potential(measured):
+    clamped, relaxed = isotropic_rows(measured.report("beta"))
+    assert (clamped["flags"], relaxed["flags"]) == ("", "")
+    assert relaxed["B_GPa"] == pytest.approx(227, rel=0.03)  # known of this potential, from E(V)
+    assert relaxed["G_GPa"] < clamped["G_GPa"]
+    assert relaxed["B_GPa"] <= clamped["B_GPa"]
+
+
+def test_whatever_fails_is_named_and_costs_its_structure_only(measured):
+    class Fails(Calculator):
+        implemented_properties = ["energy", "forces", "stress"]  # noqa: RUF012
+
+        def calculate(self, *args, **kwargs):
+            raise CalculationFailed("SCF not converged in 50 cycles")
+
+    class Blind(type(tersoff_calculator(NITRIDE.part("network_glass").tersoff))):
+        implemented_properties = ["energy", "forces"]  # noqa: RUF012
+
+    atoms = crystal(NITRIDE, "beta", (1, 1, 1))
+    for calculator, said in (
+        (Fails(), "SCF not converged"),
+        (Blind(tersoff_calculator(NITRIDE.part("network_glass").tersoff).parameters), "stress"),
+    ):
+        failed = measure_constants(atoms, calculator, TensorSettings())
+        rows = isotropic_rows(failed.report("a01"))
+        assert all(said in line["flags"] and line["B_GPa"] is None for line in rows)
+    hurried = measure_constants(
+        atoms,
+        tersoff_calculator(NITRIDE.part("network_glass").tersoff),
+        TensorSettings(force_eV_A=1e-6, max_steps=1),
+    )
+    assert "not at rest after 1 steps" in hurried.failure
+    assert measured.response is not None
+    unstable = {**measured.report("a01"), "C_relaxed_GPa": (-np.eye(6)).tolist()}
+    clamped, relaxed = isotropic_rows(unstable)
+    assert clamped["flags"] == ""
+    assert "unstable" in relaxed["flags"]
+
+
+def test_a_rejected_glass_keeps_its_reasons():
+    atoms = crystal(NITRIDE, "beta", (1, 1, 1))
+    rows = isotropic_rows(Measured(atoms, None, None, "3 atoms without their valence").report("a01"))
+    assert [line["flags"] for line in rows] == ["3 atoms without their valence"] * 2
+
+
+def test_numerics_without_stress_are_refused_in_the_settings():
+    with pytest.raises(ValueError, match="needs the stress"):
+        ElasticSettings(poisson="computed", dft={"numerics": "multigrid"})

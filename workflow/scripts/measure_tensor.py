@@ -1,0 +1,29 @@
+"""Elastic constants.  In: elastic/structures/NAME.xyz (Å), material.  Out: elastic/tensors/NAME.json (GPa)."""
+
+from pathlib import Path
+
+from atomistic.elastic.energy_scans import make_calculator
+from atomistic.elastic.joint_moduli import Measured, measure_constants
+from atomistic.materials import load_material
+from atomistic.settings import DftSettings, RelaxationSettings, TensorSettings
+from workflow.job import job
+from workflow.results import load_json, write_json
+from workflow.structure_files import ScfStore, load_structure, start_from
+
+with job(snakemake) as run:
+    settings = snakemake.params.settings
+    dft = RelaxationSettings(**settings["relaxation"]).applied_to(DftSettings(**settings["dft"]))
+    store = ScfStore(Path(snakemake.params.store))
+    atoms = load_structure(snakemake.input.structure)
+    reasons = load_json(snakemake.input.report)["gate"]["reasons"] if snakemake.input.get("report") else []
+    if reasons:
+        measured = Measured(atoms, None, None, "; ".join(reasons))
+    else:
+        crystal = load_material(snakemake.input.material).crystals.get(snakemake.wildcards.structure)
+        cutoff_Ha = crystal.cutoff_Ha if crystal else None
+        calculator = make_calculator(dft, "GGA", atoms.cell.array * 1.03, store, cutoff_Ha)
+        if snakemake.input.get("orbitals"):
+            start_from(calculator, snakemake.input.orbitals)
+        measured = measure_constants(atoms, calculator, TensorSettings(**settings["tensor"]), run.progress)
+    write_json(snakemake.output.tensor, measured.report(snakemake.wildcards.structure), run.provenance)
+    store.remove()
