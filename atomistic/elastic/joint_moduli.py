@@ -41,20 +41,20 @@ class Measured(NamedTuple):
 
     def report(self, name: str) -> dict[str, Any]:
         """What elastic/tensors/NAME.json says; GPa in Voigt's order xx, yy, zz, yz, xz, xy."""
-        found, rest = self.response, self.rest
+        constants, rest = self.response, self.rest
         return {
             "structure": name,
             "atoms": len(self.atoms),
             "density_g_cm3": float(self.atoms.get_masses().sum() / self.atoms.get_volume() * AMU_PER_A3_IN_G_CM3),
             "steps": rest.steps if rest else 0,
             "force_left_eV_A": rest.force_left_eV_A if rest else None,
-            "calculations": found.calculations if found else 0,
-            "softest_eV_A2": found.softest_eV_A2 if found else None,
-            "stress_left_GPa": found.clamped.stress.tolist() if found else None,
-            "error_GPa": float(found.clamped.error.max()) if found else None,
-            "still_softer_GPa": found.relaxed_left.tolist() if found else None,
-            "C_clamped_GPa": found.clamped.C.tolist() if found else None,
-            "C_relaxed_GPa": found.relaxed.tolist() if found else None,
+            "calculations": constants.calculations if constants else 0,
+            "softest_eV_A2": constants.softest_eV_A2 if constants else None,
+            "stress_left_GPa": constants.clamped.stress.tolist() if constants else None,
+            "error_GPa": float(constants.clamped.error.max()) if constants else None,
+            "still_softer_GPa": constants.relaxed_left.tolist() if constants else None,
+            "C_clamped_GPa": constants.clamped.C.tolist() if constants else None,
+            "C_relaxed_GPa": constants.relaxed.tolist() if constants else None,
             "failure": self.failure,
         }
 
@@ -71,7 +71,7 @@ def measure_constants(
         if not rest.converged:
             left = f"{rest.force_left_eV_A:.2f} eV/A left on an atom"
             return Measured(atoms, rest, None, f"ions and cell not at rest after {rest.steps} steps, {left}")
-        found = elastic_response(
+        constants = elastic_response(
             atoms,
             calculator,
             rest.hessian_eV_A2,
@@ -83,7 +83,7 @@ def measure_constants(
         )
     except (CalculationFailed, NotImplementedError, InputError, np.linalg.LinAlgError, FloatingPointError) as error:
         return Measured(atoms, rest, None, str(error))
-    return Measured(atoms, rest, found, "")
+    return Measured(atoms, rest, constants, "")
 
 
 def isotropic_rows(report: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -113,7 +113,7 @@ def with_computed_poisson(
 
     Parameters
     ----------
-    by_literature : what `effective_modulus` found with Poisson's ratio from its range; kept beside the result
+    by_literature : what `effective_modulus` gives with Poisson's ratio from its range; kept beside the result
     rows : of elastic/isotropic_moduli.csv
 
     Returns

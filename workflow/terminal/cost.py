@@ -25,6 +25,7 @@ CELL_S = 2.4  # a pad's cell over a cycle: it opens from several depths
 SCAN_S = 0.8  # analysis of a scan of the reference grid
 SCF_S = 9.0  # one volume of 28 atoms at 100 hartree
 RELAXATION_STEP_S = 8.0  # the same, tightly converged and with forces
+STRESS_STEP_S = 15.0  # the same with the stress; 80 hartree on a loaded machine, not yet on an idle one
 QUENCH_S = 24.0  # quenches until a network of 28 atoms passes its gates
 PROCESS_MB = 600.0  # a job is two processes with their packages
 SITE_MB = {"asperity": 62e-6, "coupled": 140e-6}  # 4096^2 sites take 1.1 GB, 1024^2 coupled ones 323 MB
@@ -80,6 +81,12 @@ class Costs:
         relaxation = self.scene.elastic.relaxation
         return RELAXATION_STEP_S * (1 + relaxation.max_steps) * self.scf_size * relaxation.cutoff_Ha / 100
 
+    def measure_tensor(self, wildcards: Mapping[str, str]) -> float:
+        """Relaxation of cell and ions in half of the steps allowed, twelve strains, both signs of each direction."""
+        elastic = self.scene.elastic
+        states = elastic.tensor.max_steps / 2 + 12 + 12 * elastic.tensor.rounds
+        return STRESS_STEP_S * states * self.scf_size * elastic.relaxation.cutoff_Ha / 100
+
     def compute_runs(self, wildcards: Mapping[str, str]) -> float:
         """A chunk of cycles of a design."""
         return self.scene.uncertainty.chunk_runs * (self.cycle_s + FITTED_RUN_S)
@@ -121,6 +128,8 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "relax_amorphous": Costs.relax_amorphous,
     "scan_volumes": Costs.scan_volumes,
     "scan_relaxed_volumes": Costs.scan_volumes,
+    "measure_tensor": Costs.measure_tensor,
+    "average_tensors": _constant(0.5),
     "write_synthetic_scans": _constant(5.0),
     "analyse_scans": Costs.analyse_scans,
     "pool_spectra": _constant(3.0),

@@ -209,8 +209,8 @@ def odd_electrons(cell: Atoms) -> Verdict:
 def costs_only_itself(cell: Atoms) -> Verdict:
     """An SCF that fails while constants are measured is named in the structure's row; nothing is raised."""
     engine = PyscfGamma(basis=SMALL, cutoff_Ha=CUTOFF_HA, max_cycles=2)
-    found = measure_constants(cell, engine, TensorSettings())
-    return found.response is None and "not converged" in found.failure, found.failure
+    measured = measure_constants(cell, engine, TensorSettings())
+    return measured.response is None and "not converged" in measured.failure, measured.failure
 
 
 def without_stress(cell: Atoms) -> Verdict:

@@ -67,10 +67,10 @@ def test_flagged_and_clamped_rows_do_not_enter_and_too_few_fail_the_gate():
 
 def test_shares_of_a_product_are_exact():
     axes = {name: (np.array([-1.0, 1.0]) * size, np.full(2, 0.5)) for name, size in (("a", 1), ("b", 2), ("c", 3))}
-    found = grid_shares(axes, lambda a, b, c: a * b + c)
-    assert (found["mean_GPa"], found["std_GPa"] ** 2) == pytest.approx((0, 4 + 9))
-    assert found["shares"]["a"] == pytest.approx({"first_order": 0, "total": 4 / 13})
-    assert found["shares"]["c"] == pytest.approx({"first_order": 9 / 13, "total": 9 / 13})
+    shared = grid_shares(axes, lambda a, b, c: a * b + c)
+    assert (shared["mean_GPa"], shared["std_GPa"] ** 2) == pytest.approx((0, 4 + 9))
+    assert shared["shares"]["a"] == pytest.approx({"first_order": 0, "total": 4 / 13})
+    assert shared["shares"]["c"] == pytest.approx({"first_order": 9 / 13, "total": 9 / 13})
 
 
 @pytest.fixture(scope="module")

@@ -90,24 +90,24 @@ def test_keating_diamond_has_the_constants_of_keating(beta):
     """C11, C12 and the relaxed and clamped C44 in closed form (Keating's eqs 9, 10), from unconstrained strains."""
     alpha = 3.0
     atoms = diamond(alpha, beta)
-    found = elastic_response(atoms, atoms.calc, 10 * np.eye(24), 2e-3, 0.01, 3, 0.01)
+    constants = elastic_response(atoms, atoms.calc, 10 * np.eye(24), 2e-3, 0.01, 3, 0.01)
     a = EDGE_A / EV_PER_A3_IN_GPA
     C11, C12 = (alpha + 3 * beta) / a, (alpha - beta) / a
     C44 = 4 * alpha * beta / (alpha + beta) / a
     clamped = (alpha + beta) / a
     expected = np.diag([C11, C11, C11, C44, C44, C44])
     expected[:3, :3] += C12 * (1 - np.eye(3))
-    assert np.allclose(found.relaxed, expected, atol=0.02)
-    assert np.allclose(np.diag(found.clamped.C)[3:], clamped, atol=0.02)
-    assert found.clamped.error.max() < 1e-6  # no symmetry was assumed
-    assert found.calculations == 12 + 2 * 3  # one displacement for each shear; the rest does not move the ions
+    assert np.allclose(constants.relaxed, expected, atol=0.02)
+    assert np.allclose(np.diag(constants.clamped.C)[3:], clamped, atol=0.02)
+    assert constants.clamped.error.max() < 1e-6  # no symmetry was assumed
+    assert constants.calculations == 12 + 2 * 3  # one displacement for each shear; the rest does not move the ions
 
 
 def test_keating_constants_do_not_depend_on_the_size_of_the_strain():
     """Keating's energy is quadratic in the Green–Lagrange strain, so finite strains must leave no error at all."""
     atoms = diamond()
-    found = [elastic_response(atoms, atoms.calc, 10 * np.eye(24), size, 0.01, 3, 0.01) for size in (0.02, 0.001)]
-    assert np.allclose(found[0].clamped.C, found[1].clamped.C, rtol=1e-6, atol=1e-6)
+    constants = [elastic_response(atoms, atoms.calc, 10 * np.eye(24), size, 0.01, 3, 0.01) for size in (0.02, 0.001)]
+    assert np.allclose(constants[0].clamped.C, constants[1].clamped.C, rtol=1e-6, atol=1e-6)
 
 
 @pytest.fixture(scope="module")
