@@ -8,7 +8,7 @@ import numpy as np
 
 from mesoscale.errors import InputError
 
-MIN_ROUGHNESS, MAX_ROUGHNESS = 1e-9, 1e4
+MIN_ROUGHNESS, MAX_ROUGHNESS = 1e-9, 1e5
 """RMS height over side beyond which the two are in different units: a factor of 1e9 misses any real surface."""
 MIN_LENGTH_NM, MAX_LENGTH_NM = 0.1, 1e9
 

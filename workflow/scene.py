@@ -85,6 +85,21 @@ class Scene(Settings):
         return self
 
     @model_validator(mode="after")
+    def _cutoff_on_the_grid(self) -> "Scene":
+        resolved = self.contact.nyquist_per_nm
+        wanted = {"contact.q1_per_nm": self.contact.q1_per_nm}
+        row = self.inputs.rows().get("q1")
+        if row is not None and row.origin == "literature":
+            wanted["inputs.q1"] = row.b if row.distribution == "uniform" else row.high or row.a
+        for key, q1 in wanted.items():
+            if q1 is not None and q1 > resolved * (1 + 1e-9):
+                raise ValueError(
+                    f"{key} reaches {q1:g} 1/nm: beyond what contact.pixels = {self.contact.pixels} on "
+                    f"{self.contact.length_nm:g} nm resolve, {resolved:.4g} 1/nm; raise contact.pixels or lower it"
+                )
+        return self
+
+    @model_validator(mode="after")
     def _one_exponent_convention(self) -> "Scene":
         if "topography" in self.inputs.origins() and self.topography.convention != self.contact.convention:
             raise ValueError(

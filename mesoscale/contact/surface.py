@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mesoscale.checks import checked_heights
+from mesoscale.checks import check_number, checked_heights
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
@@ -20,6 +20,8 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
     from mesoscale.topography.synthesis import synthesize, synthesize_spectrum
 
     pixels, length, q1, wanted = settings.pixels, settings.length_nm, settings.q1_per_nm, settings.surface
+    if q1 is not None:
+        check_number("q1", q1, 0.0, settings.nyquist_per_nm * (1.0 + 1e-9), "1/nm (what the grid resolves)")
     other = wanted.counterface
     if wanted.heights:
         from mesoscale.topography.height_synthesis import synthesize_heights
@@ -68,7 +70,7 @@ def _form(q: np.ndarray, q0: float, slope: float) -> np.ndarray:
 
 def shortest_wave(settings: ContactSettings) -> float:
     """Largest wave vector of a random surface, 1/nm: q1, at most the grid's Nyquist limit."""
-    return min(settings.q1_per_nm or math.inf, math.pi * settings.pixels / settings.length_nm)
+    return min(settings.q1_per_nm or math.inf, settings.nyquist_per_nm)
 
 
 def given_surface(

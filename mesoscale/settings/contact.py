@@ -1,5 +1,6 @@
 """Settings of the contact model."""
 
+import math
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -167,6 +168,11 @@ class ContactSettings(Settings):
         le=100000,
         description="random draws from Table 1 of the stability study, on three surfaces each",
     )
+
+    @property
+    def nyquist_per_nm(self) -> float:
+        """Largest wave vector that the grid resolves, 1/nm."""
+        return math.pi * self.pixels / self.length_nm
 
     @property
     def draw_chunks(self) -> int:

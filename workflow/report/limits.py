@@ -4,19 +4,30 @@ import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.numbers import column, show
+from workflow.report.stages.contact import reading_of
+
+_ASPERITY = (
+    "True contact area: asperities are found by cutting the surface with a plane (bearing area), which "
+    "overestimates the true area of contact.",
+    "Elastic coupling: each asperity is pressed on its own; its neighbours do not give way with it. On opening it is "
+    "too compliant. Target model_form tells what coupling changes.",
+)
+_COUPLED = (
+    "Attraction does not deform the contact. On opening it acts on flattened, conformal tops and reaches a large part "
+    "of their hardness: take pull-off for an upper bound.",
+    "Flowed volume is not kept: the rim that it would make carries no load.",
+)
 
 
 def limits(results: Results) -> list[str]:
     """What a reader must know before using the numbers, with the figures of this scene where they exist."""
     paper = results.beside_paper
+    coupled = results.has("curves/nominal.h5") and reading_of(results).get("mechanics") == "coupled"
     return [
         f"Adhesion: {_adhesion(results)}measured dry adhesion of such surfaces is 5 to 30 µJ/m². The law's attraction "
         "acts down to gaps of 0.165 nm beside every contact. Stiction and release voltage inherit this; "
         "device.adhesion_scale: 0.1 shows the other end.",
-        "True contact area: asperities are found by cutting the surface with a plane (bearing area), which "
-        "overestimates the true area of contact.",
-        "Elastic coupling: each asperity is pressed on its own; its neighbours do not give way with it. Scene "
-        "elastic_coupling measures what that costs.",
+        *(_COUPLED if coupled else _ASPERITY),
         "Surface slope: the RMS slope is set by the shortest waves that the grid resolves."
         + " It is 0.91 at the paper's mean inputs, and would be 4.4, unphysical, with the profile convention (the "
         "paper's 2H+1 on a two-dimensional spectrum)." * paper,

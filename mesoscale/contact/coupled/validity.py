@@ -2,7 +2,7 @@
 
 Attraction acts on the gap that repulsion alone leaves (the picture of Derjaguin, Muller and Toporov). This holds where
 Tabor's parameter is well below 1 and where the surface is not sticky by the criterion of Pastewka and Robbins
-(doi:10.1073/pnas.1320846111).
+(doi:10.1073/pnas.1320846111); the formula was derived again from its picture, and not compared with the paper's text.
 """
 
 import math
@@ -55,7 +55,9 @@ def adhesion_numbers(hamaker: float, cutoff: float, e_star: float, surface: Roug
     if surface.curvature == 0.0:
         return {"tabor": math.inf, "stickiness": math.inf} if hamaker else {"tabor": 0.0, "stickiness": 0.0}
     tabor = (2.0 / surface.curvature * work**2 / (e_star**2 * reach**3)) ** (1.0 / 3.0)
-    # attraction over the rim of the contacts beside repulsion in them; d = 4 h'/h'' is the size of a contact
+    # Attraction w / reach over the rim of the contacts beside the repulsion E* h' / KAPPA in them, where contacts are
+    # d = 4 h'/h'' wide and pi A / d is the length of their rims. The rim reaches as far as the gap is below `reach`:
+    # at a distance x from Hertz's line contact of the slope h', gap^2 = 16/9 h'^2 x^3 / d.
     rough = surface.slope**2 / (surface.curvature * reach)
     needed = surface.slope * reach * e_star / KAPPA * rough ** (2.0 / 3.0)
     return {"tabor": tabor, "stickiness": math.pi * (3.0 / 16.0) ** (2.0 / 3.0) * work / needed}

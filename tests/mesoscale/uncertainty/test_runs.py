@@ -66,6 +66,14 @@ def test_equal_inputs_are_computed_once(monkeypatch):
     assert len(calls) == 1
 
 
+def test_the_cut_off_is_an_input_and_never_beyond_the_grid():
+    _, settings = contact_of({**CENTRE, "q1": 0.1}, CONTACT)
+    assert settings.q1_per_nm == 0.1
+    fine, coarse = (computed({**CENTRE, "q1": q1}, 1).first_contact_nm for q1 in (0.2, 0.1))
+    assert fine != coarse
+    assert "1/nm" in str(compute({**CENTRE, "q1": 100.0}, 1, CONTACT))
+
+
 def test_the_eighth_input_reaches_the_engine():
     inputs, settings = contact_of({**CENTRE, "gap_cutoff": 0.3}, CONTACT)
     assert settings.gap_cutoff_nm == 0.3

@@ -22,6 +22,7 @@ def describe(results: Results) -> Section | None:
     if not results.has("curves/nominal.h5"):
         return None
     reading = reading_of(results)
+    coupled = reading.get("mechanics") == "coupled"
     section = Section(
         "curves",
         "Contact curves at central inputs",
@@ -31,8 +32,8 @@ def describe(results: Results) -> Section | None:
     )
     section.add(
         nominal_models(results),
-        "Three models of the single asperity. Elastic and non-linear elastic contacts reopen along their "
-        "closing line; plastic ones do not.",
+        f"Three models of {'coupled asperities' if coupled else 'the single asperity'}. Elastic and non-linear "
+        "elastic contacts reopen along their closing line; plastic ones do not.",
         "Figure 4",
     )
     section.add(
@@ -42,19 +43,24 @@ def describe(results: Results) -> Section | None:
         wide=True,
     )
     words = {
+        "mechanics": "mechanics",
         "convention": "slope convention",
-        "prefactor": "Hertz prefactor",
-        "radius": "asperity radius",
-        "area": "contact area",
+        "q1_per_nm": "short-wave cut-off (1/nm)",
         "touching_attracts": "sites in contact attract",
-        "flow": "flow rule",
-        "flow_pair": "pair of Gaussians",
         "gap_cutoff_nm": "smallest gap of the attraction (nm)",
     }
+    if not coupled:  # asperities that feel each other have neither a radius nor a shape of flow
+        words |= {
+            "prefactor": "Hertz prefactor",
+            "radius": "asperity radius",
+            "area": "contact area",
+            "flow": "flow rule",
+            "flow_pair": "pair of Gaussians",
+        }
     used = [
         (label, ("no", "yes")[value] if isinstance(value := reading[key], bool) else str(value))
         for key, label in words.items()
-        if key in reading
+        if reading.get(key) is not None
     ]
     if used:
         caption = "Readings of the paper in use" if results.beside_paper else "Choices of the contact model"
