@@ -82,9 +82,9 @@ class Beam:
         first = 2 * np.arange(self.elements)
         for i in range(4):
             for side in range(2):
-                np.add.at(right, (first + i, side), forces[side][:, i])
+                right[first + i, side] += forces[side][:, i]
             for j in range(4):
-                np.add.at(bands, (BANDS + i - j, first + j), matrix[:, i, j])
+                bands[BANDS + i - j, first + j] += matrix[:, i, j]
         inner = solve_banded((BANDS, BANDS), bands[:, 2:-2], right[2:-2])
         clamped = np.zeros((2, 2))
         both = np.concatenate([clamped, inner, clamped])

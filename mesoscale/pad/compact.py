@@ -120,13 +120,15 @@ def fit_compact(law: PadLaw) -> tuple[CompactPad, Residuals]:
     b, opening = _solve(np.concatenate(rows), np.concatenate(decays))
     decay = np.concatenate(kept) @ b
     (n,), attraction_opening = _solve(decay[:, None], np.concatenate(fallen))
-    fitted = CompactPad(*c.tolist(), *b.tolist(), float(np.exp(log_beta)), float(m), float(n), law.hamaker)
+    c0, c1, c2 = (float(value) for value in c)
+    b0, b1, b2 = (float(value) for value in b)
+    fitted = CompactPad(c0, c1, c2, b0, b1, b2, float(np.exp(log_beta)), float(m), float(n), law.hamaker)
     return fitted, Residuals(closing, opening, attraction, attraction_opening)
 
 
 def _solve(columns: Array, wanted: Array) -> tuple[Array, float]:
     """Least squares and its root mean square misfit."""
-    best = np.linalg.lstsq(columns, wanted, rcond=None)[0]
+    best = np.asarray(np.linalg.lstsq(columns, wanted, rcond=None)[0], float)
     return best, float(np.sqrt(np.mean((columns @ best - wanted) ** 2)))
 
 
