@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.stats import kstest
 
 from mesoscale.calibration.likelihood import posterior_of
-from mesoscale.calibration.measurements import Measurements
+from mesoscale.calibration.measurements import ON_SURFACES, Measurements
 from mesoscale.calibration.observables import LEVELS, NAMES, curve_names, force_levels_nN
 from mesoscale.calibration.posterior import Cycles, cycles_of_rows, expected_of, observe_runs, responses_of
 from mesoscale.calibration.switches import SwitchModel
@@ -102,7 +102,9 @@ def coverage_rows(
         ranks, effective = [], []
         truths = table.sample(sets, 17)
         for number, truth in enumerate(truths):
-            values = _surfaces(table, truth, contact, law, count, number, cutoffs)
+            values = np.zeros((count, len(NAMES)))
+            if kind in ON_SURFACES:
+                values = _surfaces(table, truth, contact, law, count, number, cutoffs)
             values = values[np.isfinite(values[:, : NAMES.index("closing_d_c_nm")]).all(axis=1)]
             if len(values) < count:
                 continue  # a surface that never pushes with the largest measured force
