@@ -10,7 +10,7 @@ from mesoscale.topography.analysis import analyse_scan, limited_spectrum, thumbn
 from mesoscale.topography.description.heights import height_quantiles
 from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.profile_range import trusted_profile
-from mesoscale.topography.measurements.cleaning import alignment_effect
+from mesoscale.topography.measurements.cleaning import Scan, alignment_effect
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile, clean_profile
 from mesoscale.topography.profile_conversion import line_spectrum
@@ -42,17 +42,18 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
 
     Synthetic scans, known to be Gaussian and seen by the tip of the settings, leave neither quantiles nor limits.
     """
-    arrays, attributes = (
-        _profile(measured, settings) if isinstance(measured.data, Profile) else _scan(measured, settings)
-    )
+    if isinstance(measured.data, Profile):
+        arrays, attributes = _profile(measured.data, measured, settings)
+    else:
+        arrays, attributes = _scan(measured.data, measured, settings)
     if settings.scans:
         attributes["tip_radius_nm"] = measured.tip_radius_nm
         attributes["radius_stated"] = measured.radius_stated
     return arrays, attributes
 
 
-def _scan(measured: Measurement, settings: TopographySettings) -> tuple[Arrays, dict[str, Any]]:
-    result = analyse_scan(measured.data, settings)
+def _scan(scan: Scan, measured: Measurement, settings: TopographySettings) -> tuple[Arrays, dict[str, Any]]:
+    result = analyse_scan(scan, settings)
     spectrum, flat, cleaned = result.spectrum, result.flat_spectrum, result.cleaned
     arrays = {
         "q": spectrum.q,
@@ -82,15 +83,15 @@ def _scan(measured: Measurement, settings: TopographySettings) -> tuple[Arrays, 
     if settings.scans:
         if cleaned.rms_nm > 0:
             arrays["quantiles"] = height_quantiles(cleaned.heights_nm)
-        share, skewness = alignment_effect(measured.data, settings)
+        share, skewness = alignment_effect(scan, settings)
         attributes |= {"alignment_share": share, "alignment_skewness": skewness}
         limits = limited_spectrum(cleaned.name, spectrum, cleaned, measured)
         attributes |= _range(limits)
     return arrays, attributes
 
 
-def _profile(measured: Measurement, settings: TopographySettings) -> tuple[Arrays, dict[str, Any]]:
-    cleaned = clean_profile(measured.data, settings)
+def _profile(profile: Profile, measured: Measurement, settings: TopographySettings) -> tuple[Arrays, dict[str, Any]]:
+    cleaned = clean_profile(profile, settings)
     limits = trusted_profile(cleaned, measured)
     spectrum = limits.spectrum
     profile_q, profile_psd = line_spectrum(cleaned)
@@ -106,7 +107,7 @@ def _profile(measured: Measurement, settings: TopographySettings) -> tuple[Array
     attributes = {
         "length_x_nm": cleaned.length_nm,
         "pixels_x": len(cleaned.heights_nm),
-        "raw_rms_nm": measured.data.rms_nm,
+        "raw_rms_nm": profile.rms_nm,
         "rms_nm": cleaned.rms_nm,
         "spacing": spectrum.spacing,
         "nyquist": spectrum.nyquist,

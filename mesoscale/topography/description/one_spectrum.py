@@ -119,7 +119,7 @@ class OneSpectrum:
         logs = np.log(psd)
         values = np.exp(logs[..., left] * (1 - share) + logs[..., left + 1] * share)
         below = 2 * np.pi * psd[..., 0] * fine[0] ** (power + 2) / (power + 2) if low == 0 else 0.0
-        return np.trapezoid(2 * np.pi * fine ** (power + 1) * values, fine, axis=-1) + below
+        return np.asarray(np.trapezoid(2 * np.pi * fine ** (power + 1) * values, fine, axis=-1) + below)
 
     def statistics(self, confidence: float) -> dict[str, dict[str, Any]]:
         """RMS height, slope and curvature of all waves that are measured, with intervals of the typical place.
@@ -164,6 +164,7 @@ def merge(spectra: Sequence[TrustedSpectrum]) -> OneSpectrum | None:
     normal[:m, :m] += bends.T @ bends
     shared = np.bincount(index, minlength=m) > 1
     variance = 0.1 if shared.any() else 0.0
+    covariance, solution = normal, right
     for _ in range(ROUNDS):
         penalty = np.zeros(m + places)
         penalty[m:] = 1 / max(variance, 1e-6)

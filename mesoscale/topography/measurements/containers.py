@@ -41,9 +41,11 @@ class PlainLoader(yaml.SafeLoader):
     """Plain values, and the tuples that containers write sizes as."""
 
 
-PlainLoader.add_constructor(
-    "tag:yaml.org,2002:python/tuple", lambda loader, node: tuple(loader.construct_sequence(node))
-)
+def _tuple(loader: yaml.SafeLoader, node: yaml.SequenceNode) -> tuple[Any, ...]:
+    return tuple(loader.construct_sequence(node))
+
+
+PlainLoader.add_constructor("tag:yaml.org,2002:python/tuple", _tuple)
 
 
 @dataclass(frozen=True)
