@@ -10,6 +10,11 @@ from ase import Atoms
 from atomistic.elastic.dft import PyscfGamma, commensurate_mesh
 from atomistic.elastic.energy_scans import Point, scan_volumes
 from atomistic.elastic.equation_of_state import fit_equation_of_state
+from atomistic.elastic.joint_moduli import measure_constants
+from atomistic.elastic.networks import tersoff_calculator
+from atomistic.elastic.tensor import isotropic
+from atomistic.materials import NetworkGlass
+from atomistic.settings import TensorSettings
 
 Progress = Callable[[float, str], None]
 BASE: dict[str, Any] = {"basis": "gth-dzvp-molopt-sr", "cutoff_Ha": 60.0, "tolerance_Ha": 1e-6, "max_cycles": 40}
@@ -103,6 +108,45 @@ def accuracy_points(cell: Atoms, double_cell: Atoms, progress: Progress | None =
         chosen = [points[k] for k in positions]
         share = {**cost, "wall_s": sum(p.wall_s for p in chosen), "cpu_s": None}
         yield point("strains", count, modulus(chosen), reference, f"{len(DENSE)} strains", share)
+
+
+def constants_points(cell: Atoms, criteria: NetworkGlass) -> Iterator[dict[str, Any]]:
+    """What strain, displacement, rounds and the relaxation before cost the shear modulus, under the cheap potential.
+
+    Parameters
+    ----------
+    cell : a crystal of the material
+    criteria : the `network_glass` of the material, for its potential
+    """
+    base = TensorSettings(
+        strain=0.002, displacement_A=0.01, rounds=6, tolerance_GPa=1e-2, force_eV_A=1e-3, max_steps=300
+    )
+    knobs: dict[str, tuple[float, ...]] = {
+        "strain": (0.02, 0.01, 0.005, 0.002),
+        "displacement_A": (0.1, 0.03, 0.01),
+        "rounds": (1, 2, 3, 6),
+        "force_eV_A": (0.3, 0.1, 0.03, 1e-3),
+    }
+
+    def shear_modulus(settings: TensorSettings) -> tuple[float, dict[str, float]]:
+        wall, cpu = time.perf_counter(), time.process_time()
+        measured = measure_constants(cell, tersoff_calculator(criteria.tersoff), settings)
+        cost = {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}
+        return (isotropic(measured.response.relaxed).G if measured.response else float("nan")), cost
+
+    finest, _ = shear_modulus(base)
+    for knob, values in knobs.items():
+        for value in values:
+            G, cost = shear_modulus(base.model_copy(update={knob: value}))
+            yield {
+                "case": f"G {G:.2f} GPa, Tersoff potential",
+                "knob": f"tensor.{knob}",
+                "value": value,
+                "error": G / finest - 1,
+                "error_metric": "relative error of G",
+                "reference": f"finest of each: {finest:.2f} GPa",
+                **cost,
+            }
 
 
 def ensemble_points(moduli_GPa: Sequence[float], wall_s: float) -> Iterator[dict[str, Any]]:
