@@ -14,8 +14,9 @@ from scipy.stats import kstest
 
 from mesoscale.calibration.likelihood import posterior_of
 from mesoscale.calibration.measurements import ON_SURFACES, Measurements
-from mesoscale.calibration.observables import LEVELS, NAMES, curve_names, force_levels_nN
+from mesoscale.calibration.observables import CURVES, LEVELS, NAMES, curve_names, force_levels_nN
 from mesoscale.calibration.posterior import Cycles, cycles_of_rows, expected_of, observe_runs, responses_of
+from mesoscale.calibration.surfaces import SCALAR_COLUMNS
 from mesoscale.calibration.switches import SwitchModel
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import input_table
@@ -105,8 +106,7 @@ def coverage_rows(
             values = np.zeros((count, len(NAMES)))
             if kind in ON_SURFACES:
                 values = _surfaces(table, truth, contact, law, count, number, cutoffs)
-            values = values[np.isfinite(values[:, : NAMES.index("closing_d_c_nm")]).all(axis=1)]
-            if len(values) < count:
+            if not np.isfinite(values[:, _needed(kind)]).all():
                 continue  # a surface that never pushes with the largest measured force
             data = table_of(kind, values, truth, table.names, contact.max_force_nN, discrepancy, rng)
             posterior = posterior_of(table, [data], responses, laws, switch, contact.max_force_nN, expected)
@@ -131,6 +131,13 @@ def coverage_rows(
             }
         )
     return rows
+
+
+def _needed(kind: str) -> list[int]:
+    """Places of the observables behind data of a kind."""
+    if kind in CURVES:
+        return [NAMES.index(name) for name in curve_names(CURVES[kind])]
+    return [NAMES.index(SCALAR_COLUMNS[kind])] if kind in SCALAR_COLUMNS else []
 
 
 def _surfaces(
