@@ -103,6 +103,22 @@ class Source(Settings):
     doi: str | None
 
 
+class AreaCalibration(Settings):
+    """The definition of contact area that was tested on bodies of known section with a potential's glass; lengths in Å.
+
+    Attributes
+    ----------
+    error : largest deviation from the known area, as a fraction.
+    """
+
+    depth_A: Positive
+    touch_A: Positive
+    closing_A: Positive
+    rim_A: float = Field(ge=0)
+    error: float = Field(ge=0, le=0.1)
+    source: str
+
+
 class Potential(Settings):
     """A rigid-ion potential; energies in eV, distances in Å."""
 
@@ -114,6 +130,7 @@ class Potential(Settings):
     cutoff_A: float = Field(ge=4, le=20)
     materials: dict[Name, dict[Name, int]]
     pairs: tuple[Pair, ...]
+    contact_area: AreaCalibration | None = None
 
     @cached_property
     def _terms(self) -> dict[frozenset[str], Pair]:

@@ -20,22 +20,25 @@ def profile(x: np.ndarray, y: np.ndarray, wavelength: float, amplitude: float) -
 def cut_asperity(glass: Atoms, tiles: int, amplitude_A: float, base_A: float, seed: int) -> Atoms:
     """Cut an asperity out of `tiles` x `tiles` glass cells.
 
-    The cut is placed at random (by `seed`) in the tiling, so that runs from one glass differ.  Surplus
-    atoms of the cut are removed at the rigid bottom, where it does not matter: the sample stays neutral.
+    The cut is placed at random (by `seed`) in the tiling, so that runs from one glass differ; a thicker base adds
+    atoms below and leaves those of the asperity.  Surplus atoms of the cut are removed at the rigid bottom, where it
+    does not matter: the sample stays neutral.
 
     Returns
     -------
     Atoms with the bottom at z = 0 and the zero of eq. 6 at z = base_A.
     """
     wavelength = tiles * glass.cell_A[0]
-    layers = int(np.ceil((base_A + amplitude_A) / glass.cell_A[2]))
+    below, above = (int(np.ceil(height / glass.cell_A[2])) for height in (base_A, amplitude_A))
     rng = np.random.default_rng(np.random.SeedSequence([seed, 3]))
     shifted = np.mod(glass.positions_A + rng.uniform(0, 1, 3) * glass.cell_A, glass.cell_A)
-    repeats = (tiles, tiles, layers)
-    offsets = np.stack(np.meshgrid(*map(np.arange, repeats), indexing="ij"), axis=-1).reshape(-1, 3)
+    repeats = (np.arange(tiles), np.arange(tiles), np.arange(-below, above))
+    offsets = np.stack(np.meshgrid(*repeats, indexing="ij"), axis=-1).reshape(-1, 3)
     positions = (shifted[None] + (offsets * glass.cell_A)[:, None]).reshape(-1, 3)
+    positions[:, 2] += base_A
     types = np.tile(glass.types, len(offsets))
-    inside = positions[:, 2] < base_A + profile(positions[:, 0], positions[:, 1], wavelength, amplitude_A)
+    top = base_A + profile(positions[:, 0], positions[:, 1], wavelength, amplitude_A)
+    inside = (positions[:, 2] >= 0) & (positions[:, 2] < top)
     cell = np.array([wavelength, wavelength, base_A + amplitude_A + VACUUM_A])
     cut = Atoms(glass.elements, types[inside], positions[inside], cell)
     return neutralise(cut, formula_of(glass))
@@ -78,12 +81,14 @@ def with_vacuum(atoms: Atoms, height_A: float) -> Atoms:
 def facing(lower: Atoms, upper: Atoms, gap_A: float) -> tuple[Atoms, float]:
     """`upper` turned over and placed above `lower`, as one set of atoms with types of its own.
 
+    The gap is that of the two highest atoms.
+
     Returns
     -------
     atoms : those of `lower` first; elements and types of `upper` follow those of `lower`.
     ceiling : height at which the (rigid) bottom of `upper` now lies, Å.
     """
-    ceiling = top_height(lower.positions_A[:, 2]) + gap_A + top_height(upper.positions_A[:, 2])
+    ceiling = float(np.max(lower.positions_A[:, 2]) + gap_A + np.max(upper.positions_A[:, 2]))
     turned = upper.positions_A * [1, 1, -1] + [0, 0, ceiling]
     positions = np.concatenate([lower.positions_A, turned])
     velocities = None

@@ -1,59 +1,82 @@
-"""Contact area: one definition, used for every run.
+"""Contact area: one definition, used for every run, calibrated on bodies of known section (studies/area.py).
 
-Atoms nearer to the counterface than a depth Δ (or beyond it) touch.  Each marks a disc on a grid in the
-plane of contact; holes enclosed by marked cells count as contact.  Δ is the largest systematic error of the
-hardness: docs/hardness.md gives its size.
+Atoms nearer to the counterface than a depth (or beyond it) touch.  The space between touching atoms counts as contact
+where a disc of the closing radius does not fit; enclosed holes do too.  The rim lies one rim radius outside the
+outermost touching atoms.
 """
 
 import numpy as np
-from scipy.ndimage import binary_fill_holes
+from scipy.ndimage import binary_fill_holes, distance_transform_edt
+from scipy.spatial import KDTree
+
+from atomistic.errors import InputError
+from atomistic.potentials import AreaCalibration, Potential
+from atomistic.settings import AreaSettings
 
 
 def contact_area(
-    touching_A: np.ndarray,
-    cell_A: tuple[float, float],
-    disc_A: float,
-    grid_A: float,
-    centre_A: tuple[float, float],
+    touching_A: np.ndarray, cell_A: tuple[float, float], settings: AreaSettings, centre_A: tuple[float, float]
 ) -> float:
-    """Projected area of discs around the touching atoms, holes filled, Å².
+    """Area of the contact, Å².
 
     Parameters
     ----------
     touching_A : positions in the plane, shape (atoms, 2).
     cell_A : periodic lengths in x and y.
-    disc_A : radius of the discs.
-    grid_A : grid spacing asked for; rounded so that the cell holds a whole number.
     centre_A : middle of the contact; the grid is rolled so that the contact does not wrap around, where holes
         would stay open.
     """
-    return float(np.sum(contact_map(touching_A, cell_A, disc_A, grid_A, centre_A))) * _spacing(cell_A, grid_A).prod()
+    return float(np.sum(contact_map(touching_A, cell_A, settings, centre_A)) * _spacing(cell_A, settings).prod())
 
 
 def contact_map(
-    touching_A: np.ndarray,
-    cell_A: tuple[float, float],
-    disc_A: float,
-    grid_A: float,
-    centre_A: tuple[float, float],
+    touching_A: np.ndarray, cell_A: tuple[float, float], settings: AreaSettings, centre_A: tuple[float, float]
 ) -> np.ndarray:
-    """Cells in contact, as a boolean array whose middle is `centre_A`."""
-    spacing = _spacing(cell_A, grid_A)
-    shape = np.round(np.asarray(cell_A) / spacing).astype(int)
-    marked = np.zeros(shape, dtype=bool)
+    """Share of each cell in contact; the middle of the array is `centre_A`.
+
+    Discs of `closing_A` about the touching atoms, holes filled, cut back to `rim_A`; cells that the rim crosses count
+    in part, so that the area does not jump with the grid.
+    """
+    spacing, cell = _spacing(cell_A, settings), np.asarray(cell_A, dtype=float)
+    shape = np.round(cell / spacing).astype(int)
     if len(touching_A) == 0:
-        return marked
-    reach = np.ceil(disc_A / spacing).astype(int)
-    offset = np.stack(np.meshgrid(*(np.arange(-r, r + 1) for r in reach), indexing="ij"), axis=-1).reshape(-1, 2)
-    shifted = touching_A - np.asarray(centre_A) + np.asarray(cell_A) / 2
-    nearest = np.floor(shifted / spacing).astype(int)
-    cells = nearest[:, None, :] + offset[None]
-    distance = (cells + 0.5) * spacing - shifted[:, None, :]
-    hit = cells[np.einsum("ijk,ijk->ij", distance, distance) <= disc_A**2]
-    marked[hit[:, 0] % shape[0], hit[:, 1] % shape[1]] = True
-    return np.asarray(binary_fill_holes(marked), dtype=bool)
+        return np.zeros(shape)
+    middles = np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in shape), indexing="ij"), axis=-1) * spacing
+    shifted = np.mod(touching_A - np.asarray(centre_A) + cell / 2, cell)
+    # a place that rounding puts on the far edge of the cell lies outside it for the tree
+    distance, _ = KDTree(np.where(shifted < cell, shifted, 0.0), boxsize=cell).query(
+        middles, distance_upper_bound=2 * settings.closing_A
+    )
+    marked = np.asarray(binary_fill_holes(distance <= settings.closing_A), dtype=bool)
+    if marked.all():
+        return np.ones(shape)
+    wide = np.pad(marked, margin := int(np.ceil(settings.closing_A / spacing.min())) + 1, mode="wrap")
+    outside = np.asarray(distance_transform_edt(wide, sampling=spacing))[margin:-margin, margin:-margin]
+    return np.clip((outside - (settings.closing_A - settings.rim_A)) / spacing.mean(), 0, 1)
 
 
-def _spacing(cell_A: tuple[float, float], grid_A: float) -> np.ndarray:
+def _spacing(cell_A: tuple[float, float], settings: AreaSettings) -> np.ndarray:
     cell = np.asarray(cell_A, dtype=float)
-    return cell / np.maximum(1, np.round(cell / grid_A))
+    return cell / np.maximum(1, np.round(cell / settings.grid_A))
+
+
+def require_calibration(potential: Potential, settings: AreaSettings) -> AreaCalibration:
+    """The calibration of the area definition in use with a potential.
+
+    Raises
+    ------
+    InputError : the potential's file has none, or that of another definition.
+    """
+    calibration = potential.contact_area
+    if calibration is None:
+        raise InputError(
+            f"potential {potential.name}: no calibration of the contact area; run target hardness_area and write "
+            "its largest error as `contact_area` into the potential's file (see config/potentials/pmmcs.yaml)"
+        )
+    for key in ("depth_A", "touch_A", "closing_A", "rim_A"):
+        if getattr(settings, key) != getattr(calibration, key):
+            raise InputError(
+                f"hardness.area.{key} = {getattr(settings, key):g}: potential {potential.name} is calibrated with "
+                f"{getattr(calibration, key):g} A; keep that, or run target hardness_area and change its file"
+            )
+    return calibration

@@ -1,6 +1,6 @@
 """What closing runs will cost, before they are run: atoms, steps, core-hours."""
 
-from atomistic.hardness.closing import plan_closing
+from atomistic.hardness.pressing import base_thickness_nm, plan_closing
 from atomistic.hardness.runs import planned_runs
 from atomistic.materials import Material
 from atomistic.settings import HardnessSettings
@@ -26,7 +26,7 @@ def plan_rows(
     for run in planned_runs(settings):
         plan, closing = plan_closing(settings, run.asperity), settings.closing
         wavelength, amplitude = run.asperity.tiles * edge_nm, run.asperity.amplitude_nm
-        atoms = density * wavelength**2 * (closing.base_nm + MEAN_HEIGHT * amplitude)
+        atoms = density * wavelength**2 * (base_thickness_nm(settings, wavelength) + MEAN_HEIGHT * amplitude)
         if closing.counterface in ("oxide", "asperity"):
             relief = amplitude if closing.counterface == "asperity" else 0
             thickness = closing.counter_base_nm + MEAN_HEIGHT * relief

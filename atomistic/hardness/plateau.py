@@ -9,12 +9,14 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import bdtrc
+from scipy.special import bdtrc, stdtrit
 
 from atomistic.hardness.runs import geometry
 from atomistic.settings import ClosingSettings, HardnessSettings, YieldSettings
 
 Rows = Sequence[Mapping[str, float]]
+
+ROUNDING_NM = 1e-6  # of a travel that is a whole number of steps
 
 UNLOADED = (  # of a run with dynamic unloading: what stays, beside the snapshot relaxed before it
     "snapshot_exchanged_bonds", "unloaded_exchanged_bonds", "snapshot_lowering_nm", "unloaded_lowering_nm",
@@ -77,11 +79,12 @@ def plastic_onset(witness: Rows, approach_nm: float, settings: YieldSettings) ->
     displacement = np.array([row["displacement_nm"] for row in witness])
     new = np.array([row["new_exchanges"] for row in witness])
     lowering = 10 * np.array([row["lowering_nm"] for row in witness])
-    before = (displacement <= approach_nm) & (np.arange(len(witness)) > 0)
+    apart = displacement <= approach_nm + ROUNDING_NM
+    before = apart & (np.arange(len(witness)) > 0)
     background = float(np.mean(new[before])) if np.any(before) else 0.0
     limit = background + max(settings.min_exchanges, 2 * np.sqrt(background))
     lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= settings.min_lowering_A
-    onsets = np.flatnonzero((new >= limit) & lasting & (displacement > approach_nm))
+    onsets = np.flatnonzero((new >= limit) & lasting & ~apart)
     if len(onsets) == 0:
         return Onset(None, background)
     count, earlier, snapshots = int(new[onsets[0]]), int(np.sum(new[before])), int(np.sum(before))
@@ -140,7 +143,7 @@ def find_hardness(
         return Hardness("rejected: too few averages between onset and the end of the window", **measured)
     plateau, lengths = stress[beyond], length[beyond]
     exponent = float(np.polyfit(np.log(lengths), np.log(plateau), 1)[0])
-    low, high = _interval_of_mean(plateau)
+    low, high = interval_of_mean(plateau)
     measured |= {
         "contact_length_nm": float(np.mean(lengths)),
         "contact_area_nm2": float(np.mean(lengths) ** 2),
@@ -150,12 +153,37 @@ def find_hardness(
         "length_min_nm": float(np.min(lengths)),
         "length_max_nm": float(np.max(lengths)),
         "plateau_exponent": exponent,
+        "plateau_points": int(np.sum(beyond)),
     }
+    half = 0.5 * (high - low) / float(np.mean(plateau))
     if exponent > settings.max_exponent:
         status = f"rejected: stress still rises as length^{exponent:.2f} beyond the onset"
+    elif fraction[-1] <= settings.max_area_fraction and not _is_narrow(half, int(np.sum(beyond)), settings):
+        status = (
+            f"rejected: stopped before its rule, {np.sum(beyond)} averages to {half:.1%} of the stress on "
+            f"{fraction[-1]:.2f} of the cell; raise closing.depth_over_amplitude"
+        )
     else:
         status = "yield"
-    return Hardness(status, plateau_points=int(np.sum(beyond)), **measured)
+    return Hardness(status, **measured)
+
+
+def may_stop(
+    curve: Rows, witness: Rows, cell_area_nm2: float, closing: ClosingSettings, settings: YieldSettings
+) -> bool:
+    """Is a run complete: has the contact left its window, or is the interval of its plateau narrow enough?"""
+    fraction = np.array([float(row["contact_area_nm2"]) for row in curve[-settings.min_points :]]) / cell_area_nm2
+    if np.all(fraction > settings.max_area_fraction):
+        return True
+    if fraction[-1] < settings.stop_area_fraction:
+        return False
+    hardness = find_hardness(curve, witness, cell_area_nm2, closing, settings)
+    half = 0.5 * (hardness.hardness_hi - hardness.hardness_lo) / hardness.hardness_GPa
+    return hardness.plateau_exponent <= settings.max_exponent and _is_narrow(half, hardness.plateau_points, settings)
+
+
+def _is_narrow(half_width: float, averages: int, settings: YieldSettings) -> bool:
+    return averages >= settings.stop_points and half_width <= settings.stop_interval
 
 
 def point(curve: Rows, witness: Rows, run: Mapping[str, Any], settings: HardnessSettings) -> dict[str, Any]:
@@ -189,11 +217,18 @@ def _first_stretch(mask: np.ndarray) -> np.ndarray:
     return np.isin(np.arange(len(mask)), np.arange(start, end))
 
 
-def _interval_of_mean(values: np.ndarray, block: int = 4, samples: int = 2000) -> tuple[float, float]:
-    """68 % interval of the mean by a circular block bootstrap (neighbouring averages are correlated)."""
-    count = len(values)
-    rng = np.random.default_rng(np.random.SeedSequence([count, 8]))
-    starts = rng.integers(0, count, (samples, -(-count // block)))
-    order = (starts[:, :, None] + np.arange(min(block, count))) % count
-    low, high = np.quantile(values[order].reshape(samples, -1).mean(axis=1), [0.16, 0.84])
-    return float(low), float(high)
+def interval_of_mean(values: np.ndarray) -> tuple[float, float]:
+    """68 % interval of the mean of correlated values: Student's t with the effective number of a first-order process.
+
+    The correlation of neighbours is corrected for its bias in short series (Kendall 1954).  How often the interval
+    holds the truth, also after stopping on its width, is tested (studies/detection.py).
+    """
+    count, apart = len(values), values - np.mean(values)
+    variance = float(np.sum(apart**2))
+    if count < 2 or variance == 0:
+        return float(np.mean(values)), float(np.mean(values))
+    neighbours = float(np.sum(apart[1:] * apart[:-1])) / variance
+    correlation = float(np.clip(neighbours + (1 + 4 * neighbours) / count, 0, 0.9))
+    effective = max(2.0, count * (1 - correlation) / (1 + correlation))
+    half = float(stdtrit(effective - 1, 0.84)) * float(np.std(values, ddof=1)) / np.sqrt(effective)
+    return float(np.mean(values)) - half, float(np.mean(values)) + half

@@ -9,7 +9,6 @@ from scipy.spatial import KDTree
 from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.contact_area import contact_area
 from atomistic.lammps import Workspace, load_averages, load_dump
-from atomistic.potentials import CONTACT_A
 from atomistic.settings import AreaSettings
 
 NEAR, FAR = 0.9, 1.2  # bond lengths in units of the first minimum of g(r)
@@ -38,27 +37,33 @@ class Geometry:
     top_radius_A: float
 
 
+Areas = dict[tuple[int, float], float]
+
+
 def load_curve(
-    workspace: Workspace, segments: range, segment_steps: int, area: AreaSettings, geometry: Geometry
+    workspace: Workspace, segments: range, segment_steps: int, area: AreaSettings, geometry: Geometry, known: Areas
 ) -> Rows:
-    """Averages over `area.snapshots` samples of force, contact area and temperature, with the energy balance."""
+    """Averages over `area.snapshots` samples of force, contact area and temperature, with the energy balance.
+
+    Parameters
+    ----------
+    known : areas by step and depth, kept from one reading of a growing run to the next.
+    """
     rows: dict[int, np.ndarray] = {}
     near: dict[int, np.ndarray] = {}
     for n in segments:  # the last step of a segment may stand in the next one again: the first one counts
         rows = {int(row[0]): row for row in load_averages(workspace / f"averages.{n}")} | rows
         near = dict(load_dump(workspace / f"near.{n}")) | near
     steps = sorted(rows)
-    touching = {step: _beyond(near[step], geometry) for step in steps}
+    touching = {step: beyond_counterface(near[step], geometry, area.touch_A) for step in steps}
     cell = (geometry.wavelength_A, geometry.wavelength_A)
     axis = (geometry.axis_A, geometry.axis_A)
 
     def areas(depth_A: float) -> np.ndarray:
-        return np.array(
-            [
-                contact_area(places[beyond > -depth_A], cell, area.disc_A, area.grid_A, axis)
-                for places, beyond in touching.values()
-            ]
-        )
+        for step, (places, beyond) in touching.items():
+            if (step, depth_A) not in known:
+                known[step, depth_A] = contact_area(places[beyond > -depth_A], cell, area, axis)
+        return np.array([known[step, depth_A] for step in steps])
 
     contact_areas = areas(area.depth_A)
     other_areas = {depth: areas(depth) for depth in area.other_depths_A}
@@ -98,10 +103,10 @@ def load_curve(
     return curve
 
 
-def _beyond(near: np.ndarray, geometry: Geometry) -> tuple[np.ndarray, np.ndarray]:
+def beyond_counterface(near: np.ndarray, geometry: Geometry, touch_A: float) -> tuple[np.ndarray, np.ndarray]:
     """Places (x, y) of the asperity's atoms near the contact, and how far they lie beyond the counterface.
 
-    Beyond a body of atoms: how much nearer than `CONTACT_A` its nearest atom is.
+    Beyond a body of atoms: how much nearer than `touch_A` its nearest atom is.
     """
     if geometry.bodies == 1:
         return near[:, 2:4], near[:, 5]
@@ -112,7 +117,7 @@ def _beyond(near: np.ndarray, geometry: Geometry) -> tuple[np.ndarray, np.ndarra
     positions = near[:, 2:5].copy()
     positions[:, :2] = np.mod(positions[:, :2], geometry.wavelength_A)
     distance, _ = KDTree(positions[~below], boxsize=box).query(positions[below])
-    return near[below, 2:4], CONTACT_A - distance
+    return near[below, 2:4], touch_A - distance
 
 
 def load_relaxed(workspace: Workspace, segment: int) -> tuple[int, Frame]:

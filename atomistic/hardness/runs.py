@@ -31,7 +31,7 @@ def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
 def settings_of_run(run: ClosingRun, settings: HardnessSettings) -> dict[str, Any]:
     """Settings that plan exactly this run, with only what it depends on, as plain values."""
     return {
-        **settings.model_dump(mode="json", include={"material", "closing", "area"}),
+        **settings.model_dump(mode="json", include={"material", "closing", "area", "plasticity"}),
         "asperities": [run.asperity.model_dump()],
         "seeds": [run.seed],
         "energy_scales": [run.energy_scale],

@@ -15,13 +15,16 @@ INTERVAL = (0.16, 0.84)  # 68 %, as in the paper
 Point = Mapping[str, str]
 
 
-def fit_size_effect(points: Sequence[Point], glasses: Sequence[Mapping], settings: HardnessSettings) -> dict:
+def fit_size_effect(
+    points: Sequence[Point], glasses: Sequence[Mapping], settings: HardnessSettings, area_error: float
+) -> dict:
     """Fit both ways, with 68 % intervals by bootstrap over runs, and judge whether the fit may be used.
 
     Parameters
     ----------
     points : rows of points.csv.
     glasses : properties of the glasses, each with its gate.
+    area_error : largest error of the contact area by its calibration, as a fraction.
 
     Returns
     -------
@@ -54,7 +57,8 @@ def fit_size_effect(points: Sequence[Point], glasses: Sequence[Mapping], setting
     result["free_fit"] = {name: free_fit(group, fit) for name, group in free.items()}
     result["halved_over_full"] = scale_ratios(used)
     result["size_effect"] = size_exponents(used, fit)
-    h_macro, h_prime = (literature_samples if fit.h_macro == "literature" else free_samples)(used, fit)
+    systematic = systematic_deviations(fit, area_error)
+    h_macro, h_prime = (literature_samples if fit.h_macro == "literature" else free_samples)(used, fit, systematic)
     result["inputs"] = {
         "h_macro": {"distribution": "uniform", **_range(h_macro, fit), "unit": "GPa"},
         "h_prime": {
@@ -67,7 +71,8 @@ def fit_size_effect(points: Sequence[Point], glasses: Sequence[Mapping], setting
     }
     result["H_macro_GPa"] = _summary(h_macro)
     result["H_prime_GPa_nm0.5"] = _summary(h_prime)
-    result["curve"] = band(h_macro, h_prime)
+    result["budget"] = variance_budget(used, fit, systematic)
+    result["curve"] = band(h_macro, h_prime, result["budget"]["statistical"]["std"])
     if result["inputs"]["h_prime"]["a"] <= 0 or result["inputs"]["h_macro"]["a"] <= 0:
         reasons.append("the fit allows a hardness that falls with decreasing size or is negative: not identifiable")
     result["gate"] = {"passed": not reasons, "reasons": reasons}
@@ -80,7 +85,17 @@ def _cost(points: Sequence[Point]) -> dict[str, float]:
     return {**total, "python_cpu_share": total["python_cpu_s"] / (total["lammps_cpu_s"] + total["python_cpu_s"])}
 
 
-def literature_samples(points: Sequence[Point], fit: FitSettings) -> tuple[np.ndarray, np.ndarray]:
+def systematic_deviations(fit: FitSettings, area_error: float) -> dict[str, float]:
+    """Standard deviation, relative to the hardness, of each error that all runs of a scene share.
+
+    The error of the area lies anywhere within that of its calibration: a uniform distribution.
+    """
+    return {"area": area_error / np.sqrt(3), **fit.systematic.model_dump()}
+
+
+def literature_samples(
+    points: Sequence[Point], fit: FitSettings, systematic: Mapping[str, float]
+) -> tuple[np.ndarray, np.ndarray]:
     """Joint samples of H_macro (uniform in its range) and H' (from the points, energy scales alike)."""
     rng = _rng(11)
     hardness, spread, length, scale = _columns(points)
@@ -88,17 +103,19 @@ def literature_samples(points: Sequence[Point], fit: FitSettings) -> tuple[np.nd
     weight = np.array([1 / np.sum(scale == one) for one in scale]) / len(scales)
     chosen = rng.choice(len(points), size=fit.bootstrap, p=weight)
     h_macro = rng.uniform(*fit.h_macro_GPa, fit.bootstrap)
-    drawn = hardness[chosen] + spread[chosen] * rng.normal(size=fit.bootstrap)
+    drawn = (hardness[chosen] + spread[chosen] * rng.normal(size=fit.bootstrap)) * _shared(fit, systematic)
     return h_macro, (drawn - h_macro) * np.sqrt(length[chosen])
 
 
-def free_samples(points: Sequence[Point], fit: FitSettings) -> tuple[np.ndarray, np.ndarray]:
+def free_samples(
+    points: Sequence[Point], fit: FitSettings, systematic: Mapping[str, float]
+) -> tuple[np.ndarray, np.ndarray]:
     """Bootstrap over runs of the straight line H against A^-0.25."""
     rng = _rng(12)
     hardness, spread, length, _ = _columns(points)
     x = 1 / np.sqrt(length)
     chosen = rng.integers(0, len(points), (fit.bootstrap, len(points)))
-    drawn = hardness[chosen] + spread[chosen] * rng.normal(size=chosen.shape)
+    drawn = (hardness[chosen] + spread[chosen] * rng.normal(size=chosen.shape)) * _shared(fit, systematic)[:, None]
     x = x[chosen]
     varies = np.ptp(x, axis=1) > 1e-6
     x, drawn = x[varies], drawn[varies]
@@ -107,11 +124,61 @@ def free_samples(points: Sequence[Point], fit: FitSettings) -> tuple[np.ndarray,
     return drawn.mean(axis=1) - h_prime * x.mean(axis=1), h_prime
 
 
+def _shared(fit: FitSettings, systematic: Mapping[str, float]) -> np.ndarray:
+    """Factors on the hardness of all runs alike, one for each bootstrap sample."""
+    rng = _rng(15)
+    draws = rng.normal(size=(len(systematic), fit.bootstrap))
+    return 1 + np.array(list(systematic.values())) @ draws
+
+
+def variance_budget(points: Sequence[Point], fit: FitSettings, systematic: Mapping[str, float]) -> dict:
+    """Standard deviations of H' at H_macro of the literature, by source, in GPa nm^0.5.
+
+    The runs are split by the law of total variance: between the energy scales, between the asperities of a scale,
+    between the seeds of an asperity, and within a run.  Only the last two are scatter that more runs would average.
+    """
+    hardness, spread, length, scale = _columns(points)
+    root, middle = np.sqrt(length), float(np.mean(fit.h_macro_GPa))
+    h_prime = (hardness - middle) * root
+    asperity = np.array([point["asperity"] for point in points])
+    between = {"energies": 0.0, "size": 0.0, "seed": 0.0, "run": 0.0}
+    scales, weight = np.unique(scale), 1 / len(np.unique(scale))
+    means = np.array([np.mean(h_prime[scale == one]) for one in scales])
+    between["energies"] = float(np.var(means))
+    for one, mean in zip(scales, means, strict=True):
+        of_scale = scale == one
+        for name in np.unique(asperity[of_scale]):
+            group = of_scale & (asperity == name)
+            share = weight * np.sum(group) / np.sum(of_scale)
+            between["size"] += share * float(np.mean(h_prime[group]) - mean) ** 2
+            between["seed"] += share * float(np.var(h_prime[group]))
+        between["run"] += weight * float(np.mean((spread[of_scale] * root[of_scale]) ** 2))
+    alike = np.array([weight / np.sum(scale == one) for one in scale])
+    squares = float(np.sum(alike * (hardness * root) ** 2))
+    shared = {name: deviation**2 * squares for name, deviation in systematic.items()}
+    macro = float(np.ptp(fit.h_macro_GPa) ** 2 / 12 * np.sum(alike * root) ** 2)
+    statistical = {name: between.pop(name) for name in ("seed", "run")}
+    parts = {"statistical": statistical, "systematic": {**between, **shared, "h_macro": macro}}
+    total = sum(sum(part.values()) for part in parts.values())
+    return {
+        "unit": "GPa nm^0.5",
+        "std": float(np.sqrt(total)),
+        **{
+            kind: {
+                "std": float(np.sqrt(sum(part.values()))),
+                "share": sum(part.values()) / total,
+                "sources": {name: float(np.sqrt(variance)) for name, variance in part.items()},
+            }
+            for kind, part in parts.items()
+        },
+    }
+
+
 def free_fit(points: Sequence[Point], fit: FitSettings) -> dict:
     """Both parameters from the points, with intervals; `identifiable` if both intervals are positive."""
     if len({point["contact_length_nm"] for point in points}) < 3:
         return {"points": len(points), "identifiable": False}
-    h_macro, h_prime = free_samples(points, fit)
+    h_macro, h_prime = free_samples(points, fit, {})
     macro, prime = _summary(h_macro), _summary(h_prime)
     return {
         "points": len(points),
@@ -165,13 +232,28 @@ def scale_ratios(points: Sequence[Point]) -> list[dict]:
     return rows
 
 
-def band(h_macro: np.ndarray, h_prime: np.ndarray) -> list[dict[str, float]]:
-    """H(L) with its 68 % band, L = sqrt(A) from 1 to 20 nm."""
+def band(h_macro: np.ndarray, h_prime: np.ndarray, statistical: float) -> list[dict[str, float]]:
+    """H(L), L = sqrt(A) from 1 to 20 nm, with its 68 % band and the part of that which more runs would narrow.
+
+    Parameters
+    ----------
+    statistical : standard deviation of H' between the runs of an asperity, GPa nm^0.5.
+    """
     rows = []
     for length in np.geomspace(1, 20, 40).tolist():
         hardness = h_macro + h_prime / np.sqrt(length)
         low, middle, high = np.quantile(hardness, [INTERVAL[0], 0.5, INTERVAL[1]]).tolist()
-        rows.append({"contact_length_nm": length, "low_GPa": low, "median_GPa": middle, "high_GPa": high})
+        half = statistical / float(np.sqrt(length))
+        rows.append(
+            {
+                "contact_length_nm": length,
+                "low_GPa": low,
+                "median_GPa": middle,
+                "high_GPa": high,
+                "statistical_low_GPa": middle - half,
+                "statistical_high_GPa": middle + half,
+            }
+        )
     return rows
 
 

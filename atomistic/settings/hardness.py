@@ -6,6 +6,8 @@ from pydantic import Field, model_validator
 
 from atomistic.settings.base import Settings
 
+BASE_OVER_CONTACT = 1.0  # below it the stress rises with the contact (docs/hardness.md, "A base that is not felt")
+
 
 class GlassSettings(Settings):
     """Melt and quench of a periodic glass cell."""
@@ -58,9 +60,10 @@ class ClosingSettings(Settings):
         description="flat, sphere: rigid, frictionless, repulsive, without atoms; "
         "oxide, asperity: atoms of counter_material, flat or after eq. 6",
     )
-    control: Literal["speed", "force"] = Field(
+    control: Literal["speed", "force", "steps"] = Field(
         default="speed",
-        description="speed: constant closing speed; force: closing force raised in steps (Kim et al. 2013)",
+        description="speed: constant closing speed; force: closing force raised in steps (Kim et al. 2013); "
+        "steps: small steps, at rest after each (no temperature; counterface flat or sphere)",
     )
     interface: Literal["repulsive", "adhesive"] = Field(
         default="repulsive",
@@ -94,8 +97,15 @@ class ClosingSettings(Settings):
         default=2.6,
         ge=1,
         le=100,
-        description="thickness from the frozen bottom to the mean height",
+        description="least thickness from the lower face to the mean height, the frozen bottom included",
         json_schema_extra={"unit": "nm"},
+    )
+    base_over_contact: float = Field(
+        default=BASE_OVER_CONTACT,
+        ge=0,
+        le=10,
+        description="the same thickness in units of the largest contact length that counts, "
+        "sqrt(plasticity.max_area_fraction) wavelengths: a thinner base is felt, a scene may not ask for less",
     )
     frozen_nm: float = Field(
         default=0.5, gt=0, le=10, description="thickness of the frozen bottom", json_schema_extra={"unit": "nm"}
@@ -115,17 +125,17 @@ class ClosingSettings(Settings):
         json_schema_extra={"unit": "eV/A^3"},
     )
     approach_nm: float = Field(
-        default=0.3,
-        ge=0.3,
+        default=0.1,
+        gt=0,
         le=5,
-        description="clearance at the start; single atoms stand up to 0.25 nm above the surface",
+        description="clearance at the start above the highest atom; bonds exchanged on this way are the background",
         json_schema_extra={"unit": "nm"},
     )
     depth_over_amplitude: float = Field(
-        default=1.5,
+        default=1.7,
         gt=0,
         le=4,
-        description="travel below the top, in amplitudes (in radii of a spherical counterface); "
+        description="largest travel below the highest atom, in amplitudes (in radii of a spherical counterface); "
         "two bodies that yield share it",
     )
     unload_nm: float = Field(
@@ -181,7 +191,7 @@ class ClosingSettings(Settings):
 
 
 class AreaSettings(Settings):
-    """Contact area: discs of the atoms near the plane, projected on a grid, holes filled."""
+    """Contact area, fixed by bodies of known section before any hardness is looked at (docs/hardness.md)."""
 
     depth_A: float = Field(
         default=0.5,
@@ -191,7 +201,7 @@ class AreaSettings(Settings):
         json_schema_extra={"unit": "A"},
     )
     touch_A: float = Field(
-        default=3,
+        default=2.4,
         gt=0,
         le=5,
         description="distance of two atoms that defines zero gap for atomic counterfaces",
@@ -202,8 +212,19 @@ class AreaSettings(Settings):
         description="further depths for which the area is reported, to show what the definition does",
         json_schema_extra={"unit": "A"},
     )
-    disc_A: float = Field(
-        default=1.5, gt=0, le=4, description="radius of an atom's disc", json_schema_extra={"unit": "A"}
+    closing_A: float = Field(
+        default=4,
+        gt=0,
+        le=20,
+        description="the space between touching atoms is contact where a disc of this radius does not fit",
+        json_schema_extra={"unit": "A"},
+    )
+    rim_A: float = Field(
+        default=1.7,
+        ge=0,
+        le=4,
+        description="the rim of the contact lies this far outside the outermost touching atoms",
+        json_schema_extra={"unit": "A"},
     )
     grid_A: float = Field(default=0.5, ge=0.05, le=2, description="grid spacing", json_schema_extra={"unit": "A"})
     travel_A: float = Field(
@@ -220,14 +241,14 @@ class YieldSettings(Settings):
     """What counts as yield, fixed before any fit."""
 
     min_length_nm: float = Field(
-        default=1.75,
+        default=2.0,
         gt=0,
         le=20,
         description="contact length from which stress is judged",
         json_schema_extra={"unit": "nm"},
     )
     max_area_fraction: float = Field(
-        default=0.4,
+        default=0.5,
         gt=0,
         le=1,
         description="contact area over cell area up to which stress is judged",
@@ -257,6 +278,20 @@ class YieldSettings(Settings):
         le=2,
         description="largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic",
     )
+    stop_interval: float = Field(
+        default=0.04,
+        gt=0,
+        le=0.5,
+        description="a run ends once half the 68 % interval of its plateau is this share of it, with stop_points and "
+        "stop_area_fraction; else where the area leaves max_area_fraction",
+    )
+    stop_points: int = Field(default=12, ge=4, le=1000, description="averages beyond the onset before a run may end")
+    stop_area_fraction: float = Field(
+        default=0.25,
+        gt=0,
+        le=1,
+        description="contact area over cell area before a run may end: a larger asperity is to give a larger contact",
+    )
     max_drift_meV_atom_ps: float = Field(
         default=0.2,
         gt=0,
@@ -267,6 +302,14 @@ class YieldSettings(Settings):
     max_warming_K: float = Field(
         default=150, gt=0, le=2000, description="largest rise of temperature", json_schema_extra={"unit": "K"}
     )
+
+
+class SystematicSettings(Settings):
+    """What moves every run of a scene alike, as standard deviations relative to the hardness (docs/hardness.md)."""
+
+    rate: float = Field(default=0.05, ge=0, le=1, description="closing speed in use against rest")
+    base: float = Field(default=0.04, ge=0, le=1, description="base in use against a thicker one")
+    potential: float = Field(default=0.1, ge=0, le=1, description="one potential of silica against another")
 
 
 class FitSettings(Settings):
@@ -289,6 +332,7 @@ class FitSettings(Settings):
         description="share of runs that must give a defended point",
     )
     bootstrap: int = Field(default=2000, ge=100, le=100_000, description="bootstrap samples")
+    systematic: SystematicSettings = SystematicSettings()
 
 
 class HardnessSettings(Settings):

@@ -235,11 +235,18 @@ def _hardness(root: Path) -> None:
             ],
         )
     _write(root / "hardness/points.csv", points)
+    scatter = {"statistical_low_GPa": 6, "statistical_high_GPa": 8}
     fit = {
         "method": "literature",
         "gate": {"passed": False, "reasons": ["only 2 of 9 runs <gave> a hardness"]},
         "H_macro_GPa": {"median": 1.9, "low": 1.1, "high": 2.8},
-        "curve": [{"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9} for x in (2.0, 10.0)],
+        "curve": [
+            {"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9, **scatter} for x in (2.0, 10.0)
+        ],
+        "budget": {
+            "statistical": {"std": 1.0, "share": 0.2, "sources": {"seed": 0.8, "run": 0.6}},
+            "systematic": {"std": 2.0, "share": 0.8, "sources": {"area": 0.3, "energies": 1.9}},
+        },
         "cost": {"atom_steps": 2e9, "lammps_cpu_s": 1500, "python_cpu_s": 30, "python_cpu_share": 0.02},
     }
     write_json(root / "hardness/fit.json", fit, PROVENANCE)

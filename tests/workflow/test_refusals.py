@@ -92,3 +92,12 @@ def test_two_runs_of_one_scene(workflow_in):
     assert done.returncode != 0
     (line,) = errors(done)
     assert "another run of this scene" in line
+
+
+def test_a_base_that_would_be_felt(workflow_in):
+    scene = workflow_in.folder / "mine.yaml"
+    scene.write_text("hardness: {closing: {base_over_contact: 0.8}}")
+    done = workflow_in.run(str(scene))
+    assert done.returncode != 0
+    (line,) = errors(done)
+    assert "hardness.closing.base_over_contact = 0.8: a base thinner than 1 of the largest contact is felt" in line

@@ -55,6 +55,28 @@ rule compare_closings:
         "../scripts/compare_closings.py"
 
 
+rule hardness_area:
+    input:
+        f"{RESULTS}/accuracy/hardness_area.csv",
+
+
+rule measure_area:
+    input:
+        potential=POTENTIAL,
+        glass=f"{RESULTS}/hardness/glass/{SMALLEST.seed}.data",
+    output:
+        table=f"{RESULTS}/accuracy/hardness_area.csv",
+    log:
+        f"{RESULTS}/logs/measure_area.log",
+    params:
+        settings=HARDNESS,
+        work=f"{RESULTS}/work/area",
+    message:
+        "measure the contact area of bodies of known section"
+    script:
+        "../scripts/measure_area.py"
+
+
 rule measure_detection:
     input:
         curves=of_run("closing/{run}.csv"),

@@ -9,12 +9,13 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from atomistic.hardness.plateau import Rows, find_hardness, plastic_onset
+from atomistic.hardness.plateau import Rows, find_hardness, may_stop, plastic_onset
 from atomistic.settings import HardnessSettings
 
 TRUTH_GPA = 10.0
 WITHIN = 0.15  # of the true stress counts as found
 TRIALS = 300
+NOMINAL, COVERAGE_BOUND = 0.68, 0.1  # of the interval of a run that stopped on the interval's own width
 
 
 def noise_of(curve: Rows, settings: HardnessSettings, cell_area_nm2: float) -> tuple[float, float] | None:
@@ -81,6 +82,18 @@ def detection_points(
                     "background": background,
                 }
             )
+        held, used = draw.coverage()
+        rows.append(
+            {
+                **rows[-1],
+                "case": "plateau_stopped_by_its_rule",
+                "error": abs(held - NOMINAL),
+                "error_metric": f"share of intervals that hold the truth is {held:.2f}, after {used:.0f} averages",
+                "reference": f"{NOMINAL:.0%} of intervals hold it",
+                "bound": COVERAGE_BOUND,
+                "passed": abs(held - NOMINAL) <= COVERAGE_BOUND,
+            }
+        )
     return rows
 
 
@@ -95,6 +108,11 @@ def _plateau(length: np.ndarray) -> np.ndarray:
     """Elastic to 2.6 nm, then a slope of a fifteenth."""
     slope = 1.5 * TRUTH_GPA / 2.6
     return TRUTH_GPA + np.where(length < 2.6, slope, slope / 15) * (length - 2.6)
+
+
+def _level(length: np.ndarray) -> np.ndarray:
+    """Elastic to 2.6 nm, then level."""
+    return TRUTH_GPA * np.minimum(length / 2.6, 1)
 
 
 def _gave_yield(status: str, hardness: float) -> bool:
@@ -133,9 +151,28 @@ class _Draw:
         """Share of runs for which `judge` holds; `bursts`: bond exchanges per snapshot beyond 2.6 nm of length."""
         return sum(judge(*self._run(truth, bursts)) for _ in range(TRIALS)) / TRIALS
 
+    def coverage(self) -> tuple[float, float]:
+        """Of runs on a level plateau that stop by their rule: share whose interval holds the truth, averages used."""
+        held, used = 0, []
+        for _ in range(TRIALS):
+            curve, witness, cell = self._made(_level, 40.0)
+            per = round(0.1 / 0.025)  # averages in a segment
+            rules = (cell, self.settings.closing, self.settings.plasticity)
+            ends = range(per, len(curve), per)
+            end = next((k for k in ends if may_stop(curve[:k], witness[: k // per + 1], *rules)), len(curve))
+            hardness = find_hardness(curve[:end], witness[: end // per + 1], *rules)
+            held += hardness.hardness_lo <= TRUTH_GPA <= hardness.hardness_hi
+            used.append(hardness.plateau_points)
+        return held / TRIALS, float(np.mean(used))
+
     def _run(self, truth: Stress, bursts: float) -> tuple[str, float]:
+        hardness = find_hardness(*self._made(truth, bursts), self.settings.closing, self.settings.plasticity)
+        return hardness.status, hardness.hardness_GPa
+
+    def _made(self, truth: Stress, bursts: float) -> tuple[Rows, Rows, float]:
+        """Curve, witness and area of the cell of a made-up run."""
         onset = float(np.interp(2.6, self.length, self.travel))
-        snapshots = np.arange(0.1, self.travel[-1], 0.1)
+        snapshots = np.arange(0.0, self.travel[-1], 0.1)
         witness: list[Mapping[str, float]] = []
         for k, travel in enumerate(snapshots.tolist()):
             plastic = bursts > 0 and travel >= onset
@@ -156,5 +193,4 @@ class _Draw:
             for k in range(len(stress))
         ]
         cell = 4.2**2 / self.settings.plasticity.max_area_fraction
-        hardness = find_hardness(curve, witness, cell, self.settings.closing, self.settings.plasticity)
-        return hardness.status, hardness.hardness_GPa
+        return curve, witness, cell

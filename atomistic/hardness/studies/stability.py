@@ -160,7 +160,7 @@ def _closing(
     material: Material, glass: Atoms, potential: Potential, work: Path, changes: Mapping[str, object]
 ) -> tuple[bool, str]:
     """A closing of some hundred atoms: LAMMPS stops if it loses one, the curve tells the energy balance."""
-    quick = {"base_nm": 1.4, "counter_base_nm": 1.4, "speed_m_s": 200, "anneal_ps": 0.5}
+    quick = {"base_nm": 1.4, "base_over_contact": 0, "counter_base_nm": 1.4, "speed_m_s": 200, "anneal_ps": 0.5}
     settings = HardnessSettings.model_validate(
         {
             "seeds": [1],

@@ -37,7 +37,7 @@ VARIATIONS = {
         Variation("timestep_half", "timestep_fs", 0.5),
         Variation("wall_stiffness_fourfold", "wall_stiffness_eV_A3", 4),
         Variation("temperature_tenth", "temperature_K", 0.1),
-        Variation("base_larger", "base_nm", 1.5),
+        Variation("base_larger", "base_over_contact", 1.5),
     )
 }
 

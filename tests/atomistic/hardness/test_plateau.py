@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from atomistic.hardness.plateau import find_hardness, plastic_onset, point
+from atomistic.hardness.plateau import find_hardness, interval_of_mean, may_stop, plastic_onset, point
 from atomistic.settings import ClosingSettings, HardnessSettings, YieldSettings
 
-CLOSING, RULES = ClosingSettings(), YieldSettings()
+CLOSING, RULES = ClosingSettings(approach_nm=0.3), YieldSettings()
 TRAVEL = np.arange(0.0125, 1.2, 0.025)
 CELL_AREA = 36.0
 
@@ -53,7 +53,7 @@ def test_plateau_beyond_a_witnessed_onset():
     assert found.status == "yield"
     assert found.hardness_GPa == pytest.approx(10.0)
     assert found.hardness_lo <= 10.0 <= found.hardness_hi
-    assert found.length_max_nm**2 <= 0.4 * CELL_AREA
+    assert found.length_max_nm**2 <= RULES.max_area_fraction * CELL_AREA
     assert found.contact_length_nm > found.onset_length_nm
 
 
@@ -125,3 +125,42 @@ def test_a_point_names_what_was_pressed_and_what_it_cost():
     assert "unloaded_exchanged_bonds" not in row
     again = point(curve(plateau), witness(), {**facts, "unloaded_exchanged_bonds": 61}, settings)
     assert again["unloaded_exchanged_bonds"] == 61
+
+
+@pytest.mark.parametrize(("correlation", "low", "high"), [(0.0, 0.63, 0.8), (0.6, 0.58, 0.75)])
+def test_interval_holds_the_mean_of_correlated_noise_two_times_in_three(correlation, low, high):
+    """Nominal 68 %; bounds: two standard errors of 600 trials about what 14 averages can tell."""
+    rng = np.random.default_rng(4)
+    held = 0
+    for _ in range(600):
+        values = np.empty(14)
+        values[0] = rng.normal()
+        for k in range(1, 14):
+            values[k] = correlation * values[k - 1] + np.sqrt(1 - correlation**2) * rng.normal()
+        lo, hi = interval_of_mean(10 + values)
+        held += lo <= 10 <= hi
+    assert low < held / 600 < high
+
+
+def test_a_run_stops_on_a_narrow_interval_or_where_it_leaves_the_window():
+    rows, seen = curve(plateau), witness(onset=0.8)
+    cell = 9.0 / RULES.stop_area_fraction  # the contact of 3.0 nm takes up as much as is asked for
+
+    def stops(count, cell_area=cell, **rules):
+        return may_stop(rows[:count], seen, cell_area, CLOSING, RULES.model_copy(update=rules))
+
+    beyond = int(np.argmax(np.array([row["displacement_nm"] for row in rows]) >= 0.8))
+    assert not stops(beyond + 5)  # the contact is still small
+    assert stops(len(rows))
+    assert not stops(len(rows), stop_points=len(rows))
+    assert stops(len(rows), cell_area=10.0)  # the last averages lie beyond half of the cell
+    rising = curve(lambda length: 4 * length)
+    assert not may_stop(rising, seen, cell, CLOSING, RULES)
+
+
+def test_a_run_that_ends_before_its_rule_is_met_says_so():
+    rng = np.random.default_rng(5)
+    rough = curve(lambda length: plateau(length) * (1 + 0.3 * rng.normal()))
+    found = find(rough, witness())
+    assert found.status.startswith("rejected: stopped before its rule, 13 averages to ")
+    assert found.status.endswith("of the cell; raise closing.depth_over_amplitude")

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from atomistic.hardness.size_effect import fit_size_effect, literature_samples, scale_ratios
+from atomistic.hardness.size_effect import fit_size_effect, literature_samples, scale_ratios, variance_budget
 from atomistic.settings import FitSettings, HardnessSettings
 
 GLASS = [{"gate": {"passed": True, "reasons": []}}]
@@ -32,8 +32,11 @@ def series(h_macro, h_prime, lengths=(2, 4, 8, 16), scales=(1.0, 0.5)):
 
 
 def test_free_fit_finds_both_parameters_of_a_wide_series():
-    settings = HardnessSettings.model_validate({"fit": {"h_macro": "free"}, "energy_scales": [1.0]})
-    result = fit_size_effect(series(2.0, 8.4, scales=(1.0,)) * 2, GLASS, settings)
+    exact = {"rate": 0, "base": 0, "potential": 0}
+    settings = HardnessSettings.model_validate(
+        {"fit": {"h_macro": "free", "systematic": exact}, "energy_scales": [1.0]}
+    )
+    result = fit_size_effect(series(2.0, 8.4, scales=(1.0,)) * 2, GLASS, settings, 0.0)
     free = result["free_fit"]["scale_1"]
     assert free["H_macro_GPa"]["median"] == pytest.approx(2.0, abs=0.2)
     assert free["H_prime_GPa_nm0.5"]["median"] == pytest.approx(8.4, abs=0.4)
@@ -51,7 +54,7 @@ def test_a_narrow_series_is_not_identifiable_and_says_so():
         for scale in (1.0, 0.5)
         for k in range(4)
     ]
-    result = fit_size_effect(points, GLASS, settings)
+    result = fit_size_effect(points, GLASS, settings, 0.05)
     assert not result["gate"]["passed"]
     assert "not identifiable" in result["gate"]["reasons"][-1]
 
@@ -60,35 +63,70 @@ def test_literature_h_macro_gives_the_hand_calculation():
     """10.6 and 5.3 GPa at 3 nm with H_macro 1.95 GPa: H' = 15.0 and 5.8 GPa nm^0.5."""
     for hardness, expected in ((10.6, 15.0), (5.3, 5.8)):
         fit = FitSettings(h_macro_GPa=(1.9499, 1.9501))
-        h_macro, h_prime = literature_samples([point(hardness, 3.0, spread=0.0)], fit)
+        h_macro, h_prime = literature_samples([point(hardness, 3.0, spread=0.0)], fit, {})
         assert np.ptp(h_macro) < 1e-3
         assert np.mean(h_prime) == pytest.approx(expected, abs=0.05)
 
 
 def test_both_energy_scales_weigh_the_same():
     points = [point(10, 4, 1.0)] * 9 + [point(5, 4, 0.5)]
-    _, h_prime = literature_samples(points, FitSettings(h_macro_GPa=(0.7, 0.7001), bootstrap=4000))
+    _, h_prime = literature_samples(points, FitSettings(h_macro_GPa=(0.7, 0.7001), bootstrap=4000), {})
     assert np.mean(h_prime > 12) == pytest.approx(0.5, abs=0.03)
 
 
 def test_gate_counts_defended_points_and_names_the_reason():
     refused = [point(0, 0, status="no_yield", asperity=f"n{k}") for k in range(8)]
-    result = fit_size_effect(series(2, 8)[:3] + refused, GLASS, HardnessSettings())
+    result = fit_size_effect(series(2, 8)[:3] + refused, GLASS, HardnessSettings(), 0.05)
     assert not result["gate"]["passed"]
     assert "3 of 11 runs" in result["gate"]["reasons"][0]
     assert any("energy scale 0.5" in reason for reason in result["gate"]["reasons"])
     assert len(result["points_rejected"]) == 8
-    nothing = fit_size_effect(refused, GLASS, HardnessSettings())
+    nothing = fit_size_effect(refused, GLASS, HardnessSettings(), 0.05)
     assert nothing["inputs"] == {}
     assert not nothing["gate"]["passed"]
 
 
 def test_a_failed_glass_fails_the_gate():
     bad = [{"gate": {"passed": False, "reasons": ["SiO2 glass: density 3 outside"]}}]
-    assert not fit_size_effect(series(2, 8), bad, HardnessSettings())["gate"]["passed"]
+    assert not fit_size_effect(series(2, 8), bad, HardnessSettings(), 0.05)["gate"]["passed"]
 
 
 def test_ratio_of_the_energy_scales():
     [row] = scale_ratios([point(10, 3, 1.0), point(5, 3, 0.5)])
     assert row["median"] == pytest.approx(0.5, abs=0.01)
     assert row["low"] < 0.5 < row["high"]
+
+
+def test_budget_names_the_one_source_that_varies():
+    """Points made with one source of variance: the budget finds it, with the size that made it."""
+    fit = FitSettings(h_macro_GPa=(1.9999, 2.0001))
+    alike = [point(10, 4, asperity=name, spread=0.0) for name in ("a", "b") for _ in range(2)]
+    quiet = variance_budget(alike, fit, {"area": 0.0})
+    assert quiet["std"] == pytest.approx(0, abs=1e-3)
+    shared = variance_budget(alike, fit, {"area": 0.05})
+    assert shared["systematic"]["sources"]["area"] == pytest.approx(0.05 * 10 * 2)
+    assert shared["systematic"]["share"] == pytest.approx(1)
+    within = variance_budget([point(10, 4, spread=0.5)] * 3, fit, {})
+    assert within["statistical"]["sources"]["run"] == pytest.approx(0.5 * 2)
+    seeds = variance_budget([point(9, 4, spread=0.0), point(11, 4, spread=0.0)], fit, {})
+    assert seeds["statistical"]["sources"]["seed"] == pytest.approx(2)
+    scales = variance_budget([point(10, 4, 1.0, spread=0.0), point(6, 4, 0.5, spread=0.0)], fit, {})
+    assert scales["systematic"]["sources"]["energies"] == pytest.approx(4)
+    sizes = [point(10, 4, asperity="a", spread=0.0), point(10, 9, asperity="b", spread=0.0)]
+    assert variance_budget(sizes, fit, {})["systematic"]["sources"]["size"] == pytest.approx(4)
+
+
+def test_budget_is_the_variance_of_what_is_handed_on():
+    """Its sum against the variance of the samples, whose factors are drawn apart from the runs."""
+    rng = np.random.default_rng(3)
+    points = [
+        point(scale * 10 * (1 + 0.05 * rng.normal()), length, scale, asperity=f"a{length}", spread=0.3)
+        for scale in (1.0, 0.5)
+        for length in (2.5, 3.5, 4.5)
+        for _ in range(2)
+    ]
+    fit, systematic = FitSettings(bootstrap=50_000), {"area": 0.03, "rate": 0.06}
+    _, h_prime = literature_samples(points, fit, systematic)
+    budget = variance_budget(points, fit, systematic)
+    assert budget["std"] == pytest.approx(np.std(h_prime), rel=0.02)
+    assert budget["statistical"]["share"] + budget["systematic"]["share"] == pytest.approx(1)

@@ -35,7 +35,8 @@ def describe(results: Results) -> Section | None:
     )
     section.add(
         hardness_size(results),
-        "Hardness against contact length."
+        "Hardness against contact length. Green: in use, with its 68 % interval; dark green: the part of it that is "
+        "scatter between runs."
         + (
             " Grey: the range that the paper's Table 1 spans; crosses: the two values its text gives."
             if results.beside_paper
@@ -141,6 +142,8 @@ def hardness_size(results: Results) -> str | None:
                 for key in ("contact_length_nm", "low_GPa", "high_GPa", "median_GPa")
             )
             axis.fill_between(length, low, high, color=GREEN, alpha=0.18, linewidth=0)
+            inner = (column(fit["curve"], f"statistical_{end}_GPa") for end in ("low", "high"))
+            axis.fill_between(length, *inner, color=GREEN, alpha=0.35, linewidth=0, label="scatter between runs")
             axis.plot(length, middle, color=GREEN, label="H_macro + H′/√L in use, 68 %")
         if results.beside_paper:
             _draw_paper(axis)
@@ -212,6 +215,24 @@ def _range(row: Row, name: str) -> str:
     return f"{show(value)} [{show(low)}, {show(high)}]" if np.isfinite(low) else show(value)
 
 
+SOURCES = {
+    "seed": "glass and place of the cut", "run": "within a run", "energies": "full or halved energies",
+    "size": "size of the asperity", "area": "contact area", "rate": "closing speed", "base": "thickness of the base",
+    "potential": "potential", "h_macro": "H_macro",
+}  # fmt: skip
+
+
+def _budget_note(budget: dict[str, Any], kind: str) -> str:
+    """The standard deviation of H′ of one kind, and its sources, the largest first."""
+    part = budget[kind]
+    largest_first = sorted(part["sources"].items(), key=lambda item: -item[1])
+    sources = ", ".join(f"{SOURCES.get(name, name)} {show(value)}" for name, value in largest_first)
+    return (
+        f"Interval of H′, {kind} part: standard deviation {show(part['std'])} GPa nm½, "
+        f"{show(100 * part['share'])} % of the variance ({sources})."
+    )
+
+
 def _fit_notes(fit: dict[str, Any]) -> list[str]:
     """What the MD points say about both constants, and how the halved energies compare."""
     notes = []
@@ -230,6 +251,8 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
         ]
         word = "" if free.get("identifiable") else ": the points alone do not identify both"
         notes.append(f"Free fit of both constants to all points: {', '.join(pairs)}{word}.")
+    if budget := fit.get("budget"):
+        notes += [_budget_note(budget, kind) for kind in ("statistical", "systematic")]
     for ratio in fit.get("halved_over_full", []):
         notes.append(
             f"Halved over full energies, asperity {ratio['asperity']}: {show(ratio['median'])} "
