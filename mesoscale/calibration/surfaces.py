@@ -274,7 +274,7 @@ def _linearised(
         projection = columns @ slopes
         pull = projection.T @ weights @ (values - columns @ physical) + stiffness @ (mean - f)
         step = np.linalg.solve(projection.T @ weights @ projection + stiffness, pull)
-        f = f + step * min(1.0, 1.0 / np.abs(step / np.sqrt(np.diag(covariance))).max())
+        f = f + step / max(1.0, np.abs(step / np.sqrt(np.diag(covariance))).max())
     physical, slopes = _separations(names, f)
     projection = columns @ slopes
     values = values - columns @ physical + projection @ f
