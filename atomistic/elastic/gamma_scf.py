@@ -229,8 +229,8 @@ class CachedGrid(MultiGridNumInt2):
         strained = np.zeros((3, 3))  # dE/dε
         for atom in range(cell.natm):
             a, b = slices[atom, 2:]
-            gradient[atom] += 2 * np.einsum("xuv,uv->x", kinetic[0][:, a:b].real, dm[a:b])
-            gradient[atom] -= 2 * np.einsum("xuv,uv->x", overlap[0][:, a:b].real, energy_weighted[a:b])
+            gradient[atom] += 2 * np.einsum("xuv,uv->x", np.real(kinetic[0][:, a:b]), dm[a:b])
+            gradient[atom] -= 2 * np.einsum("xuv,uv->x", np.real(overlap[0][:, a:b]), energy_weighted[a:b])
             pulay = pulay_terms(
                 self.atoms[atom], self.lattice, tuple(self.mesh), factor[a:b].astype(self.precision) @ waves
             )
@@ -255,10 +255,10 @@ class CachedGrid(MultiGridNumInt2):
         slopes : derivatives by the position of µ at Γ and a small step along each axis of k, (3, orbitals, orbitals)
         """
         centres = np.repeat(self.cell.atom_coords(), np.diff(self.cell.aoslice_by_atom()[:, 2:]).ravel(), axis=0)
-        at_gamma = slopes[0].real * dm
+        at_gamma = np.real(slopes[0]) * dm
         total = (at_gamma.sum(axis=1) - at_gamma.sum(axis=2)) @ centres
         for axis, matrix in enumerate(slopes[1:]):
-            total[:, axis] += np.einsum("xuv,uv->x", matrix.imag, dm) / STEP_OF_K
+            total[:, axis] += np.einsum("xuv,uv->x", np.imag(matrix), dm) / STEP_OF_K
         return -total  # towards µ is away from ν
 
     def _strain_slope_of_fields(self, xc_code: str, rho: np.ndarray, spectrum: np.ndarray, twice: np.ndarray):

@@ -83,7 +83,7 @@ def variance_shares(
         weights_E / weights_E.sum(),
     ]
     names = ("structure", "functional", "poisson_ratio", "counter_body")
-    axes = dict(zip(names, zip(values, weights, strict=True), strict=True))
+    axes: dict[str, tuple[np.ndarray, np.ndarray]] = dict(zip(names, zip(values, weights, strict=True), strict=True))
     return grid_shares(axes, lambda B, f, n, E: plane_strain_modulus(B + f, n, E, other_nu))
 
 

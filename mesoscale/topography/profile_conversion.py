@@ -24,6 +24,7 @@ TAIL_DECADES = 1.5  # C is continued this far beyond the data, because short wav
 BIAS = 0.25  # error of ln C that no averaging removes: its mean about the knee, on slopes 2.3 to 3.6 (60 lines each)
 QUADRATURE = 160
 ROUNDS = 60
+STEP_SIZES = 0.5 ** np.arange(14)
 HANN_COVER = 18 / 35  # independent modes per wave number under a Hann window, (sum w^2)^2 / (n sum w^4)
 
 
@@ -134,17 +135,16 @@ def _solve(nodes: np.ndarray, k: np.ndarray, c1: np.ndarray, modes: np.ndarray) 
         gradient = slope.T @ (modes * (c1 / mean - 1)) - prior @ y + pull
         information = slope.T @ (modes[:, None] * slope) + prior
         move = np.linalg.solve(information + 1e-9 * np.eye(len(y)), gradient)
-        size, before = 1.0, cost(y, mean)
-        while size > 1e-4:
+        before = cost(y, mean)
+        for size in STEP_SIZES:
             trial = y + size * move
             trial_mean, trial_slope = model(trial)
             if cost(trial, trial_mean) <= before:
+                y, mean, slope = trial, trial_mean, trial_slope
                 break
-            size /= 2
-        done = size <= 1e-4 or float(np.abs(size * move).max()) < 1e-6
-        if size > 1e-4:
-            y, mean, slope = trial, trial_mean, trial_slope
-        if done:
+        else:
+            break  # no step lowers the cost
+        if float(np.abs(size * move).max()) < 1e-6:
             break
     information = slope.T @ (modes[:, None] * slope) + prior
     return y, np.linalg.inv(information + 1e-9 * np.eye(len(y)))

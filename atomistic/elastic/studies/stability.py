@@ -165,8 +165,8 @@ def turned_crystal(cell: Atoms, criteria: NetworkGlass) -> Verdict:
 
 def saddle(cell: Atoms, criteria: NetworkGlass) -> Verdict:
     """Bonds stretched beyond their inflection push ions away from where they are: a saddle, and refused."""
-    atoms = _under_tersoff(strained(cell, 0.2), criteria)
-    return refused(lambda: elastic_response(atoms, atoms.calc, bond_hessian(cell), 2e-3, 0.01, 3, 0.01), "saddle")
+    atoms, calculator = strained(cell, 0.2), tersoff_calculator(criteria.tersoff)
+    return refused(lambda: elastic_response(atoms, calculator, bond_hessian(cell), 2e-3, 0.01, 3, 0.01), "saddle")
 
 
 def unstable_body() -> Verdict:
@@ -248,7 +248,7 @@ def stability_checks(cell: Atoms, criteria: NetworkGlass) -> list[Check]:
             "too few strain states",
             "refused; says how many unknowns",
             refused,
-            (partial(fit_stiffness, strain_states(0.01)[:8], np.zeros((8, 6))), "of 7 unknowns"),
+            (partial(fit_stiffness, strain_states(0.01)[:8], list(np.zeros((8, 6)))), "of 7 unknowns"),
         ),
         ("unstable structure", "refused; strain named", unstable_body, ()),
         ("saddle instead of a minimum", "refused", saddle, (cell, criteria)),
