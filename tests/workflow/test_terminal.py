@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from workflow.scene import load_scene
-from workflow.terminal.cost import Costs, machine_MB, relative_speed, wall_seconds
+from workflow.terminal.cost import Costs, relative_speed, wall_seconds
+from workflow.terminal.memory import machine_MB
 from workflow.terminal.progress import Terminal, duration
 
 

@@ -2,7 +2,6 @@ import math
 
 from mesoscale.errors import InputError as MesoscaleInputError
 from mesoscale.inputs.definitions import BY_NAME
-from mesoscale.inputs.table import check_literature
 
 STAGE_RESULT = {
     "hardness": f"{RESULTS}/hardness/fit.json",
@@ -20,6 +19,8 @@ for name, row in SCENE.inputs.rows().items():
     if BY_NAME[name].setting in SCENE.contact.model_fields_set:
         refuse(f"{SCENE_GIVEN}: contact.{BY_NAME[name].setting} and inputs.{name} give the same number; leave one out")
 if workflow.is_main_process:
+    from mesoscale.inputs.table import check_literature  # takes half a second: not in every job
+
     found = {
         name: row.model_copy(update={"file": SAMPLES.get(f"samples_{name}")})
         for name, row in SCENE.inputs.rows().items()

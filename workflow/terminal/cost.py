@@ -1,4 +1,4 @@
-"""What the jobs of a scene cost before they run: seconds of one core by rule, and memory of a contact.
+"""What the jobs of a scene cost before they run: seconds of one core by rule.
 
 The figures were measured on one idle core of the development machine; `relative_speed` sets another machine against it.
 """
@@ -8,12 +8,10 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
-import psutil
 from scipy import fft
 
 from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, plan_rows
 from atomistic.materials import Material
-from mesoscale.settings import ContactSettings
 from workflow.scene import Scene
 
 START_S = 2.0  # Snakemake's start of a job, and the packages
@@ -27,8 +25,6 @@ SCF_S = 9.0  # one volume of 28 atoms at 100 hartree
 RELAXATION_STEP_S = 8.0  # the same, tightly converged and with forces
 STRESS_STEP_S = 15.0  # the same with the stress; 80 hartree on a loaded machine, not yet on an idle one
 QUENCH_S = 24.0  # quenches until a network of 28 atoms passes its gates
-PROCESS_MB = 600.0  # a job is two processes with their packages
-SITE_MB = {"asperity": 62e-6, "coupled": 140e-6}  # 4096^2 sites take 1.1 GB, 1024^2 coupled ones 323 MB
 TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
 
 
@@ -149,16 +145,6 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "observe_cycles": Costs.observe_cycles,
     "sample_posterior": Costs.sample_posterior,
 }
-
-
-def contact_MB(contact: ContactSettings) -> int:
-    """Memory of a process that closes and opens a contact, in MB."""
-    return round(PROCESS_MB + SITE_MB[contact.mechanics] * contact.pixels**2)
-
-
-def machine_MB() -> int:
-    """Memory of this machine, in MB."""
-    return psutil.virtual_memory().total // 10**6
 
 
 def wall_seconds(job_seconds: Iterable[float], cores: int) -> float:
