@@ -104,9 +104,8 @@ def _cycle(values: Sequence[float], config: Config) -> Cycle:
 def _contact_cycle(values: Sequence[float], config: Config) -> list[list[float]]:
     cycle = _cycle(values, config)
     forces = force_levels_nN(_settings(ContactSettings, config, "contact").max_force_nN)
-    net = cycle.opening.repulsive_nN + cycle.opening.attractive_nN
     return [
-        [float(cycle.first_contact_nm), float(cycle.last_contact_nm), float(-net.min())],
+        [float(cycle.first_contact_nm), float(cycle.last_contact_nm), float(-cycle.opening.net_nN.min())],
         separations_at(cycle.closing, forces).tolist(),
         separations_at(cycle.opening, forces).tolist(),
     ]

@@ -138,8 +138,12 @@ def _refuse_damaged(paths: list[str]) -> None:
 def failures(logs: Path, since: float) -> list[str]:
     """The one-line errors of the jobs that failed after `since` (seconds of the system clock)."""
     recent = sorted(path for path in logs.glob("**/*.log") if path.stat().st_mtime >= since)
-    last_lines = (path.read_text(encoding="utf-8", errors="replace").rstrip().rpartition("\n")[2] for path in recent)
-    return [line for line in last_lines if line.startswith("ERROR ")]
+    return [line for line in map(last_line, recent) if line.startswith("ERROR ")]
+
+
+def last_line(log: Path) -> str:
+    """Where a job that failed says why."""
+    return log.read_text(encoding="utf-8", errors="replace").rstrip().rpartition("\n")[2]
 
 
 def _one_line(error: Exception, log_path: Path) -> str:

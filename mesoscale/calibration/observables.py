@@ -78,8 +78,7 @@ def observe(cycle: Cycle, law: LawSettings, max_force_nN: float) -> dict[str, fl
     for branch in (cycle.closing, cycle.opening):
         separations = separations_at(branch, forces)
         values += [separations[0], *(separations[:-1] - separations[1:])]
-    net = cycle.opening.repulsive_nN + cycle.opening.attractive_nN
-    deepest = float(-net.min())
+    deepest = float(-cycle.opening.net_nN.min())
     values += [cycle.first_contact_nm, deepest if deepest > 0 else np.nan]
     outcome = fit_cycle(cycle, law)
     values += [*outcome.closing.parameters, *outcome.opening.parameters]
@@ -96,7 +95,7 @@ def separations_at(branch: Branch, forces_nN: Array) -> Array:
     order = np.argsort(branch.separation_nm, kind="stable")[::-1]
     separation = branch.separation_nm[order]
     # a force-controlled instrument passes over a drop of the force
-    net = np.maximum.accumulate((branch.repulsive_nN + branch.attractive_nN)[order])
+    net = np.maximum.accumulate(branch.net_nN[order])
     positive = net > 0
     if positive.sum() < 2:
         return np.full(len(forces_nN), np.nan)

@@ -35,6 +35,11 @@ class Branch:
     asperities: np.ndarray
     sweeps: np.ndarray
 
+    @property
+    def net_nN(self) -> np.ndarray:
+        """Repulsion and attraction together, nN; negative where the contact pulls."""
+        return self.repulsive_nN + self.attractive_nN
+
 
 BRANCH_COLUMNS = {
     "separation_nm": ("nm", "mean separation"),

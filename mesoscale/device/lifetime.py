@@ -60,7 +60,7 @@ def cycle_row(
         "last_contact_nm": cycle.last_contact_nm,
         "contact_area_nm2": float(cycle.closing.contact_area_nm2[-1]),
         "dissipated_nN_nm": dissipated_energy(cycle)[0],
-        "pull_off_nN": -float((cycle.opening.repulsive_nN + cycle.opening.attractive_nN).min()),
+        "pull_off_nN": -float(cycle.opening.net_nN.min()),
         **{f"opening_{name}": _number(getattr(fits.opening, name)) for name in PARAMETERS},
         "opening_status": fits.opening.status,
         "release_V": release,

@@ -6,19 +6,6 @@ from pydantic import Field, model_validator
 
 from mesoscale.settings.base import Settings
 
-KINDS = (
-    "closing_curves",
-    "opening_curves",
-    "contact_begin",
-    "pull_off",
-    "hardness",
-    "modulus",
-    "release",
-    "pull_in",
-    "sticking",
-)
-"""Kinds of measurement; docs/calibration.md has the columns of each."""
-
 
 class MeasurementTable(Settings):
     """One table of measurements."""

@@ -10,6 +10,7 @@ from typing import Any
 
 from snakemake.exceptions import WorkflowError
 
+from workflow.job import last_line
 from workflow.terminal.cost import Costs, relative_speed, wall_seconds
 
 
@@ -52,12 +53,13 @@ class Terminal(logging.Handler):
     def _plan(self) -> None:
         jobs = self._waiting()
         self._counts = Counter(rule for rule, _ in jobs)
-        unknown = sorted({rule for rule, wildcards in jobs if self._costs.seconds(rule, wildcards) is None})
-        seconds = [(rule, (self._costs.seconds(rule, wildcards) or 0.0) / self._speed) for rule, wildcards in jobs]
-        for rule, cost in seconds:
+        costs = [(rule, self._costs.seconds(rule, wildcards)) for rule, wildcards in jobs]
+        unknown = sorted({rule for rule, cost in costs if cost is None})
+        seconds = [(cost or 0.0) / self._speed for _, cost in costs]
+        for (rule, _), cost in zip(jobs, seconds, strict=True):
             self._seconds_left[rule] += cost
         self._jobs = len(jobs)
-        wall = duration(wall_seconds([cost for _, cost in seconds], self._cores)) if jobs else "no time"
+        wall = duration(wall_seconds(seconds, self._cores)) if jobs else "no time"
         besides = f", and {', '.join(unknown)}, whose time nobody has measured" if unknown else ""
         if self._workflow.dryrun:
             rows = [
@@ -98,8 +100,7 @@ class Terminal(logging.Handler):
 def _say_if_silent(about: Mapping[str, Any]) -> None:
     """A job that says nothing before it ends was ended by the system."""
     log = Path(next(iter(about["log"]), ""))
-    last = log.read_text(encoding="utf-8", errors="replace").rstrip().rpartition("\n")[2] if log.is_file() else ""
-    if not last.startswith("ERROR "):
+    if not (log.is_file() and last_line(log).startswith("ERROR ")):
         _say(
             f"ERROR {about['rule_name']}: ended by the system without a word, probably out of memory: run again with "
             "fewer --cores, or lower contact.pixels"

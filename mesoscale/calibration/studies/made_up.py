@@ -65,7 +65,7 @@ def made_up(truth: Mapping[str, float], contact: ContactSettings, curves: int, s
                         "separation_error_nm": SEPARATION_ERROR_NM,
                     }
                 )
-        deepest = -(cycle.opening.repulsive_nN + cycle.opening.attractive_nN).min()
+        deepest = -cycle.opening.net_nN.min()
         measured = deepest * (1 + PULL_OFF_ERROR * rng.standard_normal())
         pull_off.append(
             {"specimen": f"film {k + 1}", "pull_off_nN": measured, "pull_off_error_nN": PULL_OFF_ERROR * measured}

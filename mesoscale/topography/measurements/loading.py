@@ -245,7 +245,7 @@ def _scan(
         raise InputError(f"{path}: points are not on a regular grid; give a scan on a grid")
     try:
         topography = topography.to_unit("nm")
-    except Exception:
+    except Exception:  # the library raises what its table of units happens to: one line for the user either way
         raise InputError(f"{path}: unit {unit!r} is not a length; save heights and size in nm, um or m") from None
     heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
     if min(heights.shape) < MIN_SIDE:

@@ -51,7 +51,7 @@ QUANTITIES = (
 
 def pull_off(opening: Branch) -> float:
     """Largest net attraction on opening, nN; 0 where the surfaces repel each other throughout."""
-    return max(-float((opening.repulsive_nN + opening.attractive_nN).min()), 0.0)
+    return max(-float(opening.net_nN.min()), 0.0)
 
 
 def opening_stiffness(opening: Branch) -> float:
