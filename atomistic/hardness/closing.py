@@ -2,6 +2,7 @@
 
 import shutil
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,7 @@ from atomistic.hardness.pressing import (
     press_bodies,
     script_of,
 )
-from atomistic.hardness.readout import Areas, Geometry, Rows, load_curve, load_relaxed, slice_rows, witness_rows
+from atomistic.hardness.readout import Geometry, Readout, Rows, slice_rows, witness_rows
 from atomistic.hardness.runs import ClosingRun
 from atomistic.lammps import Atoms, Progress, Workspace, run_lammps
 from atomistic.materials import Material
@@ -82,17 +83,22 @@ def run_closing(
             prepare_body(run, counter, potential, settings, aside, (*place, 6), amplitude, thickness, progress)
         )
     workspace = Workspace(work / "closing", identity, script_of(settings))
-    areas: Areas = {}
+    kinds = [glass.elements.index(ion) + 1 for ion in cations(material, potential)]
+
+    @cache
+    def readout(geometry: Geometry) -> Readout:
+        cutoff = material.part("oxide_glass").cutoff_A
+        return Readout(workspace, plan.segment_steps, settings.area, geometry, kinds, cutoff)
 
     def read(geometry: Geometry, reached: Plan) -> Closing:
         relaxed = range(reached.segments + reached.back + 1)
         if missing := [n for n in relaxed if not (workspace / f"relaxed.{n}").exists()]:
             run_lammps("relax.in", workspace, {"pairs": "pairs", "segment": missing})
-        return _read(workspace, reached, settings, material, potential, glass.elements, geometry, areas)
+        return _read(readout(geometry), reached, 10 * closing.frozen_nm, geometry)
 
     def complete(geometry: Geometry, segments: int) -> bool:
-        cell_nm2, so_far = (geometry.wavelength_A / 10) ** 2, range(1, segments + 1)
-        curve = load_curve(workspace, so_far, plan.segment_steps, settings.area, geometry, areas)
+        cell_nm2 = (geometry.wavelength_A / 10) ** 2
+        curve = readout(geometry).curve(range(1, segments + 1))
         if curve[-1]["contact_area_nm2"] < settings.plasticity.stop_area_fraction * cell_nm2:
             return False
         measured = read(geometry, replace(plan, segments=segments, back=0))
@@ -104,22 +110,10 @@ def run_closing(
     return result
 
 
-def _read(
-    workspace: Workspace,
-    plan: Plan,
-    settings: HardnessSettings,
-    material: Material,
-    potential: Potential,
-    elements: tuple[str, ...],
-    geometry: Geometry,
-    areas: Areas,
-) -> Closing:
+def _read(readout: Readout, plan: Plan, held_A: float, geometry: Geometry) -> Closing:
     closing_segments = range(1, plan.segments + 1)
-    back_segments = range(plan.segments + 1, plan.segments + plan.back + 1)
-    curve = load_curve(workspace, closing_segments, plan.segment_steps, settings.area, geometry, areas)
-    unloading = (
-        load_curve(workspace, back_segments, plan.segment_steps, settings.area, geometry, areas) if plan.back else []
-    )
+    curve = readout.curve(closing_segments)
+    unloading = readout.curve(range(plan.segments + 1, plan.segments + plan.back + 1)) if plan.back else []
 
     def displacement_nm(step: int) -> float:
         if plan.step:
@@ -128,11 +122,8 @@ def _read(
             return float(np.interp(step, [row["step"] for row in curve], [row["displacement_nm"] for row in curve]))
         return step * plan.timestep * plan.speed / 10
 
-    kinds = [elements.index(ion) + 1 for ion in cations(material, potential)]
-    cutoff = material.part("oxide_glass").cutoff_A
-    held = 10 * settings.closing.frozen_nm
-    frames = [load_relaxed(workspace, n) for n in (0, *closing_segments)]
-    witness = witness_rows(frames, displacement_nm, kinds, cutoff, held, geometry)
+    snapshots = [readout.relaxed(n) for n in (0, *closing_segments)]
+    witness = witness_rows(snapshots, displacement_nm, held_A, geometry)
     summary: dict[str, float] = {
         "atoms": geometry.atoms,
         "steps": plan.total_steps,
@@ -140,8 +131,8 @@ def _read(
         "wavelength_nm": geometry.wavelength_A / 10,
     }
     if plan.back:
-        last = load_relaxed(workspace, plan.segments + plan.back)
-        unloaded = witness_rows([frames[0], last], displacement_nm, kinds, cutoff, held, geometry)[-1]
+        last = readout.relaxed(plan.segments + plan.back)
+        unloaded = witness_rows([snapshots[0], last], displacement_nm, held_A, geometry)[-1]
         summary |= {
             "snapshot_exchanged_bonds": witness[-1]["exchanged_bonds"],
             "unloaded_exchanged_bonds": unloaded["exchanged_bonds"],
@@ -149,7 +140,7 @@ def _read(
             "unloaded_lowering_nm": unloaded["lowering_nm"],
             "unloaded_force_nN": unloading[-1]["force_nN"],
         }
-    return Closing(curve, witness, slice_rows(frames, geometry), unloading, summary)
+    return Closing(curve, witness, slice_rows(snapshots, geometry), unloading, summary)
 
 
 def _commensurate(counter: Atoms, glass: Atoms) -> Atoms:

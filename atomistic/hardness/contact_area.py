@@ -41,18 +41,30 @@ def contact_map(
     shape = np.round(cell / spacing).astype(int)
     if len(touching_A) == 0:
         return np.zeros(shape)
-    middles = np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in shape), indexing="ij"), axis=-1) * spacing
     shifted = np.mod(touching_A - np.asarray(centre_A) + cell / 2, cell)
     # a place that rounding puts on the far edge of the cell lies outside it for the tree
-    distance, _ = KDTree(np.where(shifted < cell, shifted, 0.0), boxsize=cell).query(
-        middles, distance_upper_bound=2 * settings.closing_A
-    )
+    tree = KDTree(np.where(shifted < cell, shifted, 0.0), boxsize=cell)
+    part = tuple(_reach(shifted[:, k], settings.closing_A, spacing[k], shape[k]) for k in range(2))
+    middles = np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in shape), indexing="ij"), axis=-1)[part] * spacing
+    distance, _ = tree.query(middles, distance_upper_bound=2 * settings.closing_A)
     marked = np.asarray(binary_fill_holes(distance <= settings.closing_A), dtype=bool)
     if marked.all():
         return np.ones(shape)
     wide = np.pad(marked, margin := int(np.ceil(settings.closing_A / spacing.min())) + 1, mode="wrap")
     outside = np.asarray(distance_transform_edt(wide, sampling=spacing))[margin:-margin, margin:-margin]
-    return np.clip((outside - (settings.closing_A - settings.rim_A)) / spacing.mean(), 0, 1)
+    area = np.zeros(shape)
+    area[part] = np.clip((outside - (settings.closing_A - settings.rim_A)) / spacing.mean(), 0, 1)
+    return area
+
+
+def _reach(places_A: np.ndarray, reach_A: float, spacing_A: float, cells: int) -> slice:
+    """Cells within reach of the places and one more on either side, since a small contact need not cost a whole map.
+
+    All cells where the reach crosses the edge.
+    """
+    first = int(np.floor((places_A.min() - reach_A) / spacing_A)) - 1
+    last = int(np.ceil((places_A.max() + reach_A) / spacing_A)) + 1
+    return slice(first, last) if first >= 0 and last <= cells else slice(0, cells)
 
 
 def _spacing(cell_A: tuple[float, float], settings: AreaSettings) -> np.ndarray:

@@ -1,6 +1,6 @@
 """What a closing run measured, read from the files that LAMMPS left: the curve, the witness, the pictures."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ NEAR, FAR = 0.9, 1.2  # bond lengths in units of the first minimum of g(r)
 TOP_ATOMS = 8
 SLICE_A = 4.0  # half the thickness of the slices for pictures
 Rows = list[dict[str, float]]
+Bonds = set[tuple[int, int]]
 Frame = np.ndarray  # rows (type, x, y, z), ordered by atom id
 
 
@@ -37,38 +38,92 @@ class Geometry:
     top_radius_A: float
 
 
-Areas = dict[tuple[int, float], float]
+@dataclass(frozen=True)
+class Sample:
+    """One moment of a closing.
+
+    Attributes
+    ----------
+    averages : position, force, temperature, energy, driving force, as the script wrote them.
+    areas_A2 : contact area by the depth that counts as touching, Å².
+    touching : atoms in contact.
+    """
+
+    averages: np.ndarray
+    areas_A2: dict[float, float]
+    touching: int
 
 
-def load_curve(
-    workspace: Workspace, segments: range, segment_steps: int, area: AreaSettings, geometry: Geometry, known: Areas
-) -> Rows:
-    """Averages over `area.snapshots` samples of force, contact area and temperature, with the energy balance.
+@dataclass(frozen=True)
+class Relaxed:
+    """A snapshot relaxed without its counterface, with its bonds shorter than `NEAR` and `FAR`."""
+
+    step: int
+    frame: Frame
+    bonds: tuple[Bonds, Bonds]
+
+
+class Readout:
+    """What a growing run has measured; every file is read once.
 
     Parameters
     ----------
-    known : areas by step and depth, kept from one reading of a growing run to the next.
+    cation_types, cutoff_A : what counts as a bond; the first minimum of g(r).
     """
-    rows: dict[int, np.ndarray] = {}
-    near: dict[int, np.ndarray] = {}
-    for n in segments:  # the last step of a segment may stand in the next one again: the first one counts
-        rows = {int(row[0]): row for row in load_averages(workspace / f"averages.{n}")} | rows
-        near = dict(load_dump(workspace / f"near.{n}")) | near
-    steps = sorted(rows)
-    touching = {step: beyond_counterface(near[step], geometry, area.touch_A) for step in steps}
-    cell = (geometry.wavelength_A, geometry.wavelength_A)
-    axis = (geometry.axis_A, geometry.axis_A)
 
-    def areas(depth_A: float) -> np.ndarray:
-        for step, (places, beyond) in touching.items():
-            if (step, depth_A) not in known:
-                known[step, depth_A] = contact_area(places[beyond > -depth_A], cell, area, axis)
-        return np.array([known[step, depth_A] for step in steps])
+    def __init__(
+        self,
+        workspace: Workspace,
+        segment_steps: int,
+        area: AreaSettings,
+        geometry: Geometry,
+        cation_types: list[int],
+        cutoff_A: float,
+    ) -> None:
+        self._workspace, self._segment_steps = workspace, segment_steps
+        self._area, self._geometry = area, geometry
+        self._cation_types, self._cutoff_A = cation_types, cutoff_A
+        self._samples: dict[int, dict[int, Sample]] = {}
+        self._relaxed: dict[int, Relaxed] = {}
 
-    contact_areas = areas(area.depth_A)
-    other_areas = {depth: areas(depth) for depth in area.other_depths_A}
-    table = np.array([rows[step] for step in steps])
-    position, force, temperature, energy, drive = table[:, 1:].T
+    def curve(self, segments: range) -> Rows:
+        """Averages over `area.snapshots` samples of force, contact area and temperature, with the energy balance."""
+        samples: dict[int, Sample] = {}
+        for n in segments:  # the last step of a segment may stand in the next one again: the first one counts
+            if n not in self._samples:
+                self._samples[n] = load_samples(self._workspace, n, self._area, self._geometry)
+            samples = self._samples[n] | samples
+        return curve_rows(samples, self._segment_steps, self._area, self._geometry)
+
+    def relaxed(self, segment: int) -> Relaxed:
+        """The relaxed snapshot after a segment; 0: before the first."""
+        if segment not in self._relaxed:
+            [(step, table)] = load_dump(self._workspace / f"relaxed.{segment}")
+            frame, wavelength = table[:, 1:5], self._geometry.wavelength_A
+            near, far = (bonds_of(frame, self._cation_types, x * self._cutoff_A, wavelength) for x in (NEAR, FAR))
+            self._relaxed[segment] = Relaxed(step, frame, (near, far))
+        return self._relaxed[segment]
+
+
+def load_samples(workspace: Workspace, segment: int, area: AreaSettings, geometry: Geometry) -> dict[int, Sample]:
+    """What a segment measured, by step."""
+    near = dict(load_dump(workspace / f"near.{segment}"))
+    cell, axis = (geometry.wavelength_A, geometry.wavelength_A), (geometry.axis_A, geometry.axis_A)
+    samples = {}
+    for step, *averages in load_averages(workspace / f"averages.{segment}"):
+        places, beyond = beyond_counterface(near[int(step)], geometry, area.touch_A)
+        areas = {
+            depth: contact_area(places[beyond > -depth], cell, area, axis)
+            for depth in (area.depth_A, *area.other_depths_A)
+        }
+        samples[int(step)] = Sample(np.array(averages), areas, int(np.sum(beyond > -area.depth_A)))
+    return samples
+
+
+def curve_rows(samples: Mapping[int, Sample], segment_steps: int, area: AreaSettings, geometry: Geometry) -> Rows:
+    """Rows of the curve of the samples of consecutive segments."""
+    steps = sorted(samples)
+    position, force, temperature, energy, drive = np.array([samples[step].averages for step in steps]).T
     # energy balance: the work of what moves is the only energy that may come in; segments start afresh
     # because the count of the thermostat's energy does
     gained = np.zeros(len(steps))
@@ -79,8 +134,11 @@ def load_curve(
     curve = []
     per = area.snapshots
     for k in range(0, len(steps) - per + 1, per):
-        part = slice(k, k + per)
-        contact, push = float(np.mean(contact_areas[part])), float(np.mean(force[part]))
+        part, averaged = slice(k, k + per), [samples[step] for step in steps[k : k + per]]
+        areas = {
+            depth: float(np.mean([sample.areas_A2[depth] for sample in averaged])) for depth in averaged[0].areas_A2
+        }
+        contact, push = areas[area.depth_A], float(np.mean(force[part]))
         curve.append(
             {
                 "step": steps[k + per - 1],
@@ -92,12 +150,9 @@ def load_curve(
                 "contact_stress_GPa": push / contact * EV_PER_A3_IN_GPA if contact > 0 else float("nan"),
                 "temperature_K": float(np.mean(temperature[part])),
                 "energy_drift_meV_per_atom": 1000 * float(np.mean(gained[part])) / geometry.atoms,
-                "contact_atoms": float(np.mean([np.sum(touching[step][1] > -area.depth_A) for step in steps[part]])),
+                "contact_atoms": float(np.mean([sample.touching for sample in averaged])),
                 "atoms": geometry.atoms,
-                **{
-                    f"contact_area_nm2_depth_{depth:g}A": float(np.mean(values[part])) / 100
-                    for depth, values in other_areas.items()
-                },
+                **{f"contact_area_nm2_depth_{depth:g}A": areas[depth] / 100 for depth in area.other_depths_A},
             }
         )
     return curve
@@ -120,53 +175,36 @@ def beyond_counterface(near: np.ndarray, geometry: Geometry, touch_A: float) -> 
     return near[below, 2:4], touch_A - distance
 
 
-def load_relaxed(workspace: Workspace, segment: int) -> tuple[int, Frame]:
-    """Step and frame of a relaxed snapshot."""
-    [(step, table)] = load_dump(workspace / f"relaxed.{segment}")
-    return step, table[:, 1:5]
-
-
 def witness_rows(
-    frames: list[tuple[int, Frame]],
-    displacement_nm: Callable[[int], float],
-    cation_types: list[int],
-    cutoff_A: float,
-    held_A: float,
-    geometry: Geometry,
+    snapshots: Sequence[Relaxed], displacement_nm: Callable[[int], float], held_A: float, geometry: Geometry
 ) -> Rows:
     """Bonds exchanged and lowering of the top since the first snapshot (no contact yet).
 
     A bond counts as broken (formed) when its length passes from below `NEAR` to above `FAR` times the first
     minimum of g(r) (or back): bonds that flicker about one cutoff do not count.
     """
-    bonds = [
-        tuple(_bonds(frame, cation_types, factor * cutoff_A, geometry.wavelength_A) for factor in (NEAR, FAR))
-        for _, frame in frames
-    ]
-    first = frames[0][1]
+    first = snapshots[0].frame
     held = first[:, 3] < first[:, 3].min() + 0.8 * held_A
-    tops = [_top(frame, geometry) - np.mean(frame[held, 3] - first[held, 3]) for _, frame in frames]
+    tops = [_top(s.frame, geometry) - np.mean(s.frame[held, 3] - first[held, 3]) for s in snapshots]
     return [
         {
-            "step": step,
-            "displacement_nm": displacement_nm(step),
-            "exchanged_bonds": _exchanges(bonds[0], bonds[k]),
-            "new_exchanges": _exchanges(bonds[max(0, k - 1)], bonds[k]),
+            "step": snapshot.step,
+            "displacement_nm": displacement_nm(snapshot.step),
+            "exchanged_bonds": _exchanges(snapshots[0].bonds, snapshot.bonds),
+            "new_exchanges": _exchanges(snapshots[max(0, k - 1)].bonds, snapshot.bonds),
             "lowering_nm": float(tops[0] - tops[k]) / 10,
         }
-        for k, (step, _) in enumerate(frames)
+        for k, snapshot in enumerate(snapshots)
     ]
 
 
-Bonds = set[tuple[int, int]]
-
-
-def _exchanges(before: tuple[Bonds, ...], after: tuple[Bonds, ...]) -> int:
+def _exchanges(before: tuple[Bonds, Bonds], after: tuple[Bonds, Bonds]) -> int:
     """Broken and formed bonds, given the (near, far) pairs before and after."""
     return len(before[0] - after[1]) + len(after[0] - before[1])
 
 
-def _bonds(frame: Frame, cation_types: list[int], cutoff_A: float, wavelength_A: float) -> Bonds:
+def bonds_of(frame: Frame, cation_types: list[int], cutoff_A: float, wavelength_A: float) -> Bonds:
+    """Pairs of a cation and an anion nearer to each other than `cutoff_A`, as rows of the frame."""
     is_cation = np.isin(frame[:, 0], cation_types)
     box = np.array([wavelength_A, wavelength_A, 0.0])  # 0: not periodic
     positions = frame[:, 1:4].copy()
@@ -184,11 +222,11 @@ def _top(frame: Frame, geometry: Geometry) -> float:
     return float(np.mean(np.sort(frame[near, 3])[-TOP_ATOMS:]))
 
 
-def slice_rows(frames: list[tuple[int, Frame]], geometry: Geometry) -> Rows:
+def slice_rows(snapshots: Sequence[Relaxed], geometry: Geometry) -> Rows:
     """Atoms of a 0.8 nm slice through the axis, of every relaxed snapshot."""
     rows = []
-    for step, frame in frames:
-        off = np.abs(frame[:, 2] - geometry.axis_A) < SLICE_A
-        for kind, x, y, z in frame[off].tolist():
-            rows.append({"step": step, "type": int(kind), "x_nm": x / 10, "y_nm": y / 10, "z_nm": z / 10})
+    for snapshot in snapshots:
+        off = np.abs(snapshot.frame[:, 2] - geometry.axis_A) < SLICE_A
+        for kind, x, y, z in snapshot.frame[off].tolist():
+            rows.append({"step": snapshot.step, "type": int(kind), "x_nm": x / 10, "y_nm": y / 10, "z_nm": z / 10})
     return rows
