@@ -59,18 +59,23 @@ def collect(
     return InputTable(tuple(rows), correlation_matrix(names, pairs))
 
 
-def check_literature(settings: InputsSettings, central_share: float) -> None:
+def check_literature(settings: InputsSettings, central_share: float) -> dict[str, tuple[float, float]]:
     """Check what needs no stage: the literature rows, priors among them, and the correlations that the settings give.
+
+    Returns
+    -------
+    Span of each such row over the central share, by name.
 
     Raises
     ------
     InputError : as `collect` does for these rows.
     """
-    rows = settings.priors().rows()
+    rows, spans = settings.priors().rows(), {}
     for name, row in rows.items():
         if row.origin == "literature":
-            _check_range(name, _literature(name, row), f"inputs.{name}", central_share)
+            spans[name] = _check_range(name, _literature(name, row), f"inputs.{name}", central_share)
     correlation_matrix(list(rows), {(pair.first, pair.second): pair.rank for pair in settings.correlations})
+    return spans
 
 
 PAPER_ROWS = {
@@ -150,7 +155,7 @@ def _read_samples(name: str, file: str) -> np.ndarray:
     return np.sort(values)
 
 
-def _check_range(name: str, given: Distribution, where: str, central_share: float) -> None:
+def _check_range(name: str, given: Distribution, where: str, central_share: float) -> tuple[float, float]:
     low, high = given.span(central_share)
     row = BY_NAME[name]
     if not (row.accepts(low) and row.accepts(high) and low <= high):
@@ -158,6 +163,7 @@ def _check_range(name: str, given: Distribution, where: str, central_share: floa
             f"{where}: spans {low:g} .. {high:g} {row.unit}; accepted is "
             f"{row.accepted}: narrow or truncate its distribution"
         )
+    return low, high
 
 
 def to_rows(table: InputTable) -> list[dict[str, Any]]:

@@ -25,7 +25,7 @@ class ContactSettings(Settings):
     pixels: int = Field(default=1024, ge=32, le=16384, description="grid points per side")
     length_nm: float = Field(
         default=1000.0,
-        gt=0,
+        ge=1,
         le=1e6,
         description="side of the square, periodic cell",
         json_schema_extra={"unit": "nm"},

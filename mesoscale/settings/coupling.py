@@ -1,5 +1,7 @@
 """Settings of the comparison with an elastic half-space."""
 
+from typing import Annotated
+
 from pydantic import Field
 
 from mesoscale.settings.base import Settings
@@ -18,7 +20,7 @@ class CouplingSettings(Settings):
         description="surfaces that are compared; 0: the stage is not run",
     )
     pixels: int = Field(default=512, ge=32, le=4096, description="grid points per side of both models")
-    loads_nN: list[float] = Field(
+    loads_nN: list[Annotated[float, Field(gt=0, le=1e12)]] = Field(
         default=[100.0, 1000.0, 7000.0, 50000.0],
         min_length=1,
         description="loads at which both models are solved",

@@ -7,7 +7,6 @@ import pytest
 
 from workflow.scene import load_scene
 from workflow.terminal.cost import Costs, relative_speed, wall_seconds
-from workflow.terminal.memory import machine_MB
 from workflow.terminal.progress import Terminal, duration
 
 
@@ -57,23 +56,6 @@ def test_a_job_that_the_system_ended_is_named(capsys, tmp_path):
         send(terminal, "job_error", rule_name="compute_runs", log=[str(log)])
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("ERROR compute_runs: ended by the system without a word, probably out of memory")
-
-
-@pytest.mark.parametrize("scene", ["ci", "paper", "reduced", "full"])
-def test_every_job_of_a_shipped_scene_has_a_measured_cost(workflow_in, scene):
-    done = workflow_in.run(scene, options=("--dry-run", "--quiet", "rules"))
-    assert "nobody has measured" not in done.stderr
-    assert " on " in done.stderr.splitlines()[-1]
-
-
-def test_a_contact_beyond_the_memory_of_the_machine_is_refused_with_its_key(workflow_in, tmp_path):
-    scene = tmp_path / "huge.yaml"
-    scene.write_text("contact: {pixels: 16384, mechanics: coupled}\n")
-    if machine_MB() > 38200:
-        pytest.skip("this machine has the memory")
-    done = workflow_in.run(str(scene), options=("--dry-run",))
-    assert done.returncode == 1
-    assert "contact.pixels = 16384: a contact needs 38.2 GB of memory" in done.stderr
 
 
 def test_costs_grow_with_what_a_job_does():

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from atomistic.errors import InputError
 from atomistic.materials import load_materials, oxide_glasses
-from workflow.terminal.memory import contact_MB, machine_MB
+from workflow.terminal.memory import contact_MB
 from workflow.scene import ROOT, SceneError, files_of, load_scene, locate
 
 # one thread per process: the jobs themselves fill the cores, and results do not depend on their number
@@ -34,11 +34,6 @@ if not (writable.is_dir() and os.access(writable, os.W_OK)):
     refuse(f"{RESULTS}: cannot write to {writable}; run in a folder you may write to")
 
 CONTACT_MB = contact_MB(SCENE.contact)
-if machine_MB() < CONTACT_MB:
-    refuse(
-        f"{SCENE_GIVEN}: contact.pixels = {SCENE.contact.pixels}: a contact needs {CONTACT_MB / 1000:.1f} GB of memory, "
-        f"this machine has {machine_MB() / 1000:.1f}; take fewer pixels"
-    )
 
 CONFIG = ROOT / "config"  # data files that ship with the project
 RESOLVED = SCENE.model_dump(mode="json")

@@ -1,5 +1,4 @@
 from atomistic.hardness.runs import needs_counter_glass, planned_runs, settings_of_run
-from atomistic.settings.hardness import BASE_OVER_CONTACT
 
 HARDNESS = settings("hardness")
 
@@ -27,11 +26,6 @@ def oxide_path(key, formula):
 POTENTIAL = potential_path(HARDNESS["potential"])
 MATERIAL_OF_ASPERITY = oxide_path("material", HARDNESS["material"])
 MATERIAL_OF_COUNTERFACE = oxide_path("closing.counter_material", HARDNESS["closing"]["counter_material"])
-if needed("hardness") and SCENE.hardness.closing.base_over_contact < BASE_OVER_CONTACT:
-    refuse(
-        f"{SCENE_GIVEN}: hardness.closing.base_over_contact = {SCENE.hardness.closing.base_over_contact:g}: a base "
-        f"thinner than {BASE_OVER_CONTACT:g} of the largest contact is felt; give {BASE_OVER_CONTACT:g} or more"
-    )
 CLOSINGS = {run.name: run for run in planned_runs(SCENE.hardness)}
 COUNTER_GLASS = needs_counter_glass(SCENE.hardness)
 

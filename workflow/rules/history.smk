@@ -1,4 +1,8 @@
 # Repeated closing and creep; only in scenes with history.cycles > 0
+
+from workflow.terminal.memory import history_MB
+
+
 rule history:
     input:
         f"{RESULTS}/history/cycles.csv",
@@ -15,6 +19,8 @@ rule follow_history:
     log:
         f"{RESULTS}/logs/follow_history.log",
     threads: 1
+    resources:
+        mem_mb=history_MB(SCENE.history, SCENE.contact),
     params:
         settings=settings("history"),
         contact=settings("contact"),

@@ -1,4 +1,3 @@
-from mesoscale.errors import InputError as MesoscaleInputError
 from mesoscale.uncertainty.chunks import full_chunks
 from mesoscale.uncertainty.studies.readings import audited_readings
 
@@ -9,10 +8,7 @@ def direct_files(design, runs, name="chunk"):
 
 
 PAIR_CHUNKS = full_chunks(SCENE.uncertainty.model_form_pairs, 20)
-try:
-    AUDITED = audited_readings(SCENE.uncertainty.audit_readings)
-except MesoscaleInputError as error:
-    refuse(f"{SCENE_GIVEN}: uncertainty.{error}")
+AUDITED = audited_readings(SCENE.uncertainty.audit_readings)
 
 
 rule uq:

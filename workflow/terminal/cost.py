@@ -12,6 +12,7 @@ from scipy import fft
 
 from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, plan_rows
 from atomistic.materials import Material
+from mesoscale.settings import ContactSettings, HistorySettings
 from workflow.scene import Scene
 
 START_S = 2.0  # Snakemake's start of a job, and the packages
@@ -19,6 +20,8 @@ GRID = 1024**2  # sites of the reference
 CYCLE_S = {"asperity": (0.005, 0.065), "coupled": (0.02, 2.5)}  # of any cycle; of one on the reference grid, besides
 CHAIN_S = 10.0  # a posterior of some twenty curves; scene made_up
 FITTED_RUN_S = 0.004  # law of a run and its row
+LATER_CYCLE, HOLD = 0.6, 0.05  # of a history, over a first cycle; of each time within a hold
+RELEASE_S = 0.015  # law and switch after a cycle
 CELL_S = 2.4  # a pad's cell over a cycle: it opens from several depths
 SCAN_S = 0.8  # analysis of a scan of the reference grid
 SCF_S = 9.0  # one volume of 28 atoms at 100 hartree
@@ -26,6 +29,18 @@ RELAXATION_STEP_S = 8.0  # the same, tightly converged and with forces
 STRESS_STEP_S = 15.0  # the same with the stress; 80 hartree on a loaded machine, not yet on an idle one
 QUENCH_S = 24.0  # quenches until a network of 28 atoms passes its gates
 TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
+
+
+def cycle_s(contact: ContactSettings) -> float:
+    """Seconds of one closing and opening."""
+    fixed, growing = CYCLE_S[contact.mechanics]
+    return fixed + growing * contact.pixels**2 / GRID
+
+
+def history_s(history: HistorySettings, contact: ContactSettings) -> float:
+    """Seconds of closing and opening again and again; all but the first cycle find their surface."""
+    cycle = LATER_CYCLE + (HOLD * history.dwell_steps if history.dwell_s > 0 else 0.0)
+    return history.seeds * history.cycles * (cycle * cycle_s(contact) + RELEASE_S)
 
 
 class Costs:
@@ -47,8 +62,7 @@ class Costs:
     @property
     def cycle_s(self) -> float:
         """Seconds of one closing and opening."""
-        fixed, growing = CYCLE_S[self.scene.contact.mechanics]
-        return fixed + growing * self.scene.contact.pixels**2 / GRID
+        return cycle_s(self.scene.contact)
 
     @property
     def scf_size(self) -> float:
@@ -142,6 +156,7 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "solve_switch": _constant(2.0),
     "render_report": _constant(2.5),
     "collect_priors": _constant(0.0),
+    "follow_history": lambda costs, wildcards: history_s(costs.scene.history, costs.scene.contact),
     "observe_cycles": Costs.observe_cycles,
     "sample_posterior": Costs.sample_posterior,
 }

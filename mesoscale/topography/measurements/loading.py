@@ -26,6 +26,7 @@ REFUSED_FORMATS = frozenset({"npy", "npz"})  # NumPy files hold no physical size
 MAGIC_BYTES = 512
 MAX_PIXELS = 16384**2
 MIN_SIDE = 32
+FILE_NM = (10.0, 1e8)  # plausible sizes: the largest real map at hand has 12 mm; beyond, a reader mistakes the unit
 NM = {"m": 1e9, "mm": 1e6, "um": 1e3, "µm": 1e3, "μm": 1e3, "nm": 1.0, "Å": 0.1, "pm": 1e-3}
 
 
@@ -251,6 +252,7 @@ def _scan(
     if min(heights.shape) < MIN_SIDE:
         raise InputError(f"{path}: {heights.shape[0]} x {heights.shape[1]} pixels; at least {MIN_SIDE} a side")
     lengths = tuple(float(s) for s in topography.physical_sizes)
+    _check_size(path, *lengths)
     steps = (f"read channel {info.name}", note) if note else (f"read channel {info.name}",)
     return Scan(heights, (lengths[0], lengths[1]), name, steps)
 
@@ -270,8 +272,18 @@ def _profile(path: Path, name: str, info: Any, stated_unit: str | None) -> Profi
         profile = profile_of(x * factors[0], z * factors[1], name)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+    _check_size(path, profile.length_nm)
     radius = stated_radius(info.info.get("instrument", {}).get("parameters", {}).get("tip_radius"))
     return replace(profile, tip_radius_nm=radius, steps=(f"read channel {info.name}", *profile.steps))
+
+
+def _check_size(path: Path, *lengths_nm: float) -> None:
+    low, high = FILE_NM
+    if not all(low <= length <= high for length in lengths_nm):
+        raise InputError(
+            f"{path}: a size of {' x '.join(f'{length:.4g}' for length in lengths_nm)} nm; plausible is {low:g} .. "
+            f"{high:g} nm, so its unit may be mistaken: save it again with the size in nm or um (.gwy)"
+        )
 
 
 def _heights(path: Path, read: Callable[[], Any]) -> Any:

@@ -133,3 +133,11 @@ def test_cut_off_scans_are_refused():
     heights = np.clip(np.random.default_rng(0).standard_normal((64, 64)), -1.0, None)
     with pytest.raises(InputError, match="cut off"):
         clean(Scan(heights, (1.0, 1.0), "low"), TopographySettings())
+
+
+@pytest.mark.parametrize("length_nm", [5.0, 1e9])
+def test_a_size_that_no_instrument_has_is_taken_for_a_mistaken_unit(tmp_path, length_nm):
+    path = tmp_path / "scan.gwy"
+    write_gwy(path, Scan(np.random.default_rng(0).standard_normal((64, 64)), (length_nm, length_nm), "a"))
+    with pytest.raises(InputError, match=r"scan\.gwy: a size of .* nm; plausible is 10 \.\. 1e\+08 nm, so its unit"):
+        load_scan(path)

@@ -1,0 +1,112 @@
+"""Scenes that make no sense, each of which must be refused before anything runs, with part of the words it gets."""
+
+import itertools
+
+LITERATURE = {
+    "e_star": "{distribution: normal, a: 91, b: 3.8}",
+    "h_prime": "{a: 1.95, b: 14.8}",
+    "q0": "{a: 0.015, b: 0.035}",
+    "hurst": "{a: 0.5, b: 1.0}",
+    "rms": "{a: 2, b: 15}",
+}
+
+
+def scene(*lines: str, **rows: str) -> str:
+    """A scene whose inputs are all from the literature, some rows exchanged, with further lines."""
+    table = "".join(f"  {name}: {row}\n" for name, row in {**LITERATURE, **rows}.items())
+    return "\n".join([f"inputs:\n{table}", *lines])
+
+
+def _bomb() -> str:
+    lines = ["a: &a [x,x,x,x,x,x,x,x,x]"]
+    lines += [f"{b}: &{b} [{','.join([f'*{a}'] * 9)}]" for a, b in itertools.pairwise("abcdefghi")]
+    return "\n".join(lines)
+
+
+TWICE = "[{name: a, tiles: 2, amplitude_nm: 0.4}, {name: a, tiles: 3, amplitude_nm: 0.6}]"
+CYCLIC = (
+    "[{first: rms, second: q0, rank: 0.9}, {first: q0, second: hurst, rank: 0.9}, "
+    "{first: rms, second: hurst, rank: -0.9}]"
+)
+NONSENSE: dict[str, tuple[str, str]] = {
+    "alias bomb": (_bomb(), "alias *a: write the value out"),
+    "alias of itself": ("contact: &a {pixels: *a}", "alias *a"),
+    "date as a key": ("2026-11-22: 3", "2026-11-22: unknown key"),
+    "date as a number": ("contact: {pixels: 2026-11-22}", "accepted is an integer"),
+    "merge key": ("contact:\n  <<: {pixels: 128}", "merge key"),
+    "deep nesting": ("contact: " + 5000 * "[" + 5000 * "]", "nested deeper than 20 levels"),
+    "name of 5000 characters": ("name: " + 5000 * "x", "name = "),
+    "key of 5000 characters": ("? " + 5000 * "x" + "\n: 3", "unknown key"),
+    "name with a path": ("name: ../../mine", "name = "),
+    "name of a shipped scene": ("name: paper", "shipped scene"),
+    "minutes as pixels": ("contact: {pixels: 16:40}", "accepted is an integer"),
+    "octal pixels": ("contact: {pixels: 0200}", "accepted is an integer"),
+    "text as pixels": ('contact: {pixels: "256"}', "accepted is an integer"),
+    "infinite gap": ("device: {gap_um: .inf}", "accepted is a number"),
+    "not a number": ("device: {gap_um: .nan}", "accepted is a number"),
+    "key twice": ("contact: {pixels: 256, pixels: 512}", "stands twice"),
+    "object of Python": ("x: !!python/object/apply:os.system ['true']", "not valid YAML"),
+    "program as a key": ("hardness: {closing: {launcher: rm}}", "unknown key"),
+    "folder of an engine": (
+        "elastic: {dft: {engine: espresso, parameters: {directory: /etc}}}",
+        "not a parameter that a scene may give",
+    ),
+    "negative RMS": (scene(rms="{a: -2, b: 15}"), "inputs.rms: spans -2 .. 15"),
+    "RMS of a metre": (scene(rms="{distribution: fixed, a: 1.0e+9}"), "inputs.rms: spans"),
+    "RMS from high to low": (scene(rms="{a: 15, b: 2}"), "a must not exceed b"),
+    "normal RMS below zero": (scene(rms="{distribution: normal, a: 2, b: 2}"), "inputs.rms: spans"),
+    "modulus of zero": (scene(e_star="{distribution: fixed, a: 0}"), "inputs.e_star: spans"),
+    "modulus in pascals": (scene(e_star="{distribution: fixed, a: 9.1e+10}"), "inputs.e_star: spans"),
+    "negative hardness": (scene(h_prime="{a: -5, b: 15}"), "inputs.h_prime: spans"),
+    "Hurst exponent of 3": (scene(hurst="{a: 0.5, b: 3}"), "inputs.hurst: spans"),
+    "missing samples": (scene(rms="{distribution: samples, file: nowhere.csv}"), "no such file"),
+    "source of 200 kB": (scene(rms="{a: 2, b: 15, source: " + 200_000 * "x" + "}"), "at most 500 characters"),
+    "contradictory correlations": (f"inputs: {{correlations: {CYCLIC}}}", "correlation"),
+    "correlation with itself": ("inputs: {correlations: [{first: rms, second: rms, rank: 0.5}]}", "with itself"),
+    "correlation of nobody": ("inputs: {correlations: [{first: rms, second: x, rank: 0.5}]}", "unknown input x"),
+    "uniform q0 beyond the grid": (scene("contact: {pixels: 64}", q0="{a: 0.5, b: 0.9}"), "beyond what the grid"),
+    "normal q0 beyond the grid": (scene(q0="{distribution: normal, a: 5, b: 0.1}"), "beyond what the grid"),
+    "fixed q0 beyond the grid": (scene(q0="{distribution: fixed, a: 5}"), "beyond what the grid"),
+    "cut-off beyond the grid": (scene("contact: {pixels: 64, q1_per_nm: 1}"), "beyond what contact.pixels = 64"),
+    "gap cutoff twice": (scene("contact: {gap_cutoff_nm: 0.2}", gap_cutoff="{a: 0.15, b: 0.3}"), "the same number"),
+    "negative load": ("contact: {nominal_loads_nN: [-1]}", "contact.nominal_loads_nN.0 = -1"),
+    "negative load of the comparison": ("coupling: {loads_nN: [-5]}", "coupling.loads_nN.0 = -5"),
+    "negative force": ("contact: {max_force_nN: -7000}", "contact.max_force_nN = -7000"),
+    "cell of nothing": ("contact: {length_nm: 1.0e-300}", "contact.length_nm = 1e-300"),
+    "cell of a metre": ("contact: {length_nm: 1.0e+9}", "contact.length_nm = 1000000000.0"),
+    "one pixel": ("contact: {pixels: 1}", "contact.pixels = 1"),
+    "spectrum that falls back": ("contact: {surface: {spectrum: {q: [2, 1], psd: [1, 1]}}}", "not in rising order"),
+    "regression with one run": (scene("uncertainty: {direct_runs: 1}"), "needs at least 14"),
+    "reading of nobody": ("uncertainty: {audit_readings: [zzz]}", "'zzz' is no reading"),
+    "hundred thousand jobs": (scene("uncertainty: {direct_runs: 100000, chunk_runs: 1}"), "chunk_runs = 1"),
+    "million jobs of a pad": (scene("pad: {cells: 1000000, chunk_cells: 1}"), "pad.chunk_cells = 1"),
+    "history without end": (
+        scene("history: {cycles: 100000, seeds: 30}", "contact: {mechanics: coupled}"),
+        "one job of",
+    ),
+    "history beyond the memory": (
+        scene("history: {cycles: 100000, seeds: 1000, creep: power, dwell_s: 1, dwell_steps: 1000}"),
+        "GB of memory",
+    ),
+    "history without flow": (scene("history: {cycles: 2}", "contact: {model: elastic}"), "only plastic contacts"),
+    "dwell without creep": (scene("history: {cycles: 2, dwell_s: 10}"), "nothing would happen"),
+    "coupled contact beyond the memory": (scene("contact: {pixels: 16384, mechanics: coupled}"), "GB of memory"),
+    "gap below zero": ("device: {gap_um: -1}", "device.gap_um = -1"),
+    "Poisson's ratio of a half": ("device: {poisson_ratio: 0.5}", "device.poisson_ratio = 0.5"),
+    "two Poisson's ratios in the wrong order": ("elastic: {poisson_ratio: [0.3, 0.2]}", "two increasing numbers"),
+    "basis of another kind": ("elastic: {dft: {basis: sto-3g}}", 'elastic.dft.basis = "sto-3g"'),
+    "basis of nobody": ("compute: [elastic]\nelastic: {dft: {basis: gth-zzz}}", "PySCF has no such basis set"),
+    "three strains": ("elastic: {strains: [-0.02, 0, 0.02]}", "at least 5 entries"),
+    "equal strains": ("elastic: {strains: [0, 0, 0.01, 0.02, 0.03]}", "must differ"),
+    "equal asperities": (f"hardness: {{asperities: {TWICE}}}", "two have the same name"),
+    "base that is felt": ("hardness: {closing: {base_over_contact: 0.8}}", "is felt"),
+    "no scans at all": (
+        "compute: [topography]\ntopography: {synthetic: {small_scans: 0, large_scans: 0}}",
+        "nothing to analyse",
+    ),
+    "missing scans": ("topography: {scans: [nowhere.gwy]}", "no such file"),
+    "two conventions": ("topography: {convention: profile}", "convention"),
+    "calibration with nothing": (scene(rms="{origin: calibration, a: 2, b: 15}"), "measurements.tables is empty"),
+    "stage that cannot compute it": (scene(rms="{origin: elastic}"), "accepted: literature, topography"),
+}
+"""By name: the scene and part of its refusal."""

@@ -1,0 +1,50 @@
+"""Nonsense is refused before anything runs; a mutated scene is refused in clear lines or used as it stands."""
+
+import pytest
+
+from attacks.nonsense import NONSENSE
+from attacks.scene_mutations import mutated
+from attacks.scenes import campaign, judge
+from workflow.scene import load_scene
+
+
+@pytest.fixture(autouse=True)
+def machine(monkeypatch):
+    """A machine of 16 GB, wherever the tests run."""
+    monkeypatch.setattr("workflow.scene_checks.machine_MB", lambda: 16_000)
+
+
+@pytest.mark.parametrize("name", NONSENSE)
+def test_nonsense_is_refused_with_its_key(tmp_path, name):
+    text, words = NONSENSE[name]
+    outcome, said = judge(text, tmp_path / "nonsense.yaml")
+    assert outcome == "refused"
+    assert words in said
+
+
+def test_mutated_scenes_are_refused_in_lines_or_used_as_they_stand(tmp_path):
+    rows = list(campaign(tmp_path, 0, 100))
+    assert not [row for row in rows if row["outcome"] == "fault"]
+    assert {row["outcome"] for row in rows} == {"accepted", "refused"}
+
+
+def test_a_seed_gives_its_scene_again():
+    assert mutated(7) == mutated(7) != mutated(8)
+
+
+@pytest.mark.parametrize(
+    ("used", "words"),
+    [
+        ("device: {gap_um: 3.5}", ""),
+        ("device: {gap_um: 3.49}", "device.gap_um: '3.5' was read as 3.49"),
+        ("", "device.gap_um: '3.5' was read as 3.49"),  # the default
+    ],
+)
+def test_the_judge_sees_a_value_that_is_read_as_another(tmp_path, monkeypatch, used, words):
+    other = tmp_path / "other.yaml"
+    other.write_text(used)
+    scene = load_scene(str(other))
+    monkeypatch.setattr("attacks.scenes.load_scene", lambda path: scene)
+    outcome, said = judge("device: {gap_um: 3.5}", tmp_path / "given.yaml")
+    assert outcome == ("fault" if words else "accepted")
+    assert words in said

@@ -1,0 +1,136 @@
+"""What is wrong with a scene beyond its single keys: contradictions, and what no machine can carry.
+
+Everything here is known before the first job. Imports the table of the inputs (half a second): for the main process.
+"""
+
+import math
+import warnings
+from collections.abc import Iterator, Mapping
+
+from atomistic.materials import load_material
+from atomistic.settings import DftSettings
+from atomistic.settings.hardness import BASE_OVER_CONTACT
+from mesoscale.errors import InputError
+from mesoscale.inputs.definitions import BY_NAME
+from mesoscale.inputs.table import check_literature
+from mesoscale.uncertainty.studies.readings import audited_readings
+from workflow.scene import ROOT, Scene
+from workflow.terminal.cost import history_s
+from workflow.terminal.memory import contact_MB, history_MB, machine_MB
+
+MATERIALS = ROOT / "config" / "materials"
+MOST_JOBS = 20_000  # of one design; Snakemake plans some 300 jobs a second
+LONGEST_JOB_D = 30.0  # of a job that starts again from nothing when it is interrupted
+DAY_S = 86400.0
+
+
+def mistakes(scene: Scene, samples: Mapping[str, str]) -> list[str]:
+    """What contradicts physics, another key or the machine; a line each, which begins with the key.
+
+    Parameters
+    ----------
+    samples : files of samples by the name of their input, as found.
+    """
+    return [*_inputs(scene, samples), *_stages(scene), *_machine(scene)]
+
+
+def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
+    rows = scene.inputs.rows()
+    for name in rows:
+        if BY_NAME[name].setting in scene.contact.model_fields_set:
+            yield f"contact.{BY_NAME[name].setting} and inputs.{name} give the same number; leave one out"
+    located = {name: row.model_copy(update={"file": samples.get(name)}) for name, row in rows.items()}
+    try:
+        spans = check_literature(scene.inputs.model_copy(update=located), scene.uncertainty.central_share)
+    except InputError as error:
+        yield str(error)
+        return
+    high, nyquist = spans.get("q0", (0.0, 0.0))[1], scene.contact.nyquist_per_nm
+    if high > nyquist:
+        yield (
+            f"inputs.q0 reaches {high:g} 1/nm, beyond what the grid resolves ({nyquist:.3g} 1/nm: pi contact.pixels / "
+            "contact.length_nm); take more pixels, a smaller side or a smaller q0"
+        )
+
+
+def _stages(scene: Scene) -> Iterator[str]:
+    uncertainty, needed = scene.uncertainty, 2 * len(scene.inputs.rows())
+    if uncertainty.response == "regression" and uncertainty.direct_runs < needed:
+        yield (
+            f"uncertainty.direct_runs = {uncertainty.direct_runs}: a regression over {needed // 2} inputs needs at "
+            f"least {needed}; give more, or set uncertainty.response to polynomial"
+        )
+    try:
+        audited_readings(uncertainty.audit_readings)
+    except InputError as error:
+        yield f"uncertainty.{error}"
+    if scene.history.cycles and scene.contact.model != "plastic":
+        yield (
+            f"contact.model = {scene.contact.model} with history.cycles = {scene.history.cycles}: only plastic "
+            "contacts have a history; choose contact.model: plastic"
+        )
+    synthetic = scene.topography.synthetic
+    if "topography" in scene.stages() and not (
+        scene.topography.scans or synthetic.small_scans or synthetic.large_scans
+    ):
+        yield "topography.scans: empty, and synthetic.small_scans and large_scans are 0: nothing to analyse; give scans"
+    if "elastic" in scene.stages() and scene.elastic.dft.engine == "pyscf":
+        yield from _unknown_bases(scene)
+    closing = scene.hardness.closing
+    if "hardness" in scene.stages() and closing.base_over_contact < BASE_OVER_CONTACT:
+        yield (
+            f"hardness.closing.base_over_contact = {closing.base_over_contact:g}: a base thinner than "
+            f"{BASE_OVER_CONTACT:g} of the largest contact is felt; give {BASE_OVER_CONTACT:g} or more"
+        )
+
+
+def _unknown_bases(scene: Scene) -> Iterator[str]:
+    """Basis sets that PySCF does not have for an element of the material; the default one is known."""
+    elastic, material = scene.elastic, MATERIALS / f"{scene.elastic.material}.yaml"
+    given = {"elastic.dft.basis": elastic.dft.basis, "elastic.relaxation.basis": elastic.relaxation.basis}
+    unusual = {key: name for key, name in given.items() if name != DftSettings.model_fields["basis"].default}
+    if not (unusual and material.is_file()):
+        return
+    from pyscf.lib.exceptions import BasisNotFoundError  # takes two seconds
+    from pyscf.pbc.gto import basis
+
+    for key, name in unusual.items():
+        for element in load_material(material).formula:
+            try:
+                with warnings.catch_warnings(action="ignore"):
+                    basis.load(name, element)
+            except BasisNotFoundError:
+                yield f"{key} = {name}: PySCF has no such basis set for {element}; give one of its GTH sets"
+                break
+
+
+def _machine(scene: Scene) -> Iterator[str]:
+    designs = {
+        "uncertainty": ("chunk_runs", scene.uncertainty.direct_runs, scene.uncertainty.chunk_runs),
+        "pad": ("chunk_cells", scene.pad.cells, scene.pad.chunk_cells),
+        "measurements": ("chunk_runs", scene.measurements.runs, scene.measurements.chunk_runs),
+    }
+    for section, (key, count, size) in designs.items():
+        if (jobs := math.ceil(count / size)) > MOST_JOBS:
+            yield (
+                f"{section}.{key} = {size}: {count} of them need {jobs} jobs, and planning alone takes hours beyond "
+                f"{MOST_JOBS}; give at least {math.ceil(count / MOST_JOBS)}"
+            )
+    pixels, needed, present = scene.contact.pixels, contact_MB(scene.contact), machine_MB()
+    if needed > present:
+        yield (
+            f"contact.pixels = {pixels}: a contact needs {needed / 1000:.1f} GB of memory, this machine has "
+            f"{present / 1000:.1f}; take fewer pixels"
+        )
+    cycles = scene.history.cycles
+    if cycles and (needed := history_MB(scene.history, scene.contact)) > present:
+        yield (
+            f"history.cycles = {cycles}: with {scene.history.seeds} surfaces and {scene.history.dwell_steps} "
+            f"dwell_steps their tables need {needed / 1000:.0f} GB of memory, this machine has {present / 1000:.1f}; "
+            "take fewer of the three"
+        )
+    elif (days := history_s(scene.history, scene.contact) / DAY_S) > LONGEST_JOB_D:
+        yield (
+            f"history.cycles = {cycles}: with {scene.history.seeds} surfaces this is one job of {days:.0f} days, which "
+            f"starts again when it is interrupted; accepted are {LONGEST_JOB_D:g}: take fewer cycles or surfaces"
+        )
