@@ -103,27 +103,22 @@ def predictive_probability(data: Posterior, x: Array, rng: np.random.Generator) 
 
     Box, J. R. Statist. Soc. A 143, 383 (1980): the predictive density at the data is compared with those of its draws.
     """
-    points = x[rng.integers(len(x), size=REPLICATES)]
+    predicted = data.predict(x[rng.integers(len(x), size=REPLICATES)])
+    inverses = None
+    if data.surfaces is not None:
+        inverses = np.linalg.pinv(data.surfaces.precision, rcond=1e-10, hermitian=True)
 
     def log_predictive(some: Posterior) -> float:
-        logs = _comparable(some).log_likelihood(points)
-        return float(np.logaddexp.reduce(logs))
+        if some.surfaces is not None and inverses is not None:
+            # without the part of the likelihood that no input decides: points about their curve
+            known = some.surfaces.information
+            constant = float(np.einsum("sj,sjk,sk->", known, inverses, known))
+            some = replace(some, surfaces=replace(some.surfaces, constant=constant))
+        return float(np.logaddexp.reduce(some.likelihood_of(predicted)))
 
     measured = log_predictive(data)
-    made_up = [log_predictive(data.simulated(point[None], rng)) for point in points]
+    made_up = [log_predictive(data.simulated(predicted.at(k), rng)) for k in range(REPLICATES)]
     return float(np.mean(np.array(made_up) <= measured))
-
-
-def _comparable(data: Posterior) -> Posterior:
-    """The data on surfaces without the part of their likelihood that no input decides: points about their curve."""
-    if data.surfaces is None:
-        return data
-    surfaces = data.surfaces
-    constant = sum(
-        float(information @ np.linalg.pinv(precision, rcond=1e-10, hermitian=True) @ information)
-        for precision, information in zip(surfaces.precision, surfaces.information, strict=True)
-    )
-    return replace(data, surfaces=replace(surfaces, constant=constant))
 
 
 def outliers(result: Calibration) -> list[str]:
@@ -253,9 +248,10 @@ def next_measurements(result: Calibration, max_force_nN: float, seed: int) -> li
             max_force_nN,
             result.expected,
         )
+        predicted = posterior.predict(x)
         widths, effective = [], []
         for point in rng.integers(DRAWS, size=REPLICATES // 2):
-            logs = posterior.simulated(x[point][None], rng).log_likelihood(x)
+            logs = posterior.simulated(predicted.at(point), rng).likelihood_of(predicted)
             weights = np.exp(logs - logs.max())
             weights /= weights.sum()
             effective.append(1 / (weights**2).sum())

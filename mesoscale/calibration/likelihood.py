@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +10,7 @@ from scipy.special import gammaln, log_ndtr, ndtr
 
 from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.observables import LAWS
-from mesoscale.calibration.responses import Responses
+from mesoscale.calibration.responses import Prediction, Responses
 from mesoscale.calibration.surfaces import Expected, SurfaceData, surface_data
 from mesoscale.calibration.switches import SwitchModel, law_values
 from mesoscale.inputs.distributions import InputTable
@@ -66,6 +67,31 @@ def normal_with_common(residuals: Array, variances: Array, common: Array) -> Arr
 
 
 @dataclass(frozen=True)
+class Predicted:
+    """What the model predicts at m inputs: computed once, it serves many data sets.
+
+    Attributes
+    ----------
+    inputs : by name, shape (m,) each.
+    surfaces : observables of the data on surfaces; None without such data.
+    voltages : mean and deviation between switches (V) by name, shape (m,) each; empty without data on switches.
+    """
+
+    inputs: dict[str, Array]
+    surfaces: Prediction | None
+    voltages: dict[str, tuple[Array, Array]]
+
+    def at(self, place: int) -> "Predicted":
+        """The prediction at one of the inputs."""
+        here = slice(place, place + 1)
+        return Predicted(
+            {name: values[here] for name, values in self.inputs.items()},
+            None if self.surfaces is None else self.surfaces.at(place),
+            {name: (mean[here], sd[here]) for name, (mean, sd) in self.voltages.items()},
+        )
+
+
+@dataclass(frozen=True)
 class Posterior:
     """Density of the inputs in the space where their prior is standard normal.
 
@@ -84,7 +110,7 @@ class Posterior:
     switch: SwitchModel | None
     law_responses: Responses | None
 
-    @property
+    @cached_property
     def free(self) -> NDArray[np.int_]:
         """Inputs that have a width; the others are not sampled."""
         return np.flatnonzero([np.ptp(row.distribution.span(0.999)) > 0 for row in self.table.rows])
@@ -97,60 +123,65 @@ class Posterior:
 
     def log_likelihood(self, x: Array) -> Array:
         """Logarithm of the likelihood at inputs x (m, n), shape (m,)."""
-        named = dict(zip(self.table.names, x.T, strict=True))
-        result = np.zeros(len(x))
-        if self.surfaces is not None and self.surface_responses is not None:
-            result += self.surfaces.log_likelihood(self.surface_responses(x))
+        return self.likelihood_of(self.predict(x))
+
+    def predict(self, x: Array) -> Predicted:
+        """What the model predicts of the data at inputs x (m, n)."""
+        surfaces = self.surface_responses
+        inputs = dict(zip(self.table.names, x.T, strict=True))
+        return Predicted(
+            inputs,
+            surfaces(x) if surfaces is not None else None,
+            self.switch_voltages(x, inputs["hamaker"]) if self.switches else {},
+        )
+
+    def likelihood_of(self, predicted: Predicted) -> Array:
+        """Logarithm of the likelihood of what is predicted, shape (m,)."""
+        result = np.zeros(len(next(iter(predicted.inputs.values()))))
+        if self.surfaces is not None and predicted.surfaces is not None:
+            result += self.surfaces.log_likelihood(predicted.surfaces)
         for data in self.direct:
-            result += data.log_likelihood(named)
+            result += data.log_likelihood(predicted.inputs)
         if self.switches:
-            result += self._switches(x, named["hamaker"])
+            result += self._switches(predicted.voltages)
         return result
 
-    def log_density(self, z: Array) -> Array:
-        """Logarithm of the posterior density up to a constant, shape (m,)."""
-        return self.log_likelihood(self.inputs(z)) - 0.5 * (z**2).sum(axis=1)
-
-    def simulated(self, x: Array, rng: np.random.Generator) -> "Posterior":
-        """The posterior of made-up data at inputs x of shape (1, n), with the same errors as the measured ones."""
+    def simulated(self, predicted: Predicted, rng: np.random.Generator) -> "Posterior":
+        """The posterior of data made up at one predicted point, with the same errors as the measured ones."""
         surfaces = self.surfaces
-        if surfaces is not None and self.surface_responses is not None:
-            surfaces = surfaces.simulated(self.surface_responses(x), rng)
-        named = dict(zip(self.table.names, x.T, strict=True))
-        direct = tuple(data.simulated(named, rng) for data in self.direct)
+        if surfaces is not None and predicted.surfaces is not None:
+            surfaces = surfaces.simulated(predicted.surfaces, rng)
+        direct = tuple(data.simulated(predicted.inputs, rng) for data in self.direct)
         switches = []
-        if self.switches:
-            voltages = self.switch_voltages(x, named["hamaker"])
-            for data in self.switches:
-                mean, sd = (values[0] for values in voltages["pull_in" if data.kind == "pull_in" else "release"])
-                if data.kind == "sticking":
-                    margin = mean / np.hypot(sd, data.discrepancy * abs(mean))
-                    total = data.columns["switches"]
-                    drawn = {"stuck": rng.binomial(total.astype(int), ndtr(-margin)).astype(float), "switches": total}
-                else:
-                    error = data.columns[f"{data.kind}_error"]
-                    spread = np.hypot(error, sd) * rng.standard_normal(error.shape)
-                    values = mean + data.discrepancy * abs(mean) * rng.standard_normal() + spread
-                    drawn = {data.kind: values, f"{data.kind}_error": error}
-                switches.append(replace(data, columns=drawn))
+        for data in self.switches:
+            mean, sd = (values[0] for values in predicted.voltages["pull_in" if data.kind == "pull_in" else "release"])
+            if data.kind == "sticking":
+                margin = mean / np.hypot(sd, data.discrepancy * abs(mean))
+                total = data.columns["switches"]
+                drawn = {"stuck": rng.binomial(total.astype(int), ndtr(-margin)).astype(float), "switches": total}
+            else:
+                error = data.columns[f"{data.kind}_error"]
+                spread = np.hypot(error, sd) * rng.standard_normal(error.shape)
+                values = mean + data.discrepancy * abs(mean) * rng.standard_normal() + spread
+                drawn = {data.kind: values, f"{data.kind}_error": error}
+            switches.append(replace(data, columns=drawn))
         return replace(self, surfaces=surfaces, direct=direct, switches=tuple(switches))
 
-    def _switches(self, x: Array, hamaker: Array) -> Array:
-        voltages = self.switch_voltages(x, hamaker)
-        result = np.zeros(len(x))
+    def _switches(self, voltages: dict[str, tuple[Array, Array]]) -> Array:
+        result = np.zeros(1)
         for data in self.switches:
             mean, sd = voltages["pull_in" if data.kind == "pull_in" else "release"]
             if data.kind == "sticking":
                 spread = np.hypot(sd, data.discrepancy * np.abs(mean))
                 stuck, total = data.columns["stuck"].sum(), data.columns["switches"].sum()
                 margin = mean / spread
-                result += gammaln(total + 1) - gammaln(stuck + 1) - gammaln(total - stuck + 1)
-                result += stuck * log_ndtr(-margin) + (total - stuck) * log_ndtr(margin)
+                ways = gammaln(total + 1) - gammaln(stuck + 1) - gammaln(total - stuck + 1)
+                result = result + ways + stuck * log_ndtr(-margin) + (total - stuck) * log_ndtr(margin)
                 continue
             measured = data.columns[data.kind]
             variances = data.columns[f"{data.kind}_error"] ** 2 + sd[:, None] ** 2
             common = (data.discrepancy * np.abs(mean))[:, None]
-            result += normal_with_common(measured - mean[:, None], variances, common)
+            result = result + normal_with_common(measured - mean[:, None], variances, common)
         return result
 
     def switch_voltages(self, x: Array, hamaker: Array) -> dict[str, tuple[Array, Array]]:

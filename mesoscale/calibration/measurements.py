@@ -66,6 +66,7 @@ class Measurements:
     zero_known : curves: whether separations count from the mean plane.
     discrepancy : See `MeasurementTable.discrepancy`.
     file : as it is named in messages.
+    source : where the measurements come from, in words.
     """
 
     kind: str
@@ -74,6 +75,7 @@ class Measurements:
     zero_known: bool
     discrepancy: float
     file: str
+    source: str = ""
 
     def __len__(self) -> int:
         return len(self.specimens)
@@ -112,7 +114,7 @@ def load_measurements(table: MeasurementTable, path: str | Path | None = None) -
     if named is None and table.kind in CURVES:
         raise InputError(f"{file}: no column specimen; name the specimen of every point, one curve each")
     specimens = tuple(f"{table.kind} {line}" if named is None else row[named] for line, row in enumerate(rows, 1))
-    loaded = Measurements(table.kind, columns, specimens, table.zero == "known", table.discrepancy, file)
+    loaded = Measurements(table.kind, columns, specimens, table.zero == "known", table.discrepancy, file, table.source)
     _check(loaded)
     return loaded
 

@@ -222,6 +222,19 @@ def response_errors(posterior: Posterior, chain: Chain, turn: int) -> list[dict[
     ]
 
 
+def response_remarks(result: Calibration, settings: MeasurementsSettings) -> list[str]:
+    """What the last round left of the responses' error, in words; nothing where it is small enough."""
+    last = [row for row in result.checks if row["round"] == result.checks[-1]["round"]]
+    worst = max(last, key=lambda row: row["error_share"], default=None)
+    if worst is None or worst["error_share"] <= settings.response_error:
+        return []
+    return [
+        f"the responses' error is {worst['error_share']:.2g} of the posterior's width ({worst['observable']}), above "
+        f"measurements.response_error {settings.response_error:g}; it is part of that width: raise "
+        "measurements.local_runs or measurements.rounds to narrow it"
+    ]
+
+
 def response_bias(posterior: Posterior, added: Cycles) -> list[dict[str, float]]:
     """Mean difference of new cycles from responses that have not seen them, with its standard error."""
     seen = _seen(posterior)

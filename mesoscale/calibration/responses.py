@@ -47,6 +47,11 @@ class Prediction:
     scatter: Array
     error: Array
 
+    def at(self, place: int) -> "Prediction":
+        """The prediction at one of the points, as one of one point."""
+        here = slice(place, place + 1)
+        return Prediction(self.mean[here], self.scatter[here], self.error[here])
+
 
 @dataclass(frozen=True)
 class Responses:
@@ -99,7 +104,7 @@ class Responses:
         basis = basis_matrix(u, self.degrees)
         unit = lengths(self.observables, x[:, self.rms_column])
         roots = unit[:, :, None] * self.axes * np.exp(0.5 * (self.spread[0] + u @ self.spread[1:]))[:, None, :]
-        error = np.einsum("mt,tu,mu->m", basis, self.covariance, basis, optimize=True)
+        error = (basis @ self.covariance * basis).sum(axis=1)
         mean = (basis @ self.coefficients) * unit + log_units(self.observables, x[:, self.rms_column])
         return Prediction(mean, roots @ np.swapaxes(roots, 1, 2), error)
 
@@ -211,7 +216,7 @@ def _fit(u: Array, target: Array, degrees: Degrees) -> tuple[Array, Array, Array
         root = np.sqrt(weights)[:, None]
         covariance = np.asarray(np.linalg.pinv((basis * root).T @ (basis * root), hermitian=True), float)
         coefficients = covariance @ (basis.T @ (weights[:, None] * target))
-        leverage = weights * np.einsum("mt,tu,mu->m", basis, covariance, basis, optimize=True)
+        leverage = weights * (basis @ covariance * basis).sum(axis=1)
         left_out = (target - basis @ coefficients) / np.maximum(1 - leverage, 1e-3)[:, None]
         sd = np.sqrt((left_out**2).mean(axis=0) + SMALLEST_SD**2)
         axes = sd[:, None] * np.linalg.eigh(np.corrcoef(left_out / sd, rowvar=False).reshape(len(sd), -1))[1]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -165,6 +166,7 @@ def posterior_json(
         "gate": {"passed": not result.reasons, "reasons": result.reasons},
         "remarks": [*conflicts, *remarks],
         "chain": {
+            "sampler": f"emcee {version('emcee')}",
             "converged": chain.converged,
             "r_hat": chain.r_hat,
             "independent_draws": chain.effective,
@@ -177,7 +179,13 @@ def posterior_json(
         "response_error_share": max(shares, default=0.0),
         "rounds": max((row["round"] for row in result.checks), default=0),
         "tables": {
-            data.kind: {"file": data.file, "rows": len(data), "discrepancy": data.discrepancy} for data in tables
+            data.kind: {
+                "file": data.file,
+                "source": data.source,
+                "rows": len(data),
+                "discrepancy": data.discrepancy,
+            }
+            for data in tables
         },
         "points_left_out": result.posterior.surfaces.left_out if result.posterior.surfaces else 0,
         "inputs": inputs,

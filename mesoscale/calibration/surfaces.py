@@ -75,7 +75,8 @@ class SurfaceData:
         pulled = np.einsum("msjk,sk->msj", half, self.information)
         result = 0.5 * (pulled**2).sum(axis=(1, 2)) - np.log(np.einsum("mskk->msk", factor)).sum(axis=(1, 2))
         result -= 0.5 * self.constant
-        total_precision = self.precision.sum(axis=0) - np.einsum("msij,msik->mjk", lowered, lowered, optimize=True)
+        stacked = lowered.reshape(len(mean), -1, size)
+        total_precision = self.precision.sum(axis=0) - np.swapaxes(stacked, 1, 2) @ stacked
         total_information = self.information.sum(axis=0) - np.einsum("msjk,msj->mk", lowered, pulled)
         common = self._model_error_at(mean) + prediction.error[:, None, None] * scatter
         common_root = np.linalg.cholesky(common + 1e-12 * np.einsum("mkk->mk", scatter)[:, :, None] * eye)

@@ -54,6 +54,13 @@ def test_a_target_runs_its_stage_and_what_that_needs(plan):
     assert not REPORT & rules
 
 
+def test_only_scenes_with_measurements_schedule_a_calibration(plan):
+    calibration = {"collect_priors", "observe_cycles", "sample_posterior"}
+    for scene in ("ci", "paper", "reduced", "full", "literature"):
+        assert not calibration & plan(scene)
+    assert plan("made_up") >= calibration | MESOSCALE | REPORT
+
+
 def test_studies_run_only_where_they_are_asked_for(plan):
     for scene in ("ci", "paper", "reduced", "full"):
         assert not [rule for rule in plan(scene) if rule.endswith(("accuracy", "stability", "audit"))]

@@ -20,11 +20,12 @@ from workflow.report.drawing import draw
 from workflow.report.numbers import show
 from workflow.report.render import render
 from workflow.report.stages import STAGES
+from workflow.report.stages.inputs import _distribution
 from workflow.report.studies import recommended
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 SECTIONS = ("inputs", "hardness", "elastic", "topography", "curves", "uncertainty", "sensitivity", "device")
-ON_TOP = ("model-form", "history", "coupling", "accuracy", "stability")
+ON_TOP = ("model-form", "history", "coupling", "calibration", "accuracy", "stability")
 
 
 @pytest.fixture(scope="module")
@@ -266,3 +267,34 @@ def _separation_at(pressure_MPa):
         return sum(pressure(separation, law)) - pressure_MPa / 1e3
 
     return brentq(excess, 0.0, 1.5 * LAW["d_c_nm"])
+
+
+def test_calibration_says_what_was_learned_from_where_and_what_contradicts(page):
+    section = page[page.index('<section id="calibration"') :]
+    section = section[: section.index("</section>")]
+    assert "5.00 [4.50, 5.50]" in section
+    assert "made up, no measurement" in section
+    assert "hardness (hardness.csv) contradicts what the other measurements" in page
+    assert "60 ± 1.2 %" in section
+    assert "0 ± 1.2 %" in section
+    assert "-0" not in re.findall(r"<td>([^<]*) ± ", section)
+    assert "8.6 bits in all" in section
+    assert "3 points of curves lie outside" in section
+
+
+def test_a_chain_that_has_not_converged_shows_no_posterior(files, tmp_path):
+    root = tmp_path / "results"
+    shutil.copytree(files[0] / "calibration", root / "calibration")
+    path = root / "calibration/posterior.json"
+    content = json.loads(path.read_text())
+    failed = {"passed": False, "reasons": ["the chain has not converged: R-hat 1.2, above 1.01"]}
+    path.write_text(json.dumps(content | {"gate": failed, "checksum": None}))
+    page = render(Results(root, sorted(root.rglob("*.*")), "made_up"))
+    assert "R-hat 1.2, above 1.01" in page
+    assert "there is no posterior" in page
+    assert "What to measure next" not in page
+
+
+def test_an_input_given_by_samples_shows_their_quantiles():
+    row = {"distribution": f"samples {json.dumps([k / 100 for k in range(101)])}", "a": "", "b": ""}
+    assert _distribution(row) == "samples, median 0.500, 5 to 95 %: 0.0500 to 0.950"

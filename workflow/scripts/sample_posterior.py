@@ -7,7 +7,7 @@ learned.csv (bits, contradictions), next.csv (what to measure), predictive.csv, 
 
 from mesoscale.calibration.learning import check_range, learned, next_measurements, outliers
 from mesoscale.calibration.measurements import load_measurements
-from mesoscale.calibration.posterior import calibrate, cycles_of_rows
+from mesoscale.calibration.posterior import calibrate, cycles_of_rows, response_remarks
 from mesoscale.calibration.summary import (
     LEARNED_COLUMNS,
     NEXT_COLUMNS,
@@ -45,5 +45,6 @@ with job(snakemake) as run:
     write_csv(snakemake.output.predictive, predictive_rows(result, contact.max_force_nN), PREDICTIVE_COLUMNS)
     write_csv(snakemake.output.summary, summary_rows(result), SUMMARY_COLUMNS)
     write_csv(snakemake.output.samples, sample_rows(result), [*prior.names, "log_likelihood"])
-    content = posterior_json(result, tables, lessons, outliers(result) if converged else [])
+    remarks = [*outliers(result), *response_remarks(result, settings)] if converged else []
+    content = posterior_json(result, tables, lessons, remarks)
     write_json(snakemake.output.posterior, content, run.provenance)

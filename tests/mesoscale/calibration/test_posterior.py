@@ -198,7 +198,8 @@ def test_predictive_probability_is_uniform_under_the_prior(prior, parts):
     rng = np.random.default_rng(6)
     template = given(prior, parts, pull_offs([70.0, 80.0]))
     x = prior.sample(40, 5)
-    shares = [predictive_probability(template.simulated(row[None], rng), prior.sample(300, 9), rng) for row in x]
+    predicted, others = template.predict(x), prior.sample(300, 9)
+    shares = [predictive_probability(template.simulated(predicted.at(k), rng), others, rng) for k in range(40)]
     assert abs(np.mean(np.array(shares) < 0.2) - 0.2) < 4 * np.sqrt(0.16 / 40)
 
 

@@ -1,6 +1,7 @@
 """What measurements say about the inputs: prior and posterior, what each taught, what to measure next."""
 
 import numpy as np
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
@@ -47,10 +48,11 @@ def describe(results: Results) -> Section | None:
             show(row["added_bits"], 2),
             show(row["probability"], 2),
             row["verdict"],
+            posterior["tables"][row["kind"]]["source"],
         )
         for row in results.csv("calibration/learned.csv")
     ]
-    header = ("measurement", "rows", "alone (bits)", "added to the others (bits)", "probability", "verdict")
+    header = ("measurement", "rows", "alone (bits)", "added to the others (bits)", "probability", "verdict", "source")
     section.blocks.append(Table("What each measurement taught", header, lines))
     lines = [
         (
@@ -68,7 +70,7 @@ def describe(results: Results) -> Section | None:
             row["kind"].replace("_", " "),
             row["measurement"],
             show(row["width_then_V"]),
-            f"{number(row['reduction']):.0%}",
+            _percent(row),
         )
         for row in results.csv("calibration/next.csv")
     ]
@@ -76,9 +78,9 @@ def describe(results: Results) -> Section | None:
     section.blocks.append(Table("What to measure next", header, lines))
     chain = posterior["chain"]
     section.notes.append(
-        f"{show(posterior['information_bits'], 2)} bits in all. Chain: R-hat {chain['r_hat']:.4f}, "
-        f"{chain['independent_draws']:.0f} independent draws. Behind the responses are {posterior['cycles']} "
-        "contact cycles; their error, which is part of the posterior's width, is at most "
+        f"{show(posterior['information_bits'], 2)} bits in all. Chain ({chain['sampler']}): "
+        f"R-hat {chain['r_hat']:.4f}, {chain['independent_draws']:.0f} independent draws. Behind the responses are "
+        f"{posterior['cycles']} contact cycles; their error, which is part of the posterior's width, is at most "
         f"{show(posterior['response_error_share'], 2)} of it."
     )
     if posterior["points_left_out"]:
@@ -87,6 +89,11 @@ def describe(results: Results) -> Section | None:
         )
     section.files += [f"calibration/{name}" for name in ("next.csv", "predictive.csv", "responses.csv")]
     return section
+
+
+def _percent(row: dict[str, str]) -> str:
+    """A reduction in whole percent with its standard error."""
+    return f"{round(100 * number(row['reduction']))} ± {100 * number(row['standard_error']):.1f} %"
 
 
 def _interval(row: dict[str, str], state: str) -> str:
@@ -127,6 +134,9 @@ def predicted_curves(results: Results) -> str:
                     low, high = column(part, f"{state}_q05"), column(part, f"{state}_q95")
                     axis.fill_betweenx(force, low, high, color=color, alpha=0.2, linewidth=0)
         axis.set(yscale="log", xlabel="mean separation (nm)", ylabel="net force (nN)")
+        axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.yaxis.set_minor_formatter(NullFormatter())
         axis.legend(fontsize=8.5)
 
     return draw("predicted", "Curves of the next surface before and after the measurements", plot)

@@ -1,5 +1,9 @@
 """Inputs in use, as the paper's Table 1."""
 
+import json
+
+import numpy as np
+
 from workflow.report.available import Results, Row
 from workflow.report.numbers import SYMBOLS, number, show
 from workflow.report.page import Section, Table
@@ -37,6 +41,10 @@ def describe(results: Results) -> Section | None:
 
 
 def _distribution(row: Row) -> str:
+    kind, _, values = row["distribution"].partition(" ")
+    if kind == "samples":
+        low, median, high = np.quantile(json.loads(values), [0.05, 0.5, 0.95])
+        return f"samples, median {show(median)}, 5 to 95 %: {show(low)} to {show(high)}"
     a, b = f"{number(row['a']):.4g}", f"{number(row['b']):.4g}"
     if row["distribution"] == "uniform":
         return f"uniform from {a} to {b}"
