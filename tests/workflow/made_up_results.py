@@ -25,11 +25,13 @@ PROVENANCE = {"rule": "made_up", "inputs_hash": "0", "versions": {}}
 
 def write_all(root: Path) -> list[Path]:
     """Write results of every stage under `root` and name the files."""
-    write_text(root / "scene.yaml", "scene: {}\nversions: {numpy: '2.4'}\ngit_commit: abc\n")
+    scene = "scene: {device: {}, contact: {length_nm: 1000.0}}"
+    write_text(root / "scene.yaml", f"{scene}\nversions: {{numpy: '2.4'}}\ngit_commit: abc\n")
     _inputs(root)
     _curves(root)
     _uncertainty(root)
     _device(root)
+    _pad(root)
     _hardness(root)
     _elastic(root)
     _topography(root)
@@ -191,6 +193,40 @@ def _device(root: Path) -> None:
     _write(root / "device/stiction.csv", stiction_rows(states))
     _write(root / "device/path.csv", switch_path(samples, settings))
     _write(root / "device/law.csv", law_table(samples.nominal, samples.laws))
+
+
+def _pad(root: Path) -> None:
+    from mesoscale.device.pad_switch import switch_on_pad
+    from mesoscale.pad.cells import PadGrid
+    from mesoscale.pad.compact import CompactPad
+    from mesoscale.pad.curves import PadCells, adhesion_by_cells, curve_rows
+    from mesoscale.pad.tail import fit_tail, tail_summary
+    from mesoscale.settings import DeviceSettings
+
+    area, hamaker = 1e6, 0.215
+    separation = np.concatenate([np.geomspace(200, 50, 8)[:-1], np.arange(50, 19.9, -0.25)])
+    grid = PadGrid(separation, np.arange(separation.size)[-61::12])
+    form = CompactPad(-5.0, 0.15, 0.006, 0.3, 0.01, 0.02, 0.05, 1.0, 0.5, hamaker)
+    shifts = np.random.default_rng(5).normal(0, 1.5, 24)
+    closing = np.array([form.closing_GPa(separation + shift) for shift in shifts])
+    opening = np.array(
+        [[form.opening_GPa(separation + shift, depth + shift) for depth in grid.depth_nm] for shift in shifts]
+    )
+    for number, depth in enumerate(grid.depth_nm):
+        opening[:, number, :, separation < depth] = np.nan
+    cells = PadCells(grid, 40 - shifts, closing, opening, np.ones(24, bool))
+    _write(root / "pad/curves.csv", curve_rows(cells))
+    _write(root / "pad/adhesion.csv", adhesion_by_cells(cells, [1, 2, 4, 8, 16]))
+    tail = fit_tail(cells.first_contact_nm)
+    write_json(root / "pad/tail.json", tail_summary(tail, area), PROVENANCE)
+    switch = switch_on_pad(cells, hamaker, DeviceSettings(), area, tail)
+    write_json(root / "device/pad_switch.json", switch, PROVENANCE)
+    for chunk, members in enumerate(np.split(np.arange(24), 2)):
+        values = {
+            "closing_nN": Dataset(area * closing[members], "nN", "made up", ("cell", "force", "separation")),
+            "opening_nN": Dataset(area * opening[members], "nN", "made up", ("cell", "depth", "force", "separation")),
+        }
+        write_h5(root / f"pad/cells/chunk_{chunk:03d}.h5", {"cells": values}, {}, PROVENANCE)
 
 
 def _hardness(root: Path) -> None:

@@ -1,11 +1,7 @@
 """The report page: complete, self-contained, only what exists, alive in a real browser."""
 
-import html
-import json
 import math
 import re
-import shutil
-import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -14,6 +10,7 @@ from scipy.optimize import brentq
 
 from mesoscale.law.compact import Law, pressure
 from mesoscale.law.parameters import PARAMETERS
+from tests.workflow.browser import probed
 from tests.workflow.made_up_results import LAW, write_all
 from workflow.report.available import Results
 from workflow.report.drawing import draw
@@ -23,7 +20,6 @@ from workflow.report.stages import STAGES
 from workflow.report.stages.inputs import _distribution
 from workflow.report.studies import recommended
 
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 SECTIONS = ("inputs", "hardness", "elastic", "topography", "curves", "uncertainty", "sensitivity", "device")
 ON_TOP = ("model-form", "history", "coupling", "calibration", "accuracy", "stability")
 
@@ -195,37 +191,11 @@ def test_numbers_read_well():
     assert show(0) == "0"
 
 
-PROBE = Path(__file__).with_name("probe.js")
-WATCH = """<script>window.failures = [];
-window.addEventListener("error", (event) => failures.push(event.message));</script>"""
-
-
-def probed(page, folder, width):
-    """What the probe finds in the page at a window `width` pixels wide, and what the browser says."""
-    if CHROMIUM is None:
-        pytest.skip("no Chromium is installed (Debian package chromium)")
-    path = folder / "report.html"
-    probe = f"<script>{PROBE.read_text()}</script></body>"
-    watched = page.replace("<style>", WATCH + "<style>", 1).replace("</body>", probe)
-    # in a frame, as the browser's own window cannot be as narrow as a phone
-    frame = f'<iframe width="{width}" height="900" style="border: 0" srcdoc="{html.escape(watched)}"></iframe>'
-    path.write_text(f"<!doctype html><body>{frame}</body>")
-    options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder / 'profile'}"]
-    options += ["--enable-logging=stderr", "--virtual-time-budget=3000", "--window-size=1400,900"]
-    options += ["--disable-background-networking"]
-    done = subprocess.run(
-        [CHROMIUM, *options, "--dump-dom", path.as_uri()],
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    found = re.search(r'<pre id="probe">(.*?)</pre>', done.stdout)
-    assert found, done.stderr[-2000:]
-    return json.loads(found[1]), done.stderr
+PROBE = Path(__file__).with_name("probe.js").read_text()
 
 
 def test_figures_fit_a_phone_and_can_be_read_there(page, tmp_path):
-    found, _ = probed(page, tmp_path, 390)
+    found, _ = probed(page, tmp_path, 390, PROBE)
     assert found["width"] == 390
     assert found["sticks_out"] == 0
     assert found["overflow"] <= 0, "the page scrolls sideways"
@@ -239,7 +209,7 @@ def test_without_javascript_the_explorer_leaves_no_void(page):
 
 
 def test_page_lives_in_a_real_browser(page, tmp_path):
-    found, said = probed(page, tmp_path, 1280)
+    found, said = probed(page, tmp_path, 1280, PROBE)
     assert found["errors"] == []
     assert "CONSOLE" not in said, re.findall(r".*CONSOLE.*", said)
     assert found["sliders"] == 7

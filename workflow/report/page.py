@@ -77,4 +77,4 @@ class Page:
     gates: Sequence[Gate]
     limits: Sequence[str]
     provenance: Sequence[tuple[str, str]]
-    explorer: dict[str, Any] | None
+    live: dict[str, dict[str, Any]]

@@ -9,19 +9,22 @@ from markupsafe import Markup, escape
 from workflow.report.answer import answer
 from workflow.report.available import Results
 from workflow.report.drawing import SUBSCRIPT
-from workflow.report.explorer import explorer, script_json
 from workflow.report.limits import limits
+from workflow.report.live.device import switch_data
+from workflow.report.live.explorer import explorer, script_json
 from workflow.report.page import Page, kind
 from workflow.report.stages import STAGES
 from workflow.report.studies import studies
 
 HERE = Path(__file__).parent
+SCRIPTS = ("controls", "explorer", "pad", "beam", "device")
+"""In the order in which they build on each other."""
 
 
 def render(results: Results) -> str:
     """HTML of the report; sections appear only for results that exist."""
     sections = [section for stage in STAGES if (section := stage.describe(results))] + studies(results)
-    sliders = explorer(results)
+    live = {"surrogate": explorer(results), "switch_data": switch_data(results)}
     page = Page(
         scene=results.scene,
         beside_paper=results.beside_paper,
@@ -30,18 +33,18 @@ def render(results: Results) -> str:
         gates=[gate for section in sections for gate in section.gates],
         limits=limits(results),
         provenance=_provenance(results),
-        explorer=sliders,
+        live={name: data for name, data in live.items() if data is not None},
     )
     environment = Environment(
         loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
     environment.filters["low"] = _low
+    environment.filters["script_json"] = script_json
     return environment.get_template("template.html.j2").render(
         page=page,
         kind=kind,
         style=(HERE / "style.css").read_text(encoding="utf-8"),
-        script=(HERE / "explorer.js").read_text(encoding="utf-8"),
-        explorer_json=script_json(sliders),
+        script="".join((HERE / "live" / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS),
     )
 
 

@@ -10,6 +10,7 @@ def report_inputs():
     ]
     files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "path.csv", "law.csv")]
     files += ["pad/curves.csv", "pad/adhesion.csv", "pad/tail.json", "device/pad_switch.json"]
+    files += [f"pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS]
     if needed("hardness"):
         files += ["hardness/points.csv", "hardness/fit.json"]
         files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness", "snapshots") for run in CLOSINGS]
@@ -65,6 +66,12 @@ def studies_at_hand():
     return {name: file_checksum(name) for name in found if Path(name).is_file()}
 
 
+def page_parts():
+    """What the page is made of beside results."""
+    room = ROOT / "workflow" / "report"
+    return [str(room / "template.html.j2"), str(room / "style.css"), *sorted(map(str, room.glob("live/*.js")))]
+
+
 rule report:
     input:
         f"{RESULTS}/report.html",
@@ -73,7 +80,7 @@ rule report:
 rule render_report:
     input:
         report_inputs(),
-        style=[str(ROOT / "workflow" / "report" / name) for name in ("template.html.j2", "style.css", "explorer.js")],
+        style=page_parts(),
     output:
         report(f"{RESULTS}/report.html", caption="../captions/report.rst", category="Report"),
     log:

@@ -1,7 +1,9 @@
 "use strict";
 // Sliders move the law: responses in Legendre polynomials and their scatter, as exported in uq/surrogate.json.
 (() => {
-  const data = JSON.parse(document.getElementById("surrogate").textContent);
+  const holder = document.getElementById("surrogate");
+  if (!holder) return;
+  const data = JSON.parse(holder.textContent);
   const form = document.getElementById("sliders");
   const status = document.getElementById("status");
   const body = document.querySelector("#parameters tbody");
@@ -14,24 +16,10 @@
 
   document.getElementById("live").hidden = false;
   const sliders = data.inputs.map((input) => {
-    const label = document.createElement("label");
-    const text = document.createElement("span");
-    text.textContent = input.label + (input.unit === "1" ? "" : ` (${input.unit})`);
-    const value = document.createElement("output");
-    const slider = document.createElement("input");
-    Object.assign(slider, { type: "range", min: input.low, max: input.high, step: (input.high - input.low) / 200 || 1 });
-    slider.defaultValue = (input.low + input.high) / 2;
-    slider.name = input.name;
-    label.append(text, value, slider);
-    form.append(label);
-    slider.addEventListener("input", update);
-    return { slider, value, input };
+    const slider = labelled(form, { ...input, value: (input.low + input.high) / 2 }, update);
+    return { ...slider, input };
   });
-  const reset = document.createElement("button");
-  reset.type = "reset";
-  reset.textContent = "Back to the middle";
-  form.append(reset);
-  form.addEventListener("reset", () => setTimeout(update));
+  addReset(form, "Back to the middle", update);
   addEventListener("resize", update);
   update();
 
@@ -89,12 +77,9 @@
   }
 
   function update() {
-    const u = sliders.map(({ slider, value, input }) => {
-      const x = Number(slider.value);
-      value.textContent = x.toPrecision(3);
-      return input.high > input.low ? (2 * (x - input.low)) / (input.high - input.low) - 1 : 0;
-    });
-    const hamaker = Number(sliders.find(({ input }) => input.name === "hamaker").slider.value);
+    const u = sliders.map(({ read, input }) =>
+      (input.high > input.low ? (2 * (read() - input.low)) / (input.high - input.low) - 1 : 0));
+    const hamaker = sliders.find(({ name }) => name === "hamaker").read();
     const both = branches.map((branch) => laws(branch, u));
     const broken = both.filter(({ mean }) => !usable(mean)).map(({ branch }) => branch);
     const shown = both.filter(({ mean }) => usable(mean));
@@ -143,22 +128,20 @@
   }
 
   function fill(both, hamaker) {
-    const rows = [["d<sub>c</sub> (nm)", (law) => law[0]], ["C<sub>a</sub> (10⁻⁵ GPa/nm)", (law) => 1e5 * law[1]],
-      ["C<sub>r</sub> (10⁻⁴ GPa)", (law) => 1e4 * law[2]], ["ρ<sub>r</sub> (nm)", (law) => law[3]],
+    const rows = [[symbol("d", "c", "nm"), (law) => law[0]], [symbol("C", "a", "10⁻⁵ GPa/nm"), (law) => 1e5 * law[1]],
+      [symbol("C", "r", "10⁻⁴ GPa"), (law) => 1e4 * law[2]], [symbol("ρ", "r", "nm"), (law) => law[3]],
       [`separation at ${READ} MPa (nm)`, (law) => (usable(law) ? separation(READ, law, hamaker) : NaN)]];
-    body.replaceChildren(...rows.map(([label, value]) => {
-      const row = document.createElement("tr");
-      const head = document.createElement("th");
-      head.scope = "row";
-      head.innerHTML = label; // our own constant text
-      row.append(head, ...both.map(({ mean, cells }) => {
-        const cell = document.createElement("td");
-        const ends = cells.length ? [0.16, 0.84].map((q) => show(quantile(cells.map(value), q))) : [];
-        cell.textContent = show(value(mean)) + (ends.length ? ` [${ends.join(", ")}]` : "");
-        return cell;
-      }));
-      return row;
-    }));
+    body.replaceChildren(...rows.map(([label, value]) => tableRow(label, both.map(({ mean, cells }) => {
+      const ends = cells.length ? [0.16, 0.84].map((q) => show(quantile(cells.map(value), q))) : [];
+      return show(value(mean)) + (ends.length ? ` [${ends.join(", ")}]` : "");
+    }))));
+  }
+
+  function symbol(letter, index, unit) {
+    const [whole, low] = [document.createElement("span"), document.createElement("sub")];
+    low.textContent = index;
+    whole.append(letter, low, ` (${unit})`);
+    return whole;
   }
 
   function show(value) { return Number.isFinite(value) ? value.toPrecision(3).replace("-", "−") : "–"; }

@@ -1,0 +1,218 @@
+"""The switch that the page follows itself, against the library: in Node.js to 1e-6, every slider in a browser."""
+
+import base64
+import json
+import math
+import re
+import shutil
+import subprocess
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mesoscale.device.beam_switch import solve_beam
+from mesoscale.device.pad_switch import solve_on_pad
+from mesoscale.device.switch import beam_stiffness_N_per_m, switch_from_settings
+from mesoscale.errors import InputError
+from mesoscale.pad.memory import PadLaw
+from mesoscale.settings import DeviceSettings
+from tests.workflow.browser import probed
+from tests.workflow.made_up_results import write_all
+from workflow.report.available import Results
+from workflow.report.live.device import switch_data
+from workflow.report.render import render
+
+LIVE = Path(__file__).parents[2] / "workflow" / "report" / "live"
+PADS = 100
+CASES = (
+    {},
+    {"gap_um": 2.0},
+    {"spring_N_per_m": 90.0},
+    {"area_um2": 40000.0},
+    {"bow_nm": 300.0},
+    {"bow_nm": -300.0},
+    {"adhesion": 1.57},  # where some pads stick and some do not
+    {"adhesion": 2.2},
+    {"adhesion": 0.0},
+    {"gap_um": 5.0, "spring_N_per_m": 80.0, "area_um2": 90000.0, "bow_nm": 120.0, "adhesion": 1.7},
+)
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    root = tmp_path_factory.mktemp("results") / "made_up"
+    return Results(root, write_all(root), "made_up")
+
+
+@pytest.fixture(scope="module")
+def data(results):
+    return switch_data(results)
+
+
+def _numbers(text, kind="<f8"):
+    return np.frombuffer(base64.b64decode(text), kind).astype(float)
+
+
+def _law(curves, values, adhesion):
+    """The library's pad from the numbers on the page."""
+    s, depth = _numbers(curves["separation_nm"]), _numbers(curves["depth_nm"])
+    branches, place = [], 0
+    for start in (s[0], *depth):
+        count = int((s >= start - 1e-9).sum())
+        branch = np.full((2, s.size), np.nan)
+        branch[:, s.size - count :] = values[place : place + 2 * count].reshape(2, count) * [[1.0], [adhesion]]
+        branches.append(branch)
+        place += 2 * count
+    assert place == values.size
+    return PadLaw(s, branches[0], depth, np.array(branches[1:]), adhesion * curves["hamaker"])
+
+
+def _drawn(curves):
+    """The pads of groups of cells that the page draws."""
+    groups, state = [_numbers(text, "<f4") for text in curves["groups"]], 1
+    for _ in range(PADS):
+        picks = []
+        for _ in groups:
+            state = 16807 * state % 2147483647
+            picks.append(groups[state % len(groups)])
+        yield np.mean(picks, axis=0)
+
+
+def by_library(data, chosen):
+    """What the library says of the switch at these values of the sliders."""
+    device = DeviceSettings(**data["device"])
+    width = chosen["area_um2"] / device.length_um
+    stiffness = beam_stiffness_N_per_m(device.model_copy(update={"width_um": width}))  # proportional to the modulus
+    settings = device.model_copy(
+        update={
+            "gap_um": chosen["gap_um"],
+            "bow_nm": chosen["bow_nm"],
+            "width_um": width,
+            "youngs_modulus_GPa": device.youngs_modulus_GPa * chosen["spring_N_per_m"] / stiffness,
+        }
+    )
+    plate, hold = switch_from_settings(settings), settings.hold_voltage_V
+    law = _law(data["curves"], _numbers(data["curves"]["mean"]), chosen["adhesion"])
+    return {
+        "flat": _or_none(lambda: asdict(solve_on_pad(plate, law, hold))),
+        "sticking": _or_none(
+            lambda: np.mean(
+                [
+                    solve_on_pad(plate, _law(data["curves"], pad, chosen["adhesion"]), hold).stuck
+                    for pad in _drawn(data["curves"])
+                ]
+            )
+        ),
+        "beam": _or_none(lambda: asdict(solve_beam(settings, law))),
+    }
+
+
+def _or_none(solve):
+    try:
+        return solve()
+    except InputError:
+        return None
+
+
+def _chosen(data, case):
+    return {slider["name"]: slider["value"] for slider in data["sliders"]} | case
+
+
+def _agree(page, library):
+    """Every number that the page computes is that of the library; what the library refuses, the page refuses."""
+    assert (page is None) == (library is None)
+    if page is None:
+        return
+    for name, value in page.items():
+        assert value == pytest.approx(library[name], rel=1e-6, abs=1e-9), name
+
+
+DRIVER = """
+const [data, cases] = JSON.parse(require("fs").readFileSync(process.argv[2]));
+const orNull = (solve) => {
+  try { return solve(); } catch (error) { if (error instanceof OutOfRange) return null; throw error; }
+};
+console.log(JSON.stringify(cases.map((chosen) => {
+  const { plate, beam } = switchOf(data.device, chosen);
+  const { mean, resampled } = PadLaw.read(data.curves, chosen.adhesion);
+  const hold = data.device.hold_voltage_V;
+  return { flat: orNull(() => solveOnPad(plate, mean, hold)), sticking: stickingShare(plate, resampled(PADS), hold),
+    beam: orNull(() => solveBeam(beam, mean)) };
+})));
+"""
+
+
+def test_page_computes_what_the_library_computes(data, tmp_path):
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("no Node.js is installed (Debian package nodejs)")
+    cases = [_chosen(data, case) for case in CASES]
+    (tmp_path / "cases.json").write_text(json.dumps([data, cases]))
+    script = "".join((LIVE / f"{name}.js").read_text() for name in ("pad", "beam"))
+    (tmp_path / "drive.js").write_text(f"const PADS = {PADS};\n{script}{DRIVER}")
+    done = subprocess.run(
+        [node, tmp_path / "drive.js", tmp_path / "cases.json"], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    known = [by_library(data, chosen) for chosen in cases]
+    for page, library in zip(found, known, strict=True):
+        _agree(page["flat"], library["flat"])
+        _agree(page["beam"], library["beam"])
+        assert page["sticking"] == library["sticking"]
+    released = {round(case["flat"]["release_V"], 3) for case in known if case["flat"]}
+    assert len(released) > 4, "the sliders do nothing"
+    assert any(0 < case["sticking"] < 1 for case in known if case["sticking"] is not None)
+
+
+MOVE = """
+window.addEventListener("load", async () => {
+  const rest = () => new Promise((done) => setTimeout(done, 600));
+  const table = () => Object.fromEntries([...document.querySelectorAll("#switch-results tbody tr")].map((row) =>
+    [row.cells[0].textContent, [...row.cells].slice(1).map((cell) => cell.textContent)]));
+  const found = [];
+  await rest();
+  for (const slider of document.querySelectorAll("#switch-sliders input")) {
+    slider.value = 0.6 * slider.max + 0.4 * slider.min;
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+    await rest();
+    const status = document.getElementById("switch-status").textContent;
+    found.push({ name: slider.name, value: Number(slider.value), table: table(), status });
+    document.getElementById("switch-sliders").reset();
+    await rest();
+  }
+  const text = document.createElement("pre");
+  text.id = "probe";
+  text.textContent = JSON.stringify({ found, rest: table(), errors: window.failures });
+  parent.document.body.append(text);
+});
+"""
+
+
+def test_every_slider_of_the_switch_in_a_browser(results, data, tmp_path):
+    found, _ = probed(render(results), tmp_path, 1280, MOVE, budget_ms=30000)
+    assert found["errors"] == []
+    assert [move["name"] for move in found["found"]] == [slider["name"] for slider in data["sliders"]]
+    at_rest = {"name": "gap_um", "value": _chosen(data, {})["gap_um"], "table": found["rest"], "status": ""}
+    for move in (at_rest, *found["found"]):
+        library = by_library(data, _chosen(data, {move["name"]: move["value"]}))
+        told = {head: [_told(cell) for cell in cells] for head, cells in move["table"].items()}
+        for place, kind in enumerate(("flat", "beam")):
+            if library[kind] is None:
+                assert "No number" in move["status"]
+                assert math.isnan(told["release"][place])
+                continue
+            assert told["pull-in"][place] == pytest.approx(library[kind]["pull_in_V"], rel=5e-3)  # three digits
+            assert told["release"][place] == pytest.approx(library[kind]["release_V"], rel=5e-3)
+        if library["sticking"] is not None:
+            assert told["probability of sticking"][0] == pytest.approx(100 * library["sticking"], rel=5e-3)
+
+
+def _told(cell):
+    """Number in a cell; 0 V where the switch sticks, NaN where there is none."""
+    if cell == "sticks":
+        return 0.0
+    found = re.match(r"[\d.]+", cell)
+    return float(found[0]) if found else math.nan

@@ -1,0 +1,43 @@
+"use strict";
+// What all live parts of the page share: sliders with their labels, and rows of a table.
+function shown(value) { return Number.isFinite(value) ? String(Number(value.toPrecision(3))).replace("-", "−") : "–"; }
+
+function labelled(form, { name, label, unit, low, high, value }, changed) {
+  const holder = document.createElement("label");
+  const text = document.createElement("span");
+  const output = document.createElement("output");
+  const slider = document.createElement("input");
+  text.textContent = label + (unit && unit !== "1" ? ` (${unit})` : "");
+  Object.assign(slider, { type: "range", min: low, max: high, step: "any", name });
+  slider.defaultValue = value;
+  holder.append(text, output, slider);
+  form.append(holder);
+  const tell = () => {
+    output.textContent = shown(Number(slider.value));
+    slider.setAttribute("aria-valuetext", `${output.textContent} ${unit === "1" ? "" : unit}`.trim());
+  };
+  slider.addEventListener("input", () => { tell(); changed(); });
+  form.addEventListener("reset", () => setTimeout(tell));
+  tell();
+  return { name, read: () => Number(slider.value) };
+}
+
+function addReset(form, words, changed) {
+  const reset = document.createElement("button");
+  Object.assign(reset, { type: "reset", textContent: words });
+  form.append(reset);
+  form.addEventListener("reset", () => setTimeout(changed));
+}
+
+function tableRow(head, cells) {
+  const row = document.createElement("tr");
+  const first = document.createElement("th");
+  first.scope = "row";
+  first.append(head);
+  row.append(first, ...cells.map((content) => {
+    const cell = document.createElement("td");
+    cell.append(content ?? "–");
+    return cell;
+  }));
+  return row;
+}

@@ -1,0 +1,91 @@
+"""What the page needs to follow the switch itself: the pad's curves, the switch and the ranges of its sliders."""
+
+import base64
+from typing import Any
+
+import numpy as np
+import yaml
+
+from mesoscale.device.switch import switch_from_settings
+from mesoscale.inputs.table import medians
+from mesoscale.settings import DeviceSettings
+from workflow.report.available import Results
+from workflow.report.numbers import column
+
+WIDEST = 3.0
+"""A slider reaches from a third of the scene's value to three times it."""
+LARGEST_BOW_NM = 500.0
+GROUPS = 12
+"""Of cells, drawn with replacement for the probability of sticking."""
+
+
+def switch_data(results: Results) -> dict[str, Any] | None:
+    """Curves of the pad (GPa against nm, near to far), settings of the switch, and its sliders."""
+    if not results.has("pad/curves.csv", "device/pad_switch.json", "scene.yaml"):
+        return None
+    if results.json("device/pad_switch.json")["mean"] is None:
+        return None
+    scene = yaml.safe_load((results.root / "scene.yaml").read_text(encoding="utf-8"))["scene"]
+    device = DeviceSettings(**scene["device"])
+    switch = switch_from_settings(device)
+    bends = device.spring_N_per_m is None and device.electrode_um2 is None
+    return {
+        "device": device.model_dump(mode="json"),
+        "bends": bends,
+        "curves": _curves(results, scene["contact"]["length_nm"] ** 2),
+        "sliders": [
+            _slider("gap_um", "gap at rest", "µm", device.gap_um),
+            _slider("spring_N_per_m", "stiffness", "N/m", switch.spring_N_per_m),
+            _slider("area_um2", "area of the pad", "µm²", switch.area_m2 * 1e12),
+            *([_bow(device.bow_nm)] if bends else []),
+            {**_slider("adhesion", "adhesion, times the scene's", "", 1.0), "low": 0.0},
+        ],
+    }
+
+
+def _curves(results: Results, area_nm2: float) -> dict[str, Any]:
+    """The mean pad, and groups of its cells (fewer where a cell's file is not at hand)."""
+    rows = results.csv("pad/curves.csv")
+    closing = [row for row in rows if row["branch"] == "closing"][::-1]
+    separation = column(closing, "separation_nm")
+    depths = sorted({float(row["depth_nm"]) for row in rows if row["branch"] == "opening"})
+    branches = [closing] + [
+        [row for row in rows if row["depth_nm"] and float(row["depth_nm"]) == depth][::-1] for depth in depths
+    ]
+    mean = [column(branch, f"{kind}_MPa") * 1e-3 for branch in branches for kind in ("repulsive", "attractive")]
+    return {
+        "separation_nm": _packed(separation),
+        "depth_nm": _packed(np.array(depths)),
+        "mean": _packed(np.concatenate(mean)),
+        "groups": [_packed(values, "<f4") for values in _groups(results, area_nm2)],
+        "hamaker": medians(results.csv("inputs.csv"))["hamaker"],
+    }
+
+
+def _groups(results: Results, area_nm2: float) -> list[np.ndarray]:
+    """Mean pressures (GPa) of groups of cells in the order of the mean pad's."""
+    files = [results.h5(name)[0]["cells"] for name in results.matching("pad/cells/", ".h5")]
+    if not files:
+        return []
+    closing, opening = (np.concatenate([cells[f"{branch}_nN"] for cells in files]) for branch in ("closing", "opening"))
+    groups = np.array_split(np.arange(len(closing)), min(GROUPS, len(closing)))
+    packed = []
+    for members in groups:
+        parts = [closing[members].mean(axis=0)[:, ::-1]]
+        parts += [branch[:, np.isfinite(branch[0])][:, ::-1] for branch in opening[members].mean(axis=0)[::-1]]
+        packed.append(np.concatenate([part.ravel() for part in parts]) / area_nm2)
+    return packed
+
+
+def _packed(values: np.ndarray, kind: str = "<f8") -> str:
+    return base64.b64encode(values.astype(kind).tobytes()).decode()
+
+
+def _slider(name: str, label: str, unit: str, value: float) -> dict[str, Any]:
+    return {"name": name, "label": label, "unit": unit, "value": value, "low": value / WIDEST, "high": value * WIDEST}
+
+
+def _bow(value: float) -> dict[str, Any]:
+    reach = max(LARGEST_BOW_NM, 2.0 * abs(value))
+    ends = {"low": -reach, "high": reach}
+    return {"name": "bow_nm", "label": "bow of the beam at rest", "unit": "nm", "value": value, **ends}
