@@ -1,7 +1,9 @@
 """The report page: complete, self-contained, only what exists, alive in a real browser."""
 
+import json
 import math
 import re
+import shutil
 from html.parser import HTMLParser
 from pathlib import Path
 
