@@ -1,9 +1,11 @@
 """The coupled engine beside tamaas: cost of a curve, forces and areas at equal separation.
 
-python -m benchmarks.coupled cost|agreement|large      (one thread, processor times; docs/contact.md, Coupled mechanics)
+python -m benchmarks.coupled cost|large|agreement [PIXELS [SURFACES]]
+(one thread, processor times; docs/contact.md, Coupled mechanics)
 
-cost: cycles at 512 x 512 and 1024 x 1024, and some of their loads by tamaas. agreement: ten random surfaces under four
-loads. large: closing to half of full contact at 1024 x 1024.
+cost: cycles at 512 x 512 and 1024 x 1024, and some of their loads by tamaas. agreement: random surfaces under four
+loads up to near full contact, elastic, with saturated pressure, and flattened. large: closing to half of full contact
+at 1024 x 1024.
 """
 
 import os
@@ -25,7 +27,7 @@ from mesoscale.contact.studies.stability import MIDDLE
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
 
-SURFACES, LOADS = range(1, 11), 4
+LOADS = 4
 HARDNESS = 4.0  # GPa, of the comparison with saturated pressure
 
 
@@ -87,37 +89,45 @@ def cost() -> None:
                 )
 
 
-def agreement() -> None:
-    """Print the largest differences of force and area at the separations of tamaas, 64 x 64 sites of 1 nm."""
-    settings = ContactSettings(mechanics="coupled", pixels=64, length_nm=62.5)
+def agreement(pixels: int = 64, surfaces: int = 10) -> None:
+    """Print the largest differences of force and area at the separations of tamaas, on sites of 1 nm."""
+    length = 62.5 * pixels / 64
+    settings = ContactSettings(mechanics="coupled", pixels=pixels, length_nm=length)
     rough = replace(MIDDLE, q0=0.15, rms=2.0, h_macro=HARDNESS, h_prime=0.0)
+    share = (pixels / 64) ** 2  # the same nominal pressures on every grid
     cases = (
         ("elastic", None, (1e2, 1e3, 1e4, 8e4)),
         ("nonlinear", HARDNESS, (1e2, 1e3, 5e3, 0.9 * HARDNESS * 62.5**2)),
     )
     for model, hardness, loads in cases:
         force = area = least = most = 0.0
-        for seed in SURFACES:
+        for seed in range(1, surfaces + 1):
             heights = random_surface(rough, settings, seed)
-            for load in loads:
-                p, separation, _ = by_tamaas(heights, 62.5, load, hardness)
+            for load in (share * load for load in loads):
+                p, separation, spent = by_tamaas(heights, length, load, hardness)
+                start = time.process_time()
                 contact = CoupledContact(heights.copy(), rough, settings.model_copy(update={"model": model}))
                 moved = contact.move_to(separation, False)
                 touching = int((p > 0).sum())
                 force, area = max(force, abs(moved.force / load - 1)), max(area, abs(moved.sites / touching - 1))
-                share = touching / p.size
-                least, most = min(least or share, share), max(most, share)
-        print(f"{model}: {len(SURFACES)} surfaces x {len(loads)} loads, touching {least:.2%} to {most:.1%}: ", end="")
+                part = touching / p.size
+                least, most = min(least or part, part), max(most, part)
+                print(
+                    f"  {model} surface {seed}, {load:.3g} nN, {part:.2%} touch: force {moved.force / load - 1:.1e}, "
+                    f"{touching} and {moved.sites} sites, {spent:.2f} and {time.process_time() - start:.2f} s",
+                    flush=True,
+                )
+        print(f"{model}: {surfaces} surfaces x {len(loads)} loads, touching {least:.2%} to {most:.1%}: ", end="")
         print(f"force differs by at most {force:.1e}, area by {area:.1e}", flush=True)
     worst = 0.0
-    for seed in SURFACES:
-        chosen = settings.model_copy(update={"max_force_nN": 2e3})
+    for seed in range(1, surfaces + 1):
+        chosen = settings.model_copy(update={"max_force_nN": 2e3 * share})
         cycle = run_cycle(rough, chosen, seed, heights=random_surface(rough, settings, seed), keep_surface=True)
-        for load in (1.9e3, 1e3, 200.0, 20.0):
-            _, separation, _ = by_tamaas(cycle.heights, 62.5, load)
+        for load in (share * load for load in (1.9e3, 1e3, 200.0, 20.0)):
+            _, separation, _ = by_tamaas(cycle.heights, length, load)
             contact = CoupledContact(cycle.heights.copy(), rough, settings.model_copy(update={"model": "elastic"}))
             worst = max(worst, abs(contact.move_to(separation, False).force / load - 1))
-    print(f"unloading of {len(SURFACES)} flattened surfaces at 4 loads: force differs by at most {worst:.1e}")
+    print(f"unloading of {surfaces} flattened surfaces at 4 loads: force differs by at most {worst:.1e}")
 
 
 def large() -> None:
@@ -134,4 +144,4 @@ def large() -> None:
 
 
 if __name__ == "__main__":
-    {"cost": cost, "agreement": agreement, "large": large}[sys.argv[1]]()
+    {"cost": cost, "agreement": agreement, "large": large}[sys.argv[1]](*map(int, sys.argv[2:]))

@@ -2,7 +2,10 @@
 
 Attraction acts on the gap that repulsion alone leaves (the picture of Derjaguin, Muller and Toporov). This holds where
 Tabor's parameter is well below 1 and where the surface is not sticky by the criterion of Pastewka and Robbins
-(doi:10.1073/pnas.1320846111); the formula was derived again from its picture, and not compared with the paper's text.
+(doi:10.1073/pnas.1320846111). Its equation 10, as the authors' package Adhesion prints it, calls a surface sticky
+where (h' dr / (kappa l_a)) (h' d / 4 dr)^(2/3) is below about 1, with l_a = w/E*, d = 4 h'/h'' and dr the range.
+Derived again from its picture the bound is pi (3/16)^(2/3) = 1.03. h'' is the RMS Laplacian here (the radius of a
+summit is 2/h''); with half of it, which that package calls curvature, a surface would need 1.6 times the adhesion.
 """
 
 import math

@@ -272,6 +272,13 @@ def test_flags_say_where_the_model_holds():
     assert softer["plasticity_index"] < flags["plasticity_index"]
 
 
+def test_stickiness_is_pastewka_and_robbins_criterion_worked_by_hand():
+    # their eq. 10 in its printed form: h' = 0.1, h'' = 0.05 /nm, dr = 0.3 nm, w = 0.4277 J/m2, E* = 91 GPa, so that
+    # l_a = 4.700 pm, d = 8 nm and (h' dr / (2 l_a)) (h' d / 4 dr)^(2/3) = 3.191 * 0.7631 = 2.435: not sticky
+    numbers = validity.adhesion_numbers(0.215, 0.2, 91.0, validity.Roughness(0.1, 0.05, 0.0))
+    assert 1.0292 / numbers["stickiness"] == pytest.approx(2.435, rel=1e-3)
+
+
 @pytest.mark.parametrize(("draw", "pixels"), [(695, 64), (1420, 64), (1332, 128)])
 def test_second_cycle_ends_where_the_first_did_although_clusters_soften_beyond(draw, pixels):
     # one rim site further a cluster is softer: a step beyond the end would look like one that fell short of it
