@@ -17,7 +17,7 @@ from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty.collocation import elementary_effects, level1_response
 from mesoscale.uncertainty.designs import Run
 from mesoscale.uncertainty.runs import compute_all
-from mesoscale.uncertainty.studies.readings import CHOICES, MENDED
+from mesoscale.uncertainty.studies.readings import CHOICES, COUPLED, MENDED
 
 Array = NDArray[np.float64]
 
@@ -35,6 +35,8 @@ LAW_READINGS: dict[str, dict[str, Any]] = {
 def with_reading(name: str, settings: ContactSettings) -> ContactSettings:
     """Contact settings with the choices of a reading's name put in."""
     values = name.split(".")
+    if values[-1] == COUPLED:
+        settings, values = settings.model_copy(update={"mechanics": COUPLED}), values[:-1]
     keys = (*CHOICES, *MENDED) if len(values) > len(CHOICES) else CHOICES
     chosen: dict[str, Any] = dict(zip(keys, values, strict=True))
     chosen["touching_attracts"] = chosen["touching_attracts"] == "true"

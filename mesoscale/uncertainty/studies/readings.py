@@ -21,6 +21,9 @@ MENDED: dict[str, tuple[str, ...]] = {"unloading_radius": ("curvature", "flatten
 NEAREST = "areal.wide.hertz.curvature.sites.false"
 """The reading nearest to the paper's tables (docs/data/audit.csv), the default."""
 
+COUPLED = "coupled"
+"""Ends the name of the nearest reading with all asperities on one half-space; not the paper's either."""
+
 
 def contact_readings() -> list[str]:
     """Names of all readings of the contact model that can be computed, values joined by dots.
@@ -35,7 +38,8 @@ def contact_readings() -> list[str]:
 def audited_readings(names: Sequence[str]) -> list[str]:
     """The readings to audit: those named, `all`, or `mended`; by default those of the mean curvature.
 
-    ``mended`` are the nearest reading and what mends it, named with the values of `MENDED` at the end.
+    ``mended`` are the nearest reading and what mends it, named with the values of `MENDED` at the end. The nearest
+    reading with `COUPLED` at the end must be named.
     R = A/(2 pi delta) with Hertz's area takes several times as long; config/studies/all_readings.yaml has all.
 
     Raises
@@ -47,6 +51,7 @@ def audited_readings(names: Sequence[str]) -> list[str]:
     if list(names) == ["mended"]:
         return [".".join((NEAREST, *values)) for values in product(*MENDED.values())]
     known = [*contact_readings(), *(".".join((NEAREST, *values)) for values in product(*MENDED.values()))]
+    known.append(f"{NEAREST}.{COUPLED}")
     if unknown := sorted(set(names) - set(known)):
         raise InputError(
             f"audit_readings: {unknown[0]!r:.60} is no reading; accepted: all, mended, or names as {NEAREST}"

@@ -89,6 +89,13 @@ def test_mended_readings_end_with_their_choices():
     assert settings.touching_attracts is False
 
 
+def test_the_nearest_reading_can_be_audited_with_coupled_asperities():
+    name = f"{NEAREST}.coupled"
+    assert audited_readings((name,)) == [name]
+    settings = with_reading(name, ContactSettings(prefactor="paper"))
+    assert settings == with_reading(NEAREST, ContactSettings(mechanics="coupled"))
+
+
 def test_the_default_is_the_reading_that_the_audit_puts_first():
     with (PAPER.parents[1] / "docs" / "data" / "audit.csv").open(newline="") as stream:
         first = next(csv.DictReader(stream))
