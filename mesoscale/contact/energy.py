@@ -1,4 +1,4 @@
-"""Work of closing and opening, and what a cycle dissipates."""
+"""Numbers of a cycle: work of closing and opening, what is dissipated, pull-off and stiffness of the opening."""
 
 import numpy as np
 
@@ -21,3 +21,19 @@ def dissipated_energy(cycle: Cycle) -> tuple[float, float]:
     """Work lost between closing and opening against the repulsion, and its uncertainty, nN nm (1e-18 J)."""
     (spent, error_spent), (regained, error_regained) = work(cycle.closing), work(cycle.opening)
     return spent - regained, error_spent + error_regained
+
+
+def pull_off(opening: Branch) -> float:
+    """Largest net attraction on opening, nN; 0 where the surfaces repel each other throughout."""
+    return max(-float(opening.net_nN.min()), 0.0)
+
+
+def opening_stiffness(opening: Branch) -> float:
+    """Mean slope of the repulsion from its largest value to half of it, nN/nm; NaN without contact."""
+    half = 0.5 * opening.repulsive_nN[0]
+    if not half > 0.0:
+        return np.nan
+    after = int(np.argmax(opening.repulsive_nN <= half))
+    force, separation = opening.repulsive_nN[after - 1 : after + 1], opening.separation_nm[after - 1 : after + 1]
+    where = np.interp(half, force[::-1], separation[::-1])
+    return float(half / (where - opening.separation_nm[0]))

@@ -30,6 +30,7 @@ SMALL_LOAD_SLOPE = math.sqrt(8.0 / math.pi)
 """Elastic area at small load: share of area = this times p / (E* h'), h' the RMS gradient (1.6; computed: 2 to 2.6)."""
 GAMMA = 0.45  # share of the elastic energy of full contact in partial contact: Yang and Persson (2008)
 WAVES_PER_DECADE = 400  # of integrals over q; the trapezoidal rule in ln q is then exact to 1e-5
+NEVER = 6.0  # standard deviations that a pressure does not reach: 2e-9
 POINTS = 400  # of the pressure axis, denser at both ends
 
 
@@ -139,6 +140,10 @@ def contact_with_hardness(
     strengths = hardness(_waves(q_low, q_high))
     if not (np.all(strengths > 0.0) and np.all(np.diff(strengths) >= 0.0)):
         raise InputError("hardness: accepted are values > 0 GPa that do not fall with the wave vector")
+    spread = 0.5 * e_star * rms_gradient(psd, q_low, q_high)
+    if np.max(_pressures(pressure)) + NEVER * spread < strengths[0]:
+        touching = special.erf(_pressures(pressure) / (math.sqrt(2.0) * spread))
+        return PlasticContact(touching, np.zeros_like(touching), touching)
     # places on the axis, stress over hardness; as dense at its ends as the layers there are thin
     x = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, POINTS + 1)))
     left, right = np.diff(x)[:-1], np.diff(x)[1:]

@@ -78,6 +78,22 @@ def check_literature(settings: InputsSettings, central_share: float) -> dict[str
     return spans
 
 
+def check_resolved(table: InputTable, nyquist_per_nm: float, central_share: float) -> None:
+    """Check that a grid resolves the short-wave cut-off.
+
+    Raises
+    ------
+    InputError : the cut-off goes beyond the largest wave vector of the grid.
+    """
+    for row in table.rows:
+        _, high = row.distribution.span(central_share)
+        if row.name == "q1" and high > nyquist_per_nm * (1 + 1e-9):
+            raise InputError(
+                f"{row.source}: q1 reaches {high:.4g} 1/nm, beyond what contact.pixels and contact.length_nm resolve "
+                f"({nyquist_per_nm:.4g} 1/nm); raise contact.pixels, or set inputs.q1.origin to literature with a and b"
+            )
+
+
 PAPER_ROWS = {
     "e_star": InputRow(distribution="normal", a=91, b=3.8, source=TABLE_1),
     "h_prime": InputRow(a=1.95, b=14.8, source=TABLE_1),

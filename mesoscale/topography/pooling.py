@@ -10,6 +10,7 @@ from mesoscale.settings import TopographySettings
 from mesoscale.topography.curves import fit_curves, pooled_curve
 from mesoscale.topography.description.choice import Choice, choose, description_doubts, surface_of
 from mesoscale.topography.description.doubts import Doubt
+from mesoscale.topography.description.end import cutoff_row, rms_before
 from mesoscale.topography.description.heights import HeightTest, compare_heights
 from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.one_spectrum import OneSpectrum, Overlap, merge, overlaps, refuse_different_films
@@ -32,7 +33,7 @@ class Pooled:
     one : the spectrum over all scales; None where there is not enough for one.
     tests : of the heights of each scan.
     pairs : measurements that see common bands.
-    surface, rows : entries of `contact.surface`, distributions of q0, hurst and rms.
+    surface, rows : entries of `contact.surface`, distributions of q0, hurst, rms and q1.
     doubts : those that touch what is used.
     """
 
@@ -52,6 +53,7 @@ def pool(
     attributes: Mapping[str, Mapping[str, Any]],
     settings: TopographySettings,
     cell_nm: float,
+    cut_off: bool = False,
 ) -> Pooled:
     """Describe the surface behind all records.
 
@@ -59,6 +61,7 @@ def pool(
     ----------
     arrays, attributes : records by name (`records.record`).
     cell_nm : side of the surfaces that the contact model will make.
+    cut_off : they end at the measured cut-off; the RMS height is then that of the waves before it.
 
     Raises
     ------
@@ -83,6 +86,10 @@ def pool(
     choice = choose(topography, one, tests, settings)
     quantiles = [data["quantiles"] for data in arrays.values() if "quantiles" in data]
     surface, rows = surface_of(choice, topography, one, quantiles, settings, cell_nm)
+    if rows:
+        rows["q1"] = cutoff_row(topography, spectra)
+        if cut_off:
+            rows["rms"] = rms_before(rows["q1"], rows["rms"], topography, surface)
     apart = _disagreements(pairs, one) if settings.scans else []
     doubts = description_doubts(topography, choice, one, attributes, apart) if settings.scans else []
     if choice.name == "power_law":

@@ -89,13 +89,17 @@ class SpectrumTable:
 
     def scaled(self, rms_nm: float, q1: float) -> "SpectrumTable":
         """The same shape for an RMS height that the integral of 2 pi q C(q) from zero to q1 gives."""
+        return SpectrumTable(self.q, self.values * rms_nm**2 / self.mean_square(q1))
+
+    def mean_square(self, q1: float) -> float:
+        """Mean square height, nm^2: the integral of 2 pi q C(q) from zero to q1."""
         low, high = self.q[0], min(q1, self.q[-1])
         square = np.pi * self.values[0] * min(low, q1) ** 2
         if high > low:
             inside = self.q[self.q < high]
             q = np.unique(np.concatenate([inside, np.geomspace(low, high, FINE_POINTS)]))
             square += np.trapezoid(2 * np.pi * q * self.psd(q), q)
-        return SpectrumTable(self.q, self.values * rms_nm**2 / square)
+        return float(square)
 
 
 def mean_square(plateau: float, q0: float, slope: float, q1: float) -> float:

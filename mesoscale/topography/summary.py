@@ -9,6 +9,7 @@ from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description.choice import DESCRIPTIONS
+from mesoscale.topography.description.end import cutoff_row, trusted_end
 from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.parameters import Topography, analyse, inputs
 from mesoscale.topography.measurements.cleaning import Scan
@@ -16,7 +17,6 @@ from mesoscale.topography.pooling import Pooled
 from mesoscale.topography.roughness_spectrum import hurst_from_slope, mean_square
 
 UNITS = {"q0": "1/nm", "slope": "1", "hurst": "1", "rms": "nm"}
-TIP_RADIUS_ERROR = 0.2  # relative, of a stated radius; it moves the wave vector at which the tip ends the range
 
 
 def measure_roughness(scans: Sequence[Scan], settings: TopographySettings | None = None) -> dict[str, Any]:
@@ -34,8 +34,12 @@ def measure_roughness(scans: Sequence[Scan], settings: TopographySettings | None
     settings = settings or TopographySettings()
     if not scans:
         raise InputError("scans: none given; at least one is needed")
-    topography = analyse([trusted_scan(scan, settings) for scan in scans], settings)
-    return eq9_parameters(topography, [], settings, None)
+    spectra = [trusted_scan(scan, settings) for scan in scans]
+    topography = analyse(spectra, settings)
+    content = eq9_parameters(topography, [], settings, None)
+    if content["gate"]["passed"]:
+        content["inputs"]["q1"] = cutoff_row(topography, spectra)
+    return content
 
 
 def scan_rows(
@@ -127,29 +131,6 @@ def _one(pooled: Pooled, settings: TopographySettings) -> dict[str, Any] | None:
 
 
 MOST_PAIRS = 40  # of many alike scans the rest repeats them
-
-
-def trusted_end(spectra: Sequence[TrustedSpectrum]) -> dict[str, Any]:
-    """Where the measured spectrum ends: the largest trusted wave vector, what ends it, and how sure that is.
-
-    The interval holds the ends of the other measurements of that kind, and for a tip what an error of its radius
-    makes of the wave vector at which the roughness is as curved as the tip.
-    """
-    finest = max(spectra, key=lambda item: item.high)
-    ends = [item.high for item in spectra if item.high > 0.5 * finest.high]
-    shift = 1.0
-    if finest.limit == "tip":
-        q, psd = finest.spectrum.q, finest.spectrum.psd
-        near = (q > 0.6 * finest.high) & (q < 1.2 * finest.high)
-        slope = np.polyfit(np.log(q[near]), np.log(psd[near]), 1)[0] if near.sum() > 3 else -3.0
-        shift = (1 + TIP_RADIUS_ERROR) ** (1 / max(3 + slope / 2, 0.5))  # R q^3 sqrt(C) is held
-    return {
-        "value": finest.high,
-        "unit": "1/nm",
-        "interval": [min(ends) / shift, finest.high * shift],
-        "limit": finest.limit,
-        "measurement": finest.name,
-    }
 
 
 def eq9_parameters(

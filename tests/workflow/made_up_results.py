@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from mesoscale.law.parameters import LAW_OUTPUTS
 from workflow.results import Dataset, write_csv, write_h5, write_json, write_text
 from workflow.schemas import schema_of
 
@@ -39,6 +40,7 @@ def write_all(root: Path) -> list[Path]:
     _coupling(root)
     _model_form(root)
     _calibration(root)
+    _cutoff(root)
     _studies(root)
     return sorted(path for path in root.rglob("*") if path.is_file())
 
@@ -69,13 +71,15 @@ def _curves(root: Path) -> None:
     h = np.linspace(20, 45, 30)
     groups, facts = {}, {}
     for name in ("elastic", "nonlinear", "plastic", "load_1000", "load_7000"):
-        facts[name] = {"max_force_nN": 7000.0, "first_contact_nm": 40.0, "converged": True, "hamaker": 0.215}
+        central = {name: (a + b) / 2 if kind == "uniform" else a for name, (_, kind, a, b, _) in INPUTS.items()}
+        facts[name] = {"max_force_nN": 7000.0, "first_contact_nm": 40.0, "converged": True, **central}
         for branch in ("closing", "opening"):
             force = 7000 * np.exp(-(h - 20) / 3)
             groups[f"{name}/{branch}"] = {
                 "separation_nm": Dataset(h, "nm", "mean separation", ("point",)),
                 "repulsive_nN": Dataset(force, "nN", "repulsion", ("point",)),
                 "attractive_nN": Dataset(-0.05 * force, "nN", "attraction", ("point",)),
+                "contact_area_nm2": Dataset(0.3 * force, "nm^2", "area of contacting sites", ("point",)),
             }
     contact = {"length_nm": 1000.0, "pixels": 128, "convention": "areal", "touching_attracts": False}
     write_h5(root / "curves/nominal.h5", groups, {"cell_area_nm2": 1e6, "contact": contact}, PROVENANCE, facts)
@@ -440,6 +444,15 @@ def _calibration(root: Path) -> None:
     content = {"gate": {"passed": True, "reasons": []}, "remarks": [f"hardness (hardness.csv) {far}"], "chain": chain}
     content |= {"information_bits": 8.6, "cycles": 1700, "response_error_share": 0.45, "points_left_out": 3}
     write_json(root / "calibration/posterior.json", {**content, "tables": tables}, PROVENANCE)
+
+
+def _cutoff(root: Path) -> None:
+    numbers = dict.fromkeys([row.name for row in LAW_OUTPUTS], 1.0) | {"pull_off_nN": 2400.0}
+    rows = [
+        {"q1_per_nm": q1, "pixels": pixels, "cycles": 3, "converged": 3, **numbers, "cpu_s": 0.1}
+        for q1, pixels in ((0.3, 512), (0.3, 1024), (0.6, 512))
+    ]
+    _write(root / "uq/cutoff.csv", rows)
 
 
 def _studies(root: Path) -> None:

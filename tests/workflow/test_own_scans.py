@@ -16,7 +16,7 @@ def test_real_scans_to_force_curves_with_one_command(workflow_in):
     example = (ROOT / "config/scenes/own_scans.yaml").read_text()
     assert SCANS in example
     # beside the first line, which names the schema for editors
-    assert len(example.splitlines()[1:]) == 5
+    assert len(example.splitlines()[1:]) == 7
     scene = workflow_in.folder / "mine.yaml"
     scene.write_text(example.replace(SCANS, f"{AFM / 'example_ps.tiff'}, {AFM / 'di-6.di'}"))
     done = workflow_in.run(str(scene), "press_scans", "curves")

@@ -23,7 +23,7 @@ from workflow.report.stages.inputs import _distribution
 from workflow.report.studies import recommended
 
 SECTIONS = ("inputs", "hardness", "elastic", "topography", "curves", "uncertainty", "sensitivity", "device")
-ON_TOP = ("model-form", "history", "coupling", "calibration", "accuracy", "stability")
+ON_TOP = ("model-form", "cut-off", "history", "coupling", "calibration", "accuracy", "stability")
 
 
 @pytest.fixture(scope="module")
@@ -169,6 +169,16 @@ def test_history_and_coupling_say_their_answer(page):
 def test_model_form_says_what_shifts_and_what_the_cheap_engine_saves(page):
     assert "3.00 [2.50, 3.50]" in page
     assert "costs 25 times as much" in page
+
+
+def test_contact_area_stands_beside_perssons_theory(page):
+    assert "Share of area in contact against nominal pressure" in page
+
+
+def test_the_cutoff_and_the_grid_stand_with_what_they_change(page):
+    assert "3 surfaces at the medians of the inputs" in page
+    assert "q₁ (1/nm)" in page
+    assert "2400" in page
 
 
 def test_hardness_shows_its_witness_and_what_it_cost(page):

@@ -23,13 +23,20 @@ rule compute_nominal:
 
 
 rule study_contact_accuracy:
+    input:
+        **SURFACE,
+        inputs=f"{RESULTS}/inputs.csv",
     output:
-        f"{RESULTS}/accuracy/contact.csv",
+        accuracy=f"{RESULTS}/accuracy/contact.csv",
+        cutoff=f"{RESULTS}/uq/cutoff.csv",
     log:
         f"{RESULTS}/logs/study_contact_accuracy.log",
     threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
     params:
         settings=settings("contact"),
+        law=settings("law"),
     message:
         "study the error of the contact model against its run time"
     script:
@@ -69,5 +76,5 @@ rule study_contact_stability:
         "../scripts/study_contact_stability.py"
 
 
-ACCURACY.append(f"{RESULTS}/accuracy/contact.csv")
+ACCURACY += [f"{RESULTS}/accuracy/contact.csv", f"{RESULTS}/uq/cutoff.csv"]
 STABILITY.append(f"{RESULTS}/stability/contact.csv")

@@ -34,6 +34,7 @@ rule collect_inputs:
     params:
         settings=settings("inputs"),
         central_share=SCENE.uncertainty.central_share,
+        nyquist_per_nm=SCENE.contact.nyquist_per_nm,
     message:
         "collect the uncertain inputs"
     script:

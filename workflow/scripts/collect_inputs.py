@@ -7,7 +7,7 @@ Out: inputs.csv.
 
 import copy
 
-from mesoscale.inputs.table import COLUMNS, collect, to_rows
+from mesoscale.inputs.table import COLUMNS, check_resolved, collect, to_rows
 from mesoscale.settings import InputsSettings
 from workflow.job import job
 from workflow.results import load_json, write_csv
@@ -21,4 +21,5 @@ with job(snakemake) as run:
     stages = {stage: load_json(path) for stage, path in results.items()}
     files = {stage: "/".join(path.split("/")[-2:]) for stage, path in results.items()}
     table = collect(settings, stages, files, snakemake.params.central_share)
+    check_resolved(table, snakemake.params.nyquist_per_nm, snakemake.params.central_share)
     write_csv(snakemake.output[0], to_rows(table), COLUMNS)

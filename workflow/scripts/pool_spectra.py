@@ -27,7 +27,7 @@ with job(snakemake) as run:
         known = truth["truth"]
         typical = RoughSpectrum.from_rms(known["rms_nm"], known["q0"], known["slope"], known["q1"])
 
-    pooled = pool(arrays, attributes, settings, snakemake.params.cell_nm)
+    pooled = pool(arrays, attributes, settings, snakemake.params.cell_nm, snakemake.params.cut_off)
     rows = scan_rows(pooled.spectra, pooled.topography, attributes, truth)
     for row in rows:
         attributes[row["name"]] = {**attributes[row["name"]], **row}

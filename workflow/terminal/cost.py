@@ -17,12 +17,13 @@ from workflow.scene import Scene
 
 START_S = 2.0  # Snakemake's start of a job, and the packages
 GRID = 1024**2  # sites of the reference
-CYCLE_S = {"asperity": (0.005, 0.065), "coupled": (0.02, 2.5)}  # of any cycle; of one on the reference grid, besides
+# of any cycle; of one on the reference grid, besides; the power of the sites with which that grows
+CYCLE_S = {"asperity": (0.005, 0.065, 1.0), "coupled": (0.01, 2.1, 2.2)}
 CHAIN_S = 10.0  # a posterior of some twenty curves; scene made_up
 FITTED_RUN_S = 0.004  # law of a run and its row
 LATER_CYCLE, HOLD = 0.6, 0.05  # of a history, over a first cycle; of each time within a hold
 RELEASE_S = 0.015  # law and switch after a cycle
-CELL_S = 2.4  # a pad's cell over a cycle: it opens from several depths
+CELL_S = {"asperity": 2.4, "coupled": 4.5}  # a pad's cell over a cycle: it opens from several depths
 SCAN_S = 0.8  # analysis of a scan of the reference grid
 SCF_S = 9.0  # one volume of 28 atoms at 100 hartree
 RELAXATION_STEP_S = 8.0  # the same, tightly converged and with forces
@@ -33,8 +34,8 @@ TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
 
 def cycle_s(contact: ContactSettings) -> float:
     """Seconds of one closing and opening."""
-    fixed, growing = CYCLE_S[contact.mechanics]
-    return fixed + growing * contact.pixels**2 / GRID
+    fixed, growing, power = CYCLE_S[contact.mechanics]
+    return fixed + growing * (contact.pixels**2 / GRID) ** power
 
 
 def history_s(history: HistorySettings, contact: ContactSettings) -> float:
@@ -63,6 +64,11 @@ class Costs:
     def cycle_s(self) -> float:
         """Seconds of one closing and opening."""
         return cycle_s(self.scene.contact)
+
+    @property
+    def cell_s(self) -> float:
+        """Seconds of one cell of a pad."""
+        return CELL_S[self.scene.contact.mechanics] * self.cycle_s
 
     @property
     def scf_size(self) -> float:
@@ -117,11 +123,11 @@ class Costs:
 
     def plan_pad(self, wildcards: Mapping[str, str]) -> float:
         """Pilot cells, closed again for each longer range."""
-        return 2 * self.scene.pad.pilot_cells * CELL_S * self.cycle_s
+        return 2 * self.scene.pad.pilot_cells * self.cell_s
 
     def close_cells(self, wildcards: Mapping[str, str]) -> float:
         """A chunk of the pad's cells."""
-        return min(self.scene.pad.chunk_cells, self.scene.pad.cells) * CELL_S * self.cycle_s
+        return min(self.scene.pad.chunk_cells, self.scene.pad.cells) * self.cell_s
 
 
 def _constant(seconds: float) -> Callable[[Costs, Mapping[str, str]], float]:

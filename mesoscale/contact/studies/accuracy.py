@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.contact.cycle import Cycle, run_cycle
-from mesoscale.contact.energy import dissipated_energy
+from mesoscale.contact.energy import dissipated_energy, pull_off
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.fit import contact_separation, fit_branch
 from mesoscale.settings import ContactSettings, LawSettings
@@ -20,7 +20,10 @@ OUTPUTS = (
     "separation at full load",
     "attraction at full load",
     "dissipated energy",
+    "pull-off",
 )
+LARGEST_GRID = 4096  # sites a side of a reference grid, besides twice those of the settings
+
 METRIC = "mean relative deviation over surfaces (lengths: relative to rms)"
 
 Case = tuple[str, Any, dict[str, Any]]  # knob, value, changed settings
@@ -29,7 +32,7 @@ Case = tuple[str, Any, dict[str, Any]]  # knob, value, changed settings
 def studies(settings: ContactSettings) -> Iterator[tuple[str, dict[str, Any], list[Case]]]:
     """Yield for each study its reference in words, the reference's settings and the cases.
 
-    The grid study keeps the cut-off of its coarsest grid, so that all grids show the same surface.
+    The grids all show the surface of the settings: that of its cut-off, or of the Nyquist limit where none is set.
     """
     steps = (5, 10, 20, 40, 80)
     yield "320 force steps", {"force_steps": 320}, [("force_steps", n, {"force_steps": n}) for n in steps]
@@ -56,14 +59,19 @@ def studies(settings: ContactSettings) -> Iterator[tuple[str, dict[str, Any], li
     bins = (16, 64, 256, 1024, 4096)
     yield "65536 bins", {"gap_bins": 65536}, [("gap_bins", b, {"gap_bins": b}) for b in bins]
 
-    grids = [max(settings.pixels * k // 8, 32) for k in (2, 4, 8)]
-    cutoff = np.pi * grids[0] / settings.length_nm
-    finest = 2 * settings.pixels
+    cutoff = settings.q1_per_nm or settings.nyquist_per_nm
+    finest = max(2 * settings.pixels, min(4 * settings.pixels, LARGEST_GRID))
+    resolved = [n for n in grids_of(settings) if 32 <= n < finest and np.pi * n / settings.length_nm >= cutoff]
     yield (
         f"{finest} pixels, cut-off {cutoff:.3g} 1/nm",
         {"pixels": finest, "q1_per_nm": cutoff},
-        [("pixels", n, {"pixels": n, "q1_per_nm": cutoff}) for n in sorted(set(grids))],
+        [("pixels", n, {"pixels": n, "q1_per_nm": cutoff}) for n in resolved],
     )
+
+
+def grids_of(settings: ContactSettings) -> list[int]:
+    """Sites a side, from a quarter of those of the settings to twice them."""
+    return [settings.pixels // 4, settings.pixels // 2, settings.pixels, 2 * settings.pixels]
 
 
 def accuracy_points(
@@ -136,4 +144,5 @@ def cycle_outputs(cycle: Cycle, inputs: ContactInputs, settings: ContactSettings
         closing.separation_nm[-1],
         closing.attractive_nN[-1],
         dissipated_energy(cycle)[0],
+        pull_off(cycle.opening),
     ]

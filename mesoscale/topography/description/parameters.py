@@ -80,20 +80,12 @@ def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) ->
 
 
 def inputs(topography: Topography, settings: TopographySettings) -> dict[str, dict[str, Any]]:
-    """Distributions of q0, hurst and rms for Table 1: uniform over the range the settings ask for.
-
-    Besides of q1: its value where the power law is seen to end; where only the instrument ends, the true end lies
-    between what it resolves and, as far as anyone knows, the finest scan's Nyquist wave vector.
-    """
+    """Distributions of q0, hurst and rms for Table 1: uniform over the range the settings ask for."""
     rows: dict[str, dict[str, Any]] = {}
     for name in ("q0", "hurst", "rms"):
         if name in topography.estimates:
             low, high = getattr(topography.estimates[name], settings.ranges)
             rows[name] = {"distribution": "uniform", "a": low, "b": high}
-    if topography.q1_limited and topography.q1 < topography.cutoff:
-        rows["q1"] = {"distribution": "uniform", "a": topography.q1, "b": topography.cutoff}
-    else:
-        rows["q1"] = {"distribution": "fixed", "a": topography.q1}
     return rows
 
 

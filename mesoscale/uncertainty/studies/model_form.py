@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.contact import Branch, Cycle
+from mesoscale.contact import Cycle
+from mesoscale.contact.energy import opening_stiffness, pull_off
 from mesoscale.law.branches import fit_cycle
 from mesoscale.law.parameters import LAW_OUTPUTS
 from mesoscale.settings import ContactSettings, LawSettings
@@ -47,22 +48,6 @@ QUANTITIES = (
     Quantity("opening_stiffness_nN_nm", "nN/nm", "fall of the repulsion to its half, over the way to there", False),
 )
 """The outputs of Table 2, and what a switch depends on besides."""
-
-
-def pull_off(opening: Branch) -> float:
-    """Largest net attraction on opening, nN; 0 where the surfaces repel each other throughout."""
-    return max(-float(opening.net_nN.min()), 0.0)
-
-
-def opening_stiffness(opening: Branch) -> float:
-    """Mean slope of the repulsion from its largest value to half of it, nN/nm; NaN without contact."""
-    half = 0.5 * opening.repulsive_nN[0]
-    if not half > 0.0:
-        return np.nan
-    after = int(np.argmax(opening.repulsive_nN <= half))
-    force, separation = opening.repulsive_nN[after - 1 : after + 1], opening.separation_nm[after - 1 : after + 1]
-    where = np.interp(half, force[::-1], separation[::-1])
-    return float(half / (where - opening.separation_nm[0]))
 
 
 def quantities(cycle: Cycle, law: LawSettings) -> Array:

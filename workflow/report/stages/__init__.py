@@ -16,7 +16,7 @@ from workflow.report.stages import (
     topography,
     uncertainty,
 )
-from workflow.report.stages.studies import coupling, history, model_form
+from workflow.report.stages.studies import coupling, cutoff, history, model_form
 
 # in the order of the data's flow
 STAGES = (
@@ -29,6 +29,7 @@ STAGES = (
     uncertainty,
     sensitivity,
     model_form,
+    cutoff,
     pad,
     device,
     history,

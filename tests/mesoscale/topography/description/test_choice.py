@@ -90,7 +90,7 @@ def test_random_surfaces_follow_what_was_measured():
     """Spectrum and summit of surfaces made from the handed-on description are those of the scans."""
     scans = grainy(4)
     _, content = described(scans)
-    middle = {name: (row["a"] + row["b"]) / 2 for name, row in content["inputs"].items()}
+    middle = {name: (row["a"] + row["b"]) / 2 for name, row in content["inputs"].items() if name != "q1"}
     inputs = ContactInputs(hamaker=0.2, e_star=91, h_macro=2, h_prime=8, **middle)
     settings = ContactSettings(pixels=256, length_nm=1000.0, surface=content["surface"])
     highest = [-random_surface(inputs, settings, seed).min() for seed in range(6)]

@@ -1,6 +1,5 @@
 """Recovery of known roughness, and "not identifiable" where there is nothing to recover."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -100,17 +99,13 @@ def test_conventions_differ_by_one_half():
     assert slope_from_hurst(0.42, "areal") == pytest.approx(2.84)
 
 
-def test_inputs_are_ranges_of_q0_hurst_rms_and_q1():
+def test_inputs_are_ranges_of_q0_hurst_and_rms():
     result = analyse(spectra(), TopographySettings())
     rows = inputs(result, TopographySettings())
-    assert set(rows) == {"q0", "hurst", "rms", "q1"}
-    for row in (rows[name] for name in ("q0", "hurst", "rms")):
+    assert set(rows) == {"q0", "hurst", "rms"}
+    for row in rows.values():
         assert row["distribution"] == "uniform"
         assert 0 < row["a"] < row["b"]
-    limited = inputs(replace(result, q1=0.4, q1_limited=True, cutoff=3.2), TopographySettings())["q1"]
-    assert limited == {"distribution": "uniform", "a": 0.4, "b": 3.2}  # the instrument ends before the surface does
-    seen = inputs(replace(result, q1=0.4, q1_limited=False, cutoff=3.2), TopographySettings())["q1"]
-    assert seen == {"distribution": "fixed", "a": 0.4}
     narrow = inputs(result, TopographySettings(ranges="interval"))
     assert narrow["rms"]["b"] - narrow["rms"]["a"] <= rows["rms"]["b"] - rows["rms"]["a"]
 

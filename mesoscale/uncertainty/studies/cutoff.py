@@ -1,0 +1,202 @@
+"""What the short-wave cut-off and the grid do to the outputs, on the same surfaces.
+
+`scene_rows` are those of a scene, about its own cut-off and grid. A wider study at fixed inputs:
+
+python -m mesoscale.uncertainty.studies.cutoff FILE.csv         cycles that FILE lacks are computed and added to it
+python -m mesoscale.uncertainty.studies.cutoff FILE.csv show    tables of the means and of the errors of the grids
+
+A surface of a seed has the same waves on every grid that resolves its cut-off, so its outputs differ by the grid alone.
+"""
+
+import csv
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesoscale.contact import ContactInputs, run_cycle
+from mesoscale.contact.studies.accuracy import grids_of
+from mesoscale.contact.studies.stability import MIDDLE
+from mesoscale.settings import ContactSettings, LawSettings
+from mesoscale.uncertainty.runs import compute
+from mesoscale.uncertainty.studies.model_form import QUANTITIES, quantities
+
+INPUTS = {
+    "middle": MIDDLE,  # of Table 1
+    "hurst 0.46": replace(MIDDLE, hurst=0.46),
+    "scans": replace(MIDDLE, hurst=0.42, rms=5.5),  # the synthetic scans of scene `reduced`
+}
+NAMES = tuple(quantity.name for quantity in QUANTITIES)
+COLUMNS = ("inputs", "mechanics", "q1_per_nm", "pixels", "seed", *NAMES, "status", "cpu_s")
+CUTOFFS = (0.25, 0.5, 1.0, 2.0, 4.0)  # of a scene's own
+LARGEST_ERROR = 0.02  # of an output (of d_c and its change: in RMS heights), by which a grid is judged
+SHARE_OF_SCATTER = 0.2  # or, where that is more, this share of the deviation between surfaces
+
+
+class Cycles(NamedTuple):
+    """Cycles on the surfaces 1 to `seeds`."""
+
+    inputs: str
+    mechanics: str
+    q1: float
+    pixels: int
+    seeds: int
+
+
+def plan() -> Iterator[Cycles]:
+    """The cycles, those that decide first."""
+    for q1 in (0.2, 0.38):
+        for pixels, seeds in ((256, 8), (512, 8), (1024, 4)):
+            yield Cycles("scans", "coupled", q1, pixels, seeds)
+    for name in ("middle", "hurst 0.46"):
+        for pixels, seeds in ((256, 8), (512, 8), (1024, 4)):
+            yield Cycles(name, "coupled", 0.4, pixels, seeds)
+    for q1 in (0.1, 0.2, 0.8, 1.6, 3.2):
+        for name in ("middle", "hurst 0.46"):
+            for pixels, seeds in ((256, 8), (512, 8), (1024, 3)):
+                if q1 < ContactSettings(pixels=pixels).nyquist_per_nm:
+                    yield Cycles(name, "coupled", q1, pixels, seeds)
+    for name in ("middle", "hurst 0.46"):
+        for q1 in (0.1, 0.2, 0.4, 0.8, 1.6, 3.2):
+            for pixels, seeds in ((512, 8), (1024, 8), (2048, 4)):
+                if q1 < ContactSettings(pixels=pixels).nyquist_per_nm:
+                    yield Cycles(name, "asperity", q1, pixels, seeds)
+    for name in ("middle", "hurst 0.46"):
+        yield Cycles(name, "coupled", 0.4, 2048, 2)
+
+
+def cycle_rows(known: Sequence[Mapping[str, str]]) -> Iterator[dict[str, Any]]:
+    """Rows of the planned cycles that are not among those known."""
+    done = {
+        (row["inputs"], row["mechanics"], float(row["q1_per_nm"]), int(row["pixels"]), int(row["seed"]))
+        for row in known
+    }
+    law = LawSettings()
+    compute(asdict(MIDDLE), 1, ContactSettings(mechanics="coupled", pixels=64, max_force_nN=30.0))  # loads the engine
+    for name, mechanics, q1, pixels, seeds in plan():
+        settings = ContactSettings.model_validate({"mechanics": mechanics, "q1_per_nm": q1, "pixels": pixels})
+        for seed in range(1, seeds + 1):
+            if (name, mechanics, q1, pixels, seed) in done:
+                continue
+            start = time.process_time()
+            cycle = compute(asdict(INPUTS[name]), seed, settings)
+            spent = time.process_time() - start
+            row: dict[str, Any] = {
+                "inputs": name,
+                "mechanics": mechanics,
+                "q1_per_nm": q1,
+                "pixels": pixels,
+                "seed": seed,
+            }
+            if isinstance(cycle, str):
+                row["status"] = cycle
+            else:
+                row |= {name: f"{value:.7g}" for name, value in zip(NAMES, quantities(cycle, law), strict=True)}
+                row["status"] = "ok" if cycle.converged else "unconverged"
+            yield row | {"cpu_s": round(spent, 3)}
+
+
+def scene_rows(
+    inputs: ContactInputs,
+    contact: ContactSettings,
+    law: LawSettings,
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[dict[str, Any]]:
+    """Rows of uq/cutoff.csv: means over `contact.study_seeds` surfaces for other cut-offs and other grids.
+
+    Without a cut-off of its own a scene has the Nyquist limit of its grid. Cut-offs that a grid does not resolve, and
+    grids that do not resolve the cut-off, are left out.
+    """
+    own = contact.q1_per_nm or contact.nyquist_per_nm
+    cases = [(factor * own, contact.pixels) for factor in CUTOFFS] + [(own, pixels) for pixels in grids_of(contact)]
+    for done, (q1, pixels) in enumerate(sorted(set(cases))):
+        settings = contact.model_copy(update={"q1_per_nm": q1, "pixels": pixels})
+        if pixels < 32 or q1 > settings.nyquist_per_nm * (1 + 1e-9):
+            continue
+        start = time.process_time()
+        cycles = [run_cycle(inputs, settings, seed) for seed in range(1, contact.study_seeds + 1)]
+        spent = (time.process_time() - start) / len(cycles)
+        means = np.nanmean([quantities(cycle, law) for cycle in cycles], axis=0)
+        row = {name: value if np.isfinite(value) else "" for name, value in zip(NAMES, means.tolist(), strict=True)}
+        settled = sum(cycle.converged for cycle in cycles)
+        yield {"q1_per_nm": q1, "pixels": pixels, "cycles": len(cycles), "converged": settled, **row, "cpu_s": spent}
+        if progress is not None:
+            progress((done + 1) / len(cases), f"cut-off {q1:.3g} 1/nm, {pixels} pixels")
+
+
+def show(rows: Sequence[Mapping[str, str]]) -> Iterator[str]:
+    """Lines: for each cut-off and grid the means, and what the next finer grid changes on the surfaces of both."""
+    groups: dict[tuple[str, str, float], dict[int, dict[int, np.ndarray]]] = {}
+    cost: dict[tuple[str, str, float, int], list[float]] = {}
+    for row in rows:
+        case = (row["inputs"], row["mechanics"], float(row["q1_per_nm"]))
+        values = np.array([float(row[name] or "nan") for name in NAMES])
+        groups.setdefault(case, {}).setdefault(int(row["pixels"]), {})[int(row["seed"])] = values
+        cost.setdefault((*case, int(row["pixels"])), []).append(float(row["cpu_s"]))
+    yield "mean over surfaces: " + ", ".join(NAMES)
+    for case, grids in sorted(groups.items()):
+        for pixels, surfaces in sorted(grids.items()):
+            means = " ".join(f"{value:10.3e}" for value in np.nanmean(list(surfaces.values()), axis=0))
+            spent = float(np.median(cost[*case, pixels]))
+            yield f"{case[0]:10} {case[1]:8} q1 {case[2]:4} {pixels:5} ({len(surfaces)}, {spent:6.2f} s) {means}"
+    yield "change from a grid to the next: share of the output (d_c: of RMS) / of the deviation between surfaces"
+    for case, grids in sorted(groups.items()):
+        for coarse, fine in pairwise(sorted(grids)):
+            common = sorted(set(grids[coarse]) & set(grids[fine]))
+            change, scatter = grid_error(case[0], grids[coarse], grids[fine])
+            verdict = "passes" if passes(change, scatter) else "fails"
+            parts = " ".join(f"{100 * a:6.1f}/{100 * b:4.0f}" for a, b in zip(change, scatter, strict=True))
+            yield f"{case[0]:10} {case[1]:8} q1 {case[2]:4} {coarse:4} to {fine:4} ({len(common)}) {parts} % {verdict}"
+
+
+def grid_error(
+    inputs: str, coarse: Mapping[int, np.ndarray], fine: Mapping[int, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Change of the means from one grid to the next over the surfaces of both, shapes (quantities,).
+
+    Returns
+    -------
+    relative : over the mean on the finer grid; of d_c and its change over the RMS height.
+    scatter : over the deviation between the surfaces of the coarser grid.
+    """
+    common = sorted(set(coarse) & set(fine))
+    before, after = (np.array([values[seed] for seed in common]) for values in (coarse, fine))
+    change = np.abs(np.nanmean(before - after, axis=0))
+    scale = np.abs(np.nanmean(after, axis=0))
+    scale[[NAMES.index("d_c_nm"), NAMES.index("delta_d_c_nm")]] = INPUTS[inputs].rms
+    deviation = np.nanstd(list(coarse.values()), axis=0, ddof=1)
+    return change / scale, change / deviation
+
+
+def passes(relative: np.ndarray, scatter: np.ndarray) -> bool:
+    """Is the coarser grid good enough, in every quantity?"""
+    return bool(np.all((relative <= LARGEST_ERROR) | (scatter <= SHARE_OF_SCATTER)))
+
+
+def main() -> None:
+    """Compute what the file lacks, or show what it has."""
+    file = Path(sys.argv[1])
+    known: list[dict[str, str]] = []
+    if file.exists():
+        with file.open(newline="", encoding="utf-8") as stream:
+            known = list(csv.DictReader(stream))
+    if sys.argv[2:] == ["show"]:
+        for line in show(known):
+            print(line)
+        return
+    with file.open("a", newline="", encoding="utf-8") as out:
+        writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
+        if not known:
+            writer.writeheader()
+        for row in cycle_rows(known):
+            writer.writerow(row)
+            out.flush()
+
+
+if __name__ == "__main__":
+    main()
