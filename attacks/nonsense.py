@@ -91,6 +91,8 @@ NONSENSE: dict[str, tuple[str, str]] = {
     "history without flow": (scene("history: {cycles: 2}", "contact: {model: elastic}"), "only plastic contacts"),
     "dwell without creep": (scene("history: {cycles: 2, dwell_s: 10}"), "nothing would happen"),
     "coupled contact beyond the memory": (scene("contact: {pixels: 16384, mechanics: coupled}"), "GB of memory"),
+    "beam shorter than an atom": ("device: {length_um: 1.0e-9}", "device.length_um = 1e-09"),
+    "spring of nothing": ("device: {spring_N_per_m: 1.0e-300}", "device.spring_N_per_m = 1e-300"),
     "gap below zero": ("device: {gap_um: -1}", "device.gap_um = -1"),
     "Poisson's ratio of a half": ("device: {poisson_ratio: 0.5}", "device.poisson_ratio = 0.5"),
     "two Poisson's ratios in the wrong order": ("elastic: {poisson_ratio: [0.3, 0.2]}", "two increasing numbers"),

@@ -72,7 +72,8 @@ class Job:
             self._last_progress = now
             line = f"  {self.label}: {fraction:4.0%} {text}".rstrip()
             print(line, file=sys.stderr, flush=True)
-            print(line, file=self.log, flush=True)
+            with suppress(OSError):  # the disk is full; the job may still end well
+                print(line, file=self.log, flush=True)
 
 
 def package_versions() -> dict[str, str]:
@@ -111,18 +112,29 @@ def job(snakemake: Any) -> Iterator[Job]:
     except OSError as error:
         print(f"ERROR {snakemake.rule}: {error}; free the disk or the folder, then run again", file=sys.stderr)
         sys.exit(1)
-    with os.fdopen(join(log_path.parent.parent)), opened as log:
+    with os.fdopen(join(log_path.parent.parent)), _kept(opened) as log:
         inputs = [str(path) for path in snakemake.input]
         running = Job(snakemake.rule, dict(snakemake.wildcards), inputs, dict(snakemake.params), log)
         try:
             _refuse_damaged(inputs)
             yield running
         except Exception as error:
-            traceback.print_exc(file=log)
             line = f"ERROR {running.label}: {_one_line(error, log_path)}"
             print(line, file=sys.stderr, flush=True)
-            print(line, file=log, flush=True)
+            with suppress(OSError):  # the disk is full
+                traceback.print_exc(file=log)
+                print(line, file=log, flush=True)
             sys.exit(1)
+
+
+@contextmanager
+def _kept(log: TextIO) -> Iterator[TextIO]:
+    """A log that loses its last lines where the disk is full, instead of failing."""
+    try:
+        yield log
+    finally:
+        with suppress(OSError):
+            log.close()
 
 
 class DamagedResult(Exception):

@@ -202,7 +202,8 @@ def _solve_block(switch: Switch, closing: Law, opening: Law, hold_voltage_V: flo
     # critical landed fraction: spring and adhesion just balance where adhesion is relatively strongest
     def fraction(separation: np.ndarray) -> np.ndarray:
         adhesion = np.maximum(-pressure_GPa(separation, up), 1e-300) * GPA * switch.area_m2
-        return switch.spring_N_per_m * (switch.gap_nm - separation) * NM / adhesion
+        with np.errstate(over="ignore"):  # no adhesion: infinite
+            return switch.spring_N_per_m * (switch.gap_nm - separation) * NM / adhesion
 
     weakest = np.argmin(np.where(path, fraction(grid), np.inf), axis=1)
     _, critical = _refine(fraction, grid, weakest)

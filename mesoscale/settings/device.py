@@ -12,13 +12,13 @@ class DeviceSettings(Settings):
     """
 
     length_um: float = Field(
-        default=510.0, gt=0, le=1e5, description="length of the fixed-fixed beam", json_schema_extra={"unit": "um"}
+        default=510.0, ge=0.01, le=1e5, description="length of the fixed-fixed beam", json_schema_extra={"unit": "um"}
     )
     width_um: float = Field(
-        default=123.0, gt=0, le=1e5, description="width of the beam", json_schema_extra={"unit": "um"}
+        default=123.0, ge=0.01, le=1e5, description="width of the beam", json_schema_extra={"unit": "um"}
     )
     thickness_um: float = Field(
-        default=4.0, gt=0, le=1e3, description="thickness of the beam", json_schema_extra={"unit": "um"}
+        default=4.0, ge=0.001, le=1e3, description="thickness of the beam", json_schema_extra={"unit": "um"}
     )
     gap_um: float = Field(
         default=3.49,
@@ -28,7 +28,7 @@ class DeviceSettings(Settings):
         json_schema_extra={"unit": "um"},
     )
     youngs_modulus_GPa: float = Field(
-        default=89.3, gt=0, le=2000, description="Young's modulus of the beam", json_schema_extra={"unit": "GPa"}
+        default=89.3, ge=1e-3, le=2000, description="Young's modulus of the beam", json_schema_extra={"unit": "GPa"}
     )
     poisson_ratio: float = Field(default=0.3, ge=0, lt=0.5, description="Poisson's ratio of the beam")
     residual_stress_MPa: float = Field(
@@ -40,14 +40,14 @@ class DeviceSettings(Settings):
     )
     spring_N_per_m: float | None = Field(
         default=None,
-        gt=0,
+        ge=1e-9,
         le=1e6,
         description="stiffness of a parallel-plate switch; null computes it from the beam",
         json_schema_extra={"unit": "N/m"},
     )
     electrode_um2: float | None = Field(
         default=None,
-        gt=0,
+        ge=1e-4,
         le=1e9,
         description="electrode area; null is the whole beam, length times width",
         json_schema_extra={"unit": "um^2"},

@@ -1,6 +1,7 @@
 """A failing job says why in one line; the traceback is in its log."""
 
 import time
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -43,6 +44,18 @@ def test_a_full_disk_is_named(snakemake, capsys):
     message = capsys.readouterr().err
     assert "No space left on device" in message
     assert "finished results are kept" in message
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs Linux")
+def test_a_disk_too_full_for_the_log_shows_no_traceback(snakemake, tmp_path, capsys):
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "logs/a.log").symlink_to("/dev/full")
+    with pytest.raises(SystemExit), job(snakemake):
+        raise OSError(28, "No space left on device", "results/a.h5")
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("ERROR analyse_scan a: [Errno 28] No space left on device")
+    with job(snakemake) as run:
+        run.log.write("lost, but the job ends well")
 
 
 def test_provenance_depends_on_settings_and_inputs(snakemake, tmp_path):

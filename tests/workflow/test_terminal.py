@@ -58,6 +58,13 @@ def test_a_job_that_the_system_ended_is_named(capsys, tmp_path):
     assert line.startswith("ERROR compute_runs: ended by the system without a word, probably out of memory")
 
 
+def test_a_full_disk_is_not_taken_for_missing_memory(capsys, monkeypatch):
+    monkeypatch.setattr("workflow.terminal.progress.disk_usage", lambda folder: SimpleNamespace(free=0))
+    terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do")
+    send(terminal, "job_error", rule_name="compute_runs", log=[])
+    assert capsys.readouterr().err.startswith("ERROR compute_runs: no space left on the disk of ")
+
+
 def test_costs_grow_with_what_a_job_does():
     paper = load_scene("paper")
     coarse = paper.model_copy(update={"contact": paper.contact.model_copy(update={"pixels": 512})})

@@ -6,12 +6,15 @@ import time
 from collections import Counter, defaultdict
 from collections.abc import Mapping
 from pathlib import Path
+from shutil import disk_usage
 from typing import Any
 
 from snakemake.exceptions import WorkflowError
 
 from workflow.job import last_line
 from workflow.terminal.cost import Costs, relative_speed, wall_seconds
+
+FULL_DISK = 100_000  # bytes left: less than a job and its log need
 
 
 class Terminal(logging.Handler):
@@ -100,11 +103,15 @@ class Terminal(logging.Handler):
 def _say_if_silent(about: Mapping[str, Any]) -> None:
     """A job that says nothing before it ends was ended by the system."""
     log = Path(next(iter(about["log"]), ""))
-    if not (log.is_file() and last_line(log).startswith("ERROR ")):
-        _say(
-            f"ERROR {about['rule_name']}: ended by the system without a word, probably out of memory: run again with "
-            "fewer --cores, or lower contact.pixels"
-        )
+    if log.is_file() and last_line(log).startswith("ERROR "):
+        return
+    if disk_usage(Path.cwd()).free < FULL_DISK:
+        _say(f"ERROR {about['rule_name']}: no space left on the disk of {Path.cwd()}; make room, then run again")
+        return
+    _say(
+        f"ERROR {about['rule_name']}: ended by the system without a word, probably out of memory: run again with "
+        "fewer --cores, or lower contact.pixels"
+    )
 
 
 def duration(seconds: float) -> str:

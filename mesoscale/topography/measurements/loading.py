@@ -146,7 +146,8 @@ def _load(
 
     def read(reader: Any) -> Scan | Profile:
         try:
-            info, note = _height_channel(path, list(reader.channels), channel)
+            channels = _heights(path, lambda: list(reader.channels))
+            info, note = _height_channel(path, channels, channel)
             if info.dim == 1 and profiles:
                 return _profile(path, name, info, unit)
             return _scan(path, name, info, note, unit, sizes)
@@ -249,6 +250,7 @@ def _scan(
     except Exception:  # the library raises what its table of units happens to: one line for the user either way
         raise InputError(f"{path}: unit {unit!r} is not a length; save heights and size in nm, um or m") from None
     heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
+    _check_heights(path, heights)
     if min(heights.shape) < MIN_SIDE:
         raise InputError(f"{path}: {heights.shape[0]} x {heights.shape[1]} pixels; at least {MIN_SIDE} a side")
     lengths = tuple(float(s) for s in topography.physical_sizes)
@@ -273,6 +275,7 @@ def _profile(path: Path, name: str, info: Any, stated_unit: str | None) -> Profi
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     _check_size(path, profile.length_nm)
+    _check_heights(path, profile.heights_nm)
     radius = stated_radius(info.info.get("instrument", {}).get("parameters", {}).get("tip_radius"))
     return replace(profile, tip_radius_nm=radius, steps=(f"read channel {info.name}", *profile.steps))
 
@@ -283,6 +286,17 @@ def _check_size(path: Path, *lengths_nm: float) -> None:
         raise InputError(
             f"{path}: a size of {' x '.join(f'{length:.4g}' for length in lengths_nm)} nm; plausible is {low:g} .. "
             f"{high:g} nm, so its unit may be mistaken: save it again with the size in nm or um (.gwy)"
+        )
+
+
+def _check_heights(path: Path, heights_nm: np.ndarray) -> None:
+    if not np.isfinite(heights_nm).any():
+        raise InputError(f"{path}: no pixel has a height; measure again")
+    largest = float(np.nanmax(np.abs(heights_nm - np.nanmedian(heights_nm))))  # some instruments count from far away
+    if largest > FILE_NM[1]:
+        raise InputError(
+            f"{path}: a height of {largest:.3g} nm; plausible is up to {FILE_NM[1]:g} nm about the median, so the file "
+            "may be damaged or its unit mistaken: save it again (.gwy)"
         )
 
 

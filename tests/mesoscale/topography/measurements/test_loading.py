@@ -141,3 +141,11 @@ def test_a_size_that_no_instrument_has_is_taken_for_a_mistaken_unit(tmp_path, le
     write_gwy(path, Scan(np.random.default_rng(0).standard_normal((64, 64)), (length_nm, length_nm), "a"))
     with pytest.raises(InputError, match=r"scan\.gwy: a size of .* nm; plausible is 10 \.\. 1e\+08 nm, so its unit"):
         load_scan(path)
+
+
+def test_a_height_that_no_surface_has_is_refused(tmp_path):
+    heights = np.random.default_rng(0).standard_normal((64, 64))
+    heights[3, 4] = 1e200  # one bit of an exponent
+    write_gwy(tmp_path / "scan.gwy", Scan(heights, (1000.0, 1000.0), "a"))
+    with pytest.raises(InputError, match=r"scan\.gwy: a height of 1e\+200 nm; plausible is up to 1e\+08 nm about"):
+        load_scan(tmp_path / "scan.gwy")

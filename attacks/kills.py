@@ -1,0 +1,122 @@
+"""SIGKILL at random moments: of the run with all its jobs, of its main process alone, of one of its jobs.
+
+A folder is killed several times and then finished; its results must be those of a run that was left alone.
+"""
+
+import os
+import random
+import signal
+import subprocess
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import psutil
+
+from attacks.runs import CONTACT, GLASS, command, contents, environment, last_words, run, undisturbed
+
+COLUMNS = ("scene", "seed", "folder", "way", "after_s", "finished", "made_again", "lost", "next", "equal")
+WAYS = ("group", "main", "child")
+KILLS_PER_FOLDER = 4
+SCENES = {
+    "contact": (CONTACT, "results/contact/law/parameters.csv"),
+    "glass": (GLASS, "results/glass/hardness/glass/1.data"),
+}
+
+
+def campaign(folder: Path, scene: str, kills: int, seed: int) -> Iterator[dict[str, Any]]:
+    """A row for each kill, in order; `equal` holds for the folder at its end."""
+    text, target = SCENES[scene]
+    path = folder / f"{scene}.yaml"
+    path.write_text(text, encoding="utf-8")
+    quiet = folder / f"{scene}_quiet"
+    expected, longest = undisturbed(quiet, path, target)
+    rng, number, count = random.Random(seed), 0, 0
+    while count < kills:
+        place = folder / f"{scene}_{seed}_{number}"
+        killed: list[Killed] = []
+        while len(killed) < min(KILLS_PER_FOLDER, kills - count):
+            one = _kill(rng, place, path, target, longest)
+            if one is None:
+                break
+            killed.append(one)
+        last = run(place, path, target)
+        results = place / "results" / scene
+        found, times = contents(results), _times(results)
+        for one, after in zip(killed, [*killed[1:], None], strict=True):
+            said = last_words(last) if last.returncode else "finished"
+            yield {
+                "scene": scene,
+                "seed": seed,
+                "folder": number,
+                "way": one.way,
+                "after_s": round(one.after_s, 2),
+                "finished": len(one.files),
+                "made_again": sum(times.get(name, when) != when for name, when in one.files.items()),
+                "lost": sum(name not in times for name in one.files),
+                "next": said if after is None else after.words,
+                "equal": last.returncode == 0 and found == expected,
+            }
+        number, count = number + 1, count + len(killed)
+
+
+@dataclass(frozen=True)
+class Killed:
+    """One kill.
+
+    Attributes
+    ----------
+    way : what was killed.
+    after_s : how long the run had worked.
+    files : results that were there, with the time of their making.
+    words : "started" where the run worked until it was killed, else what it said before it ended by itself.
+    """
+
+    way: str
+    after_s: float
+    files: dict[str, int]
+    words: str
+
+
+def _kill(rng: random.Random, place: Path, path: Path, target: str, longest: float) -> Killed | None:
+    """Start a run and kill of it at a random moment; None where it finished before."""
+    place.mkdir(parents=True, exist_ok=True)
+    way, moment = rng.choice(WAYS), rng.uniform(0.05, 0.6) * longest
+    with (place / "said.txt").open("w+") as said:
+        process = subprocess.Popen(
+            command(path, target),
+            cwd=place,
+            env=environment(place),
+            stdout=said,
+            stderr=said,
+            start_new_session=True,
+        )
+        try:
+            if process.wait(moment) == 0:
+                return None
+            said.seek(0)
+            words = said.read().strip().rpartition("\n")[2]
+        except subprocess.TimeoutExpired:
+            words = "started"
+            way = _end(rng, process, way)
+    return Killed(way, moment, _times(place / "results" / path.stem), words)
+
+
+def _end(rng: random.Random, process: "subprocess.Popen[str]", way: str) -> str:
+    """Kill, and wait for the end of what is left; says what was killed."""
+    main = psutil.Process(process.pid).children()[:1]  # Snakemake, below the command `asperity`
+    jobs = [child for one in main for child in one.children(recursive=True)]
+    if way == "child" and jobs:
+        rng.choice(jobs).send_signal(signal.SIGKILL)
+    elif way == "main" and main:
+        main[0].send_signal(signal.SIGKILL)
+    else:
+        way = "group"
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    return way
+
+
+def _times(results: Path) -> dict[str, int]:
+    return {name: (results / name).stat().st_mtime_ns for name in contents(results)}

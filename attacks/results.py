@@ -1,0 +1,61 @@
+"""Damaged results: every file of a finished scene emptied, cut, changed or exchanged, then the scene run again.
+
+The run must name each damaged file, make it again, and end with the results of a scene that nothing happened to.
+"""
+
+import random
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from attacks.runs import CONTACT, contents, last_words, run, undisturbed
+
+TARGET = "law"
+DAMAGES: dict[str, Callable[[random.Random, bytes], bytes]] = {
+    "empty": lambda rng, content: b"",
+    "half": lambda rng, content: content[: len(content) // 2],
+    "one bit": lambda rng, content: _one_bit(rng, content),
+    "one byte more": lambda rng, content: content + b"\n",
+    "zeros": lambda rng, content: bytes(len(content)),
+    "a line less": lambda rng, content: content[: content.rstrip(b"\n").rfind(b"\n") + 1],
+}
+
+
+def _one_bit(rng: random.Random, content: bytes) -> bytes:
+    changed = bytearray(content)
+    changed[rng.randrange(len(changed))] ^= 1 << rng.randrange(8)
+    return bytes(changed)
+
+
+def campaign(folder: Path, seed: int, count: int) -> Iterator[dict[str, Any]]:
+    """Rows of `count` rounds; a round damages every file of a copy, or its checksum, in one way each."""
+    scene = folder / "contact.yaml"
+    scene.write_text(CONTACT, encoding="utf-8")
+    whole = folder / "whole"
+    expected, _ = undisturbed(whole, scene, TARGET)
+    for number in range(seed, seed + count):
+        rng = random.Random(number)
+        copy = folder / f"damaged_{number}"
+        shutil.copytree(whole, copy)
+        results = copy / "results/contact"
+        damaged = {}
+        for name in expected:
+            if rng.random() < 0.5:
+                damaged[name] = rng.choice(list(DAMAGES))
+                path = results / name
+                path.write_bytes(DAMAGES[damaged[name]](rng, path.read_bytes()))
+        done = run(copy, scene, TARGET)
+        said = done.stdout + done.stderr
+        equal = done.returncode == 0 and contents(results) == expected
+        for name, kind in damaged.items():
+            named = f"results/contact/{name}: damaged" in said
+            yield {
+                "round": number,
+                "file": name,
+                "damage": kind,
+                "named": named,
+                "equal": equal,
+                "words": "" if equal else last_words(done)[:120],
+            }
+        shutil.rmtree(copy)

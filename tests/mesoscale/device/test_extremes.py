@@ -1,0 +1,41 @@
+"""The switch at the ends of what its settings accept: an answer or none, and no warning."""
+
+import random
+import warnings
+
+import numpy as np
+import pytest
+
+from mesoscale.device.switch import drive_switch
+from mesoscale.errors import InputError
+from mesoscale.law.compact import Law
+from mesoscale.settings import DeviceSettings
+
+CLOSING = Law(*(np.array([x]) for x in (31.8, 15.1e-5, 6.4e-4, 3.31)), hamaker=np.array([0.215]))
+OPENING = Law(*(np.array([x]) for x in (28.48, 20.6e-5, 9.16e-4, 2.669)), hamaker=np.array([0.215]))
+
+
+def ends(field):
+    """The bounds of a field that it accepts."""
+    return [getattr(bound, key) for bound in field.metadata for key in ("ge", "le") if hasattr(bound, key)]
+
+
+def test_devices_at_the_ends_of_their_ranges_give_an_answer_or_none():
+    rng = random.Random(0)
+    fields = {name: ends(field) for name, field in DeviceSettings.model_fields.items() if name != "samples"}
+    for _ in range(100):
+        chosen = {name: rng.choice(values) for name, values in fields.items() if values and rng.random() < 0.5}
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            states = drive_switch(DeviceSettings(**chosen), CLOSING, OPENING)
+        assert states.release_V >= 0
+        assert not states.pull_in_V < 0
+
+
+@pytest.mark.parametrize(
+    "mistake", [{"length_um": 1e-9}, {"spring_N_per_m": 1e-300}, {"electrode_um2": 1e-300}, {"thickness_um": 1e-9}]
+)
+def test_a_device_smaller_than_atoms_is_refused(mistake):
+    (key,) = mistake
+    with pytest.raises(InputError, match=f"{key} = 1e-"):
+        DeviceSettings(**mistake)
