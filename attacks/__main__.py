@@ -65,7 +65,7 @@ def main() -> None:
     parser.add_argument("campaign", choices=CAMPAIGNS)
     parser.add_argument("--seed", type=int, default=0, help="of the first attack")
     parser.add_argument("--count", type=int, default=100, help="attacks; for scans: of each file")
-    parser.add_argument("--files", nargs="*", default=(), help="scans: folders of files of instruments")
+    parser.add_argument("--files", nargs="*", default=(), help="scans: folders of files; default: some are made")
     parser.add_argument("--scene", choices=("contact", "glass"), default="contact", help="kills: what is killed")
     parser.add_argument("--folder", type=Path, help="where to work and keep the undisturbed runs; default: temporary")
     given = parser.parse_args()

@@ -154,11 +154,11 @@ def judged_apart(path: Path) -> tuple[str, str]:
 
 
 def campaign(folder: Path, places: list[Path], seed: int, count: int) -> Iterator[dict[str, Any]]:
-    """Rows of the first `count` kinds of damage to each file of some folders and of those made here."""
+    """Rows of the first `count` kinds of damage to each file of some folders; without any, to files made here."""
     import SurfaceTopography.IO  # noqa: F401 (once, not in each child)
 
-    found = [path for place in places for path in sorted(place.iterdir()) if path.is_file()]
-    for path in [*made_files(folder / "made"), *found]:
+    given = [path for place in places for path in sorted(place.iterdir()) if path.is_file()]
+    for path in given or made_files(folder / "made"):
         content = path.read_bytes()
         for kind, damage in list(DAMAGES.items())[:count]:
             rng = random.Random(zlib.crc32(f"{seed} {path.name} {kind}".encode()))

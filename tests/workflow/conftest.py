@@ -57,11 +57,20 @@ class Workflow:
             start_new_session=True,
         )
 
-    def planned(self, scene: str, *targets: str) -> dict[str, int]:
-        """Number of jobs by rule that would run."""
+    def plan(self, scene: str, *targets: str) -> str:
+        """What a plan says."""
         done = self.run(scene, *targets, options=("--dry-run", "--quiet", "rules"))
         assert done.returncode == 0, done.stdout + done.stderr
-        lines = (done.stdout + done.stderr).splitlines()
+        return done.stdout + done.stderr
+
+    def planned(self, scene: str, *targets: str) -> dict[str, int]:
+        """Number of jobs by rule that would run."""
+        return self.jobs(self.plan(scene, *targets))
+
+    @staticmethod
+    def jobs(plan: str) -> dict[str, int]:
+        """Number of jobs by rule, from what a plan says."""
+        lines = plan.splitlines()
         start = next((number for number, line in enumerate(lines) if line.startswith("job ")), len(lines))
         rows = [line.split() for line in itertools.takewhile(str.strip, lines[start + 1 :])]
         return {rule: int(count) for rule, count, *_ in rows}

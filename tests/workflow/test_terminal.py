@@ -17,8 +17,14 @@ class OneSecondEach:
         return None if rule == "unheard_of" else 1.0
 
 
+class Job(SimpleNamespace):
+    """A job of a plan, told from others by identity."""
+
+    __hash__ = object.__hash__
+
+
 def job(name):
-    return SimpleNamespace(rule=SimpleNamespace(name=name, norun=False), wildcards_dict={})
+    return Job(rule=SimpleNamespace(name=name, norun=False), wildcards_dict={})
 
 
 def send(terminal, event, **about):
@@ -30,7 +36,8 @@ def send(terminal, event, **about):
 def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry, monkeypatch):
     monkeypatch.setattr("workflow.terminal.progress.relative_speed", lambda: 1.0)
     jobs = [job("fit_law"), job("fit_law"), job("unheard_of")]
-    snakemake = SimpleNamespace(dryrun=dry, cores=2, dag=SimpleNamespace(needrun_jobs=lambda: jobs))
+    dag = SimpleNamespace(needrun_jobs=lambda: jobs, job_dependencies=lambda job: [])
+    snakemake = SimpleNamespace(dryrun=dry, cores=2, dag=dag)
     terminal = Terminal(snakemake, OneSecondEach(), "nothing to do")
     send(terminal, "run_info")
     send(terminal, "job_info", jobid=7, rule_name="fit_law", rule_msg="fit the law")
@@ -74,8 +81,16 @@ def test_costs_grow_with_what_a_job_does():
 
 
 def test_jobs_side_by_side_take_no_less_than_the_longest():
-    assert wall_seconds([1.0, 1.0, 1.0, 1.0], cores=2) == 2.0
-    assert wall_seconds([5.0, 1.0], cores=2) == 5.0
+    alone = [[], [], [], []]
+    assert wall_seconds([1.0, 1.0, 1.0, 1.0], alone, cores=2) == 2.0
+    assert wall_seconds([5.0, 1.0], alone[:2], cores=2) == 5.0
+
+
+def test_jobs_wait_for_what_they_need():
+    chain = [[], [0], [1], []]
+    assert wall_seconds([1.0, 2.0, 3.0, 4.0], chain, cores=2) == 6.0
+    assert wall_seconds([1.0, 2.0, 3.0, 4.0], chain, cores=1) == 10.0
+    assert wall_seconds([1.0, 1.0, 5.0], [[], [], [0, 1]], cores=2) == 6.0
 
 
 def test_speed_is_a_positive_number():
@@ -83,4 +98,11 @@ def test_speed_is_a_positive_number():
 
 
 def test_durations_as_people_say_them():
-    assert [duration(seconds) for seconds in (0.2, 8, 89, 180, 9000)] == ["1 s", "8 s", "89 s", "3 min", "2.5 h"]
+    assert [duration(seconds) for seconds in (0.2, 8, 89, 160, 720, 9000)] == [
+        "1 s",
+        "8 s",
+        "89 s",
+        "2 min 40 s",
+        "12 min",
+        "2.5 h",
+    ]

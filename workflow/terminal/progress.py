@@ -55,14 +55,15 @@ class Terminal(logging.Handler):
 
     def _plan(self) -> None:
         jobs = self._waiting()
-        self._counts = Counter(rule for rule, _ in jobs)
-        costs = [(rule, self._costs.seconds(rule, wildcards)) for rule, wildcards in jobs]
+        rules = [job.rule.name for job in jobs]
+        self._counts = Counter(rules)
+        costs = [(job.rule.name, self._costs.seconds(job.rule.name, dict(job.wildcards_dict))) for job in jobs]
         unknown = sorted({rule for rule, cost in costs if cost is None})
         seconds = [(cost or 0.0) / self._speed for _, cost in costs]
-        for (rule, _), cost in zip(jobs, seconds, strict=True):
+        for rule, cost in zip(rules, seconds, strict=True):
             self._seconds_left[rule] += cost
         self._jobs = len(jobs)
-        wall = duration(wall_seconds(seconds, self._cores)) if jobs else "no time"
+        wall = duration(wall_seconds(seconds, self._needs(jobs), self._cores)) if jobs else "no time"
         besides = f", and {', '.join(unknown)}, whose time nobody has measured" if unknown else ""
         if self._workflow.dryrun:
             rows = [
@@ -80,9 +81,14 @@ class Terminal(logging.Handler):
         except WorkflowError:  # a cluster's jobs have no common number
             return self._workflow.nodes
 
-    def _waiting(self) -> list[tuple[str, Mapping[str, str]]]:
-        jobs = self._workflow.dag.needrun_jobs()
-        return [(job.rule.name, dict(job.wildcards_dict)) for job in jobs if not job.rule.norun]
+    def _waiting(self) -> list[Any]:
+        return [job for job in self._workflow.dag.needrun_jobs() if not job.rule.norun]
+
+    def _needs(self, jobs: list[Any]) -> list[list[int]]:
+        """Which of the jobs each waits for, by their numbers."""
+        numbers = {job: number for number, job in enumerate(jobs)}
+        needed = self._workflow.dag.job_dependencies
+        return [[numbers[other] for other in needed(job) if other in numbers] for job in jobs]
 
     def _time(self, rule: str) -> str:
         return duration(self._seconds_left[rule]) if self._seconds_left[rule] else "?"
@@ -115,9 +121,11 @@ def _say_if_silent(about: Mapping[str, Any]) -> None:
 
 
 def duration(seconds: float) -> str:
-    """A time as people say it: 8 s, 3 min, 2.5 h."""
+    """A time as people say it: 8 s, 2 min 40 s, 12 min, 2.5 h."""
     if seconds < 90:
         return f"{max(1, round(seconds))} s"
+    if seconds < 10 * 60:
+        return f"{round(seconds) // 60} min {round(seconds) % 60} s"
     return f"{seconds / 60:.0f} min" if seconds < 90 * 60 else f"{seconds / 3600:.1f} h"
 
 
