@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from mesoscale.calibration.likelihood import Posterior, posterior_of
 from mesoscale.calibration.measurements import CURVES, Measurements, by_specimen
 from mesoscale.calibration.observables import CURVES as BRANCHES
-from mesoscale.calibration.observables import NAMES, curve_names, force_levels_nN
+from mesoscale.calibration.observables import LAWS, NAMES, curve_names, force_levels_nN
 from mesoscale.calibration.posterior import Calibration, Cycles, draw
 from mesoscale.calibration.surfaces import SCALAR_COLUMNS
+from mesoscale.calibration.switches import SwitchModel
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.settings import MeasurementsSettings
@@ -136,8 +137,14 @@ def outliers(result: Calibration) -> list[str]:
     ]
 
 
-def check_range(tables: Sequence[Measurements], table: InputTable, cycles: Cycles, max_force_nN: float) -> None:
+def check_range(
+    tables: Sequence[Measurements], table: InputTable, cycles: Cycles, max_force_nN: float, switch: SwitchModel
+) -> None:
     """Refuse measurements that the model cannot give anywhere in the prior.
+
+    Parameters
+    ----------
+    cycles : over the prior.
 
     Raises
     ------
@@ -154,6 +161,12 @@ def check_range(tables: Sequence[Measurements], table: InputTable, cycles: Cycle
         elif data.kind == "hardness":
             area = np.median(data.columns["area"])
             _check_values(data, "hardness", samples["h_macro"] + samples["h_prime"] * area**-0.25)
+        elif data.kind in ("release", "pull_in"):
+            laws = cycles.y[:, -len(LAWS) :]
+            whole = np.isfinite(laws).all(axis=1)
+            closing, opening = switch.laws(laws[whole], cycles.x[whole, table.names.index("hamaker")])
+            volts = switch.release_V(opening) if data.kind == "release" else switch.pull_in_V(closing)
+            _check_values(data, data.kind, np.maximum(volts, 0.0))
 
 
 def _check_values(data: Measurements, column: str, model: Array) -> None:
@@ -193,8 +206,13 @@ def _check_curves(data: Measurements, cycles: Cycles, max_force_nN: float) -> No
             )
 
 
-def candidates(max_force_nN: float) -> dict[str, tuple[str, Measurements]]:
-    """What could be measured next, by kind: in words, and as a table whose values are made up later."""
+def candidates(max_force_nN: float, contact_begin_nm: float) -> dict[str, tuple[str, Measurements]]:
+    """What could be measured next, by kind: in words, and as a table whose values are made up later.
+
+    Parameters
+    ----------
+    contact_begin_nm : where contact is expected to begin, which makes its error in nm a relative one.
+    """
     levels = force_levels_nN(max_force_nN)
     forces = np.geomspace(levels[0], levels[-1], 30)
     curve = {"separation": np.linspace(10, 0, 30), "force": forces, "separation_error": np.full(30, 0.2)}
@@ -210,7 +228,7 @@ def candidates(max_force_nN: float) -> dict[str, tuple[str, Measurements]]:
         "opening_curves": ("one curve, 30 points to 0.2 nm", table("opening_curves", curve)),
         "contact_begin": (
             "ten surfaces to 0.5 nm",
-            table("contact_begin", {"contact_begin": 30 * ten, "contact_begin_error": 0.5 * ten}),
+            table("contact_begin", {"contact_begin": contact_begin_nm * ten, "contact_begin_error": 0.5 * ten}),
         ),
         "pull_off": ("ten surfaces to 10 %", table("pull_off", {"pull_off": 100 * ten, "pull_off_error": 10 * ten})),
         "hardness": (
@@ -237,8 +255,9 @@ def next_measurements(result: Calibration, max_force_nN: float, seed: int) -> li
     volts = with_switch.switch_voltages(x, hamaker)["release"][0]
     order = np.argsort(volts)
     now = _width(volts[order], np.full(DRAWS, 1 / DRAWS))
+    begin = float(np.exp(result.responses.pick(["contact_begin_nm"])(x).mean.mean()))
     rows = []
-    for kind, (words, data) in candidates(max_force_nN).items():
+    for kind, (words, data) in candidates(max_force_nN, begin).items():
         posterior = posterior_of(
             result.posterior.table,
             [data],

@@ -10,7 +10,7 @@ from scipy.special import gammaln, log_ndtr, ndtr
 
 from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.observables import LAWS
-from mesoscale.calibration.responses import Prediction, Responses
+from mesoscale.calibration.responses import Prediction, ResponseFits, Responses
 from mesoscale.calibration.surfaces import Expected, SurfaceData, surface_data
 from mesoscale.calibration.switches import SwitchModel, law_values
 from mesoscale.inputs.distributions import InputTable
@@ -228,7 +228,7 @@ def direct_data(tables: Iterable[Measurements]) -> tuple[DirectData, ...]:
 def posterior_of(
     table: InputTable,
     tables: Sequence[Measurements],
-    responses: Responses | None,
+    responses: ResponseFits | None,
     law_responses: Responses | None,
     switch: SwitchModel | None,
     max_force_nN: float,
@@ -238,11 +238,11 @@ def posterior_of(
 
     Parameters
     ----------
-    responses : of the observables that the tables see, and perhaps more.
+    responses : from which those of the observables that the tables see are picked.
 
     Raises
     ------
-    InputError : see `surface_data`.
+    InputError : see `surface_data` and `ResponseFits.pick`.
     """
     surfaces = surface_data(tables, max_force_nN, expected)
     picked = None

@@ -179,7 +179,7 @@ def _check(data: Measurements) -> None:
         return
     value = next(iter(name for name in data.columns if f"{name}_error" in data.columns))
     wrong = np.flatnonzero(data.columns[value] <= 0)
-    if wrong.size and data.kind != "contact_begin":
+    if wrong.size:
         raise InputError(
             f"{data.file}: row {wrong[0] + 1}, {value} = {data.columns[value][wrong[0]]:g}: accepted is a positive "
             "number" + ("; a switch that stuck belongs to a table of kind sticking" if data.kind == "release" else "")

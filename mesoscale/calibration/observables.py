@@ -54,7 +54,7 @@ CURVES = {"closing_curves": "closing", "opening_curves": "opening"}
 OBSERVABLES = (
     *_curve("closing"),
     *_curve("opening"),
-    Observable("contact_begin_nm", "nm", "length"),
+    Observable("contact_begin_nm", "nm", "log_length"),  # less skewed so
     Observable("pull_off_nN", "nN", "log"),
 )
 """What can be measured of a surface."""

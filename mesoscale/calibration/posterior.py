@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mesoscale.calibration.likelihood import SWITCH_KINDS, Posterior, posterior_of
 from mesoscale.calibration.measurements import ON_SURFACES, Measurements
 from mesoscale.calibration.observables import LAWS, NAMES, OBSERVABLES, observe
-from mesoscale.calibration.responses import Responses, fit_responses, in_logs
+from mesoscale.calibration.responses import ResponseFits, Responses, fit_responses, in_logs
 from mesoscale.calibration.sampling import Chain, sample
 from mesoscale.calibration.surfaces import Expected, SurfaceData
 from mesoscale.calibration.switches import SwitchModel
@@ -52,14 +52,14 @@ class Calibration:
     Attributes
     ----------
     posterior, chain, x : samples of the inputs, shape (s, n).
-    responses : of all observables.
+    responses : of the observables, to be picked from.
     laws, expected, switch, checks : the responses where the posterior lies, one row per round and observable.
     """
 
     posterior: Posterior
     chain: Chain
     x: Array
-    responses: Responses
+    responses: ResponseFits
     laws: Responses
     expected: Expected
     switch: SwitchModel
@@ -104,17 +104,17 @@ def expected_of(cycles: Cycles) -> Expected:
     )
 
 
-def responses_of(table: InputTable, cycles: Cycles) -> tuple[Responses, Responses]:
-    """Responses of all observables, and of the laws.
+def responses_of(table: InputTable, cycles: Cycles) -> tuple[ResponseFits, Responses]:
+    """Responses of the observables, to be picked from, and of the laws.
 
     Raises
     ------
-    InputError : too few cycles give all of them.
+    InputError : too few cycles give all of the laws.
     """
     ranges, rms = table.ranges(CENTRAL_SHARE), table.names.index("rms")
     count = len(OBSERVABLES)
     return (
-        fit_responses(OBSERVABLES, cycles.x, cycles.y[:, :count], ranges, rms, "the observables"),
+        ResponseFits(OBSERVABLES, cycles.x, cycles.y[:, :count], ranges, rms),
         fit_responses(LAWS, cycles.x, cycles.y[:, count:], ranges, rms, "the laws"),
     )
 

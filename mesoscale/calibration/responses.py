@@ -5,7 +5,7 @@ leverage of least squares times the scatter (Draper and Smith, Applied Regressio
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,23 +80,6 @@ class Responses:
     spread: Array
     runs: int
     dropped: int
-
-    def pick(self, names: Sequence[str]) -> "Responses":
-        """The responses of some observables, in their order."""
-        every = [row.name for row in self.observables]
-        places = [every.index(name) for name in names]
-        return Responses(
-            tuple(self.observables[k] for k in places),
-            self.ranges,
-            self.rms_column,
-            self.degrees,
-            self.coefficients[:, places],
-            self.covariance,
-            self.axes[places],
-            self.spread,
-            self.runs,
-            self.dropped,
-        )
 
     def __call__(self, x: Array) -> Prediction:
         """Predict at inputs x of shape (m, n)."""
@@ -187,6 +170,53 @@ def fit_responses(
         len(u),
         int((~usable).sum()),
     )
+
+
+@dataclass(frozen=True)
+class ResponseFits:
+    """Responses of any of some observables, fitted when they are asked for, to the runs that have them all.
+
+    A run may lack one observable and have others: smooth surfaces that never push with the largest measured force
+    have pull-off forces, and responses of those that left them out would be wrong there.
+
+    Attributes
+    ----------
+    observables, ranges, rms_column : as `Responses` has them.
+    x, y : inputs and observables of the runs, shapes (m, n) and (m, k).
+    """
+
+    observables: tuple[Observable, ...]
+    x: Array
+    y: Array
+    ranges: Array
+    rms_column: int
+    _known: dict[tuple[str, ...], Responses] = field(default_factory=dict)
+
+    def pick(self, names: Sequence[str]) -> Responses:
+        """The responses of some observables, in their order.
+
+        Raises
+        ------
+        InputError : see `fit_responses`.
+        """
+        key = tuple(names)
+        if key not in self._known:
+            every = [row.name for row in self.observables]
+            places = [every.index(name) for name in key]
+            self._known[key] = fit_responses(
+                [self.observables[k] for k in places],
+                self.x,
+                self.y[:, places],
+                self.ranges,
+                self.rms_column,
+                ", ".join(key) if len(key) < 4 else "the observables",
+            )
+        return self._known[key]
+
+    @property
+    def every(self) -> Responses:
+        """The responses of all observables."""
+        return self.pick([row.name for row in self.observables])
 
 
 def _terms(varying: NDArray[np.bool_], degree: int, hyperbolic: float) -> Degrees:

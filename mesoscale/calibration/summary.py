@@ -124,7 +124,7 @@ def predictive_rows(result: Calibration, max_force_nN: float) -> list[dict[str, 
 
 def _next_surface(result: Calibration, x: Array, rng: np.random.Generator) -> Array:
     """Observables of one more surface at each of the inputs x (m, n), in their units, shape (m, k)."""
-    prediction = result.responses(x)
+    prediction = result.responses.every(x)
     root = np.linalg.cholesky(
         prediction.scatter * (1 + prediction.error)[:, None, None] + 1e-12 * np.eye(prediction.mean.shape[1])
     )

@@ -27,7 +27,7 @@ ERRORS_ABOVE_ZERO = 3.0
 """Points whose force is less than so many of its errors are left out: its logarithm would be biased."""
 SCALAR_COLUMNS = {"contact_begin": "contact_begin_nm", "pull_off": "pull_off_nN"}
 LARGEST_RELATIVE_ERROR = 0.5
-"""Of a force that enters by its logarithm."""
+"""Of a value that enters by its logarithm."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +100,9 @@ class SurfaceData:
             for place in range(self.names.index(begin) + 1, self.names.index(begin) + LEVELS):
                 slopes[:, place, place - 1] = np.exp(-mean[:, place])
                 slopes[:, place, place] = -slopes[:, place, place - 1]
+        if "contact_begin_nm" in self.names:  # its error is in nm, it enters by its logarithm
+            place = self.names.index("contact_begin_nm")
+            slopes[:, place, place] = np.exp(-mean[:, place])
         return slopes @ self.model_error @ np.swapaxes(slopes, 1, 2)
 
     def simulated(self, prediction: Prediction, rng: np.random.Generator) -> "SurfaceData":
@@ -188,6 +191,20 @@ def surface_data(tables: Iterable[Measurements], max_force_nN: float, expected: 
     )
 
 
+def check_points(table: Measurements, max_force_nN: float) -> None:
+    """Refuse curves with too few points in the range of forces of the responses, and pull-off forces hardly known.
+
+    Raises
+    ------
+    InputError
+    """
+    for specimen, rows in by_specimen(table).items():
+        if table.kind in CURVE_KINDS:
+            _curve(table, specimen, rows, max_force_nN)
+        elif table.kind in SCALAR_COLUMNS:
+            _scalars(table, rows)
+
+
 def _names(tables: Sequence[Measurements]) -> list[str]:
     names = []
     for table in tables:
@@ -224,13 +241,11 @@ def _curve(
 
 def _scalars(table: Measurements, rows: NDArray[np.int_]) -> tuple[Array, Array]:
     values, errors = table.columns[table.kind][rows], table.columns[f"{table.kind}_error"][rows]
-    if table.kind != "pull_off":
-        return values, errors**2
     wide = np.flatnonzero(errors > LARGEST_RELATIVE_ERROR * values)
     if wide.size:
         raise InputError(
-            f"{table.file}: row {rows[wide[0]] + 1}: pull_off_error is more than half of pull_off; its logarithm is "
-            "compared with the model, so leave the row out or measure it better"
+            f"{table.file}: row {rows[wide[0]] + 1}: {table.kind}_error is more than half of {table.kind}; its "
+            "logarithm is compared with the model, so leave the row out or measure it better"
         )
     return np.log(values), (errors / values) ** 2
 

@@ -25,6 +25,16 @@ def test_contradictions_are_told_all_at_once(workflow_in):
         assert words in line
 
 
+def test_a_table_of_measurements_that_cannot_be_used(workflow_in):
+    scene = workflow_in.folder / "mine.yaml"
+    (workflow_in.folder / "forces.csv").write_text("pull_off,pull_off_error_nN\n200,20\n")
+    scene.write_text("measurements: {tables: [{kind: pull_off, file: forces.csv}]}")
+    done = workflow_in.run(str(scene), "calibrate")
+    assert done.returncode != 0
+    (line,) = errors(done)
+    assert "forces.csv: column pull_off has no unit" in line
+
+
 def test_no_permission_to_write(workflow_in):
     # a file where the folder of results should be stops everybody, the superuser of a CI machine included
     (workflow_in.folder / "results").write_text("")

@@ -7,6 +7,16 @@ MEASUREMENT_FILES = {
 }
 MEASUREMENT_CHUNKS = chunk_bounds(SCENE.measurements.runs, SCENE.measurements.chunk_runs)
 PRIORS = SCENE.inputs.priors()
+if workflow.is_main_process and MEASUREMENT_FILES:  # a table that cannot be used is told before the first cycle
+    from mesoscale.calibration.measurements import load_measurements
+    from mesoscale.calibration.surfaces import check_points
+    from mesoscale.errors import InputError as BadTable
+
+    try:
+        for table in SCENE.measurements.tables:
+            check_points(load_measurements(table, MEASUREMENT_FILES[table.kind]), SCENE.contact.max_force_nN)
+    except BadTable as error:
+        refuse(error)
 
 
 rule calibrate:

@@ -19,6 +19,7 @@ from mesoscale.calibration.summary import (
     sample_rows,
     summary_rows,
 )
+from mesoscale.calibration.switches import SwitchModel
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import DeviceSettings, LawSettings, MeasurementsSettings
 from workflow.contact_settings import contact_settings
@@ -32,8 +33,9 @@ with job(snakemake) as run:
     prior = from_rows(load_csv(snakemake.input.priors))
     rows = [row for path in snakemake.input.cycles for row in load_csv(path)]
     cycles = cycles_of_rows(rows, prior.names)
-    check_range(tables, prior, cycles, contact.max_force_nN)
     device = DeviceSettings(**snakemake.params.device)
+    switch = SwitchModel.of(device, law, contact.length_nm**2)
+    check_range(tables, prior, cycles, contact.max_force_nN, switch)
     result = calibrate(prior, tables, cycles, contact, law, device, settings, run.progress)
 
     write_csv(snakemake.output.responses, result.checks, RESPONSE_COLUMNS)

@@ -2,19 +2,27 @@
 
 Truths are drawn from the prior, data from the engine's own surfaces at these truths, and every posterior is that of the
 product's responses and likelihood, by importance sampling of prior draws. Ranks of the truths are uniform if all is
-well (Talts et al., arXiv 1804.06788). `python -m mesoscale.calibration.studies.coverage` prints the table.
+well (Talts et al., arXiv 1804.06788). A set is left out only where its own datum is missing: a surface that never
+pushes that much, a switch that sticks; that depends on the data alone, and so keeps ranks uniform.
+
+`python -m mesoscale.calibration.studies.coverage FOLDER` keeps its cycles in FOLDER and writes coverage.csv there.
 """
 
-from collections.abc import Sequence
+import csv
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import kstest
 
-from mesoscale.calibration.likelihood import posterior_of
-from mesoscale.calibration.measurements import ON_SURFACES, Measurements
-from mesoscale.calibration.observables import CURVES, LEVELS, NAMES, curve_names, force_levels_nN
+from mesoscale.calibration.likelihood import SWITCH_KINDS, Posterior, Predicted, posterior_of
+from mesoscale.calibration.measurements import CURVES as CURVE_KINDS
+from mesoscale.calibration.measurements import Measurements
+from mesoscale.calibration.observables import CURVES, LAWS, LEVELS, NAMES, curve_names, force_levels_nN
 from mesoscale.calibration.posterior import Cycles, cycles_of_rows, expected_of, observe_runs, responses_of
 from mesoscale.calibration.surfaces import SCALAR_COLUMNS
 from mesoscale.calibration.switches import SwitchModel
@@ -25,141 +33,219 @@ from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
 
-SETS = 250
-"""Made-up data sets per kind; coverage is then known to 1.9 %."""
-POOL = 20000
-"""Draws of the prior that are weighed for every set."""
+SETS, SURFACES = 250, 16
+"""Made-up truths, and surfaces at each; coverage is then known to 1.9 %."""
+POOL, PARTS = 4000, 8
+"""Draws of the prior that are weighed for every set, and in how many parts they are predicted."""
 FEWEST_EFFECTIVE = 50.0
-"""A posterior with fewer effective draws is counted and left out."""
+"""A posterior with fewer effective draws is counted and left out: its ranks would be too coarse."""
 FIRST_SET_SEED = 1_900_000_000
 FORCE_POINTS = 20
+RUNS = 3200
+"""Cycles behind the responses: their error is shared by all sets and would shift all ranks together."""
+CONTACT = ContactSettings(pixels=128)
+D0_SPREAD = 0.15
+"""Standard deviation of ln D0 between sets whose law of attraction the responses do not know; they have 0.165 nm."""
+PULL_OFF_SPREAD = 2.8 * D0_SPREAD
+"""What that is in ln of the pull-off force: on 830 surfaces with D0 from 0.12 to 0.3 nm it went as D0^-2.8."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """Data of one kind.
+
+    Attributes
+    ----------
+    count : surfaces, values or switches.
+    cells : of a switch; all cells are surfaces of the engine.
+    wrong : whether the surfaces have another law of attraction than the responses.
+    """
+
+    kind: str
+    count: int
+    discrepancy: float = 0.0
+    cells: int = 1
+    wrong: bool = False
+
+
+CASES = (
+    Case("closing_curves", 1),
+    Case("opening_curves", 1),
+    Case("contact_begin", 1),
+    Case("contact_begin", 10),
+    Case("pull_off", 1),
+    Case("pull_off", 10),
+    Case("hardness", 3),
+    Case("modulus", 1),
+    Case("release", 1, cells=16),
+    Case("pull_in", 1, cells=16),
+    Case("sticking", 4, cells=4),
+    Case("pull_off", 10, wrong=True),
+    Case("pull_off", 10, discrepancy=PULL_OFF_SPREAD, wrong=True),
+)
 
 
 def table_of(
-    kind: str,
-    values: Array,
-    x: Array,
-    names: Sequence[str],
-    max_force_nN: float,
-    discrepancy: float,
-    rng: np.random.Generator,
-) -> Measurements:
-    """Data of one kind with drawn errors from observables (surfaces, k) at inputs x (n,)."""
-    count = len(values)
-    specimens = tuple(f"s{k}" for k in range(count))
+    case: Case, y: Array, x: Array, names: Sequence[str], switch: SwitchModel, rng: np.random.Generator
+) -> Measurements | None:
+    """Data with drawn errors from the surfaces y (SURFACES, k) at inputs x (n,); None where a datum is missing."""
+    kind, count = case.kind, case.count
     named = dict(zip(names, x.tolist(), strict=True))
-    if kind in ("pull_off", "contact_begin"):
-        truth = values[:, NAMES.index("pull_off_nN" if kind == "pull_off" else "contact_begin_nm")]
+    specimens = tuple(f"s{k}" for k in range(count))
+    noise = rng.standard_normal(count)
+    if kind in SCALAR_COLUMNS:
+        truth = y[:count, NAMES.index(SCALAR_COLUMNS[kind])]
         error = 0.1 * truth if kind == "pull_off" else np.full(count, 0.5)
-        columns = {kind: truth + error * rng.standard_normal(count), f"{kind}_error": error}
+        columns = {kind: truth + error * noise, f"{kind}_error": error}
     elif kind == "hardness":
         area = np.geomspace(40, 4000, count)
-        columns = {"area": area, "hardness_error": np.full(count, 0.3)}
-        columns["hardness"] = named["h_macro"] + named["h_prime"] * area**-0.25 + 0.3 * rng.standard_normal(count)
+        truth = named["h_macro"] + named["h_prime"] * area**-0.25
+        columns = {"area": area, "hardness": truth + 0.3 * noise, "hardness_error": np.full(count, 0.3)}
     elif kind == "modulus":
-        columns = {"e_star": named["e_star"] + 3 * rng.standard_normal(count), "e_star_error": np.full(count, 3.0)}
-    else:
-        branch = kind.partition("_")[0]
-        first = NAMES.index(curve_names(branch)[0])
-        levels = values[:, first : first + 1] - np.column_stack(
-            [np.zeros(count), np.cumsum(values[:, first + 1 : first + LEVELS], axis=1)]
-        )
-        forces = force_levels_nN(max_force_nN)
-        points = np.geomspace(forces[0], forces[-1], FORCE_POINTS)
-        curves = [np.interp(np.log(points), np.log(forces), row) + rng.uniform(-20, 20) for row in levels]
-        columns = {
-            "separation": np.concatenate(curves) + 0.2 * rng.standard_normal(count * FORCE_POINTS),
-            "force": np.tile(points, count),
-            "separation_error": np.full(count * FORCE_POINTS, 0.2),
-        }
+        columns = {"e_star": named["e_star"] + 3 * noise, "e_star_error": np.full(count, 3.0)}
+    elif kind in CURVE_KINDS:
+        columns = _curves(kind, y[:count], rng)
         specimens = tuple(np.repeat(specimens, FORCE_POINTS).tolist())
-    return Measurements(kind, columns, specimens, False, discrepancy, "made up")
+    else:
+        columns = _switches(case, y, named["hamaker"], switch, noise)
+    if not all(np.isfinite(values).all() for values in columns.values()):
+        return None
+    return Measurements(kind, columns, specimens, False, case.discrepancy, "made up")
 
 
-def coverage_rows(
-    contact: ContactSettings, sets: int = SETS, cutoffs: tuple[float, float] | None = None
-) -> list[dict[str, Any]]:
-    """Coverage of central 90 % intervals and uniformity of ranks, one row per kind.
+def _curves(kind: str, y: Array, rng: np.random.Generator) -> dict[str, Array]:
+    """Points of curves, each with its own unknown zero."""
+    first = NAMES.index(curve_names(CURVES[kind])[0])
+    steps = np.column_stack([np.zeros(len(y)), np.cumsum(y[:, first + 1 : first + LEVELS], axis=1)])
+    forces = force_levels_nN(CONTACT.max_force_nN)
+    points = np.geomspace(forces[0], forces[-1], FORCE_POINTS)
+    curves = [
+        np.interp(np.log(points), np.log(forces), row) + rng.uniform(-20, 20) for row in y[:, first : first + 1] - steps
+    ]
+    size = len(y) * FORCE_POINTS
+    return {
+        "separation": np.concatenate(curves) + 0.2 * rng.standard_normal(size),
+        "force": np.tile(points, len(y)),
+        "separation_error": np.full(size, 0.2),
+    }
+
+
+def _switches(case: Case, y: Array, hamaker: float, switch: SwitchModel, noise: Array) -> dict[str, Array]:
+    """Voltages of switches whose laws are averages of the engine's over their cells; NaN where one sticks."""
+    laws = y[: case.count * case.cells, -len(LAWS) :].reshape(case.count, case.cells, len(LAWS)).mean(axis=1)
+    closing, opening = switch.laws(laws, np.full(case.count, hamaker))
+    if case.kind == "sticking":
+        release = switch.release_V(opening)
+        stuck = np.where(np.isfinite(release), release <= 0, np.nan).sum()
+        return {"stuck": np.array([stuck]), "switches": np.array([float(case.count)])}
+    volts, error = (switch.release_V(opening), 0.2) if case.kind == "release" else (switch.pull_in_V(closing), 1e-3)
+    measured = np.where(volts > 0, volts, np.nan) + error * noise
+    return {case.kind: measured, f"{case.kind}_error": np.full(case.count, error)}
+
+
+def coverage_row(
+    case: Case, table: InputTable, cycles: Cycles, truths: Array, surfaces: Array, pool: Array
+) -> dict[str, Any]:
+    """Coverage of central 90 % intervals and uniformity of ranks for one kind of data.
 
     Parameters
     ----------
-    cutoffs : range from which the surfaces of every set take their D0 (nm), a law of attraction that the responses do
-        not know; then pull-off forces alone, without and with a discrepancy.
+    cycles : behind the responses.
+    truths : inputs, shape (sets, n).
+    surfaces : observables at each, shape (sets, SURFACES, k).
+    pool : draws of the prior, shape (p, n).
     """
-    table, law = input_table(), LawSettings()
-    rng = np.random.default_rng(np.random.SeedSequence([0x5BC]))
-    runs = random_runs(table, UncertaintySettings(sample_seed=11), 0, 800, first_surface=FIRST_SET_SEED)
-    cycles = cycles_of_rows(observe_runs(runs, contact, law), table.names)
+    law = LawSettings()
     responses, laws = responses_of(table, cycles)
     expected = expected_of(cycles)
-    switch = SwitchModel.of(DeviceSettings(), law, contact.length_nm**2)
-    pool = table.sample(POOL, 5)
-    cases = [("closing_curves", 1, 0.0), ("opening_curves", 1, 0.0), ("contact_begin", 1, 0.0), ("pull_off", 1, 0.0)]
-    cases += [("pull_off", 10, 0.0), ("hardness", 3, 0.0), ("modulus", 1, 0.0)]
-    if cutoffs is not None:
-        cases = [("pull_off", 10, 0.0), ("pull_off", 10, 0.3)]
-    rows = []
-    for kind, count, discrepancy in cases:
-        ranks, effective = [], []
-        truths = table.sample(sets, 17)
-        for number, truth in enumerate(truths):
-            values = np.zeros((count, len(NAMES)))
-            if kind in ON_SURFACES:
-                values = _surfaces(table, truth, contact, law, count, number, cutoffs)
-            if not np.isfinite(values[:, _needed(kind)]).all():
-                continue  # a surface that never pushes with the largest measured force
-            data = table_of(kind, values, truth, table.names, contact.max_force_nN, discrepancy, rng)
-            posterior = posterior_of(table, [data], responses, laws, switch, contact.max_force_nN, expected)
-            logs = np.concatenate([posterior.log_likelihood(part) for part in np.array_split(pool, 20)])
-            weights = np.exp(logs - logs.max())
-            weights /= weights.sum()
-            effective.append(1 / (weights**2).sum())
-            if effective[-1] > FEWEST_EFFECTIVE:
-                ranks.append([weights[pool[:, k] < truth[k]].sum() for k in range(len(truth))])
-        inside = np.abs(np.array(ranks) - 0.5) < 0.45
-        uniform = [kstest(column, "uniform").pvalue for column in np.array(ranks).T]
-        rows.append(
-            {
-                "kind": kind,
-                "data": count,
-                "discrepancy": discrepancy,
-                "sets": len(ranks),
-                "left_out": sets - len(ranks),
-                "effective": float(np.median(effective)),
-                "coverage": dict(zip(table.names, inside.mean(axis=0).round(3).tolist(), strict=True)),
-                "uniform_p": dict(zip(table.names, np.round(uniform, 3).tolist(), strict=True)),
-            }
-        )
-    return rows
+    switch = replace(SwitchModel.of(DeviceSettings(), law, CONTACT.length_nm**2), cells=float(case.cells))
+    rng = np.random.default_rng(np.random.SeedSequence([0x5BC, CASES.index(case)]))
+    predicted: list[Predicted] = []
+    ranks, effective, missing = [], [], 0
+    for truth, y in zip(truths, surfaces, strict=True):
+        data = table_of(case, y, truth, table.names, switch, rng)
+        if data is None:
+            missing += 1
+            continue
+        posterior = posterior_of(table, [data], responses, laws, switch, CONTACT.max_force_nN, expected)
+        predicted = predicted or [posterior.predict(part) for part in np.array_split(pool, PARTS)]
+        weights = _weights(posterior, predicted)
+        effective.append(1 / (weights**2).sum())
+        if effective[-1] > FEWEST_EFFECTIVE:
+            ranks.append((weights[:, None] * (pool < truth)).sum(axis=0))
+    inside = np.abs(np.array(ranks) - 0.5) < 0.45
+    row: dict[str, Any] = {
+        "kind": case.kind,
+        "data": case.count,
+        "cells": case.cells if case.kind in SWITCH_KINDS else "",
+        "wrong_d0": case.wrong,
+        "discrepancy": round(case.discrepancy, 3),
+        "sets": len(ranks),
+        "without_datum": missing,
+        "too_few_draws": len(effective) - len(ranks),
+        "effective_draws": round(float(np.median(effective)), 1),
+    }
+    for k, name in enumerate(table.names):
+        row[f"coverage_{name}"] = round(float(inside[:, k].mean()), 3)
+    for k, name in enumerate(table.names):
+        row[f"uniform_p_{name}"] = round(float(kstest(np.array(ranks)[:, k], "uniform").pvalue), 4)
+    return row
 
 
-def _needed(kind: str) -> list[int]:
-    """Places of the observables behind data of a kind."""
-    if kind in CURVES:
-        return [NAMES.index(name) for name in curve_names(CURVES[kind])]
-    return [NAMES.index(SCALAR_COLUMNS[kind])] if kind in SCALAR_COLUMNS else []
+def _weights(posterior: Posterior, predicted: Sequence[Predicted]) -> Array:
+    """Weights of the draws behind a prediction, of sum 1."""
+    logs = np.concatenate([posterior.likelihood_of(part) for part in predicted])
+    weights = np.exp(logs - logs.max())
+    return weights / weights.sum()
 
 
-def _surfaces(
-    table: InputTable,
-    truth: Array,
-    contact: ContactSettings,
-    law: LawSettings,
-    count: int,
-    number: int,
-    cutoffs: tuple[float, float] | None,
-) -> Array:
-    """Observables of surfaces at one truth, shape (count, k)."""
-    if cutoffs is not None:
-        drawn = np.random.default_rng(np.random.SeedSequence([0xD0, number])).uniform(*cutoffs)
-        contact = contact.model_copy(update={"gap_cutoff_nm": float(drawn)})
-    inputs = dict(zip(table.names, truth.tolist(), strict=True))
-    runs = [Run(k, -1, FIRST_SET_SEED + 10_000 + 100 * number + k, inputs) for k in range(count)]
-    cycles: Cycles = cycles_of_rows(observe_runs(runs, contact, law), table.names)
-    return cycles.y
+def study(folder: Path) -> Iterator[dict[str, Any]]:
+    """Rows of all cases; cycles that lie in the folder are not computed again."""
+    table = input_table()
+    truths, pool = table.sample(SETS, 17), table.sample(POOL, 5)
+    runs = random_runs(table, UncertaintySettings(sample_seed=11), 0, RUNS, first_surface=FIRST_SET_SEED)
+    cycles = _kept(folder / f"cycles_{RUNS}.csv", runs, CONTACT, table.names)
+    drawn = CONTACT.gap_cutoff_nm * np.exp(
+        D0_SPREAD * np.random.default_rng(np.random.SeedSequence([0xD0])).standard_normal(SETS)
+    )
+    known: dict[bool, list[Array]] = {False: [], True: []}
+    for number, truth in enumerate(truths):
+        inputs = dict(zip(table.names, truth.tolist(), strict=True))
+        for wrong, count in ((False, SURFACES), (True, 10)):
+            runs = [Run(k, -1, FIRST_SET_SEED + 10_000 + 100 * number + k, inputs) for k in range(count)]
+            contact = CONTACT.model_copy(update={"gap_cutoff_nm": float(drawn[number])}) if wrong else CONTACT
+            file = folder / f"{'wrong' if wrong else 'true'}_{number:03d}.csv"
+            known[wrong].append(_kept(file, runs, contact, table.names).y)
+    for case in CASES:
+        yield coverage_row(case, table, cycles, truths, np.array(known[case.wrong]), pool)
+
+
+def _kept(path: Path, runs: Sequence[Run], contact: ContactSettings, names: Sequence[str]) -> Cycles:
+    """Cycles from their file, or computed and kept there."""
+    if not path.exists():
+        rows = observe_runs(runs, contact, LawSettings())
+        part = path.with_suffix(".part")
+        with part.open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.DictWriter(stream, list(rows[0]))
+            writer.writeheader()
+            writer.writerows(rows)
+        part.rename(path)
+    with path.open(newline="", encoding="utf-8") as stream:
+        return cycles_of_rows(list(csv.DictReader(stream)), names)
+
+
+def main(folder: Path) -> None:
+    """Write coverage.csv, row by row."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "coverage.csv").open("w", newline="", encoding="utf-8") as stream:
+        writer = None
+        for row in study(folder):
+            if writer is None:
+                writer = csv.DictWriter(stream, list(row), lineterminator="\n")
+                writer.writeheader()
+            writer.writerow(row)
+            stream.flush()
 
 
 if __name__ == "__main__":
-    settings = ContactSettings(pixels=128)
-    for line in (*coverage_rows(settings), *coverage_rows(settings, cutoffs=(0.12, 0.3))):
-        print(line, flush=True)
+    main(Path(sys.argv[1]))

@@ -16,8 +16,10 @@ from mesoscale.calibration.learning import (
 from mesoscale.calibration.likelihood import normal_with_common, posterior_of
 from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.observables import OBSERVABLES, force_levels_nN
-from mesoscale.calibration.posterior import Calibration, draw, expected_of, responses_of
+from mesoscale.calibration.posterior import Calibration, Cycles, draw, expected_of, responses_of
 from mesoscale.calibration.sampling import sample
+from mesoscale.calibration.summary import posterior_json, predictive_rows, sample_rows, summary_rows
+from mesoscale.calibration.surfaces import check_points
 from mesoscale.calibration.switches import SwitchModel, law_values
 from mesoscale.device.switch import drive_switch
 from mesoscale.errors import InputError
@@ -64,6 +66,11 @@ def modulus(value, error):
     return Measurements("modulus", columns, ("m",), False, 0.0, "modulus.csv")
 
 
+def volts(kind, value):
+    columns = {kind: np.array([value]), f"{kind}_error": np.array([0.05])}
+    return Measurements(kind, columns, ("v",), False, 0.0, f"{kind}.csv")
+
+
 def curves(count, rng, zero_known=False, error=0.1, x=TRUTH, discrepancy=0.0):
     y = made_up_observables(np.repeat(x, count, axis=0), rng)
     forces = np.geomspace(*force_levels_nN(MAX_FORCE_NN)[[0, -1]], 12)
@@ -86,12 +93,21 @@ def test_responses_find_mean_and_scatter(prior, parts):
     """A fresh set of runs: standardised differences have mean 0 and variance 1 within the noise of 4000 runs."""
     x = prior.sample(4000, 11)
     y = made_up_observables(x, np.random.default_rng(11))[:, : len(OBSERVABLES)]
-    prediction = parts[0](x)
+    prediction = parts[0].every(x)
     is_log = np.array([row.scale != "length" for row in OBSERVABLES])
     off = np.where(is_log, np.log(y), y) - prediction.mean
     sd = np.sqrt(np.einsum("mkk->mk", prediction.scatter) * (1 + prediction.error[:, None]))
     assert np.abs((off / sd).mean(axis=0)).max() < 0.12  # 900 runs know the mean to 0.03, a region of them less
     assert np.abs((off / sd).std(axis=0) - 1).max() < 0.08
+
+
+def test_runs_that_lack_one_observable_still_teach_the_others(prior, cycles):
+    """Smooth surfaces without a closing curve: their pull-off forces count where only those are asked for."""
+    y = cycles.y.copy()
+    y[cycles.x[:, 6] < 4, :6] = np.nan
+    fits, _ = responses_of(prior, Cycles(cycles.x, y))
+    assert fits.pick(["pull_off_nN"]).runs == len(y)
+    assert fits.pick(["closing_begin_nm", "pull_off_nN"]).dropped == (cycles.x[:, 6] < 4).sum()
 
 
 def test_common_error_is_the_dense_normal_density():
@@ -209,18 +225,50 @@ def test_predictive_probability_is_uniform_under_the_prior(prior, parts):
         (pull_offs([1e9]), "the model gives"),
         (hardness([400.0]), "the model gives"),
         (modulus(5000.0, 10.0), "the model gives"),
+        (volts("release", 500.0), "release = 500: the model gives"),
+        (volts("pull_in", 0.1), "pull_in = 0.1: the model gives"),
     ],
 )
-def test_measurements_outside_the_model_are_refused(prior, cycles, table, words):
-    with pytest.raises(InputError, match=words):
-        check_range([table], prior, cycles, MAX_FORCE_NN)
+def test_measurements_outside_the_model_are_refused(prior, cycles, parts, table, words):
+    with pytest.raises(InputError, match=words) as error:
+        check_range([table], prior, cycles, MAX_FORCE_NN, parts[2])
+    assert "\n" not in str(error.value)
 
 
-def test_swapped_columns_of_a_curve_are_refused(prior, cycles):
+def test_measurements_inside_the_model_are_taken(prior, cycles, parts):
+    release, pull_in = volts("release", 1.5), volts("pull_in", 62.7)
+    check_range([modulus(91.0, 3.0), release, pull_in], prior, cycles, MAX_FORCE_NN, parts[2])
+
+
+def test_curves_outside_the_forces_of_the_responses_and_unknown_pull_offs_are_refused():
+    data = curves(1, np.random.default_rng(1))
+    far = replace(data, columns={**data.columns, "force": 1e3 * data.columns["force"]})
+    with pytest.raises(InputError, match="c0 has 0 points with a net force of 140"):
+        check_points(far, MAX_FORCE_NN)
+    with pytest.raises(InputError, match="pull_off"):
+        check_points(pull_offs([200.0], share=0.7), MAX_FORCE_NN)
+
+
+def test_without_convergence_nothing_goes_on(prior, parts):
+    """Neither samples nor inputs, and the reason in the gate."""
+    posterior = given(prior, parts, hardness([4.0], error=1e-5))
+    chain = draw(posterior, SETTINGS.model_copy(update={"max_steps": 200}))
+    responses, laws, switch, expected = parts
+    result = Calibration(posterior, chain, posterior.inputs(chain.z), responses, laws, expected, switch)
+    content = posterior_json(result, [hardness([4.0])], [], [])
+    assert not content["gate"]["passed"]
+    assert "has not converged" in content["gate"]["reasons"][0]
+    assert content["inputs"] == {}
+    assert not sample_rows(result)
+    assert not summary_rows(result)
+    assert not predictive_rows(result, MAX_FORCE_NN)
+
+
+def test_swapped_columns_of_a_curve_are_refused(prior, cycles, parts):
     data = curves(1, np.random.default_rng(1))
     columns = {**data.columns, "separation": data.columns["force"][::-1], "force": 200 + 10 * np.arange(12.0)}
     with pytest.raises(InputError, match="look at units, columns"):
-        check_range([replace(data, columns=columns)], prior, cycles, MAX_FORCE_NN)
+        check_range([replace(data, columns=columns)], prior, cycles, MAX_FORCE_NN, parts[2])
 
 
 def test_release_is_that_of_the_device_stage(prior, parts):
