@@ -54,12 +54,8 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     spectrum : at nodes even in log q between these; `modes` is what its error is worth, the smoothing's share of
         the information left out.
     """
-    k, c1 = line_spectrum(profile)
-    step = 2 * np.pi / profile.length_nm
-    inside = (k >= low) & (k <= high)
-    k, c1 = k[inside], c1[inside]
-    c1 = c1 / _blur(k, c1, step)
-    bins, modes, means = _binned(k, c1)
+    along = binned_line(*line_spectrum(profile), low, high)
+    bins, modes, means = along.q, along.modes, along.psd
     distance = np.log(10) / NODES_PER_DECADE
     count = max(4, int(np.ceil(np.log(bins[-1] / bins[0]) / distance)) + 1)
     tail = int(TAIL_DECADES * NODES_PER_DECADE)
@@ -71,7 +67,16 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     worth *= min(1.0, modes.sum() / worth.sum())
     worth /= 1 + worth * BIAS**2
     nyquist = np.pi / profile.step_nm
-    return Spectrum(np.exp(nodes[keep]), np.exp(heights[keep]), worth, step, nyquist, sharp=True)
+    return Spectrum(np.exp(nodes[keep]), np.exp(heights[keep]), worth, along.spacing, nyquist, sharp=True)
+
+
+def binned_line(k: np.ndarray, c1: np.ndarray, low: float, high: float) -> Spectrum:
+    """C1 (nm^3) of a line's wave vectors k from `low` to `high` (1/nm) on bins, what the window adds taken out."""
+    step, nyquist = float(k[0]), float(k[-1])
+    inside = (k >= low) & (k <= high)
+    k, c1 = k[inside], c1[inside]
+    bins, modes, means = _binned(k, c1 / _blur(k, c1, step))
+    return Spectrum(bins, means, modes, step, nyquist, sharp=True)
 
 
 def projected(q: np.ndarray, psd: np.ndarray, k: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ from mesoscale.topography.description.profile_range import trusted_profile
 from mesoscale.topography.measurements.cleaning import Scan, alignment_effect
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile, clean_profile
-from mesoscale.topography.profile_conversion import line_spectrum
+from mesoscale.topography.profile_conversion import binned_line, line_spectrum
 from mesoscale.topography.spectrum import Spectrum
 
 Arrays = dict[str, np.ndarray]
@@ -131,7 +131,8 @@ def trusted_record(
         return trusted(name, spectrum, attributes["rms_nm"], settings)
     low, high, limit = (attributes[key] for key in ("trusted_low", "trusted_high", "limit"))
     radius, rms, reach = (float(attributes[key]) for key in ("tip_radius_nm", "rms_nm", "reach"))
-    return TrustedSpectrum(name, spectrum, float(low), float(high), str(limit), radius, rms, reach)
+    along = binned_line(arrays["profile_q"], arrays["profile_psd"], float(low), float(high)) if line else None
+    return TrustedSpectrum(name, spectrum, float(low), float(high), str(limit), radius, rms, reach, along)
 
 
 def is_profile(attributes: Mapping[str, Any]) -> bool:

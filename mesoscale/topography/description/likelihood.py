@@ -3,6 +3,9 @@
 The mean of a spectrum over n independent modes is Gamma distributed about the true C(q) with n degrees of
 freedom (Whittle's likelihood).  All scans share q0 and the slope; each has its own amplitude, drawn from a
 log-normal population, because amplitudes of real places differ by far more than their statistical error.
+
+A line profile enters with the spectrum C1(k) along it, which is compared with what equation 9 gives along a line. Its
+converted spectrum C(q) is smoothed, which rounds the knee.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,6 +20,7 @@ from mesoscale.topography.spectrum import Spectrum
 DISCREPANCY = 0.04  # relative error of C that no averaging removes: rest of tip, noise and window corrections
 MAX_SLOPE = 10.0
 SMALL_BLUR_SHELL = 5.0
+CLEAR_MISFIT = 0.3  # of ln C; bins in which chance makes more say little about the shape
 BINS_PER_DECADE = 12  # the discrepancy is shared within a bin of this width
 # dilation lowers C by exp(-a k^b), k = R sqrt(2 pi q^6 C) the tip's radius times the curvature per octave;
 # measured on slopes 2.3-3.8, RMS 3 and 8 nm, tips of 2-10 nm: one curve to 3 % (docs/topography.md)
@@ -26,6 +30,7 @@ BLUNT_BIAS = 0.45
 BLUNT_ERROR = 0.3  # of that correction
 MOST_CURVED = 2.0
 LEVELLED_ERROR = 0.5  # of ln C in the first shells, after their blur is taken out
+LINE_POINTS, LINE_REACH = 48, 7.7  # nodes of the integral along a line, and its end as arcosh(q/k): 1100 k
 
 
 def tip_bias(curvature: np.ndarray) -> np.ndarray:
@@ -53,6 +58,7 @@ class TrustedSpectrum:
     tip_radius_nm : radius used for the tip's correction.
     rms_nm : RMS of the cleaned heights.
     reach : where the range would end without the tip, 1/nm; between `high` and here the tip's correction is large.
+    line : of a line profile, C1(k) in nm^3 on bins inside its trusted range; None for a scan.
     """
 
     name: str
@@ -63,6 +69,7 @@ class TrustedSpectrum:
     tip_radius_nm: float
     rms_nm: float = 0.0
     reach: float = 0.0
+    line: Spectrum | None = None
 
     @property
     def trusted(self) -> np.ndarray:
@@ -123,7 +130,7 @@ class LikelihoodFit:
     amplitudes : (scans,) plateau of each scan, nm^4.
     amplitude_sd : standard deviation of ln amplitude between places, statistical error removed.
     dispersion : mean square residual in units of its expectation.
-    misfit : RMS of the logarithmic residuals of the pooled bins; above about 0.3 this is no power law.
+    misfit : RMS of the logarithmic residuals of the pooled bins beyond chance; above about 0.3 this is no power law.
     plateau_gain, power_gain : improvement of 2 ln L over a pure power law and over a flat spectrum.
     """
 
@@ -148,19 +155,21 @@ class LikelihoodFit:
 
 
 class _Data:
-    """Trusted shells of all scans, flat arrays with the scan and bin each belongs to."""
+    """Trusted shells of all scans and bins of all lines, flat arrays with the scan and bin each belongs to."""
 
     def __init__(self, spectra: Sequence[TrustedSpectrum]):
         parts = []
         for number, item in enumerate(spectra):
             s, ok = item.spectrum, item.trusted
+            if item.line is not None:
+                s, ok = item.line, np.ones(len(item.line.q), dtype=bool)
             bins = np.floor(np.log10(s.q[ok]) * BINS_PER_DECADE).astype(int)
             size_class = round(float(np.log(s.spacing)) * 20)  # scans of one size share their discrepancies
             columns = (s.q[ok], s.psd[ok], s.modes[ok], bins)
-            whole = (number, size_class, item.tip_radius_nm, 0.0 if s.sharp else s.spacing)
+            whole = (number, size_class, item.tip_radius_nm, 0.0 if s.sharp else s.spacing, item.line is not None)
             parts.append([*columns, *(np.full(int(ok.sum()), value) for value in whole)])
         joined = [np.concatenate(column) for column in zip(*parts, strict=True)]
-        self.q, self.psd, self.modes, bins, scan, size_class, self.tip, spacing = joined
+        self.q, self.psd, self.modes, bins, scan, size_class, self.tip, spacing, line = joined
         with np.errstate(divide="ignore"):
             self.shell = self.q / spacing  # infinite where nothing is blurred
         self.scan = scan.astype(int)
@@ -171,15 +180,30 @@ class _Data:
         # weight of a bin: modes in parallel with the discrepancy, shared out in proportion to the modes
         self.weight = self.modes / (1 + DISCREPANCY**2 * per_bin)[self.bin]
         self.log_q = np.log(self.q)
+        self.line = line.astype(bool)
+        # a line's C1(k) is the integral of 2 C(q) q over t, with q = k cosh t
+        t, step = np.polynomial.legendre.leggauss(LINE_POINTS)
+        t, step = LINE_REACH * (t + 1) / 2, LINE_REACH / 2 * step
+        self.line_q = self.q[self.line, None] * np.cosh(t)
+        self.line_log_q, self.line_weight = np.log(self.line_q), 2 * step * self.line_q
         self.per_scan = np.bincount(self.scan, self.weight, self.scans)
 
     def ratio(self, log_q0: float, slope: float, level: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """ln of the model's shape and measured over modelled shape, the tip's bias at amplitude `level`."""
         shape = -slope * np.maximum(self.log_q - log_q0, 0.0)
         shape += np.where(self.log_q > log_q0, blur(slope, self.shell), 0.0)
-        curvature = np.sqrt(2 * np.pi * np.exp(level[self.scan] + shape)) * self.q**3
-        shape = shape - tip_bias(self.tip * curvature)
+        shape -= self._tip_bias(level[self.scan] + shape, self.q, self.tip)
+        if self.line.any():
+            along = -slope * np.maximum(self.line_log_q - log_q0, 0.0)
+            if self.tip[self.line].any():
+                amplitude = level[self.scan[self.line], None] + along
+                along -= self._tip_bias(amplitude, self.line_q, self.tip[self.line, None])
+            shape[self.line] = np.log(np.sum(self.line_weight * np.exp(along), axis=1))
         return shape, self.psd * np.exp(-shape)
+
+    @staticmethod
+    def _tip_bias(log_psd: np.ndarray, q: np.ndarray, radius: np.ndarray) -> np.ndarray:
+        return tip_bias(radius * np.sqrt(2 * np.pi * np.exp(log_psd)) * q**3)
 
 
 def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[TrustedSpectrum]:
@@ -248,7 +272,7 @@ def fit(spectra: Sequence[TrustedSpectrum]) -> LikelihoodFit | None:
         amplitudes=np.exp(raw),
         amplitude_sd=float(spread),
         dispersion=dispersion,
-        misfit=float(np.sqrt(np.mean(np.log(np.maximum(residual, 1e-12)) ** 2))),
+        misfit=_misfit(residual, np.bincount(data.bin, data.modes)),
         plateau_gain=float(pure - value) / scale,
         power_gain=float(flat - value) / scale,
     )
@@ -267,6 +291,19 @@ def _deviance(
     # amplitudes at their own optimum cost nothing; the population pulls them together
     population = np.sum((raw - typical) ** 2 / variance)
     return float(per_scan + population), raw, ratio
+
+
+def _misfit(residual: np.ndarray, modes: np.ndarray) -> float:
+    """RMS of ln of the bins' residuals less what chance makes of a mean over their modes (Gamma distribution).
+
+    Bins of few modes say little and count little.
+    """
+    from scipy.special import digamma, polygamma
+
+    chance = polygamma(1, modes) + (digamma(modes) - np.log(modes)) ** 2
+    excess = np.log(np.maximum(residual, 1e-12)) ** 2 - chance
+    weight = 1 / (chance + CLEAR_MISFIT**2)
+    return float(np.sqrt(max(np.sum(weight * excess) / weight.sum(), 0.0)))
 
 
 def _between(raw: np.ndarray, variance: np.ndarray) -> float:

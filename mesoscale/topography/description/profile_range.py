@@ -6,7 +6,7 @@ from mesoscale.errors import InputError
 from mesoscale.topography.description.likelihood import MOST_CURVED, TrustedSpectrum
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile
-from mesoscale.topography.profile_conversion import isotropic_spectrum, line_spectrum
+from mesoscale.topography.profile_conversion import binned_line, isotropic_spectrum, line_spectrum
 
 LOWEST_WAVE = 2.5  # wave numbers below are changed by the window and the line taken off
 LOWEST_WAVE_BOW = 4.0  # and by a parabola
@@ -49,7 +49,8 @@ def trusted_profile(cleaned: Profile, measured: Measurement) -> TrustedSpectrum:
             reach = float(spectrum.q[curvature < MOST_CURVED][-1])
             spectrum = isotropic_spectrum(cleaned, low, reach)
     high, radius = limits[limit], measured.tip_radius_nm
-    return TrustedSpectrum(cleaned.name, spectrum, low, high, limit, radius, cleaned.rms_nm, reach)
+    line = binned_line(k, c1, low, high)
+    return TrustedSpectrum(cleaned.name, spectrum, low, high, limit, radius, cleaned.rms_nm, reach, line)
 
 
 def _noise_limit(

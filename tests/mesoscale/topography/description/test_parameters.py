@@ -4,11 +4,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.special import beta, betainc
 
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
 from mesoscale.topography.analysis import trusted_scan
+from mesoscale.topography.description import likelihood
 from mesoscale.topography.description.likelihood import TrustedSpectrum, blur
-from mesoscale.topography.description.parameters import analyse, inputs
+from mesoscale.topography.description.parameters import MAX_MISFIT, analyse, inputs
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, slope_from_hurst
 from mesoscale.topography.spectrum import Spectrum
@@ -125,3 +127,33 @@ def test_small_scans_alone_show_no_plateau():
     only_small = [item for item in spectra() if item.name.startswith("small")]
     result = analyse(only_small, TopographySettings())
     assert any("no plateau" in reason for reason in result.reasons)
+
+
+@pytest.mark.parametrize(("q0", "slope"), [(0.015, 2.3), (0.03, 3.6)])
+def test_the_spectrum_along_a_line_is_compared_with_the_one_of_eq_9_along_a_line(q0, slope):
+    """The fit against the closed form of C1: 2 sqrt(q0^2 - k^2) and an incomplete beta function."""
+    k = np.geomspace(1e-3, 0.5, 60)
+    plateau = np.where(k < q0, 2 * np.sqrt(np.maximum(q0**2 - k**2, 0)), 0.0)
+    half = (slope - 1) / 2
+    fall = q0**slope * k ** (1 - slope) * beta(half, 0.5) * betainc(half, 0.5, np.minimum(k / q0, 1.0) ** 2)
+    along = Spectrum(k, 40.0 * (plateau + fall), np.full(60, 50.0), 1e-3, 1.0, sharp=True)
+    item = TrustedSpectrum("line", along, 1e-3, 0.5, "pixels", 0.0, line=along)
+    fitted = likelihood.fit([item])
+    assert fitted.q0 == pytest.approx(q0, rel=0.01)
+    assert fitted.slope == pytest.approx(slope, abs=0.01)
+    assert fitted.plateau == pytest.approx(40.0, rel=0.01)
+    assert fitted.misfit < 0.02
+
+
+def test_chance_is_no_misfit():
+    """Long waves of few lines scatter by as much as they are: no reason to doubt the power law."""
+    rng = np.random.default_rng(2)
+    truth = RoughSpectrum(40.0, 0.02, 3.0, 5.0)
+    items = []
+    for number in range(4):
+        q = np.geomspace(1e-3, 0.5, 60)
+        modes = 0.5 + (q / 0.02) ** 2
+        psd = truth.psd(q) * rng.gamma(modes) / modes
+        spectrum = Spectrum(q, psd, modes, 1e-9, 1.0, sharp=True)
+        items.append(TrustedSpectrum(str(number), spectrum, 1e-3, 0.5, "pixels", 0.0))
+    assert likelihood.fit(items).misfit < MAX_MISFIT
