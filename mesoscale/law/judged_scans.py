@@ -10,6 +10,7 @@ import numpy as np
 from mesoscale.contact import run_cycle
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings, TopographySettings
+from mesoscale.topography.description.choice import carried_on
 from mesoscale.topography.description.heights import common_heights, height_quantiles
 from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.one_spectrum import OneSpectrum, merge
@@ -47,7 +48,7 @@ class Described:
         rng = np.random.default_rng(1)
         if self.one is not None:
             for psd in self.one.draws(places=True, count=count):
-                yield SpectrumTable(self.one.q, psd).psd
+                yield SpectrumTable(*carried_on(self.one, psd)).psd  # as the contact's own surfaces
             return
         estimates = self.topography.estimates
         for _ in range(count):

@@ -1,6 +1,6 @@
 """From one measurement, a scan or a line profile, to its spectra."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -70,7 +70,8 @@ def limited_spectrum(name: str, spectrum: Spectrum, cleaned: Scan, measured: Mea
     """The spectrum of a cleaned scan with the range that its instrument allows."""
     noise = (measured.noise_nm or 0.0) ** 2 * float(np.prod(cleaned.pixel_nm)) / (2 * np.pi) ** 2
     radius, rms, shortest = measured.tip_radius_nm, cleaned.rms_nm, measured.shortest_wave_nm
-    return trusted_range(name, spectrum, radius, rms_nm=rms, shortest_wave_nm=shortest, noise_psd=noise)
+    limits = trusted_range(name, spectrum, radius, rms_nm=rms, shortest_wave_nm=shortest, noise_psd=noise)
+    return replace(limits, side_nm=float(np.sqrt(np.prod(cleaned.lengths_nm))))
 
 
 def trusted_scan(scan: Scan, settings: TopographySettings) -> TrustedSpectrum:

@@ -54,8 +54,8 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     spectrum : at nodes even in log q between these; `modes` is what its error is worth, the smoothing's share of
         the information left out.
     """
-    along = binned_line(*line_spectrum(profile), low, high)
-    bins, modes, means = along.q, along.modes, along.psd
+    measured = binned_line(*line_spectrum(profile), low, high)
+    bins, modes, means = measured.q, measured.modes, measured.psd
     distance = np.log(10) / NODES_PER_DECADE
     count = max(4, int(np.ceil(np.log(bins[-1] / bins[0]) / distance)) + 1)
     tail = int(TAIL_DECADES * NODES_PER_DECADE)
@@ -67,7 +67,7 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     worth *= min(1.0, modes.sum() / worth.sum())
     worth /= 1 + worth * BIAS**2
     nyquist = np.pi / profile.step_nm
-    return Spectrum(np.exp(nodes[keep]), np.exp(heights[keep]), worth, along.spacing, nyquist, sharp=True)
+    return Spectrum(np.exp(nodes[keep]), np.exp(heights[keep]), worth, measured.spacing, nyquist, sharp=True)
 
 
 def binned_line(k: np.ndarray, c1: np.ndarray, low: float, high: float) -> Spectrum:

@@ -1,6 +1,7 @@
 """What the analysis of one measurement leaves for the pooling of all: arrays with their units, and attributes."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -131,8 +132,10 @@ def trusted_record(
         return trusted(name, spectrum, attributes["rms_nm"], settings)
     low, high, limit = (attributes[key] for key in ("trusted_low", "trusted_high", "limit"))
     radius, rms, reach = (float(attributes[key]) for key in ("tip_radius_nm", "rms_nm", "reach"))
-    along = binned_line(arrays["profile_q"], arrays["profile_psd"], float(low), float(high)) if line else None
-    return TrustedSpectrum(name, spectrum, float(low), float(high), str(limit), radius, rms, reach, along)
+    result = TrustedSpectrum(name, spectrum, float(low), float(high), str(limit), radius, rms, reach)
+    if line:
+        return replace(result, line=binned_line(arrays["profile_q"], arrays["profile_psd"], result.low, result.high))
+    return replace(result, side_nm=float(np.sqrt(attributes["length_x_nm"] * attributes["length_y_nm"])))
 
 
 def is_profile(attributes: Mapping[str, Any]) -> bool:

@@ -119,26 +119,31 @@ def surface_of(
 
 
 def _table(one: OneSpectrum, low: float) -> tuple[np.ndarray, np.ndarray]:
-    """The measured spectrum from the longest wave of a cell on, with its last slope carried on."""
-    q, psd = one.q, one.psd
-    slope = _end_slope(one)
-    beyond = one.q[-1] * 10 ** np.linspace(0.1, EXTENSION_DECADES, 10)
-    q, psd = np.concatenate([q, beyond]), np.concatenate([psd, psd[-1] * (beyond / one.q[-1]) ** slope])
+    """Points (1/nm, nm^4) of the spectrum from the longest wave of a cell on, with its last slope carried on."""
+    q, psd = carried_on(one, one.psd)
     if low > q[0]:  # longer waves do not fit on the cell
         first = float(np.exp(np.interp(np.log(low), np.log(q), np.log(psd))))
         q, psd = np.concatenate([[low], q[q > low]]), np.concatenate([[first], psd[q > low]])
     return q, psd
 
 
-def _end_slope(one: OneSpectrum) -> float:
-    """Logarithmic slope of the end of the measured spectrum; at least as steep as keeps the RMS height finite."""
+def carried_on(one: OneSpectrum, psd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points (1/nm, nm^4) of a spectrum (m,) on the bands of `one`, with its last slope carried on for a decade."""
+    end = float(one.q[-1])
+    beyond = end * 10 ** np.linspace(0.1, EXTENSION_DECADES, 10)
+    slope = _end_slope(one, psd)
+    return np.concatenate([one.q, beyond]), np.concatenate([psd, psd[-1] * (beyond / end) ** slope])
+
+
+def _end_slope(one: OneSpectrum, psd: np.ndarray) -> float:
+    """Logarithmic slope of the end of a spectrum; at least as steep as keeps the RMS height finite."""
     end = one.q > one.q[-1] * 10 ** -(END_DECADES + 0.01)
-    return min(float(np.polyfit(np.log(one.q[end]), one.log_psd[end], 1)[0]), -2.1)
+    return min(float(np.polyfit(np.log(one.q[end]), np.log(psd[end]), 1)[0]), -2.1)
 
 
 def _tail(one: OneSpectrum, low: float) -> float:
     """Mean square height of the continuation, nm^2."""
-    slope, q, end = _end_slope(one), max(float(one.q[-1]), low), float(one.q[-1]) * 10**EXTENSION_DECADES
+    slope, q, end = _end_slope(one, one.psd), max(float(one.q[-1]), low), float(one.q[-1]) * 10**EXTENSION_DECADES
     if end <= q:
         return 0.0
     scale = float(one.psd[-1]) * float(one.q[-1]) ** -slope

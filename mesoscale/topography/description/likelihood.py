@@ -17,7 +17,9 @@ import numpy as np
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
 from mesoscale.topography.spectrum import Spectrum
 
-DISCREPANCY = 0.04  # relative error of C that no averaging removes: rest of tip, noise and window corrections
+# relative error of C that no averaging removes: rest of tip, noise and window corrections, which act beyond the knee;
+# on the plateau only levelling is left, and the trusted range leaves its waves out
+DISCREPANCY, PLATEAU_DISCREPANCY = 0.04, 0.01
 MAX_SLOPE = 10.0
 SMALL_BLUR_SHELL = 5.0
 CLEAR_MISFIT = 0.3  # of ln C; bins in which chance makes more say little about the shape
@@ -58,6 +60,7 @@ class TrustedSpectrum:
     tip_radius_nm : radius used for the tip's correction.
     rms_nm : RMS of the cleaned heights.
     reach : where the range would end without the tip, 1/nm; between `high` and here the tip's correction is large.
+    side_nm : side of a square of a measured map's area; 0 for a line profile.
     line : of a line profile, C1(k) in nm^3 on bins inside its trusted range; None for a scan.
     """
 
@@ -69,6 +72,7 @@ class TrustedSpectrum:
     tip_radius_nm: float
     rms_nm: float = 0.0
     reach: float = 0.0
+    side_nm: float = 0.0
     line: Spectrum | None = None
 
     @property
@@ -157,7 +161,7 @@ class LikelihoodFit:
 class _Data:
     """Trusted shells of all scans and bins of all lines, flat arrays with the scan and bin each belongs to."""
 
-    def __init__(self, spectra: Sequence[TrustedSpectrum]):
+    def __init__(self, spectra: Sequence[TrustedSpectrum], knee: float = 0.0):
         parts = []
         for number, item in enumerate(spectra):
             s, ok = item.spectrum, item.trusted
@@ -178,7 +182,9 @@ class _Data:
         self.bin = self.bin.ravel()
         per_bin = np.bincount(self.bin, self.modes)
         # weight of a bin: modes in parallel with the discrepancy, shared out in proportion to the modes
-        self.weight = self.modes / (1 + DISCREPANCY**2 * per_bin)[self.bin]
+        centre = np.exp(np.bincount(self.bin, self.modes * np.log(self.q)) / per_bin)
+        discrepancy = np.where(centre < knee, PLATEAU_DISCREPANCY, DISCREPANCY)
+        self.weight = self.modes / (1 + discrepancy**2 * per_bin)[self.bin]
         self.log_q = np.log(self.q)
         self.line = line.astype(bool)
         # a line's C1(k) is the integral of 2 C(q) q over t, with q = k cosh t
@@ -194,11 +200,11 @@ class _Data:
         shape += np.where(self.log_q > log_q0, blur(slope, self.shell), 0.0)
         shape -= self._tip_bias(level[self.scan] + shape, self.q, self.tip)
         if self.line.any():
-            along = -slope * np.maximum(self.line_log_q - log_q0, 0.0)
+            falling = -slope * np.maximum(self.line_log_q - log_q0, 0.0)
             if self.tip[self.line].any():
-                amplitude = level[self.scan[self.line], None] + along
-                along -= self._tip_bias(amplitude, self.line_q, self.tip[self.line, None])
-            shape[self.line] = np.log(np.sum(self.line_weight * np.exp(along), axis=1))
+                amplitude = level[self.scan[self.line], None] + falling
+                falling -= self._tip_bias(amplitude, self.line_q, self.tip[self.line, None])
+            shape[self.line] = np.log(np.sum(self.line_weight * np.exp(falling), axis=1))
         return shape, self.psd * np.exp(-shape)
 
     @staticmethod
@@ -220,14 +226,17 @@ def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[T
     ]
 
 
-def fit(spectra: Sequence[TrustedSpectrum]) -> LikelihoodFit | None:
-    """Fit plateau, q0 and slope to the trusted ranges; None where there are too few shells to fit."""
+def fit(spectra: Sequence[TrustedSpectrum], knee: float = 0.0) -> LikelihoodFit | None:
+    """Fit plateau, q0 and slope to the trusted ranges; None where there are too few shells to fit.
+
+    Below `knee` (1/nm), where it is known roughly, the corrections that the discrepancy stands for do not act.
+    """
     from scipy.optimize import minimize
 
     spectra = [item for item in spectra if item.trusted.sum() >= 3]
     if not spectra:
         return None
-    data = _Data(spectra)
+    data = _Data(spectra, knee)
     bins = data.bin.max() + 1
     if bins < 6:
         return None

@@ -5,11 +5,14 @@ surface's spectrum f times a factor of its own, ln C_kb = f_b + a_k + error, wit
 mixed linear model (Henderson 1975, doi:10.2307/2529430) joins ranges that merely overlap without a jump where one
 begins or ends; the variance is found by expectation maximisation. Changes of the logarithmic slope from band to band
 are held small, which carries f over a gap between instruments with an uncertainty that grows into it.
+
+Waves about as long as the longest map are changed by levelling and hardly measured one by one, but their sum is: the
+levelled heights of that map have the mean square that the spectrum must give from about 0.7 waves a side on.
 """
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +25,10 @@ DIFFERENT_FILMS = 100.0  # ratio of C, a factor of 10 in RMS height, beyond whic
 KINK = 0.35  # standard deviation of the change of slope times the band's width, from band to band
 MOST_BIASED = 0.3  # of ln C, where hardly one amplitude is behind it
 DRAWS = 500
+# surfaces of C ~ q^-1 to q^-4 without a plateau, levelled by a plane, hold the waves of 0.63 to 0.81 a side and more;
+# ln of their mean square scatters by 0.03 to 0.6 (the steepest)
+LEVELLED_WAVES, LEVELLED_SCATTER = 0.72, 0.6
+CANDIDATES = 10_000  # of which those that the mean square allows are kept
 ROUNDS = 200
 
 
@@ -62,6 +69,7 @@ class OneSpectrum:
     place_sd : standard deviation of ln C between places and instruments, common to all bands; 0 for one measurement.
     count : (m,) measurements behind each band; 0 in a gap between instruments and before the first.
     names : measurements that take part.
+    logs : (DRAWS, m) values of ln C that the measurements allow, where they are not normally distributed; else None.
     """
 
     q: np.ndarray
@@ -70,6 +78,7 @@ class OneSpectrum:
     place_sd: float
     count: np.ndarray
     names: tuple[str, ...]
+    logs: np.ndarray | None = None
 
     @property
     def psd(self) -> np.ndarray:
@@ -94,12 +103,31 @@ class OneSpectrum:
     def draws(self, places: bool, count: int = DRAWS) -> np.ndarray:
         """(count, m) spectra C in nm^4 that the measurements allow: of the typical place, or of a place anywhere."""
         rng = np.random.default_rng(0)  # the same draws whenever they are asked for
+        logs = self._normal_draws(rng, count) if self.logs is None else self.logs[:count]
+        if places:
+            logs = logs + self.place_sd * rng.standard_normal((count, 1))
+        return np.exp(logs)
+
+    def with_mean_square(self, mean_square: float, low: float) -> "OneSpectrum":
+        """The spectrum given besides that waves beyond `low` (1/nm) have a mean square height (nm^2).
+
+        Of spectra that the bands allow, those are drawn that the mean square allows (importance resampling), known to
+        LEVELLED_SCATTER in its logarithm.
+        """
+        rng = np.random.default_rng(3)
+        logs = self._normal_draws(rng, CANDIDATES)
+        away = np.log(self.moment(0, low=low, psd=np.exp(logs)) / mean_square) / LEVELLED_SCATTER
+        weight = np.exp(-0.5 * (away**2 - np.min(away**2)))
+        weight /= weight.sum()
+        centre = weight @ logs
+        covariance = (weight[:, None] * (logs - centre)).T @ (logs - centre)
+        drawn = logs[rng.choice(CANDIDATES, size=DRAWS, p=weight)]
+        return replace(self, log_psd=centre, covariance=covariance, logs=drawn)
+
+    def _normal_draws(self, rng: np.random.Generator, count: int) -> np.ndarray:
         values, vectors = np.linalg.eigh(self.covariance)
         factor = vectors * np.sqrt(np.maximum(values, 0.0))
-        logs = self.log_psd + rng.standard_normal((count, len(self.q))) @ factor.T
-        if places:
-            logs += self.place_sd * rng.standard_normal((count, 1))
-        return np.exp(logs)
+        return self.log_psd + rng.standard_normal((count, len(self.q))) @ factor.T
 
     def moment(self, power: int, low: float = 0.0, high: float = np.inf, psd: np.ndarray | None = None) -> np.ndarray:
         """Integral of 2 pi q C q^power over low .. high (1/nm) for spectra (..., m); C is flat below the first band.
@@ -178,7 +206,7 @@ def merge(spectra: Sequence[TrustedSpectrum]) -> OneSpectrum | None:
             break
         variance = new
     centres = 10 ** ((bands + 0.5) / BANDS_PER_DECADE)
-    return OneSpectrum(
+    result = OneSpectrum(
         centres,
         solution[:m],
         covariance[:m, :m],
@@ -186,6 +214,13 @@ def merge(spectra: Sequence[TrustedSpectrum]) -> OneSpectrum | None:
         np.sum([(bands >= entry[1][0]) & (bands <= entry[1][-1]) for entry in measured], axis=0),
         tuple(entry[0] for entry in measured),
     )
+    largest = max(spectra, key=lambda item: item.side_nm)
+    if largest.side_nm == 0 or largest.rms_nm == 0 or largest.name not in names:
+        return result
+    first_wave = 2 * np.pi / largest.side_nm
+    if result.first < first_wave:  # a longer line has measured these waves
+        return result
+    return result.with_mean_square(largest.rms_nm**2, LEVELLED_WAVES * first_wave)
 
 
 def _on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

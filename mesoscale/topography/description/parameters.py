@@ -64,7 +64,7 @@ def analyse(spectra: Sequence[TrustedSpectrum], settings: TopographySettings) ->
     fitted = likelihood.fit(spectra)
     if fitted is not None:
         spectra = likelihood.skip_blurred_shells(spectra, fitted.q0)
-        fitted = likelihood.fit(spectra) or fitted
+        fitted = likelihood.fit(spectra, knee=fitted.q0) or fitted
     line_fit = line_fits.fit_lines(spectra)
     doubts = _doubts(spectra, fitted, line_fit, settings)
     estimates: dict[str, Estimate] = {}

@@ -50,7 +50,7 @@ def trusted_profile(cleaned: Profile, measured: Measurement) -> TrustedSpectrum:
             spectrum = isotropic_spectrum(cleaned, low, reach)
     high, radius = limits[limit], measured.tip_radius_nm
     line = binned_line(k, c1, low, high)
-    return TrustedSpectrum(cleaned.name, spectrum, low, high, limit, radius, cleaned.rms_nm, reach, line)
+    return TrustedSpectrum(cleaned.name, spectrum, low, high, limit, radius, cleaned.rms_nm, reach, line=line)
 
 
 def _noise_limit(

@@ -44,17 +44,17 @@ COLUMNS = (
 )
 
 
-def maps(truth: SyntheticScanSettings, told_nm: float) -> Iterator[Measurement]:
-    """Scans of a Gaussian surface, seen with a tip whose radius is told as `told_nm`."""
+def maps(truth: SyntheticScanSettings, stated_nm: float) -> Iterator[Measurement]:
+    """Scans of a Gaussian surface, seen with a tip whose radius is stated as `stated_nm`."""
     for item in synthetic_scans(truth):
-        yield Measurement(_thinned(item.scan, THINNED), told_nm, True)
+        yield Measurement(_thinned(item.scan, THINNED), stated_nm, True)
 
 
 def _thinned(scan: Scan, stride: int) -> Scan:
     return replace(scan, heights_nm=np.ascontiguousarray(scan.heights_nm[::stride, ::stride]))
 
 
-def grainy_maps(truth: SyntheticScanSettings, told_nm: float) -> Iterator[Measurement]:
+def grainy_maps(truth: SyntheticScanSettings, stated_nm: float) -> Iterator[Measurement]:
     """Scans of a surface of the same spectrum whose heights are distributed log-normally: tall grains."""
     rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(2,)))
     heights = common_heights([np.exp(rng.uniform(*SHAPES) * Z)])
@@ -66,7 +66,7 @@ def grainy_maps(truth: SyntheticScanSettings, told_nm: float) -> Iterator[Measur
             larger = synthesize_heights(2 * sites, 2 * length, spectrum.psd, heights, rms, int(rng.integers(2**31)))
             surface = dilate(larger[:sites, :sites], truth.tip_radius_nm, length / sites)
             scan = measure(surface, length, truth, rng, f"grainy_{rng.integers(2**31)}")
-            yield Measurement(_thinned(scan, THINNED * sites // truth.pixels), told_nm, True)
+            yield Measurement(_thinned(scan, THINNED * sites // truth.pixels), stated_nm, True)
 
 
 def _random_rms(spectrum: RoughSpectrum, length: float, sites: int, rng: np.random.Generator) -> float:
@@ -77,7 +77,7 @@ def _random_rms(spectrum: RoughSpectrum, length: float, sites: int, rng: np.rand
     return float(np.sqrt(square * max(1 + np.sqrt(2 * fourth) / square * rng.standard_normal(), 0.1)))
 
 
-def lines(truth: SyntheticScanSettings, _told_nm: float = 0.0) -> Iterator[Measurement]:
+def lines(truth: SyntheticScanSettings, _stated_nm: float = 0.0) -> Iterator[Measurement]:
     """Profiles of two lengths across a Gaussian surface, by an instrument without tip, tilted and noisy."""
     rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(3,)))
     spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
@@ -100,9 +100,9 @@ def _line(q: np.ndarray, psd: np.ndarray, length: float, rng: np.random.Generato
     return np.fft.irfft(np.concatenate([[0.0], waves]), n)[: n // 2 : FINER]
 
 
-def mixed(truth: SyntheticScanSettings, told_nm: float) -> Iterator[Measurement]:
+def mixed(truth: SyntheticScanSettings, stated_nm: float) -> Iterator[Measurement]:
     """Maps of 1 um, too small for the plateau, and the long profiles, which see it."""
-    yield from maps(truth.model_copy(update={"large_scans": 0}), told_nm)
+    yield from maps(truth.model_copy(update={"large_scans": 0}), stated_nm)
     yield from (item for item in lines(truth) if item.data.name.startswith(f"line_{LINES[0][0]:g}"))
 
 
@@ -117,9 +117,9 @@ KINDS: dict[str, Callable[[SyntheticScanSettings, float], Iterator[Measurement]]
 def coverage_rows(kind: str, numbers: range) -> Iterator[dict[str, Any]]:
     """One row per set: truth, estimate, interval, and whether it covers."""
     for number in numbers:
-        truth, told = random_truth(number, BASE)
-        settings = TopographySettings(scans=("set",), tip_radius_nm=told)
-        spectra, refused = _trusted(KINDS[kind](truth, told), settings)
+        truth, stated = random_truth(number, BASE)
+        settings = TopographySettings(scans=("set",), tip_radius_nm=stated)
+        spectra, refused = _trusted(KINDS[kind](truth, stated), settings)
         result = with_radius_error(analyse(spectra, settings), spectra, settings)
         cutoff = min(result.cutoff, truth.q1)
         spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)

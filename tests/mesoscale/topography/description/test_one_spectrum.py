@@ -1,5 +1,7 @@
 """One spectrum from many measurements: what it joins, how sure it is, and what it refuses."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -91,3 +93,23 @@ def test_files_of_different_films_are_refused_by_name():
 
 def test_too_little_gives_none():
     assert merge([]) is None
+
+
+def test_the_mean_square_of_the_largest_map_bounds_waves_that_no_band_measures():
+    """A map begins beyond the knee: its bands alone leave the RMS height open, its levelled heights do not."""
+    side = 2 * np.pi / (0.05 / 2.5 * 0.75)
+    low = 0.72 * 2 * np.pi / side
+    q = np.geomspace(low, 1.0, 1000)
+    rms = np.sqrt(np.trapezoid(2 * np.pi * q * TRUTH.psd(q), q))
+    alone = replace(measured("map", 0.05, 1.0), rms_nm=rms)
+    open_ended, bounded = merge([alone]), merge([replace(alone, side_nm=side)])
+    widths = [
+        np.ptp(np.quantile(np.log(one.moment(0, psd=one.draws(False))), [0.05, 0.95])) for one in (open_ended, bounded)
+    ]
+    assert widths[1] < 0.8 * widths[0]
+    assert np.median(np.sqrt(bounded.moment(0, low=low, psd=bounded.draws(False)))) == pytest.approx(rms, rel=0.2)
+
+
+def test_a_longer_line_knows_the_long_waves_of_a_map_better():
+    small = replace(measured("map", 0.05, 1.0), rms_nm=1.6, side_nm=400.0)
+    assert merge([measured("line", 1e-3, 0.1), small]).logs is None

@@ -136,8 +136,8 @@ def test_the_spectrum_along_a_line_is_compared_with_the_one_of_eq_9_along_a_line
     plateau = np.where(k < q0, 2 * np.sqrt(np.maximum(q0**2 - k**2, 0)), 0.0)
     half = (slope - 1) / 2
     fall = q0**slope * k ** (1 - slope) * beta(half, 0.5) * betainc(half, 0.5, np.minimum(k / q0, 1.0) ** 2)
-    along = Spectrum(k, 40.0 * (plateau + fall), np.full(60, 50.0), 1e-3, 1.0, sharp=True)
-    item = TrustedSpectrum("line", along, 1e-3, 0.5, "pixels", 0.0, line=along)
+    measured = Spectrum(k, 40.0 * (plateau + fall), np.full(60, 50.0), 1e-3, 1.0, sharp=True)
+    item = TrustedSpectrum("line", measured, 1e-3, 0.5, "pixels", 0.0, line=measured)
     fitted = likelihood.fit([item])
     assert fitted.q0 == pytest.approx(q0, rel=0.01)
     assert fitted.slope == pytest.approx(slope, abs=0.01)
