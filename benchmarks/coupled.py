@@ -1,11 +1,11 @@
 """The coupled engine beside tamaas: cost of a curve, forces and areas at equal separation.
 
-python -m benchmarks.coupled cost|large|agreement [PIXELS [SURFACES]]
+python -m benchmarks.coupled cost|large
+python -m benchmarks.coupled elastic|saturated|unloading [PIXELS [SURFACES]]
 (one thread, processor times; docs/contact.md, Coupled mechanics)
 
-cost: cycles at 512 x 512 and 1024 x 1024, and some of their loads by tamaas. agreement: random surfaces under four
-loads up to near full contact, elastic, with saturated pressure, and flattened. large: closing to half of full contact
-at 1024 x 1024.
+cost: cycles at 512 x 512 and 1024 x 1024, and some of their loads by tamaas. large: closing to half of full contact at
+1024 x 1024. The others: forces and areas of random surfaces at the separations of tamaas.
 """
 
 import os
@@ -19,7 +19,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mesoscale.contact import run_cycle
+from mesoscale.contact import ContactInputs, run_cycle
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.coupled.grid import Grid
 from mesoscale.contact.engine import trace
@@ -29,6 +29,7 @@ from mesoscale.settings import ContactSettings
 
 LOADS = 4
 HARDNESS = 4.0  # GPa, of the comparison with saturated pressure
+CELL_NM = 62.5  # side of 64 sites
 
 
 def peak_MB() -> float:
@@ -89,45 +90,61 @@ def cost() -> None:
                 )
 
 
-def agreement(pixels: int = 64, surfaces: int = 10) -> None:
-    """Print the largest differences of force and area at the separations of tamaas, on sites of 1 nm."""
-    length = 62.5 * pixels / 64
-    settings = ContactSettings(mechanics="coupled", pixels=pixels, length_nm=length)
-    rough = replace(MIDDLE, q0=0.15, rms=2.0, h_macro=HARDNESS, h_prime=0.0)
-    share = (pixels / 64) ** 2  # the same nominal pressures on every grid
-    cases = (
-        ("elastic", None, (1e2, 1e3, 1e4, 8e4)),
-        ("nonlinear", HARDNESS, (1e2, 1e3, 5e3, 0.9 * HARDNESS * 62.5**2)),
-    )
-    for model, hardness, loads in cases:
-        force = area = least = most = 0.0
-        for seed in range(1, surfaces + 1):
-            heights = random_surface(rough, settings, seed)
-            for load in (share * load for load in loads):
-                p, separation, spent = by_tamaas(heights, length, load, hardness)
-                start = time.process_time()
-                contact = CoupledContact(heights.copy(), rough, settings.model_copy(update={"model": model}))
-                moved = contact.move_to(separation, False)
-                touching = int((p > 0).sum())
-                force, area = max(force, abs(moved.force / load - 1)), max(area, abs(moved.sites / touching - 1))
-                part = touching / p.size
-                least, most = min(least or part, part), max(most, part)
-                print(
-                    f"  {model} surface {seed}, {load:.3g} nN, {part:.2%} touch: force {moved.force / load - 1:.1e}, "
-                    f"{touching} and {moved.sites} sites, {spent:.2f} and {time.process_time() - start:.2f} s",
-                    flush=True,
-                )
-        print(f"{model}: {surfaces} surfaces x {len(loads)} loads, touching {least:.2%} to {most:.1%}: ", end="")
-        print(f"force differs by at most {force:.1e}, area by {area:.1e}", flush=True)
+def elastic(pixels: int = 64, surfaces: int = 10) -> None:
+    """Compare elastic forces and areas with tamaas, up to near full contact."""
+    compare("elastic", None, (1e2, 1e3, 1e4, 8e4, 3e5), pixels, surfaces)
+
+
+def saturated(pixels: int = 64, surfaces: int = 10) -> None:
+    """The same with a pressure that saturates at HARDNESS, up to 0.9 of all that it carries."""
+    compare("nonlinear", HARDNESS, (1e2, 1e3, 5e3, 0.9 * HARDNESS * CELL_NM**2), pixels, surfaces)
+
+
+def rough_cell(pixels: int) -> tuple[ContactInputs, ContactSettings, float]:
+    """Inputs, settings of a square of sites of 1 nm, and its area over that of 64 x 64 sites."""
+    settings = ContactSettings(mechanics="coupled", pixels=pixels, length_nm=CELL_NM * pixels / 64)
+    return replace(MIDDLE, q0=0.15, rms=2.0, h_macro=HARDNESS, h_prime=0.0), settings, (pixels / 64) ** 2
+
+
+def compare(model: str, hardness: float | None, loads: tuple[float, ...], pixels: int, surfaces: int) -> None:
+    """Print the largest differences of force and area at the separations of tamaas; loads are those on 64 x 64."""
+    rough, settings, share = rough_cell(pixels)
+    force = area = least = most = 0.0
+    for seed in range(1, surfaces + 1):
+        heights = random_surface(rough, settings, seed)
+        for load in (share * load for load in loads):
+            p, separation, spent = by_tamaas(heights, settings.length_nm, load, hardness)
+            start = time.process_time()
+            contact = CoupledContact(heights.copy(), rough, settings.model_copy(update={"model": model}))
+            moved = contact.move_to(separation, False)
+            touching = int((p > 0).sum())
+            part = touching / p.size
+            print(
+                f"  surface {seed}, {load:.3g} nN, {part:.2%} touch: force {moved.force / load - 1:.1e}, "
+                f"{touching} and {moved.sites} sites, {spent:.2f} and {time.process_time() - start:.2f} s",
+                flush=True,
+            )
+            force, area = max(force, abs(moved.force / load - 1)), max(area, abs(moved.sites / touching - 1))
+            least, most = min(least or part, part), max(most, part)
+    print(f"{model}, {pixels}: {surfaces} surfaces x {len(loads)} loads, touching {least:.2%} to {most:.1%}: ", end="")
+    print(f"force differs by at most {force:.1e}, area by {area:.1e}", flush=True)
+
+
+def unloading(pixels: int = 64, surfaces: int = 10) -> None:
+    """Print the largest difference of force on surfaces that plastic closing has flattened."""
+    rough, settings, share = rough_cell(pixels)
+    elastic_settings = settings.model_copy(update={"model": "elastic"})
     worst = 0.0
     for seed in range(1, surfaces + 1):
         chosen = settings.model_copy(update={"max_force_nN": 2e3 * share})
         cycle = run_cycle(rough, chosen, seed, heights=random_surface(rough, settings, seed), keep_surface=True)
+        assert cycle.heights is not None
         for load in (share * load for load in (1.9e3, 1e3, 200.0, 20.0)):
-            _, separation, _ = by_tamaas(cycle.heights, length, load)
-            contact = CoupledContact(cycle.heights.copy(), rough, settings.model_copy(update={"model": "elastic"}))
+            _, separation, _ = by_tamaas(cycle.heights, settings.length_nm, load)
+            contact = CoupledContact(cycle.heights.copy(), rough, elastic_settings)
             worst = max(worst, abs(contact.move_to(separation, False).force / load - 1))
-    print(f"unloading of {surfaces} flattened surfaces at 4 loads: force differs by at most {worst:.1e}")
+        print(f"  surface {seed}: {worst:.1e} so far", flush=True)
+    print(f"unloading of {surfaces} flattened surfaces of {pixels} at 4 loads: force differs by at most {worst:.1e}")
 
 
 def large() -> None:
@@ -144,4 +161,5 @@ def large() -> None:
 
 
 if __name__ == "__main__":
-    {"cost": cost, "agreement": agreement, "large": large}[sys.argv[1]](*map(int, sys.argv[2:]))
+    parts = {"cost": cost, "large": large, "elastic": elastic, "saturated": saturated, "unloading": unloading}
+    parts[sys.argv[1]](*map(int, sys.argv[2:]))

@@ -60,7 +60,9 @@ def studies(settings: ContactSettings) -> Iterator[tuple[str, dict[str, Any], li
     yield "65536 bins", {"gap_bins": 65536}, [("gap_bins", b, {"gap_bins": b}) for b in bins]
 
     cutoff = settings.q1_per_nm or settings.nyquist_per_nm
-    finest = max(2 * settings.pixels, min(4 * settings.pixels, LARGEST_GRID))
+    finest = 2 * settings.pixels
+    if settings.mechanics == "asperity":  # coupled cycles cost twenty times as much on twice the sites a side
+        finest = max(finest, min(4 * settings.pixels, LARGEST_GRID))
     resolved = [n for n in grids_of(settings) if 32 <= n < finest and np.pi * n / settings.length_nm >= cutoff]
     yield (
         f"{finest} pixels, cut-off {cutoff:.3g} 1/nm",

@@ -32,20 +32,21 @@ INPUTS = {
     "scans": replace(MIDDLE, hurst=0.42, rms=5.5),  # the synthetic scans of scene `reduced`
 }
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
-COLUMNS = ("inputs", "mechanics", "q1_per_nm", "pixels", "seed", *NAMES, "status", "cpu_s")
+COLUMNS = ("inputs", "mechanics", "length_nm", "q1_per_nm", "pixels", "seed", *NAMES, "status", "cpu_s")
 CUTOFFS = (0.25, 0.5, 1.0, 2.0, 4.0)  # of a scene's own
 LARGEST_ERROR = 0.02  # of an output (of d_c and its change: in RMS heights), by which a grid is judged
 SHARE_OF_SCATTER = 0.2  # or, where that is more, this share of the deviation between surfaces
 
 
 class Cycles(NamedTuple):
-    """Cycles on the surfaces 1 to `seeds`."""
+    """Cycles on the surfaces 1 to `seeds`, all under the same nominal pressure."""
 
     inputs: str
     mechanics: str
     q1: float
     pixels: int
     seeds: int
+    length: float = 1000.0
 
 
 def plan() -> Iterator[Cycles]:
@@ -66,33 +67,27 @@ def plan() -> Iterator[Cycles]:
             for pixels, seeds in ((512, 8), (1024, 8), (2048, 4)):
                 if q1 < ContactSettings(pixels=pixels).nyquist_per_nm:
                     yield Cycles(name, "asperity", q1, pixels, seeds)
-    for name in ("middle", "hurst 0.46"):
-        yield Cycles(name, "coupled", 0.4, 2048, 2)
+    for name in ("middle", "hurst 0.46"):  # the sites of 1024 and 2048 on a cell of 1000 nm
+        for pixels, seeds in ((256, 8), (512, 8), (1024, 4)):
+            yield Cycles(name, "coupled", 0.4, pixels, seeds, 500.0)
 
 
 def cycle_rows(known: Sequence[Mapping[str, str]]) -> Iterator[dict[str, Any]]:
     """Rows of the planned cycles that are not among those known."""
-    done = {
-        (row["inputs"], row["mechanics"], float(row["q1_per_nm"]), int(row["pixels"]), int(row["seed"]))
-        for row in known
-    }
+    done = {(*_case(row), int(row["pixels"]), int(row["seed"])) for row in known}
     law = LawSettings()
     compute(asdict(MIDDLE), 1, ContactSettings(mechanics="coupled", pixels=64, max_force_nN=30.0))  # loads the engine
-    for name, mechanics, q1, pixels, seeds in plan():
-        settings = ContactSettings.model_validate({"mechanics": mechanics, "q1_per_nm": q1, "pixels": pixels})
+    for name, mechanics, q1, pixels, seeds, length in plan():
+        given = {"mechanics": mechanics, "q1_per_nm": q1, "pixels": pixels, "length_nm": length}
+        force = ContactSettings().max_force_nN * (length / ContactSettings().length_nm) ** 2
+        settings = ContactSettings.model_validate({**given, "max_force_nN": force})
         for seed in range(1, seeds + 1):
-            if (name, mechanics, q1, pixels, seed) in done:
+            if (name, mechanics, length, q1, pixels, seed) in done:
                 continue
             start = time.process_time()
             cycle = compute(asdict(INPUTS[name]), seed, settings)
             spent = time.process_time() - start
-            row: dict[str, Any] = {
-                "inputs": name,
-                "mechanics": mechanics,
-                "q1_per_nm": q1,
-                "pixels": pixels,
-                "seed": seed,
-            }
+            row: dict[str, Any] = {"inputs": name, **given, "seed": seed}
             if isinstance(cycle, str):
                 row["status"] = cycle
             else:
@@ -131,19 +126,19 @@ def scene_rows(
 
 def show(rows: Sequence[Mapping[str, str]]) -> Iterator[str]:
     """Lines: for each cut-off and grid the means, and what the next finer grid changes on the surfaces of both."""
-    groups: dict[tuple[str, str, float], dict[int, dict[int, np.ndarray]]] = {}
-    cost: dict[tuple[str, str, float, int], list[float]] = {}
+    groups: dict[tuple[str, str, float, float], dict[int, dict[int, np.ndarray]]] = {}
+    cost: dict[tuple[str, str, float, float, int], list[float]] = {}
     for row in rows:
-        case = (row["inputs"], row["mechanics"], float(row["q1_per_nm"]))
         values = np.array([float(row[name] or "nan") for name in NAMES])
-        groups.setdefault(case, {}).setdefault(int(row["pixels"]), {})[int(row["seed"])] = values
-        cost.setdefault((*case, int(row["pixels"])), []).append(float(row["cpu_s"]))
+        groups.setdefault(_case(row), {}).setdefault(int(row["pixels"]), {})[int(row["seed"])] = values
+        cost.setdefault((*_case(row), int(row["pixels"])), []).append(float(row["cpu_s"]))
     yield "mean over surfaces: " + ", ".join(NAMES)
     for case, grids in sorted(groups.items()):
+        words = _words(case)
         for pixels, surfaces in sorted(grids.items()):
             means = " ".join(f"{value:10.3e}" for value in np.nanmean(list(surfaces.values()), axis=0))
             spent = float(np.median(cost[*case, pixels]))
-            yield f"{case[0]:10} {case[1]:8} q1 {case[2]:4} {pixels:5} ({len(surfaces)}, {spent:6.2f} s) {means}"
+            yield f"{words} {pixels:5} ({len(surfaces)}, {spent:6.2f} s) {means}"
     yield "change from a grid to the next: share of the output (d_c: of RMS) / of the deviation between surfaces"
     for case, grids in sorted(groups.items()):
         for coarse, fine in pairwise(sorted(grids)):
@@ -151,7 +146,17 @@ def show(rows: Sequence[Mapping[str, str]]) -> Iterator[str]:
             change, scatter = grid_error(case[0], grids[coarse], grids[fine])
             verdict = "passes" if passes(change, scatter) else "fails"
             parts = " ".join(f"{100 * a:6.1f}/{100 * b:4.0f}" for a, b in zip(change, scatter, strict=True))
-            yield f"{case[0]:10} {case[1]:8} q1 {case[2]:4} {coarse:4} to {fine:4} ({len(common)}) {parts} % {verdict}"
+            yield f"{_words(case)} {coarse:4} to {fine:4} ({len(common)}) {parts} % {verdict}"
+
+
+def _case(row: Mapping[str, str]) -> tuple[str, str, float, float]:
+    """What rows of one surface share on all grids: inputs, mechanics, side and cut-off."""
+    return row["inputs"], row["mechanics"], float(row["length_nm"]), float(row["q1_per_nm"])
+
+
+def _words(case: tuple[str, str, float, float]) -> str:
+    inputs, mechanics, length, q1 = case
+    return f"{inputs:10} {mechanics:8} {length:4g} nm q1 {q1:4}"
 
 
 def grid_error(
