@@ -1,11 +1,13 @@
 """The report page: complete, self-contained, only what exists, alive in a real browser."""
 
+import csv
 import json
 import math
 import re
 import shutil
 from html.parser import HTMLParser
 from pathlib import Path
+from urllib.parse import unquote
 
 import pytest
 from scipy.optimize import brentq
@@ -43,7 +45,7 @@ class Outline(HTMLParser):
 
     def __init__(self):
         super().__init__()
-        self.ids, self.outside, self.labels, self.figures = [], [], 0, 0
+        self.ids, self.outside, self.loaded, self.labels, self.figures = [], [], [], 0, 0
 
     def handle_starttag(self, tag, attrs):
         attributes = dict(attrs)
@@ -52,7 +54,7 @@ class Outline(HTMLParser):
         for name in ("src", "href", "xlink:href", "action", "data"):
             value = attributes.get(name) or ""
             if value and not value.startswith(("#", "data:")):
-                self.outside.append(value)
+                (self.outside if tag == "a" else self.loaded).append(value)
         if tag == "svg":
             self.figures += 1
             self.labels += bool(attributes.get("aria-label"))
@@ -73,12 +75,17 @@ def test_every_stage_has_its_section_and_every_figure_is_drawn(page):
     assert "Table 3 of the paper" in page
 
 
-def test_page_is_self_contained_small_and_well_formed(page):
+def test_page_is_self_contained_small_and_well_formed(files, page):
     found = outline(page)
-    assert found.outside == []
+    root, paths = files
+    results = {path.relative_to(root).as_posix() for path in paths}
+    assert set(found.loaded) == set()
+    linked = set(found.outside)
+    assert results <= linked, "a file behind the page that it does not link"
+    assert all(re.fullmatch(r"[\w.][\w./-]*", name) and ".." not in name for name in linked)
     assert "@import" not in page
     assert "http-equiv" in page
-    assert len(page.encode()) < 8e6
+    assert len(page.encode()) < 2e6
     assert len(found.ids) == len(set(found.ids)), "ids of two figures collide"
     assert found.labels == found.figures, "a figure without a text alternative"
 
@@ -193,6 +200,31 @@ def test_figures_follow_the_page_colours():
     assert "var(--series-1)" in svg
     assert not re.search(r"#0[12]0[123]0[1-6]", svg)
     assert "url(#" not in svg or "url(#one-" in svg
+
+
+def test_figures_carry_their_numbers():
+    def plot(left, right):
+        left.plot([1, 2, 3], [4, float("nan"), 6], label="a, b")
+        left.axhline(0)
+        left.set(title="one", xlabel="s (nm)", ylabel="p (MPa)")
+        right.fill_between([0, 1], [1, 2], [3, 4], label="band")
+        right.bar([5], [7], width=2)
+
+    svg = draw("two", "two panels", plot, columns=2)
+    lines = unquote(re.search(r'download="two.csv" href="data:text/csv;charset=utf-8,([^"]*)"', svg)[1]).splitlines()
+    assert lines[:3] == ["# panel 1: one; x: s (nm); y: p (MPa)", "# panel 2: ; x: ; y:", "panel,series,x,y"]
+    rows = list(csv.reader(lines[3:]))
+    assert rows[:2] == [["1", "a, b", "1", "4"], ["1", "a, b", "3", "6"]]  # neither gaps nor the line that marks zero
+    assert ["2", "band, outline", "1", "4"] in rows
+    assert rows[-2:] == [["2", "bar 1, corners", "4", "0"], ["2", "bar 1, corners", "6", "7"]]
+
+
+def test_terms_are_explained_once_in_each_section(page):
+    tips = re.findall(r'<a class="term" href="#(term-[^"]+)" aria-describedby="([^"]+)"', page)
+    assert {link for link, _ in tips} >= {"term-pad", "term-gate", "term-d_c"}
+    assert all(link == described and f'<dd id="{link}">' in page for link, described in tips)
+    pad = page[page.index('<section id="pad"') : page.index('<section id="device"')]
+    assert pad.count('href="#term-pad"') == 1
 
 
 def test_numbers_read_well():

@@ -1,32 +1,35 @@
 """The first screen: the law with its intervals, the hysteresis, the switch, and what matters most."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from mesoscale.law.parameters import LAW
+from workflow.report.aids.verdict import release_cards, release_causes, verdict
 from workflow.report.available import Results, Row
 from workflow.report.numbers import OUTPUTS, SYMBOLS, column, number, show
-from workflow.report.page import Table
+from workflow.report.page import Gate, Table
 from workflow.report.stages import law
 from workflow.report.stages.sensitivity import ranking
 
 
-def answer(results: Results) -> dict[str, Any]:
+def answer(results: Results, gates: Sequence[Gate]) -> dict[str, Any]:
     """Sentences, table and figure that open the report."""
-    content: dict[str, Any] = {"method": "", "figure": None, "table": None, "cards": []}
+    content: dict[str, Any] = {"verdict": verdict(results, gates), "method": "", "figure": None, "table": None}
+    content["cards"] = release_cards(results)
     if results.has("uq/outputs.csv", "uq/samples.csv"):
         rows = {row["output"]: row for row in results.csv("uq/outputs.csv")}
         samples = results.csv("uq/samples.csv")
         content["method"] = (
-            f"All numbers on this screen come from the {results.response} at {len(samples)} samples of the inputs. "
-            "Their intervals hold what the inputs leave open, not the scatter from one surface to the next."
+            f"Numbers of the law on this screen come from the {results.response} at {len(samples)} samples of the "
+            "inputs. Their intervals hold what the inputs leave open, not the scatter from one surface to the next."
         )
         content["table"] = _law_table(results, rows, samples)
         content["cards"] += _law_cards(results, rows, samples)
     if results.has("uq/sensitivity.csv") and ranking(results.csv("uq/sensitivity.csv"), "d_c_nm"):
-        content["cards"].append(_cause_card(results.csv("uq/sensitivity.csv")))
-    if results.has("device/switch.json"):
+        content["cards"].append(_cause_card(results))
+    if results.has("device/switch.json") and not release_cards(results):
         content["cards"].append(_switch_card(results.json("device/switch.json")))
     if results.has("device/law.csv", "device/switch.json", "uq/samples.csv"):
         content["figure"] = law.band(results)
@@ -50,7 +53,8 @@ def _law_cards(results: Results, rows: dict[str, Row], samples: list[Row]) -> li
     ]
 
 
-def _cause_card(rows: list[Row]) -> dict[str, str]:
+def _cause_card(results: Results) -> dict[str, str]:
+    rows = results.csv("uq/sensitivity.csv")
     ranked = ranking(rows, "d_c_nm")
     name, share = ranked[0]
     words = f"{min(share, 1):.0%} of the variance of d_c"
@@ -58,6 +62,8 @@ def _cause_card(rows: list[Row]) -> dict[str, str]:
     if opening:
         pairs = [f"{SYMBOLS.get(key, key)} {min(part, 1):.0%}" for key, part in opening[:3]]
         words += "; of the hysteresis: " + ", ".join(pairs)
+    if causes := release_causes(results):
+        words += "; of the release: " + ", ".join(f"{symbol} {share:.0%}" for symbol, share in causes[:3])
     return {"title": "Main cause of the spread", "value": SYMBOLS.get(name, name), "detail": words}
 
 

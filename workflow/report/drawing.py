@@ -12,6 +12,9 @@ import matplotlib
 
 matplotlib.use("svg")
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
+
+from workflow.report.aids.figure_data import csv_link
 
 INK, SOFT, GRID, PAPER = "#010203", "#010204", "#010205", "#010206"
 SERIES = ("#020301", "#020302", "#020303", "#020304", "#020305", "#020306")
@@ -76,17 +79,18 @@ def draw(
             axis.patch.set_alpha(0)
         plot(*axes)
         boxes = _panels(figure) if columns > 1 else []
+        link = csv_link([axis for axis in axes if axis.get_visible()], name)
         stream = io.StringIO()
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     whole = _inline(stream.getvalue(), name, label)
     if not boxes:
-        return whole
+        return whole + link
     pieces = (
         f'<svg viewBox="{box}" role="img" aria-label="{_attribute(label)}, panel {k}">'
         f'<use href="#{name}-figure_1"/></svg>'
         for k, box in enumerate(boxes, start=1)
     )
-    return f'<div class="whole">{whole}</div><div class="panels">{"".join(pieces)}</div>'
+    return f'<div class="whole">{whole}</div><div class="panels">{"".join(pieces)}</div>{link}'
 
 
 def _panels(figure: Figure) -> list[str]:
@@ -94,10 +98,15 @@ def _panels(figure: Figure) -> list[str]:
     figure.draw_without_rendering()
     width, height = 72 * figure.get_size_inches()
     boxes = []
-    for axis in filter(lambda axis: axis.get_visible(), figure.axes):
-        tight = axis.get_tightbbox()
-        assert tight is not None  # None only for axes that are not visible
-        box = tight.transformed(figure.transFigure.inverted()).padded(0.005)
+    bars = {axis: [image.colorbar.ax for image in axis.images if image.colorbar] for axis in figure.axes}
+    panels = [axis for axis in figure.axes if axis.get_visible() and not any(axis in bar for bar in bars.values())]
+    for axis in panels:
+        parts = [part.get_tightbbox() for part in (axis, *bars[axis])]
+        box = (
+            Bbox.union([part for part in parts if part is not None])
+            .transformed(figure.transFigure.inverted())
+            .padded(0.005)
+        )
         boxes.append(
             f"{box.x0 * width:.1f} {(1 - box.y1) * height:.1f} {box.width * width:.1f} {box.height * height:.1f}"
         )

@@ -78,3 +78,6 @@ class Page:
     limits: Sequence[str]
     provenance: Sequence[tuple[str, str]]
     live: dict[str, dict[str, Any]]
+    moves: bool
+    terms: Sequence[tuple[str, str]]
+    files: Sequence[str]

@@ -1,11 +1,13 @@
 """The page from the result files of a scene."""
 
+import re
 from pathlib import Path
 
 import yaml
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
+from workflow.report.aids.glossary import TERMS, Explainer, anchor
 from workflow.report.answer import answer
 from workflow.report.available import Results
 from workflow.report.drawing import SUBSCRIPT
@@ -17,28 +19,35 @@ from workflow.report.stages import STAGES
 from workflow.report.studies import studies
 
 HERE = Path(__file__).parent
-SCRIPTS = ("controls", "explorer", "pad", "beam", "device")
+SCRIPTS = ("controls", "spots", "explorer", "pad", "beam", "device")
 """In the order in which they build on each other."""
 
 
 def render(results: Results) -> str:
     """HTML of the report; sections appear only for results that exist."""
     sections = [section for stage in STAGES if (section := stage.describe(results))] + studies(results)
+    gates = [gate for section in sections for gate in section.gates]
     live = {"surrogate": explorer(results), "switch_data": switch_data(results)}
     page = Page(
         scene=results.scene,
         beside_paper=results.beside_paper,
-        answer=answer(results),
+        answer=answer(results, gates),
         sections=sections,
-        gates=[gate for section in sections for gate in section.gates],
+        gates=gates,
         limits=limits(results),
         provenance=_provenance(results),
+        moves=results.has("curves/spots.h5"),
+        terms=list(TERMS.items()),
+        files=sorted(results.paths),
         live={name: data for name, data in live.items() if data is not None},
     )
     environment = Environment(
         loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
+    explainer = Explainer()
     environment.filters["low"] = _low
+    environment.filters["explain"] = lambda text, place: _lowered(explainer(text, place))
+    environment.filters["anchor"] = anchor
     environment.filters["script_json"] = script_json
     return environment.get_template("template.html.j2").render(
         page=page,
@@ -50,7 +59,13 @@ def render(results: Results) -> str:
 
 def _low(text: str) -> Markup:
     """Escaped text in which names such as d_c have their index set low."""
-    return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))))
+    return _lowered(escape(text))
+
+
+def _lowered(text: Markup) -> Markup:
+    """The same between the tags of escaped text."""
+    parts = re.split(r"(<[^>]*>)", str(text))
+    return Markup("".join(part if part.startswith("<") else SUBSCRIPT.sub(r"\1<sub>\2</sub>", part) for part in parts))
 
 
 def _provenance(results: Results) -> list[tuple[str, str]]:

@@ -9,6 +9,7 @@ rule compute_nominal:
         inputs=f"{RESULTS}/inputs.csv",
     output:
         curves=f"{RESULTS}/curves/nominal.h5",
+        spots=f"{RESULTS}/curves/spots.h5",
     log:
         f"{RESULTS}/logs/compute_nominal.log",
     threads: 1

@@ -2,13 +2,13 @@
 // What all live parts of the page share: sliders with their labels, and rows of a table.
 function shown(value) { return Number.isFinite(value) ? String(Number(value.toPrecision(3))).replace("-", "−") : "–"; }
 
-function labelled(form, { name, label, unit, low, high, value }, changed) {
+function labelled(form, { name, label, unit, low, high, value, step = "any" }, changed) {
   const holder = document.createElement("label");
   const text = document.createElement("span");
   const output = document.createElement("output");
   const slider = document.createElement("input");
   text.textContent = label + (unit && unit !== "1" ? ` (${unit})` : "");
-  Object.assign(slider, { type: "range", min: low, max: high, step: "any", name });
+  Object.assign(slider, { type: "range", min: low, max: high, step, name });
   slider.defaultValue = value;
   holder.append(text, output, slider);
   form.append(holder);
@@ -41,3 +41,5 @@ function tableRow(head, cells) {
   }));
   return row;
 }
+
+addEventListener("keydown", ({ key }) => { if (key === "Escape") document.activeElement.blur(); }); // puts an explanation away

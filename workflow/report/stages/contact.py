@@ -11,6 +11,7 @@ from mesoscale.contact.surface import shortest_wave, surface_spectrum
 from mesoscale.settings import ContactSettings
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, SOFT, draw
+from workflow.report.live.spots import spots_picture
 from workflow.report.numbers import number
 from workflow.report.page import COMPUTED, Gate, Section, Table
 from workflow.report.stages import law
@@ -34,6 +35,11 @@ def describe(results: Results) -> Section | None:
         f"Closing and opening of one surface of {reading['length_nm']:g} nm with {reading['pixels']}² "
         "grid points at central inputs.",
         COMPUTED,
+    )
+    section.add(
+        spots_picture(results),
+        "The surface seen from the flat, and in red where the flat has reached it while closing. The surface is shown "
+        "as it was before contact; what gave way is in the curves below.",
     )
     section.add(
         nominal_models(results),

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from workflow.report.aids.verdict import release_causes
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
 from workflow.report.numbers import OUTPUTS, SYMBOLS, column, number, show
@@ -36,6 +37,18 @@ def describe(results: Results) -> Section | None:
     section.blocks.append(
         Table("Elementary effects µ*" + " here (and in the paper)" * results.beside_paper, header, lines)
     )
+    if causes := release_causes(results):
+        shares = {symbol: share for symbol, share in causes}
+        d_c = {SYMBOLS.get(name, name): share for name, share in ranking(rows, "d_c_nm")}
+        lines = [
+            (name, *("–" if share is None else f"{share:.0%}" for share in (d_c.get(name), shares.get(name))))
+            for name in dict.fromkeys([*d_c, *shares])
+        ]
+        header = ("cause", "of the variance of d_c", "of the variance of the release voltage")
+        section.blocks.append(
+            Table("Share of the spread: where contact begins, and when the switch lets go", header, lines)
+        )
+        section.files.append("device/pad_switch.json")
     section.add(
         sensitivity_bars(results),
         "The same as bars; lines: scatter over surfaces.",

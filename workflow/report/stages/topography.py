@@ -106,7 +106,10 @@ def maps(results: Results) -> str | None:
             heights = _thin(groups[name]["heights"])
             size = float(scan_attributes[name]["length_x_nm"]) / 1e3
             limit = float(np.quantile(np.abs(heights), 0.995))
-            axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), cmap="cividis", vmin=-limit, vmax=limit)
+            shades = {"cmap": "cividis", "vmin": -limit, "vmax": limit, "interpolation": "none"}
+            image = axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), **shades)
+            bar = axis.figure.colorbar(image, ax=axis, shrink=0.8, label="height (nm)" if name == shown[-1] else None)
+            bar.outline.set_visible(False)
             rms = float(scan_attributes[name].get("rms_nm", np.nan))
             axis.set_title(f"{name.removeprefix('scans/')}: RMS {rms:.2f} nm", fontsize=9)
             axis.set_xlabel("µm", fontsize=8)
@@ -114,7 +117,7 @@ def maps(results: Results) -> str | None:
         for axis in axes[len(shown) :]:
             axis.set_visible(False)
 
-    return draw("fig9", "Height maps of the scans", plot, (2.8 * columns, 2.9 * rows), columns, rows)
+    return draw("fig9", "Height maps of the scans", plot, (3.2 * columns, 2.9 * rows), columns, rows)
 
 
 def spectra(results: Results) -> str | None:
@@ -244,7 +247,7 @@ def recovered_sets(results: Results) -> str | None:
     return draw("recovered_sets", "Truth recovered from many sets of scans", plot, (9.0, 3.2), 3)
 
 
-def _thin(heights: np.ndarray, most: int = 160) -> np.ndarray:
+def _thin(heights: np.ndarray, most: int = 128) -> np.ndarray:
     step = max(1, -(-max(heights.shape) // most))
     return heights[::step, ::step]
 
