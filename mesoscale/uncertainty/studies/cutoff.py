@@ -107,8 +107,8 @@ def scene_rows(
     Without a cut-off of its own a scene has the Nyquist limit of its grid. Cut-offs that a grid does not resolve, and
     grids that do not resolve the cut-off, are left out.
     """
-    own = contact.q1_per_nm or contact.nyquist_per_nm
-    cases = [(factor * own, contact.pixels) for factor in CUTOFFS] + [(own, pixels) for pixels in grids_of(contact)]
+    cutoff = contact.q1_per_nm or contact.nyquist_per_nm
+    cases = [(factor * cutoff, contact.pixels) for factor in CUTOFFS] + [(cutoff, pixels) for pixels in grids_of(contact)]
     for done, (q1, pixels) in enumerate(sorted(set(cases))):
         settings = contact.model_copy(update={"q1_per_nm": q1, "pixels": pixels})
         if pixels < 32 or q1 > settings.nyquist_per_nm * (1 + 1e-9):
