@@ -108,7 +108,9 @@ def scene_rows(
     grids that do not resolve the cut-off, are left out.
     """
     cutoff = contact.q1_per_nm or contact.nyquist_per_nm
-    cases = [(factor * cutoff, contact.pixels) for factor in CUTOFFS] + [(cutoff, pixels) for pixels in grids_of(contact)]
+    cases = [(factor * cutoff, contact.pixels) for factor in CUTOFFS] + [
+        (cutoff, pixels) for pixels in grids_of(contact)
+    ]
     for done, (q1, pixels) in enumerate(sorted(set(cases))):
         settings = contact.model_copy(update={"q1_per_nm": q1, "pixels": pixels})
         if pixels < 32 or q1 > settings.nyquist_per_nm * (1 + 1e-9):
