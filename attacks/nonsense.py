@@ -67,6 +67,8 @@ NONSENSE: dict[str, tuple[str, str]] = {
     "uniform q0 beyond the grid": (scene("contact: {pixels: 64}", q0="{a: 0.5, b: 0.9}"), "beyond what the grid"),
     "normal q0 beyond the grid": (scene(q0="{distribution: normal, a: 5, b: 0.1}"), "beyond what the grid"),
     "fixed q0 beyond the grid": (scene(q0="{distribution: fixed, a: 5}"), "beyond what the grid"),
+    "cell smaller than its roll-off": (scene("contact: {length_nm: 200}"), "too small for its roll-off"),
+    "electrode smaller than a cell": (scene("device: {electrode_um2: 0.5}"), "is smaller than one cell"),
     "cut-off beyond the grid": (scene("contact: {pixels: 64, q1_per_nm: 1}"), "beyond what contact.pixels = 64"),
     "gap cutoff twice": (scene("contact: {gap_cutoff_nm: 0.2}", gap_cutoff="{a: 0.15, b: 0.3}"), "the same number"),
     "negative load": ("contact: {nominal_loads_nN: [-1]}", "contact.nominal_loads_nN.0 = -1"),

@@ -22,6 +22,7 @@ from mesoscale.topography.measurements.loading import FILE_NM, load_measurements
 from mesoscale.topography.records import record
 
 SECONDS, MEMORY_MB = 30, 4000
+ANALYSED = 300_000  # bytes of a file whose spectra are computed, too
 HEAD = 2048  # bytes in which a format describes itself
 CHANNELS = {"di-3.di": "ZSensor", "nid-1.nid": "Scan forward (Z-Axis)"}
 WITHOUT_UNIT = ("csv-1.csv", "csv-2.csv", "made.xyz", "opdx-3.txt", "xy-4.txt")
@@ -109,7 +110,7 @@ def judge(path: Path, settings: TopographySettings) -> tuple[str, str]:
     """Outcome (refused, a surface, or fault) and its words; for a process of its own."""
     try:
         for measured in load_measurements(path, settings=settings):
-            arrays, _ = record(measured, settings)
+            arrays = record(measured, settings)[0] if path.stat().st_size < ANALYSED else {}
             lengths = getattr(measured.data, "lengths_nm", None) or (measured.data.length_nm,)
             heights = np.asarray(measured.data.heights_nm)
             if not all(FILE_NM[0] <= length <= FILE_NM[1] for length in lengths):

@@ -107,7 +107,7 @@ def campaign(folder: Path, first: int, count: int) -> Iterator[dict[str, Any]]:
     for seed in range(first, first + count):
         started = time.process_time()
         outcome, words = judge(mutated(seed), folder / "mutated.yaml")
-        yield {"seed": seed, "outcome": outcome, "seconds": time.process_time() - started, "words": words[:200]}
+        yield {"seed": seed, "outcome": outcome, "seconds": time.process_time() - started, "words": words[:60]}
 
 
 def planned(folder: Path, seed: int) -> dict[str, Any]:

@@ -45,7 +45,13 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
     except InputError as error:
         yield str(error)
         return
-    high, nyquist = spans.get("q0", (0.0, 0.0))[1], scene.contact.nyquist_per_nm
+    side, nyquist = scene.contact.length_nm, scene.contact.nyquist_per_nm
+    low, high = spans.get("q0", (math.inf, 0.0))
+    if low < 2 * math.pi / side:
+        yield (
+            f"inputs.q0 reaches down to {low:g} 1/nm, a roll-off wavelength of {2 * math.pi / low:.3g} nm in a cell of "
+            f"contact.length_nm = {side:g}: too small for its roll-off; take a longer side or a larger q0"
+        )
     if high > nyquist:
         yield (
             f"inputs.q0 reaches {high:g} 1/nm, beyond what the grid resolves ({nyquist:.3g} 1/nm: pi contact.pixels / "
@@ -68,6 +74,13 @@ def _stages(scene: Scene) -> Iterator[str]:
         yield (
             f"contact.model = {scene.contact.model} with history.cycles = {scene.history.cycles}: only plastic "
             "contacts have a history; choose contact.model: plastic"
+        )
+    device, side_um = scene.device, scene.contact.length_nm / 1000
+    area_um2 = device.electrode_um2 or device.length_um * device.width_um
+    if area_um2 < side_um**2:
+        yield (
+            f"device: an electrode of {area_um2:g} um^2 (electrode_um2, or length_um times width_um) is smaller than "
+            f"one cell of {side_um:g} um (contact.length_nm); take a larger electrode or a smaller cell"
         )
     synthetic = scene.topography.synthetic
     if "topography" in scene.stages() and not (

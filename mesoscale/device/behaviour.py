@@ -70,7 +70,8 @@ def samples_of_rows(
     if not usable.any():
         raise InputError(
             f"uq/samples.csv: none of {len(chosen)} samples has positive C_r and rho_r and C_a >= 0 on both "
-            "branches, so the law cannot drive a switch; look at law/parameters.csv for failed fits"
+            "branches, so the law cannot drive a switch; look at law/parameters.csv for failed fits, take more "
+            "contact.pixels or uncertainty.seeds, or uncertainty.response: regression, which keeps them positive"
         )
     laws = {branch: take(law, usable) for branch, law in laws.items()}
     central = {

@@ -268,8 +268,12 @@ def _profile(path: Path, name: str, info: Any, stated_unit: str | None) -> Profi
             f"{path}: a profile without length unit; state it in topography.instruments "
             f"(files: {path.name!r}, unit: um) or in the heads of its columns"
         )
-    line = _heights(path, info.topography)
-    x, z = (np.ma.filled(np.ma.asarray(v, dtype=float), np.nan) for v in line.positions_and_heights())
+
+    def points() -> list[np.ndarray]:
+        x, z = info.topography().positions_and_heights()
+        return [np.ma.filled(np.ma.asarray(v, dtype=float), np.nan) for v in (x, z)]
+
+    x, z = _heights(path, points)
     try:
         profile = profile_of(x * factors[0], z * factors[1], name)
     except InputError as error:
