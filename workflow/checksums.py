@@ -7,7 +7,10 @@ without a checksum is none of ours, and one that differs from it was damaged aft
 
 import hashlib
 import os
+import time
 from pathlib import Path
+
+CLOCK_S = 5.0  # by which clocks of machines that share a disk may differ
 
 
 def file_checksum(path: str | Path) -> str:
@@ -39,6 +42,15 @@ def is_damaged(path: str | Path) -> bool:
     if not target.is_file():
         return False
     return target.read_text(encoding="utf-8", errors="replace") != f"{file_checksum(path)}  {Path(path).name}\n"
+
+
+def redate(folder: str | Path) -> list[Path]:
+    """Date results below a folder that are dated in the future to now; returns their paths, sorted."""
+    now = time.time()
+    late = [path for path in sorted(Path(folder).rglob("*")) if path.is_file() and path.stat().st_mtime > now + CLOCK_S]
+    for path in late:
+        os.utime(path, (now, now))
+    return late
 
 
 def remove_damaged(folder: str | Path) -> list[Path]:

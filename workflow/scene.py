@@ -7,6 +7,7 @@ fail when they drift apart.
 import difflib
 import json
 import os
+import time
 import types
 from collections.abc import Iterable
 from pathlib import Path
@@ -30,6 +31,7 @@ from mesoscale.settings import (
     TopographySettings,
     UncertaintySettings,
 )
+from workflow.checksums import CLOCK_S
 from workflow.report.settings import ReportSettings
 from workflow.scene_yaml import MistakenYaml, load_mapping
 
@@ -170,7 +172,7 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
 
     Raises
     ------
-    SceneError : a file is missing, or its path has braces; one line per file.
+    SceneError : a file is missing or dated in the future, or its path has braces; one line per file.
     """
     files, mistakes = [], []
     beside = _folder_of(scene)
@@ -181,6 +183,11 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
             mistakes.append(f"{scene}: {key} = {_cut(name)}: no such file here or beside the scene; correct the path")
         elif set(path) & set("{}"):
             mistakes.append(f"{scene}: {key} = {_cut(path)}: braces mean wildcards to Snakemake; rename the file")
+        elif os.path.getmtime(path) > time.time() + CLOCK_S:
+            mistakes.append(
+                f"{scene}: {key} = {_cut(path)}: dated in the future, so that every result of it would seem older; set "
+                "its date (touch) or the clock"
+            )
         else:
             files.append(path)
     if mistakes:

@@ -1,11 +1,13 @@
 """A damaged result is named, removed and made again; it is never used."""
 
+import os
 import subprocess
+import time
 from types import SimpleNamespace
 
 import pytest
 
-from workflow.checksums import is_damaged, record_of, remove_damaged
+from workflow.checksums import is_damaged, record_of, redate, remove_damaged
 from workflow.job import job
 from workflow.results import write_csv, write_text
 
@@ -66,6 +68,13 @@ def test_the_checksum_of_a_file_that_is_gone_goes_too(result):
 def test_a_damaged_checksum_makes_its_result_again(result):
     record_of(result).write_text("")
     assert remove_damaged(result.parent) == [result]
+
+
+def test_a_result_dated_in_the_future_is_dated_now(tmp_path, result):
+    os.utime(result, (time.time() + 1e6,) * 2)
+    assert redate(tmp_path) == [result]
+    assert result.stat().st_mtime <= time.time()
+    assert redate(tmp_path) == []
 
 
 def test_a_result_written_again_is_whole(result):

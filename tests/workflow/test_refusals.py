@@ -44,6 +44,14 @@ def test_no_permission_to_write(workflow_in):
     assert "cannot write" in line
 
 
+def test_a_link_of_results_that_leads_nowhere(workflow_in):
+    (workflow_in.folder / "results").symlink_to("/nowhere/at/all")
+    done = workflow_in.run("paper")
+    assert done.returncode != 0
+    (line,) = errors(done)
+    assert "results: a link to /nowhere/at/all, which is not there" in line
+
+
 def test_results_of_another_scene_of_the_same_name(workflow_in):
     scene = workflow_in.folder / "mine.yaml"
     scene.write_text("")

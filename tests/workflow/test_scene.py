@@ -1,6 +1,8 @@
 """A scene is checked before any job starts; every mistake is one line that says what to do."""
 
 import itertools
+import os
+import time
 
 import pytest
 
@@ -129,3 +131,11 @@ def test_files_that_a_scene_names_are_sought_here_and_beside_it(tmp_path, monkey
         locate("scenes/mine.yaml", "inputs.rms.file", ["{a}.csv"])
     with pytest.raises(SceneError, match=r"inputs\.rms\.file = nowhere\.csv: no such file here or beside"):
         locate("scenes/mine.yaml", "inputs.rms.file", ["nowhere.csv"])
+
+
+def test_a_file_dated_in_the_future_is_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rms.csv").write_text("rms\n5\n6\n")
+    os.utime(tmp_path / "rms.csv", (time.time() + 1e6,) * 2)
+    with pytest.raises(SceneError, match=r"inputs\.rms\.file = rms\.csv: dated in the future"):
+        locate("mine.yaml", "inputs.rms.file", ["rms.csv"])

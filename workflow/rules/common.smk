@@ -29,6 +29,9 @@ except SceneError as error:
 
 RESULTS = f"results/{SCENE.name}"
 
+for folder in (Path(RESULTS), Path(RESULTS).parent):
+    if folder.is_symlink() and not folder.exists():
+        refuse(f"{folder}: a link to {os.readlink(folder)}, which is not there; mount it, or remove the link")
 writable = next(folder for folder in (Path(RESULTS), *Path(RESULTS).parents) if folder.exists())
 if not (writable.is_dir() and os.access(writable, os.W_OK)):
     refuse(f"{RESULTS}: cannot write to {writable}; run in a folder you may write to")
