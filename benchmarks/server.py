@@ -64,7 +64,7 @@ def main(calls: int) -> None:
         "contact_cycle": lambda seed: (INPUTS, {"seed": seed, "contact": {"pixels": 256}}),
         "switch": lambda seed: (LAWS, {}),
     }
-    own = {
+    in_process = {
         name: rate(lambda seed, name=name, made=made: evaluate(name, *made(seed)), calls, 1)
         for name, made in configurations.items()
     }
@@ -79,8 +79,12 @@ def main(calls: int) -> None:
         finally:
             process.terminate()
             process.wait()
-    for name, found in rates.items():
-        print(f"{name:13} {own[name]:8.1f}   " + "   ".join(f"{value:8.1f}" for value in found) + "   calls per second")
+    for name, values in rates.items():
+        print(
+            f"{name:13} {in_process[name]:8.1f}   "
+            + "   ".join(f"{value:8.1f}" for value in values)
+            + "   calls per second"
+        )
 
 
 if __name__ == "__main__":

@@ -100,12 +100,12 @@ def responses_posterior(table: InputTable, data: Array) -> Array:
     ]
     runs = random_runs(table, UncertaintySettings(sample_seed=3), 0, 800, first_surface=FIRST_SURFACE - 10_000)
     cycles: Cycles = cycles_of_rows(observe_runs(runs, CONTACT, LawSettings()), table.names)
-    found = calibrate(
+    result = calibrate(
         table, tables, cycles, CONTACT, LawSettings(), DeviceSettings(), MeasurementsSettings(max_steps=8000)
     )
-    if found.reasons:
-        raise RuntimeError(found.reasons[0])
-    return found.x[:, [table.names.index(name) for name in FREE]]
+    if result.reasons:
+        raise RuntimeError(result.reasons[0])
+    return result.x[:, [table.names.index(name) for name in FREE]]
 
 
 def compare(chains: Sequence[Array], ours: Array) -> list[dict[str, Any]]:
