@@ -8,7 +8,7 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME
-from mesoscale.inputs.table import collect, from_rows, to_rows
+from mesoscale.inputs.table import check_resolved, collect, from_rows, input_table, to_rows
 from mesoscale.settings import ContactSettings, Correlation, InputRow, InputsSettings
 from tests.mesoscale import paper
 
@@ -112,6 +112,13 @@ def test_samples_from_a_file(tmp_path):
     file.unlink()
     with pytest.raises(InputError, match="cannot be read"):
         collect(settings, {}, {}, 0.999)
+
+
+def test_a_measured_cutoff_beyond_the_grid_is_refused_with_what_to_do():
+    table = input_table(q1=InputRow(a=0.2, b=1.0))
+    check_resolved(table, 1.0, 0.999)
+    with pytest.raises(InputError, match=r"q1 reaches 1 1/nm, beyond .* \(0\.8 1/nm\); raise contact\.pixels, or set"):
+        check_resolved(table, 0.8, 0.999)
 
 
 def test_eighth_input():
