@@ -17,6 +17,8 @@ from atomistic.settings import ClosingSettings, HardnessSettings, YieldSettings
 Rows = Sequence[Mapping[str, float]]
 
 ROUNDING_NM = 1e-6  # of a travel that is a whole number of steps
+LATEST_START = 3  # of as many parts of the averages beyond the onset, the first is the last to hold the plateau's start
+CLEARLY_MORE = 1.5  # times the independent averages
 
 UNLOADED = (  # of a run with dynamic unloading: what stays, beside the snapshot relaxed before it
     "snapshot_exchanged_bonds", "unloaded_exchanged_bonds", "snapshot_lowering_nm", "unloaded_lowering_nm",
@@ -141,7 +143,8 @@ def find_hardness(
     }
     if np.sum(beyond) < settings.min_points:
         return Hardness("rejected: too few averages between onset and the end of the window", **measured)
-    plateau, lengths = stress[beyond], length[beyond]
+    first = settled(stress[beyond])
+    plateau, lengths = stress[beyond][first:], length[beyond][first:]
     exponent = float(np.polyfit(np.log(lengths), np.log(plateau), 1)[0])
     low, high = interval_of_mean(plateau)
     measured |= {
@@ -153,15 +156,14 @@ def find_hardness(
         "length_min_nm": float(np.min(lengths)),
         "length_max_nm": float(np.max(lengths)),
         "plateau_exponent": exponent,
-        "plateau_points": int(np.sum(beyond)),
+        "plateau_points": len(plateau),
     }
-    half = 0.5 * (high - low) / float(np.mean(plateau))
     if exponent > settings.max_exponent:
         status = f"rejected: stress still rises as length^{exponent:.2f} beyond the onset"
-    elif fraction[-1] <= settings.max_area_fraction and not _is_narrow(half, int(np.sum(beyond)), settings):
+    elif fraction[-1] < settings.stop_area_fraction:
         status = (
-            f"rejected: stopped before its rule, {np.sum(beyond)} averages to {half:.1%} of the stress on "
-            f"{fraction[-1]:.2f} of the cell; raise closing.depth_over_amplitude"
+            f"rejected: stopped before its rule, on {fraction[-1]:.2f} of the cell instead of "
+            f"{settings.stop_area_fraction:g}; raise closing.depth_over_amplitude"
         )
     else:
         status = "yield"
@@ -179,11 +181,8 @@ def may_stop(
         return False
     hardness = find_hardness(curve, witness, cell_area_nm2, closing, settings)
     half = 0.5 * (hardness.hardness_hi - hardness.hardness_lo) / hardness.hardness_GPa
-    return hardness.plateau_exponent <= settings.max_exponent and _is_narrow(half, hardness.plateau_points, settings)
-
-
-def _is_narrow(half_width: float, averages: int, settings: YieldSettings) -> bool:
-    return averages >= settings.stop_points and half_width <= settings.stop_interval
+    narrow = hardness.plateau_points >= settings.stop_points and half <= settings.stop_interval
+    return hardness.plateau_exponent <= settings.max_exponent and narrow
 
 
 def point(curve: Rows, witness: Rows, run: Mapping[str, Any], settings: HardnessSettings) -> dict[str, Any]:
@@ -223,12 +222,32 @@ def interval_of_mean(values: np.ndarray) -> tuple[float, float]:
     The correlation of neighbours is corrected for its bias in short series (Kendall 1954).  How often the interval
     holds the truth, also after stopping on its width, is tested (studies/detection.py).
     """
+    if len(values) < 2 or np.ptp(values) == 0:
+        return float(np.mean(values)), float(np.mean(values))
+    effective = _effective_number(values)
+    half = float(stdtrit(effective - 1, 0.84)) * float(np.std(values, ddof=1)) / np.sqrt(effective)
+    return float(np.mean(values)) - half, float(np.mean(values)) + half
+
+
+def settled(stress: np.ndarray) -> int:
+    """Where the plateau begins: bonds break before the stress has stopped rising.
+
+    The start that leaves the most independent averages (Chodera, J. Chem. Theory Comput. 12, 1799, 2016,
+    doi:10.1021/acs.jctc.5b00784), if it leaves clearly more: else noise would choose, and the interval would be too
+    narrow.  A start beyond the first third would make plateaus of the ends of elastic curves.  Both by the rates of
+    studies/detection.py.
+    """
+    independent = [_effective_number(stress[start:]) for start in range(len(stress) // LATEST_START + 1)]
+    best = int(np.argmax(independent))
+    return best if independent[best] > CLEARLY_MORE * independent[0] else 0
+
+
+def _effective_number(values: np.ndarray) -> float:
+    """Independent values that a series of a first-order process is worth, at least two."""
     count, apart = len(values), values - np.mean(values)
     variance = float(np.sum(apart**2))
     if count < 2 or variance == 0:
-        return float(np.mean(values)), float(np.mean(values))
+        return float(max(2, count))
     neighbours = float(np.sum(apart[1:] * apart[:-1])) / variance
     correlation = float(np.clip(neighbours + (1 + 4 * neighbours) / count, 0, 0.9))
-    effective = max(2.0, count * (1 - correlation) / (1 + correlation))
-    half = float(stdtrit(effective - 1, 0.84)) * float(np.std(values, ddof=1)) / np.sqrt(effective)
-    return float(np.mean(values)) - half, float(np.mean(values)) + half
+    return max(2.0, count * (1 - correlation) / (1 + correlation))

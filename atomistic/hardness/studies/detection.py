@@ -64,6 +64,7 @@ def detection_points(
             ("bent_though_bonds_break", "false yield", draw.rate(_elastic(0.7), 40.0, _gave_yield), False),
             ("plateau", "found within 15 %", draw.rate(_plateau, 40.0, _near_truth), True),
             ("plateau_without_broken_bonds", "false yield", draw.rate(_plateau, 0.0, _gave_yield), False),
+            ("plateau_after_bonds_broke", "found within 15 %", draw.rate(_late, 40.0, _near_truth, 2.2), True),
         ):
             bound = 0.8 if least else 0.05
             rows.append(
@@ -115,6 +116,11 @@ def _level(length: np.ndarray) -> np.ndarray:
     return TRUTH_GPA * np.minimum(length / 2.6, 1)
 
 
+def _late(length: np.ndarray) -> np.ndarray:
+    """Elastic to 3 nm, then level."""
+    return TRUTH_GPA * np.minimum(length / 3, 1)
+
+
 def _gave_yield(status: str, hardness: float) -> bool:
     return status == "yield"
 
@@ -147,15 +153,15 @@ class _Draw:
             noise[k] = self.correlation * noise[k - 1] + shocks[k]
         return truth(self.length) + noise
 
-    def rate(self, truth: Stress, bursts: float, judge: Callable[[str, float], bool]) -> float:
-        """Share of runs for which `judge` holds; `bursts`: bond exchanges per snapshot beyond 2.6 nm of length."""
-        return sum(judge(*self._run(truth, bursts)) for _ in range(TRIALS)) / TRIALS
+    def rate(self, truth: Stress, bursts: float, judge: Callable[[str, float], bool], onset_nm: float = 2.6) -> float:
+        """Share of runs for which `judge` holds; `bursts`: bond exchanges per snapshot beyond the onset's length."""
+        return sum(judge(*self._run(truth, bursts, onset_nm)) for _ in range(TRIALS)) / TRIALS
 
     def coverage(self) -> tuple[float, float]:
         """Of runs on a level plateau that stop by their rule: share whose interval holds the truth, averages used."""
         held, used = 0, []
         for _ in range(TRIALS):
-            curve, witness, cell = self._made(_level, 40.0)
+            curve, witness, cell = self._made(_level, 40.0, 2.6)
             per = round(0.1 / 0.025)  # averages in a segment
             rules = (cell, self.settings.closing, self.settings.plasticity)
             ends = range(per, len(curve), per)
@@ -165,13 +171,13 @@ class _Draw:
             used.append(hardness.plateau_points)
         return held / TRIALS, float(np.mean(used))
 
-    def _run(self, truth: Stress, bursts: float) -> tuple[str, float]:
-        hardness = find_hardness(*self._made(truth, bursts), self.settings.closing, self.settings.plasticity)
+    def _run(self, truth: Stress, bursts: float, onset_nm: float) -> tuple[str, float]:
+        hardness = find_hardness(*self._made(truth, bursts, onset_nm), self.settings.closing, self.settings.plasticity)
         return hardness.status, hardness.hardness_GPa
 
-    def _made(self, truth: Stress, bursts: float) -> tuple[Rows, Rows, float]:
+    def _made(self, truth: Stress, bursts: float, onset_nm: float) -> tuple[Rows, Rows, float]:
         """Curve, witness and area of the cell of a made-up run."""
-        onset = float(np.interp(2.6, self.length, self.travel))
+        onset = float(np.interp(onset_nm, self.length, self.travel))
         snapshots = np.arange(0.0, self.travel[-1], 0.1)
         witness: list[Mapping[str, float]] = []
         for k, travel in enumerate(snapshots.tolist()):
