@@ -1,4 +1,4 @@
-"""The command `asperity`: run, plan, new, schema, open, serve; thin over Snakemake."""
+"""The command `asperity`: run, plan, open, compare, new, schema, serve; thin over Snakemake."""
 
 import argparse
 import importlib.util
@@ -42,6 +42,10 @@ def main(arguments: list[str] | None = None) -> int:
     commands.add_parser("new", help="write a scene file to start from").add_argument(
         "file", help="for instance film.yaml"
     )
+    comparison = commands.add_parser("compare", help="put two folders of results side by side on one page")
+    comparison.add_argument("first", help="for instance results/ci")
+    comparison.add_argument("second")
+    comparison.add_argument("--page", default="comparison.html", help="file to write; default: comparison.html")
     commands.add_parser("schema", help="print the JSON Schema of a scene")
     server = commands.add_parser("serve", help="offer contact cycle, law, pad and switch over UM-Bridge")
     server.add_argument("--host", default="127.0.0.1", help="address to listen on; default: this machine alone")
@@ -53,6 +57,9 @@ def main(arguments: list[str] | None = None) -> int:
     if given.command == "schema":
         print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
         return 0
+    if given.command == "compare":
+        page = [sys.executable, "-m", "workflow.report.aids.comparison", given.first, given.second, given.page]
+        return subprocess.run(page, env=_environment(), check=False).returncode
     if given.command == "new":
         return _new(Path(given.file))
     if given.command == "open":
@@ -114,13 +121,16 @@ def _snakemake(scene: str, targets: list[str], cores: str, dry: bool) -> int:
         f"scene={scene}",
     ]
     command[3:3] = ["--dry-run", "--quiet", "rules"] if dry else ["--resources", f"mem_mb={_memory_MB()}"]
-    # scripts import `workflow`, which is no installed package of that name
-    paths = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
     try:
-        return subprocess.run(command, env=environment, check=False).returncode
+        return subprocess.run(command, env=_environment(), check=False).returncode
     except KeyboardInterrupt:
         return 130
+
+
+def _environment() -> dict[str, str]:
+    """Of processes that import `workflow`, which is no installed package of that name."""
+    paths = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
 
 
 def _memory_MB() -> int:

@@ -45,7 +45,7 @@ def render(results: Results) -> str:
         loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
     explainer = Explainer()
-    environment.filters["low"] = _low
+    environment.filters["low"] = low
     environment.filters["explain"] = lambda text, place: _lowered(explainer(text, place))
     environment.filters["anchor"] = anchor
     environment.filters["script_json"] = script_json
@@ -57,7 +57,7 @@ def render(results: Results) -> str:
     )
 
 
-def _low(text: str) -> Markup:
+def low(text: str) -> Markup:
     """Escaped text in which names such as d_c have their index set low."""
     return _lowered(escape(text))
 

@@ -38,8 +38,8 @@ def describe(results: Results) -> Section | None:
     )
     section.add(
         spots_picture(results),
-        "The surface seen from the flat, and where the flat has reached it while closing: in orange what the last step added. The surface is shown "
-        "as it was before contact; what gave way is in the curves below.",
+        "The surface seen from the flat, and where the flat has reached it while closing: in orange what the last step "
+        "added. The surface is shown as it was before contact; what gave way is in the curves below.",
     )
     section.add(
         nominal_models(results),

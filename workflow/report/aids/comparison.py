@@ -1,0 +1,146 @@
+"""Two scenes side by side on one page: `asperity compare results/a results/b`."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from mesoscale.law.parameters import PARAMETERS
+from workflow.report.aids.verdict import verdict
+from workflow.report.available import Results
+from workflow.report.numbers import OUTPUTS, column, show
+from workflow.report.page import Table
+from workflow.report.render import low
+from workflow.report.stages import law
+
+ENDS = (0.05, 0.5, 0.95)
+Spread = tuple[float, float, float]
+"""5 %, median and 95 %."""
+
+
+def comparison(first: Results, second: Results) -> str:
+    """HTML of the page: what both scenes say, and the differences with their intervals."""
+    pairs = [(results, results.root.name) for results in (first, second)]
+    figures = [
+        (
+            name,
+            law.band(results).replace('"law-', f'"law{k}-').replace("#law-", f"#law{k}-"),
+        )  # ids of two figures differ
+        for k, (results, name) in enumerate(pairs)
+        if results.has("device/law.csv", "device/switch.json", "uq/samples.csv")
+    ]
+    here = Path(__file__).parent
+    environment = Environment(loader=FileSystemLoader(here), autoescape=True, undefined=StrictUndefined)
+    environment.filters["low"] = low
+    return environment.get_template("comparison.html.j2").render(
+        names=[name for _, name in pairs],
+        verdicts=[(name, verdict(results, [])) for results, name in pairs],
+        figures=figures,
+        table=differences(first, second),
+        style=(here.parent / "style.css").read_text(encoding="utf-8"),
+    )
+
+
+def differences(first: Results, second: Results) -> Table:
+    """Every quantity that both scenes have, and the second less the first."""
+    one, other = spreads(first), spreads(second)
+    lines = [
+        (f"{name} ({unit})" if unit else name, _shown(one[name, unit]), _shown(other[name, unit]), _shown(difference))
+        for name, unit in one
+        if (name, unit) in other
+        for difference in [difference_of(one[name, unit], other[name, unit])]
+    ]
+    header = ("quantity", first.root.name, second.root.name, "difference")
+    return Table(
+        "Median and 5 to 95 % (of probabilities 95 %); the difference is second less first, of independent scenes",
+        header,
+        lines,
+    )
+
+
+def difference_of(first: Spread, second: Spread) -> Spread:
+    """Second less first; deviations to either side of the median add in squares, as for independent quantities."""
+    middle = second[1] - first[1]
+    low = middle - float(np.hypot(second[1] - second[0], first[2] - first[1]))
+    high = middle + float(np.hypot(second[2] - second[1], first[1] - first[0]))
+    return low, middle, high
+
+
+def spreads(results: Results) -> dict[tuple[str, str], Spread]:
+    """Quantities of a scene by name and unit."""
+    quantities: dict[tuple[str, str], Spread] = {}
+    if results.has("uq/samples.csv"):
+        rows = results.csv("uq/samples.csv")
+        for branch in ("closing", "opening"):
+            for name in PARAMETERS:
+                symbol, unit, factor = OUTPUTS[name]
+                values = column(rows, f"{branch}_{name}") * factor
+                quantities[f"{symbol}, {branch}", unit] = _quantiles(values[np.isfinite(values)])
+    pad = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
+    if answer := pad.get("answer"):
+        quantities["release voltage, 0 where it sticks", "V"] = _described(answer["release_V"])
+        quantities["probability of sticking", ""] = _probability(answer["stuck"])
+    if pad.get("mean"):
+        estimate = pad["estimate"]
+        quantities["release voltage at central inputs, electrode flat", "V"] = _described(estimate["release_V"])
+        quantities["largest net adhesion of the pad", "kPa"] = _described(estimate["deepest_net_kPa"])
+        quantities["probability of sticking at central inputs, electrode flat", ""] = _probability(estimate["stuck"])
+    if results.has("elastic/e_star.h5"):
+        samples = results.h5("elastic/e_star.h5")[0]["samples"]["e_star_GPa"]
+        quantities["E* computed", "GPa"] = _quantiles(np.asarray(samples, float))
+    if results.has("topography/parameters.json"):
+        for name, estimate in results.json("topography/parameters.json").get("estimates", {}).items():
+            low, high = estimate["interval"]
+            quantities[f"{name} measured", estimate["unit"]] = (float(low), float(estimate["value"]), float(high))
+    return quantities
+
+
+def _quantiles(values: np.ndarray) -> Spread:
+    low, middle, high = np.quantile(values, ENDS).tolist()
+    return low, middle, high
+
+
+def _described(described: dict[str, Any]) -> Spread:
+    low, middle, high = (float(described["quantiles"][f"{end:g}"]) for end in ENDS)
+    return low, middle, high
+
+
+def _probability(share: dict[str, Any]) -> Spread:
+    return float(share["low"]), float(share["value"]), float(share["high"])
+
+
+def _shown(spread: Spread) -> str:
+    low, middle, high = (show(value) for value in spread)
+    return f"{middle} [{low}, {high}]"
+
+
+def results_in(folder: Path) -> Results:
+    """All result files of a folder, for a page that no run schedules."""
+    paths = [
+        path
+        for path in folder.rglob("*")
+        if path.suffix in {".csv", ".json", ".h5"} and path.relative_to(folder).parts[0] not in {"logs", "work"}
+    ]
+    return Results(folder, paths, folder.name)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Write the page of two folders of results."""
+    first, second, page = (Path(name).resolve() for name in arguments)
+    for folder in (first, second):
+        if not (folder / "inputs.csv").is_file():
+            print(
+                f"ERROR {folder.name}: no results of a scene are there; give two folders such as results/ci",
+                file=sys.stderr,
+            )
+            return 1
+    page.write_text(comparison(results_in(first), results_in(second)), encoding="utf-8")
+    print(f"the comparison is {page.name}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
