@@ -2,6 +2,7 @@
 
 import pickle
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan, clean
-from mesoscale.topography.measurements.loading import load_scan, write_gwy
+from mesoscale.topography.measurements.loading import load_measurements, load_scan, write_gwy
 
 AFM = Path(__file__).resolve().parents[5] / "shared" / "afm"
 
@@ -149,3 +150,24 @@ def test_a_height_that_no_surface_has_is_refused(tmp_path):
     write_gwy(tmp_path / "scan.gwy", Scan(heights, (1000.0, 1000.0), "a"))
     with pytest.raises(InputError, match=r"scan\.gwy: a height of 1e\+200 nm; plausible is up to 1e\+08 nm about"):
         load_scan(tmp_path / "scan.gwy")
+
+
+def _no_channels():
+    raise KeyError("Miscellaneous")
+
+
+def _line_of_three():
+    line = SimpleNamespace(positions_and_heights=lambda: ([0.0], [1.0], [2.0]))
+    return [SimpleNamespace(is_height_channel=True, name="z", unit="um", dim=1, topography=lambda: line)]
+
+
+@pytest.mark.parametrize("read", [_no_channels, _line_of_three])
+def test_a_reader_that_fails_after_opening_is_one_line(tmp_path, monkeypatch, read):
+    class Reader:
+        channels = property(lambda self: read())
+
+    path = tmp_path / "cut.top"
+    path.write_bytes(b"x" * 100)
+    monkeypatch.setattr("mesoscale.topography.measurements.loading._open", lambda *given: Reader())
+    with pytest.raises(InputError, match=r"cut\.top: heights cannot be read"):
+        load_measurements(path)
