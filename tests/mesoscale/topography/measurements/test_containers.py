@@ -1,6 +1,7 @@
 """Containers of contact.engineering: read whole, and harmless whatever is inside."""
 
 import json
+import tracemalloc
 import zipfile
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 from mesoscale.errors import InputError
 from mesoscale.settings import InstrumentSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.containers import MAX_RATIO
 from mesoscale.topography.measurements.loading import load_measurements, write_gwy
 from mesoscale.topography.measurements.profiles import Profile
 
@@ -110,3 +112,15 @@ def test_what_is_no_archive_is_refused(tmp_path):
     with zipfile.ZipFile(tmp_path / "b.zip", "w") as archive:
         archive.writestr("notes.txt", "hello")
     refused(tmp_path / "b.zip", "neither index.json nor meta.yml")
+
+
+def test_a_bomb_takes_no_more_memory_than_is_accepted(tmp_path):
+    path = container(tmp_path / "bomb.zip", **{"line.txt": b"0" * 200 * 2**20})
+    accepted = path.stat().st_size * MAX_RATIO
+    tracemalloc.start()
+    try:
+        refused(path, "unpacks to more than")
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert most < 3 * accepted
