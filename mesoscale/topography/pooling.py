@@ -91,7 +91,7 @@ def pool(
         if cut_off:
             rows["rms"] = rms_before(rows["q1"], rows["rms"], topography, surface)
     apart = _disagreements(pairs, one) if settings.scans else []
-    doubts = description_doubts(topography, choice, one, attributes, apart) if settings.scans else []
+    doubts = description_doubts(topography, choice, one, attributes, apart, tests) if settings.scans else []
     if choice.name == "power_law":
         doubts = [*topography.doubts, *doubts]
     else:

@@ -183,6 +183,7 @@ def description_doubts(
     one: OneSpectrum | None,
     attributes: Mapping[str, Mapping[str, Any]],
     disagreements: Sequence[str],
+    tests: Sequence[HeightTest] = (),
 ) -> list[Doubt]:
     """Doubts of the measurements besides those of eq. 9, which only count where eq. 9 is used."""
     doubts = []
@@ -198,6 +199,11 @@ def description_doubts(
         if values.get("radius_stated") is not None and not values["radius_stated"]:
             text = f"{name}: neither scene nor file states the tip radius; taken is {values['tip_radius_nm']:g} nm"
             doubts.append(Doubt("tip_not_stated", text, "state it in topography.instruments", "spectrum"))
+    for test in tests:
+        if test.anisotropy > MOST_ANISOTROPIC:
+            text = f"{test.name}: slopes are {test.anisotropy:.2g} times as steep in one direction as across it"
+            remedy = "random surfaces are isotropic: trust the pressed scan, and look for ridges or noise of lines"
+            doubts.append(Doubt("anisotropic", text, remedy, "contact"))
     for text in disagreements:
         remedy = "check their units, height scales and places; the band of the spectrum holds both"
         doubts.append(Doubt("measurements_disagree", text, remedy, "spectrum"))
@@ -215,5 +221,6 @@ def description_doubts(
     return doubts
 
 
+MOST_ANISOTROPIC = 2.0  # ratio of slopes; isotropic surfaces C ~ q^-2.5 to q^-4 without a plateau reach 1.4
 MOST_SKEWED = 0.3  # skewness that aligning lines may add without a word
 MOST_ALIGNED = 0.1  # share of the RMS height that aligning lines may take without a word

@@ -25,6 +25,7 @@ class HeightTest:
     ----------
     skewness, kurtosis, highest : of the scan; highest point above the mean plane in units of the RMS height.
     expected, spread : (3,) mean and standard deviation of the same on `GAUSSIANS` Gaussian surfaces.
+    anisotropy : RMS slope along the steepest direction over that across it; 1 for an isotropic surface.
     """
 
     name: str
@@ -33,6 +34,7 @@ class HeightTest:
     highest: float
     expected: np.ndarray
     spread: np.ndarray
+    anisotropy: float = 1.0
 
     @property
     def away(self) -> np.ndarray:
@@ -50,7 +52,15 @@ def compare_heights(name: str, heights: np.ndarray, lengths_nm: tuple[float, flo
     psd = SpectrumTable(spectrum.q, spectrum.psd).psd
     gaussian = np.array([moments(synthesize_spectrum(n, side, psd, 1.0, seed)) for seed in range(GAUSSIANS)])
     skewness, kurtosis, highest = moments(square)
-    return HeightTest(name, skewness, kurtosis, highest, gaussian.mean(axis=0), gaussian.std(axis=0, ddof=1))
+    expected, spread = gaussian.mean(axis=0), gaussian.std(axis=0, ddof=1)
+    return HeightTest(name, skewness, kurtosis, highest, expected, spread, slope_ratio(square))
+
+
+def slope_ratio(heights: np.ndarray) -> float:
+    """RMS slope of heights (n, n) along the steepest direction over that across it, from the tensor of slopes."""
+    x, y = (part.ravel() for part in np.gradient(heights))
+    low, high = np.linalg.eigvalsh(np.array([[x @ x, x @ y], [x @ y, y @ y]]))
+    return float(np.sqrt(high / max(low, 1e-12 * high))) if high > 0 else 1.0
 
 
 def moments(heights: np.ndarray) -> tuple[float, float, float]:

@@ -6,6 +6,7 @@ import pytest
 from mesoscale.contact.surface import random_surface
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings, SyntheticScanSettings, TopographySettings
+from mesoscale.topography.description.heights import slope_ratio
 from mesoscale.topography.height_synthesis import synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import Measurement
@@ -13,6 +14,7 @@ from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import record
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.summary import parameters, scan_rows
+from mesoscale.topography.synthesis import synthesize_spectrum
 from mesoscale.topography.synthetic_scans import surface_patch, synthetic_scans
 from tests.mesoscale.topography.test_height_synthesis import SKEWED
 
@@ -115,3 +117,11 @@ def test_the_trusted_end_is_offered_with_its_uncertainty():
     end = content["trusted_end"]
     assert end["interval"][0] <= end["value"] <= end["interval"][1]
     assert end["limit"] in ("tip", "noise", "pixels")
+
+
+def test_ridges_differ_from_isotropic_roughness():
+    """A Gaussian surface stretched threefold along one axis has slopes three times as steep across it."""
+    heights = synthesize_spectrum(384, 1000.0, lambda q: np.maximum(q, 0.03) ** -4.0, 1.0, 1)
+    assert slope_ratio(heights[:128, :128]) < 1.25
+    stretched = np.array([np.interp(np.arange(384) / 3, np.arange(128), line) for line in heights[:384, :128]])
+    assert slope_ratio(stretched) == pytest.approx(3.0, rel=0.2)
