@@ -7,7 +7,7 @@ import numpy as np
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.likelihood import TrustedSpectrum, trusted_range
 from mesoscale.topography.description.profile_range import trusted_profile
-from mesoscale.topography.measurements.cleaning import Scan, clean
+from mesoscale.topography.measurements.cleaning import Scan, clean, form_share
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile, clean_profile
 from mesoscale.topography.spectrum import Spectrum, autocorrelation, profile_spectrum, radial_spectrum
@@ -71,7 +71,7 @@ def limited_spectrum(name: str, spectrum: Spectrum, cleaned: Scan, measured: Mea
     noise = (measured.noise_nm or 0.0) ** 2 * float(np.prod(cleaned.pixel_nm)) / (2 * np.pi) ** 2
     radius, rms, shortest = measured.tip_radius_nm, cleaned.rms_nm, measured.shortest_wave_nm
     limits = trusted_range(name, spectrum, radius, rms_nm=rms, shortest_wave_nm=shortest, noise_psd=noise)
-    return replace(limits, side_nm=float(np.sqrt(np.prod(cleaned.lengths_nm))))
+    return replace(limits, side_nm=float(np.sqrt(np.prod(cleaned.lengths_nm))), form=form_share(cleaned.heights_nm))
 
 
 def trusted_scan(scan: Scan, settings: TopographySettings) -> TrustedSpectrum:

@@ -87,7 +87,7 @@ def _scan(scan: Scan, measured: Measurement, settings: TopographySettings) -> tu
         share, skewness = alignment_effect(scan, settings)
         attributes |= {"alignment_share": share, "alignment_skewness": skewness}
         limits = limited_spectrum(cleaned.name, spectrum, cleaned, measured)
-        attributes |= _range(limits)
+        attributes |= _range(limits) | {"form": limits.form}
     return arrays, attributes
 
 
@@ -135,7 +135,8 @@ def trusted_record(
     result = TrustedSpectrum(name, spectrum, float(low), float(high), str(limit), radius, rms, reach)
     if line:
         return replace(result, line=binned_line(arrays["profile_q"], arrays["profile_psd"], result.low, result.high))
-    return replace(result, side_nm=float(np.sqrt(attributes["length_x_nm"] * attributes["length_y_nm"])))
+    side = float(np.sqrt(attributes["length_x_nm"] * attributes["length_y_nm"]))
+    return replace(result, side_nm=side, form=float(attributes["form"]))
 
 
 def is_profile(attributes: Mapping[str, Any]) -> bool:

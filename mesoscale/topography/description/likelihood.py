@@ -61,6 +61,7 @@ class TrustedSpectrum:
     rms_nm : RMS of the cleaned heights.
     reach : where the range would end without the tip, 1/nm; between `high` and here the tip's correction is large.
     side_nm : side of a square of a measured map's area; 0 for a line profile.
+    form : ln of what a parabola would take of the mean square height, besides the levelling.
     line : of a line profile, C1(k) in nm^3 on bins inside its trusted range; None for a scan.
     """
 
@@ -73,6 +74,7 @@ class TrustedSpectrum:
     rms_nm: float = 0.0
     reach: float = 0.0
     side_nm: float = 0.0
+    form: float = 0.0
     line: Spectrum | None = None
 
     @property

@@ -108,15 +108,15 @@ class OneSpectrum:
             logs = logs + self.place_sd * rng.standard_normal((count, 1))
         return np.exp(logs)
 
-    def with_mean_square(self, mean_square: float, low: float) -> "OneSpectrum":
+    def with_mean_square(self, mean_square: float, low: float, error: float) -> "OneSpectrum":
         """The spectrum given besides that waves beyond `low` (1/nm) have a mean square height (nm^2).
 
         Of spectra that the bands allow, those are drawn that the mean square allows (importance resampling), known to
-        LEVELLED_SCATTER in its logarithm.
+        `error` in its logarithm.
         """
         rng = np.random.default_rng(3)
         logs = self._normal_draws(rng, CANDIDATES)
-        away = np.log(self.moment(0, low=low, psd=np.exp(logs)) / mean_square) / LEVELLED_SCATTER
+        away = np.log(self.moment(0, low=low, psd=np.exp(logs)) / mean_square) / error
         weight = np.exp(-0.5 * (away**2 - np.min(away**2)))
         weight /= weight.sum()
         centre = weight @ logs
@@ -220,7 +220,9 @@ def merge(spectra: Sequence[TrustedSpectrum]) -> OneSpectrum | None:
     first_wave = 2 * np.pi / largest.side_nm
     if result.first < first_wave:  # a longer line has measured these waves
         return result
-    return result.with_mean_square(largest.rms_nm**2, LEVELLED_WAVES * first_wave)
+    # what is form and what is roughness is unknown to what a parabola would take
+    error = float(np.hypot(LEVELLED_SCATTER, largest.form))
+    return result.with_mean_square(largest.rms_nm**2, LEVELLED_WAVES * first_wave, error)
 
 
 def _on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

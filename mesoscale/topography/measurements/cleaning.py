@@ -118,6 +118,13 @@ def alignment_effect(scan: Scan, settings: TopographySettings) -> tuple[float, f
     return 1 - after / before, skewness[1] - skewness[0]
 
 
+def form_share(heights: np.ndarray) -> float:
+    """ln of the mean square of levelled heights (nx, ny) over what a parabola leaves of it: how much is form."""
+    rest = heights - fitted_trend(heights, order=2)
+    before, after = float(np.var(heights)), float(np.var(rest))
+    return float(np.log(before / after)) if after > 0 else 0.0
+
+
 def cut_off_share(heights: np.ndarray) -> float:
     """Share of pixels at the very highest or lowest value; 0 where all heights are equal."""
     top, bottom = np.nanmax(heights), np.nanmin(heights)
