@@ -136,7 +136,8 @@ def trusted_record(
     if line:
         return replace(result, line=binned_line(arrays["profile_q"], arrays["profile_psd"], result.low, result.high))
     side = float(np.sqrt(attributes["length_x_nm"] * attributes["length_y_nm"]))
-    return replace(result, side_nm=side, form=float(attributes["form"]))
+    # results of earlier versions do not state the form
+    return replace(result, side_nm=side, form=float(attributes.get("form", 0.0)))
 
 
 def is_profile(attributes: Mapping[str, Any]) -> bool:
