@@ -91,3 +91,18 @@ rule sample_posterior:
         "sample the posterior of the inputs"
     script:
         "../scripts/sample_posterior.py"
+
+
+rule check_calibration_stability:
+    output:
+        f"{RESULTS}/stability/calibration.csv",
+    log:
+        f"{RESULTS}/logs/check_calibration_stability.log",
+    message:
+        "check the calibration on hard cases"
+    script:
+        "../scripts/check_calibration_stability.py"
+
+
+if SCENE.measurements.tables:
+    STABILITY.append(f"{RESULTS}/stability/calibration.csv")
