@@ -12,18 +12,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_banded
 
+from mesoscale.device.beam_kernels import NM, deflect, newton_step
 from mesoscale.settings import DeviceSettings
 
 Array = NDArray[np.float64]
 Load = Callable[[Array], tuple[Array, Array]]
 """Pressure (Pa, positive: apart) and its derivative (Pa/m) at separations (m), all of shape (elements, points)."""
 
-NM = 1e-9
 GAUSS = np.polynomial.legendre.leggauss(4)
-BANDS = 3
-"""Half bandwidth: two nodes of an element have a deflection and a slope."""
 
 
 @dataclass(frozen=True)
@@ -56,10 +53,16 @@ class Beam:
         """Length that each integration point stands for, shape (points,)."""
         return 0.5 * self.length_m / self.elements * GAUSS[1]
 
+    @property
+    def mechanics(self) -> tuple[Array, Array, Array]:
+        """Hermite's shapes, stiffness of an element, and weights of the points times the width, as the kernels take."""
+        size = self.length_m / self.elements
+        stiffness = _stiffness(size, self.bending_N_m2, self.tension_N)
+        return _shapes(size), stiffness, self.width_m * self.weights_m
+
     def deflection_m(self, nodal: Array) -> Array:
         """Deflection at the integration points from nodal values (nodes, 2), shape (elements, points)."""
-        ends = np.concatenate([nodal[:-1], nodal[1:]], axis=1)
-        return ends @ _shapes(self.length_m / self.elements)[0]
+        return deflect(nodal, _shapes(self.length_m / self.elements))
 
     def step(self, nodal: Array, load: Load, inertia: float = 0.0, other: Array | None = None) -> tuple[Array, Array]:
         """One Newton step towards balance, and the answer to another load on top, both of shape (nodes, 2).
@@ -69,26 +72,9 @@ class Beam:
         inertia : added stiffness per area (Pa/m) that holds the beam back; 0 for a plain step.
         other : pressure (Pa) at the integration points; None: no other load.
         """
-        size = self.length_m / self.elements
-        shape, stiffness = _shapes(size)[0], _stiffness(size, self.bending_N_m2, self.tension_N)
-        ends = np.concatenate([nodal[:-1], nodal[1:]], axis=1)
-        pressure, slope = load(self.rest_m + ends @ shape)
-        weights = self.width_m * self.weights_m
-        forces = [(pressure * weights) @ shape.T - ends @ stiffness]
-        forces.append(np.zeros_like(forces[0]) if other is None else (other * weights) @ shape.T)
-        matrix = stiffness + np.einsum("ep,ip,jp->eij", (inertia - slope) * weights, shape, shape)
-        unknowns = 2 * len(nodal)
-        bands, right = np.zeros((2 * BANDS + 1, unknowns)), np.zeros((unknowns, 2))
-        first = 2 * np.arange(self.elements)
-        for i in range(4):
-            for side in range(2):
-                right[first + i, side] += forces[side][:, i]
-            for j in range(4):
-                bands[BANDS + i - j, first + j] += matrix[:, i, j]
-        inner = solve_banded((BANDS, BANDS), bands[:, 2:-2], right[2:-2])
-        clamped = np.zeros((2, 2))
-        both = np.concatenate([clamped, inner, clamped])
-        return both[:, 0].reshape(-1, 2), both[:, 1].reshape(-1, 2)
+        pressure, slope = load(self.rest_m + self.deflection_m(nodal))
+        other = np.zeros_like(pressure) if other is None else other
+        return newton_step(nodal, pressure, slope, other, inertia, *self.mechanics)
 
 
 def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
@@ -106,11 +92,11 @@ def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
     return Beam(length, width, bending, tension, rest, at)
 
 
-def _shapes(size: float) -> tuple[Array, Array]:
-    """Hermite's shapes on an element of this size and their weights at the integration points, shape (4, points)."""
+def _shapes(size: float) -> Array:
+    """Hermite's shapes on an element of this size at the integration points, shape (4, points)."""
     x = 0.5 * (GAUSS[0] + 1.0)
     shapes = [1 - 3 * x**2 + 2 * x**3, size * (x - 2 * x**2 + x**3), 3 * x**2 - 2 * x**3, size * (x**3 - x**2)]
-    return np.stack(shapes), GAUSS[1]
+    return np.stack(shapes)
 
 
 def _stiffness(size: float, bending: float, tension: float) -> Array:

@@ -20,6 +20,9 @@ FAR_NM = 200.0
 """Beyond, the attraction of the pad is that of two flats to 1 %: 1 + 6 (rms / separation)^2."""
 FAR_POINTS = 24
 MAX_PILOT_STEPS = 4000
+FIRST_PILOT_STEPS = 16
+PILOT_STEP = 5.0
+"""Pilot cells are closed in coarser steps than the pad: where the grid ends need not be known to better than that."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +50,17 @@ def grid_of_rows(rows: Sequence[Mapping[str, float]]) -> PadGrid:
     return PadGrid(separation, np.flatnonzero([row["opened_from"] for row in rows]))
 
 
-def plan_grid(inputs: ContactInputs, contact: ContactSettings, pad: PadSettings) -> PadGrid:
+def plan_grid(
+    inputs: ContactInputs,
+    contact: ContactSettings,
+    pad: PadSettings,
+    wanted_GPa: Callable[[Array], Array] | None = None,
+) -> PadGrid:
     """Separations for a pad, from a few pilot cells that are closed until their mean pressure is the largest asked for.
+
+    Parameters
+    ----------
+    wanted_GPa : that pressure as a function of separation (nm); None: `pad.max_pressure_MPa`.
 
     Raises
     ------
@@ -59,8 +71,8 @@ def plan_grid(inputs: ContactInputs, contact: ContactSettings, pad: PadSettings)
     surfaces = [pieces.surface(seed) for seed in seeds]
     first = np.array([-float(heights.min()) for heights in surfaces])
     typical, deviation = float(first.mean()), float(first.std(ddof=1))
-    wanted = pad.max_pressure_MPa * 1e-3 * contact.length_nm**2
-    lowest = _separation_at(inputs, contact, surfaces, wanted, float(first.max()), pad)
+    wanted_GPa = wanted_GPa or (lambda separation: np.full_like(separation, pad.max_pressure_MPa * 1e-3))
+    lowest = _separation_at(inputs, contact, surfaces, wanted_GPa, float(first.max()), pad)
     top = typical + DEVIATIONS_ABOVE * max(deviation, pad.step_nm)
     near = lowest + pad.step_nm * np.arange(np.ceil((top - lowest) / pad.step_nm) + 1)
     far = np.geomspace(near[-1], max(FAR_NM, 2.0 * near[-1]), FAR_POINTS)[1:]
@@ -74,24 +86,31 @@ def _separation_at(
     inputs: ContactInputs,
     contact: ContactSettings,
     surfaces: Sequence[Array],
-    wanted_nN: float,
+    wanted_GPa: Callable[[Array], Array],
     start_nm: float,
     pad: PadSettings,
 ) -> float:
-    """Separation at which the mean repulsion of the surfaces is the wanted force."""
-    steps = pad.step_nm * 5.0 * np.arange(MAX_PILOT_STEPS)
-    # in pieces, so that no surface is pressed much deeper than needed
-    for size in (20, 60, 200, MAX_PILOT_STEPS):
-        separations = np.asarray(start_nm - steps[:size], float)
+    """Separation at which the mean repulsion of the surfaces is the wanted pressure."""
+    size, area = FIRST_PILOT_STEPS, contact.length_nm**2
+    while True:
+        separations = np.asarray(start_nm - pad.step_nm * PILOT_STEP * np.arange(size), float)
         repelled = np.zeros(size)
         for heights in surfaces:
             closed = _close(inputs, contact, heights.copy(), PadGrid(separations, np.empty(0, int)))
-            repelled += closed.closing[0] / len(surfaces)
-        if repelled[-1] >= wanted_nN:
-            return float(separations[np.argmax(repelled >= wanted_nN)])
+            repelled += closed.closing[0] / (len(surfaces) * area)
+        share = repelled / wanted_GPa(separations)
+        if share[-1] >= 1.0:
+            return float(separations[np.argmax(share >= 1.0)])
+        if size == MAX_PILOT_STEPS:
+            break
+        # not much deeper than the last steps promise: pressing far beyond what is asked for costs most
+        recent = size // 4
+        growth = np.log(max(share[-1], 1e-3) / max(share[-1 - recent], 1e-3)) / recent
+        missing = -np.log(max(share[-1], 1e-3)) / max(growth, 0.02)
+        size = min(size + int(np.clip(np.ceil(missing), 2, size)), MAX_PILOT_STEPS)
     raise InputError(
-        f"pad.max_pressure_MPa = {pad.max_pressure_MPa:g}: {pad.pilot_cells} cells closed by {steps[-1]:g} nm carry "
-        f"{repelled[-1] / contact.length_nm**2 * 1e3:.3g} MPa; lower it"
+        f"pad.max_pressure_MPa = {wanted_GPa(separations)[-1] * 1e3:g}: {len(surfaces)} cells closed by "
+        f"{start_nm - separations[-1]:g} nm carry {repelled[-1] * 1e3:.3g} MPa; lower it"
     )
 
 

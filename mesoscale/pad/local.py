@@ -1,6 +1,7 @@
 """The pressure of a pad at many places at once, each with a deepest closing of its own."""
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from mesoscale.pad.memory import PadLaw
@@ -11,6 +12,8 @@ DEPTHS = 96
 """Deepest closings between those that were computed: 8 nm in steps of 0.1 nm."""
 RISES = 1200
 """Separations above the deepest closing."""
+HIGHEST_RISE_NM = 60.0
+"""Beyond, closing and opening are the same attraction."""
 
 
 class LocalPad:
@@ -18,35 +21,52 @@ class LocalPad:
 
     def __init__(self, law: PadLaw):
         self.law = law
+        self.closing = law.closing.sum(axis=0)
         self.depth_nm = np.linspace(law.depth_nm[0], law.depth_nm[-1], DEPTHS)
-        self.rise_nm = np.linspace(0.0, law.separation_nm[-1] - law.depth_nm[-1], RISES)
+        self.rise_nm = np.linspace(0.0, min(law.separation_nm[-1] - law.depth_nm[-1], HIGHEST_RISE_NM), RISES)
         self.opening = np.array([law.opening_GPa(depth + self.rise_nm, depth) for depth in self.depth_nm])
 
+    @property
+    def tables(self) -> tuple[Array, Array, Array, Array, Array, float]:
+        """What `pad_pressure` takes of the pad."""
+        law = self.law
+        return law.separation_nm, self.closing, self.depth_nm, self.rise_nm, self.opening, law.hamaker
+
     def __call__(self, separation_nm: Array, deepest_nm: Array) -> tuple[Array, Array]:
-        """Pressure and slope, shape of `separation_nm`; places below the computed closing are continued in a line."""
-        pressure, slope = self._closing(separation_nm)
-        risen = separation_nm - deepest_nm
-        remembers = (risen > 0) & (deepest_nm <= self.depth_nm[-1]) & (risen < self.rise_nm[-1])
-        if remembers.any():
-            pressure[remembers], slope[remembers] = self._opening(risen[remembers], deepest_nm[remembers])
+        """Pressure and slope, of the shape (e, p) of both; continued in a line below the computed closing."""
+        pressure, slope = np.empty_like(separation_nm), np.empty_like(separation_nm)
+        pad_pressure(separation_nm, deepest_nm, pressure, slope, *self.tables)
         return pressure, slope
 
-    def _closing(self, separation_nm: Array) -> tuple[Array, Array]:
-        s, net = self.law.separation_nm, self.law.closing.sum(axis=0)
-        place = np.clip(np.searchsorted(s, separation_nm) - 1, 0, s.size - 2)
-        slope = (net[place + 1] - net[place]) / (s[place + 1] - s[place])
-        pressure = net[place] + slope * (separation_nm - s[place])
-        far = separation_nm > s[-1]
-        flats = -self.law.hamaker / (6.0 * np.pi * np.maximum(separation_nm, 1.0) ** 3)
-        return np.where(far, flats, pressure), np.where(far, -3.0 * flats / np.maximum(separation_nm, 1.0), slope)
 
-    def _opening(self, risen: Array, deepest_nm: Array) -> tuple[Array, Array]:
-        """Linear in depth and rise."""
-        depth_step, rise_step = self.depth_nm[1] - self.depth_nm[0], self.rise_nm[1]
-        deep = np.clip((deepest_nm - self.depth_nm[0]) / depth_step, 0.0, DEPTHS - 1.0 - 1e-9)
-        rise = np.clip(risen / rise_step, 0.0, RISES - 1.0 - 1e-9)
-        i, j = deep.astype(int), rise.astype(int)
-        share, part = deep - i, rise - j
-        low = (1 - share) * self.opening[i, j] + share * self.opening[i + 1, j]
-        high = (1 - share) * self.opening[i, j + 1] + share * self.opening[i + 1, j + 1]
-        return low + part * (high - low), (high - low) / rise_step
+@njit(cache=True)
+def pad_pressure(separation_nm, deepest_nm, pressure, slope, at_nm, closing, depth_nm, rise_nm, opening, hamaker):
+    """Set net pressure (GPa) and slope (GPa/nm) of a pad at places with a deepest closing of their own; all (e, p)."""
+    last = at_nm.size - 1
+    depth_step, rise_step = depth_nm[1] - depth_nm[0], rise_nm[1] - rise_nm[0]
+    for e in range(separation_nm.shape[0]):
+        for g in range(separation_nm.shape[1]):
+            s, deep = separation_nm[e, g], deepest_nm[e, g]
+            risen = s - deep
+            if risen > 0.0 and deep <= depth_nm[-1] and risen < rise_nm[-1]:
+                x = min(max((deep - depth_nm[0]) / depth_step, 0.0), depth_nm.size - 1 - 1e-9)
+                y = min(max(risen / rise_step, 0.0), rise_nm.size - 1 - 1e-9)
+                i, j = int(x), int(y)
+                share, part = x - i, y - j
+                low = (1 - share) * opening[i, j] + share * opening[i + 1, j]
+                high = (1 - share) * opening[i, j + 1] + share * opening[i + 1, j + 1]
+                # opening starts where closing ended, to the last digit: a step there would never come to rest
+                start = (1 - share) * opening[i, 0] + share * opening[i + 1, 0]
+                place = min(max(np.searchsorted(at_nm, deep) - 1, 0), last - 1)
+                portion = (deep - at_nm[place]) / (at_nm[place + 1] - at_nm[place])
+                ended = closing[place] + portion * (closing[place + 1] - closing[place])
+                scale = ended / start if start > 0.0 and 0.5 * start < ended < 2.0 * start else 1.0
+                pressure[e, g] = scale * (low + part * (high - low))
+                slope[e, g] = scale * (high - low) / rise_step
+            elif s > at_nm[last]:
+                pressure[e, g] = -hamaker / (6.0 * np.pi * s**3)
+                slope[e, g] = -3.0 * pressure[e, g] / s
+            else:
+                place = min(max(np.searchsorted(at_nm, s) - 1, 0), last - 1)
+                slope[e, g] = (closing[place + 1] - closing[place]) / (at_nm[place + 1] - at_nm[place])
+                pressure[e, g] = closing[place] + slope[e, g] * (s - at_nm[place])

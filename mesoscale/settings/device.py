@@ -66,6 +66,20 @@ class DeviceSettings(Settings):
         description="how much farther from the dielectric one end of the beam is than the other",
         json_schema_extra={"unit": "nm"},
     )
+    bow_deviation_nm: float = Field(
+        default=200.0,
+        ge=0,
+        le=1e5,
+        description="standard deviation of the bow, which is seldom measured",
+        json_schema_extra={"unit": "nm"},
+    )
+    tilt_deviation_nm: float = Field(
+        default=200.0,
+        ge=0,
+        le=1e5,
+        description="standard deviation of the tilt",
+        json_schema_extra={"unit": "nm"},
+    )
     dielectric_nm: float = Field(
         default=200.0, ge=0, le=1e5, description="thickness of the dielectric", json_schema_extra={"unit": "nm"}
     )

@@ -33,5 +33,21 @@ class PadSettings(Settings):
         description="depths of closing from which the pad is opened, between first contact "
         "of a typical cell and the deepest closing",
     )
+    draws: int = Field(
+        default=24,
+        ge=0,
+        le=100_000,
+        description="sets of the uncertain inputs with a pad of their own: what the inputs do to the release; 0: none",
+    )
+    draw_cells: int = Field(default=4, ge=2, le=10_000, description="cells of each of these pads")
+    chunk_draws: int = Field(default=12, ge=1, le=100_000, description="such pads per job and file")
+    gap_cutoff_high_nm: float = Field(
+        default=0.3,
+        gt=0,
+        le=10,
+        description="upper end of the uncertain D0, whose lower end is contact.gap_cutoff_nm: a distance of atoms, "
+        "above Israelachvili's 0.165 nm",
+        json_schema_extra={"unit": "nm"},
+    )
     chunk_cells: int = Field(default=64, ge=1, le=100000, description="cells per job and file")
     first_seed: int = Field(default=1000, ge=0, le=2**31, description="seed of the first cell's surface")

@@ -2,7 +2,13 @@ from mesoscale.uncertainty.chunks import chunk_bounds
 
 CELL_CHUNKS = chunk_bounds(SCENE.pad.cells, SCENE.pad.chunk_cells)
 # what a chunk of cells depends on: not on how many chunks there are, so that adding cells keeps the old ones
-GRID_SETTINGS = {key: value for key, value in settings("pad").items() if key not in ("cells", "chunk_cells")}
+GRID_SETTINGS = {
+    key: value
+    for key, value in settings("pad").items()
+    if key in ("pilot_cells", "max_pressure_MPa", "step_nm", "depths", "first_seed")
+}
+DRAW_CHUNKS = chunk_bounds(SCENE.pad.draws, SCENE.pad.chunk_draws)
+DRAW_SETTINGS = {key: settings("pad")[key] for key in ("draws", "draw_cells", "gap_cutoff_high_nm", "first_seed")}
 
 
 rule pad:
@@ -52,11 +58,35 @@ rule close_cells:
         "../scripts/close_cells.py"
 
 
+rule close_draws:
+    input:
+        **SURFACE,
+        inputs=f"{RESULTS}/inputs.csv",
+    output:
+        f"{RESULTS}/pad/draws/chunk_{{chunk}}.csv",
+    log:
+        f"{RESULTS}/logs/close_draws_{{chunk}}.log",
+    threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
+    params:
+        contact=settings("contact"),
+        pad=DRAW_SETTINGS,
+        device=settings("device"),
+        bounds=lambda wildcards: DRAW_CHUNKS[wildcards.chunk],
+    message:
+        f"close and open pads at other inputs, chunk {{wildcards.chunk}} of {len(DRAW_CHUNKS)}"
+    script:
+        "../scripts/close_draws.py"
+
+
 rule assemble_pad:
     input:
+        **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
         grid=f"{RESULTS}/pad/grid.csv",
         chunks=[f"{RESULTS}/pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS],
+        draws=[f"{RESULTS}/pad/draws/chunk_{chunk}.csv" for chunk in DRAW_CHUNKS],
     output:
         curves=f"{RESULTS}/pad/curves.h5",
         table=f"{RESULTS}/pad/curves.csv",
@@ -70,8 +100,9 @@ rule assemble_pad:
         f"{RESULTS}/logs/assemble_pad.log",
     threads: 1
     params:
+        contact=settings("contact"),
+        pad=DRAW_SETTINGS,
         device=settings("device"),
-        length_nm=SCENE.contact.length_nm,
     message:
         "assemble the pad and drive the switch with it"
     script:

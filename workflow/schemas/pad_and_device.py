@@ -41,6 +41,18 @@ TABLES = (
         ),
     ),
     Table(
+        ("pad/draws/chunk_*.csv",),
+        "One separation of one branch of the pad at one draw of the inputs: the mean pressure of its cells.",
+        (
+            integer("draw", "number of the draw"),
+            number("gap_cutoff_nm", "nm", "D0 of the draw"),
+            number("depth_nm", "nm", "separation from which the pad is opened; empty on closing", empty=True),
+            number("separation_nm", "nm", "separation"),
+            number("repulsive_MPa", "MPa", "repulsive pressure"),
+            number("attractive_MPa", "MPa", "attractive pressure (negative)"),
+        ),
+    ),
+    Table(
         ("device/release.csv",),
         "The switch with one sample of the law.",
         (

@@ -1,6 +1,6 @@
 """Assemble the pad from its cells, and drive the switch with it.
 
-In: inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN).
+In: inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN), pad/draws/*.csv.
 Out: pad/curves.h5 and pad/curves.csv (MPa against nm), pad/adhesion.csv, pad/tail.json, pad/compact.json,
 device/pad_switch.json, device/rough_pad.va, device/rough_pad.sub.
 """
@@ -9,20 +9,26 @@ import numpy as np
 
 from mesoscale.device.pad_export import spice_pad, verilog_pad
 from mesoscale.device.pad_switch import switch_on_pad
-from mesoscale.inputs.table import medians
+from mesoscale.device.release import try_answer
+from mesoscale.inputs.table import from_rows
 from mesoscale.pad.cells import grid_of_rows
 from mesoscale.pad.compact import compact_summary
 from mesoscale.pad.curves import PadCells, adhesion_by_cells, curve_rows
+from mesoscale.pad.draws import laws_of_rows, plan_draws
 from mesoscale.pad.memory import law_of
+from mesoscale.pad.response import SampledPad
 from mesoscale.pad.tail import fit_tail, tail_summary
-from mesoscale.settings import DeviceSettings
+from mesoscale.settings import DeviceSettings, PadSettings
+from workflow.contact_settings import contact_settings
 from workflow.job import job
 from workflow.results import Dataset, load_csv, load_h5, load_numbers, write_csv, write_h5, write_json, write_text
 
 with job(snakemake) as run:
     grid = grid_of_rows(load_numbers(snakemake.input.grid))
     chunks = [load_h5(path)[0]["cells"] for path in snakemake.input.chunks]
-    area = snakemake.params.length_nm**2
+    contact = contact_settings(snakemake.params.contact, snakemake)
+    pad = PadSettings(**snakemake.params.pad)
+    area = contact.length_nm**2
     cells = PadCells(
         grid,
         np.concatenate([chunk["first_contact_nm"] for chunk in chunks]),
@@ -31,7 +37,8 @@ with job(snakemake) as run:
         np.concatenate([chunk["settled"] for chunk in chunks]).astype(bool),
     )
     device = DeviceSettings(**snakemake.params.device)
-    hamaker = medians(load_csv(snakemake.input.inputs))["hamaker"]
+    inputs = from_rows(load_csv(snakemake.input.inputs))
+    hamaker = inputs.medians()["hamaker"]
 
     table = curve_rows(cells)
     write_csv(snakemake.output.table, table)
@@ -57,4 +64,13 @@ with job(snakemake) as run:
     write_json(snakemake.output.compact, compact_summary(law), run.provenance)
     write_text(snakemake.output.verilog, verilog_pad(law, cells.count))
     write_text(snakemake.output.spice, spice_pad(law, cells.count))
-    write_json(snakemake.output.switch, switch_on_pad(cells, hamaker, device, area, tail), run.provenance)
+    switch = switch_on_pad(cells, hamaker, device, area, tail)
+    if pad.draws:
+        draws = plan_draws(inputs, contact, pad)
+        curves = laws_of_rows((row for path in snakemake.input.draws for row in load_csv(path)), draws)
+        pads = [
+            SampledPad(draw.values, draw.gap_cutoff_nm, pad.draw_cells, curve)
+            for draw, curve in zip(draws, curves, strict=True)
+        ]
+        switch |= try_answer(cells, pads, inputs, device, contact.gap_cutoff_nm)
+    write_json(snakemake.output.switch, switch, run.provenance)

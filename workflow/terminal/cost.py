@@ -25,6 +25,7 @@ FITTED_RUN_S = 0.004  # law of a run and its row
 LATER_CYCLE, HOLD = 0.6, 0.05  # of a history, over a first cycle; of each time within a hold
 RELEASE_S = 0.015  # law and switch after a cycle
 CELL_S = {"asperity": 2.4, "coupled": 4.5}  # a pad's cell over a cycle: it opens from several depths
+DRAW_CELL = 1.5  # a cell of a pad at other inputs over one of the pad: it is pressed harder
 SCAN_S = 0.8  # analysis of a scan of the reference grid
 SCF_S = 9.0  # one volume of 28 atoms at 100 hartree
 RELAXATION_STEP_S = 8.0  # the same, tightly converged and with forces
@@ -130,6 +131,17 @@ class Costs:
         """A chunk of the pad's cells."""
         return min(self.scene.pad.chunk_cells, self.scene.pad.cells) * self.cell_s
 
+    def close_draws(self, wildcards: Mapping[str, str]) -> float:
+        """A chunk of pads at other inputs; their cells are pressed harder, and two of each draw are pilots."""
+        pad = self.scene.pad
+        return (
+            min(pad.chunk_draws, pad.draws)
+            * (pad.draw_cells + 2)
+            * DRAW_CELL
+            * CELL_S[self.scene.contact.mechanics]
+            * self.cycle_s
+        )
+
 
 def _constant(seconds: float) -> Callable[[Costs, Mapping[str, str]], float]:
     return lambda costs, wildcards: seconds
@@ -159,7 +171,8 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "rank_sensitivity": _constant(8.0),
     "plan_pad": Costs.plan_pad,
     "close_cells": Costs.close_cells,
-    "assemble_pad": _constant(4.0),
+    "close_draws": Costs.close_draws,
+    "assemble_pad": _constant(15.0),
     "solve_switch": _constant(2.0),
     "render_report": _constant(2.5),
     "collect_priors": _constant(0.0),

@@ -39,6 +39,10 @@ def describe(results: Results) -> Section | None:
     section.blocks.append(
         Table("Release voltage, cause by cause", ("model", "release (V)", "note"), _causes(results, switch))
     )
+    if switch.get("answer"):
+        section.blocks += _answer(switch["answer"])
+    elif switch.get("answer_status"):
+        section.notes.append(f"No interval of the release over the inputs: {switch['answer_status']}.")
     test = f"Gumbel's distribution (test: p = {tail['p_value']:.2g})"
     if tail["accepted"]:
         section.notes.append(
@@ -50,13 +54,40 @@ def describe(results: Results) -> Section | None:
             f"First contacts of the cells do not follow {test}: where a large pad first touches is not known."
         )
     section.notes.append(
-        "The inputs are the central ones: the interval holds the finite number of computed cells alone. The bending "
-        "electrode has the scene's bow and tilt (device.bow_nm, device.tilt_nm)."
+        "Curves and causes are at the central inputs, with the scene's bow and tilt (device.bow_nm, device.tilt_nm); "
+        "only the table of the release over all causes holds the uncertainty of the inputs."
     )
     section.files += ["pad/curves.csv", "pad/curves.h5", "pad/adhesion.csv", "pad/tail.json", "device/pad_switch.json"]
     gate = switch["gate"]
     section.gates.append(Gate("pad", gate["passed"], gate["reasons"]))
     return section
+
+
+def _answer(answer: dict) -> list[Table]:
+    """Release over all causes, and which input to measure better."""
+
+    def spread(key: str) -> str:
+        low, middle, high = (answer[key]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
+        return f"{show(middle)} [{show(low)}, {show(high)}]"
+
+    stuck, design = answer["stuck"], answer["design"]
+    released = [
+        ("release (V), 0 where it sticks, median and 5 to 95 %", spread("release_V")),
+        ("probability of sticking, 95 % interval", f"{stuck['value']:.2f} [{stuck['low']:.2f}, {stuck['high']:.2f}]"),
+        ("pull-in (V)", spread("pull_in_V")),
+        ("capacitance closed (fF)", spread("capacitance_fF")),
+        *((f"share of the variance by {row['cause']}", f"{row['share_of_variance']:.1%}") for row in answer["causes"]),
+        ("switches solved, and refused", f"{design['points']}, {len(design['refused'])}"),
+    ]
+    measured = [
+        (row["name"], f"{row['share_of_variance']:.1%}", f"{row['interval_shrinks_by']:.1%}")
+        for row in answer["sensitivity"]
+    ]
+    columns = ("uncertain", "share of the variance", "known exactly, the interval shrinks by")
+    return [
+        Table("The switch over cells, inputs, D0 and geometry", ("quantity", "value"), released),
+        Table("What to measure better for the release voltage", columns, measured),
+    ]
 
 
 def _causes(results: Results, switch: dict) -> list[tuple[str, str, str]]:

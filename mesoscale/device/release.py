@@ -1,0 +1,275 @@
+"""The answer: release voltage and probability of sticking, with what cells, inputs, D0 and geometry leave open.
+
+The switch is solved at points that fill the joint distribution of the inputs, D0, bow and tilt, each on the pad that
+the response of `mesoscale.pad.response` gives there. The finite number of computed cells is a separate cause: it is no
+property of the switch, and resampling the cells of the central pad tells its part.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.device.beam_switch import solve_beam
+from mesoscale.device.pad_switch import solve_on_pad
+from mesoscale.device.statistics import analytic_pull_in_V, describe, probability
+from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, switch_from_settings
+from mesoscale.errors import InputError
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.curves import PadCells
+from mesoscale.pad.draws import latin_hypercube
+from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.pad.response import PadResponse, SampledPad, fit_response, law_of_compact
+from mesoscale.settings import DeviceSettings
+
+Array = NDArray[np.float64]
+
+POINTS = 64
+"""Solved switches behind the interval: its ends are quantiles known to 3 % in probability."""
+RESAMPLES = 24
+"""Resampled central pads: their standard deviation is known to 15 %."""
+ELEMENTS = 32
+"""Of the beam: the release is within 0.5 % of that of 64."""
+CLAMPED = 1.25
+"""Square of a clamped beam's pull-in voltage over that of the plate of its mid-span stiffness (70.1 beside 56.9)."""
+EDGE = 2.5
+"""Largest local pressure over the electrostatic pressure there: the edge of what has landed bears the beam, too."""
+DEVIATIONS = 2.5
+"""Bow beyond which a switch is refused where it presses the pad beyond what was computed."""
+FAR_NM = 300.0
+
+
+@dataclass(frozen=True)
+class Point:
+    """One switch of the joint distribution.
+
+    Attributes
+    ----------
+    values : inputs by name.
+    device : settings with its bow and tilt.
+    """
+
+    values: dict[str, float]
+    gap_cutoff_nm: float
+    device: DeviceSettings
+
+
+def pressure_to_compute(settings: DeviceSettings) -> Callable[[Array], Array]:
+    """Pressure (GPa) up to which a pad is computed at a separation (nm), so that no likely switch presses harder."""
+    switch = switch_from_settings(settings)
+    if settings.hold_voltage_V is not None:
+        squared = settings.hold_voltage_V**2
+    else:
+        bowed = 1.0 + (max(settings.bow_nm, 0.0) + DEVIATIONS * settings.bow_deviation_nm) / switch.gap_nm
+        squared = CLAMPED * analytic_pull_in_V(switch) ** 2 * bowed**3
+    edge = EDGE if settings.spring_N_per_m is None else 1.0
+    closest = 0.5 * switch.dielectric_nm + 1.0
+
+    def wanted_GPa(separation_nm: Array) -> Array:
+        electric = np.maximum(separation_nm + switch.dielectric_nm, closest) * NM
+        return edge * VACUUM_PERMITTIVITY * squared / (2.0 * electric**2) / GPA
+
+    return wanted_GPa
+
+
+def solve_electrode(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
+    """What the switch does on a pad: its bending electrode, or a flat plate where its spring is given.
+
+    Raises
+    ------
+    InputError : see `solve_beam` and `solve_on_pad`.
+    """
+    if settings.spring_N_per_m is None:
+        beam = solve_beam(settings, law, ELEMENTS)
+        return {
+            "pull_in_V": beam.pull_in_V,
+            "release_V": beam.release_V,
+            "capacitance_fF": beam.capacitance_fF,
+            "landed_share": beam.landed_share,
+        }
+    switch = switch_from_settings(settings)
+    plate = solve_on_pad(switch, law, settings.hold_voltage_V)
+    capacitance = float(switch.capacitance_F(np.array(plate.hold_nm))) * 1e15
+    return {
+        "pull_in_V": plate.pull_in_V,
+        "release_V": plate.release_V,
+        "capacitance_fF": capacitance,
+        "landed_share": 1.0,
+    }
+
+
+def plan_points(
+    table: InputTable, settings: DeviceSettings, low_nm: float, high_nm: float
+) -> tuple[list[str], list[str], Array, list[Point]]:
+    """Names and causes of what varies, its probabilities at the points, shape (points, k), and the points."""
+    from scipy.special import ndtri
+
+    inputs = len(table.rows)
+    units = latin_hypercube(POINTS, inputs + 3, 0)
+    values = table.transform(units[:, :inputs])
+    cutoffs = low_nm + (high_nm - low_nm) * units[:, inputs]
+    bows = settings.bow_nm + settings.bow_deviation_nm * ndtri(units[:, inputs + 1])
+    tilts = np.abs(settings.tilt_nm + settings.tilt_deviation_nm * ndtri(units[:, inputs + 2]))
+    points = [
+        Point(
+            dict(zip(table.names, row.tolist(), strict=True)),
+            float(cutoff),
+            settings.model_copy(update={"bow_nm": float(bow), "tilt_nm": float(tilt)}),
+        )
+        for row, cutoff, bow, tilt in zip(values, cutoffs, bows, tilts, strict=True)
+    ]
+    bends = settings.spring_N_per_m is None
+    columns = [
+        *((k, name, "inputs") for k, name in enumerate(table.names) if np.ptp(values[:, k]) > 0),
+        *([(inputs, "gap_cutoff_nm", "gap_cutoff")] if high_nm > low_nm else []),
+        *([(inputs + 1, "bow_nm", "geometry")] if bends and settings.bow_deviation_nm > 0 else []),
+        *([(inputs + 2, "tilt_nm", "geometry")] if bends and settings.tilt_deviation_nm > 0 else []),
+    ]
+    chosen = [k for k, _, _ in columns]
+    return [name for _, name, _ in columns], [cause for _, _, cause in columns], units[:, chosen], points
+
+
+def answer(
+    cells: PadCells,
+    draws: Sequence[SampledPad],
+    table: InputTable,
+    settings: DeviceSettings,
+    cutoffs_nm: tuple[float, float],
+) -> dict[str, Any]:
+    """`answer` of device/pad_switch.json.
+
+    Parameters
+    ----------
+    cells : of the pad at central inputs and the smaller D0.
+    draws : pads at other inputs.
+    cutoffs_nm : range of D0.
+
+    Raises
+    ------
+    InputError : too few draws, or the switch cannot be solved at central inputs.
+    """
+    middle = table.medians()
+    hamaker = middle["hamaker"]
+    central = law_of(cells, hamaker)
+    response = fit_response([SampledPad(middle, cutoffs_nm[0], cells.count, central), *draws], table)
+    by_curves = solve_electrode(settings, central)
+    by_form = _on_response(Point(middle, cutoffs_nm[0], settings), response)
+    shift = by_curves["release_V"] - by_form["release_V"]
+    names, causes, units, points = plan_points(table, settings, *cutoffs_nm)
+    solved, refused = [], []
+    for place, point in enumerate(points):
+        try:
+            solved.append((place, _on_response(point, response)))
+        except InputError as error:
+            refused.append(str(error))
+    if len(solved) < 0.8 * len(points):
+        raise InputError(f"device: {len(refused)} of {len(points)} switches cannot be solved, the first: {refused[0]}")
+    places = [place for place, _ in solved]
+    solved_values = {key: np.array([state[key] for _, state in solved]) for key in by_form}
+    stuck = solved_values["release_V"] == 0.0
+    # the closed form is a little too adhesive; by how much is known at central inputs
+    release = np.where(stuck, 0.0, np.maximum(solved_values["release_V"] + shift, 0.0))
+    resampled = _resampled(cells, hamaker, settings)
+    cells_V = float(resampled.std(ddof=1))
+    first, error = first_order(units[places], release)
+    rng = np.random.default_rng(np.random.SeedSequence([0, 0xA15]))
+    noisy = np.where(stuck, 0.0, np.maximum(release + cells_V * rng.normal(size=release.size), 0.0))
+    variance = float(noisy.var()) or 1.0
+    shares = first * float(release.var()) / variance
+    return {
+        "electrode": "bending" if settings.spring_N_per_m is None else "flat",
+        "release_V": describe(noisy),
+        "stuck": probability(int(stuck.sum()), stuck.size),
+        "pull_in_V": describe(solved_values["pull_in_V"]),
+        "capacitance_fF": describe(solved_values["capacitance_fF"]),
+        "landed_share": describe(solved_values["landed_share"]),
+        "causes": [
+            {"cause": cause, "share_of_variance": share, "deviation_V": float(np.sqrt(share * variance))}
+            for cause, share in (
+                *(
+                    (cause, float(sum(s for s, c in zip(shares, causes, strict=True) if c == cause)))
+                    for cause in ("inputs", "gap_cutoff", "geometry")
+                ),
+                ("cells", cells_V**2 / variance),
+            )
+        ],
+        "sensitivity": sorted(
+            (
+                {
+                    "name": name,
+                    "cause": cause,
+                    "share_of_variance": float(share),
+                    "interval_shrinks_by": float(1.0 - np.sqrt(max(1.0 - share, 0.0))),
+                }
+                for name, cause, share in zip(names, causes, shares, strict=True)
+            ),
+            key=lambda row: -row["share_of_variance"],
+        ),
+        "central": {"by_curves": by_curves, "by_closed_form": by_form},
+        "design": {
+            "draws": len(draws),
+            "cells_per_draw": draws[0].cells,
+            "points": len(solved),
+            "refused": refused,
+            "response_error_V": error,
+            "cells_error_V": cells_V,
+        },
+    }
+
+
+def try_answer(
+    cells: PadCells,
+    draws: Sequence[SampledPad],
+    table: InputTable,
+    settings: DeviceSettings,
+    gap_cutoff_nm: float,
+) -> dict[str, Any]:
+    """`answer` for device/pad_switch.json, or None with `answer_status` that says why there is none."""
+    cutoffs = gap_cutoff_nm, max(gap_cutoff_nm, *(draw.gap_cutoff_nm for draw in draws))
+    try:
+        return {"answer": answer(cells, draws, table, settings, cutoffs), "answer_status": "ok"}
+    except InputError as error:
+        return {"answer": None, "answer_status": str(error)}
+
+
+def _on_response(point: Point, response: PadResponse) -> dict[str, float]:
+    compact = response.at(point.values, point.gap_cutoff_nm)
+    step = 0.01 * point.values["rms"]
+    near = np.arange(step, 8.0 * point.values["rms"], step)
+    s = np.concatenate([near, np.geomspace(near[-1], max(FAR_NM, 2.0 * near[-1]), 24)[1:]])
+    return solve_electrode(point.device, law_of_compact(compact, pressure_to_compute(point.device)(s), s))
+
+
+def _resampled(cells: PadCells, hamaker: float, settings: DeviceSettings) -> Array:
+    """Release voltages on central pads of resampled cells, shape (resamples,)."""
+    rng = np.random.default_rng(np.random.SeedSequence([0, 0xCE1]))
+    share = np.full(cells.count, 1.0 / cells.count)
+    return np.array(
+        [
+            solve_electrode(settings, law_of(cells, hamaker, rng.multinomial(cells.count, share) / cells.count))[
+                "release_V"
+            ]
+            for _ in range(RESAMPLES)
+        ]
+    )
+
+
+def first_order(units: Array, values: Array) -> tuple[Array, float]:
+    """First-order shares of the variance of `values` by an expansion of second degree, and its leave-one-out error.
+
+    Legendre's polynomials of the probabilities `units` (points, k), without products (Sudret, Reliab. Eng. Syst. Saf.
+    93 (2008) 964). What noise alone would seem to explain is taken off.
+    """
+    x = 2.0 * units - 1.0
+    columns = np.hstack([np.ones((len(x), 1)), np.sqrt(3.0) * x, np.sqrt(5.0) * (1.5 * x**2 - 0.5)])
+    coefficients = np.linalg.lstsq(columns, values, rcond=None)[0]
+    left = values - columns @ coefficients
+    hat = np.einsum("pi,ip->p", columns, np.linalg.pinv(columns))
+    error = float(np.sqrt(np.mean((left / (1.0 - hat)) ** 2)))
+    linear, square = coefficients[1 : units.shape[1] + 1], coefficients[units.shape[1] + 1 :]
+    explained = linear**2 + square**2
+    total = float(explained.sum() + np.mean(left**2))
+    noise = float((left**2).sum()) / max(len(x) - columns.shape[1], 1) / len(x)
+    return np.maximum(explained - 2.0 * noise, 0.0) / (total or 1.0), error

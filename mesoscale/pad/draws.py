@@ -1,0 +1,139 @@
+"""Pads at other inputs than the central ones: each draw of the inputs has a few cells of its own.
+
+The uncertainty of the inputs is shared by all cells of a pad; the randomness of the surfaces is not. So a draw is one
+set of inputs and of the cut-off D0, and its cells have that set in common. `mesoscale.pad.response` puts a closed form
+through all of them.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.cells import close_cells, plan_grid
+from mesoscale.pad.curves import assemble
+from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.settings import ContactSettings, PadSettings
+
+Array = NDArray[np.float64]
+
+FIRST_DRAW_SEED = 1_000_000
+"""Surfaces of the draws differ from those of the central pad."""
+STEP_RMS = 0.03
+"""Step of separation in units of the RMS height: the closed form needs no wells of single cells."""
+DEPTHS = 4
+PILOT_CELLS = 2
+
+
+@dataclass(frozen=True)
+class Draw:
+    """One set of inputs.
+
+    Attributes
+    ----------
+    values : inputs by name, in their units.
+    gap_cutoff_nm : D0 of the attraction.
+    seeds : surfaces of its cells.
+    """
+
+    number: int
+    values: dict[str, float]
+    gap_cutoff_nm: float
+    seeds: range
+
+
+def plan_draws(table: InputTable, contact: ContactSettings, pad: PadSettings) -> list[Draw]:
+    """Draws that fill the inputs' distribution evenly: a Latin hypercube over the inputs and D0."""
+    units = latin_hypercube(pad.draws, len(table.rows) + 1, pad.first_seed)
+    values = table.transform(units[:, :-1])
+    low = contact.gap_cutoff_nm
+    high = max(low, pad.gap_cutoff_high_nm)
+    first = pad.first_seed + FIRST_DRAW_SEED
+    return [
+        Draw(
+            k,
+            dict(zip(table.names, row.tolist(), strict=True)),
+            float(low + (high - low) * unit),
+            range(first + k * pad.draw_cells, first + (k + 1) * pad.draw_cells),
+        )
+        for k, (row, unit) in enumerate(zip(values, units[:, -1], strict=True))
+    ]
+
+
+def latin_hypercube(count: int, dimensions: int, seed: int) -> Array:
+    """Points of the unit cube, one in each of `count` equal parts of every side, shape (count, dimensions)."""
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xD4A]))
+    order = np.stack([rng.permutation(count) for _ in range(dimensions)], axis=1)
+    return (order + rng.random((count, dimensions))) / count
+
+
+def close_draws(
+    draws: Sequence[Draw],
+    contact: ContactSettings,
+    pad: PadSettings,
+    wanted_GPa: Callable[[Array], Array],
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[PadLaw]:
+    """The mean curves of each draw's cells.
+
+    Parameters
+    ----------
+    wanted_GPa : mean pressure to which a pad is closed at a separation (nm).
+
+    Raises
+    ------
+    InputError : inputs that the contact does not accept, or cells that never reach the pressure.
+    """
+    for done, draw in enumerate(draws):
+        inputs, settings = contact_of(draw.values, contact.model_copy(update={"gap_cutoff_nm": draw.gap_cutoff_nm}))
+        coarse = pad.model_copy(
+            update={
+                "step_nm": STEP_RMS * inputs.rms,
+                "depths": DEPTHS,
+                "pilot_cells": PILOT_CELLS,
+                "first_seed": draw.seeds.start,
+            }
+        )
+        grid = plan_grid(inputs, settings, coarse, wanted_GPa)
+        cells = assemble(grid, list(close_cells(inputs, settings, grid, draw.seeds)), settings.length_nm**2)
+        yield law_of(cells, inputs.hamaker)
+        if progress:
+            progress((done + 1) / len(draws), f"{done + 1} of {len(draws)} draws of the inputs")
+
+
+def draw_rows(draw: Draw, law: PadLaw) -> Iterator[dict[str, Any]]:
+    """Rows of pad/draws/chunk_NNN.csv: the curves of one draw."""
+    for depth, branch in ((None, law.closing), *zip(law.depth_nm.tolist(), law.opening, strict=True)):
+        for separation, (repulsive, attractive) in zip(law.separation_nm.tolist(), branch.T.tolist(), strict=True):
+            if np.isfinite(repulsive):
+                yield {
+                    "draw": draw.number,
+                    "gap_cutoff_nm": draw.gap_cutoff_nm,
+                    "depth_nm": depth,
+                    "separation_nm": separation,
+                    "repulsive_MPa": repulsive * 1e3,
+                    "attractive_MPa": attractive * 1e3,
+                }
+
+
+def laws_of_rows(rows: Iterable[Mapping[str, str]], draws: Sequence[Draw]) -> list[PadLaw]:
+    """The curves of the draws from the rows of pad/draws/*.csv."""
+    curves: dict[tuple[int, str], list[tuple[float, float, float]]] = {}
+    for row in rows:
+        point = float(row["separation_nm"]), float(row["repulsive_MPa"]) / 1e3, float(row["attractive_MPa"]) / 1e3
+        curves.setdefault((int(row["draw"]), row["depth_nm"]), []).append(point)
+    laws = []
+    for draw in draws:
+        closing = np.array(curves[draw.number, ""])
+        depths = sorted((float(depth) for number, depth in curves if number == draw.number and depth))
+        names = {float(depth): depth for number, depth in curves if number == draw.number and depth}
+        opening = np.full((len(depths), 2, len(closing)), np.nan)
+        for k, depth in enumerate(depths):
+            branch = np.array(curves[draw.number, names[depth]])
+            opening[k][:, len(closing) - len(branch) :] = branch[:, 1:].T
+        laws.append(PadLaw(closing[:, 0], closing[:, 1:].T, np.array(depths), opening, draw.values["hamaker"]))
+    return laws

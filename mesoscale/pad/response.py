@@ -1,0 +1,199 @@
+"""A pad's closed form as a function of the inputs, through the pads of many draws of them.
+
+Lengths are taken in units of the RMS height. With z the other inputs, scaled to -1 .. 1 over their ranges, and d the
+logarithm of D0 over its smallest value, the closed form of `mesoscale.pad.compact` has
+
+    c0, c1      linear in z and ln rms
+    b0          linear in z and ln rms
+    ln beta/A_H linear in z, ln rms and d
+
+and its other numbers are the same for all inputs. Every part is one linear least squares over all pads, in which a pad
+counts by its cells, so the scatter of a draw's few cells averages out as that of all cells together.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+
+from mesoscale.errors import InputError
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.compact import CompactPad, UNIT_GPa
+from mesoscale.pad.memory import PadLaw
+
+Array = NDArray[np.float64]
+
+CLOSING_FLOOR = 1e-3
+"""Share of the largest repulsion down to which closing is fitted: beyond, few of a draw's cells touch."""
+OPENING_FLOOR = 0.03
+SPAN = 0.999
+"""Central share of an unbounded distribution that -1 .. 1 spans; the fit does not depend on it."""
+
+
+@dataclass(frozen=True)
+class SampledPad:
+    """The pad of one set of inputs.
+
+    Attributes
+    ----------
+    values : inputs by name.
+    gap_cutoff_nm : D0.
+    cells : number of its cells, its weight.
+    """
+
+    values: Mapping[str, float]
+    gap_cutoff_nm: float
+    cells: int
+    law: PadLaw
+
+
+@dataclass(frozen=True)
+class PadResponse:
+    """Closed form of a pad at any inputs.
+
+    Attributes
+    ----------
+    names : inputs besides the RMS height and the Hamaker constant, in the order of z.
+    centre, half : z = (value - centre) / half, shape (n,).
+    rms_nm, gap_cutoff_nm : where ln rms and d are zero.
+    closing : coefficients of c0 and of c1 (constant, z, ln rms), then c2, shape (2 n + 5,).
+    opening : of b0, then b1 and b2, shape (n + 4,).
+    attraction : of ln beta / A_H (with d), then m and n, shape (n + 5,).
+    """
+
+    names: tuple[str, ...]
+    centre: Array
+    half: Array
+    rms_nm: float
+    gap_cutoff_nm: float
+    closing: Array
+    opening: Array
+    attraction: Array
+
+    def at(self, values: Mapping[str, float], gap_cutoff_nm: float) -> CompactPad:
+        """The closed form at one set of inputs."""
+        row = _features(self.names, self.centre, self.half, self.rms_nm, values)
+        size, rms = row.size, values["rms"]
+        d = np.log(gap_cutoff_nm / self.gap_cutoff_nm)
+        strength = float(row @ self.attraction[:size] + d * self.attraction[size])
+        return CompactPad(
+            c0=float(row @ self.closing[:size]),
+            c1_per_nm=float(row @ self.closing[size:-1]) / rms,
+            c2_per_nm2=float(self.closing[-1]) / rms**2,
+            b0_per_nm=float(row @ self.opening[:size]) / rms,
+            b1_per_nm2=float(self.opening[-2]) / rms**2,
+            b2_per_nm2=float(self.opening[-1]) / rms**2,
+            beta=float(np.exp(strength)) * values["hamaker"],
+            m=float(self.attraction[-2]),
+            n=float(self.attraction[-1]),
+            hamaker=values["hamaker"],
+        )
+
+
+def fit_response(pads: Sequence[SampledPad], table: InputTable) -> PadResponse:
+    """The closed form through all pads.
+
+    Raises
+    ------
+    InputError : fewer pads than the response has slopes.
+    """
+    varied = [name for name in table.names if name not in ("rms", "hamaker") and _varies(table, name)]
+    if len(pads) < len(varied) + 4:
+        raise InputError(
+            f"pad.draws = {len(pads) - 1}: accepted are at least {len(varied) + 3} with {len(varied)} inputs that vary "
+            "besides the RMS height and the Hamaker constant"
+        )
+    spans = np.array([table.rows[table.names.index(name)].distribution.span(SPAN) for name in varied]).reshape(-1, 2)
+    centre, half = spans.mean(axis=1), np.ptp(spans, axis=1) / 2.0
+    medians = table.medians()
+    least = min(pad.gap_cutoff_nm for pad in pads)
+    names, parts = tuple(varied), [[], [], []]
+    for pad in pads:
+        row = _features(names, centre, half, medians["rms"], pad.values)
+        d = np.log(pad.gap_cutoff_nm / least)
+        for kept, new in zip(parts, _equations(pad, row, d), strict=True):
+            # each pad's points share their scatter: a pad counts by its cells and not by its separations
+            share = np.sqrt(pad.cells / max(len(new[1]), 1))
+            kept.append((new[0] * share, new[1] * share))
+    solved = [
+        _solve(np.concatenate([a for a, _ in part]), np.concatenate([b for _, b in part]), signed)
+        for part, signed in zip(parts, (1, 1, 2), strict=True)
+    ]
+    return PadResponse(names, centre, half, medians["rms"], least, *solved)
+
+
+def _solve(columns: Array, wanted: Array, signed: int) -> Array:
+    """Least squares in which the last `signed` numbers are not negative: contact never grows as a pad is opened."""
+    lowest = np.full(columns.shape[1], -np.inf)
+    lowest[-signed:] = 0.0
+    return np.asarray(lsq_linear(columns, wanted, (lowest, np.inf)).x, float)
+
+
+def _varies(table: InputTable, name: str) -> bool:
+    low, high = table.rows[table.names.index(name)].distribution.span(SPAN)
+    return high > low
+
+
+def _features(names: Sequence[str], centre: Array, half: Array, rms_nm: float, values: Mapping[str, float]) -> Array:
+    z = (np.array([values[name] for name in names]) - centre) / half
+    return np.concatenate([[1.0], z, [np.log(values["rms"] / rms_nm)]])
+
+
+def _equations(pad: SampledPad, row: Array, d: float) -> list[tuple[Array, Array]]:
+    """Columns and wanted values of closing, opening and attraction of one pad."""
+    law, rms = pad.law, pad.values["rms"]
+    s, (pushes, pulls) = law.separation_nm, law.closing
+    far = law.hamaker / (6.0 * np.pi * s**3)
+    used = (pushes > CLOSING_FLOOR * pushes.max()) & (-pulls > far)
+    at = s[used, None] / rms
+    closing = np.hstack([np.tile(row, (len(at), 1)), row * at, at**2]), -np.log(pushes[used])
+    near = np.log((-pulls - far)[used] / (UNIT_GPa * law.hamaker))
+    head = np.append(row, d)
+    attraction = [np.hstack([np.tile(head, (len(at), 1)), np.log(pushes[used] / UNIT_GPa)[:, None], 0.0 * at])]
+    strengths = [near]
+    opening, decays = [], []
+    for depth, (up, down) in zip(law.depth_nm, law.opening, strict=True):
+        above = np.flatnonzero(np.isfinite(up))
+        if up[above[0]] <= CLOSING_FLOOR * pushes.max():
+            continue
+        share, pull = up[above] / up[above[0]], -down[above] - far[above]
+        use = (s[above] > depth) & (share > OPENING_FLOOR) & (pull > 0)
+        risen, decay = ((s[above] - depth) / rms)[use, None], -np.log(share[use])
+        opening.append(np.hstack([row * risen, depth / rms * risen, risen**2]))
+        decays.append(decay)
+        load = np.full_like(risen, np.log(up[above[0]] / UNIT_GPa))
+        attraction.append(np.hstack([np.tile(head, (len(risen), 1)), load, -decay[:, None]]))
+        strengths.append(np.log(pull[use] / (UNIT_GPa * law.hamaker)))
+    return [
+        closing,
+        (np.concatenate(opening), np.concatenate(decays)),
+        (np.concatenate(attraction), np.concatenate(strengths)),
+    ]
+
+
+def law_of_compact(compact: CompactPad, wanted_GPa: Array, separation_nm: Array, depths: int = 24) -> PadLaw:
+    """Curves of a closed form from where its closing carries what is wanted to far away.
+
+    Parameters
+    ----------
+    wanted_GPa : pressure up to which pads were computed, at rising `separation_nm`, shape (n,).
+
+    Raises
+    ------
+    InputError : the closed form never carries it.
+    """
+    deep = np.flatnonzero(compact.closing_GPa(separation_nm)[0] >= wanted_GPa)
+    if deep.size == 0:
+        raise InputError("pad: the closed form does not reach the pressure to which pads were computed")
+    s = separation_nm[deep[-1] :]
+    load = compact.closing_GPa(s)[0]
+    shallow = np.flatnonzero(load > 1e-4 * load[0])[-1]
+    # on the separations, so that every opening starts where closing ended
+    depth = s[np.unique(np.linspace(0, shallow, depths).round().astype(int))]
+    opening = np.full((depth.size, 2, s.size), np.nan)
+    for k, deepest in enumerate(depth):
+        above = s >= deepest - 1e-9
+        opening[k][:, above] = compact.opening_GPa(s[above], deepest)
+    return PadLaw(s, np.stack(compact.closing_GPa(s)), depth, opening, compact.hamaker)

@@ -1,0 +1,139 @@
+"""The answer: shares of the variance, the response of a pad to its inputs, and the switch on both."""
+
+import numpy as np
+import pytest
+
+from mesoscale.device.beam_kernels import BANDS, solve_bands
+from mesoscale.device.release import first_order, plan_points, pressure_to_compute, try_answer
+from mesoscale.errors import InputError
+from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
+from mesoscale.pad.cells import PadGrid
+from mesoscale.pad.compact import CompactPad
+from mesoscale.pad.curves import PadCells
+from mesoscale.pad.draws import Draw, draw_rows, latin_hypercube, laws_of_rows
+from mesoscale.pad.response import SampledPad, fit_response, law_of_compact
+from mesoscale.settings import DeviceSettings
+
+RANGES = {"hamaker": (0.18, 0.25), "e_star": (80.0, 100.0), "rms": (6.0, 12.0)}
+TABLE = InputTable(
+    tuple(UncertainInput(name, "", Distribution("uniform", *ends), "literature", "") for name, ends in RANGES.items()),
+    np.eye(3),
+)
+MIDDLE = TABLE.medians()
+PLATE = DeviceSettings(spring_N_per_m=170.0)
+
+
+def true_pad(values, gap_cutoff_nm):
+    """A closed form that depends on the inputs as a response can."""
+    z, size = (values["e_star"] - 90.0) / 10.0, np.log(values["rms"] / MIDDLE["rms"])
+    rms = values["rms"]
+    strength = values["hamaker"] * np.exp(-1.5 + 0.1 * z - 1.2 * np.log(gap_cutoff_nm / 0.165))
+    return CompactPad(
+        -4.0 + 0.2 * z + 0.3 * size, 3.0 / rms, 0.05 / rms**2, (2.5 + 0.3 * z) / rms, 0.2 / rms**2, 0.05 / rms**2,
+        strength, 0.95, 0.5, values["hamaker"],
+    )  # fmt: skip
+
+
+def sampled(values, gap_cutoff_nm, cells=4):
+    compact = true_pad(values, gap_cutoff_nm)
+    s = np.linspace(0.05, 12.0, 600) * values["rms"]
+    law = law_of_compact(compact, np.full(s.size, 0.05), s, depths=5)
+    return SampledPad(values, gap_cutoff_nm, cells, law)
+
+
+@pytest.fixture(scope="module")
+def pads():
+    units = latin_hypercube(12, 4, 1)
+    values = [dict(zip(TABLE.names, row, strict=True)) for row in TABLE.transform(units[:, :3]).tolist()]
+    cutoffs = 0.165 + 0.1 * units[:, 3]
+    return [sampled(MIDDLE, 0.165, 64), *(sampled(row, cut) for row, cut in zip(values, cutoffs, strict=True))]
+
+
+def test_the_response_finds_a_closed_form_that_is_of_its_kind(pads):
+    """Pads without scatter: the form at inputs that no pad had is the true one."""
+    response = fit_response(pads, TABLE)
+    values = {"hamaker": 0.2, "e_star": 84.0, "rms": 7.0}
+    state, wanted = response.at(values, 0.2), true_pad(values, 0.2)
+    s = np.linspace(10.0, 30.0, 50)
+    for ours, theirs in zip(state.opening_GPa(s, 9.0), wanted.opening_GPa(s, 9.0), strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=1e-6)
+
+
+def test_too_few_draws_are_refused_with_the_number_that_is_enough(pads):
+    with pytest.raises(InputError, match=r"pad\.draws = 2: accepted are at least 4"):
+        fit_response(pads[:3], TABLE)
+
+
+def test_curves_of_draws_come_back_from_their_rows(pads):
+    draws = [Draw(k, pad.values, pad.gap_cutoff_nm, range(0)) for k, pad in enumerate(pads[:2])]
+    rows = [
+        {name: "" if value is None else repr(value) for name, value in row.items()}
+        for draw, pad in zip(draws, pads, strict=False)
+        for row in draw_rows(draw, pad.law)
+    ]
+    for pad, law in zip(pads, laws_of_rows(rows, draws), strict=False):
+        np.testing.assert_allclose(law.opening, pad.law.opening, rtol=1e-12)
+        np.testing.assert_allclose(law.closing, pad.law.closing, rtol=1e-12)
+        assert law.hamaker == pad.values["hamaker"]
+
+
+def test_shares_of_the_variance_are_those_of_a_known_function():
+    """y = 3 x1 + x2^2: variances 9/3 and 4/45."""
+    units = latin_hypercube(200, 3, 2)
+    x = 2.0 * units - 1.0
+    shares, error = first_order(units, 3.0 * x[:, 0] + x[:, 1] ** 2)
+    total = 3.0 + 4.0 / 45.0
+    np.testing.assert_allclose(shares, [3.0 / total, 4.0 / 45.0 / total, 0.0], atol=0.02)
+    assert error < 1e-9
+
+
+def test_a_latin_hypercube_has_one_point_in_each_part_of_every_side():
+    units = latin_hypercube(10, 4, 3)
+    np.testing.assert_array_equal(np.sort((units * 10).astype(int), axis=0), np.tile(np.arange(10)[:, None], 4))
+
+
+def test_geometry_counts_only_where_the_electrode_bends():
+    names, _, _, points = plan_points(TABLE, DeviceSettings(), 0.165, 0.3)
+    assert {"bow_nm", "tilt_nm"} < set(names)
+    assert len({point.device.bow_nm for point in points}) == len(points)
+    assert "geometry" not in plan_points(TABLE, PLATE, 0.165, 0.3)[1]
+    assert "gap_cutoff" not in plan_points(TABLE, PLATE, 0.165, 0.165)[1]
+
+
+def test_pads_are_computed_to_more_than_the_plate_can_press():
+    s = np.array([10.0, 20.0])
+    plate, beam = pressure_to_compute(PLATE)(s), pressure_to_compute(DeviceSettings())(s)
+    assert (beam > plate).all()
+    assert plate[0] > plate[1]
+
+
+def test_the_answer_keeps_its_causes_apart(pads):
+    """A plate on pads without scatter between cells: the cells' share is nothing, the inputs' nearly all."""
+    law = pads[0].law
+    grid = PadGrid(law.separation_nm[::-1], np.flatnonzero(np.isin(law.separation_nm[::-1], law.depth_nm)))
+    closing = np.tile(law.closing[:, ::-1], (16, 1, 1))
+    one = np.full((len(grid.depths), 2, law.separation_nm.size), np.nan)
+    for k, depth in enumerate(grid.depth_nm):
+        above = law.separation_nm >= depth - 1e-9
+        one[k][:, above] = true_pad(MIDDLE, 0.165).opening_GPa(law.separation_nm[above], depth)
+    cells = PadCells(grid, np.full(16, 30.0), closing, np.tile(one[:, :, ::-1], (16, 1, 1, 1)), np.ones(16, bool))
+    state = try_answer(cells, pads[1:], TABLE, PLATE, 0.165)
+    assert state["answer_status"] == "ok"
+    shares = {row["cause"]: row["share_of_variance"] for row in state["answer"]["causes"]}
+    assert shares["cells"] < 1e-9
+    assert shares["inputs"] + shares["gap_cutoff"] > 0.8
+    assert state["answer"]["sensitivity"][0]["share_of_variance"] > 0.3
+
+
+def test_banded_systems_are_solved_with_row_exchanges():
+    rng = np.random.default_rng(0)
+    n = 20
+    full = np.triu(np.tril(rng.normal(size=(n, n)), BANDS), -BANDS)
+    full[np.arange(n), np.arange(n)] *= 1e-3
+    bands, right = np.zeros((n, 3 * BANDS + 1)), rng.normal(size=(n, 2))
+    for i in range(n):
+        for j in range(max(i - BANDS, 0), min(i + BANDS + 1, n)):
+            bands[i, j - i + BANDS] = full[i, j]
+    wanted = np.linalg.solve(full, right)
+    solve_bands(bands, right)
+    np.testing.assert_allclose(right, wanted, rtol=1e-8)
