@@ -6,7 +6,8 @@ const BANDS = 3; // on either side of the diagonal
 const WIDTH = 3 * BANDS + 1; // with room for row exchanges
 const BEAM = {
   elements: 64, contact_GPa: 1e-6, steps: 6000, largestStep_nm: 20, largestChange_nm: 1, shareOfWay: 0.25,
-  settled_nm: 1e-3, settled_Pa: 1, voltages: 40, releaseTolerance: 1e-3, depths: 96, rises: 1200,
+  settled_nm: 1e-3, settled_Pa: 1, releaseTolerance: 1e-3, depths: 96, rises: 1200, highestRise_nm: 60,
+  freeShare: 0.5,
 };
 
 class Beam {
@@ -117,7 +118,7 @@ class LocalPad { // the pad at many places, each with a deepest closing of its o
     const last = law.depth[law.depth.length - 1];
     this.law = law;
     this.depth = evenly(law.depth[0], last, BEAM.depths);
-    this.rise = evenly(0, law.far - last, BEAM.rises);
+    this.rise = evenly(0, Math.min(law.far - last, BEAM.highestRise_nm), BEAM.rises);
     this.opening = Array.from(this.depth, (depth) => this.rise.map((risen) => depth + risen).map(law.rising(depth)));
   }
 
@@ -131,7 +132,13 @@ class LocalPad { // the pad at many places, each with a deepest closing of its o
       const share = deep - i;
       const low = (1 - share) * this.opening[i][j] + share * this.opening[i + 1][j];
       const high = (1 - share) * this.opening[i][j + 1] + share * this.opening[i + 1][j + 1];
-      return [low + (rise - j) * (high - low), (high - low) / step];
+      const start = (1 - share) * this.opening[i][0] + share * this.opening[i + 1][0];
+      const { separation, net } = this.law;
+      const k = Math.min(Math.max(placeOf(separation, deepest) - 1, 0), separation.length - 2);
+      const ended = net[k] + ((deepest - separation[k]) / (separation[k + 1] - separation[k])) * (net[k + 1] - net[k]);
+      // opening starts where closing ended, to the last digit
+      const scale = start > 0 && 0.5 * start < ended && ended < 2 * start ? ended / start : 1;
+      return [scale * (low + (rise - j) * (high - low)), (scale * (high - low)) / step];
     }
     const { separation, net, far } = this.law;
     if (s > far) {
@@ -213,7 +220,8 @@ class MovingBeam {
     return Math.sqrt(b + (a - c) ** 2 / (8 * (2 * b - a - c)));
   }
 
-  creep() { // to the balance at its voltage, every place remembering how deep it came
+  creep() { // to the balance at its voltage, every place remembering how deep it came; whether it is then closed
+    const free = BEAM.freeShare * Math.min(...this.beam.rest_nm);
     let [inertia, least] = [1e9, 0];
     let last = new Float64Array(this.beam.unknowns);
     for (let k = 0; k < BEAM.steps; k++) {
@@ -234,32 +242,27 @@ class MovingBeam {
       const now = this.separation();
       this.deepest = this.deepest.map((deep, i) => Math.min(deep, now[i]));
       if (Math.min(...this.deepest) < this.law.near) throw new OutOfRange("the beam presses the pad harder than its curves reach");
+      if (Math.min(...now) > free) return false;
       let turned = 0;
       for (let i = 0; i < change.length; i += 2) turned += change[i] * last[i];
       last = change;
       least = turned < 0 ? Math.max(10 * least, 1e9) : 0.7 * least;
       if (excess < 0.5 || turned < 0) inertia = Math.max(0.3 * inertia, least);
-      if (most < BEAM.settled_nm && most * 1e-9 * inertia < BEAM.settled_Pa) return;
+      if (most < BEAM.settled_nm && most * 1e-9 * inertia < BEAM.settled_Pa) return true;
     }
     throw new OutOfRange("the beam finds no balance");
   }
 
   open() { // lower the voltage until it lets go: release voltage (0: stuck) and the share landed before
-    let [high, low, share, before] = [this.voltage, 0, this.landedShare(), null];
-    for (const voltage of evenly(this.voltage, 0, BEAM.voltages + 1).slice(1)) {
-      before = [this.nodal, this.deepest];
-      this.voltage = voltage;
-      this.creep();
-      if (this.landedShare() === 0) { low = voltage; break; }
-      [high, share] = [voltage, this.landedShare()];
-      if (voltage === 0) return [0, share];
-    }
+    let [high, low, share] = [this.voltage, 0, this.landedShare()];
+    let held = [this.nodal, this.deepest];
+    this.voltage = 0;
+    if (this.creep()) return [0, this.landedShare()];
     while (high - low > BEAM.releaseTolerance * high) {
-      [this.nodal, this.deepest] = before;
+      [this.nodal, this.deepest] = held;
       this.voltage = 0.5 * (low + high);
-      this.creep();
-      if (this.landedShare() === 0) low = this.voltage;
-      else [high, share, before] = [this.voltage, this.landedShare(), [this.nodal, this.deepest]];
+      if (this.creep()) [high, share, held] = [this.voltage, this.landedShare(), [this.nodal, this.deepest]];
+      else low = this.voltage;
     }
     return [high, share];
   }
@@ -270,9 +273,9 @@ function solveBeam(device, law) {
   const moving = new MovingBeam(device, law);
   const pull_in_V = moving.pullIn();
   moving.voltage = device.hold_voltage_V ?? pull_in_V;
-  moving.creep();
+  const closed = moving.creep();
   const landed_share = moving.landedShare();
-  if (landed_share === 0) throw new OutOfRange("the hold voltage does not land the beam");
+  if (!closed || landed_share === 0) throw new OutOfRange("the hold voltage does not land the beam");
   const [release_V, landed_at_release] = moving.open();
   return { pull_in_V, release_V, stuck: release_V === 0, landed_share, landed_at_release };
 }
