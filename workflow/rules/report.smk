@@ -3,7 +3,15 @@ from workflow.checksums import file_checksum
 
 def report_inputs():
     """Result files of exactly the stages that the scene needs; each has its section in the page."""
-    files = ["scene.yaml", "inputs.csv", "curves/nominal.h5", "curves/spots.h5", "law/parameters.csv", "law/wells.csv", "law/nominal.csv"]
+    files = [
+        "scene.yaml",
+        "inputs.csv",
+        "curves/nominal.h5",
+        "curves/spots.h5",
+        "law/parameters.csv",
+        "law/wells.csv",
+        "law/nominal.csv",
+    ]
     files += [
         f"uq/{name}"
         for name in ("outputs.csv", "ratios.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")
