@@ -1,7 +1,7 @@
 """The highest of many cells: distribution of first contact, from the cells that are computed.
 
-First contact of a cell is the largest of many heights, so Gumbel's distribution is expected (Fisher and Tippett,
-doi:10.1017/S0305004100015681). A pad of N cells then touches first beta ln N further out.
+First contact of a cell is the largest of many heights, so a generalised extreme value distribution is expected (Fisher
+and Tippett, doi:10.1017/S0305004100015681). The largest of N such numbers follows one of the same shape.
 """
 
 from dataclasses import dataclass
@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.special import gamma
 
 from mesoscale.errors import InputError
 
@@ -17,37 +18,37 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Tail:
-    """Gumbel's distribution of the first contacts of cells.
+    """Generalised extreme value distribution of the first contacts of cells.
 
     Attributes
     ----------
-    location_nm : mode.
-    scale_nm : beta: the first contact of a pad rises by it per factor e of area.
-    covariance : of location and scale, from a bootstrap over cells (nm^2), shape (2, 2).
+    shape : k of exp(-(1 - k (x - location)/scale)^(1/k)): above 0 there is a highest first contact, 0 is Gumbel's.
+    location_nm, scale_nm : its other parameters.
+    resampled : the three of cells drawn anew, shape (resamples, 3).
     cells : cells fitted.
-    p_value : of the Cramer-von Mises test with fitted parameters, by a parametric bootstrap; small: not Gumbel.
+    p_value : of the Cramer-von Mises test with fitted parameters, by a parametric bootstrap; small: another
+        distribution.
     """
 
+    shape: float
     location_nm: float
     scale_nm: float
-    covariance: Array
+    resampled: Array
     cells: int
     p_value: float
 
     def first_contact_nm(self, cells: ArrayLike) -> Array:
         """Mean separation at which the first of so many cells touches, and its deviation over pads, shape (2, ...)."""
-        count = np.asarray(cells, float)
-        mean = self.location_nm + self.scale_nm * (np.euler_gamma + np.log(count))
-        return np.stack([mean, np.broadcast_to(np.pi / np.sqrt(6.0) * self.scale_nm, mean.shape)])
+        return _largest_nm((self.shape, self.location_nm, self.scale_nm), np.asarray(cells, float))
 
     def standard_error_nm(self, cells: ArrayLike) -> Array:
         """Error of that mean by the finite number of cells fitted."""
-        arm = np.euler_gamma + np.log(np.asarray(cells, float))
-        return np.sqrt(self.covariance[0, 0] + 2 * arm * self.covariance[0, 1] + arm**2 * self.covariance[1, 1])
+        count = np.asarray(cells, float)
+        return np.std([_largest_nm(tuple(drawn), count)[0] for drawn in self.resampled], axis=0, ddof=1)
 
 
 def fit_tail(first_contact_nm: ArrayLike, resamples: int = 200, seed: int = 0) -> Tail:
-    """Gumbel's distribution fitted to the first contacts of cells by maximum likelihood (scipy.stats.gumbel_r).
+    """Generalised extreme value distribution of the first contacts of cells, by L-moments.
 
     Raises
     ------
@@ -58,18 +59,38 @@ def fit_tail(first_contact_nm: ArrayLike, resamples: int = 200, seed: int = 0) -
     values = np.asarray(first_contact_nm, float)
     if values.size < 8 or np.ptp(values) == 0:
         raise InputError(f"{values.size} first contacts: accepted are at least 8 different ones; raise pad.cells")
+
+    def misfit(numbers: Array, parameters: tuple[float, float, float]) -> float:
+        return stats.cramervonmises(numbers, stats.genextreme(*parameters).cdf).statistic
+
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0x7A11]))
-    location, scale = stats.gumbel_r.fit(values)
-    statistic = stats.cramervonmises(values, "gumbel_r", (location, scale)).statistic
-    drawn, as_large = np.empty((resamples, 2)), 0
+    parameters = _by_l_moments(values)
+    here, drawn, as_large = misfit(values, parameters), np.empty((resamples, 3)), 0
     for k in range(resamples):
-        drawn[k] = stats.gumbel_r.fit(rng.choice(values, values.size))
-        made_up = stats.gumbel_r.rvs(location, scale, values.size, random_state=rng)
-        fitted = stats.gumbel_r.fit(made_up)
-        as_large += stats.cramervonmises(made_up, "gumbel_r", fitted).statistic >= statistic
-    return Tail(
-        float(location), float(scale), np.cov(drawn.T), int(values.size), float((as_large + 1) / (resamples + 1))
-    )
+        drawn[k] = _by_l_moments(rng.choice(values, values.size))
+        made_up = stats.genextreme.rvs(*parameters, size=values.size, random_state=rng)
+        as_large += misfit(made_up, _by_l_moments(made_up)) >= here
+    return Tail(*parameters, drawn, int(values.size), float((as_large + 1) / (resamples + 1)))
+
+
+def _by_l_moments(values: Array) -> tuple[float, float, float]:
+    """Shape, location and scale (Hosking, Wallis and Wood 1985, doi:10.1080/00401706.1985.10488049)."""
+    from scipy import stats
+
+    mean, spread, skewness = stats.lmoment(values, order=[1, 2, 3])
+    c = 2.0 / (3.0 + skewness) - np.log(2.0) / np.log(3.0)
+    shape = 7.8590 * c + 2.9554 * c**2
+    scale = spread * shape / ((1.0 - 2.0**-shape) * gamma(1.0 + shape))
+    return float(shape), float(mean - scale * (1.0 - gamma(1.0 + shape)) / shape), float(scale)
+
+
+def _largest_nm(parameters: tuple[float, float, float], count: Array) -> Array:
+    """Mean and deviation of the largest of `count` numbers, shape (2, ...)."""
+    shape, location, scale = parameters
+    narrowed = scale * count**-shape
+    mean = location + (scale - narrowed * gamma(1.0 + shape)) / shape
+    deviation = narrowed / abs(shape) * np.sqrt(gamma(1.0 + 2.0 * shape) - gamma(1.0 + shape) ** 2)
+    return np.stack([mean, deviation])
 
 
 def tail_summary(tail: Tail, cell_area_nm2: float) -> dict[str, Any]:
@@ -78,10 +99,11 @@ def tail_summary(tail: Tail, cell_area_nm2: float) -> dict[str, Any]:
     mean, scatter = tail.first_contact_nm(sizes)
     error = tail.standard_error_nm(sizes)
     return {
-        "distribution": "gumbel",
+        "distribution": "generalised extreme value",
+        "shape": tail.shape,
         "location_nm": tail.location_nm,
         "scale_nm": tail.scale_nm,
-        "covariance_nm2": tail.covariance,
+        "covariance": np.cov(tail.resampled.T),
         "cells": tail.cells,
         "p_value": tail.p_value,
         "accepted": tail.p_value > 0.05,

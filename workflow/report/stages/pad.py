@@ -43,11 +43,13 @@ def describe(results: Results) -> Section | None:
         section.blocks += _answer(switch["answer"])
     elif switch.get("answer_status"):
         section.notes.append(f"No interval of the release over the inputs: {switch['answer_status']}.")
-    test = f"Gumbel's distribution (test: p = {tail['p_value']:.2g})"
+    test = f"a generalised extreme value distribution (test: p = {tail['p_value']:.2g})"
     if tail["accepted"]:
+        one, many = tail["pads"][0], tail["pads"][4]
         section.notes.append(
-            f"First contacts of the cells follow {test}; a pad touches {show(tail['scale_nm'])} nm further out for "
-            "every factor e of its area."
+            f"First contacts of the cells follow {test}: one cell touches at {show(one['first_contact_nm'])} nm on "
+            f"average, a pad of {many['cells']:,} at {show(many['first_contact_nm'])} ± "
+            f"{show(many['standard_error_nm'])} nm."
         )
     else:
         section.notes.append(
