@@ -78,6 +78,10 @@ def describe(results: Results) -> Section | None:
     section.blocks.append(Table("What to measure next", header, lines))
     chain = posterior["chain"]
     section.notes.append(
+        "Release here is that of the lumped switch on the compact law, which every measurement of a release voltage is "
+        "compared with; the pad's switch has its own interval (From a cell to a pad)."
+    )
+    section.notes.append(
         f"{show(posterior['information_bits'], 2)} bits in all. Chain ({chain['sampler']}): "
         f"R-hat {chain['r_hat']:.4f}, {chain['independent_draws']:.0f} independent draws. Behind the responses are "
         f"{posterior['cycles']} contact cycles; their error, which is part of the posterior's width, is at most "
