@@ -121,7 +121,7 @@ def draw_rows(draw: Draw, law: PadLaw) -> Iterator[dict[str, Any]]:
 
 
 def laws_of_rows(rows: Iterable[Mapping[str, str]], draws: Sequence[Draw]) -> list[PadLaw]:
-    """The curves of the draws from the rows of pad/draws/*.csv."""
+    """The curves of the draws from the rows of ``pad/draws/``."""
     curves: dict[tuple[int, str], list[tuple[float, float, float]]] = {}
     for row in rows:
         point = float(row["separation_nm"]), float(row["repulsive_MPa"]) / 1e3, float(row["attractive_MPa"]) / 1e3
