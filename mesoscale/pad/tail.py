@@ -68,7 +68,7 @@ def fit_tail(first_contact_nm: ArrayLike, resamples: int = 200, seed: int = 0) -
     here, drawn, as_large = misfit(values, parameters), np.empty((resamples, 3)), 0
     for k in range(resamples):
         drawn[k] = _by_l_moments(rng.choice(values, values.size))
-        made_up = stats.genextreme.rvs(*parameters, size=values.size, random_state=rng)
+        made_up = np.asarray(stats.genextreme.rvs(*parameters, size=values.size, random_state=rng))
         as_large += misfit(made_up, _by_l_moments(made_up)) >= here
     return Tail(*parameters, drawn, int(values.size), float((as_large + 1) / (resamples + 1)))
 
