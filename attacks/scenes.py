@@ -18,7 +18,7 @@ from typing import Any
 import jsonschema
 import yaml
 
-from asperity.bundle import ROOT
+from attacks.runs import environment
 from attacks.scene_mutations import mutated
 from workflow.scene import Scene, SceneError, files_of, load_scene, locate
 from workflow.scene_checks import mistakes
@@ -116,7 +116,7 @@ def planned(folder: Path, seed: int) -> dict[str, Any]:
     expected, _ = judge(mutated(seed), path)
     started = time.monotonic()
     command = [sys.executable, "-m", "asperity", "plan", "--scene", str(path), "--cores", "1"]
-    done = subprocess.run(command, cwd=folder, env=_environment(), capture_output=True, text=True, check=False)
+    done = subprocess.run(command, cwd=folder, env=environment(folder), capture_output=True, text=True, check=False)
     said = done.stdout + done.stderr
     errors = [line for line in said.splitlines() if line.startswith("ERROR ")]
     outcome = "refused" if errors and done.returncode == 1 else "accepted" if done.returncode == 0 else "fault"
@@ -124,9 +124,3 @@ def planned(folder: Path, seed: int) -> dict[str, Any]:
         outcome = "fault"
     words = errors[0].replace(f"{path}: ", "") if errors else said.strip().rpartition("\n")[2]
     return {"seed": seed, "outcome": outcome, "seconds": time.monotonic() - started, "words": words[:200]}
-
-
-def _environment() -> dict[str, str]:
-    import os
-
-    return {**os.environ, "PYTHONPATH": str(ROOT)}

@@ -134,13 +134,7 @@ class Costs:
     def close_draws(self, wildcards: Mapping[str, str]) -> float:
         """A chunk of pads at other inputs; their cells are pressed harder, and two of each draw are pilots."""
         pad = self.scene.pad
-        return (
-            min(pad.chunk_draws, pad.draws)
-            * (pad.draw_cells + 2)
-            * DRAW_CELL
-            * CELL_S[self.scene.contact.mechanics]
-            * self.cycle_s
-        )
+        return min(pad.chunk_draws, pad.draws) * (pad.draw_cells + 2) * DRAW_CELL * self.cell_s
 
 
 def _constant(seconds: float) -> Callable[[Costs, Mapping[str, str]], float]:
