@@ -48,6 +48,7 @@ STYLE: dict[Any, Any] = {
     "lines.linewidth": 1.8,
     "legend.frameon": False,
     "legend.fontsize": 9,
+    "legend.title_fontsize": 9,
     "axes.formatter.use_mathtext": False,
     "path.simplify_threshold": 0.3,
 }
@@ -57,7 +58,7 @@ def draw(
     name: str,
     label: str,
     plot: Callable[..., None],
-    size: tuple[float, float] = (5.4, 3.6),
+    size: tuple[float, float] = (5.0, 3.5),
     columns: int = 1,
     rows: int = 1,
     **options: Any,

@@ -22,13 +22,15 @@ _COUPLED = (
 def limits(results: Results) -> list[str]:
     """What a reader must know before using the numbers, with the figures of this scene where they exist."""
     paper = results.beside_paper
-    coupled = results.has("curves/nominal.h5") and reading_of(results).get("mechanics") == "coupled"
+    reading = reading_of(results) if results.has("curves/nominal.h5") else {}
+    coupled = reading.get("mechanics") == "coupled"
+    shortest = "that the grid resolves" if reading.get("q1_per_nm") is None else "that the cut-off q₁ leaves"
     return [
         f"Adhesion: {_adhesion(results)}measured dry adhesion of such surfaces is 5 to 30 µJ/m². The law's attraction "
         "acts down to gaps of 0.165 nm beside every contact. Stiction and release voltage inherit this; "
         "device.adhesion_scale: 0.1 shows the other end.",
         *(_COUPLED if coupled else _ASPERITY),
-        "Surface slope: the RMS slope is set by the shortest waves that the grid resolves."
+        f"Surface slope: the RMS slope is set by the shortest waves {shortest}."
         + " It is 0.91 at the paper's mean inputs, and would be 4.4, unphysical, with the profile convention (the "
         "paper's 2H+1 on a two-dimensional spectrum)." * paper,
         "Few asperities: "

@@ -141,6 +141,6 @@ def predicted_curves(results: Results) -> str:
         axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
         axis.yaxis.set_minor_formatter(NullFormatter())
-        axis.legend(fontsize=8.5)
+        axis.legend()
 
     return draw("predicted", "Curves of the next surface before and after the measurements", plot)

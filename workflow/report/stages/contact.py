@@ -12,7 +12,7 @@ from mesoscale.settings import ContactSettings
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, SOFT, draw
 from workflow.report.live.spots import spots_picture
-from workflow.report.numbers import number
+from workflow.report.numbers import number, show
 from workflow.report.page import COMPUTED, Gate, Section, Table
 from workflow.report.stages import law
 
@@ -74,11 +74,7 @@ def describe(results: Results) -> Section | None:
             "flow": "flow rule",
             "flow_pair": "pair of Gaussians",
         }
-    used = [
-        (label, ("no", "yes")[value] if isinstance(value := reading[key], bool) else str(value))
-        for key, label in words.items()
-        if reading.get(key) is not None
-    ]
+    used = [(label, _in_words(value)) for key, label in words.items() if (value := reading.get(key)) is not None]
     if used:
         caption = "Readings of the paper in use" if results.beside_paper else "Choices of the contact model"
         section.blocks.append(Table(caption, ("choice", "value"), used))
@@ -94,6 +90,7 @@ def nominal_models(results: Results) -> str | None:
     if not present:
         return None
     top = max(float(curve_attributes[model]["max_force_nN"]) for model in present) / 1e3
+    deepest = min(float(_total(groups[f"{model}/opening"])[1].min()) for model in present)
 
     def plot(axis):
         for model in present:
@@ -107,7 +104,7 @@ def nominal_models(results: Results) -> str | None:
                 axis.plot(separation, force, style, color=color, label=name)
         axis.axhline(0, color=SOFT, linewidth=0.8)
         reach = float(curve_attributes[present[-1]]["first_contact_nm"])
-        axis.set(xlim=(None, reach + 8), ylim=(-0.12 * top, 1.04 * top))
+        axis.set(xlim=(None, reach + 8), ylim=(min(-0.12 * top, 1.08 * deepest), 1.04 * top))
         axis.set(xlabel="mean separation (nm)", ylabel="force on 1 µm² (µN)")
         axis.legend()
 
@@ -147,7 +144,7 @@ def nominal_loads(results: Results) -> str | None:
         axis.set(xlim=(None, contact + 8), ylim=(-0.06 * highest, 1.03 * highest))
         zoom.set(xlim=(None, contact + 8), ylim=(-1.1 * near, 3.3 * near), title="near zero force")
         axis.set_title("full range")
-        axis.legend(title="largest load", fontsize=8, title_fontsize=8)
+        axis.legend(title="largest load")
 
     return draw("fig11", "Closing and opening curves up to several largest loads", plot, (9.4, 4.0), columns=2)
 
@@ -192,6 +189,12 @@ def area_against_load(results: Results) -> str | None:
 def reading_of(results: Results) -> dict[str, object]:
     """The contact settings that a curve file was made with."""
     return json.loads(results.h5("curves/nominal.h5")[1]["contact"])
+
+
+def _in_words(choice: object) -> str:
+    if isinstance(choice, bool):
+        return "yes" if choice else "no"
+    return show(choice) if isinstance(choice, float) else str(choice)
 
 
 def _total(curve: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

@@ -108,7 +108,7 @@ def switch_path(results: Results) -> str:
         axis.set(xlabel="separation (µm)", ylabel="voltage at balance (V)")
         zoom.set(xlim=(0, 3 * release_nm), ylim=(0, 3 * release_V), title="way up: the lowest point is release")
         zoom.set(xlabel="separation (nm)")
-        zoom.legend(fontsize=8)
+        zoom.legend()
 
     return draw("path", "Voltage at balance against separation of the switch", plot, (9.4, 3.8), columns=2)
 
@@ -149,7 +149,7 @@ def release_distribution(results: Results) -> str:
                 axis.set_ylim(0, free_top)
                 axis.annotate(f"{stuck:.0%} stuck", (bins[1], free_top), va="top", ha="left", color=RED)
         axis.set(xlabel="release voltage (V)", ylabel="share of samples per bin")
-        axis.legend(fontsize=8.5)
+        axis.legend()
         fraction = column(curve, "landed_fraction")
         other.fill_between(fraction, column(curve, "low"), column(curve, "high"), color=PURPLE, alpha=0.2, linewidth=0)
         other.plot(fraction, column(curve, "stiction_probability"), color=PURPLE)

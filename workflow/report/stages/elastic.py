@@ -97,7 +97,7 @@ def elastic_distribution(results: Results) -> str | None:
         axis.set(xlabel="bulk modulus B (GPa)", ylabel="structures")
         axis.set_ylim(0, 1.7 * axis.get_ylim()[1])  # room for the legend
         axis.yaxis.get_major_locator().set_params(integer=True)
-        axis.legend(fontsize=8.5)
+        axis.legend()
         mean, std = number(summary.get("mean_GPa")), number(summary.get("std_GPa"))
         e_star = next((values for name, values in flat.items() if "e_star" in name.lower()), None)
         grid = np.linspace(min(75, mean - 4 * std), max(107, mean + 4 * std), 300)
@@ -108,7 +108,7 @@ def elastic_distribution(results: Results) -> str | None:
         if results.beside_paper:
             other.plot(grid, _normal(grid, 91.0, 3.8), "--", color=ORANGE, label="paper, 91 ± 3.8 GPa")
         other.set(xlabel="E* (GPa)", ylabel="density (1/GPa)", ylim=(0, None))
-        other.legend(fontsize=8.5)
+        other.legend()
 
     return draw("fig5", "Bulk moduli of the structures and the effective modulus", plot, (9.4, 3.7), columns=2)
 

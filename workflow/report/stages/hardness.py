@@ -148,7 +148,7 @@ def hardness_size(results: Results) -> str | None:
         if results.beside_paper:
             _draw_paper(axis)
         axis.set(xlabel="contact length √A (nm)", ylabel="hardness (GPa)", ylim=(0, None), xlim=(1, 1.1 * longest))
-        axis.legend(fontsize=8.5)
+        axis.legend()
 
     return draw("fig8", "Hardness of single asperities against contact length", plot)
 

@@ -74,7 +74,7 @@ def band(results: Results) -> str:
         well.set(ylim=(-1.05 * deepest, 0.3 * deepest), title="adhesion well")
         well.set(xlabel="mean separation less d_c (nm)", ylabel="contact pressure (kPa)")
         axis.fill_between([], [], [], color=SOFT, alpha=0.3, label="5 to 95 %")
-        axis.legend(fontsize=8.5)
+        axis.legend()
 
     label = "Contact pressure against separation with the spread over uncertain inputs, and its adhesion well"
     return draw("law", label, plot, (5.4, 5.6), rows=2)

@@ -185,7 +185,7 @@ def pad_curves(results: Results) -> str:
         well.axhline(0, color=SOFT, linewidth=0.8)
         well.set(xlim=(depths[0], _last_contact(deepest) + 12), ylim=(2.5 * lowest, -2.5 * lowest))
         well.set(xlabel="separation (nm)", ylabel="net pressure (kPa)", title="near the last contact, on opening")
-        well.legend(fontsize=8)
+        well.legend()
 
     return draw("pad-curves", "Mean pressure of a pad against separation", plot, (9.4, 3.8), columns=2)
 
@@ -227,6 +227,6 @@ def adhesion_by_cells(results: Results) -> str:
                 mfc="none",
             )
         axis.set(xscale="log", yscale="log", xlabel="cells of the pad", ylabel="net adhesive pressure (kPa)")
-        axis.legend(fontsize=8)
+        axis.legend()
 
     return draw("pad-adhesion", "Net adhesive pressure against the number of cells", plot)

@@ -104,6 +104,6 @@ def sensitivity_bars(results: Results) -> str:
             axis.grid(axis="y", visible=False)
             axis.set_xlim(left=0)
         if results.beside_paper:
-            axes[0].legend(fontsize=8)
+            axes[0].legend()
 
     return draw("table3fig", "Elementary effects of each input on each output", plot, (9.8, 5.6), 4, 2, sharey=True)

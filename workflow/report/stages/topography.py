@@ -27,7 +27,7 @@ def describe(results: Results) -> Section | None:
             if synthetic
             else "Spectra of the measured scans. "
         )
-        + f"The Hurst exponent follows the convention `{parameters['convention']}`.",
+        + f"The Hurst exponent follows the {parameters['convention']} convention.",
         SYNTHETIC if synthetic else results.origin_of("topography"),
     )
     section.add(maps(results), "Height maps after levelling, in nm about their mean.", "Figure 9", wide=True)
@@ -166,7 +166,7 @@ def spectra(results: Results) -> str | None:
             ylabel="PSD (nm⁴)",
             ylim=(max(lowest, highest * 1e-12), 5 * highest),
         )
-        axis.legend(fontsize=8)
+        axis.legend()
 
     return draw("fig10", "Power spectra of the scans with fits", plot, (5.6, 4.4))
 
@@ -197,7 +197,7 @@ def recovery(results: Results) -> str | None:
         places.plot(true, spectrum, "o", color=BLUE, label="from the spectrum")
         places.plot(true, heights, "o", color=ORANGE, markerfacecolor="none", label="from the heights")
         places.set(xlabel="true RMS of a place (nm)", ylabel="found (nm)")
-        places.legend(fontsize=8)
+        places.legend()
 
     return draw("recovery", "Truth recovered from the synthetic scans", plot, (8.0, 3.6), 2)
 
@@ -220,7 +220,7 @@ def pressed(results: Results) -> str | None:
                 axis.semilogy(curve["separation_nm"][touching], pressure, style, color=color, label=surface)
             axis.set_title(f"{scan}: RMS {float(scan_attributes[f'{scan}/measured']['rms_nm']):.1f} nm", fontsize=9)
             axis.set(xlabel="separation (nm)", ylabel="nominal pressure (MPa)")
-            axis.legend(fontsize=8)
+            axis.legend()
 
     return draw("pressed", "Closing on the measured scans", plot, (4.2 * len(scans), 3.4), len(scans))
 

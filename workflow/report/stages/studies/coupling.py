@@ -64,7 +64,7 @@ def coupling_curves(results: Results) -> str:
             ratio = column(part, "contact_area_nm2") / column(part, "contact_area_coupled_nm2")
             area.plot(column(part, "load_nN") / 1e3, ratio, "s", color=color, markersize=4, alpha=0.7)
         curve.set(yscale="log", xlabel="mean separation (nm)", ylabel="force on the cell (µN)")
-        curve.legend(fontsize=8.5)
+        curve.legend()
         area.axhline(1, color=SOFT, linewidth=0.8)
         area.set(xscale="log", xlabel="force on the cell (µN)", ylabel="contact area over the half-space's")
         area.set_ylim(bottom=0)

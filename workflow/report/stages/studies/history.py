@@ -87,7 +87,7 @@ def history_curves(results: Results) -> str:
         contact = float(first["separation_nm"][first["repulsive_nN"] > 0].max())
         axis.axhline(0, color=SOFT, linewidth=0.8)
         axis.set(xlim=(None, contact + 6), xlabel="mean separation (nm)", ylabel="force on the cell (µN)")
-        axis.legend(fontsize=8.5)
+        axis.legend()
 
     return draw("history", "Force against separation of a surface that is closed again and again", plot)
 
