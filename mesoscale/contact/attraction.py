@@ -3,6 +3,10 @@
 Sum over the sites of 1/g^3, with the gap g = h + separation cut off at D0. Sites far from contact are
 summed through a histogram of their heights that keeps the first five moments of each bin; sites near
 contact, and all sites that plastic flow has moved, are summed one by one.
+
+Retardation: flats lose the energy A_H / (12 pi g^2) / (1 + c g), with c = 5.32 over the wavelength (Gregory 1981,
+doi:10.1016/0021-9797(81)90018-7; its integral by Derjaguin is Gregory's sphere and plate). So 1/g^3 becomes
+(1 + 3/2 c g) / (1 + c g)^2 / g^3, which is 1/g^3 - (c/2) (1/g^2 - 1/(g + 1/c)^2).
 """
 
 import numpy as np
@@ -10,6 +14,22 @@ from numba import njit
 
 MOMENTS = 5
 NEAR_BINS = 100  # a site is near while its gap is below this many bin widths
+GREGORY = 5.32  # of c; see above
+
+
+def retardation_rate(wavelength_nm: float | None) -> float:
+    """The c of retardation, 1/nm; 0 without it."""
+    return GREGORY / wavelength_nm if wavelength_nm else 0.0
+
+
+@njit(cache=True, inline="always")
+def inverse_cube(gap, rate):
+    """1/g^3, retarded where the rate is not 0."""
+    cube = 1.0 / (gap * gap * gap)
+    if rate == 0.0:
+        return cube
+    reach = rate * gap
+    return cube * (1.0 + 1.5 * reach) / ((1.0 + reach) * (1.0 + reach))
 
 
 @njit(cache=True)
@@ -49,11 +69,12 @@ def first_far_bin(gap, separation, lowest, width, bins):
 
 
 @njit(cache=True)
-def far_inverse_cubes(separation, far, lowest, width, moments):
+def far_inverse_cubes(separation, far, lowest, width, moments, rate):
     """Sum over the sites of 1/g^3 in the bins from `far` on: (g + t)^-3 expanded in t / g."""
     rest = 0.0
     for b in range(far, moments.shape[0]):
-        u = 1.0 / (lowest + (b + 0.5) * width + separation)
+        gap = lowest + (b + 0.5) * width + separation
+        u = 1.0 / gap
         rest += u**3 * (
             moments[b, 0]
             + u
@@ -62,7 +83,33 @@ def far_inverse_cubes(separation, far, lowest, width, moments):
                 + u * (6.0 * moments[b, 2] + u * (-10.0 * moments[b, 3] + u * 15.0 * moments[b, 4]))
             )
         )
+        if rate > 0.0:
+            near, beyond = _inverse_squares(u, moments[b]), _inverse_squares(1.0 / (gap + 1.0 / rate), moments[b])
+            rest -= 0.5 * rate * (near - beyond)
     return rest
+
+
+@njit(cache=True)
+def _inverse_squares(u, moments):
+    """Sum over the sites of a bin of (1/u + t)^-2, expanded in t u."""
+    return (
+        u
+        * u
+        * (
+            moments[0]
+            + u * (-2.0 * moments[1] + u * (3.0 * moments[2] + u * (-4.0 * moments[3] + u * 5.0 * moments[4])))
+        )
+    )
+
+
+@njit(cache=True)
+def inverse_cubes_of(gap, pressure, cutoff, touching, rate):
+    """Sum of 1/max(g, cutoff)^3 over given gaps; ``touching``: whether sites under pressure count."""
+    total = 0.0
+    for k in range(gap.size):
+        if touching or not pressure[k] > 0.0:
+            total += inverse_cube(max(gap[k], cutoff), rate)
+    return total
 
 
 @njit(cache=True)
@@ -79,6 +126,7 @@ def inverse_cubes(
     lowest,
     width,
     moments,
+    rate,
 ):
     """Sum over the sites of 1/max(g, cutoff)^3; ``touching``: whether sites with g < 0 count.
 
@@ -93,12 +141,10 @@ def inverse_cubes(
         if changed[order[place]] == 0:
             gap = order_heights[place] + separation
             if gap >= 0.0 or touching:
-                gap = max(gap, cutoff)
-                near += 1.0 / (gap * gap * gap)
+                near += inverse_cube(max(gap, cutoff), rate)
     moved = 0.0
     for place in range(changed_count):
         gap = heights[changed_sites[place]] + separation
         if gap >= 0.0 or touching:
-            gap = max(gap, cutoff)
-            moved += 1.0 / (gap * gap * gap)
-    return near + moved + far_inverse_cubes(separation, far, lowest, width, moments)
+            moved += inverse_cube(max(gap, cutoff), rate)
+    return near + moved + far_inverse_cubes(separation, far, lowest, width, moments, rate)

@@ -140,6 +140,7 @@ class Contact:
         if self.attracts:
             self.cutoff = settings.gap_cutoff_nm
             self.touching = settings.touching_attracts
+            self.rate = attraction.retardation_rate(settings.retardation_nm)
             self.strength = inputs.hamaker * self.spacing**2 / (6.0 * np.pi)
             self.bin_width = max(self.highest - self.lowest, 1e-6 * self.cutoff) / settings.gap_bins
             self.moments = np.zeros((settings.gap_bins, attraction.MOMENTS))
@@ -307,6 +308,7 @@ class Contact:
             self.lowest,
             self.bin_width,
             self.moments,
+            self.rate,
         )
 
 

@@ -47,11 +47,14 @@ class Draw:
 
 
 def plan_draws(table: InputTable, contact: ContactSettings, pad: PadSettings) -> list[Draw]:
-    """Draws that fill the inputs' distribution evenly: a Latin hypercube over the inputs and D0."""
+    """Draws that fill the inputs' distribution evenly: a Latin hypercube over the inputs and D0.
+
+    Where D0 is an input, the draws vary it with the inputs, and `Draw.gap_cutoff_nm` stays at its median.
+    """
     units = latin_hypercube(pad.draws, len(table.rows) + 1, pad.first_seed)
     values = table.transform(units[:, :-1])
-    low = contact.gap_cutoff_nm
-    high = max(low, pad.gap_cutoff_high_nm)
+    low = contact_of(table.medians(), contact)[1].gap_cutoff_nm
+    high = low if "gap_cutoff" in table.names else max(low, pad.gap_cutoff_high_nm)
     first = pad.first_seed + FIRST_DRAW_SEED
     return [
         Draw(

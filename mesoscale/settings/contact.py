@@ -56,6 +56,13 @@ class ContactSettings(Settings):
         description="D0 of eq. 1: smaller gaps attract as if they were D0",
         json_schema_extra={"unit": "nm"},
     )
+    retardation_nm: float | None = Field(
+        default=None,
+        ge=1,
+        le=1e6,
+        description="wavelength of Gregory's retardation of the attraction, about 100 nm for most solids; null: none",
+        json_schema_extra={"unit": "nm"},
+    )
     touching_attracts: bool = Field(
         default=False,
         description="whether sites in contact attract (with the gap D0) or are left out of eq. 1",

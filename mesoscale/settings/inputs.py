@@ -1,5 +1,6 @@
 """Settings of the uncertain inputs."""
 
+import math
 from typing import Any, Literal, cast
 
 from pydantic import Field, create_model, model_validator
@@ -78,6 +79,33 @@ class Correlation(Settings):
 TABLE_1 = "Kim et al. (2013), Table 1"
 
 
+class AdhesionSettings(Settings):
+    """The attraction of two flats by its work and range, which stand for A_H and D0 (docs/contact.md, Attraction)."""
+
+    work_mJ_m2: float = Field(
+        gt=0,
+        le=1e5,
+        description="work that separates two flats from touch, A_H / (4 pi D0^2); a third of it is beyond D0",
+        json_schema_extra={"unit": "mJ/m^2"},
+    )
+    range_nm: float = Field(
+        ge=1e-3,
+        le=15,
+        description="that work over the largest attraction, 3/2 D0",
+        json_schema_extra={"unit": "nm"},
+    )
+
+    @property
+    def gap_cutoff_nm(self) -> float:
+        """D0."""
+        return self.range_nm / 1.5
+
+    @property
+    def hamaker(self) -> float:
+        """A_H in 1e-18 J; 1 mJ/m^2 is 1e-3 nN/nm."""
+        return 4.0 * math.pi * self.gap_cutoff_nm**2 * self.work_mJ_m2 * 1e-3
+
+
 def _key(row: InputDefinition) -> Any:
     """Type, default and description of the key of an input."""
     symbol = "" if row.symbol in row.label else f" {row.symbol}"
@@ -93,9 +121,20 @@ def _key(row: InputDefinition) -> Any:
 class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.name: _key(row) for row in INPUTS})):
     """Origin and distribution of the uncertain inputs (docs/uncertainty.md)."""
 
+    adhesion: AdhesionSettings | None = Field(
+        default=None, description="work and range of the attraction, in place of hamaker and gap_cutoff; null: by these"
+    )
     correlations: tuple[Correlation, ...] = Field(
         default=(), description="rank correlations between inputs, besides those that a stage reports itself"
     )
+
+    @model_validator(mode="after")
+    def _one_attraction(self) -> "InputsSettings":
+        fields = type(self).model_fields
+        given = [name for name in ("hamaker", "gap_cutoff") if getattr(self, name) != fields[name].default]
+        if self.adhesion and given:
+            raise ValueError(f"adhesion and {' and '.join(given)} give the same attraction; leave one of them out")
+        return self
 
     @model_validator(mode="after")
     def _known_names(self) -> "InputsSettings":
@@ -117,6 +156,10 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
     def rows(self) -> dict[str, InputRow]:
         """The inputs in use, by name."""
         named = {name: getattr(self, name) for name in BY_NAME}
+        if self.adhesion:
+            stated = {"hamaker": self.adhesion.hamaker, "gap_cutoff": self.adhesion.gap_cutoff_nm}
+            for name, value in stated.items():
+                named[name] = InputRow(distribution="fixed", a=value, source="inputs.adhesion")
         return {name: row for name, row in named.items() if row is not None}
 
     def origins(self) -> set[str]:

@@ -10,6 +10,7 @@ import numpy as np
 from mesoscale.device.pad_export import spice_pad, verilog_pad
 from mesoscale.device.pad_switch import switch_on_pad
 from mesoscale.device.release import try_answer
+from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad.cells import grid_of_rows
 from mesoscale.pad.compact import compact_summary
@@ -72,5 +73,6 @@ with job(snakemake) as run:
             SampledPad(draw.values, draw.gap_cutoff_nm, pad.draw_cells, curve)
             for draw, curve in zip(draws, curves, strict=True)
         ]
-        switch |= try_answer(cells, pads, inputs, device, contact.gap_cutoff_nm)
+        _, central = contact_of(inputs.medians(), contact)
+        switch |= try_answer(cells, pads, inputs, device, central.gap_cutoff_nm)
     write_json(snakemake.output.switch, switch, run.provenance)

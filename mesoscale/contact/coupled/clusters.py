@@ -1,4 +1,4 @@
-"""Compiled loops over the sites in contact: which belong together, what attracts, what yields."""
+"""Compiled loops over the sites in contact: which belong together, what yields, what moves."""
 
 import numpy as np
 from numba import njit
@@ -77,14 +77,3 @@ def displace(table, scale, pixels, sites, pressure, others, displacement):
             dr, dc = abs(row - rows[k]), abs(col - cols[k])
             total += value[k] * table[np.uint64(min(dr, pixels - dr)), np.uint64(min(dc, pixels - dc))]
         displacement[m] = total
-
-
-@njit(cache=True)
-def inverse_cubes(gap, pressure, cutoff, touching):
-    """Sum of 1/max(g, cutoff)^3; ``touching``: whether sites under pressure count."""
-    total = 0.0
-    for k in range(gap.size):
-        if touching or not pressure[k] > 0.0:
-            g = max(gap[k], cutoff)
-            total += 1.0 / (g * g * g)
-    return total

@@ -269,7 +269,9 @@ class CoupledContact(Contact):
             return 0.0
         if self.grid is not None:
             gap = self.heights + separation + self.displacement
-            return -self.strength * clusters.inverse_cubes(gap, self.pressure, self.cutoff, self.touching)
+            return -self.strength * attraction.inverse_cubes_of(
+                gap, self.pressure, self.cutoff, self.touching, self.rate
+            )
         known = self.sites.size
         near = max(self.NEAR_GAP, 2.0 * self.cutoff, self.rise * self.force + 2.0 * self.bin_width)
         far = attraction.first_far_bin(near, separation, self.lowest, self.bin_width, len(self.moments))
@@ -285,6 +287,6 @@ class CoupledContact(Contact):
                 self.table, self.scale, self.n, self.sites, self.pressure, sites[known:], displacement[known:]
             )
         gap = self.heights[sites[:count]] + separation + displacement[:count]
-        total = clusters.inverse_cubes(gap, pressure[:count], self.cutoff, self.touching)
-        total += attraction.far_inverse_cubes(separation, far, self.lowest, self.bin_width, self.moments)
+        total = attraction.inverse_cubes_of(gap, pressure[:count], self.cutoff, self.touching, self.rate)
+        total += attraction.far_inverse_cubes(separation, far, self.lowest, self.bin_width, self.moments, self.rate)
         return -self.strength * total

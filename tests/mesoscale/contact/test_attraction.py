@@ -1,9 +1,14 @@
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
+from mesoscale.contact.cycle import contact_on
 from mesoscale.contact.engine import Contact
-from mesoscale.inputs.contact import ContactInputs
-from mesoscale.settings import ContactSettings
+from mesoscale.errors import InputError
+from mesoscale.inputs.contact import ContactInputs, contact_of
+from mesoscale.inputs.table import input_table
+from mesoscale.settings import ContactSettings, InputsSettings
+from mesoscale.settings.inputs import AdhesionSettings
 from mesoscale.topography.synthesis import synthesize
 
 INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
@@ -39,3 +44,77 @@ def test_the_histogram_agrees_with_the_sum_over_all_sites(bins, touching):
         exact = -0.215 * (1000 / 128) ** 2 / (6 * np.pi) * np.sum(gap**-3.0)
         # next term of the expansion: (w / 2 g)^5 with g > 100 w, so the number of bins does not matter
         assert contact.attraction(separation) == pytest.approx(exact, rel=1e-11)
+
+
+MECHANICS = ("asperity", "coupled")
+
+
+def flats(mechanics: str, **changes) -> Contact:
+    settings = ContactSettings(mechanics=mechanics, pixels=32, model="elastic", **changes)
+    return contact_on(np.zeros((32, 32)), INPUTS, settings)
+
+
+def separated(contact: Contact, start: float, end: float = np.inf) -> float:
+    """Work per area (nN/nm) that separates flats."""
+    return -quad(contact.attraction, start, end, epsrel=1e-10)[0] / contact.length**2
+
+
+@pytest.mark.parametrize("mechanics", MECHANICS)
+@pytest.mark.parametrize("cutoff", [0.165, 0.3, 1.0])
+@pytest.mark.parametrize("wavelength", [None, 100.0, 10.0])
+def test_flats_lose_the_energy_of_hamaker_and_gregory(mechanics, cutoff, wavelength):
+    contact = flats(mechanics, gap_cutoff_nm=cutoff, retardation_nm=wavelength)
+    hamaker = INPUTS.hamaker / (12 * np.pi * cutoff**2)
+    retarded = 1.0 / (1.0 + 5.32 * cutoff / wavelength) if wavelength else 1.0
+    assert separated(contact, cutoff) == pytest.approx(hamaker * retarded, rel=1e-8)
+
+
+def test_a_sphere_by_derjaguin_has_gregorys_energy():
+    """-A R / (6 h) [1 - (5.32 h / L) ln(1 + L / (5.32 h))]: 2 pi R times the flats' energy, integrated once more."""
+    contact, wavelength = flats("asperity", retardation_nm=100.0), 100.0
+    for h in (1.0, 20.0):
+        x = 5.32 * h / wavelength
+        gregory = INPUTS.hamaker / (6 * h) * (1 - x * np.log1p(1 / x))
+        ours = quad(lambda s: 2 * np.pi * separated(contact, s), h, np.inf, epsrel=1e-7)[0]
+        assert ours == pytest.approx(gregory, rel=1e-6)
+
+
+@pytest.mark.parametrize("mechanics", MECHANICS)
+def test_a_long_wavelength_retards_nothing(mechanics):
+    usual, retarded = flats(mechanics), flats(mechanics, retardation_nm=1e6)
+    assert retarded.attraction(5.0) == pytest.approx(usual.attraction(5.0), rel=1e-4)
+
+
+@pytest.mark.parametrize("mechanics", MECHANICS)
+def test_the_histogram_of_a_retarded_attraction_agrees_with_the_sum(mechanics):
+    heights = synthesize(128, 1000.0, 0.05, 0.75, 8.5, 5)
+    settings = ContactSettings(mechanics=mechanics, pixels=128, model="elastic", retardation_nm=50.0)
+    contact = contact_on(heights, INPUTS, settings)
+    for separation in (60.0, 35.0):  # before contact
+        gap = np.maximum(heights + separation, 0.165)
+        reach = 5.32 * gap / 50.0
+        pulls = (1 + 1.5 * reach) / (1 + reach) ** 2 / gap**3
+        exact = -0.215 * (1000 / 128) ** 2 / (6 * np.pi) * np.sum(pulls)
+        # the expansion as without retardation; coupled mechanics has far sites already from 2 nm on: (w / 4 nm)^5
+        assert contact.attraction(separation) == pytest.approx(exact, rel=1e-11 if mechanics == "asperity" else 1e-9)
+
+
+@pytest.mark.parametrize("mechanics", MECHANICS)
+def test_work_and_range_give_the_flats_that_work_and_range(mechanics):
+    wanted = AdhesionSettings(work_mJ_m2=46.3, range_nm=5.6)
+    rows = InputsSettings(adhesion=wanted).rows()
+    values = {**vars(INPUTS), "hamaker": rows["hamaker"].a, "gap_cutoff": rows["gap_cutoff"].a}
+    inputs, settings = contact_of(values, ContactSettings(mechanics=mechanics, pixels=32, model="elastic"))
+    contact = contact_on(np.zeros((32, 32)), inputs, settings)
+    touch = 1e-12
+    work = separated(contact, touch, settings.gap_cutoff_nm) + separated(contact, settings.gap_cutoff_nm)
+    assert work == pytest.approx(46.3e-3, rel=1e-8)
+    assert work / (-contact.attraction(touch) / contact.length**2) == pytest.approx(5.6, rel=1e-8)
+
+
+def test_two_ways_to_say_the_same_attraction_are_refused():
+    given = input_table().rows[0].distribution
+    with pytest.raises(InputError, match="adhesion and hamaker"):
+        InputsSettings(
+            adhesion=AdhesionSettings(work_mJ_m2=50.0, range_nm=0.5), hamaker={"a": given.a, "b": 2.0 * given.b}
+        )

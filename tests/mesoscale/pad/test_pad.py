@@ -7,12 +7,14 @@ from scipy import stats
 from mesoscale.contact import ContactInputs
 from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
+from mesoscale.inputs.table import input_table
 from mesoscale.pad.cells import PadGrid, close_cells, plan_grid
 from mesoscale.pad.curves import adhesion_by_cells, assemble
+from mesoscale.pad.draws import plan_draws
 from mesoscale.pad.memory import PadLaw, law_of
 from mesoscale.pad.surfaces import FilmPieces
 from mesoscale.pad.tail import Tail, fit_tail
-from mesoscale.settings import ContactSettings, PadSettings
+from mesoscale.settings import ContactSettings, InputRow, PadSettings
 
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
 CONTACT = ContactSettings(pixels=128)
@@ -150,3 +152,11 @@ def test_cells_are_pieces_of_a_film():
         assert of_surface(ours).std() == pytest.approx(of_surface(cut).std(), rel=0.35)
     assert np.mean(ours**2) == pytest.approx(MIDDLE.rms**2, rel=0.02)
     assert np.mean(cut**2) == pytest.approx(MIDDLE.rms**2, rel=0.02)
+
+
+def test_a_D0_that_is_an_input_is_not_drawn_twice():
+    settings = PadSettings(draws=6)
+    drawn = {draw.gap_cutoff_nm for draw in plan_draws(input_table(), CONTACT, settings)}
+    assert len(drawn) == 6
+    fixed = input_table(gap_cutoff=InputRow(distribution="fixed", a=3.7))
+    assert {draw.gap_cutoff_nm for draw in plan_draws(fixed, CONTACT, settings)} == {3.7}
