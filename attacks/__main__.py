@@ -28,7 +28,8 @@ def _planned(folder: Path, given: argparse.Namespace) -> Iterator[dict[str, Any]
 def _scans(folder: Path, given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     from attacks.scans import campaign
 
-    return campaign(folder, [Path(name) for name in given.files], given.seed, given.count)
+    attacked = {(row["file"], row["damage"], row["seed"]) for row in given.done}
+    return campaign(folder, [Path(name) for name in given.files], given.seed, given.count, attacked)
 
 
 def _results(folder: Path, given: argparse.Namespace) -> Iterator[dict[str, Any]]:
@@ -59,24 +60,37 @@ CAMPAIGNS: dict[str, Callable[[Path, argparse.Namespace], Iterator[dict[str, Any
 }
 
 
+def _rows_of(table: Path) -> list[dict[str, str]]:
+    """What a table holds by now."""
+    if not table.is_file():
+        return []
+    with table.open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
 def main() -> None:
     """Rows are added as they come, so that a campaign that is cut short has its part."""
     parser = argparse.ArgumentParser(prog="python -m attacks", description=__doc__)
     parser.add_argument("campaign", choices=CAMPAIGNS)
-    parser.add_argument("--seed", type=int, default=0, help="of the first attack")
+    parser.add_argument("--seed", type=int, help="of the first attack; default: the next of the table; scans: 0")
     parser.add_argument("--count", type=int, default=100, help="attacks; for scans: of each file")
-    parser.add_argument("--files", nargs="*", default=(), help="scans: folders of files; default: some are made")
+    parser.add_argument("--files", nargs="*", default=(), help="scans: folders of files, beside those that are made")
     parser.add_argument("--scene", choices=("contact", "glass"), default="contact", help="kills: what is killed")
     parser.add_argument("--folder", type=Path, help="where to work and keep the undisturbed runs; default: temporary")
     given = parser.parse_args()
     table = TABLES / f"attacks_{given.campaign}.csv"
+    given.done = _rows_of(table)
+    if given.seed is None:
+        given.seed = 0 if given.campaign == "scans" else 1 + max((int(row["seed"]) for row in given.done), default=-1)
     outcomes: Counter[str] = Counter()
     with ExitStack() as stack:
         folder = given.folder or Path(stack.enter_context(tempfile.TemporaryDirectory()))
         folder.mkdir(parents=True, exist_ok=True)
         stream = stack.enter_context(table.open("a", newline="", encoding="utf-8"))
         rows = CAMPAIGNS[given.campaign](folder.resolve(), given)
-        first = next(rows)
+        first = next(rows, None)
+        if first is None:
+            parser.exit(message=f"{table}: has all of these attacks\n")
         writer = csv.DictWriter(stream, list(first), lineterminator="\n")
         if stream.tell() == 0:
             writer.writeheader()

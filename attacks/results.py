@@ -51,7 +51,7 @@ def campaign(folder: Path, seed: int, count: int) -> Iterator[dict[str, Any]]:
         for name, kind in damaged.items():
             named = f"results/contact/{name}: damaged" in said
             yield {
-                "round": number,
+                "seed": number,
                 "file": name,
                 "damage": kind,
                 "named": named,

@@ -178,6 +178,9 @@ def _open(path: Path, start: bytes) -> Any:
     with needs("scans"):
         from SurfaceTopography.IO import readers
         from SurfaceTopography.IO.Reader import MagicMatch
+        from SurfaceTopography.IO.XYZ import XYZReader
+
+        from mesoscale.topography.measurements.text_reader import QuickXYZReader
 
     reasons = []
     for reader in readers:
@@ -192,7 +195,7 @@ def _open(path: Path, start: bytes) -> Any:
         if match == MagicMatch.NO:
             continue
         try:
-            return reader(str(path))
+            return (QuickXYZReader if reader is XYZReader else reader)(str(path))
         except Exception as error:  # readers of foreign formats fail in many ways
             if match == MagicMatch.YES:
                 reasons.append(f"{reader.name()}: {_first_line(error)}")

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from mesoscale.errors import InputError
-from mesoscale.settings import TopographySettings
+from mesoscale.settings import InstrumentSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.measurements.loading import load_measurements, load_scan, write_gwy
 
+IN_NM = TopographySettings(instruments=(InstrumentSettings(files="*", unit="nm"),))
 AFM = Path(__file__).resolve().parents[5] / "shared" / "afm"
 
 
@@ -171,3 +172,29 @@ def test_a_reader_that_fails_after_opening_is_one_line(tmp_path, monkeypatch, re
     monkeypatch.setattr("mesoscale.topography.measurements.loading._open", lambda *given: Reader())
     with pytest.raises(InputError, match=r"cut\.top: heights cannot be read"):
         load_measurements(path)
+
+
+@pytest.mark.parametrize("head", ["", "# Channel: height\n", "name of the film\n"])
+def test_text_that_ends_in_rubbish_is_not_read_hundreds_of_times(tmp_path, monkeypatch, head):
+    from SurfaceTopography.IO import XYZ
+
+    from mesoscale.topography.measurements import text_reader
+
+    readings = []
+
+    def counted(*given, **named):
+        readings.append(1)
+        return read_csv(*given, **named)
+
+    read_csv = XYZ.read_csv
+    monkeypatch.setattr(XYZ, "read_csv", counted)
+    monkeypatch.setattr(text_reader, "read_csv", counted)
+    path = tmp_path / "film.csv"
+    numbers = "".join(f"{k * 2.0},{k % 7}\n" for k in range(300))
+    path.write_text(head + numbers, encoding="utf-8")
+    assert len(load_measurements(path, settings=IN_NM)[0].data.heights_nm) == 300
+    readings.clear()
+    path.write_text(head + numbers + "the end\n", encoding="utf-8")
+    with pytest.raises(InputError, match="no reader understands"):
+        load_measurements(path, settings=IN_NM)
+    assert len(readings) < 10
