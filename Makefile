@@ -1,8 +1,9 @@
-# make run [SCENE=reduced|ci|paper|full|path.yaml] [TARGET=law]   set up, then run a scene
+# make run [SCENE=reduced|ci|paper|full|path.yaml] [TARGET=law] [HOURS=100]   set up, then run a scene (12 hours at most)
 # make plan [SCENE=…] [TARGET=…]   which jobs would run and how long they take; runs nothing
 # make test | bench | lint | docs
 SCENE ?= reduced
 TARGET ?=
+HOURS ?=
 
 UV_VERSION := 0.13.9
 UV := $(or $(shell command -v uv 2>/dev/null),.uv/bin/uv)
@@ -12,7 +13,7 @@ export UV_SYSTEM_CERTS := 1
 
 .PHONY: run plan test bench lint docs setup
 run: setup
-	@$(RUN) asperity run --scene "$(SCENE)" $(TARGET)
+	@$(RUN) asperity run --scene "$(SCENE)" $(if $(HOURS),--hours "$(HOURS)") $(TARGET)
 
 plan: setup
 	@$(RUN) asperity plan --scene "$(SCENE)" $(TARGET)

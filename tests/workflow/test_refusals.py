@@ -25,6 +25,21 @@ def test_contradictions_are_told_all_at_once(workflow_in):
         assert words in line
 
 
+def test_a_run_of_weeks_is_planned_with_its_time_and_refused(workflow_in):
+    scene = workflow_in.folder / "mine.yaml"
+    scene.write_text(
+        "{contact: {mechanics: coupled, pixels: 2048}, uncertainty: {direct_runs: 1000000, chunk_runs: 10000}}"
+    )
+    said = workflow_in.plan(str(scene), "sensitivity")
+    assert "a run is refused: uncertainty.direct_runs = 1000000: takes " in said
+    assert said.splitlines()[-1].split(" jobs, about ")[1].split()[1] == "h"
+    done = workflow_in.run(str(scene), "sensitivity")
+    assert done.returncode != 0
+    (line,) = errors(done)
+    assert line.startswith(f"ERROR {scene}: uncertainty.direct_runs = 1000000: takes ")
+    assert not (workflow_in.folder / "results").exists()
+
+
 def test_a_table_of_measurements_that_cannot_be_used(workflow_in):
     scene = workflow_in.folder / "mine.yaml"
     (workflow_in.folder / "forces.csv").write_text("pull_off,pull_off_error_nN\n200,20\n")

@@ -1,17 +1,20 @@
 """What a run says: its cost before, a line for each job, the time left."""
 
 import logging
+from operator import attrgetter
 from types import SimpleNamespace
 
 import pytest
 
 from workflow.scene import load_scene
-from workflow.terminal.cost import Costs, relative_speed, wall_seconds
+from workflow.terminal.cost import GROWS_BY, Costs, relative_speed, wall_seconds
 from workflow.terminal.progress import Terminal, duration
 
 
 class OneSecondEach:
     """Costs of a scene in which every job takes a second, but one that nobody has measured."""
+
+    refusal = staticmethod(lambda seconds, wall_s, cores, hours: "too long" if wall_s > 3600 * hours else "")
 
     def seconds(self, rule, wildcards):
         return None if rule == "unheard_of" else 1.0
@@ -37,8 +40,8 @@ def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry, monkeypatch
     monkeypatch.setattr("workflow.terminal.progress.relative_speed", lambda: 1.0)
     jobs = [job("fit_law"), job("fit_law"), job("unheard_of")]
     dag = SimpleNamespace(needrun_jobs=lambda: jobs, job_dependencies=lambda job: [])
-    snakemake = SimpleNamespace(dryrun=dry, cores=2, dag=dag)
-    terminal = Terminal(snakemake, OneSecondEach(), "nothing to do")
+    snakemake = SimpleNamespace(dryrun=dry, local_exec=True, cores=2, dag=dag)
+    terminal = Terminal(snakemake, OneSecondEach(), "nothing to do", 12)
     send(terminal, "run_info")
     send(terminal, "job_info", jobid=7, rule_name="fit_law", rule_msg="fit the law")
     send(terminal, "job_finished", job_id=7)
@@ -48,14 +51,24 @@ def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry, monkeypatch
     assert ("1 of 3  fit the law (1 s), about 1 s left" in said) == (not dry)
 
 
+@pytest.mark.parametrize(("local", "hours", "refusal"), [(True, 12, ""), (True, 1e-4, "too long"), (False, 1e-4, "")])
+def test_a_run_that_is_too_long_is_refused_unless_a_cluster_takes_it(monkeypatch, local, hours, refusal):
+    monkeypatch.setattr("workflow.terminal.progress.relative_speed", lambda: 1.0)
+    dag = SimpleNamespace(needrun_jobs=lambda: [job("fit_law")], job_dependencies=lambda job: [])
+    snakemake = SimpleNamespace(dryrun=False, local_exec=local, cores=2, dag=dag)
+    terminal = Terminal(snakemake, OneSecondEach(), "nothing to do", hours)
+    send(terminal, "run_info")
+    assert terminal.refusal == refusal
+
+
 def test_nothing_to_do_names_the_report(capsys):
-    terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do; the report is there")
+    terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do; the report is there", 12)
     terminal.emit(logging.makeLogRecord({"msg": "Nothing to be done (all requested files are present)."}))
     assert capsys.readouterr().err == "nothing to do; the report is there\n"
 
 
 def test_a_job_that_the_system_ended_is_named(capsys, tmp_path):
-    terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do")
+    terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do", 12)
     killed, failed = tmp_path / "killed.log", tmp_path / "failed.log"
     killed.write_text("  compute_runs 000: 20%\n")
     failed.write_text("ERROR compute_runs 001: the reason\n")
@@ -67,7 +80,7 @@ def test_a_job_that_the_system_ended_is_named(capsys, tmp_path):
 
 def test_a_full_disk_is_not_taken_for_missing_memory(capsys, monkeypatch):
     monkeypatch.setattr("workflow.terminal.progress.disk_usage", lambda folder: SimpleNamespace(free=0))
-    terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do")
+    terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do", 12)
     send(terminal, "job_error", rule_name="compute_runs", log=[])
     assert capsys.readouterr().err.startswith("ERROR compute_runs: no space left on the disk of ")
 
@@ -78,6 +91,23 @@ def test_costs_grow_with_what_a_job_does():
     small, large = Costs(coarse, {}), Costs(paper, {})
     assert large.seconds("compute_runs", {}) > 2 * small.seconds("compute_runs", {})
     assert small.seconds("no_such_rule", {}) is None
+
+
+def test_what_takes_the_time_is_named_with_its_key_and_number():
+    paper = load_scene("paper")
+    million = paper.uncertainty.model_copy(update={"direct_runs": 10**6})
+    costs = Costs(paper.model_copy(update={"uncertainty": million}), {})
+    hours = 10**4 * costs.seconds("compute_direct_runs", {}) / 3600
+    assert 10 < hours < 100
+    said = costs.refusal({"compute_direct_runs": hours * 3600, "fit_law": 2.0}, hours * 1800, 2, 5)
+    assert said.startswith("uncertainty.direct_runs = 1000000: takes ")
+    assert "hours on 2, and a run on one machine may take 5; ask for less, allow it (--hours " in said
+    assert costs.refusal({"compute_direct_runs": hours * 3600}, hours * 1800, 2, 100) == ""
+
+
+def test_the_keys_that_are_named_are_keys_of_a_scene():
+    for key in GROWS_BY.values():
+        attrgetter(key)(load_scene("reduced"))
 
 
 def test_jobs_side_by_side_take_no_less_than_the_longest():

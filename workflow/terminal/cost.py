@@ -4,9 +4,11 @@ The figures were measured on one idle core of the development machine; `relative
 """
 
 import heapq
+import math
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from scipy import fft
@@ -32,6 +34,22 @@ RELAXATION_STEP_S = 8.0  # the same, tightly converged and with forces
 STRESS_STEP_S = 15.0  # the same with the stress; 80 hartree on a loaded machine, not yet on an idle one
 QUENCH_S = 24.0  # quenches until a network of 28 atoms passes its gates
 TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
+LONGEST_RUN_H = 12.0  # of a run on one machine, unless it is said to be meant: what a night finishes
+GROWS_BY = {  # the key that makes a rule's jobs many or long
+    **dict.fromkeys(("make_glass", "run_closing"), "hardness.seeds"),
+    **dict.fromkeys(("make_amorphous", "relax_amorphous", "scan_volumes"), "elastic.glass.structures"),
+    "scan_relaxed_volumes": "elastic.relaxed_structures",
+    "measure_tensor": "elastic.tensor.structures",
+    "compute_nominal": "contact.nominal_loads_nN",
+    "compute_runs": "uncertainty.seeds",
+    "compute_direct_runs": "uncertainty.direct_runs",
+    "plan_pad": "pad.pilot_cells",
+    "close_cells": "pad.cells",
+    "close_draws": "pad.draws",
+    "follow_history": "history.cycles",
+    "observe_cycles": "measurements.runs",
+    "sample_posterior": "measurements.local_runs",
+}
 
 
 def cycle_s(contact: ContactSettings) -> float:
@@ -61,6 +79,28 @@ class Costs:
         """Seconds of one core; None for a rule that nobody has measured."""
         cost = _SECONDS.get(rule)
         return None if cost is None else START_S + cost(self, wildcards)
+
+    def refusal(self, seconds: Mapping[str, float], wall_s: float, cores: int, hours: float) -> str:
+        """Why a run on one machine is refused: the key behind most of its time; empty where it is not.
+
+        Parameters
+        ----------
+        seconds : of one core, by rule.
+        wall_s : of the whole plan on these cores.
+        hours : the longest run.
+        """
+        if wall_s <= hours * 3600:
+            return ""
+        rule = max(seconds, key=lambda rule: seconds[rule])
+        cause, value = GROWS_BY.get(rule, rule), ""
+        if rule in GROWS_BY:
+            value = f" = {_at(self.scene.model_dump(mode='json'), cause)}"
+        allowed = math.ceil(1.2 * wall_s / 3600)
+        return (
+            f"{cause}{value}: takes {seconds[rule] / 3600:.3g} of the {sum(seconds.values()) / 3600:.3g} hours of one "
+            f"core, {wall_s / 3600:.3g} hours on {cores}, and a run on one machine may take {hours:g}; ask for less, "
+            f"allow it (--hours {allowed}, make run HOURS={allowed}), or run on a cluster (docs/cluster.md)"
+        )
 
     @property
     def cycle_s(self) -> float:
@@ -135,6 +175,12 @@ class Costs:
         """A chunk of pads at other inputs; their cells are pressed harder, and two of each draw are pilots."""
         pad = self.scene.pad
         return min(pad.chunk_draws, pad.draws) * (pad.draw_cells + 2) * DRAW_CELL * self.cell_s
+
+
+def _at(content: Any, key: str) -> Any:
+    for part in key.split("."):
+        content = content[part]
+    return content
 
 
 def _constant(seconds: float) -> Callable[[Costs, Mapping[str, str]], float]:

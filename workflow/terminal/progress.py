@@ -25,11 +25,17 @@ class Terminal(logging.Handler):
     workflow : Snakemake's, of which it asks what is to run, on how many cores, and whether anything runs at all.
     costs : of the scene.
     nothing_to_do : what to say when every result is there.
+    hours : the longest run on one machine.
+
+    Attributes
+    ----------
+    refusal : why the planned run is longer than that; empty where it is not, or a cluster takes its jobs.
     """
 
-    def __init__(self, workflow: Any, costs: Costs, nothing_to_do: str) -> None:
+    def __init__(self, workflow: Any, costs: Costs, nothing_to_do: str, hours: float) -> None:
         super().__init__()
-        self._workflow, self._costs, self._nothing_to_do = workflow, costs, nothing_to_do
+        self._workflow, self._costs, self._nothing_to_do, self._hours = workflow, costs, nothing_to_do, hours
+        self.refusal = ""
         self._speed = relative_speed()
         self._planned = False
         self._jobs = self._done = 0
@@ -63,7 +69,10 @@ class Terminal(logging.Handler):
         for rule, cost in zip(rules, seconds, strict=True):
             self._seconds_left[rule] += cost
         self._jobs = len(jobs)
-        wall = duration(wall_seconds(seconds, self._needs(jobs), self._cores)) if jobs else "no time"
+        wall_s = wall_seconds(seconds, self._needs(jobs), self._cores)
+        if self._workflow.local_exec:
+            self.refusal = self._costs.refusal(self._seconds_left, wall_s, self._cores, self._hours)
+        wall = duration(wall_s) if jobs else "no time"
         besides = f", and {', '.join(unknown)}, whose time nobody has measured" if unknown else ""
         if self._workflow.dryrun:
             rows = [
@@ -72,6 +81,8 @@ class Terminal(logging.Handler):
             ]
             width = max(len(row[0]) for row in rows)
             _say("\n".join(f"{rule:<{width}}  {count:>5}  {cost:>9}" for rule, count, cost in rows) + "\n")
+        if self._workflow.dryrun and self.refusal:
+            _say(f"a run is refused: {self.refusal}")
         _say(f"{self._jobs} jobs, about {wall} on {self._cores} cores{besides}")
 
     @property
@@ -129,7 +140,7 @@ def duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 90 * 60 else f"{seconds / 3600:.1f} h"
 
 
-def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: str) -> None:
+def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: str, hours: float) -> Terminal:
     """Let `Terminal` tell what goes on instead of Snakemake, whose warnings and errors stay."""
 
     def is_needed(record: logging.LogRecord) -> bool:
@@ -138,7 +149,9 @@ def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: st
 
     for handler in logger.handlers:
         handler.addFilter(is_needed)
-    logger.addHandler(Terminal(workflow, costs, nothing_to_do))
+    terminal = Terminal(workflow, costs, nothing_to_do, hours)
+    logger.addHandler(terminal)
+    return terminal
 
 
 def _say(text: str) -> None:
