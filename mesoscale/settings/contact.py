@@ -100,6 +100,11 @@ class ContactSettings(Settings):
         default="wide",
         description="second Gaussian: 3 times the radius of curvature (s2 = 3^(1/4) s1), or 3 times the width",
     )
+    flow_volume: Literal["dropped", "piled_up"] = Field(
+        default="dropped",
+        description="coupled: what flows is left out of the surface, or fills the gap around its own cluster "
+        "(asperities keep it by `flow_pair`)",
+    )
     flow_increment_nm: float = Field(
         default=0.3,
         gt=0,

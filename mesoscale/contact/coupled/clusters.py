@@ -37,28 +37,6 @@ def label(sites, place, pressure, pixels, eight, number):
 
 
 @njit(cache=True)
-def flatten(heights, sites, separation, displacement, pressure, limit, changes):
-    """Lower the sites at their hardness by their overlap (contact is at the minima, so their heights rise)."""
-    step = np.int32(changes.used[2])
-    for k in range(sites.size):
-        site = sites[k]
-        gap = heights[site] + separation + displacement[k]
-        if not (gap < 0.0 and 0.0 < limit[k] <= pressure[k]):
-            continue
-        if changes.stamp[site] != step:
-            changes.stamp[site] = step
-            changes.journal[changes.used[1]] = site
-            changes.before[changes.used[1]] = heights[site]
-            changes.used[1] += 1
-        if changes.changed[site] == 0:
-            changes.changed[site] = 1
-            changes.sites[changes.used[0]] = site
-            changes.original[changes.used[0]] = heights[site]
-            changes.used[0] += 1
-        heights[site] -= gap
-
-
-@njit(cache=True)
 def displace(table, scale, pixels, sites, pressure, others, displacement):
     """Displacement (nm) of other sites by the pressures of some."""
     rows = np.empty(sites.size, np.int64)
@@ -77,3 +55,107 @@ def displace(table, scale, pixels, sites, pressure, others, displacement):
             dr, dc = abs(row - rows[k]), abs(col - cols[k])
             total += value[k] * table[np.uint64(min(dr, pixels - dr)), np.uint64(min(dc, pixels - dc))]
         displacement[m] = total
+
+
+@njit(cache=True)
+def _record(heights, site, changes):
+    """Note the height of a site before flow changes it, for `undo` and for `adopt_changes`."""
+    step = np.int32(changes.used[2])
+    if changes.stamp[site] != step:
+        changes.stamp[site] = step
+        changes.journal[changes.used[1]] = site
+        changes.before[changes.used[1]] = heights[site]
+        changes.used[1] += 1
+    if changes.changed[site] == 0:
+        changes.changed[site] = 1
+        changes.sites[changes.used[0]] = site
+        changes.original[changes.used[0]] = heights[site]
+        changes.used[0] += 1
+
+
+@njit(cache=True)
+def flatten(heights, sites, separation, displacement, pressure, limit, changes, number, flowed):
+    """Lower the sites at their hardness by their overlap (contact is at the minima, so their heights rise).
+
+    Adds to `flowed` what each cluster lost, as a height of one site; `number`: the cluster of each site.
+    """
+    for k in range(sites.size):
+        site = sites[k]
+        gap = heights[site] + separation + displacement[k]
+        if not (gap < 0.0 and 0.0 < limit[k] <= pressure[k]):
+            continue
+        _record(heights, site, changes)
+        heights[site] -= gap
+        flowed[number[k]] -= gap
+
+
+@njit(cache=True)
+def pile_up(heights, sites, place, number, flowed, separation, displacement, pressure, table, scale, eight, changes):
+    """Lay down what each cluster lost on the rings of sites around it, the nearest first; True if all found room.
+
+    A ring takes at most its gaps, so that the piles just touch the flat; the last one is filled to the same share of
+    its gaps everywhere. Sites under pressure take nothing. One cluster comes after the other, by the number of their
+    first site in the cell, and finds what those before it have laid down.
+    """
+    pixels = int(np.sqrt(heights.size))
+    known = np.zeros(heights.size, np.bool_)
+    reached = np.empty(heights.size, np.int32)
+    order = np.argsort(number, kind="mergesort")
+    first = np.searchsorted(number[order], np.arange(flowed.size + 1))
+    first_site = np.full(flowed.size, heights.size)
+    for k in range(sites.size):
+        if number[k] >= 0:
+            first_site[number[k]] = min(first_site[number[k]], sites[k])
+    for cluster in np.argsort(first_site, kind="mergesort"):
+        left = flowed[cluster]
+        start, end = 0, 0
+        for k in order[first[cluster] : first[cluster + 1]]:
+            reached[end] = sites[k]
+            known[sites[k]] = True
+            end += 1
+        while left > 0.0:
+            last = end
+            for site in reached[start:last]:
+                row, col = site // pixels, site % pixels
+                for rows in range(-1, 2):
+                    for cols in range(-1, 2):
+                        other = (row + rows) % pixels * pixels + (col + cols) % pixels
+                        if not known[other] and (eight or rows == 0 or cols == 0):
+                            known[other] = True
+                            reached[end] = other
+                            end += 1
+            if end == last:
+                return False
+            start = last
+            room = _gaps(
+                heights, sites, place, separation, displacement, pressure, table, scale, pixels, reached[start:end]
+            )
+            total = room.sum()
+            if total > 0.0:
+                share = min(left / total, 1.0)
+                for k in range(room.size):
+                    if room[k] > 0.0:
+                        _record(heights, reached[start + k], changes)
+                        heights[reached[start + k]] -= share * room[k]
+                left = left - total if share == 1.0 else 0.0
+        for site in reached[:end]:
+            known[site] = False
+    return True
+
+
+@njit(cache=True)
+def _gaps(heights, sites, place, separation, displacement, pressure, table, scale, pixels, others):
+    """Gaps (nm) of some sites, 0 of those under pressure."""
+    unknown = others[place[others] < 0]
+    moved = np.empty(unknown.size)
+    displace(table, scale, pixels, sites, pressure, unknown, moved)
+    gap = np.zeros(others.size)
+    count = 0
+    for k in range(others.size):
+        here = place[others[k]]
+        if here < 0:
+            gap[k] = max(heights[others[k]] + separation + moved[count], 0.0)
+            count += 1
+        elif not pressure[here] > 0.0:
+            gap[k] = max(heights[others[k]] + separation + displacement[here], 0.0)
+    return gap

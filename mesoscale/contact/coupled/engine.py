@@ -40,6 +40,7 @@ class CoupledContact(Contact):
         super().__init__(surface, inputs, settings)
         self.e_star = float(inputs.e_star)
         self.hamaker, self.gap_cutoff = float(inputs.hamaker), settings.gap_cutoff_nm
+        self.piles = self.flows and settings.flow_volume == "piled_up"
         self.table = half_space.influence(self.n)
         self.scale = self.length / self.e_star
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
@@ -56,6 +57,7 @@ class CoupledContact(Contact):
         self.separation = math.inf
         self.bounded = False
         self.known_height = -math.inf
+        self.sorted_known = 0  # of `order`, how many are known
         self.grid: grid.Grid | None = None
         self.place[:] = -1
         self.sites = np.empty(0, np.int32)  # the known sites
@@ -113,14 +115,23 @@ class CoupledContact(Contact):
             return State(math.inf, self.heights.size, 1, 0, math.inf, 0, False, False)
         rounds, settled = self._solve_rounds() if self.bounded else (0, self._solve())
         number, count = self._clusters()
-        if with_flow:
-            clusters.flatten(
-                self.heights, self.sites, separation, self.displacement, self.pressure, self.limit, self.changes
-            )
+        stuck = with_flow and not self._flow(number, count)
         touching = int(np.count_nonzero(number >= 0))
         hardness = self._hardness(number)
         load = float((self.pressure / hardness).max()) if touching and hardness.all() else 0.0
-        return State(self.force, touching, count, 0, load, rounds, settled, False)
+        return State(self.force, touching, count, 0, load, rounds, settled, stuck)
+
+    def _flow(self, number: np.ndarray, count: int) -> bool:
+        """Flatten the sites at their hardness; False if what flows finds no room (`flow_volume: piled_up`)."""
+        flowed = np.zeros(count)
+        solution = self.separation, self.displacement, self.pressure
+        clusters.flatten(self.heights, self.sites, *solution, self.limit, self.changes, number, flowed)
+        if not self.piles:
+            return True
+        half_space = self.table, self.scale, self.mechanics.eight
+        return clusters.pile_up(
+            self.heights, self.sites, self.place, number, flowed, *solution, *half_space, self.changes
+        )
 
     def remarks(self) -> dict[str, float]:
         """What says whether the model holds, for the flags of a cycle (`validity`); the contact as it is now."""
@@ -225,21 +236,39 @@ class CoupledContact(Contact):
 
     def _know(self, force: float) -> None:
         """Make all sites known that can touch under a force, and a few more."""
-        if self._knows_enough(force):
-            return
-        height = self._highest(1.1 * force) + 1e-3 * self.rms
-        self._sort_to(height)
-        count = int(np.searchsorted(self.order_heights, height))
-        old = self.sites.size
+        new = self.sites[:0]
+        if not self._knows_enough(force):
+            self.known_height = self._highest(1.1 * force) + 1e-3 * self.rms
+            self._sort_to(self.known_height)
+            count = int(np.searchsorted(self.order_heights, self.known_height))
+            new = self.order[self.sorted_known : count]
+            self.sorted_known = count
+        if self.piles and self.grid is None:
+            piled = self._changed_unknown()
+            new = np.concatenate((self._unknown(new), piled[self.heights[piled] <= self.known_height]))
+        if new.size:
+            self._add(new)
+
+    def _unknown(self, sites: np.ndarray) -> np.ndarray:
+        """Those of some sites that are neither known nor changed."""
+        return sites[(self.place[sites] < 0) & (self.changed[sites] == 0)]
+
+    def _changed_unknown(self) -> np.ndarray:
+        """Sites that piles have raised and that are not known."""
+        sites = self.changes.sites[: self.changes.used[0]]
+        return sites[self.place[sites] < 0]
+
+    def _add(self, new: np.ndarray) -> None:
+        """Make further sites known."""
+        old, count = self.sites.size, self.sites.size + new.size
         if count > self.dense:
             self._know_all()
             return
-        self.known_height = height
-        self.sites = self.order[:count]
-        self.place[self.sites[old:]] = np.arange(old, count, dtype=np.int32)
-        self.pressure = np.concatenate((self.pressure, np.zeros(count - old)))
-        self.displacement = np.concatenate((self.displacement, np.zeros(count - old)))
-        self.limit = np.concatenate((self.limit, np.full(count - old, self._fresh_limit)))
+        self.sites = np.concatenate((self.sites, new))
+        self.place[new] = np.arange(old, count, dtype=np.int32)
+        self.pressure = np.concatenate((self.pressure, np.zeros(new.size)))
+        self.displacement = np.concatenate((self.displacement, np.zeros(new.size)))
+        self.limit = np.concatenate((self.limit, np.full(new.size, self._fresh_limit)))
         if self.matrix.size == 0:  # memory is touched only as sites come in; the odd length keeps cache lines apart
             self.matrix = np.empty((self.dense, self.dense + 8))
         dense.extend(self.matrix, self.table, self.scale, self.sites, old, count, self.n)
@@ -274,11 +303,17 @@ class CoupledContact(Contact):
             )
         known = self.sites.size
         near = max(self.NEAR_GAP, 2.0 * self.cutoff, self.rise * self.force + 2.0 * self.bin_width)
+        if self.piles:  # sites that piles raise leave the histogram and count one by one, as all that are known
+            self._take_out_changed()
+            near = max(near, self.known_height + separation)
         far = attraction.first_far_bin(near, separation, self.lowest, self.bin_width, len(self.moments))
         edge = self.lowest + far * self.bin_width
         self._sort_to(min(edge + self.bin_width, self.highest))
         count = int(np.searchsorted(self.order_heights, edge)) if far < len(self.moments) else self.heights.size
         sites = self.order[: max(count, known)]
+        if self.piles:
+            sites = np.concatenate((self.sites, self._unknown(self.order[:count]), self._changed_unknown()))
+            count = sites.size
         displacement = np.zeros(sites.size)
         pressure = np.zeros(sites.size)
         if self.force > 0.0:

@@ -83,7 +83,7 @@ def violations(
     constant = settings.model == "elastic" or inputs.h_prime == 0.0
     if coupled and constant and float(cycle.flags["repulsion_drop"]) > LOST:
         broken.append(f"closing lost {cycle.flags['repulsion_drop']:.2g} of its repulsion")
-    if start is not None and cycle.heights is not None and coupled:
+    if start is not None and cycle.heights is not None and coupled and settings.flow_volume == "dropped":
         if (cycle.heights < start).any():
             broken.append("flow added material")
     elif start is not None and cycle.heights is not None:

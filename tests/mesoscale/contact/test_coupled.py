@@ -9,11 +9,13 @@ from mesoscale.contact.coupled import dense, grid, validity
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.energy import dissipated_energy
 from mesoscale.contact.studies.draws import draw_inputs
+from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
 
 INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0)
 MODELS = ("elastic", "nonlinear", "plastic")
+PILED_UP = {"flow_volume": "piled_up"}
 LATTICE = 3.900264920001956  # of a square lattice of charges in their neutralising background: sum 1/r - integral
 
 
@@ -82,11 +84,14 @@ def test_a_wave_is_westergaards(share):
     assert moved.sites / pixels**2 == pytest.approx(share, abs=2 / pixels)
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_pressures_and_surface_agree_with_the_plain_model(model):
+@pytest.mark.parametrize(
+    ("model", "changes"),
+    [*((model, {}) for model in MODELS), *(("plastic", {**PILED_UP, "neighbours": sites}) for sites in (4, 8))],
+)
+def test_pressures_and_surface_agree_with_the_plain_model(model, changes):
     # bounded least squares is slow: fewer sites; the engine takes the number of sites from the surface
     pixels, length = (32, 40.0) if model == "elastic" else (18, 22.5)
-    settings = coupled(32, length, model=model)
+    settings = coupled(32, length, model=model, **changes)
     heights = synthesize(pixels, length, 0.3, 0.75, 1.0, 3)
     lowest = np.unravel_index(np.argmin(heights), heights.shape)
     heights = np.roll(heights, (-lowest[0], -lowest[1]), (0, 1))  # the first cluster straddles the corner
@@ -160,6 +165,8 @@ CASES = {
     "whole grid": {"pixels": 48, "length_nm": 46.9, "max_force_nN": 2.5e3},
     "few steps": {"force_steps": 5},
     "4 neighbours": {"neighbours": 4},
+    "piled up": PILED_UP,
+    "piled up, whole grid": {**PILED_UP, "pixels": 48, "length_nm": 46.9, "max_force_nN": 2.5e3},
 }
 
 
@@ -188,9 +195,40 @@ def test_no_repulsion_is_lost_on_closing_and_no_energy_won(case, h_prime):
         assert abs(dissipated(second)[0]) < 0.01 * lost
 
 
-def test_few_sites_and_the_whole_grid_give_the_same():
+@pytest.mark.parametrize("case", ["plastic", "piled up"])
+def test_flow_takes_material_away_or_keeps_its_volume(case):
+    settings = coupled(**{"pixels": 64, "length_nm": 62.5, "max_force_nN": 800.0, **CASES[case]})
+    inputs = ContactInputs(**{**vars(INPUTS), "q0": 0.15})
+    heights = random_surface(inputs, settings, 1)
+    cycle = run_cycle(inputs, settings, 1, heights=heights, keep_surface=True)
+    moved = cycle.heights - heights
+    assert cycle.converged
+    assert (moved > 0.1).sum() > 20
+    if case == "plastic":
+        assert moved.min() == 0.0
+    else:
+        assert abs(moved.sum()) < 1e-12 * np.abs(heights).sum()
+        # the piles stand around the contacts, and none above the flat: first contact is where it was
+        assert (moved < 0).sum() < 10 * (moved > 0).sum()
+        assert cycle.heights.min() >= heights.min()
+
+
+def test_a_flow_without_room_ends_closing():
+    # a plane with one pit: all other sites touch at once, and the pit does not hold what they lose
+    heights = np.zeros((32, 32))
+    heights[5, 5] = 0.01
+    constant = ContactInputs(**{**vars(INPUTS), "h_macro": 1e-3, "h_prime": 0.0})
+    contact = CoupledContact(heights, constant, coupled(32, 32.0, **PILED_UP))
+    assert contact.move_to(-0.5, True).stuck
+    contact.back()
+    assert contact.heights.sum() == 0.01
+    assert contact.changed_sites == 0
+
+
+@pytest.mark.parametrize("changes", [{}, PILED_UP])
+def test_few_sites_and_the_whole_grid_give_the_same(changes):
     heights = synthesize(128, 125.0, 0.06, 0.75, 3.0, 2)
-    settings = coupled(128, 125.0)
+    settings = coupled(128, 125.0, **changes)
     few, whole = (CoupledContact(heights.copy(), INPUTS, settings) for _ in range(2))
     whole.dense = 0
     for depth in (0.1, 0.5, 1.5):
