@@ -105,12 +105,11 @@ def _kill(rng: random.Random, place: Path, path: Path, target: str, longest: flo
 
 def _end(rng: random.Random, process: "subprocess.Popen[str]", way: str) -> str:
     """Kill, and wait for the end of what is left; says what was killed."""
-    main = psutil.Process(process.pid).children()[:1]  # Snakemake, below the command `asperity`
-    jobs = [child for one in main for child in one.children(recursive=True)]
+    jobs = psutil.Process(process.pid).children(recursive=True)
     if way == "child" and jobs:
         rng.choice(jobs).send_signal(signal.SIGKILL)
-    elif way == "main" and main:
-        main[0].send_signal(signal.SIGKILL)
+    elif way == "main":
+        process.kill()
     else:
         way = "group"
         os.killpg(process.pid, signal.SIGKILL)

@@ -11,6 +11,7 @@ from typing import Any
 import matplotlib
 
 matplotlib.use("svg")
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
@@ -79,10 +80,12 @@ def draw(
         for axis in axes:
             axis.patch.set_alpha(0)
         plot(*axes)
+        _lay_out(figure)
         boxes = _panels(figure) if columns > 1 else []
         link = csv_link([axis for axis in axes if axis.get_visible()], name)
         stream = io.StringIO()
-        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+        # not Figure.savefig, which draws twice: once to find out what a layout would need
+        FigureCanvasSVG(figure).print_svg(stream, metadata={"Date": None, "Creator": None})
     whole = _inline(stream.getvalue(), name, label)
     if not boxes:
         return whole + link
@@ -94,9 +97,16 @@ def draw(
     return f'<div class="whole">{whole}</div><div class="panels">{"".join(pieces)}</div>{link}'
 
 
+def _lay_out(figure: Figure) -> None:
+    """Find the places of everything once; otherwise each drawing would find them again."""
+    engine = figure.get_layout_engine()
+    assert engine is not None
+    engine.execute(figure)
+    figure.set_layout_engine("none")
+
+
 def _panels(figure: Figure) -> list[str]:
     """View boxes of the panels, in points from the upper left corner."""
-    figure.draw_without_rendering()
     width, height = 72 * figure.get_size_inches()
     boxes = []
     bars = {axis: [image.colorbar.ax for image in axis.images if image.colorbar] for axis in figure.axes}
