@@ -19,6 +19,7 @@ from pydantic.fields import FieldInfo
 
 from atomistic.settings import ElasticSettings, HardnessSettings
 from mesoscale.settings import (
+    AdhesionSettings,
     ContactSettings,
     CouplingSettings,
     DeviceSettings,
@@ -65,6 +66,7 @@ class Scene(Settings):
     contact: ContactSettings = ContactSettings()
     law: LawSettings = LawSettings()
     pad: PadSettings = PadSettings()
+    adhesion: AdhesionSettings = AdhesionSettings()
     uncertainty: UncertaintySettings = UncertaintySettings()
     device: DeviceSettings = DeviceSettings()
     history: HistorySettings = HistorySettings()

@@ -79,7 +79,7 @@ class Correlation(Settings):
 TABLE_1 = "Kim et al. (2013), Table 1"
 
 
-class AdhesionSettings(Settings):
+class WorkAndRangeSettings(Settings):
     """The attraction of two flats by its work and range, which stand for A_H and D0 (docs/contact.md, Attraction)."""
 
     work_mJ_m2: float = Field(
@@ -121,7 +121,7 @@ def _key(row: InputDefinition) -> Any:
 class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.name: _key(row) for row in INPUTS})):
     """Origin and distribution of the uncertain inputs (docs/uncertainty.md)."""
 
-    adhesion: AdhesionSettings | None = Field(
+    adhesion: WorkAndRangeSettings | None = Field(
         default=None, description="work and range of the attraction, in place of hamaker and gap_cutoff; null: by these"
     )
     correlations: tuple[Correlation, ...] = Field(

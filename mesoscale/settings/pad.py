@@ -1,8 +1,13 @@
 """Settings of the pad."""
 
+from typing import Annotated, Literal
+
 from pydantic import Field
 
 from mesoscale.settings.base import Settings
+from mesoscale.settings.inputs import WorkAndRangeSettings
+
+Length = Annotated[float, Field(gt=0, le=1e6)]
 
 
 class PadSettings(Settings):
@@ -51,3 +56,56 @@ class PadSettings(Settings):
     )
     chunk_cells: int = Field(default=64, ge=1, le=100000, description="cells per job and file")
     first_seed: int = Field(default=1000, ge=0, le=2**31, description="seed of the first cell's surface")
+
+
+class AdhesionSettings(Settings):
+    """Energy and pull-off of pads against roughness, load and attraction (docs/adhesion.md); off by default."""
+
+    pads: int = Field(
+        default=0, ge=0, le=1000, description="pads of each case, whose scatter is the band; 0: the stage is not run"
+    )
+    cells: int = Field(default=4, ge=2, le=10_000, description="cells of a pad, each with a surface of its own")
+    mechanics: tuple[Literal["asperity", "coupled"], ...] = Field(
+        default=("asperity", "coupled"), min_length=1, description="mechanics that are compared"
+    )
+    loads_MPa: tuple[Annotated[float, Field(gt=0, le=1e6)], ...] = Field(
+        default=(0.05, 0.5, 2.0, 7.0),
+        min_length=1,
+        description="largest mean pressures from which a pad is opened",
+        json_schema_extra={"unit": "MPa"},
+    )
+    rms_nm: tuple[Length, ...] = Field(
+        default=(), description="RMS heights beside that of the inputs", json_schema_extra={"unit": "nm"}
+    )
+    gap_cutoffs_nm: tuple[Annotated[float, Field(gt=0, le=10)], ...] = Field(
+        default=(), description="D0 beside that of the contact", json_schema_extra={"unit": "nm"}
+    )
+    retardations_nm: tuple[Annotated[float, Field(ge=1, le=1e6)], ...] = Field(
+        default=(),
+        description="wavelengths of retardation beside that of the contact",
+        json_schema_extra={"unit": "nm"},
+    )
+    works: tuple[WorkAndRangeSettings, ...] = Field(
+        default=(), description="attractions by work and range beside that of the inputs"
+    )
+    step_nm: float = Field(
+        default=0.1,
+        gt=0,
+        le=10,
+        description="step of separation in and near contact",
+        json_schema_extra={"unit": "nm"},
+    )
+    sphere_radius_um: float = Field(
+        default=250.0,
+        gt=0,
+        le=1e6,
+        description="radius of the sphere whose pull-off is computed by Derjaguin's integral",
+        json_schema_extra={"unit": "um"},
+    )
+    first_seed: int = Field(default=5000, ge=0, le=2**31, description="seed of the first pad's first surface")
+
+    @property
+    def case_count(self) -> int:
+        """Cases of all mechanics: the central one, and one for each value beside it."""
+        beside = len(self.rms_nm) + len(self.gap_cutoffs_nm) + len(self.retardations_nm) + len(self.works)
+        return len(self.mechanics) * (1 + beside)

@@ -21,6 +21,11 @@ class UncertaintySettings(Settings):
         "polynomial through all nodes; or sparse polynomial chaos fitted to the direct runs. The last two "
         "take C_a, C_r and rho_r in logarithm, so that they stay positive. Table 2 always has the linear one",
     )
+    opening_contact: Literal["below_closing", "free"] = Field(
+        default="below_closing",
+        description="response of d_c on opening: closing's less a positive drop, so that no opening starts above its "
+        "closing anywhere in the range of the inputs; or one of its own, as the paper has it. A linear one is its own",
+    )
     chaos_degree: int = Field(default=3, ge=1, le=6, description="highest total degree of the regression")
     seeds: int = Field(default=8, ge=1, le=10000, description="surfaces per node, the same ones at every node")
     first_seed: int = Field(default=0, ge=0, le=2**31, description="seed of the first surface")

@@ -13,7 +13,16 @@ from mesoscale.law.parameters import CLOSING, FITTED, LAW, LAW_OUTPUTS, OPENING,
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.chunks import collocation_level
 from mesoscale.uncertainty.collocation import elementary_effects, interpolating_response, level1_response
-from mesoscale.uncertainty.surrogate import Scatter, Surrogate, evaluate, joint_scatter, to_json, with_scatter
+from mesoscale.uncertainty.surrogate import (
+    Below,
+    Response,
+    Scatter,
+    Surrogate,
+    evaluate,
+    joint_scatter,
+    to_json,
+    with_scatter,
+)
 
 Array = NDArray[np.float64]
 
@@ -61,9 +70,14 @@ def transform_of(output: int, settings: UncertaintySettings) -> str:
     return "identity" if settings.response == "linear" or LAW[output % len(LAW)].any_sign else "log"
 
 
+CLOSING_CONTACT, OPENING_CONTACT = (FITTED.index(f"{branch}_d_c_nm") for branch in ("closing", "opening"))
+SMALLEST_DROP_NM = 0.01
+"""Last contact lies at least so far below first contact where `opening_contact: below_closing` takes the logarithm."""
+
+
 def exported_responses(
     nodes: NodeOutputs, direct: tuple[Array, Array], ranges: Array, settings: UncertaintySettings
-) -> list[Surrogate | None]:
+) -> list[Response | None]:
     """The responses behind samples, Sobol' indices and surrogate.json, one per entry of FITTED.
 
     Parameters
@@ -74,22 +88,36 @@ def exported_responses(
     -------
     None for an output that no seed (or too few runs) determines; nothing is filled in.
     """
-    responses: list[Surrogate | None] = []
+    responses: list[Response | None] = []
     for k in range(len(FITTED)):
         transform = transform_of(k, settings)
         if settings.response == "regression":
             responses.append(_regression(direct[0], direct[1][:, k], ranges, transform, settings))
-            continue
-        y = nodes.values[:, :, k]
-        complete = np.isfinite(y).all(axis=1)
-        average = y[complete].mean(axis=0) if complete.any() else np.full(y.shape[1], np.nan)
-        if not np.isfinite(average).all() or (transform == "log" and (average <= 0).any()):
-            responses.append(None)
-        elif settings.response == "linear":
-            responses.append(level1_response(average[: 2 * len(ranges) + 1], ranges))
         else:
-            responses.append(interpolating_response(average, ranges, collocation_level(settings), transform))
+            responses.append(_through_nodes(nodes.values[:, :, k], ranges, transform, settings))
+    above = responses[CLOSING_CONTACT]
+    if settings.opening_contact == "below_closing" and settings.response != "linear" and isinstance(above, Surrogate):
+        fell = [
+            np.maximum(y[..., CLOSING_CONTACT] - y[..., OPENING_CONTACT], SMALLEST_DROP_NM)
+            for y in (direct[1], nodes.values)
+        ]
+        if settings.response == "regression":
+            drop = _regression(direct[0], fell[0], ranges, "log", settings)
+        else:
+            drop = _through_nodes(fell[1], ranges, "log", settings)
+        responses[OPENING_CONTACT] = Below(FITTED[CLOSING_CONTACT], above, drop) if drop else None
     return responses
+
+
+def _through_nodes(y: Array, ranges: Array, transform: str, settings: UncertaintySettings) -> Surrogate | None:
+    """The response through the values at the nodes (seeds, nodes), averaged over the seeds that have all."""
+    complete = np.isfinite(y).all(axis=1)
+    average = y[complete].mean(axis=0) if complete.any() else np.full(y.shape[1], np.nan)
+    if not np.isfinite(average).all() or (transform == "log" and (average <= 0).any()):
+        return None
+    if settings.response == "linear":
+        return level1_response(average[: 2 * len(ranges) + 1], ranges)
+    return interpolating_response(average, ranges, collocation_level(settings), transform)
 
 
 OUTPUT_TRANSFORMS = tuple("identity" if row.any_sign else "log" for row in LAW_OUTPUTS)
@@ -100,8 +128,8 @@ OUTPUT_TRANSFORMS = tuple("identity" if row.any_sign else "log" for row in LAW_O
 class Change:
     """Opening minus closing response of a parameter."""
 
-    closing: Surrogate
-    opening: Surrogate
+    closing: Response
+    opening: Response
 
     def __call__(self, x: Array) -> Array:
         """Change at inputs x of shape (m, n)."""
@@ -109,14 +137,14 @@ class Change:
 
 
 def output_responses(
-    exported: Sequence[Surrogate | None], direct: tuple[Array, Array], ranges: Array, settings: UncertaintySettings
-) -> list[Surrogate | Change | None]:
+    exported: Sequence[Response | None], direct: tuple[Array, Array], ranges: Array, settings: UncertaintySettings
+) -> list[Response | Change | None]:
     """Responses of the outputs of Table 2, behind indices and elementary effects, from the exported ones.
 
     By regression a change on opening has a response of its own: as a small difference of two large numbers it would
     inherit the errors of both (docs/uncertainty_reference.md).
     """
-    changes: list[Surrogate | Change | None] = []
+    changes: list[Response | Change | None] = []
     outputs = to_paper_outputs(direct[1])
     for k, (closing, opening) in enumerate(zip(exported[CLOSING], exported[OPENING], strict=True), OPENING.start):
         if settings.response == "regression":
@@ -154,7 +182,7 @@ class Propagation:
     samples: Array
     outputs: Array
     cells: Array
-    responses: list[Surrogate | None]
+    responses: list[Response | None]
     scatter: Scatter | None
     by_seed: Array
     variances: Array
@@ -324,7 +352,8 @@ def surrogate_json(
         )
     return {
         "about": "value = transform(sum of coefficient * product of Legendre P_degree(u)), u = 2 (x - low) / "
-        "(high - low) - 1; valid for low <= x <= high; the mean over random surfaces",
+        "(high - low) - 1; valid for low <= x <= high; the mean over random surfaces"
+        + ("; with `below`: the output of that name less this" if any("below" in output for output in outputs) else ""),
         "method": f"{settings.response} ({settings.surrogate} design)"
         if settings.response != "regression"
         else "regression",

@@ -21,7 +21,7 @@ from mesoscale.uncertainty.propagation import (
     to_paper_outputs,
 )
 from mesoscale.uncertainty.regression import refit
-from mesoscale.uncertainty.surrogate import Surrogate, evaluate
+from mesoscale.uncertainty.surrogate import Response, Surrogate, evaluate
 
 Array = NDArray[np.float64]
 
@@ -133,7 +133,7 @@ def sensitivity_rows(
 
 
 def response_effects(
-    responses: Sequence[Surrogate | Change | None], table: InputTable, settings: UncertaintySettings
+    responses: Sequence[Response | Change | None], table: InputTable, settings: UncertaintySettings
 ) -> list[Effects]:
     """Morris' elementary effects of the outputs through their responses, over the inputs' ranges."""
     inputs = len(table.rows)
@@ -144,7 +144,7 @@ def response_effects(
 
 
 def index_intervals(
-    responses: Sequence[Surrogate | Change | None],
+    responses: Sequence[Response | Change | None],
     nodes: NodeOutputs,
     direct: tuple[Array, Array],
     table: InputTable,
@@ -182,7 +182,7 @@ def index_intervals(
     return first, total
 
 
-def response_indices(points: Array, responses: Sequence[Surrogate | Change | None]) -> Array:
+def response_indices(points: Array, responses: Sequence[Response | Change | None]) -> Array:
     """First-order and total indices of the outputs by their responses, shape (2, len(OUTPUTS), n).
 
     Parameters
@@ -194,7 +194,7 @@ def response_indices(points: Array, responses: Sequence[Surrogate | Change | Non
     return np.stack([sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(len(OUTPUTS))], axis=1)
 
 
-def _refitted(responses: Sequence[Surrogate | Change | None], x: Array, y: Array) -> list[Surrogate | None]:
+def _refitted(responses: Sequence[Response | Change | None], x: Array, y: Array) -> list[Surrogate | None]:
     """The regression responses with their terms kept and their coefficients fitted to other runs."""
     again: list[Surrogate | None] = []
     for k, response in enumerate(responses):

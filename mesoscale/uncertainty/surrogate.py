@@ -66,6 +66,32 @@ class Surrogate:
         return np.exp(total) if self.transform == "log" else total
 
 
+@dataclass(frozen=True)
+class Below:
+    """y = above - drop, a response that nowhere exceeds another one: the drop is the exponential of a sum.
+
+    Attributes
+    ----------
+    above_name : output whose response `above` is.
+    """
+
+    above_name: str
+    above: Surrogate
+    drop: Surrogate
+
+    @property
+    def degrees(self) -> NDArray[np.int_]:
+        """Degrees of the drop's terms, shape (terms, n)."""
+        return self.drop.degrees
+
+    def __call__(self, x: Array) -> Array:
+        """Output at inputs x of shape (m, n)."""
+        return self.above(x) - self.drop(x)
+
+
+Response = Surrogate | Below
+
+
 def evaluate(responses: Sequence[Callable[[Array], Array] | None], x: Array) -> Array:
     """Responses at inputs x (m, n), shape (m, responses); NaN where there is no response."""
     return np.stack([response(x) if response else np.full(len(x), np.nan) for response in responses], axis=1)
@@ -79,9 +105,11 @@ def uniform_moments(surrogate: Surrogate) -> tuple[float, float]:
     return float(surrogate.coefficients[constant].sum()), float(variances[~constant].sum())
 
 
-def to_json(surrogate: Surrogate) -> dict[str, Any]:
+def to_json(response: Response) -> dict[str, Any]:
     """The response as plain values; docs/uncertainty.md has a ten-line reader."""
+    surrogate = response.drop if isinstance(response, Below) else response
     return {
+        **({"below": response.above_name} if isinstance(response, Below) else {}),
         "transform": surrogate.transform,
         "terms": [
             {"degrees": degrees, "coefficient": coefficient}
@@ -90,14 +118,20 @@ def to_json(surrogate: Surrogate) -> dict[str, Any]:
     }
 
 
-def from_json(output: Mapping[str, Any], inputs: Sequence[Mapping[str, Any]]) -> Surrogate:
-    """The response of one entry of `outputs` in uq/surrogate.json."""
-    return Surrogate(
-        np.array([[row["low"], row["high"]] for row in inputs], float),
-        np.array([term["degrees"] for term in output["terms"]], int),
-        np.array([term["coefficient"] for term in output["terms"]], float),
-        output["transform"],
-    )
+def from_json(content: Mapping[str, Any]) -> dict[str, Response]:
+    """The responses of uq/surrogate.json by the name of their output."""
+    ranges = np.array([[row["low"], row["high"]] for row in content["inputs"]], float)
+    sums = {
+        output["name"]: Surrogate(
+            ranges,
+            np.array([term["degrees"] for term in output["terms"]], int),
+            np.array([term["coefficient"] for term in output["terms"]], float),
+            output["transform"],
+        )
+        for output in content["outputs"]
+    }
+    below = {output["name"]: output["below"] for output in content["outputs"] if "below" in output}
+    return {name: Below(below[name], sums[below[name]], drop) if name in below else drop for name, drop in sums.items()}
 
 
 FEWEST_RUNS = 20
@@ -124,7 +158,7 @@ class Scatter:
     runs: int
 
 
-def joint_scatter(responses: Sequence[Surrogate], direct: tuple[Array, Array], fitted: bool) -> Scatter | None:
+def joint_scatter(responses: Sequence[Response], direct: tuple[Array, Array], fitted: bool) -> Scatter | None:
     """Residuals of direct runs in the transformed space as a joint normal distribution.
 
     Parameters
@@ -154,14 +188,14 @@ def joint_scatter(responses: Sequence[Surrogate], direct: tuple[Array, Array], f
     )
 
 
-def _widening(response: Surrogate, runs: int, fitted: bool) -> float:
+def _widening(response: Response, runs: int, fitted: bool) -> float:
     """How much smaller the residuals of a least-squares fit are than those of runs that it has not seen."""
     terms = len(response.degrees) if fitted else 0
     return float(np.sqrt(runs / max(runs - terms, 1)))
 
 
 def with_scatter(
-    outputs: Array, responses: Sequence[Surrogate | None], direct: tuple[Array, Array], fitted: bool, seed: int
+    outputs: Array, responses: Sequence[Response | None], direct: tuple[Array, Array], fitted: bool, seed: int
 ) -> Array:
     """Outputs of single cells: those of the responses times residuals drawn from direct runs.
 

@@ -17,10 +17,10 @@ from mesoscale.uncertainty.propagation import (
     to_paper_outputs,
 )
 from mesoscale.uncertainty.reference import STATISTICS
-from mesoscale.uncertainty.surrogate import Surrogate, evaluate
+from mesoscale.uncertainty.surrogate import Response, evaluate
 
 Array = NDArray[np.float64]
-Responses = Sequence[Surrogate | None]
+Responses = Sequence[Response | None]
 
 
 def direct_runs_of_rows(rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int) -> tuple[Array, Array]:

@@ -38,6 +38,7 @@ def write_all(root: Path) -> list[Path]:
     _topography(root)
     _history(root)
     _coupling(root)
+    _adhesion(root)
     _model_form(root)
     _calibration(root)
     _cutoff(root)
@@ -399,6 +400,25 @@ def _coupling(root: Path) -> None:
         for prefactor in ("hertz", "paper")
     ]
     _write(root / "coupling/comparison.csv", rows)
+
+
+def _adhesion(root: Path) -> None:
+    rows = [
+        {
+            "mechanics": mechanics,
+            "varied": varied,
+            "rms_nm": rms,
+            "gap_cutoff_nm": 0.165,
+            "load_MPa": load,
+            "energy_uJ_m2": 98.0,
+            "energy_uJ_m2_lowest": 58.0,
+            "energy_uJ_m2_highest": 248.0,
+        }
+        for mechanics in ("asperity", "coupled")
+        for varied, rms in (("none", 4.4), ("rms", 8.5))
+        for load in (0.5, 7.0)
+    ]
+    _write(root / "adhesion/summary.csv", rows)
 
 
 def _model_form(root: Path) -> None:

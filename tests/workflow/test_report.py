@@ -25,7 +25,7 @@ from workflow.report.stages.inputs import _distribution
 from workflow.report.studies import recommended
 
 SECTIONS = ("inputs", "hardness", "elastic", "topography", "curves", "uncertainty", "sensitivity", "device")
-ON_TOP = ("model-form", "cut-off", "history", "coupling", "calibration", "accuracy", "stability")
+ON_TOP = ("model-form", "cut-off", "adhesion", "history", "coupling", "calibration", "accuracy", "stability")
 
 
 @pytest.fixture(scope="module")
@@ -173,6 +173,11 @@ def test_history_and_coupling_say_their_answer(page):
     assert "1.25 ± 0" in page
 
 
+def test_adhesion_of_pads_stands_beside_what_was_measured(page):
+    assert "98.0 [58.0, 248]" in page
+    assert "0.08 to 7.15 mJ/m²" in page
+
+
 def test_model_form_says_what_shifts_and_what_the_cheap_engine_saves(page):
     assert "3.00 [2.50, 3.50]" in page
     assert "costs 25 times as much" in page
@@ -223,7 +228,7 @@ def test_terms_are_explained_once_in_each_section(page):
     tips = re.findall(r'<a class="term" href="#(term-[^"]+)" aria-describedby="([^"]+)"', page)
     assert {link for link, _ in tips} >= {"term-pad", "term-gate", "term-d_c"}
     assert all(link == described and f'<dd id="{link}">' in page for link, described in tips)
-    pad = page[page.index('<section id="pad"') : page.index('<section id="device"')]
+    pad = page[page.index('<section id="pad"') : page.index('<section id="adhesion"')]
     assert pad.count('href="#term-pad"') == 1
 
 

@@ -19,6 +19,8 @@ def report_inputs():
     files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "path.csv", "law.csv")]
     files += ["pad/curves.csv", "pad/adhesion.csv", "pad/tail.json", "device/pad_switch.json"]
     files += [f"pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS]
+    if ADHESION.pads > 0:
+        files += ["adhesion/summary.csv"]
     if needed("hardness"):
         files += ["hardness/points.csv", "hardness/fit.json"]
         files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness", "snapshots") for run in CLOSINGS]

@@ -28,6 +28,7 @@ LATER_CYCLE, HOLD = 0.6, 0.05  # of a history, over a first cycle; of each time 
 RELEASE_S = 0.015  # law and switch after a cycle
 CELL_S = {"asperity": 2.4, "coupled": 4.5}  # a pad's cell over a cycle: it opens from several depths
 DRAW_CELL = 1.5  # a cell of a pad at other inputs over one of the pad: it is pressed harder
+OPENED_CELL = 2.0  # a cell of scene adhesion over one of the pad: it is closed twice
 SCAN_S = 0.8  # analysis of a scan of the reference grid
 SCF_S = 9.0  # one volume of 28 atoms at 100 hartree
 RELAXATION_STEP_S = 8.0  # the same, tightly converged and with forces
@@ -176,6 +177,13 @@ class Costs:
         pad = self.scene.pad
         return min(pad.chunk_draws, pad.draws) * (pad.draw_cells + 2) * DRAW_CELL * self.cell_s
 
+    def open_pads(self, wildcards: Mapping[str, str]) -> float:
+        """The pads of one case; the first half of the cases is of the first mechanics."""
+        adhesion = self.scene.adhesion
+        mechanics = adhesion.mechanics[int(wildcards["adhesion_case"]) * len(adhesion.mechanics) // adhesion.case_count]
+        cycle = cycle_s(self.scene.contact.model_copy(update={"mechanics": mechanics}))
+        return OPENED_CELL * adhesion.pads * adhesion.cells * CELL_S[mechanics] * cycle
+
 
 def _at(content: Any, key: str) -> Any:
     for part in key.split("."):
@@ -213,6 +221,8 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "close_cells": Costs.close_cells,
     "close_draws": Costs.close_draws,
     "assemble_pad": _constant(15.0),
+    "open_pads": Costs.open_pads,
+    "summarise_adhesion": _constant(0.0),
     "solve_switch": _constant(2.0),
     "render_report": _constant(2.5),
     "collect_priors": _constant(0.0),

@@ -8,7 +8,7 @@ from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.table import input_table
 from mesoscale.settings import ContactSettings, InputsSettings
-from mesoscale.settings.inputs import AdhesionSettings
+from mesoscale.settings.inputs import WorkAndRangeSettings
 from mesoscale.topography.synthesis import synthesize
 
 INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
@@ -101,7 +101,7 @@ def test_the_histogram_of_a_retarded_attraction_agrees_with_the_sum(mechanics):
 
 @pytest.mark.parametrize("mechanics", MECHANICS)
 def test_work_and_range_give_the_flats_that_work_and_range(mechanics):
-    wanted = AdhesionSettings(work_mJ_m2=46.3, range_nm=5.6)
+    wanted = WorkAndRangeSettings(work_mJ_m2=46.3, range_nm=5.6)
     rows = InputsSettings(adhesion=wanted).rows()
     values = {**vars(INPUTS), "hamaker": rows["hamaker"].a, "gap_cutoff": rows["gap_cutoff"].a}
     inputs, settings = contact_of(values, ContactSettings(mechanics=mechanics, pixels=32, model="elastic"))
@@ -116,5 +116,5 @@ def test_two_ways_to_say_the_same_attraction_are_refused():
     given = input_table().rows[0].distribution
     with pytest.raises(InputError, match="adhesion and hamaker"):
         InputsSettings(
-            adhesion=AdhesionSettings(work_mJ_m2=50.0, range_nm=0.5), hamaker={"a": given.a, "b": 2.0 * given.b}
+            adhesion=WorkAndRangeSettings(work_mJ_m2=50.0, range_nm=0.5), hamaker={"a": given.a, "b": 2.0 * given.b}
         )

@@ -106,7 +106,7 @@ def test_legendre():
 def test_response_survives_json():
     response = interpolating_response(np.exp(nodes(7, 1).sum(axis=1)), RANGES, 1, "log")
     inputs = [{"low": low, "high": high} for low, high in RANGES.tolist()]
-    again = from_json(to_json(response), inputs)
+    again = from_json({"inputs": inputs, "outputs": [{"name": "y", **to_json(response)}]})["y"]
     points = to_values(np.random.default_rng(1).uniform(-1, 1, (20, 7)), RANGES)
     assert np.array_equal(again(points), response(points))
 

@@ -1,6 +1,7 @@
 """Propagation, sensitivity and validation on functions whose answers are known."""
 
 import csv
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -151,8 +152,7 @@ def test_surrogate_json_reproduces_the_propagated_values():
     content = surrogate_json(result, given, table, SETTINGS, {"rho_a_nm": 2.0, "alpha_nm": 2.0}, {})
     assert [o["name"] for o in content["outputs"]][:2] == ["closing_d_c_nm", "closing_C_a_GPa_nm"]
     for k, output in enumerate(content["outputs"]):
-        response = from_json(output, content["inputs"])
-        assert response(result.samples[:5]) == pytest.approx(result.outputs[:5, k])
+        assert from_json(content)[output["name"]](result.samples[:5]) == pytest.approx(result.outputs[:5, k])
 
 
 def test_validation_of_a_perfect_and_of_a_biased_response():
@@ -333,3 +333,54 @@ def test_joint_scatter_needs_runs_and_allows_for_the_terms_that_were_fitted():
     assert seen is not None
     assert fitted is not None
     assert fitted.covariance / seen.covariance == pytest.approx(25 / 20)
+
+
+def falling_contacts(inputs: int, runs: int = 300):
+    """Runs whose last contact is a little below the first where the inputs are small, and far below where large."""
+    rng = np.random.default_rng(5)
+    x = rng.random((runs, inputs))
+    scatter = np.exp(0.3 * rng.standard_normal((runs, 2)))
+    closing = 5.0 + 30.0 * x[:, 0] * scatter[:, 0]
+    drop = 6.0 * x[:, 0] ** 3 * x[:, 1] ** 2 * scatter[:, 1]
+    return x, np.stack([closing] * 4 + [closing - drop, *[closing] * 3], axis=1)
+
+
+@pytest.mark.parametrize("method", ["regression", "polynomial"])
+def test_opening_never_starts_above_closing(method):
+    """At all 128 corners and inside; responses of their own cross there."""
+    table = uniform_table(7)
+    x, y = falling_contacts(7)
+    at_nodes = to_values(nodes(7, 1), table.ranges(0.999))
+    first = 5.0 + 30.0 * at_nodes[:, 0]
+    last = first - 6.0 * at_nodes[:, 0] ** 3 * at_nodes[:, 1] ** 2
+    given = NodeOutputs([0], np.stack([first] * 4 + [last, *[first] * 3], axis=-1)[None])
+    corners = np.array(list(product((0.0, 1.0), repeat=7)))
+    inside = np.random.default_rng(6).random((4000, 7))
+
+    def change(settings, at):
+        result = propagate(given, table, settings, (x, y))
+        closing, opening = result.responses[0], result.responses[4]
+        assert closing
+        assert opening
+        return opening(at) - closing(at), result
+
+    free = UncertaintySettings(response=method, samples=200, opening_contact="free")
+    assert (change(free, corners)[0] > 0).sum() > 10
+    ordered = free.model_copy(update={"opening_contact": "below_closing"})
+    changes, result = change(ordered, np.concatenate([corners, inside]))
+    assert (changes < 0).all()
+    content = surrogate_json(result, given, table, ordered, {}, {})
+    again = from_json(content)["opening_d_c_nm"]
+    assert again(corners) == pytest.approx(result.responses[4](corners), rel=1e-12)
+    assert "below" in content["outputs"][4]
+    assert "less this" in content["about"]
+
+
+def test_a_contact_that_keeps_its_shape_opens_where_it_closed():
+    """Elastic: the drop is 0 in every run; the response is at most a hundredth of a nanometre below."""
+    table = uniform_table(3)
+    x, y = falling_contacts(3, 100)
+    y[:, 4] = y[:, 0]
+    settings = UncertaintySettings(response="regression", samples=200)
+    result = propagate(linear_nodes(table, [1, 2, 3]), table, settings, (x, y))
+    assert result.responses[0](x) - result.responses[4](x) == pytest.approx(np.full(100, 0.01))

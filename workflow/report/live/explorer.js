@@ -38,7 +38,8 @@
       term.degrees.forEach((n, i) => { if (n) product *= legendre(n, u[i]); });
       sum += product;
     }
-    return output.transform === "log" ? Math.exp(sum) : sum;
+    const value = output.transform === "log" ? Math.exp(sum) : sum;
+    return output.below ? predict(outputs[output.below], u) - value : value;
   }
 
   function laws(branch, u) {

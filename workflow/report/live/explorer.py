@@ -9,7 +9,7 @@ from mesoscale.inputs.definitions import definition
 from mesoscale.law.parameters import PARAMETERS
 from workflow.report.available import Results
 
-SURROGATE_KEYS = ("name", "transform", "terms")
+SURROGATE_KEYS = ("name", "transform", "terms", "below")
 
 
 def explorer(results: Results) -> dict[str, Any] | None:
@@ -29,7 +29,7 @@ def explorer(results: Results) -> dict[str, Any] | None:
         }
         for row in surrogate["inputs"]
     ]
-    outputs = [{key: output[key] for key in SURROGATE_KEYS} for output in surrogate["outputs"]]
+    outputs = [{key: output[key] for key in SURROGATE_KEYS if key in output} for output in surrogate["outputs"]]
     return {"inputs": inputs, "outputs": outputs, "law": surrogate["law"], "scatter": _scatter(surrogate["scatter"])}
 
 

@@ -16,7 +16,7 @@ from workflow.report.stages import (
     topography,
     uncertainty,
 )
-from workflow.report.stages.studies import coupling, cutoff, history, model_form
+from workflow.report.stages.studies import adhesion, coupling, cutoff, history, model_form
 
 # in the order of the data's flow
 STAGES = (
@@ -31,6 +31,7 @@ STAGES = (
     model_form,
     cutoff,
     pad,
+    adhesion,
     device,
     history,
     coupling,

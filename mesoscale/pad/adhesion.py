@@ -1,0 +1,213 @@
+"""Adhesion of a pad: the energy per area that opening it costs, and its pull-off.
+
+The energy is the work of opening from the first separation at which the net force is zero, on the way out from the
+largest load, to infinity. Pads differ in their surfaces; each is closed until its own cells carry the load.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.contact.attraction import retardation_rate
+from mesoscale.errors import InputError
+from mesoscale.inputs.contact import ContactInputs, contact_of
+from mesoscale.pad.cells import PadGrid, close_cells, plan_grid
+from mesoscale.pad.curves import PadCells, assemble
+from mesoscale.pad.memory import law_of
+from mesoscale.pad.sphere import press_sphere
+from mesoscale.settings import AdhesionSettings, ContactSettings, PadSettings
+
+Array = NDArray[np.float64]
+
+SPHERE_DEPTHS = 8
+"""Depths of closing for the memory under a sphere, from the deepest to the first contact of the highest cell."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """Inputs and settings that all pads of a case share.
+
+    Attributes
+    ----------
+    varied : which number differs from the central case: none, rms, gap_cutoff, retardation or work.
+    """
+
+    varied: str
+    inputs: ContactInputs
+    contact: ContactSettings
+
+
+def plan_cases(values: Mapping[str, float], contact: ContactSettings, adhesion: AdhesionSettings) -> list[Case]:
+    """The central case and one for each number beside it, in each mechanics; `adhesion.case_count` of them.
+
+    Raises
+    ------
+    InputError : inputs that the contact does not accept.
+    """
+    cases = []
+    for mechanics in adhesion.mechanics:
+        inputs, settings = contact_of(values, contact.model_copy(update={"mechanics": mechanics}))
+        cases.append(Case("none", inputs, settings))
+        cases += [Case("rms", replace(inputs, rms=rms), settings) for rms in adhesion.rms_nm]
+        for varied, key, numbers in (
+            ("gap_cutoff", "gap_cutoff_nm", adhesion.gap_cutoffs_nm),
+            ("retardation", "retardation_nm", adhesion.retardations_nm),
+        ):
+            cases += [Case(varied, inputs, settings.model_copy(update={key: number})) for number in numbers]
+        cases += [
+            Case(
+                "work",
+                replace(inputs, hamaker=work.hamaker),
+                settings.model_copy(update={"gap_cutoff_nm": work.gap_cutoff_nm}),
+            )
+            for work in adhesion.works
+        ]
+    return cases
+
+
+def flats_energy(hamaker: float, separation_nm: Array | float, rate: float) -> Any:
+    """Energy per area (nN/nm = J/m^2) of two flats, retarded at `rate` (1/nm)."""
+    s = np.asarray(separation_nm, float)
+    return hamaker / (12.0 * np.pi * s**2) / (1.0 + rate * s)
+
+
+@dataclass(frozen=True)
+class Opened:
+    """What opening costs.
+
+    Attributes
+    ----------
+    zero_nm : separation at which the net force is zero, on the way out from the largest load.
+    energy_J_m2 : work per area from there to infinity.
+    pull_off_GPa : largest net attraction on the way.
+    """
+
+    zero_nm: float
+    energy_J_m2: float
+    pull_off_GPa: float
+
+
+def open_from(separation_nm: Array, net_GPa: Array, beyond_J_m2: float) -> Opened:
+    """Energy and pull-off of an opening curve.
+
+    Parameters
+    ----------
+    separation_nm, net_GPa : the way out from the largest load, separations rising, shape (n,).
+    beyond_J_m2 : energy per area from the last separation to infinity.
+    """
+    first = int(np.argmax(net_GPa < 0.0))
+    s, net = separation_nm[first:], net_GPa[first:]
+    if first > 0:
+        zero = float(np.interp(0.0, -net_GPa[first - 1 : first + 1], separation_nm[first - 1 : first + 1]))
+        s, net = np.insert(s, 0, zero), np.insert(net, 0, 0.0)
+    return Opened(float(s[0]), -float(np.trapezoid(net, s)) + beyond_J_m2, -float(net.min()))
+
+
+def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range, step_nm: float) -> tuple[PadCells, list[int]]:
+    """Cells under one plane, opened from the separations at which their mean repulsion reaches each load.
+
+    Returns the cells, and the position among the depths for each load; further depths reach up to first contact.
+
+    Raises
+    ------
+    InputError : the cells never carry the largest load.
+    """
+    pad = PadSettings(
+        pilot_cells=len(seeds),
+        first_seed=seeds.start,
+        max_pressure_MPa=max(loads_GPa) * 1e3,
+        step_nm=step_nm,
+        depths=2,
+    )
+    grid = plan_grid(case.inputs, case.contact, pad)
+    area = case.contact.length_nm**2
+    shut = PadGrid(grid.separation_nm, np.empty(0, int))
+    closing = assemble(shut, list(close_cells(case.inputs, case.contact, shut, seeds)), area)
+    repelled = closing.closing[:, 0].mean(axis=0)
+    if repelled[-1] < max(loads_GPa):
+        raise InputError(
+            f"adhesion.loads_MPa: cells closed to {grid.separation_nm[-1]:.4g} nm carry {repelled[-1] * 1e3:.3g} MPa; "
+            "lower the largest load"
+        )
+    loaded = [int(np.argmax(repelled >= load)) for load in loads_GPa]
+    touched = int(np.argmax(repelled > 0.0)) - 1
+    depths = np.union1d(loaded, np.linspace(touched, max(loaded), SPHERE_DEPTHS).round()).astype(int)
+    depths = depths[depths <= max(loaded)]
+    opened = PadGrid(grid.separation_nm[: max(loaded) + 1], depths)
+    cells = assemble(opened, list(close_cells(case.inputs, case.contact, opened, seeds)), area)
+    return cells, [int(np.flatnonzero(depths == place)[0]) for place in loaded]
+
+
+def pad_rows(case: Case, adhesion: AdhesionSettings, number: int) -> list[dict[str, Any]]:
+    """One row for each load of one pad of a case: columns of adhesion/pads.csv."""
+    first = adhesion.first_seed + number * adhesion.cells
+    cells, loaded = close_to_loads(
+        case, [load * 1e-3 for load in adhesion.loads_MPa], range(first, first + adhesion.cells), adhesion.step_nm
+    )
+    rate = retardation_rate(case.contact.retardation_nm)
+    outwards = cells.grid.separation_nm[::-1]
+    beyond = float(flats_energy(case.inputs.hamaker, outwards[-1], rate))
+    law = law_of(cells, case.inputs.hamaker)
+    rows = []
+    for load, place in zip(adhesion.loads_MPa, loaded, strict=True):
+        net = cells.opening[:, place].sum(axis=1).mean(axis=0)[::-1]
+        way = np.isfinite(net)
+        opened = open_from(outwards[way], net[way], beyond)
+        sphere = press_sphere(law, float(cells.grid.depth_nm[place]), adhesion.sphere_radius_um * 1e3, beyond)
+        rows.append(
+            {
+                "mechanics": case.contact.mechanics,
+                "varied": case.varied,
+                "rms_nm": case.inputs.rms,
+                "hamaker_aJ": case.inputs.hamaker,
+                "gap_cutoff_nm": case.contact.gap_cutoff_nm,
+                "retardation_nm": case.contact.retardation_nm,
+                "load_MPa": load,
+                "pad": number,
+                "cells": adhesion.cells,
+                "depth_nm": float(cells.grid.depth_nm[place]),
+                "zero_force_nm": opened.zero_nm,
+                "energy_uJ_m2": opened.energy_J_m2 * 1e6,
+                "flats_uJ_m2": float(flats_energy(case.inputs.hamaker, opened.zero_nm, rate)) * 1e6,
+                "pull_off_kPa": opened.pull_off_GPa * 1e6,
+                "sphere_load_uN": sphere.load_nN * 1e-3,
+                "sphere_pull_off_uN": sphere.pull_off_nN * 1e-3,
+                "sphere_work_mJ_m2": sphere.work_J_m2 * 1e3,
+            }
+        )
+    return rows
+
+
+def rows_of_case(
+    case: Case, adhesion: AdhesionSettings, progress: Callable[[float, str], None] | None = None
+) -> Iterator[dict[str, Any]]:
+    """Rows of all pads of a case."""
+    for number in range(adhesion.pads):
+        yield from pad_rows(case, adhesion, number)
+        if progress:
+            progress((number + 1) / adhesion.pads, f"{number + 1} of {adhesion.pads} pads")
+
+
+MEASURED = ("zero_force_nm", "energy_uJ_m2", "flats_uJ_m2", "pull_off_kPa")
+ON_SPHERE = ("sphere_load_uN", "sphere_pull_off_uN", "sphere_work_mJ_m2")
+SHARED = ("mechanics", "varied", "rms_nm", "hamaker_aJ", "gap_cutoff_nm", "retardation_nm", "load_MPa", "cells")
+
+
+def summary_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Rows of adhesion/summary.csv: mean, standard error and the lowest and highest pad of each case and load."""
+    groups: dict[tuple[Any, ...], list[Mapping[str, Any]]] = {}
+    for row in rows:
+        groups.setdefault(tuple(row[key] for key in SHARED), []).append(row)
+    summary = []
+    for shared, pads in groups.items():
+        line: dict[str, Any] = dict(zip(SHARED, shared, strict=True)) | {"pads": len(pads)}
+        for key in (*MEASURED, *ON_SPHERE):
+            values = np.array([float(row[key]) for row in pads])
+            line[key] = float(values.mean())
+            line[f"{key}_error"] = float(values.std(ddof=1) / len(values) ** 0.5) if len(values) > 1 else None
+            line[f"{key}_lowest"], line[f"{key}_highest"] = float(values.min()), float(values.max())
+        summary.append(line)
+    return summary

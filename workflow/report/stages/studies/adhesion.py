@@ -1,0 +1,101 @@
+"""Energy and pull-off of pads against roughness, load and attraction."""
+
+from workflow.report.available import Results, Row
+from workflow.report.drawing import SERIES, SOFT, draw
+from workflow.report.numbers import column, number, show
+from workflow.report.page import COMPUTED, Section, Table
+
+STYLES = {"asperity": "o--", "coupled": "s-"}
+
+
+def describe(results: Results) -> Section | None:
+    """Energy per area, pull-off, and a sphere on the same film."""
+    if not results.has("adhesion/summary.csv"):
+        return None
+    rows = results.csv("adhesion/summary.csv")
+    first = rows[0]
+    section = Section(
+        "adhesion",
+        "Adhesion of pads",
+        f"{first['pads']} pads of {first['cells']} cells each, closed to several loads and opened. The energy is the "
+        "work of opening from zero net force outwards. Of each number the mean over pads, the lowest and the highest.",
+        COMPUTED,
+    )
+    section.add(
+        adhesion_figure(rows),
+        "Left: energy per area after each load; the grey line is that of flats at the separation of zero force of the "
+        "lowest load. Right: pull-off of the central case. Bars span the pads.",
+        wide=True,
+    )
+    header = ("mechanics", "differs", "load (MPa)", "energy (µJ/m²)", "flats (µJ/m²)", "pull-off (kPa)")
+    sphere = ("largest load (µN)", "pull-off (µN)", "work of adhesion (mJ/m²)")
+    films, spheres = [], []
+    for row in rows:
+        heads = (row["mechanics"], _difference(row), show(number(row["load_MPa"])))
+        films.append((*heads, *(_spread(row, key) for key in ("energy_uJ_m2", "flats_uJ_m2", "pull_off_kPa"))))
+        keys = ("sphere_load_uN", "sphere_pull_off_uN", "sphere_work_mJ_m2")
+        spheres.append((*heads, *(_spread(row, key) for key in keys)))
+    section.blocks.append(Table("Mean over pads [lowest, highest]", header, films, heads=3))
+    section.blocks.append(
+        Table("A sphere on the same film, by Derjaguin's integral", (*header[:3], *sphere), spheres, heads=3)
+    )
+    section.notes.append(
+        "Measured with ruby spheres of 0.5 mm on four diamond films: 0.08 to 7.15 mJ/m² (Thimons et al. 2021, "
+        "doi 10.1007/s11340-021-00733-6). Coupled mechanics gives an upper bound on opening: flattened tops are "
+        "conformal, and all of their rims attract."
+    )
+    section.files.append("adhesion/summary.csv")
+    return section
+
+
+def adhesion_figure(rows: list[Row]) -> str:
+    """Energy against RMS height, and pull-off against load."""
+    loads = sorted({number(row["load_MPa"]) for row in rows})
+
+    def plot(energy, pull):
+        for mechanics, style in STYLES.items():
+            for place, load in enumerate(loads):
+                part = [
+                    row
+                    for row in rows
+                    if row["mechanics"] == mechanics
+                    and row["varied"] in ("none", "rms")
+                    and number(row["load_MPa"]) == load
+                ]
+                part.sort(key=lambda row: number(row["rms_nm"]))
+                if part:
+                    color = SERIES[place % len(SERIES)]
+                    _bars(energy, part, "rms_nm", "energy_uJ_m2", style, color, f"{mechanics}, {load:g} MPa")
+                    if place == 0:
+                        energy.plot(column(part, "rms_nm"), column(part, "flats_uJ_m2"), color=SOFT, linewidth=0.8)
+            central = [row for row in rows if row["mechanics"] == mechanics and row["varied"] == "none"]
+            if central:
+                _bars(pull, central, "load_MPa", "pull_off_kPa", style, SERIES[0], mechanics)
+        energy.set(yscale="log", xlabel="RMS height (nm)", ylabel="energy (µJ/m²)")
+        energy.legend(fontsize=7, ncols=2)
+        pull.set(xscale="log", yscale="log", xlabel="largest load (MPa)", ylabel="pull-off (kPa)")
+        pull.legend()
+
+    return draw("adhesion", "Adhesion of pads against roughness and load", plot, (9.4, 3.8), columns=2)
+
+
+def _bars(axis, rows: list[Row], across: str, key: str, style: str, color: str, label: str) -> None:
+    middle = column(rows, key)
+    spans = (middle - column(rows, f"{key}_lowest"), column(rows, f"{key}_highest") - middle)
+    axis.errorbar(column(rows, across), middle, spans, fmt=style, color=color, markersize=4, capsize=2, label=label)
+
+
+def _difference(row: Row) -> str:
+    varied = row["varied"]
+    texts = {
+        "none": "central",
+        "rms": f"RMS {show(number(row['rms_nm']))} nm",
+        "gap_cutoff": f"D₀ {show(number(row['gap_cutoff_nm']))} nm",
+        "work": f"D₀ {show(number(row['gap_cutoff_nm']))} nm, A_H {show(number(row['hamaker_aJ']))} aJ",
+    }
+    return texts[varied] if varied in texts else f"retardation {show(number(row['retardation_nm']))} nm"
+
+
+def _spread(row: Row, key: str) -> str:
+    mean, low, high = (show(number(row[key + end])) for end in ("", "_lowest", "_highest"))
+    return f"{mean} [{low}, {high}]"
