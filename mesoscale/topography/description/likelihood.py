@@ -32,6 +32,8 @@ BLUNT_BIAS = 0.45
 BLUNT_ERROR = 0.3  # of that correction
 MOST_CURVED = 2.0
 LEVELLED_ERROR = 0.5  # of ln C in the first shells, after their blur is taken out
+# how far ln q0 and the slope are sought for the ends of an interval; no plateau within a factor of e^10 is none
+INTERVAL_STEP, INTERVAL_END, INTERVAL_SLOPE = 0.04, 10.0, 1.0
 LINE_POINTS, LINE_REACH = 48, 7.7  # nodes of the integral along a line, and its end as arcosh(q/k): 1100 k
 
 
@@ -163,13 +165,13 @@ class LikelihoodFit:
 class _Data:
     """Trusted shells of all scans and bins of all lines, flat arrays with the scan and bin each belongs to."""
 
-    def __init__(self, spectra: Sequence[TrustedSpectrum], knee: float = 0.0):
+    def __init__(self, spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = BINS_PER_DECADE):
         parts = []
         for number, item in enumerate(spectra):
             s, ok = item.spectrum, item.trusted
             if item.line is not None:
                 s, ok = item.line, np.ones(len(item.line.q), dtype=bool)
-            bins = np.floor(np.log10(s.q[ok]) * BINS_PER_DECADE).astype(int)
+            bins = np.floor(np.log10(s.q[ok]) * per_decade).astype(int)
             size_class = round(float(np.log(s.spacing)) * 20)  # scans of one size share their discrepancies
             columns = (s.q[ok], s.psd[ok], s.modes[ok], bins)
             whole = (number, size_class, item.tip_radius_nm, 0.0 if s.sharp else s.spacing, item.line is not None)
@@ -228,17 +230,20 @@ def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[T
     ]
 
 
-def fit(spectra: Sequence[TrustedSpectrum], knee: float = 0.0) -> LikelihoodFit | None:
+def fit(
+    spectra: Sequence[TrustedSpectrum], knee: float = 0.0, per_decade: int = BINS_PER_DECADE
+) -> LikelihoodFit | None:
     """Fit plateau, q0 and slope to the trusted ranges; None where there are too few shells to fit.
 
-    Below `knee` (1/nm), where it is known roughly, the corrections that the discrepancy stands for do not act.
+    Below `knee` (1/nm), where it is known roughly, the corrections that the discrepancy stands for do not act. A decade
+    has `per_decade` bins that share one.
     """
     from scipy.optimize import minimize
 
     spectra = [item for item in spectra if item.trusted.sum() >= 3]
     if not spectra:
         return None
-    data = _Data(spectra, knee)
+    data = _Data(spectra, knee, per_decade)
     bins = data.bin.max() + 1
     if bins < 6:
         return None
@@ -361,6 +366,42 @@ def _covariance(
     full[0, 1:] = full[1:, 0] = gradient @ shape
     full[0, 0] = typical_variance + gradient @ shape @ gradient
     return full
+
+
+def q0_interval(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, reach: float) -> tuple[float, float]:
+    """Ends of q0 (1/nm) where the deviance, lowest over the slope, is `reach` standard deviations above its minimum.
+
+    The curvature at the minimum does not do: where the knee is gradual (shallow spectra, lines) the deviance is far
+    from a parabola, and its ends are up to three times as far away on one side.
+    """
+    from scipy.optimize import brentq, minimize_scalar
+
+    data = _Data([item for item in spectra if item.trusted.sum() >= 3], fitted.q0)
+    level, best = np.log(fitted.amplitudes), np.log(fitted.q0)
+
+    def lowest(log_q0: float) -> float:
+        inside = max(fitted.slope - INTERVAL_SLOPE, 0.0), min(fitted.slope + INTERVAL_SLOPE, MAX_SLOPE)
+        found: Any = minimize_scalar(
+            lambda slope: _deviance(data, log_q0, slope, fitted.amplitude_sd, level)[0],
+            bounds=inside,
+            method="bounded",
+            options={"xatol": 1e-3},
+        )
+        return float(found.fun)
+
+    allowed = lowest(best) + reach**2 * max(fitted.dispersion, 1.0)
+    ends = []
+    for side in (-1, 1):
+        distance = INTERVAL_STEP
+        while lowest(best + side * distance) < allowed and distance < INTERVAL_END:
+            distance *= 2
+        if distance >= INTERVAL_END:
+            ends.append(best + side * INTERVAL_END)
+            continue
+        start = distance / 2 if distance > INTERVAL_STEP else 0.0
+        end: Any = brentq(lambda at, s=side: lowest(best + s * at) - allowed, start, distance, xtol=2e-3)
+        ends.append(best + side * end)
+    return float(np.exp(ends[0])), float(np.exp(ends[1]))
 
 
 def trusted_range(

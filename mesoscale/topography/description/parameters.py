@@ -139,7 +139,7 @@ def _likelihood_estimates(
     centre = np.array([np.log(fitted.plateau), np.log(fitted.q0), fitted.slope])
     error = np.minimum(np.sqrt(np.diag(fitted.covariance)), 10.0)  # unidentified: a factor of e^10 is wide enough
     reach = _normal_quantile(settings.confidence)
-    q0_interval = tuple(np.exp(centre[1] + reach * error[1] * np.array([-1, 1])))
+    q0_interval = likelihood.q0_interval(spectra, fitted, reach)
     slope_interval = tuple(centre[2] + reach * error[2] * np.array([-1, 1]))
 
     def log_rms(at: np.ndarray) -> float:
@@ -157,7 +157,7 @@ def _likelihood_estimates(
     # where places differ, the range of RMS is theirs; otherwise it is the statistical one
     rms_scatter = _union([rms], own_rms) if fitted.amplitude_sd > 0 else _union(rms_interval, own_rms)
     return _with_hurst(
-        q0=Estimate(fitted.q0, _pair(q0_interval), _union(q0_interval, own_q0)),
+        q0=Estimate(fitted.q0, q0_interval, _union(q0_interval, own_q0)),
         slope=Estimate(fitted.slope, _pair(slope_interval), _union(slope_interval, own_slope)),
         rms=Estimate(rms, _pair(rms_interval), rms_scatter),
         settings=settings,

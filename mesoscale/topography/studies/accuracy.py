@@ -8,9 +8,10 @@ import numpy as np
 
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.description.likelihood import trusted_range
+from mesoscale.topography.description.likelihood import fit, skip_blurred_shells, trusted_range
 from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.measurements.cleaning import Scan, clean
+from mesoscale.topography.roughness_spectrum import mean_square
 from mesoscale.topography.spectrum import radial_spectrum
 from mesoscale.topography.synthetic_scans import synthetic_scans
 
@@ -18,6 +19,8 @@ METRIC = {"q0": "relative RMS error", "slope": "absolute RMS error", "rms": "rel
 PIXELS = (128, 256, 512, 1024)
 SECTIONS = (1, 4, 25, 100)
 FLAT_SHARES = (0.0, 0.5, 0.9, 0.99)
+BINS = (4, 8, 12, 24)
+TOLD_TIPS = (0.0, 0.8, 1.0, 1.2)
 SCANS = ((1, 1), (2, 2), (4, 2), (8, 3))
 
 
@@ -46,6 +49,11 @@ def accuracy_points(
     for tip in (0.0, 2.0, 5.0, 10.0, 20.0):
         few = truth.model_copy(update={"small_scans": 2, "large_scans": 2, "tip_radius_nm": tip})
         cases.append(("tip radius nm", tip, few, settings.model_copy(update={"tip_radius_nm": tip})))
+    few = truth.model_copy(update={"small_scans": 2, "large_scans": 2})
+    cases += [("bins per decade", bins, few, settings) for bins in BINS]
+    for told in TOLD_TIPS:
+        other = settings.model_copy(update={"tip_radius_nm": told * truth.tip_radius_nm})
+        cases.append(("told over true tip radius", told, few, other))
     for number, (knob, value, scans, analysis) in enumerate(cases):
         yield from _case(knob, value, scans, analysis, repeats)
         if progress:
@@ -61,7 +69,7 @@ def _case(
     for repeat in range(repeats):
         scans = [item.scan for item in synthetic_scans(truth.model_copy(update={"seed": truth.seed + 1000 * repeat}))]
         started, busy = time.perf_counter(), time.process_time()
-        estimates = _estimates(scans, settings, value if knob == "flat share of window" else None)
+        estimates = _estimates(scans, settings, knob, value)
         wall.append(time.perf_counter() - started)
         cpu.append(time.process_time() - busy)
         for name, true in known.items():
@@ -80,15 +88,22 @@ def _case(
         }
 
 
-def _estimates(scans: list[Scan], settings: TopographySettings, flat: float | None) -> dict[str, float]:
-    """Estimates of one set; `flat` replaces the Hann window by one of this flat share."""
-    if flat is None:
-        spectra = [trusted_scan(scan, settings) for scan in scans]
-    else:
+def _estimates(scans: list[Scan], settings: TopographySettings, knob: str, value: Any) -> dict[str, float]:
+    """Estimates of one set; a flat share replaces the Hann window, a number of bins that of the likelihood."""
+    if knob == "flat share of window":
         spectra = []
         for scan in scans:
             heights = clean(scan, settings).heights_nm
-            spectrum = radial_spectrum(heights, scan.lengths_nm, 25, settings.section_fraction, flat, skip_lines=True)
+            spectrum = radial_spectrum(heights, scan.lengths_nm, 25, settings.section_fraction, value, skip_lines=True)
             spectra.append(trusted_range(scan.name, spectrum, settings.tip_radius_nm))
+    else:
+        spectra = [trusted_scan(scan, settings) for scan in scans]
     result = analyse(spectra, settings)
+    if knob == "bins per decade" and result.likelihood is not None:
+        knee = result.likelihood.q0
+        fitted = fit(skip_blurred_shells(spectra, knee), knee, per_decade=value)
+        if fitted is None:
+            return {}
+        rms = float(np.sqrt(mean_square(fitted.plateau, fitted.q0, fitted.slope, result.cutoff)))
+        return {"q0": fitted.q0, "slope": fitted.slope, "rms": rms}
     return {name: estimate.value for name, estimate in result.estimates.items()}

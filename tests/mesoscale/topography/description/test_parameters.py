@@ -157,3 +157,34 @@ def test_chance_is_no_misfit():
         spectrum = Spectrum(q, psd, modes, 1e-9, 1.0, sharp=True)
         items.append(TrustedSpectrum(str(number), spectrum, 1e-3, 0.5, "pixels", 0.0))
     assert likelihood.fit(items).misfit < MAX_MISFIT
+
+
+def test_the_ends_of_q0_are_where_the_deviance_has_risen_enough():
+    """Brute force: the deviance on a grid of slopes, beside the search that the interval makes."""
+    items = likelihood.skip_blurred_shells(spectra(), TRUTH.q0)
+    fitted = likelihood.fit(items, knee=TRUTH.q0)
+    low, high = likelihood.q0_interval(items, fitted, 1.645)
+    data = likelihood._Data(items, fitted.q0)
+    level = np.log(fitted.amplitudes)
+
+    def lowest(q0):
+        slopes = np.linspace(fitted.slope - 0.3, fitted.slope + 0.3, 241)
+        return min(likelihood._deviance(data, np.log(q0), s, fitted.amplitude_sd, level)[0] for s in slopes)
+
+    risen = 1.645**2 * max(fitted.dispersion, 1.0)
+    best = min(lowest(fitted.q0 * np.exp(shift)) for shift in (-0.005, 0.0, 0.005))
+    assert low < fitted.q0 < high
+    for end in (low, high):
+        assert lowest(end) - best == pytest.approx(risen, rel=0.1)
+
+
+def test_without_a_plateau_q0_has_no_lower_end():
+    """A pure power law: any smaller q0 does as well."""
+    q = np.geomspace(0.05, 0.5, 200)
+    rng = np.random.default_rng(3)
+    spectrum = Spectrum(q, q**-3.0 * rng.gamma(20, 1 / 20, 200), np.full(200, 20.0), 0.001, 1.0)
+    item = likelihood.TrustedSpectrum("a", spectrum, 0.05, 0.5, "pixels", 0.0)
+    fitted = likelihood.fit([item])
+    low, high = likelihood.q0_interval([item], fitted, 1.645)
+    assert low < 0.001
+    assert high < 0.1
