@@ -11,11 +11,12 @@ from mesoscale.topography.curves import fit_curves, pooled_curve
 from mesoscale.topography.description.choice import Choice, choose, description_doubts, surface_of
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.end import cutoff_row, rms_before
-from mesoscale.topography.description.heights import HeightTest, compare_heights
+from mesoscale.topography.description.heights import HeightTest, compare_heights, not_gaussian
 from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.one_spectrum import OneSpectrum, Overlap, merge, overlaps, refuse_different_films
 from mesoscale.topography.description.parameters import Topography, analyse
 from mesoscale.topography.description.tip_error import with_radius_error
+from mesoscale.topography.description.tip_on_grains import lift_doubt, with_lift_error, without_lift
 from mesoscale.topography.records import is_profile, trusted_record
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import Spectrum
@@ -29,7 +30,7 @@ class Pooled:
 
     Attributes
     ----------
-    spectra : of each measurement, shortest first.
+    spectra : of each measurement, without what tips added to grainy maps.
     one : the spectrum over all scales; None where there is not enough for one.
     tests : of the heights of each scan.
     pairs : measurements that see common bands.
@@ -67,13 +68,7 @@ def pool(
     ------
     InputError : measured files that cannot be of one surface.
     """
-    spectra = [trusted_record(name, data, attributes[name], settings) for name, data in arrays.items()]
-    topography = analyse(spectra, settings)
-    pairs = overlaps(spectra, settings.confidence)
-    if settings.scans:
-        refuse_different_films(pairs)
-        topography = with_radius_error(topography, spectra, settings)
-    one = merge(spectra)
+    images = [trusted_record(name, data, attributes[name], settings) for name, data in arrays.items()]
     tests = [
         compare_heights(
             name,
@@ -83,20 +78,45 @@ def pool(
         for name, data in arrays.items()
         if not is_profile(attributes[name]) and np.ptp(data["heights"]) > 0
     ]
+    pairs = overlaps(images, settings.confidence)
+    if settings.scans:
+        refuse_different_films(pairs)
+    quantiles = {name: data["quantiles"] for name, data in arrays.items() if "quantiles" in data}
+    topography, spectra, lifted = parameters_of(images, quantiles if not_gaussian(tests) else {}, settings)
+    one = merge(spectra, lifted)
     choice = choose(topography, one, tests, settings)
-    quantiles = [data["quantiles"] for data in arrays.values() if "quantiles" in data]
-    surface, rows = surface_of(choice, topography, one, quantiles, settings, cell_nm)
+    surface, rows = surface_of(choice, topography, one, list(quantiles.values()), settings, cell_nm)
     if rows:
         rows["q1"] = cutoff_row(topography, spectra)
         if cut_off:
             rows["rms"] = rms_before(rows["q1"], rows["rms"], topography, surface)
     apart = _disagreements(pairs, one) if settings.scans else []
     doubts = description_doubts(topography, choice, one, attributes, apart, tests) if settings.scans else []
+    doubts += lift_doubt(images, spectra, lifted)
     if choice.name == "power_law":
         doubts = [*topography.doubts, *doubts]
     else:
         doubts = [*(doubt for doubt in topography.doubts if doubt.fatal), *doubts]
     return Pooled(spectra, topography, one, tests, pairs, choice, surface, rows, doubts)
+
+
+def parameters_of(
+    images: Sequence[TrustedSpectrum], quantiles: Mapping[str, np.ndarray], settings: TopographySettings
+) -> tuple[Topography, list[TrustedSpectrum], float]:
+    """Parameters with intervals that hold the tips' errors, spectra without the tips' lift, and the error it leaves.
+
+    Parameters
+    ----------
+    quantiles : of maps whose heights are not Gaussian, by name (`heights.height_quantiles`).
+    """
+    topography = analyse(images, settings)
+    if not settings.scans:  # synthetic scans know their tip, and are Gaussian
+        return topography, list(images), 0.0
+    spectra, error = without_lift(images, topography, quantiles)
+    if error > 0:
+        topography = analyse(spectra, settings)
+    topography = with_radius_error(topography, spectra, settings)
+    return with_lift_error(topography, error, settings), spectra, error
 
 
 def _disagreements(pairs: Sequence[Overlap], one: OneSpectrum | None) -> list[str]:

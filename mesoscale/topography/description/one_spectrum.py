@@ -168,8 +168,13 @@ class OneSpectrum:
         return result
 
 
-def merge(spectra: Sequence[TrustedSpectrum]) -> OneSpectrum | None:
-    """The spectrum behind all measurements; None where none has two bands to offer."""
+def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneSpectrum | None:
+    """The spectrum behind all measurements; None where none has two bands to offer.
+
+    Parameters
+    ----------
+    common_error : of ln C, the same at all waves (`tip_on_grains`).
+    """
     measured = [(item.name, *_on_bands(item)) for item in spectra]
     measured = [entry for entry in measured if len(entry[1])]
     if sum(len(entry[1]) for entry in measured) < 4:
@@ -209,7 +214,7 @@ def merge(spectra: Sequence[TrustedSpectrum]) -> OneSpectrum | None:
     result = OneSpectrum(
         centres,
         solution[:m],
-        covariance[:m, :m],
+        covariance[:m, :m] + common_error**2,
         float(np.sqrt(variance)),
         np.sum([(bands >= entry[1][0]) & (bands <= entry[1][-1]) for entry in measured], axis=0),
         tuple(entry[0] for entry in measured),
@@ -221,7 +226,7 @@ def merge(spectra: Sequence[TrustedSpectrum]) -> OneSpectrum | None:
     if result.first < first_wave:  # a longer line has measured these waves
         return result
     # what is form and what is roughness is unknown to what a parabola would take
-    error = float(np.hypot(LEVELLED_SCATTER, largest.form))
+    error = float(np.sqrt(LEVELLED_SCATTER**2 + largest.form**2 + common_error**2))
     return result.with_mean_square(largest.rms_nm**2, LEVELLED_WAVES * first_wave, error)
 
 

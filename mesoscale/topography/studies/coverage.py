@@ -1,7 +1,7 @@
 """How often the stated intervals hold the truth: sets of maps, of grainy maps, of line profiles, of both together.
 
 python -m mesoscale.topography.studies.coverage KIND FIRST LAST TABLE adds the rows of sets FIRST .. LAST - 1 of one
-kind to a table (about 2 s a set); without KIND it prints the shares of the table.
+kind to a table (about 5 s a set); without KIND it prints the shares of the table.
 """
 
 import csv
@@ -16,14 +16,13 @@ import numpy as np
 from mesoscale.errors import InputError
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
 from mesoscale.topography.analysis import trusted_measurement
-from mesoscale.topography.description.heights import common_heights
+from mesoscale.topography.description.heights import common_heights, compare_heights, height_quantiles, not_gaussian
 from mesoscale.topography.description.likelihood import TrustedSpectrum
-from mesoscale.topography.description.parameters import analyse
-from mesoscale.topography.description.tip_error import with_radius_error
 from mesoscale.topography.height_synthesis import Z, synthesize_heights
-from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile
+from mesoscale.topography.pooling import parameters_of
 from mesoscale.topography.profile_conversion import projected
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
 from mesoscale.topography.studies.recovery import TOLERANCE, random_truth
@@ -34,7 +33,8 @@ BASE = SyntheticScanSettings(
     pixels=1024, small_scans=4, large_scans=3, large_length_nm=5000.0, rms_variation=0.0, seed=17
 )
 THINNED = 4
-GRAINY_SITES = 512, 1024  # of small and of large maps, thinned to the same
+# of grainy maps: one step for both sizes, because finer roughness under a tip changes all waves of its image
+GRAINY_MAPS = ((1000.0, 512), (3000.0, 1536))
 LINES = ((8000.0, 4), (2000.0, 4))  # length in nm and number of the profiles of a set
 LINE_POINTS, FINER = 2048, 4
 SHAPES = 0.1, 0.3  # log-normal heights: skewness 0.3 to 0.95; for more the spectrum can no longer be kept
@@ -58,15 +58,14 @@ def grainy_maps(truth: SyntheticScanSettings, stated_nm: float) -> Iterator[Meas
     """Scans of a surface of the same spectrum whose heights are distributed log-normally: tall grains."""
     rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(2,)))
     heights = common_heights([np.exp(rng.uniform(*SHAPES) * Z)])
-    sizes = ((truth.small_length_nm, truth.small_scans), (truth.large_length_nm, truth.large_scans))
-    for (length, count), sites in zip(sizes, GRAINY_SITES, strict=True):
+    for (length, sites), count in zip(GRAINY_MAPS, (truth.small_scans, truth.large_scans), strict=True):
         for _ in range(count):
             spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
             rms = _random_rms(spectrum, 2 * length, 2 * sites, rng)
             larger = synthesize_heights(2 * sites, 2 * length, spectrum.psd, heights, rms, int(rng.integers(2**31)))
             surface = dilate(larger[:sites, :sites], truth.tip_radius_nm, length / sites)
             scan = measure(surface, length, truth, rng, f"grainy_{rng.integers(2**31)}")
-            yield Measurement(_thinned(scan, THINNED * sites // truth.pixels), stated_nm, True)
+            yield Measurement(_thinned(scan, sites * THINNED // truth.pixels), stated_nm, True)
 
 
 def _random_rms(spectrum: RoughSpectrum, length: float, sites: int, rng: np.random.Generator) -> float:
@@ -119,8 +118,8 @@ def coverage_rows(kind: str, numbers: range) -> Iterator[dict[str, Any]]:
     for number in numbers:
         truth, stated = random_truth(number, BASE)
         settings = TopographySettings(scans=("set",), tip_radius_nm=stated)
-        spectra, refused = _trusted(KINDS[kind](truth, stated), settings)
-        result = with_radius_error(analyse(spectra, settings), spectra, settings)
+        spectra, quantiles, refused = _trusted(KINDS[kind](truth, stated), settings)
+        result, _, _ = parameters_of(spectra, quantiles, settings)
         cutoff = min(result.cutoff, truth.q1)
         spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
         rms = float(np.sqrt(mean_square(spectrum.plateau, truth.q0, truth.slope, cutoff)))
@@ -135,15 +134,22 @@ def coverage_rows(kind: str, numbers: range) -> Iterator[dict[str, Any]]:
         yield row
 
 
-def _trusted(measured: Iterator[Measurement], settings: TopographySettings) -> tuple[list[TrustedSpectrum], int]:
-    """Spectra of the measurements, and how many say nothing (their noise ends what is seen)."""
-    spectra, refused = [], 0
+def _trusted(
+    measured: Iterator[Measurement], settings: TopographySettings
+) -> tuple[list[TrustedSpectrum], dict[str, np.ndarray], int]:
+    """Spectra of the measurements, heights of maps where they are not Gaussian, and how many say nothing (noise)."""
+    spectra, tests, quantiles, refused = [], [], {}, 0
     for item in measured:
         try:
             spectra.append(trusted_measurement(item, settings))
         except InputError:
             refused += 1
-    return spectra, refused
+            continue
+        if isinstance(item.data, Scan):
+            cleaned = clean(item.data, settings)
+            tests.append(compare_heights(cleaned.name, cleaned.heights_nm, cleaned.lengths_nm))
+            quantiles[cleaned.name] = height_quantiles(cleaned.heights_nm)
+    return spectra, quantiles if not_gaussian(tests) else {}, refused
 
 
 def shares(rows: Sequence[Mapping[str, Any]], kind: str) -> dict[str, float]:
