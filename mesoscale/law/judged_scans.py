@@ -24,7 +24,9 @@ from mesoscale.topography.synthesis import synthesize_spectrum
 Array = np.ndarray
 SITES = 256  # a scan is thinned to at most so many sites a side, and so are the surfaces beside it
 MAPS, BLOCKS = 10, 4  # maps of heights drawn, and blocks a side of a scan that they are drawn from
-TOUCHED, PRESSED = 40, 10  # surfaces that are brought to first contact, and of these the ones that are pressed
+TOUCHED, PRESSED = 40, 20  # surfaces that are brought to first contact, and of these the ones that are pressed
+MOST_CONTACT = 0.5  # share of the cell; beyond, contacts have merged and asperities one by one say nothing
+CONFIDENCE = 0.9
 LOADS_NN = (1000.0, 7000.0)  # per cell of the contact settings: 1 and 7 uN
 COLUMNS = ("scan", "description", "left_out", "quantity", "unit", "pressed", "median", "low", "high", "inside")
 
@@ -68,16 +70,18 @@ def judge(
 
     Each scan is left out of the description that it judges, as far as there are others; a lone scan judges the
     description made from itself. The surfaces go the way of the scan: they are cut from larger ones, levelled as it
-    is, and made periodic.
+    is, and made periodic. They are as blunt as the scan: what the tips took is left out of both. Loads that press more
+    than half of the scan into contact are left out.
 
     Parameters
     ----------
     scans : as measured, with square pixels.
-    spectra : of all measurements, line profiles too.
+    spectra : of all measurements, line profiles too, as the images show them.
     name : a key of `choice.DESCRIPTIONS`.
     inputs : of the contact; the surfaces replace its roughness.
     """
     cleaned = {scan.name: clean(scan, settings) for scan in scans}
+    spectra = [replace(item, tip_radius_nm=0.0) for item in spectra]
     for scan in cleaned.values():
         left_out = len(cleaned) > 1
         used = [item for item in spectra if item.name != scan.name] if left_out else list(spectra)
@@ -113,7 +117,8 @@ def _judged(
     measured = np.ascontiguousarray(measured[::stride, ::stride])
     sites = len(measured)
     chosen = contact.model_copy(update={"pixels": sites, "length_nm": side})
-    truth = _press(measured, inputs, chosen, contact.length_nm)
+    truth, share = _press(measured, inputs, chosen, contact.length_nm)
+    truth = {quantity: value for quantity, value in truth.items() if share.get(quantity, 0.0) <= MOST_CONTACT}
     made: dict[str, list[float]] = {quantity: [] for quantity in truth}
     for number, psd in enumerate(described.spectra(TOUCHED)):
         height = _rms(psd, 2 * side, 2 * sites)
@@ -125,13 +130,13 @@ def _judged(
             larger = synthesize_spectrum(2 * sites, 2 * side, psd, height, seed)
         surface, _ = contacting_heights(clean(Scan(larger[:sites, :sites], (side, side), scan.name), settings))
         if number < PRESSED:
-            values = _press(surface, inputs, chosen, contact.length_nm)
+            values, _ = _press(surface, inputs, chosen, contact.length_nm)
         else:
             values = {"rms": float(np.std(surface)), "first_contact": -float(surface.min())}
-        for quantity, value in values.items():
-            made[quantity].append(value)
+        for quantity in values.keys() & made.keys():
+            made[quantity].append(values[quantity])
     for quantity, value in truth.items():
-        low, middle, high = _predicted(np.array(made[quantity]), 0.9, not quantity.startswith("separation"))
+        low, middle, high = _predicted(np.array(made[quantity]), not quantity.startswith("separation"))
         yield {
             "scan": scan.name,
             "description": name,
@@ -146,17 +151,27 @@ def _judged(
         }
 
 
-def _press(surface: Array, inputs: ContactInputs, contact: ContactSettings, cell_nm: float) -> dict[str, float]:
-    """RMS, first contact, separation at both pressures and area at the larger; nm, nm^2. Contact is at the minima."""
+def _press(
+    surface: Array, inputs: ContactInputs, contact: ContactSettings, cell_nm: float
+) -> tuple[dict[str, float], dict[str, float]]:
+    """RMS, first contact, separation at both pressures and area at the larger; nm, nm^2. Contact is at the minima.
+
+    Besides, for what is read at a load, the share of the cell in contact there.
+    """
     area = (contact.length_nm / cell_nm) ** 2
     values = {"rms": float(np.std(surface)), "first_contact": float(surface.mean() - surface.min())}
     cycle = run_cycle(replace(inputs, rms=values["rms"]), contact, contact.nominal_seed, LOADS_NN[-1] * area, surface)
     closing = cycle.closing
     force = np.maximum.accumulate(closing.repulsive_nN)
+    share: dict[str, float] = {}
     for load in LOADS_NN:
-        values[f"separation_{load / 1000:g}uN"] = float(np.interp(load * area, force, closing.separation_nm))
-    values[f"area_{LOADS_NN[-1] / 1000:g}uN"] = float(closing.contact_area_nm2[-1])
-    return values
+        name = f"separation_{load / 1000:g}uN"
+        values[name] = float(np.interp(load * area, force, closing.separation_nm))
+        share[name] = float(np.interp(load * area, force, closing.contact_area_nm2)) / contact.length_nm**2
+    name = f"area_{LOADS_NN[-1] / 1000:g}uN"
+    values[name] = float(closing.contact_area_nm2[-1])
+    share[name] = values[name] / contact.length_nm**2
+    return values, share
 
 
 def _rms(psd: Callable[[Array], Array], side: float, sites: int) -> float:
@@ -165,15 +180,21 @@ def _rms(psd: Callable[[Array], Array], side: float, sites: int) -> float:
     return float(np.sqrt(np.trapezoid(2 * np.pi * q * psd(q), q)))
 
 
-def _predicted(values: Array, confidence: float, positive: bool) -> tuple[float, float, float]:
-    """Lower end, middle and upper end of where one more surface is expected, by Student's distribution.
+def _predicted(values: Array, positive: bool) -> tuple[float, float, float]:
+    """Lower end, middle and upper end of where one more surface is expected.
 
-    What is positive by nature is taken by its logarithm; separations are not, in full contact.
+    What is positive by nature is taken by its logarithm, with Student's distribution. Separations are skewed as the RMS
+    height is, and negative in full contact: only their order counts. One more lies between the j-th of n from below and
+    the j-th from above with probability 1 - 2 j / (n + 1).
     """
     from scipy.special import stdtrit
 
-    given = np.log(values) if positive else values
-    count, middle = len(given), float(np.mean(given))
-    reach = float(stdtrit(count - 1, 0.5 + confidence / 2)) * float(np.std(given, ddof=1)) * math.sqrt(1 + 1 / count)
-    low, high = middle - reach, middle + reach
-    return (math.exp(low), math.exp(middle), math.exp(high)) if positive else (low, middle, high)
+    count = len(values)
+    if positive:
+        logs = np.log(values)
+        middle = float(np.mean(logs))
+        reach = float(stdtrit(count - 1, 0.5 + CONFIDENCE / 2)) * float(np.std(logs, ddof=1)) * math.sqrt(1 + 1 / count)
+        return math.exp(middle - reach), math.exp(middle), math.exp(middle + reach)
+    ordered = np.sort(values)
+    outside = max(int((count + 1) * (1 - CONFIDENCE) / 2 + 1e-9), 1)
+    return float(ordered[outside - 1]), float(np.median(ordered)), float(ordered[-outside])

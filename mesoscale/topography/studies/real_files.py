@@ -24,7 +24,7 @@ from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import Measurement, load_measurements
 from mesoscale.topography.pooling import pool
 from mesoscale.topography.pressing import has_square_pixels
-from mesoscale.topography.records import record
+from mesoscale.topography.records import record, trusted_record
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 
 # what a scene would state for these files: channels where there are several, units where there are none, instruments
@@ -75,7 +75,8 @@ def _examined(
         "doubts": " ".join(doubt.code for doubt in pooled.doubts),
         "length_nm": max(float(values["length_x_nm"]) for values in attributes.values()),
     }
-    judged = list(judge(maps, pooled.spectra, pooled.choice.name, INPUTS, settings, ContactSettings()))
+    images = [trusted_record(key, data, attributes[key], settings) for key, data in arrays.items()]
+    judged = list(judge(maps, images, pooled.choice.name, INPUTS, settings, ContactSettings()))
     first = next((item for item in judged if item["quantity"] == "first_contact"), None)
     if first is not None:
         names = ("pressed", "median", "low", "high", "inside")

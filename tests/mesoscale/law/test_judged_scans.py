@@ -1,9 +1,10 @@
 """The scans as judges of their description."""
 
 import numpy as np
+import pytest
 
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.law.judged_scans import COLUMNS, judge
+from mesoscale.law.judged_scans import COLUMNS, _predicted, judge
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.height_synthesis import synthesize_heights
@@ -54,3 +55,19 @@ def test_a_lone_scan_judges_the_description_made_from_itself():
     rows = judged(list(grainy(1)), "measured_heights")
     assert not any(row["left_out"] for row in rows)
     assert {row["quantity"] for row in rows} == {"rms", "first_contact", "separation_1uN", "separation_7uN", "area_7uN"}
+
+
+def test_a_load_that_merges_all_contacts_is_no_judge():
+    """The same heights a thousand times as far apart: 7 MPa press all of them flat."""
+    (scan,) = grainy(1)
+    wide = Scan(scan.heights_nm, (1e6, 1e6), "wide")
+    assert {row["quantity"] for row in judged([wide], "measured_heights")} <= {"rms", "first_contact", "separation_1uN"}
+
+
+@pytest.mark.parametrize(("count", "outside"), [(20, 1), (40, 2)])
+def test_one_more_value_lies_between_the_ends_as_often_as_is_said(count, outside):
+    """By counting: of count + 1 alike, each is equally likely to be the one more."""
+    values = np.random.default_rng(1).standard_normal(count)
+    low, _, high = _predicted(values, positive=False)
+    assert (low, high) == (np.sort(values)[outside - 1], np.sort(values)[-outside])
+    assert 0.9 <= 1 - 2 * outside / (count + 1) < 0.91
