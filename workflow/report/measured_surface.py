@@ -10,12 +10,20 @@ from workflow.report.page import Gate, Section, Table
 from workflow.report.surface_picture import draw_one_spectrum
 
 JUDGED = "topography/judged.csv"
+UNSEEN = "topography/unseen.csv"
 QUANTITIES = {
     "rms": "RMS (nm)",
     "first_contact": "first contact (nm)",
     "separation_1uN": "separation at 1 µN on a cell (nm)",
     "separation_7uN": "separation at 7 µN on a cell (nm)",
     "area_7uN": "area at 7 µN (nm²)",
+}
+
+UNSEEN_NAMES = {
+    "first_contact": "first contact (nm)",
+    "area": "area at the largest force (nm²)",
+    "C_r": "C_r of closing (GPa)",
+    "pull_off": "pull-off force of a cell (nN)",
 }
 
 
@@ -42,6 +50,8 @@ def describe_surface(results: Results, parameters: Mapping[str, Any], section: S
     _statistics(parameters, section)
     if results.has(JUDGED):
         _judgement(results, section)
+    if results.has(UNSEEN):
+        _unseen(results, section)
 
 
 def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None:
@@ -107,3 +117,27 @@ def _judgement(results: Results, section: Section) -> None:
     ]
     section.gates.append(Gate("pressing the scans", not reasons, reasons))
     section.files.append(JUDGED)
+
+
+def _unseen(results: Results, section: Section) -> None:
+    rows = [row for row in results.csv(UNSEEN) if row["share"]]
+    if not rows:
+        return
+    seen, end = (show(float(rows[0][key])) for key in ("seen_q", "end_q"))
+    lines = [
+        (
+            UNSEEN_NAMES[row["quantity"]],
+            show(float(row["seen"])),
+            show(float(row["all"])),
+            f"{float(row['shift']):+.0%}",
+            f"{float(row['share']):.0%}",
+        )
+        for row in rows
+    ]
+    header = ("quantity", f"waves to {seen} /nm", f"waves to {end} /nm", "change", "share of the variance")
+    caption = (
+        f"What no instrument saw: waves from {seen} to {end} /nm, extrapolated, on the same random surfaces. The share "
+        "takes anything between none and all of them, beside the scatter from surface to surface"
+    )
+    section.blocks.append(Table(caption, header, lines))
+    section.files.append(UNSEEN)

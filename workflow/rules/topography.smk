@@ -23,8 +23,10 @@ SCAN_CHUNKS = [
 SURFACE = {"topography": f"{RESULTS}/topography/parameters.json"} if "topography" in SCENE.inputs.origins() else {}
 
 
-# measured scans judge their description by pressing, where the contact uses it
-JUDGED = [f"{RESULTS}/topography/judged.csv"] if TOPOGRAPHY.scans and SURFACE else []
+# measured scans judge their description by pressing, and what no instrument saw is weighed, where the contact uses it
+JUDGED = []
+if TOPOGRAPHY.scans and SURFACE:
+    JUDGED = [f"{RESULTS}/topography/judged.csv", f"{RESULTS}/topography/unseen.csv"]
 
 
 rule topography:
@@ -122,6 +124,23 @@ rule judge_scans:
         "press the scans beside surfaces made from the others' description"
     script:
         "../scripts/judge_scans.py"
+
+
+rule weigh_unseen_waves:
+    input:
+        topography=f"{RESULTS}/topography/parameters.json",
+        inputs=f"{RESULTS}/inputs.csv",
+    output:
+        f"{RESULTS}/topography/unseen.csv",
+    log:
+        f"{RESULTS}/logs/weigh_unseen_waves.log",
+    params:
+        contact=settings("contact"),
+        law=settings("law"),
+    message:
+        "weigh the waves that no instrument saw"
+    script:
+        "../scripts/weigh_unseen_waves.py"
 
 
 rule press_scans:

@@ -22,9 +22,20 @@ def closing_words(results: Path) -> Iterator[str]:
         yield f"a picture is in {picture}"
     if (results / "topography/judged.csv").is_file():
         yield from judgement(load_csv(results / "topography/judged.csv"))
+    if (results / "topography/unseen.csv").is_file():
+        yield from unseen(load_csv(results / "topography/unseen.csv"))
     for doubt in content["doubts"]:
         remedy = f"; {doubt['remedy']}" if doubt["remedy"] else ""
         yield f"DOUBT ({doubt['code']}, about {doubt['about']}): {doubt['text']}{remedy}"
+
+
+def unseen(rows: list[dict[str, str]]) -> Iterator[str]:
+    """In words what waves that no instrument saw do to the contact."""
+    known = [row for row in rows if row["share"]]
+    if known:
+        parts = (f"{row['quantity']} {float(row['shift']):+.0%} ({float(row['share']):.0%})" for row in known)
+        ends = f"{float(known[0]['seen_q']):.2g} to {float(known[0]['end_q']):.2g} /nm"
+        yield f"unseen waves of {ends} change (share of the variance): {', '.join(parts)}"
 
 
 def judgement(rows: list[dict[str, str]]) -> Iterator[str]:
