@@ -51,10 +51,13 @@ def unseen_shares(
         if given.shape[1] > 1:  # no attraction, or no law, has nothing to say
             logs = np.log(given)
             shift = float(np.mean(logs[1] - logs[0]))
-            own = shift**2 / 12
+            extrapolated = shift**2 / 12
             between = float(np.mean(np.var(logs, axis=1, ddof=1)))
             row |= {"seen": float(np.exp(logs[0].mean())), "all": float(np.exp(logs[1].mean()))}
-            row |= {"shift": math.expm1(shift), "share": own / (own + between) if own > 0 else 0.0}
+            row |= {
+                "shift": math.expm1(shift),
+                "share": extrapolated / (extrapolated + between) if extrapolated > 0 else 0.0,
+            }
         yield row
 
 

@@ -381,13 +381,13 @@ def q0_interval(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, reach
 
     def lowest(log_q0: float) -> float:
         inside = max(fitted.slope - INTERVAL_SLOPE, 0.0), min(fitted.slope + INTERVAL_SLOPE, MAX_SLOPE)
-        found: Any = minimize_scalar(
+        minimum: Any = minimize_scalar(
             lambda slope: _deviance(data, log_q0, slope, fitted.amplitude_sd, level)[0],
             bounds=inside,
             method="bounded",
             options={"xatol": 1e-3},
         )
-        return float(found.fun)
+        return float(minimum.fun)
 
     allowed = lowest(best) + reach**2 * max(fitted.dispersion, 1.0)
     ends = []

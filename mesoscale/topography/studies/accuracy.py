@@ -51,9 +51,9 @@ def accuracy_points(
         cases.append(("tip radius nm", tip, few, settings.model_copy(update={"tip_radius_nm": tip})))
     few = truth.model_copy(update={"small_scans": 2, "large_scans": 2})
     cases += [("bins per decade", bins, few, settings) for bins in BINS]
-    for told in TOLD_TIPS:
-        other = settings.model_copy(update={"tip_radius_nm": told * truth.tip_radius_nm})
-        cases.append(("told over true tip radius", told, few, other))
+    for stated in TOLD_TIPS:
+        other = settings.model_copy(update={"tip_radius_nm": stated * truth.tip_radius_nm})
+        cases.append(("told over true tip radius", stated, few, other))
     for number, (knob, value, scans, analysis) in enumerate(cases):
         yield from _case(knob, value, scans, analysis, repeats)
         if progress:
