@@ -103,12 +103,12 @@ def _inverse_squares(u, moments):
 
 
 @njit(cache=True)
-def inverse_cubes_of(gap, pressure, cutoff, touching, rate):
-    """Sum of 1/max(g, cutoff)^3 over given gaps; ``touching``: whether sites under pressure count."""
+def inverse_cubes_of(gap, weight, cutoff, rate):
+    """Sum of 1/max(g, cutoff)^3 over given gaps, each with its weight."""
     total = 0.0
     for k in range(gap.size):
-        if touching or not pressure[k] > 0.0:
-            total += inverse_cube(max(gap[k], cutoff), rate)
+        if weight[k] > 0.0:
+            total += weight[k] * inverse_cube(max(gap[k], cutoff), rate)
     return total
 
 

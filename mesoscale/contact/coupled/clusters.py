@@ -1,7 +1,13 @@
 """Compiled loops over the sites in contact: which belong together, what yields, what moves."""
 
+import math
+
 import numpy as np
 from numba import njit
+
+# Sites that touch cover more than the contact does, by this part of a site for each edge between a touching site and
+# one that does not touch (Yastrebov, Anciaux and Molinari 2017, doi:10.1016/j.jmps.2017.07.016).
+EXCESS = (math.pi - 1.0 + math.log(2.0)) / 24.0
 
 
 @njit(cache=True)
@@ -159,3 +165,26 @@ def _gaps(heights, sites, place, separation, displacement, pressure, table, scal
         elif not pressure[here] > 0.0:
             gap[k] = max(heights[others[k]] + separation + displacement[here], 0.0)
     return gap
+
+
+@njit(cache=True)
+def attracting(sites, place, pressure, pixels, touching):
+    """How many sites' areas attract with the gap of each of some sites.
+
+    Without `touching` sites under pressure do not, but for the strip along their edges where there is no contact: it
+    counts with the gap of the site beyond the edge. `place` and `pressure` as in `label`.
+    """
+    weight = np.ones(sites.size)
+    if touching:
+        return weight
+    for k in range(sites.size):
+        here = place[sites[k]]
+        if here >= 0 and pressure[here] > 0.0:
+            weight[k] = 0.0
+            continue
+        row, col = sites[k] // pixels, sites[k] % pixels
+        for rows, cols in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+            other = place[(row + rows) % pixels * pixels + (col + cols) % pixels]
+            if other >= 0 and pressure[other] > 0.0:
+                weight[k] += EXCESS
+    return weight

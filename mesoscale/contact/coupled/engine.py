@@ -298,9 +298,7 @@ class CoupledContact(Contact):
             return 0.0
         if self.grid is not None:
             gap = self.heights + separation + self.displacement
-            return -self.strength * attraction.inverse_cubes_of(
-                gap, self.pressure, self.cutoff, self.touching, self.rate
-            )
+            return -self.strength * attraction.inverse_cubes_of(gap, self._weight(self.sites), self.cutoff, self.rate)
         known = self.sites.size
         near = max(self.NEAR_GAP, 2.0 * self.cutoff, self.rise * self.force + 2.0 * self.bin_width)
         if self.piles:  # sites that piles raise leave the histogram and count one by one, as all that are known
@@ -315,13 +313,15 @@ class CoupledContact(Contact):
             sites = np.concatenate((self.sites, self._unknown(self.order[:count]), self._changed_unknown()))
             count = sites.size
         displacement = np.zeros(sites.size)
-        pressure = np.zeros(sites.size)
         if self.force > 0.0:
-            displacement[:known], pressure[:known] = self.displacement, self.pressure
+            displacement[:known] = self.displacement
             clusters.displace(
                 self.table, self.scale, self.n, self.sites, self.pressure, sites[known:], displacement[known:]
             )
         gap = self.heights[sites[:count]] + separation + displacement[:count]
-        total = attraction.inverse_cubes_of(gap, pressure[:count], self.cutoff, self.touching, self.rate)
+        total = attraction.inverse_cubes_of(gap, self._weight(sites[:count]), self.cutoff, self.rate)
         total += attraction.far_inverse_cubes(separation, far, self.lowest, self.bin_width, self.moments, self.rate)
         return -self.strength * total
+
+    def _weight(self, sites: np.ndarray) -> np.ndarray:
+        return clusters.attracting(sites, self.place, self.pressure, self.n, self.touching)
