@@ -22,7 +22,7 @@ import numpy as np
 from mesoscale.contact import ContactInputs, run_cycle
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.coupled.grid import Grid
-from mesoscale.contact.engine import trace
+from mesoscale.contact.path import trace
 from mesoscale.contact.studies.stability import MIDDLE
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings

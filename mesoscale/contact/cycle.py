@@ -13,7 +13,8 @@ from mesoscale.settings import ContactSettings
 SMALLEST_FORCE_NN, LARGEST_FORCE_NN = 1e-9, 1e12
 
 if TYPE_CHECKING:
-    from mesoscale.contact.engine import Contact, Row
+    from mesoscale.contact.asperity.engine import Contact
+    from mesoscale.contact.path import Row
 
 
 @dataclass(frozen=True)
@@ -129,7 +130,7 @@ def run_cycle(
         For heights that are not a square of real, finite numbers in nm on the stated side, a force that is not
         positive, or a seed that is no whole number.
     """
-    from mesoscale.contact.engine import trace
+    from mesoscale.contact.path import trace
     from mesoscale.contact.surface import given_surface, random_surface
 
     plastic = settings.model == "plastic"
@@ -194,7 +195,7 @@ def contact_on(
         from mesoscale.contact.coupled.engine import CoupledContact
 
         return CoupledContact(surface, inputs, settings)
-    from mesoscale.contact.engine import Contact
+    from mesoscale.contact.asperity.engine import Contact
 
     return Contact(surface, inputs, settings, flattened)
 
@@ -207,7 +208,7 @@ def _largest_drop(forces: list[float]) -> float:
 
 def _approach(contact: "Contact") -> "list[Row]":
     """Rows before first contact, from afar, where only the attraction acts."""
-    from mesoscale.contact.engine import Row
+    from mesoscale.contact.path import Row
 
     touch = contact.touching_separation
     gaps = np.geomspace(max(4.0 * contact.rms, 10.0), max(0.01 * contact.rms, 0.01), 20)

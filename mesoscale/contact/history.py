@@ -11,8 +11,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mesoscale.contact.asperity.engine import Contact
 from mesoscale.contact.cycle import Cycle, run_cycle
-from mesoscale.contact.engine import Contact, Row, State, solve_force
+from mesoscale.contact.path import Row, State, solve_force
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings, HistorySettings

@@ -10,9 +10,11 @@ import math
 
 import numpy as np
 
-from mesoscale.contact import attraction, kernels
+from mesoscale.contact import attraction
+from mesoscale.contact.asperity import kernels
+from mesoscale.contact.asperity.engine import Contact
 from mesoscale.contact.coupled import clusters, dense, grid, half_space, validity
-from mesoscale.contact.engine import Contact, State
+from mesoscale.contact.path import State
 from mesoscale.settings import ContactSettings
 
 

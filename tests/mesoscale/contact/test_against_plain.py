@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks import plain_contact
-from mesoscale.contact.engine import Contact
+from mesoscale.contact.asperity.engine import Contact
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from mesoscale.contact.engine import Contact
+from mesoscale.contact.asperity.engine import Contact
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 

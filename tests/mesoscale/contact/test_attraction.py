@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from mesoscale.contact.asperity.engine import Contact
 from mesoscale.contact.cycle import contact_on
-from mesoscale.contact.engine import Contact
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.table import input_table

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from mesoscale.contact import attraction, engine, run_cycle
+from mesoscale.contact import attraction, run_cycle
+from mesoscale.contact.asperity import engine
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings

@@ -3,7 +3,7 @@ import pytest
 
 from benchmarks import plain_contact
 from mesoscale.contact import run_cycle
-from mesoscale.contact.engine import Contact
+from mesoscale.contact.asperity.engine import Contact
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from mesoscale.contact import ContactInputs, run_cycle
-from mesoscale.contact.engine import Contact, trace
+from mesoscale.contact.asperity.engine import Contact
+from mesoscale.contact.path import trace
 from mesoscale.contact.studies.draws import draw_inputs
 from mesoscale.contact.studies.stability import violations
 from mesoscale.contact.surface import random_surface

@@ -1,74 +1,21 @@
-"""The state of a contact and the walk along its force-separation curve.
+"""A surface and the asperities that touch a flat, at one separation after another.
 
 Nothing here loops over the whole surface more often than needed: the sites are sorted by height in
 bands as the flat comes down, asperities grow locally, and flow touches only its own patch.
 """
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
-from mesoscale.contact import attraction, kernels, state
+from mesoscale.contact import attraction, state
+from mesoscale.contact.asperity import kernels
+from mesoscale.contact.path import State
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings
 
 PREFACTOR = {"paper": 2.0 / 3.0, "hertz": 4.0 / 3.0}
 WIDTH_RATIO = {"paper": 3.0**0.25, "wide": 3.0}
-
-
-class Row(NamedTuple):
-    """The contact at one separation (nm from the plane the heights are measured from)."""
-
-    separation: float
-    force: float
-    attraction: float
-    sites: int
-    asperities: int
-    sweeps: int
-
-
-@dataclass
-class Path:
-    """Rows in the order of falling separation, and what happened on the way.
-
-    Attributes
-    ----------
-    reached : whether the wanted end was reached, up to a jump of the force.
-    load : largest force of an asperity over its yield force.
-    full : whether every site has touched.
-    """
-
-    rows: list[Row] = field(default_factory=list)
-    unconverged: int = 0
-    bounds: int = 0
-    repeated: int = 0
-    reached: bool = True
-    load: float = 0.0
-    full: bool = False
-
-
-class State(NamedTuple):
-    """What a move led to.
-
-    Attributes
-    ----------
-    force : repulsive force, nN.
-    bounds : asperities whose radius is bounded.
-    load : largest force of an asperity over its yield force.
-    stuck : whether flow has no end: nowhere left to flow to, or (return mapping) the sweeps ran out.
-    """
-
-    force: float
-    sites: int
-    asperities: int
-    bounds: int
-    load: float
-    sweeps: int
-    settled: bool
-    stuck: bool
 
 
 class Contact:
@@ -310,119 +257,3 @@ class Contact:
             self.moments,
             self.rate,
         )
-
-
-def trace(
-    contact: Contact,
-    steps: int,
-    with_flow: bool,
-    stop_force: float = np.inf,
-    stop_separation: float = -np.inf,
-) -> Path:
-    """Bring the flat down from first contact, in steps that follow the force.
-
-    Steps aim at force increments of a ``steps``-th of the final force, and at 30 % of the force
-    reached so far in the foot of the curve; a step that misses by more than a factor of two is
-    undone and repeated smaller. The last step is solved for the requested force (the force can jump
-    when asperities merge: then the closer side of the jump is taken). A step in which flow is stuck is
-    undone and repeated smaller, too; the path ends where it is stuck within 1 % of the roughness.
-    """
-    path = Path()
-    final = stop_force
-    separation = contact.touching_separation
-    path.rows.append(Row(separation, 0.0, contact.attraction(separation), 0, 0, 0))
-    force = 0.0
-    scale = max(contact.rms, 1e-3 * contact.spacing)
-    smallest = 1e-7 * scale
-    step = scale / 300.0
-    limit = -contact.highest - 2.0 * contact.length
-
-    def accept(target: float, moved: State) -> None:
-        nonlocal separation, force
-        separation, force = target, moved.force
-        pull = contact.attraction(target)
-        path.rows.append(Row(target, force, pull, moved.sites, moved.asperities, moved.sweeps))
-        path.bounds += moved.bounds
-        path.unconverged += not moved.settled
-        path.load = max(path.load, moved.load)
-        path.full |= moved.sites == contact.heights.size
-
-    while separation > stop_separation and force < final * (1.0 - contact.FORCE_TOLERANCE):
-        target = max(separation - step, stop_separation)
-        if target < limit:
-            path.reached = False
-            break
-        moved = contact.move_to(target, with_flow)
-        if moved.stuck:
-            contact.back()
-            if step <= 0.01 * scale:
-                path.reached = False
-                break
-            path.repeated += 1
-            step *= 0.25
-            continue
-        if moved.force > final * (1.0 + contact.FORCE_TOLERANCE):
-            contact.back()
-            solve_force(contact, separation, target, force, moved.force, final, with_flow, smallest, accept)
-            break
-        rise = moved.force - force
-        wanted = min(final / steps, max(0.3 * force, 0.02 * final / steps))
-        if rise > 2.0 * wanted and step > smallest:
-            contact.back()
-            path.repeated += 1
-            step *= max(0.25, wanted / rise)
-            continue
-        accept(target, moved)
-        wanted = min(final / steps, max(0.3 * force, 0.02 * final / steps))
-        # far below first contact, as on a flat surface, the roughness is no measure of a step
-        largest = max(scale, 0.1 * (path.rows[0].separation - separation)) / 30.0
-        step = min(step * min(2.0, max(0.5, wanted / rise if rise > 0 else 2.0)), largest)
-        if contact.AIMS_AT_END and rise > 0 and force + wanted > final:
-            step = min(step, (path.rows[-2].separation - separation) * (final - force) / rise)
-    return path
-
-
-def solve_force(
-    contact: Contact,
-    start: float,
-    beyond: float,
-    start_force: float,
-    beyond_force: float,
-    wanted: float,
-    with_flow: bool,
-    smallest: float,
-    accept: Callable[[float, State], None],
-) -> None:
-    """Bring the flat down to where the force is the wanted one.
-
-    Regula falsi (Illinois) between ``start``, the last separation, and ``beyond``, where the force is too large.
-    Trials below the wanted force are steps of the path and handed to ``accept``; those above it are undone. Where
-    the force jumps over the wanted one, the closer side is taken, unless flow is stuck there.
-    """
-    high, low = start, beyond  # force below, above the wanted one
-    short, excess = wanted - start_force, beyond_force - wanted
-    weight_high = weight_low = 1.0
-    last_side = 0
-    for trial in range(60):
-        if high - low <= smallest:
-            break
-        share = 0.5
-        if trial % 4 < 3 and math.isfinite(excess):
-            share = short * weight_high / (short * weight_high + excess * weight_low)
-        middle = high + share * (low - high)
-        moved = contact.move_to(middle, with_flow)
-        reached = abs(moved.force - wanted) <= 0.5 * contact.FORCE_TOLERANCE * wanted and not moved.stuck
-        if reached or (moved.force < wanted and not moved.stuck):
-            accept(middle, moved)
-            high, short = middle, wanted - moved.force
-            if reached:
-                return
-            weight_high, weight_low = 1.0, weight_low * 0.5 if last_side == 1 else weight_low
-            last_side = 1
-        else:
-            contact.back()
-            low, excess = middle, math.inf if moved.stuck else moved.force - wanted
-            weight_low, weight_high = 1.0, weight_high * 0.5 if last_side == -1 else weight_high
-            last_side = -1
-    if excess < short:
-        accept(low, contact.move_to(low, with_flow))
