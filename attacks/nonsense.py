@@ -81,6 +81,10 @@ NONSENSE: dict[str, tuple[str, str]] = {
     "regression with one run": (scene("uncertainty: {direct_runs: 1}"), "needs at least 14"),
     "reading of nobody": ("uncertainty: {audit_readings: [zzz]}", "'zzz' is no reading"),
     "hundred thousand jobs": (scene("uncertainty: {direct_runs: 100000, chunk_runs: 1}"), "chunk_runs = 1"),
+    "million runs resampled ten thousand times": (
+        scene("uncertainty: {direct_runs: 1000000, bootstrap: 10000}"),
+        "uncertainty.direct_runs = 1000000: with 10000 resamplings",
+    ),
     "million jobs of a pad": (scene("pad: {cells: 1000000, chunk_cells: 1}"), "pad.chunk_cells = 1"),
     "history without end": (
         scene("history: {cycles: 100000, seeds: 30}", "contact: {mechanics: coupled}"),

@@ -16,7 +16,7 @@ from mesoscale.inputs.table import check_literature
 from mesoscale.uncertainty.studies.readings import audited_readings
 from workflow.scene import ROOT, Scene
 from workflow.terminal.cost import START_S, history_s
-from workflow.terminal.memory import contact_MB, history_MB, machine_MB
+from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
 
 MATERIALS = ROOT / "config" / "materials"
 MOST_JOBS = 10_000  # of one design; Snakemake plans some 450 jobs a second
@@ -135,6 +135,12 @@ def _machine(scene: Scene) -> Iterator[str]:
         yield (
             f"contact.pixels = {pixels}: a contact needs {needed / 1000:.1f} GB of memory, this machine has "
             f"{present / 1000:.1f}; take fewer pixels"
+        )
+    runs, resamplings = scene.uncertainty.direct_runs, scene.uncertainty.bootstrap
+    if (needed := propagation_MB(scene.uncertainty)) > present:
+        yield (
+            f"uncertainty.direct_runs = {runs}: with {resamplings} resamplings (bootstrap) they need "
+            f"{needed / 1000:.1f} GB of memory, this machine has {present / 1000:.1f}; take fewer of either"
         )
     cycles = scene.history.cycles
     if cycles and (needed := history_MB(scene.history, scene.contact)) > present:

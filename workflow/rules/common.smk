@@ -6,7 +6,7 @@ from pathlib import Path
 
 from atomistic.errors import InputError
 from atomistic.materials import load_materials, oxide_glasses
-from workflow.terminal.memory import contact_MB
+from workflow.terminal.memory import contact_MB, propagation_MB
 from workflow.scene import ROOT, SceneError, files_of, load_scene, locate
 
 # one thread per process: the jobs themselves fill the cores, and results do not depend on their number
@@ -37,6 +37,7 @@ if not (writable.is_dir() and os.access(writable, os.W_OK)):
     refuse(f"{RESULTS}: cannot write to {writable}; run in a folder you may write to")
 
 CONTACT_MB = contact_MB(SCENE.contact)
+PROPAGATION_MB = propagation_MB(SCENE.uncertainty)
 
 CONFIG = ROOT / "config"  # data files that ship with the project
 RESOLVED = SCENE.model_dump(mode="json")

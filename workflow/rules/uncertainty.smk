@@ -64,6 +64,8 @@ rule propagate_uncertainty:
         validation=f"{RESULTS}/uq/validation.csv",
     log:
         f"{RESULTS}/logs/propagate_uncertainty.log",
+    resources:
+        mem_mb=PROPAGATION_MB,
     params:
         settings=settings("uncertainty"),
         law=settings("law"),
@@ -84,6 +86,8 @@ rule rank_sensitivity:
         report(f"{RESULTS}/uq/sensitivity.csv", caption="../captions/sensitivity.rst", category="Uncertainty"),
     log:
         f"{RESULTS}/logs/rank_sensitivity.log",
+    resources:
+        mem_mb=PROPAGATION_MB,
     params:
         settings=settings("uncertainty"),
     message:

@@ -16,17 +16,22 @@ from scipy import fft
 from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, plan_rows
 from atomistic.materials import Material
 from mesoscale.settings import ContactSettings, HistorySettings
+from mesoscale.uncertainty.chunks import collocation_run_count
 from workflow.scene import Scene
 
-START_S = 2.0  # Snakemake's start of a job, and the packages
+START_S = 1.5  # Snakemake's start of a job, and the packages
+ENGINE_S = 1.4  # more packages for a contact
 GRID = 1024**2  # sites of the reference
 # of any cycle; of one on the reference grid, besides; the power of the sites with which that grows
-CYCLE_S = {"asperity": (0.005, 0.065, 1.0), "coupled": (0.01, 2.1, 2.2)}
+CYCLE_S = {"asperity": (0.005, 0.046, 1.0), "coupled": (0.01, 2.1, 2.2)}
 CHAIN_S = 10.0  # a posterior of some twenty curves; scene made_up
 FITTED_RUN_S = 0.004  # law of a run and its row
 LATER_CYCLE, HOLD = 0.6, 0.05  # of a history, over a first cycle; of each time within a hold
+CURVE_S = 0.01  # fit of both branches of a run, with fits repeated from other starts
+RESPONSE_RUN_S = 0.0082  # of a direct run, in regressions and their validation
+DRAWN_PAD_S = 0.9  # of a set of inputs, in the answer of the switch
 RELEASE_S = 0.015  # law and switch after a cycle
-CELL_S = {"asperity": 2.4, "coupled": 4.5}  # a pad's cell over a cycle: it opens from several depths
+CELL_S = {"asperity": 3.2, "coupled": 4.5}  # a pad's cell over a cycle: it opens from several depths
 DRAW_CELL = 1.5  # a cell of a pad at other inputs over one of the pad: it is pressed harder
 OPENED_CELL = 2.0  # a cell of scene adhesion over one of the pad: it is closed twice
 SCAN_S = 0.8  # analysis of a scan of the reference grid
@@ -148,11 +153,23 @@ class Costs:
 
     def compute_runs(self, wildcards: Mapping[str, str]) -> float:
         """A chunk of cycles of a design."""
-        return self.scene.uncertainty.chunk_runs * (self.cycle_s + FITTED_RUN_S)
+        return ENGINE_S + self.scene.uncertainty.chunk_runs * (self.cycle_s + FITTED_RUN_S)
+
+    def compute_nominal(self, wildcards: Mapping[str, str]) -> float:
+        """A cycle at each load, and the contact spots."""
+        return ENGINE_S + 0.5 + len(self.scene.contact.nominal_loads_nN) * self.cycle_s
+
+    def fit_law(self, wildcards: Mapping[str, str]) -> float:
+        """Laws of all runs of the collocation."""
+        return CURVE_S * collocation_run_count(len(self.scene.inputs.rows()), self.scene.uncertainty)
+
+    def propagate_uncertainty(self, wildcards: Mapping[str, str]) -> float:
+        """Responses and their validation."""
+        return 0.5 + RESPONSE_RUN_S * self.scene.uncertainty.direct_runs
 
     def observe_cycles(self, wildcards: Mapping[str, str]) -> float:
         """A chunk of the cycles behind a calibration."""
-        return self.scene.measurements.chunk_runs * (self.cycle_s + FITTED_RUN_S)
+        return ENGINE_S + self.scene.measurements.chunk_runs * (self.cycle_s + FITTED_RUN_S)
 
     def sample_posterior(self, wildcards: Mapping[str, str]) -> float:
         """Chains of all tables and of subsets of them, and the cycles where the posterior lies."""
@@ -165,17 +182,17 @@ class Costs:
         return self.scene.topography.scans_per_job * SCAN_S * self.scene.topography.synthetic.pixels**2 / GRID
 
     def plan_pad(self, wildcards: Mapping[str, str]) -> float:
-        """Pilot cells, closed again for each longer range."""
-        return 2 * self.scene.pad.pilot_cells * self.cell_s
+        """Pilot cells."""
+        return ENGINE_S + self.scene.pad.pilot_cells * self.cell_s
 
     def close_cells(self, wildcards: Mapping[str, str]) -> float:
         """A chunk of the pad's cells."""
-        return min(self.scene.pad.chunk_cells, self.scene.pad.cells) * self.cell_s
+        return ENGINE_S + min(self.scene.pad.chunk_cells, self.scene.pad.cells) * self.cell_s
 
     def close_draws(self, wildcards: Mapping[str, str]) -> float:
         """A chunk of pads at other inputs; their cells are pressed harder, and two of each draw are pilots."""
         pad = self.scene.pad
-        return min(pad.chunk_draws, pad.draws) * (pad.draw_cells + 2) * DRAW_CELL * self.cell_s
+        return ENGINE_S + min(pad.chunk_draws, pad.draws) * (pad.draw_cells + 2) * DRAW_CELL * self.cell_s
 
     def open_pads(self, wildcards: Mapping[str, str]) -> float:
         """The pads of one case; the first half of the cases is of the first mechanics."""
@@ -197,7 +214,7 @@ def _constant(seconds: float) -> Callable[[Costs, Mapping[str, str]], float]:
 
 _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     **dict.fromkeys(("write_scene", "collect_inputs", "export_law", "combine_e_star"), _constant(0.0)),
-    **dict.fromkeys(("find_hardness", "fit_hardness", "fit_bulk_moduli", "fit_law", "fit_nominal_law"), _constant(0.5)),
+    **dict.fromkeys(("find_hardness", "fit_hardness", "fit_bulk_moduli", "fit_nominal_law"), _constant(0.5)),
     "make_crystal": _constant(0.0),
     "make_glass": Costs.make_glass,
     "run_closing": Costs.run_closing,
@@ -213,19 +230,20 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "draw_surface": _constant(2.0),
     "judge_scans": lambda costs, wildcards: 3.0 + 3.0 * len(costs.scene.topography.scans),
     "weigh_unseen_waves": lambda costs, wildcards: 16 * costs.cycle_s,
-    "compute_nominal": lambda costs, wildcards: len(costs.scene.contact.nominal_loads_nN) * costs.cycle_s,
+    "compute_nominal": Costs.compute_nominal,
+    "fit_law": Costs.fit_law,
     "compute_runs": Costs.compute_runs,
     "compute_direct_runs": Costs.compute_runs,
-    "propagate_uncertainty": _constant(7.0),
-    "rank_sensitivity": _constant(8.0),
+    "propagate_uncertainty": Costs.propagate_uncertainty,
+    "rank_sensitivity": _constant(8.5),
     "plan_pad": Costs.plan_pad,
     "close_cells": Costs.close_cells,
     "close_draws": Costs.close_draws,
-    "assemble_pad": _constant(15.0),
     "open_pads": Costs.open_pads,
     "summarise_adhesion": _constant(0.0),
-    "solve_switch": _constant(2.0),
-    "render_report": _constant(2.5),
+    "assemble_pad": lambda costs, wildcards: 4.0 + DRAWN_PAD_S * costs.scene.pad.draws,
+    "solve_switch": _constant(1.6),
+    "render_report": lambda costs, wildcards: 7.0 + len(costs.scene.stages()),
     "collect_priors": _constant(0.0),
     "follow_history": lambda costs, wildcards: history_s(costs.scene.history, costs.scene.contact),
     "observe_cycles": Costs.observe_cycles,

@@ -2,10 +2,12 @@
 
 import psutil
 
-from mesoscale.settings import ContactSettings, HistorySettings
+from mesoscale.settings import ContactSettings, HistorySettings, UncertaintySettings
 
 PROCESS_MB = 600.0  # a job is two processes with their packages
 SITE_MB = {"asperity": 62e-6, "coupled": 140e-6}  # 4096^2 sites take 1.1 GB, 1024^2 coupled ones 323 MB
+RUN_MB = 6e-3  # a direct run in regressions: 4000 to 10,000 of them take 26 MB, their rows 1.5 kB each
+RESAMPLED_MB = 32e-6  # a direct run in each resampling; measured with 10,000 runs, 24e-6 with 30,000
 ROW_MB = 1.4e-3  # a row of a history's table, as it is made and written
 
 
@@ -18,6 +20,12 @@ def history_MB(history: HistorySettings, contact: ContactSettings) -> int:
     """Memory of the process that closes and opens again and again, in MB."""
     held = history.dwell_steps + 1 if history.dwell_s > 0 else 0
     return round(contact_MB(contact) + ROW_MB * history.seeds * history.cycles * (3 + held))  # a cycle's row is long
+
+
+def propagation_MB(uncertainty: UncertaintySettings) -> int:
+    """Memory of the process that fits the responses to all direct runs and resamples these, in MB."""
+    run_MB = RUN_MB + RESAMPLED_MB * uncertainty.bootstrap
+    return round(PROCESS_MB + run_MB * uncertainty.direct_runs)
 
 
 def machine_MB() -> int:
