@@ -1,7 +1,7 @@
 """What waves that no instrument saw do to the contact: the same random surfaces with them and without."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -28,22 +28,29 @@ def unseen_shares(
     Surfaces of the same noise end once at `seen` and once where those of the contact end: at q1, or at what the grid
     holds. The truth lies anywhere between none of these waves and all as extrapolated. `shift` is the relative change
     that all of them make; `share` is the part of the variance of ln(quantity), beside that from surface to surface,
-    which this leaves (a uniform distribution over the shift).
+    which this leaves (a uniform distribution over the shift). Where q1 ends the surfaces before the grid does, a second
+    set of rows says what they would be if the roughness went on.
     """
     contact = contact.model_copy(update={"pixels": min(contact.pixels, SITES)})
-    if contact.q1_per_nm and contact.q1_per_nm > contact.nyquist_per_nm:
-        contact = contact.model_copy(update={"q1_per_nm": None})
-    end = shortest_wave(contact)
-    seen = min(seen, end)
-    psd = surface_spectrum(inputs, contact)
-    shorter = contact.model_copy(update={"q1_per_nm": seen})
-    lower = replace(
-        inputs, rms=inputs.rms * math.sqrt(_mean_square(psd, contact, seen) / _mean_square(psd, contact, end))
-    )
-    whole, cut = [], []
-    for seed in range(contact.nominal_seed, contact.nominal_seed + SURFACES):
-        whole.append(_outputs(inputs, contact, law, seed))
-        cut.append(whole[-1] if seen == end else _outputs(lower, shorter, law, seed))
+    unlimited = contact.model_copy(update={"q1_per_nm": None})
+    ends = sorted({shortest_wave(contact), shortest_wave(unlimited)})
+    seen = min(seen, ends[0])
+    psd = surface_spectrum(inputs, unlimited)
+    known = _mean_square(psd, contact, ends[0])
+
+    def pressed(end: float) -> list[dict[str, float]]:
+        rough = replace(inputs, rms=inputs.rms * math.sqrt(_mean_square(psd, contact, end) / known))
+        chosen = contact.model_copy(update={"q1_per_nm": end})
+        return [_outputs(rough, chosen, law, contact.nominal_seed + k) for k in range(SURFACES)]
+
+    cut = pressed(seen)
+    for end in ends:
+        yield from _rows(cut, cut if end == seen else pressed(end), seen, end)
+
+
+def _rows(
+    cut: Sequence[Mapping[str, float]], whole: Sequence[Mapping[str, float]], seen: float, end: float
+) -> Iterator[dict[str, Any]]:
     for name, unit in UNITS.items():
         given = np.array([[values[name] for values in made] for made in (cut, whole)])
         given = given[:, np.all(np.isfinite(given) & (given > 0), axis=0)]
@@ -51,13 +58,9 @@ def unseen_shares(
         if given.shape[1] > 1:  # no attraction, or no law, has nothing to say
             logs = np.log(given)
             shift = float(np.mean(logs[1] - logs[0]))
-            extrapolated = shift**2 / 12
-            between = float(np.mean(np.var(logs, axis=1, ddof=1)))
+            spread = shift**2 / 12, float(np.mean(np.var(logs, axis=1, ddof=1)))
             row |= {"seen": float(np.exp(logs[0].mean())), "all": float(np.exp(logs[1].mean()))}
-            row |= {
-                "shift": math.expm1(shift),
-                "share": extrapolated / (extrapolated + between) if extrapolated > 0 else 0.0,
-            }
+            row |= {"shift": math.expm1(shift), "share": spread[0] / sum(spread) if spread[0] > 0 else 0.0}
         yield row
 
 

@@ -121,12 +121,10 @@ def _judgement(results: Results, section: Section) -> None:
 
 def _unseen(results: Results, section: Section) -> None:
     rows = [row for row in results.csv(UNSEEN) if row["share"]]
-    if not rows:
-        return
-    seen, end = (show(float(rows[0][key])) for key in ("seen_q", "end_q"))
     lines = [
         (
             UNSEEN_NAMES[row["quantity"]],
+            f"{show(float(row['seen_q']))} to {show(float(row['end_q']))}",
             show(float(row["seen"])),
             show(float(row["all"])),
             f"{float(row['shift']):+.0%}",
@@ -134,9 +132,12 @@ def _unseen(results: Results, section: Section) -> None:
         )
         for row in rows
     ]
-    header = ("quantity", f"waves to {seen} /nm", f"waves to {end} /nm", "change", "share of the variance")
+    if not lines:
+        return
+    header = ("quantity", "waves added (1/nm)", "without them", "with them", "change", "share of the variance")
     caption = (
-        f"What no instrument saw: waves from {seen} to {end} /nm, extrapolated, on the same random surfaces. The share "
+        "What no instrument saw: short waves, extrapolated, on the same random surfaces. The first rows are what the "
+        "surfaces of this run have; rows up to the grid's end say what it would be if the roughness went on. The share "
         "takes anything between none and all of them, beside the scatter from surface to surface"
     )
     section.blocks.append(Table(caption, header, lines))

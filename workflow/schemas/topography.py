@@ -39,7 +39,7 @@ TABLES = (
             text("quantity", "first_contact, area at the largest force, C_r of closing, pull_off"),
             text("unit", "nm, nm^2, GPa or nN"),
             number("seen_q", "1/nm", "where the trusted spectra surely end"),
-            number("end_q", "1/nm", "where the surfaces of the contact end"),
+            number("end_q", "1/nm", "where the surfaces end: at q1, at what the grid holds"),
             number("seen", "its unit", "mean of surfaces that end at seen_q", empty=True),
             number("all", "its unit", "mean of surfaces that end at end_q, of the same noise", empty=True),
             number("shift", "1", "relative change by the unseen waves", empty=True),

@@ -31,11 +31,12 @@ def closing_words(results: Path) -> Iterator[str]:
 
 def unseen(rows: list[dict[str, str]]) -> Iterator[str]:
     """In words what waves that no instrument saw do to the contact."""
-    known = [row for row in rows if row["share"]]
-    if known:
+    ends = dict.fromkeys((row["seen_q"], row["end_q"]) for row in rows if row["share"])
+    for seen, end in ends:
+        known = [row for row in rows if row["share"] and row["end_q"] == end]
         parts = (f"{row['quantity']} {float(row['shift']):+.0%} ({float(row['share']):.0%})" for row in known)
-        ends = f"{float(known[0]['seen_q']):.2g} to {float(known[0]['end_q']):.2g} /nm"
-        yield f"unseen waves of {ends} change (share of the variance): {', '.join(parts)}"
+        waves = f"{float(seen):.2g} to {float(end):.2g} /nm"
+        yield f"unseen waves of {waves} would change (share of the variance): {', '.join(parts)}"
 
 
 def judgement(rows: list[dict[str, str]]) -> Iterator[str]:

@@ -229,7 +229,7 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "pool_spectra": _constant(3.0),
     "draw_surface": _constant(2.0),
     "judge_scans": lambda costs, wildcards: 3.0 + 3.0 * len(costs.scene.topography.scans),
-    "weigh_unseen_waves": lambda costs, wildcards: 16 * costs.cycle_s,
+    "weigh_unseen_waves": lambda costs, wildcards: 24 * costs.cycle_s,
     "compute_nominal": Costs.compute_nominal,
     "fit_law": Costs.fit_law,
     "compute_runs": Costs.compute_runs,

@@ -32,3 +32,13 @@ def test_the_less_is_seen_the_more_is_extrapolated():
 
 def test_without_attraction_nothing_is_said_of_it():
     assert "share" not in rows(0.2, ContactInputs(**{**vars(INPUTS), "hamaker": 0.0}))["pull_off"]
+
+
+def test_where_q1_ends_the_surfaces_it_is_said_what_more_waves_would_do():
+    ended = CONTACT.model_copy(update={"q1_per_nm": 0.4})
+    made = list(unseen_shares(INPUTS, ended, LawSettings(), 0.2))
+    first = [row for row in made if row["quantity"] == "first_contact"]
+    assert [row["end_q"] for row in first] == pytest.approx([0.4, CONTACT.nyquist_per_nm])
+    assert 0 < first[0]["shift"] < first[1]["shift"]
+    # without the end the same waves have the same heights: the RMS height is that up to q1
+    assert first[0]["seen"] == first[1]["seen"]
