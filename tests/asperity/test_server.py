@@ -9,6 +9,7 @@ import sys
 import time
 import urllib.error
 import urllib.request
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -121,6 +122,18 @@ def test_a_killed_worker_is_replaced(server):
     for worker in workers:
         os.kill(worker, signal.SIGKILL)
     assert model([values]) == first
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="needs /proc")
+def test_a_worker_killed_at_work_is_replaced_and_its_request_repeated(server):
+    url, process = server
+    config = {"cells": 3, "separations_nm": [40.0, 30.0], "contact": {"pixels": 256}}
+    with ThreadPoolExecutor(1) as client:
+        answer = client.submit(umbridge.HTTPModel(url, "pad"), [CENTRE], config)
+        time.sleep(0.3)  # the cells take longer
+        for worker in children(process.pid):
+            os.kill(worker, signal.SIGKILL)
+        assert answer.result(120) == evaluate("pad", [CENTRE], config)
 
 
 def test_a_client_that_goes_away_leaves_the_server_well(server):

@@ -35,6 +35,7 @@ rule collect_priors:
     params:
         settings=PRIORS.model_dump(mode="json"),
         central_share=SCENE.uncertainty.central_share,
+        nyquist_per_nm=SCENE.contact.nyquist_per_nm,
     message:
         "collect what is known of the inputs before the measurements"
     script:
@@ -104,5 +105,17 @@ rule check_calibration_stability:
         "../scripts/check_calibration_stability.py"
 
 
+rule study_calibration_accuracy:
+    output:
+        f"{RESULTS}/accuracy/calibration.csv",
+    log:
+        f"{RESULTS}/logs/study_calibration_accuracy.log",
+    message:
+        "study the error of the calibration against its run time"
+    script:
+        "../scripts/study_calibration_accuracy.py"
+
+
 if SCENE.measurements.tables:
+    ACCURACY.append(f"{RESULTS}/accuracy/calibration.csv")
     STABILITY.append(f"{RESULTS}/stability/calibration.csv")

@@ -11,11 +11,13 @@ Ann. Stat. 37, 697 (2009), doi 10.1214/07-AOS574).
 import csv
 import sys
 from collections.abc import Sequence
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import wasserstein_distance
 
 from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.posterior import Cycles, calibrate, cycles_of_rows, observe_runs
@@ -40,10 +42,12 @@ MIDDLE = {"e_star": 91.0, "h_macro": 1.95, "h_prime": 8.4, "q0": 0.025, "hurst":
 TRUTH = {**MIDDLE, "hamaker": 0.21, "rms": 6.0}
 CONTACT_BEGIN_ERROR_NM, PULL_OFF_ERROR = 2.0, 0.3
 """Standard deviations of the data; the second as a share."""
-CHAINS, STEPS, BURN_IN = 4, 2500, 100
+CHAINS, STEPS, BURN_IN = 4, 5000, 200
 STEP = 0.35
 """Of a proposal, as a share of an input's range."""
 FIRST_SURFACE = 2_000_000_000
+SETTINGS = MeasurementsSettings(max_steps=8000, walkers=128, samples=20000)
+"""Many walkers: the Monte Carlo error of the product's own chain stays small beside that of the direct ones."""
 
 
 def prior() -> InputTable:
@@ -65,27 +69,29 @@ def log_likelihood(seen: Array, data: Array) -> float:
 
 
 def direct_chain(table: InputTable, data: Array, number: int, path: Path) -> Array:
-    """Free inputs along one chain, shape (STEPS, 2); what lies in the file is not computed again."""
-    if not path.exists():
-        rng = np.random.default_rng(np.random.SeedSequence([0xD1, number]))
-        places = [table.names.index(name) for name in FREE]
-        ranges = table.ranges(0.999)[places]
-        here, value = ranges.mean(axis=1), -np.inf
-        chain = np.empty((STEPS, len(FREE)))
-        for step in range(STEPS):
-            there = here + STEP * np.ptp(ranges, axis=1) * rng.standard_normal(len(FREE))
+    """Free inputs along one chain, shape (STEPS, 2); steps that lie in the file are not computed again."""
+    places = [table.names.index(name) for name in FREE]
+    ranges = table.ranges(0.999)[places]
+    known = [line.split() for line in path.read_text().splitlines(keepends=True)] if path.exists() else []
+    known = [row for row in known if len(row) == len(FREE) + 2 and row[-1] == "."]  # a cut last line is computed again
+    chain = [[float(value) for value in row[:-1]] for row in known]
+    *here, value = chain[-1] if chain else [*ranges.mean(axis=1).tolist(), -np.inf]
+    with path.open("w", encoding="utf-8") as stream:
+        stream.writelines(" ".join(row) + "\n" for row in known)
+        for step in range(len(chain), STEPS):
+            rng = np.random.default_rng(np.random.SeedSequence([0xD1, number, step]))
+            there = np.array(here) + STEP * np.ptp(ranges, axis=1) * rng.standard_normal(len(FREE))
             chance = np.log(rng.random())
             if ((there > ranges[:, 0]) & (there < ranges[:, 1])).all():
-                seen = observed(
-                    {**MIDDLE, **dict(zip(FREE, there.tolist(), strict=True))},
-                    FIRST_SURFACE + 10_000 * number + step,
-                )
+                surface = FIRST_SURFACE + 10_000 * number + step
+                seen = observed({**MIDDLE, **dict(zip(FREE, there.tolist(), strict=True))}, surface)
                 proposed = log_likelihood(seen, data)
                 if not np.isfinite(value) or chance < proposed - value:
-                    here, value = there, proposed
-            chain[step] = here
-        np.savetxt(path, chain)
-    return np.loadtxt(path)
+                    here, value = there.tolist(), proposed
+            chain.append([*here, value])
+            stream.write(" ".join(repr(number) for number in chain[-1]) + " .\n")
+            stream.flush()
+    return np.array(chain)[:, : len(FREE)]
 
 
 def responses_posterior(table: InputTable, data: Array) -> Array:
@@ -100,16 +106,19 @@ def responses_posterior(table: InputTable, data: Array) -> Array:
     ]
     runs = random_runs(table, UncertaintySettings(sample_seed=3), 0, 800, first_surface=FIRST_SURFACE - 10_000)
     cycles: Cycles = cycles_of_rows(observe_runs(runs, CONTACT, LawSettings()), table.names)
-    result = calibrate(
-        table, tables, cycles, CONTACT, LawSettings(), DeviceSettings(), MeasurementsSettings(max_steps=8000)
-    )
+    result = calibrate(table, tables, cycles, CONTACT, LawSettings(), DeviceSettings(), SETTINGS)
     if result.reasons:
         raise RuntimeError(result.reasons[0])
     return result.x[:, [table.names.index(name) for name in FREE]]
 
 
 def compare(chains: Sequence[Array], ours: Array) -> list[dict[str, Any]]:
-    """Mean, deviation and quantiles by both ways, with the Monte Carlo error of the direct chains, one row each."""
+    """Mean, deviation and quantiles by both ways, and the distance of the distributions, one row each.
+
+    The Monte Carlo error is that of the direct chains, from the scatter of their halves. The distance is Wasserstein's
+    first, in the input's unit; its Monte Carlo error is half of that between one half of the direct chains and the
+    other, averaged over all ways to halve them: each half has twice the variance of the whole.
+    """
     halves = [half for chain in chains for half in np.array_split(chain[BURN_IN:], 2)]
     kinds = {
         "mean": np.mean,
@@ -120,22 +129,33 @@ def compare(chains: Sequence[Array], ours: Array) -> list[dict[str, Any]]:
     }
     rows = []
     for k, name in enumerate(FREE):
+        parts, every, found = [half[:, k] for half in halves], np.concatenate(halves)[:, k], ours[:, k]
         for quantity, of in kinds.items():
-            parts = np.array([of(half[:, k]) for half in halves])
-            direct = float(of(np.concatenate(halves)[:, k]))
-            error = float(parts.std(ddof=1) / np.sqrt(len(parts)))
-            value = float(of(ours[:, k]))
-            rows.append(
-                {
-                    "input": name,
-                    "quantity": quantity,
-                    "direct": direct,
-                    "monte_carlo_error": error,
-                    "responses": value,
-                    "difference_in_errors": (value - direct) / error,
-                }
-            )
+            error = float(np.std([of(part) for part in parts], ddof=1) / np.sqrt(len(parts)))
+            rows.append(_row(name, quantity, float(of(every)), error, float(of(found)), float(of(found) - of(every))))
+        distance = float(wasserstein_distance(every, found))
+        rows.append(_row(name, "distance", 0.0, _own_distance(parts), distance, distance))
     return rows
+
+
+def _own_distance(parts: Sequence[Array]) -> float:
+    """Half the mean Wasserstein distance between one half of the parts and the other."""
+    apart = []
+    for chosen in combinations(range(len(parts)), len(parts) // 2):
+        sides = [[part for k, part in enumerate(parts) if (k in chosen) == side] for side in (True, False)]
+        apart.append(wasserstein_distance(*(np.concatenate(side) for side in sides)))
+    return float(np.mean(apart) / 2)
+
+
+def _row(name: str, quantity: str, direct: float, error: float, found: float, off: float) -> dict[str, Any]:
+    return {
+        "input": name,
+        "quantity": quantity,
+        "direct": direct,
+        "monte_carlo_error": error,
+        "responses": found,
+        "difference_in_errors": off / error,
+    }
 
 
 def main(folder: Path) -> None:

@@ -17,7 +17,7 @@ from mesoscale.calibration.likelihood import normal_with_common, posterior_of
 from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.observables import OBSERVABLES, force_levels_nN
 from mesoscale.calibration.posterior import Calibration, Cycles, draw, expected_of, responses_of
-from mesoscale.calibration.sampling import sample
+from mesoscale.calibration.sampling import NormalProposal, autocorrelation, diagnose, sample
 from mesoscale.calibration.summary import posterior_json, predictive_rows, sample_rows, summary_rows
 from mesoscale.calibration.surfaces import check_points
 from mesoscale.calibration.switches import SwitchModel, law_values
@@ -26,7 +26,7 @@ from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings, LawSettings, MeasurementsSettings
 from tests.mesoscale.calibration.conftest import MAX_FORCE_NN, made_up_observables
 
-SETTINGS = MeasurementsSettings(max_steps=1200, samples=1500)
+SETTINGS = MeasurementsSettings(max_steps=4000, samples=1500)
 TRUTH = np.array([[0.21, 91.0, 1.5, 8.0, 0.022, 0.8, 5.0]])
 
 
@@ -156,6 +156,46 @@ def test_sampler_finds_both_modes_with_their_weights():
         2, 32, 4000, 4000, 2,
     )  # fmt: skip
     assert (chain.z[:, 0] > 0).mean() == pytest.approx(0.7, abs=0.1)
+
+
+def test_autocorrelation_time_of_a_known_process():
+    """x' = 0.9 x + noise: (1 + 0.9) / (1 - 0.9) = 19 steps; 8 series of 4000 steps know it to 8 %."""
+    rng = np.random.default_rng(1)
+    x = np.empty((8, 4000))
+    x[:, 0] = rng.standard_normal(8)
+    for step in range(1, 4000):
+        x[:, step] = 0.9 * x[:, step - 1] + np.sqrt(1 - 0.9**2) * rng.standard_normal(8)
+    time, variance = autocorrelation(x)
+    assert time == pytest.approx(19, rel=0.25)
+    assert variance == pytest.approx(1, rel=0.15)
+
+
+def test_proposals_keep_the_distribution_that_they_are_reversible_with():
+    """Fitted to the wrong normal distribution and accepted by Metropolis' rule: the right one stays."""
+    rng = np.random.default_rng(4)
+    proposal = NormalProposal(np.array([0.5, -0.5]) + rng.standard_normal((4000, 2)) @ [[1.5, 0.3], [0.0, 0.8]])
+    x = rng.standard_normal((20000, 2))
+    for _ in range(10):
+        new, factor = proposal(x, np.random.RandomState(rng.integers(2**31)))
+        log_ratio = factor + 0.5 * ((x**2).sum(axis=1) - (new**2).sum(axis=1))
+        x = np.where((np.log(rng.random(len(x))) < log_ratio)[:, None], new, x)
+    assert x.mean(axis=0) == pytest.approx([0, 0], abs=4 / np.sqrt(20000))
+    assert np.cov(x.T) == pytest.approx(np.eye(2), abs=0.05)
+
+
+def test_walkers_that_follow_each_other_count_once():
+    """Thirty-two copies of four series have no more independent draws than the four."""
+    series = np.random.default_rng(2).standard_normal((4, 400, 1, 1))
+    _, effective, _ = diagnose(np.repeat(series, 32, axis=2))
+    assert effective == pytest.approx(1600, rel=0.5)
+
+
+def test_a_converged_chain_knows_means_as_well_as_it_says():
+    """Seven inputs of which nothing is known: the error of means over six seeds is that of 400 draws or smaller."""
+    chains = [sample(lambda z: np.zeros(len(z)), 7, 32, 4000, 10**6, seed) for seed in range(6)]
+    assert all(chain.converged for chain in chains)
+    means = np.array([chain.z.mean(axis=0) for chain in chains])
+    assert np.sqrt((means**2).mean()) < 1.25 / np.sqrt(400)  # 42 of them: 11 % is one deviation
 
 
 def test_a_chain_that_is_too_short_says_so():
