@@ -27,6 +27,7 @@ from mesoscale.settings import DeviceSettings, LawSettings, MeasurementsSettings
 from tests.mesoscale.calibration.conftest import MAX_FORCE_NN, made_up_observables
 
 SETTINGS = MeasurementsSettings(max_steps=4000, samples=1500)
+AREAS_NM2 = np.array([40.0, 100.0, 400.0, 4000.0])  # one area alone leaves a ridge of H_macro and H', slow to sample
 TRUTH = np.array([[0.21, 91.0, 1.5, 8.0, 0.022, 0.8, 5.0]])
 
 
@@ -212,7 +213,7 @@ def test_curves_pull_off_and_hardness_find_the_truth(prior, parts):
         parts,
         curves(10, rng),
         pull_offs(y[:, 13]),
-        hardness(1.5 + 8.0 * 100**-0.25 + 0.1 * rng.standard_normal(4)),
+        hardness(1.5 + 8.0 * AREAS_NM2**-0.25 + 0.1 * rng.standard_normal(4), area=AREAS_NM2),
     )
     assert result.chain.converged
     off = (result.x.mean(axis=0) - TRUTH[0]) / result.x.std(axis=0)
