@@ -1,0 +1,1 @@
+"""Studies of the pad: its number of cells, and large cells computed directly."""

@@ -1,0 +1,147 @@
+"""Net adhesive pressure of a pad against its number of cells, in both mechanics, with intervals.
+
+`python -m mesoscale.pad.studies.number_of_cells TABLE CELLS [MECHANICS]` adds the rows of a mechanics to the table, or
+replaces them; it writes after every 64 cells, so that what is cut short still says something.
+
+Pads of up to an eighth of the computed cells are groups of them. Larger ones are extrapolated: the deepest point of a
+noisy mean is too deep by an amount that falls as 1/n (half samples of the cells against all of them), and a pad of N
+cells differs from the mean by the scatter of groups, which falls as 1/sqrt(N).
+"""
+
+import csv
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.pad.cells import PadGrid, close_cells, plan_grid
+from mesoscale.pad.curves import PadCells, assemble, deepest_net_GPa
+from mesoscale.settings import ContactSettings, PadSettings
+
+Array = NDArray[np.float64]
+
+INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
+LOADS_MPa = (2.0, 6.6)
+"""As of the prototype that first saw the fall: 1024^2, 128 cells, asperities on their own."""
+PIXELS = 512
+SIZES = (1, 2, 4, 8, 16, 32, 64, 128, 256, 1000, 10_000, 100_000)
+FEWEST_GROUPS = 8
+SPLITS = 40
+BLOCKS = 16
+BATCH = 64
+WITHIN_90 = 1.645
+"""Half-width of a normal 90 % interval in deviations."""
+
+
+def opened_grid(contact: ContactSettings, pilot_cells: int = 32) -> PadGrid:
+    """Separations of the pad, opened from those at which pilot cells carry the loads."""
+    pad = PadSettings(pilot_cells=pilot_cells, max_pressure_MPa=max(LOADS_MPa), depths=2)
+    shut = PadGrid(plan_grid(INPUTS, contact, pad).separation_nm, np.empty(0, int))
+    seeds = range(pad.first_seed, pad.first_seed + pilot_cells)
+    pilots = assemble(shut, list(close_cells(INPUTS, contact, shut, seeds)), contact.length_nm**2)
+    repelled = pilots.closing[:, 0].mean(axis=0) * 1e3
+    depths = np.array([int(np.argmax(repelled >= load)) for load in LOADS_MPa])
+    return PadGrid(shut.separation_nm[: depths.max() + 1], depths)
+
+
+def deepest_kPa(net: Array) -> float:
+    """Largest net adhesive pressure of the mean of some cells, shape (cells, n); 0 where they only push."""
+    return max(float(deepest_net_GPa(net.mean(axis=0))), 0.0) * 1e6
+
+
+def whole_and_halves(net: Array) -> tuple[float, float]:
+    """Deepest point of the mean of all cells, and the mean of those of random halves (kPa)."""
+    rng = np.random.default_rng(np.random.SeedSequence([0x4A1F]))
+    half, halves = len(net) // 2, []
+    for _ in range(SPLITS):
+        order = rng.permutation(len(net))
+        halves += [deepest_kPa(net[order[:half]]), deepest_kPa(net[order[half : 2 * half]])]
+    return deepest_kPa(net), float(np.mean(halves))
+
+
+def extrapolated(depths_kPa: tuple[float, float], count: int, cells: float) -> float:
+    """Mean over pads of so many cells from `whole_and_halves` of `count` cells (kPa)."""
+    whole, halves = depths_kPa
+    return max(whole - (halves - whole) * (1.0 - count / cells), 0.0)
+
+
+def adhesion_rows(mechanics: str, cells: PadCells, sizes: Sequence[int] = SIZES) -> list[dict[str, Any]]:
+    """Deepest net pressure on opening against the number of cells of a pad, for each load.
+
+    `low_kPa` and `high_kPa` hold 90 % of the pads; `standard_error_kPa` is that of the mean over pads.
+    """
+    rows = []
+    for k, load in enumerate(LOADS_MPa):
+        net = cells.opening[:, k].sum(axis=1)
+        net = net[:, np.isfinite(net).all(axis=0)]
+        depths = whole_and_halves(net)
+        parts = np.array_split(np.arange(cells.count), BLOCKS)
+        without = [(cells.count - len(part), whole_and_halves(np.delete(net, part, axis=0))) for part in parts]
+        closed = float(cells.closing[:, 0, cells.grid.depths[k]].mean() * 1e3)
+        largest, spread = 1, 0.0
+        for size in sizes:
+            groups = cells.count // size
+            if groups >= FEWEST_GROUPS:
+                pads = np.array([deepest_kPa(part) for part in np.array_split(net[: groups * size], groups)])
+                mean, (low, high) = float(pads.mean()), np.quantile(pads, [0.05, 0.95])
+                largest, spread = size, float(pads.std(ddof=1))
+                error, method = spread / groups**0.5, "groups"
+            else:
+                mean = extrapolated(depths, cells.count, size)
+                others = np.array([extrapolated(left, count, size) for count, left in without])
+                error = float(np.sqrt((BLOCKS - 1) * np.mean((others - others.mean()) ** 2)))
+                width = WITHIN_90 * float(np.hypot(error, spread * (largest / size) ** 0.5))
+                low, high, method = max(mean - width, 0.0), mean + width, "extrapolated"
+            rows.append(
+                {
+                    "mechanics": mechanics,
+                    "load_MPa": load,
+                    "closed_to_MPa": closed,
+                    "cells": size,
+                    "method": method,
+                    "net_adhesion_kPa": mean,
+                    "low_kPa": float(low),
+                    "high_kPa": float(high),
+                    "standard_error_kPa": error,
+                    "computed_cells": cells.count,
+                }
+            )
+    return rows
+
+
+def update_table(path: Path, mechanics: str, rows: Iterable[dict[str, Any]]) -> None:
+    """Replace the rows of a mechanics in the table."""
+    kept = []
+    if path.exists():
+        with path.open(newline="", encoding="utf-8") as stream:
+            kept = [row for row in csv.DictReader(stream) if row["mechanics"] != mechanics]
+    table = [*kept, *({key: _short(value) for key, value in row.items()} for row in rows)]
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, table[0], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(table)
+
+
+def _short(value: Any) -> Any:
+    return f"{value:.4g}" if isinstance(value, float) else value
+
+
+def main(table: str, count: str, *mechanics: str) -> None:
+    """Close and open cells at central inputs, batch by batch."""
+    for name in mechanics or ("asperity", "coupled"):
+        contact = ContactSettings.model_validate({"mechanics": name, "pixels": PIXELS})
+        grid, done = opened_grid(contact), []
+        first = PadSettings().first_seed
+        for start in range(first, first + int(count), BATCH):
+            done += close_cells(INPUTS, contact, grid, range(start, min(start + BATCH, first + int(count))))
+            rows = adhesion_rows(name, assemble(grid, done, contact.length_nm**2))
+            update_table(Path(table), name, rows)
+            print(f"{name}: {len(done)} of {count} cells", flush=True)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
