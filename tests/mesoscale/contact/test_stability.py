@@ -36,6 +36,14 @@ def test_a_stiff_case_keeps_all_invariants():
     assert judge(cases["E* x 1000"], SMALL)[0] == []
 
 
+@pytest.mark.parametrize("flow_volume", ["dropped", "piled_up"])
+def test_extreme_coupled_cases_keep_all_invariants_whatever_becomes_of_the_volume(flow_volume):
+    settings = ContactSettings(mechanics="coupled", pixels=48, length_nm=96.0, flow_volume=flow_volume)
+    cases = extreme_cases(settings)
+    assert len(cases) > 40
+    assert {case.name: broken for case in cases if (broken := judge(case, settings)[0])} == {}
+
+
 def test_a_gain_of_energy_over_few_points_is_judged_on_a_finer_path():
     """In this draw two asperities merge; 40 steps see the jump at another place on opening than on closing."""
     inputs, settings = draw_inputs(1160), ContactSettings(pixels=128)
