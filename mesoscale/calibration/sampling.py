@@ -1,7 +1,7 @@
 """Sampling of a posterior by independent ensembles of walkers, with the tests that say whether it has converged.
 
-Ensemble sampler: emcee (Foreman-Mackey et al., PASP 125, 306, 2013, doi 10.1086/670067). Half of the moves are by a
-normal distribution fitted to the ensemble's past. Of the others, a fifth of the difference of two walkers follows
+Ensemble sampler: emcee (Foreman-Mackey et al., PASP 125, 306, 2013, doi 10.1086/670067). Three in ten moves are
+by a normal distribution fitted to the ensemble's past. Of the others, a fifth of the difference of two walkers follows
 curved ridges, and the whole difference jumps between separate modes (differential evolution: ter Braak, Stat. Comput.
 16, 239, 2006, doi 10.1007/s11222-006-8769-1).
 """
@@ -110,11 +110,10 @@ def started(
             dimensions,
             log_density,
             moves=[
-                (emcee.moves.MHMove(proposal), 0.5),
-                (emcee.moves.DEMove(), 0.15),
-                (emcee.moves.DEMove(gamma0=0.2), 0.1),
+                (emcee.moves.MHMove(proposal), 0.3),
+                (emcee.moves.DEMove(), 0.2),
+                (emcee.moves.DEMove(gamma0=0.2), 0.3),
                 (emcee.moves.DEMove(gamma0=1.0), 0.1),
-                (emcee.moves.DESnookerMove(), 0.05),
                 (emcee.moves.StretchMove(), 0.1),
             ],
             vectorize=True,
