@@ -41,7 +41,7 @@ module rough_pad(s, ref);
     parameter real follow = 1.0e-9 from (0:inf);
 {parameters}
 
-    real separation, further, deepest, risen, load, decay, far, near;
+    real separation, further, deepest, risen, load, decay, lift, far, near;
 
     analog begin
         separation = Pos(s, ref) * 1.0e9;
@@ -53,7 +53,8 @@ module rough_pad(s, ref);
         load = exp(-c0 - c1_per_nm * deepest - c2_per_nm2 * deepest * deepest);
         decay = (b0_per_nm + b1_per_nm2 * deepest) * risen + b2_per_nm2 * risen * risen;
         far = hamaker / (6.0 * `M_PI * pow(max(separation, 1.0), 3.0));
-        near = beta * 1.0e-3 * exp(m * ln(load / 1.0e-3) - n * decay);
+        lift = 1.0 + lifted * pow(max(1.0 - exp(-decay), 0.0), 3.0);
+        near = beta * 1.0e-3 * exp(m * ln(load / 1.0e-3) - n * decay) * lift;
 
         // 1 GPa nm^2 = 1 nN; a positive pressure pushes s away from ref
         F(s, ref) <+ -area_nm2 * (load * exp(-decay) - far - near) * 1.0e-9;
@@ -84,9 +85,10 @@ Bdeepest deepest 0 V = min({START_NM:g} - V(closed), V(s))
 Brisen risen 0 V = V(s) - V(deepest)
 Bload load 0 V = {load}
 Bdecay decay 0 V = ({{b0_per_nm}} + {{b1_per_nm2}}*V(deepest))*V(risen) + {{b2_per_nm2}}*V(risen)*V(risen)
+Bgone gone 0 V = max(1 - exp(-V(decay)), 0)
 Bfar far 0 V = {{hamaker/(6*3.14159265358979324)}} / (max(V(s), 1)*max(V(s), 1)*max(V(s), 1))
 Bforce force 0 V = {{area}} * (V(load)*exp(-V(decay)) - V(far)
-+   - {{beta*1e-3}} * exp({{m}}*ln(V(load)/1e-3) - {{n}}*V(decay)))
++   - {{beta*1e-3}} * exp({{m}}*ln(V(load)/1e-3) - {{n}}*V(decay)) * (1 + {{lifted}}*V(gone)*V(gone)*V(gone)))
 .ends rough_pad
 """
 

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from mesoscale.device.beam_switch import solve_beam
 from mesoscale.device.statistics import describe, probability
 from mesoscale.device.switch import GPA, NM, Switch, solve_switch, switch_from_settings
-from mesoscale.errors import InputError
+from mesoscale.errors import InputError, NotComputed
 from mesoscale.law.branches import law_of_fit
 from mesoscale.law.fit import fit_branch
 from mesoscale.law.wells import attraction_status, well_of, well_of_law
@@ -63,7 +63,8 @@ def solve_on_pad(switch: Switch, law: PadLaw, hold_voltage_V: float | None) -> P
 
     Raises
     ------
-    InputError : the held state is not on the computed closing curve, or the hold voltage does not hold the switch.
+    NotComputed : the held state is not on the computed closing curve.
+    InputError : the hold voltage does not hold the switch.
     """
     outside = np.geomspace(law.separation_nm[-1], switch.gap_nm, POINTS)[1:]
     grid = np.concatenate([law.separation_nm, outside])
@@ -76,7 +77,7 @@ def solve_on_pad(switch: Switch, law: PadLaw, hold_voltage_V: float | None) -> P
     hold = pull_in if hold_voltage_V is None else hold_voltage_V**2
     holds = np.flatnonzero(near & (down >= hold))
     if holds.size == 0:
-        raise InputError(
+        raise NotComputed(
             f"device.hold_voltage_V: {np.sqrt(hold):.4g} V presses the pad harder than the computed "
             f"{law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa; raise pad.max_pressure_MPa, or lower the voltage"
         )

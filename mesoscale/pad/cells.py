@@ -54,13 +54,13 @@ def plan_grid(
     inputs: ContactInputs,
     contact: ContactSettings,
     pad: PadSettings,
-    wanted_GPa: Callable[[Array], Array] | None = None,
+    wanted_GPa: Callable[[Array], Array],
 ) -> PadGrid:
     """Separations for a pad, from a few pilot cells that are closed until their mean pressure is the largest asked for.
 
     Parameters
     ----------
-    wanted_GPa : that pressure as a function of separation (nm); None: `pad.max_pressure_MPa`.
+    wanted_GPa : that pressure as a function of separation (nm).
 
     Raises
     ------
@@ -71,7 +71,6 @@ def plan_grid(
     surfaces = [pieces.surface(seed) for seed in seeds]
     first = np.array([-float(heights.min()) for heights in surfaces])
     typical, deviation = float(first.mean()), float(first.std(ddof=1))
-    wanted_GPa = wanted_GPa or (lambda separation: np.full_like(separation, pad.max_pressure_MPa * 1e-3))
     lowest = _separation_at(inputs, contact, surfaces, wanted_GPa, float(first.max()), pad)
     top = typical + DEVIATIONS_ABOVE * max(deviation, pad.step_nm)
     near = lowest + pad.step_nm * np.arange(np.ceil((top - lowest) / pad.step_nm) + 1)

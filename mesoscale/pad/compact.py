@@ -4,11 +4,13 @@ With s the separation, D the deepest closing so far, r = s - D and p_0 = 1 MPa,
 
     closing     p_c(s) = exp(-c0 - c1 s - c2 s^2)                      heights with a Gaussian tail
     opening     p_c(D) g,   g = exp(-(b0 + b1 D) r - b2 r^2)           elastic rebound, stiffer the less was pressed
-    attraction  -A_H / (6 pi s^3) - beta p_0 (p_c(D) / p_0)^m g^n      n near 1/2: as the rim of what still touches
+    attraction  -A_H / (6 pi s^3) - beta p_0 (p_c(D) / p_0)^m g^n (1 + lifted (1 - g)^3)
 
 (while closing, D = s and g = 1). The near attraction of a rough contact is in proportion to its load, so m is near 1.
-Without the far attraction the well on opening is at g^(1-n) = n a, with a the attraction over the load at D; its depth
-is a^2 p_c(D) / 4 for n = 1/2.
+On opening it falls as the rim of what still touches, n near 1/2. Coupled asperities lift off together, and places that
+were pressed flat, which do not attract while they touch, then do: `lifted` is 2 to 10 for them, and 0 for single ones.
+Without it and the far attraction the well on opening is at g^(1-n) = n a, with a the attraction over the load at D; its
+depth is a^2 p_c(D) / 4 for n = 1/2.
 """
 
 from dataclasses import asdict, dataclass
@@ -16,6 +18,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import least_squares
 
 from mesoscale.errors import InputError
 from mesoscale.pad.memory import PadLaw
@@ -39,7 +42,7 @@ class CompactPad:
     ----------
     c0, c1_per_nm, c2_per_nm2 : closing, p_c in GPa.
     b0_per_nm, b1_per_nm2, b2_per_nm2 : opening.
-    beta, m, n : attraction.
+    beta, m, n, lifted : attraction.
     hamaker : Hamaker constant (1e-18 J).
     """
 
@@ -52,6 +55,7 @@ class CompactPad:
     beta: float
     m: float
     n: float
+    lifted: float
     hamaker: float
 
     def closing_GPa(self, separation_nm: ArrayLike) -> tuple[Array, Array]:
@@ -66,13 +70,19 @@ class CompactPad:
         risen = s - deep
         decay = (self.b0_per_nm + self.b1_per_nm2 * deep) * risen + self.b2_per_nm2 * risen**2
         far = self.hamaker / (6.0 * np.pi * np.maximum(s, 1.0) ** 3)
-        near = self.beta * UNIT_GPa * (load / UNIT_GPa) ** self.m * np.exp(-self.n * decay)
-        return load * np.exp(-decay), -far - near
+        rim = self.beta * UNIT_GPa * (load / UNIT_GPa) ** self.m * np.exp(-self.n * decay)
+        left = np.exp(-decay)
+        return load * left, -far - rim * lift(left, self.lifted)
 
     def well_kPa(self, deepest_nm: float) -> float:
         """Largest net attraction on opening from a depth (kPa)."""
         s = deepest_nm + np.linspace(0.0, 30.0, 3001)
         return max(-float(np.add(*self.opening_GPa(s, deepest_nm)).min()), 0.0) * 1e6
+
+
+def lift(left: Array, lifted: float) -> Array:
+    """Factor on the attraction of the rim, from the share of the load that is left on opening."""
+    return 1.0 + lifted * np.maximum(1.0 - left, 0.0) ** 3
 
 
 @dataclass(frozen=True)
@@ -86,7 +96,7 @@ class Residuals:
 
 
 def fit_compact(law: PadLaw) -> tuple[CompactPad, Residuals]:
-    """The closed form fitted to the curves of a pad, part by part by linear least squares of logarithms.
+    """The closed form fitted to the curves of a pad, part by part by least squares of logarithms.
 
     Raises
     ------
@@ -119,10 +129,15 @@ def fit_compact(law: PadLaw) -> tuple[CompactPad, Residuals]:
         kept.append(rows[-1])
     b, opening = _solve(np.concatenate(rows), np.concatenate(decays))
     decay = np.concatenate(kept) @ b
-    (n,), attraction_opening = _solve(decay[:, None], np.concatenate(fallen))
+    fall = np.concatenate(fallen)
+    # what lifts off never attracts the more the farther it is: neither number is negative
+    opened = least_squares(
+        lambda at: np.log(lift(np.exp(-decay), at[1])) - at[0] * decay + fall, (0.5, 1.0), bounds=(0.0, np.inf)
+    )
+    (n, lifted), attraction_opening = opened.x, float(np.sqrt(np.mean(opened.fun**2)))
     c0, c1, c2 = (float(value) for value in c)
     b0, b1, b2 = (float(value) for value in b)
-    fitted = CompactPad(c0, c1, c2, b0, b1, b2, float(np.exp(log_beta)), float(m), float(n), law.hamaker)
+    fitted = CompactPad(c0, c1, c2, b0, b1, b2, float(np.exp(log_beta)), float(m), float(n), float(lifted), law.hamaker)
     return fitted, Residuals(closing, opening, attraction, attraction_opening)
 
 

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 FIRST_DRAW_SEED = 1_000_000
 """Surfaces of the draws differ from those of the central pad."""
-STEP_RMS = 0.03
+STEP_RMS = 0.05
 """Step of separation in units of the RMS height: the closed form needs no wells of single cells."""
 DEPTHS = 4
 PILOT_CELLS = 2
@@ -51,7 +51,9 @@ def plan_draws(table: InputTable, contact: ContactSettings, pad: PadSettings) ->
 
     Where D0 is an input, the draws vary it with the inputs, and `Draw.gap_cutoff_nm` stays at its median.
     """
-    units = latin_hypercube(pad.draws, len(table.rows) + 1, pad.first_seed)
+    from scipy.stats import qmc  # slow to import
+
+    units = qmc.LatinHypercube(len(table.rows) + 1, rng=pad.first_seed).random(pad.draws)
     values = table.transform(units[:, :-1])
     low = contact_of(table.medians(), contact)[1].gap_cutoff_nm
     high = low if "gap_cutoff" in table.names else max(low, pad.gap_cutoff_high_nm)
@@ -65,13 +67,6 @@ def plan_draws(table: InputTable, contact: ContactSettings, pad: PadSettings) ->
         )
         for k, (row, unit) in enumerate(zip(values, units[:, -1], strict=True))
     ]
-
-
-def latin_hypercube(count: int, dimensions: int, seed: int) -> Array:
-    """Points of the unit cube, one in each of `count` equal parts of every side, shape (count, dimensions)."""
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xD4A]))
-    order = np.stack([rng.permutation(count) for _ in range(dimensions)], axis=1)
-    return (order + rng.random((count, dimensions))) / count
 
 
 def close_draws(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesoscale.errors import InputError
+from mesoscale.errors import NotComputed
 from mesoscale.pad.curves import PadCells
 
 Array = NDArray[np.float64]
@@ -41,7 +41,7 @@ class PadLaw:
 
         Raises
         ------
-        InputError : a separation below the deepest that was computed.
+        NotComputed : a separation below the deepest that was computed.
         """
         s = np.asarray(separation_nm, float)
         self._check(s)
@@ -52,11 +52,11 @@ class PadLaw:
 
         Raises
         ------
-        InputError : a depth that was not computed; the message has the range.
+        NotComputed : a depth that was not computed; the message has the range.
         """
         low, high = float(self.depth_nm[0]), float(self.depth_nm[-1])
         if not low <= deepest_nm <= high:
-            raise InputError(
+            raise NotComputed(
                 f"deepest closing {deepest_nm:.4g} nm: the pad was computed for {low:.4g} .. {high:.4g} nm "
                 f"({self.closing_GPa(high) * 1e3:.3g} .. {self.closing_GPa(low) * 1e3:.3g} MPa); raise "
                 "pad.max_pressure_MPa, or lower the hold voltage"
@@ -78,7 +78,7 @@ class PadLaw:
 
     def _check(self, separation_nm: Array) -> None:
         if (separation_nm < self.separation_nm[0]).any():
-            raise InputError(
+            raise NotComputed(
                 f"separation {separation_nm.min():.4g} nm: the pad was closed to {self.separation_nm[0]:.4g} nm "
                 f"({self.closing[:, 0].sum() * 1e3:.3g} MPa); raise pad.max_pressure_MPa"
             )

@@ -7,8 +7,8 @@ logarithm of D0 over its smallest value, the closed form of `mesoscale.pad.compa
     b0          linear in z and ln rms
     ln beta/A_H linear in z, ln rms and d
 
-and its other numbers are the same for all inputs. Every part is one linear least squares over all pads, in which a pad
-counts by its cells, so the scatter of a draw's few cells averages out as that of all cells together.
+and its other numbers are the same for all inputs. Every part is one least squares over all pads, in which a pad counts
+by its cells, so the scatter of a draw's few cells averages out as that of all cells together.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,11 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import lsq_linear
+from scipy.optimize import lsq_linear, minimize_scalar
 
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.compact import CompactPad, UNIT_GPa
+from mesoscale.pad.compact import CompactPad, UNIT_GPa, lift
 from mesoscale.pad.memory import PadLaw
 
 Array = NDArray[np.float64]
@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 CLOSING_FLOOR = 1e-3
 """Share of the largest repulsion down to which closing is fitted: beyond, few of a draw's cells touch."""
 OPENING_FLOOR = 0.03
+MOST_LIFTED = 30.0
+"""Three times the largest that pads of the shipped scenes have."""
 SPAN = 0.999
 """Central share of an unbounded distribution that -1 .. 1 spans; the fit does not depend on it."""
 
@@ -61,6 +63,7 @@ class PadResponse:
     closing : coefficients of c0 and of c1 (constant, z, ln rms), then c2, shape (2 n + 5,).
     opening : of b0, then b1 and b2, shape (n + 4,).
     attraction : of ln beta / A_H (with d), then m and n, shape (n + 5,).
+    lifted : the same for all inputs.
     """
 
     names: tuple[str, ...]
@@ -71,6 +74,7 @@ class PadResponse:
     closing: Array
     opening: Array
     attraction: Array
+    lifted: float
 
     def at(self, values: Mapping[str, float], gap_cutoff_nm: float) -> CompactPad:
         """The closed form at one set of inputs."""
@@ -88,6 +92,7 @@ class PadResponse:
             beta=float(np.exp(strength)) * values["hamaker"],
             m=float(self.attraction[-2]),
             n=float(self.attraction[-1]),
+            lifted=self.lifted,
             hamaker=values["hamaker"],
         )
 
@@ -116,19 +121,43 @@ def fit_response(pads: Sequence[SampledPad], table: InputTable) -> PadResponse:
         for kept, new in zip(parts, _equations(pad, row, d), strict=True):
             # each pad's points share their scatter: a pad counts by its cells and not by its separations
             share = np.sqrt(pad.cells / max(len(new[1]), 1))
-            kept.append((new[0] * share, new[1] * share))
-    solved = [
-        _solve(np.concatenate([a for a, _ in part]), np.concatenate([b for _, b in part]), signed)
-        for part, signed in zip(parts, (1, 1, 2), strict=True)
-    ]
-    return PadResponse(names, centre, half, medians["rms"], least, *solved)
+            kept.append((*new, np.full(len(new[1]), share)))
+    closing, opening, attraction = ([np.concatenate(kind) for kind in zip(*part, strict=True)] for part in parts)
+    lifted = _lifted(*attraction)
+    return PadResponse(
+        names,
+        centre,
+        half,
+        medians["rms"],
+        least,
+        _solve(*closing, 1)[0],
+        _solve(*opening, 1)[0],
+        _attraction(*attraction, lifted)[0],
+        lifted,
+    )
 
 
-def _solve(columns: Array, wanted: Array, signed: int) -> Array:
-    """Least squares in which the last `signed` numbers are not negative: contact never grows as a pad is opened."""
+def _solve(columns: Array, wanted: Array, weights: Array, signed: int) -> tuple[Array, float]:
+    """Weighted least squares and its misfit; the last `signed` numbers are not negative: none grows on opening."""
     lowest = np.full(columns.shape[1], -np.inf)
     lowest[-signed:] = 0.0
-    return np.asarray(lsq_linear(columns, wanted, (lowest, np.inf)).x, float)
+    solved = lsq_linear(columns * weights[:, None], wanted * weights, (lowest, np.inf))
+    return np.asarray(solved.x, float), float(solved.cost)
+
+
+def _attraction(columns: Array, wanted: Array, weights: Array, lifted: float) -> tuple[Array, float]:
+    """The attraction at one `lifted`; the last column is the logarithm of the load that is left."""
+    return _solve(columns, wanted - np.log(lift(np.exp(columns[:, -1]), lifted)), weights, 2)
+
+
+def _lifted(columns: Array, wanted: Array, weights: Array) -> float:
+    """The `lifted` of least misfit."""
+    found = minimize_scalar(
+        lambda lifted: _attraction(columns, wanted, weights, lifted)[1],
+        bounds=(0.0, MOST_LIFTED),
+        options={"xatol": 1e-7},
+    )
+    return float(found.x)
 
 
 def _varies(table: InputTable, name: str) -> bool:

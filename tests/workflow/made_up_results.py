@@ -211,7 +211,7 @@ def _pad(root: Path) -> None:
     area, hamaker = 1e6, 0.215
     separation = np.concatenate([np.geomspace(200, 50, 8)[:-1], np.arange(50, 19.9, -0.25)])
     grid = PadGrid(separation, np.arange(separation.size)[-61::12])
-    form = CompactPad(-5.0, 0.15, 0.006, 0.3, 0.01, 0.02, 0.05, 1.0, 0.5, hamaker)
+    form = CompactPad(-5.0, 0.15, 0.006, 0.3, 0.01, 0.02, 0.05, 1.0, 0.5, 0.0, hamaker)
     shifts = np.random.default_rng(5).normal(0, 1.5, 24)
     closing = np.array([form.closing_GPa(separation + shift) for shift in shifts])
     opening = np.array(

@@ -7,6 +7,13 @@ GRID_SETTINGS = {
     for key, value in settings("pad").items()
     if key in ("pilot_cells", "max_pressure_MPa", "step_nm", "depths", "first_seed")
 }
+# which of the switch's settings say how hard it presses; none where the scene says it
+GRID_DEVICE = {
+    key: value
+    for key, value in settings("device").items()
+    if SCENE.pad.max_pressure_MPa is None
+    and key not in ("bow_deviation_nm", "tilt_nm", "tilt_deviation_nm", "adhesion_scale", "samples")
+}
 DRAW_CHUNKS = chunk_bounds(SCENE.pad.draws, SCENE.pad.chunk_draws)
 DRAW_SETTINGS = {key: settings("pad")[key] for key in ("draws", "draw_cells", "gap_cutoff_high_nm", "first_seed")}
 
@@ -31,6 +38,7 @@ rule plan_pad:
     params:
         contact=settings("contact"),
         pad=GRID_SETTINGS,
+        device=GRID_DEVICE,
     message:
         "choose the separations that the cells of the pad share"
     script:

@@ -3,7 +3,7 @@
 In: inputs.csv.  Out: pad/draws/chunk_NNN.csv (MPa against nm).
 """
 
-from mesoscale.device.release import pressure_to_compute
+from mesoscale.device.release import DEVIATIONS, pressure_to_compute
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad.draws import close_draws, draw_rows, plan_draws
 from mesoscale.settings import DeviceSettings, PadSettings
@@ -15,7 +15,7 @@ with job(snakemake) as run:
     contact = contact_settings(snakemake.params.contact, snakemake)
     pad = PadSettings(**snakemake.params.pad)
     draws = plan_draws(from_rows(load_csv(snakemake.input.inputs)), contact, pad)[slice(*snakemake.params.bounds)]
-    wanted = pressure_to_compute(DeviceSettings(**snakemake.params.device))
+    wanted = pressure_to_compute(DeviceSettings(**snakemake.params.device), DEVIATIONS)
     laws = close_draws(draws, contact, pad, wanted, run.progress)
     write_csv(
         snakemake.output[0],

@@ -17,7 +17,7 @@ HISTORY_NM = (60.0, 30.0, 26.0, 28.0, 33.0, 60.0, 30.0, 27.0, 23.0, 25.0, 30.0, 
 
 
 def pad():
-    compact = CompactPad(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 0.215)
+    compact = CompactPad(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 2.0, 0.215)
     s = np.arange(19.0, 80.0, 0.1)
     depths = np.array([20.0, 22.0, 24.0, 26.0, 28.0])
     law = tabulated(compact, PadLaw(s, np.zeros((2, s.size)), depths, np.zeros((5, 2, s.size)), 0.215))

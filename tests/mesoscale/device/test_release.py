@@ -1,16 +1,26 @@
 """The answer: shares of the variance, the response of a pad to its inputs, and the switch on both."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.stats import qmc
 
 from mesoscale.device.beam_kernels import BANDS, solve_bands
-from mesoscale.device.release import first_order, plan_points, pressure_to_compute, try_answer
-from mesoscale.errors import InputError
+from mesoscale.device.release import (
+    _probability,
+    first_order,
+    plan_points,
+    pressure_to_compute,
+    solve_or_bound,
+    try_answer,
+)
+from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.compact import CompactPad
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.draws import Draw, draw_rows, latin_hypercube, laws_of_rows
+from mesoscale.pad.draws import Draw, draw_rows, laws_of_rows
 from mesoscale.pad.response import SampledPad, fit_response, law_of_compact
 from mesoscale.settings import DeviceSettings
 
@@ -23,19 +33,19 @@ MIDDLE = TABLE.medians()
 PLATE = DeviceSettings(spring_N_per_m=170.0)
 
 
-def true_pad(values, gap_cutoff_nm):
+def true_pad(values, gap_cutoff_nm, lifted=0.0):
     """A closed form that depends on the inputs as a response can."""
     z, size = (values["e_star"] - 90.0) / 10.0, np.log(values["rms"] / MIDDLE["rms"])
     rms = values["rms"]
     strength = values["hamaker"] * np.exp(-1.5 + 0.1 * z - 1.2 * np.log(gap_cutoff_nm / 0.165))
     return CompactPad(
         -4.0 + 0.2 * z + 0.3 * size, 3.0 / rms, 0.05 / rms**2, (2.5 + 0.3 * z) / rms, 0.2 / rms**2, 0.05 / rms**2,
-        strength, 0.95, 0.5, values["hamaker"],
+        strength, 0.95, 0.5, lifted, values["hamaker"],
     )  # fmt: skip
 
 
-def sampled(values, gap_cutoff_nm, cells=4):
-    compact = true_pad(values, gap_cutoff_nm)
+def sampled(values, gap_cutoff_nm, cells=4, lifted=0.0):
+    compact = true_pad(values, gap_cutoff_nm, lifted)
     s = np.linspace(0.05, 12.0, 600) * values["rms"]
     law = law_of_compact(compact, np.full(s.size, 0.05), s, depths=5)
     return SampledPad(values, gap_cutoff_nm, cells, law)
@@ -43,17 +53,18 @@ def sampled(values, gap_cutoff_nm, cells=4):
 
 @pytest.fixture(scope="module")
 def pads():
-    units = latin_hypercube(12, 4, 1)
+    units = qmc.LatinHypercube(4, rng=1).random(12)
     values = [dict(zip(TABLE.names, row, strict=True)) for row in TABLE.transform(units[:, :3]).tolist()]
     cutoffs = 0.165 + 0.1 * units[:, 3]
     return [sampled(MIDDLE, 0.165, 64), *(sampled(row, cut) for row, cut in zip(values, cutoffs, strict=True))]
 
 
-def test_the_response_finds_a_closed_form_that_is_of_its_kind(pads):
+@pytest.mark.parametrize("lifted", [0.0, 4.0])
+def test_the_response_finds_a_closed_form_that_is_of_its_kind(pads, lifted):
     """Pads without scatter: the form at inputs that no pad had is the true one."""
-    response = fit_response(pads, TABLE)
+    response = fit_response([sampled(pad.values, pad.gap_cutoff_nm, lifted=lifted) for pad in pads], TABLE)
     values = {"hamaker": 0.2, "e_star": 84.0, "rms": 7.0}
-    state, wanted = response.at(values, 0.2), true_pad(values, 0.2)
+    state, wanted = response.at(values, 0.2), true_pad(values, 0.2, lifted)
     s = np.linspace(10.0, 30.0, 50)
     for ours, theirs in zip(state.opening_GPa(s, 9.0), wanted.opening_GPa(s, 9.0), strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=1e-6)
@@ -79,17 +90,12 @@ def test_curves_of_draws_come_back_from_their_rows(pads):
 
 def test_shares_of_the_variance_are_those_of_a_known_function():
     """y = 3 x1 + x2^2: variances 9/3 and 4/45."""
-    units = latin_hypercube(200, 3, 2)
+    units = qmc.LatinHypercube(3, rng=2).random(200)
     x = 2.0 * units - 1.0
     shares, error = first_order(units, 3.0 * x[:, 0] + x[:, 1] ** 2)
     total = 3.0 + 4.0 / 45.0
     np.testing.assert_allclose(shares, [3.0 / total, 4.0 / 45.0 / total, 0.0], atol=0.02)
     assert error < 1e-9
-
-
-def test_a_latin_hypercube_has_one_point_in_each_part_of_every_side():
-    units = latin_hypercube(10, 4, 3)
-    np.testing.assert_array_equal(np.sort((units * 10).astype(int), axis=0), np.tile(np.arange(10)[:, None], 4))
 
 
 def test_geometry_counts_only_where_the_electrode_bends():
@@ -105,6 +111,33 @@ def test_pads_are_computed_to_more_than_the_plate_can_press():
     plate, beam = pressure_to_compute(PLATE)(s), pressure_to_compute(DeviceSettings())(s)
     assert (beam > plate).all()
     assert plate[0] > plate[1]
+    assert (pressure_to_compute(DeviceSettings(), 1.0)(s) > beam).all()
+    assert (pressure_to_compute(DeviceSettings(), 1.0, 7.0)(s) == 0.007).all()
+
+
+@pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
+def test_a_switch_whose_held_state_was_not_computed_sticks_if_it_sticks_when_held_by_less(settings):
+    s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
+    adhesive = replace(true_pad(MIDDLE, 0.165), beta=0.5)
+    enough, less = (law_of_compact(adhesive, pressure_to_compute(settings, 0.0, MPa)(s), s) for MPa in (80.0, 10.0))
+    computed, bounded = solve_or_bound(settings, enough), solve_or_bound(settings, less)
+    assert computed["release_V"] == bounded["release_V"] == 0.0
+    assert (computed["bounded"], bounded["bounded"]) == (0.0, 1.0)
+    assert np.isnan(bounded["capacitance_fF"])
+
+
+def test_a_switch_that_the_bound_does_not_decide_stays_refused():
+    s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
+    smooth = replace(true_pad(MIDDLE, 0.165), beta=0.0, hamaker=1e-9)
+    with pytest.raises(NotComputed, match="max_pressure_MPa"):
+        solve_or_bound(DeviceSettings(), law_of_compact(smooth, np.full(s.size, 0.005), s))
+
+
+def test_refused_points_widen_the_probability_of_sticking():
+    closed, opened = _probability(4, 10, 0), _probability(4, 8, 2)
+    assert opened["value"] == 0.5
+    assert opened["low"] == closed["low"]
+    assert opened["high"] > closed["high"]
 
 
 def test_the_answer_keeps_its_causes_apart(pads):
