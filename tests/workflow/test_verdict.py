@@ -99,3 +99,15 @@ def test_central_pad_alone_says_that_its_interval_is_of_the_cells():
     release, _ = release_cards(_results(pad))
     assert release["value"] == "sticks"
     assert "holds the 16 computed cells alone" in release["detail"]
+
+
+def test_a_switch_that_always_sticks_is_not_said_to_depend_on_an_input():
+    pad = _pad(1.0)
+    answer = pad["answer"]
+    answer["causes"] = [{**row, "share_of_variance": 0.0} for row in answer["causes"]]
+    answer["release_V"] = _described(0.0, 0.0, 0.0)
+    answer["design"] = {"points": 64}
+    said = verdict(_results(pad), SOUND)
+    assert said.startswith("The switch sticks; so it does at all 64 points")
+    assert "stiffer" in said
+    assert release_cards(_results(pad))[0]["detail"].endswith("all points give the same")

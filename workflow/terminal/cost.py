@@ -32,7 +32,8 @@ RESPONSE_RUN_S = 0.0082  # of a direct run, in regressions and their validation
 DRAWN_PAD_S = 0.9  # of a set of inputs, in the answer of the switch
 RELEASE_S = 0.015  # law and switch after a cycle
 CELL_S = {"asperity": 3.2, "coupled": 4.5}  # a pad's cell over a cycle: it opens from several depths
-DRAW_CELL = 1.5  # a cell of a pad at other inputs over one of the pad: it is pressed harder
+PRESSED = {"asperity": 1.0, "coupled": 9.0}  # that which a switch presses over it
+DRAW_CELL = {"asperity": 1.5, "coupled": 0.8}  # a cell of a pad at other inputs over one of the pad
 OPENED_CELL = 2.0  # a cell of scene adhesion over one of the pad: it is closed twice
 SCAN_S = 0.8  # analysis of a scan of the reference grid
 SCF_S = 9.0  # one volume of 28 atoms at 100 hartree
@@ -116,7 +117,8 @@ class Costs:
     @property
     def cell_s(self) -> float:
         """Seconds of one cell of a pad."""
-        return CELL_S[self.scene.contact.mechanics] * self.cycle_s
+        mechanics = self.scene.contact.mechanics
+        return CELL_S[mechanics] * PRESSED[mechanics] * self.cycle_s
 
     @property
     def scf_size(self) -> float:
@@ -192,7 +194,8 @@ class Costs:
     def close_draws(self, wildcards: Mapping[str, str]) -> float:
         """A chunk of pads at other inputs; their cells are pressed harder, and two of each draw are pilots."""
         pad = self.scene.pad
-        return ENGINE_S + min(pad.chunk_draws, pad.draws) * (pad.draw_cells + 2) * DRAW_CELL * self.cell_s
+        draw_cell_s = DRAW_CELL[self.scene.contact.mechanics] * self.cell_s
+        return ENGINE_S + min(pad.chunk_draws, pad.draws) * (pad.draw_cells + 2) * draw_cell_s
 
     def open_pads(self, wildcards: Mapping[str, str]) -> float:
         """The pads of one case; the first half of the cases is of the first mechanics."""

@@ -44,7 +44,7 @@ def release_cards(results: Results) -> list[Card]:
     if answer:
         held = ", ".join(CAUSES[row["cause"]] for row in answer["causes"] if row["share_of_variance"] > 0)
         electrode = {"bending": "electrode that bends", "flat": "electrode flat on the pad"}[answer["electrode"]]
-        return _cards(answer, electrode, f"the interval holds {held}")
+        return _cards(answer, electrode, f"the interval holds {held}" if held else "all points give the same")
     if not pad or pad["mean"] is None:
         return []
     held = f"the interval holds the {pad['cells_computed']} computed cells alone, at central inputs"
@@ -96,6 +96,8 @@ def _bending(beam: dict[str, Any]) -> str:
 
 def _cause(answer: dict[str, Any]) -> str:
     largest = max(answer["causes"], key=lambda row: row["share_of_variance"])
+    if largest["share_of_variance"] == 0:
+        return f"so it does at all {answer['design']['points']} points of inputs, D₀ and geometry"
     if largest["cause"] == "cells" or not answer["sensitivity"]:
         return f"{largest['share_of_variance']:.0%} of the spread is {CAUSES[largest['cause']]}"
     first = answer["sensitivity"][0]
@@ -110,6 +112,8 @@ def _next(pad: dict[str, Any], gates: Sequence[Gate]) -> str:
     if answer:
         cells = next(row["share_of_variance"] for row in answer["causes"] if row["cause"] == "cells")
         rows = answer["sensitivity"]
+        if answer["stuck"]["value"] == 1.0:
+            return "no better measurement would free it, a stiffer or shorter beam might"
         if not rows or cells > rows[0]["share_of_variance"]:
             return "compute more cells next (pad.cells)"
         what = NAMES[rows[0]["name"]][1] if rows[0]["name"] in NAMES else f"{symbol(rows[0]['name'])} better"

@@ -5,7 +5,7 @@ const GAUSS_WEIGHT = [0.34785484513745385, 0.6521451548625461, 0.652145154862546
 const BANDS = 3; // on either side of the diagonal
 const WIDTH = 3 * BANDS + 1; // with room for row exchanges
 const BEAM = {
-  elements: 64, contact_GPa: 1e-6, steps: 6000, largestStep_nm: 20, largestChange_nm: 1, shareOfWay: 0.25,
+  elements: 128, contact_GPa: 1e-6, steps: 6000, largestStep_nm: 20, largestChange_nm: 1, shareOfWay: 0.25,
   settled_nm: 1e-3, settled_Pa: 1, releaseTolerance: 1e-3, depths: 96, rises: 1200, highestRise_nm: 60,
   freeShare: 0.5,
 };

@@ -69,7 +69,10 @@ def _answer(answer: dict) -> list[Table]:
     """Release over all causes, and which input to measure better."""
 
     def spread(key: str) -> str:
-        low, middle, high = (answer[key]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
+        quantiles = answer[key]["quantiles"]
+        if not quantiles:
+            return "–"
+        low, middle, high = (quantiles[q] for q in ("0.05", "0.5", "0.95"))
         return f"{show(middle)} [{show(low)}, {show(high)}]"
 
     stuck, design = answer["stuck"], answer["design"]
@@ -80,6 +83,7 @@ def _answer(answer: dict) -> list[Table]:
         ("capacitance closed (fF)", spread("capacitance_fF")),
         *((f"share of the variance by {row['cause']}", f"{row['share_of_variance']:.1%}") for row in answer["causes"]),
         ("switches solved, and refused", f"{design['points']}, {len(design['refused'])}"),
+        ("of them stick already when held by less than what was computed", str(design["bounded"])),
     ]
     measured = [
         (row["name"], f"{row['share_of_variance']:.1%}", f"{row['interval_shrinks_by']:.1%}")
