@@ -41,6 +41,7 @@ SCENES = ROOT / "config" / "scenes"
 DEFAULTS = ROOT / "config" / "config.yaml"
 COMPUTED = ("hardness", "elastic", "topography")
 SHOWN = 60  # characters of a value or key in a message
+GONE = {"device.landed_fraction": "no longer a setting, delete it: gap_um, bow_nm and tilt_nm say what is in contact"}
 
 
 class SceneError(Exception):
@@ -229,6 +230,8 @@ def _explain(path: Path, error: Any) -> str:
     """One line for one pydantic error."""
     location = tuple(part for part in error["loc"] if part != "__root__")
     key = ".".join(_cut(str(part)) for part in location)
+    if key in GONE:
+        return f"{path}: {key}: {GONE[key]}"
     if error["type"] == "extra_forbidden":
         owner = _model_at(location[:-1])
         known = list(owner.model_fields) if owner else []

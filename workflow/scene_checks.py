@@ -82,6 +82,12 @@ def _stages(scene: Scene) -> Iterator[str]:
             f"device: an electrode of {area_um2:g} um^2 (electrode_um2, or length_um times width_um) is smaller than "
             f"one cell of {side_um:g} um (contact.length_nm); take a larger electrode or a smaller cell"
         )
+    lowest_nm = 1e3 * device.gap_um + min(device.bow_nm, 0.0) - device.tilt_nm / 2
+    if device.spring_N_per_m is None and lowest_nm <= 0:
+        yield (
+            f"device: at rest the electrode is {lowest_nm:.4g} nm above the dielectric at its lowest; lower bow_nm or "
+            "tilt_nm, or raise gap_um"
+        )
     synthetic = scene.topography.synthetic
     if "topography" in scene.stages() and not (
         scene.topography.scans or synthetic.small_scans or synthetic.large_scans

@@ -42,8 +42,8 @@ class SwitchModel:
     @classmethod
     def of(cls, device: DeviceSettings, law: LawSettings, cell_area_nm2: float) -> "SwitchModel":
         """The switch that the settings describe."""
-        switch = switch_from_settings(device)
-        landed = switch.landed_fraction * switch.area_m2 * 1e18
+        switch = switch_from_settings(device, law.rho_a_nm)
+        landed = switch.last_share * switch.area_m2 * 1e18
         return cls(switch, device.adhesion_scale, law, max(landed / cell_area_nm2, 1.0))
 
     def laws(self, values: Array, hamaker: Array) -> tuple[Law, Law]:
@@ -68,7 +68,7 @@ class SwitchModel:
         inner = d_c - np.maximum(depth, 1e-6) * np.linspace(1, 0, INNER) ** 2
         near = d_c + (onset - d_c) * np.linspace(0, 1, 25)[1:]
         grid = np.concatenate([inner, near, self._outside(onset)], axis=1)
-        path = self.switch.voltage_squared(grid, law)
+        path = self.switch.voltage_squared(grid, law, self.switch.last_share)
         wall = np.argmax(np.where(grid <= d_c, path, -np.inf), axis=1)
         barrier = np.argmax(np.where(grid >= onset, path, -np.inf), axis=1)
         places = np.arange(grid.shape[1])

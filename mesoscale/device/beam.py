@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.device.beam_kernels import NM, deflect, newton_step
+from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
 
 Array = NDArray[np.float64]
@@ -78,7 +79,12 @@ class Beam:
 
 
 def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
-    """The beam that the settings describe, with its bow and tilt at rest."""
+    """The beam that the settings describe, with its bow and tilt at rest.
+
+    Raises
+    ------
+    InputError : it touches the dielectric at rest.
+    """
     length, width = settings.length_um * 1e-6, settings.width_um * 1e-6
     thickness = settings.thickness_um * 1e-6
     bending = settings.youngs_modulus_GPa * 1e9 * width * thickness**3 / 12.0
@@ -89,6 +95,11 @@ def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
     rest = settings.gap_um * 1e-6 + NM * (
         settings.bow_nm * 0.5 * (1.0 - np.cos(2.0 * np.pi * share)) + settings.tilt_nm * (share - 0.5)
     )
+    if rest.min() <= 0.0:
+        raise InputError(
+            f"device: at rest the electrode is {rest.min() / NM:.4g} nm above the dielectric at its lowest; lower "
+            "bow_nm or tilt_nm, or raise gap_um"
+        )
     return Beam(length, width, bending, tension, rest, at)
 
 

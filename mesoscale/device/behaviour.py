@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.device.capacitance import rough_capacitance_F
 from mesoscale.device.contact_law import SAMPLED, law_from_columns, physical, scale_adhesion, take
 from mesoscale.device.statistics import (
     analytic_pull_in_V,
@@ -15,7 +14,14 @@ from mesoscale.device.statistics import (
     describe_states,
     stiction_curve,
 )
-from mesoscale.device.switch import Switch, SwitchStates, solve_switch, sweep, switch_from_settings
+from mesoscale.device.switch import (
+    Switch,
+    SwitchStates,
+    rough_capacitance_F,
+    solve_switch,
+    sweep,
+    switch_from_settings,
+)
 from mesoscale.errors import InputError
 from mesoscale.law.compact import Law
 from mesoscale.law.parameters import BRANCHES, FITTED, PARAMETERS
@@ -133,7 +139,7 @@ def drive_switch(
     ----------
     law_pressure_MPa : largest contact pressure that the law was fitted to; beyond it the law extrapolates
     """
-    switch = switch_from_settings(settings)
+    switch = switch_from_settings(settings, samples.laws["opening"].rho_a_nm)
     closing, opening = samples.laws["closing"], samples.laws["opening"]
     states = {
         "with_adhesion": solve_switch(switch, closing, opening, settings.hold_voltage_V),
@@ -148,7 +154,7 @@ def drive_switch(
     rms = samples.columns["rms"]
     up_nm = np.full(1, switch.gap_nm)
     results = {
-        "switch": {**asdict(switch), "landed_fraction": settings.landed_fraction},
+        "switch": asdict(switch),
         "adhesion_scale": settings.adhesion_scale,
         "samples": {"used": len(rms), "dropped": samples.dropped},
         "nominal_law": _nominal_json(samples),
@@ -160,18 +166,19 @@ def drive_switch(
             "down_rough": describe(rough_capacitance_F(switch, kept.hold_nm[down], rms[down]) * 1e15),
         },
         "checks": _checks(switch, samples, states),
-        "warnings": _warnings(settings, states, extrapolates, float(np.nanmedian(hold_MPa)), law_pressure_MPa),
+        "warnings": _warnings(switch, states, extrapolates, float(np.nanmedian(hold_MPa)), law_pressure_MPa),
     }
     return results, states
 
 
 def switch_path(samples: LawSamples, settings: DeviceSettings) -> list[dict[str, Any]]:
     """W(s) of the nominal law on both branches, with and without adhesion, for the picture of the path."""
-    switch = switch_from_settings(settings)
+    switch = switch_from_settings(settings, samples.laws["opening"].rho_a_nm)
+    shares = {"closing": 1.0, "opening": switch.last_share}
     rows = []
     for case, factor in zip(CASES, (1.0, 0.0), strict=True):
         for branch in BRANCHES:
-            separation, squared = sweep(switch, scale_adhesion(samples.nominal[branch], factor))
+            separation, squared = sweep(switch, scale_adhesion(samples.nominal[branch], factor), shares[branch])
             slope = np.gradient(squared, separation, edge_order=1)
             for s, w, stable in zip(separation, squared, slope < 0, strict=True):
                 rows.append(
@@ -196,7 +203,7 @@ def state_rows(states: dict[str, SwitchStates]) -> list[dict[str, Any]]:
             "release_V": float(state.release_V[i]),
             "release_nm": float(state.release_nm[i]),
             "stuck": int(state.stuck[i]),
-            "critical_landed_fraction": float(state.critical_fraction[i]),
+            "critical_share": float(state.critical_fraction[i]),
         }
         for case, state in states.items()
         for i in range(len(state.stuck))
@@ -204,7 +211,7 @@ def state_rows(states: dict[str, SwitchStates]) -> list[dict[str, Any]]:
 
 
 def stiction_rows(states: dict[str, SwitchStates]) -> list[dict[str, float]]:
-    """Rows of device/stiction.csv: probability of stiction against landed fraction."""
+    """Rows of device/stiction.csv: probability of stiction against the share in contact."""
     return stiction_curve(states["with_adhesion"].critical_fraction)
 
 
@@ -239,7 +246,7 @@ def _checks(switch: Switch, samples: LawSamples, states: dict[str, SwitchStates]
 
 
 def _warnings(
-    settings: DeviceSettings,
+    switch: Switch,
     states: dict[str, SwitchStates],
     extrapolates: bool,
     hold_MPa: float,
@@ -248,13 +255,13 @@ def _warnings(
     warnings = []
     if extrapolates:
         warnings.append(
-            f"held closed, the landed part carries {hold_MPa:.0f} MPa (median), more than the "
+            f"held closed, the contact carries {hold_MPa:.3g} MPa (median), more than the "
             f"{law_pressure_MPa:.3g} MPa that the law was fitted to: the closed separation is extrapolated"
         )
     stuck = states["with_adhesion"].stuck.mean()
     if stuck > 0.5:
         warnings.append(
-            f"{stuck:.0%} of the samples stick at a landed fraction of {settings.landed_fraction:g}; the "
+            f"{stuck:.0%} of the samples stick by the {switch.last_share:.2%} of the electrode that come off last; the "
             "law's adhesion is at least ten times the measured dry adhesion of such surfaces"
         )
     return warnings

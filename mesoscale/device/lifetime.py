@@ -64,7 +64,7 @@ def cycle_row(
         **{f"opening_{name}": _number(getattr(fits.opening, name)) for name in PARAMETERS},
         "opening_status": fits.opening.status,
         "release_V": release,
-        "critical_landed_fraction": critical,
+        "critical_share": critical,
         "converged": bool(cycle.converged and held.missed == 0),
     }
 
@@ -83,7 +83,7 @@ def dwell_rows(seed: int, held: HeldCycle, contact: ContactSettings, settings: H
 def _release(
     closing: LawFit, opening: LawFit, hamaker: float, law: LawSettings, device: DeviceSettings
 ) -> tuple[float | None, float | None]:
-    """Release voltage (0: stuck) and critical landed fraction; None where a branch has no law."""
+    """Release voltage (0: stuck) and critical share; None where a branch has no law."""
     laws = []
     for fit in (closing, opening):
         if not np.all(np.isfinite(fit.parameters)):

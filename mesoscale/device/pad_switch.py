@@ -4,7 +4,7 @@ The force balance is that of `mesoscale.device.switch` with the whole electrode 
 extrapolated: a held state beyond the computed closing, or an opening from a depth that was not computed, is refused.
 """
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -192,11 +192,13 @@ def law_on_pad(
         law = law_of_fit(fit, hamaker, settings)
         laws.append(law)
         wells.append((well_of_law(law, float(at[0]), float(at[-1])), well_of(at, repulsive + attractive)))
-    states = solve_switch(replace(switch, landed_fraction=1.0), laws[0], laws[1], hold_voltage_V)
+    states = solve_switch(switch, laws[0], laws[1], hold_voltage_V)
+    forgetful = solve_switch(switch, laws[0], laws[0], hold_voltage_V)
     by_law, by_curve = wells[1]
     return {
         "opened_from_nm": float(cells.grid.depth_nm[number]),
         "release_V": float(states.release_V[0]),
+        "release_without_memory_V": float(forgetful.release_V[0]),
         "hold_nm": float(states.hold_nm[0]),
         "well_law_kPa": by_law.depth_GPa * 1e6,
         "well_curve_kPa": by_curve.depth_GPa * 1e6,

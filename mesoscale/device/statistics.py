@@ -47,20 +47,20 @@ def describe_states(states: SwitchStates) -> dict[str, Any]:
         "release_V": describe(np.where(states.stuck, np.nan, states.release_V)),
         "release_nm": describe(np.where(states.stuck, np.nan, states.release_nm)),
         "stiction_probability": probability(int(states.stuck.sum()), total),
-        "critical_landed_fraction": describe(states.critical_fraction),
+        "critical_share": describe(states.critical_fraction),
         "hold_nm": describe(states.hold_nm),
         "hold_pressure_MPa": describe(states.hold_pressure_GPa * 1e3),
     }
 
 
 def stiction_curve(critical_fraction: np.ndarray, points: int = 61) -> list[dict[str, float]]:
-    """Probability of stiction against landed fraction (it sticks above its critical fraction)."""
+    """Probability of stiction against the share in contact (it sticks above its critical share)."""
     rows = []
     for fraction in np.logspace(-4, 0, points):
         share = probability(int((critical_fraction < fraction).sum()), len(critical_fraction))
         rows.append(
             {
-                "landed_fraction": float(fraction),
+                "share": float(fraction),
                 "stiction_probability": share["value"],
                 "low": share["low"],
                 "high": share["high"],

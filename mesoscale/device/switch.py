@@ -5,7 +5,8 @@ balance when
 
     k (g - s) + phi A p(s) = eps0 A V^2 / (2 (s + t/eps)^2)
 
-with p the contact pressure of the law (positive = repulsive) and phi the landed fraction.  Solved for the
+with p the contact pressure of the law (positive = repulsive) and phi the share of the area that is in contact: all of
+it while closing, and while opening the strip of a bent beam that comes off last.  Solved for the
 voltage, W(s) = V^2 is a single-valued function of s, so the whole equilibrium path, stable or not, is one
 sweep in s.  A state is stable where W falls with s; the folds, where it turns, are pull-in and release.
 """
@@ -34,25 +35,25 @@ class Switch:
     gap_nm : separation g at rest.
     area_m2 : electrode area A.
     dielectric_nm : thickness t divided by the relative permittivity.
-    landed_fraction : share phi of the area that feels the contact law.
+    last_share : share of the area that is in contact just before the switch lets go; 1 for a flat plate.
     """
 
     spring_N_per_m: float
     gap_nm: float
     area_m2: float
     dielectric_nm: float
-    landed_fraction: float
+    last_share: float = 1.0
 
-    def net_force_N(self, separation_nm: np.ndarray, law: Law | None) -> np.ndarray:
-        """Force that opens the switch, electrostatics apart: spring and contact."""
+    def net_force_N(self, separation_nm: np.ndarray, law: Law | None, share: float = 1.0) -> np.ndarray:
+        """Force that opens the switch, electrostatics apart: spring, and contact on a share of the area."""
         force = self.spring_N_per_m * (self.gap_nm - separation_nm) * NM
-        if law is not None and self.landed_fraction > 0:
-            force = force + self.landed_fraction * self.area_m2 * pressure_GPa(separation_nm, law) * GPA
+        if law is not None:
+            force = force + share * self.area_m2 * pressure_GPa(separation_nm, law) * GPA
         return force
 
-    def voltage_squared(self, separation_nm: np.ndarray, law: Law | None) -> np.ndarray:
+    def voltage_squared(self, separation_nm: np.ndarray, law: Law | None, share: float = 1.0) -> np.ndarray:
         """W(s) in V^2; negative where adhesion holds the switch without any voltage."""
-        return self.balancing_V2(separation_nm, self.net_force_N(separation_nm, law))
+        return self.balancing_V2(separation_nm, self.net_force_N(separation_nm, law, share))
 
     def balancing_V2(self, separation_nm: np.ndarray, opening_force_N: np.ndarray) -> np.ndarray:
         """Square of the voltage (V^2) whose attraction balances a force that opens the switch."""
@@ -63,6 +64,26 @@ class Switch:
     def capacitance_F(self, separation_nm: np.ndarray) -> np.ndarray:
         """Parallel-plate capacitance at a mean separation."""
         return VACUUM_PERMITTIVITY * self.area_m2 / ((np.asarray(separation_nm) + self.dielectric_nm) * NM)
+
+
+def rough_capacitance_F(switch: Switch, separation_nm: np.ndarray, rms_nm: np.ndarray) -> np.ndarray:
+    """Capacitance of a flat plate over Gaussian heights, contacting sites flattened to zero gap.
+
+    C/A = eps0 <1 / (max(s + h, 0) + t/eps)>, h normal with deviation rms: each site is a small plate
+    capacitor of its own (slopes are neglected).  Always above the plate value at the same mean separation.
+
+    Parameters
+    ----------
+    separation_nm, rms_nm : arrays of one shape, nm
+    """
+    separation = np.atleast_1d(np.asarray(separation_nm, dtype=float))
+    rms = np.broadcast_to(np.asarray(rms_nm, dtype=float), separation.shape)
+    # trapezoidal sum over +-8 deviations: exponentially accurate for the smooth part, 1e-4 at the kink
+    heights = np.linspace(-8, 8, 641)
+    weights = np.exp(-(heights**2) / 2)
+    weights /= weights.sum()
+    gaps = np.maximum(separation[:, None] + rms[:, None] * heights, 0.0) + switch.dielectric_nm
+    return VACUUM_PERMITTIVITY * switch.area_m2 / NM * (weights / gaps).sum(axis=1)
 
 
 def beam_stiffness_N_per_m(settings: DeviceSettings) -> float:
@@ -77,15 +98,24 @@ def beam_stiffness_N_per_m(settings: DeviceSettings) -> float:
     return bending + tension
 
 
-def switch_from_settings(settings: DeviceSettings) -> Switch:
-    """The lumped switch that the settings describe."""
+def switch_from_settings(settings: DeviceSettings, range_nm: float | None = None) -> Switch:
+    """The lumped switch that the settings describe.
+
+    A clamped beam held down at mid-span has the curvature 24 g / L^2 there, so what comes off last are the places
+    within a distance x of mid-span with 12 g x^2 / L^2 below the range of adhesion: a share sqrt(range / (3 g)).
+
+    Parameters
+    ----------
+    range_nm : of the law's near attraction; None: it comes off at once, as the plate of a given spring.
+    """
     area = settings.electrode_um2 or settings.length_um * settings.width_um
+    bends = range_nm is not None and settings.spring_N_per_m is None
     return Switch(
         spring_N_per_m=settings.spring_N_per_m or beam_stiffness_N_per_m(settings),
         gap_nm=settings.gap_um * 1e3,
         area_m2=area * 1e-12,
         dielectric_nm=settings.dielectric_nm / settings.permittivity,
-        landed_fraction=settings.landed_fraction,
+        last_share=min(float(np.sqrt(range_nm / (3.0 * settings.gap_um * 1e3))), 1.0) if bends else 1.0,
     )
 
 
@@ -100,7 +130,7 @@ class SwitchStates:
     release_V : voltage at which the closed switch lets go; 0 where it never does.
     release_nm : separation at that fold.
     stuck : True where the closed switch stays closed at 0 V.
-    critical_fraction : landed fraction above which the switch sticks; inf without any net adhesion.
+    critical_fraction : share in contact above which the switch sticks; inf without any net adhesion.
     hold_nm : separation at the hold voltage.
     hold_pressure_GPa : contact pressure there.
     """
@@ -140,13 +170,13 @@ def drive_switch(settings: DeviceSettings, closing: Law, opening: Law) -> Switch
     `settings.hold_voltage_V`.
     """
     closing, opening = (scale_adhesion(law, settings.adhesion_scale) for law in (closing, opening))
-    return solve_switch(switch_from_settings(settings), closing, opening, settings.hold_voltage_V)
+    return solve_switch(switch_from_settings(settings, opening.rho_a_nm), closing, opening, settings.hold_voltage_V)
 
 
-def sweep(switch: Switch, law: Law, points: int = 600) -> tuple[np.ndarray, np.ndarray]:
-    """Separations (nm) and W(s) (V^2) of one law from deep contact to rest, for a picture of the path."""
+def sweep(switch: Switch, law: Law, share: float, points: int = 600) -> tuple[np.ndarray, np.ndarray]:
+    """Separations (nm) and W(s) (V^2) of one law on a share of the area, from deep contact to rest, for a picture."""
     grid = _separations(switch, flat(law, 1), inner=points // 2, outer=points - points // 2)[0]
-    return grid, switch.voltage_squared(grid, law)
+    return grid, switch.voltage_squared(grid, law, share)
 
 
 def _separations(switch: Switch, law: Law, inner: int = 160, outer: int = 120) -> np.ndarray:
@@ -189,17 +219,17 @@ def _solve_block(switch: Switch, closing: Law, opening: Law, hold_voltage_V: flo
 
     # release: the lowest point of W between the repulsive wall and the barrier
     grid = _separations(switch, opening)
-    curve = switch.voltage_squared(grid, up)
+    curve = switch.voltage_squared(grid, up, switch.last_share)
     columns = np.arange(grid.shape[1])
     wall = np.argmax(np.where(grid <= np.asarray(up.d_c_nm), curve, -np.inf), axis=1)
     barrier = np.argmax(np.where(grid >= onset_nm(up), curve, -np.inf), axis=1)
     path = (columns >= wall[:, None]) & (columns <= barrier[:, None])
     lowest = np.argmin(np.where(path, curve, np.inf), axis=1)
-    release_nm, release_W = _refine(lambda s: switch.voltage_squared(s, up), grid, lowest)
+    release_nm, release_W = _refine(lambda s: switch.voltage_squared(s, up, switch.last_share), grid, lowest)
     stuck = release_W <= 0
     release_V = np.sqrt(np.maximum(release_W, 0))
 
-    # critical landed fraction: spring and adhesion just balance where adhesion is relatively strongest
+    # critical share: spring and adhesion just balance where adhesion is relatively strongest
     def fraction(separation: np.ndarray) -> np.ndarray:
         adhesion = np.maximum(-pressure_GPa(separation, up), 1e-300) * GPA * switch.area_m2
         with np.errstate(over="ignore"):  # no adhesion: infinite

@@ -118,11 +118,10 @@ def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range, step_nm
     pad = PadSettings(
         pilot_cells=len(seeds),
         first_seed=seeds.start,
-        max_pressure_MPa=max(loads_GPa) * 1e3,
         step_nm=step_nm,
         depths=2,
     )
-    grid = plan_grid(case.inputs, case.contact, pad)
+    grid = plan_grid(case.inputs, case.contact, pad, lambda separation: np.full_like(separation, max(loads_GPa)))
     area = case.contact.length_nm**2
     shut = PadGrid(grid.separation_nm, np.empty(0, int))
     closing = assemble(shut, list(close_cells(case.inputs, case.contact, shut, seeds)), area)

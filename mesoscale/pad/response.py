@@ -152,12 +152,12 @@ def _attraction(columns: Array, wanted: Array, weights: Array, lifted: float) ->
 
 def _lifted(columns: Array, wanted: Array, weights: Array) -> float:
     """The `lifted` of least misfit."""
-    found = minimize_scalar(
+    best = minimize_scalar(
         lambda lifted: _attraction(columns, wanted, weights, lifted)[1],
         bounds=(0.0, MOST_LIFTED),
         options={"xatol": 1e-7},
     )
-    return float(found.x)
+    return float(best.x)
 
 
 def _varies(table: InputTable, name: str) -> bool:

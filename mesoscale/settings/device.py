@@ -70,14 +70,16 @@ class DeviceSettings(Settings):
         default=200.0,
         ge=0,
         le=1e5,
-        description="standard deviation of the bow, which is seldom measured",
+        description="standard deviation of the bow; the default is an assumption without a source, an uncertain "
+        "input of the answer",
         json_schema_extra={"unit": "nm"},
     )
     tilt_deviation_nm: float = Field(
         default=200.0,
         ge=0,
         le=1e5,
-        description="standard deviation of the tilt",
+        description="standard deviation of the tilt; the default is an assumption without a source, an uncertain "
+        "input of the answer",
         json_schema_extra={"unit": "nm"},
     )
     dielectric_nm: float = Field(
@@ -88,13 +90,6 @@ class DeviceSettings(Settings):
         ge=1,
         le=1e5,
         description="relative permittivity of the dielectric",
-    )
-    landed_fraction: float = Field(
-        default=0.01,
-        ge=0,
-        le=1,
-        description="share of the electrode area that meets the dielectric as in the law; a bowed or "
-        "tilted beam lands on little of it",
     )
     adhesion_scale: float = Field(
         default=1.0,

@@ -28,9 +28,9 @@ def test_scan_to_switches_in_ten_lines(film):
     roughness = asp.measure_roughness([asp.load_scan(film)])
     table = asp.input_table(topography=roughness)
     cycle = asp.run_cycle(asp.ContactInputs(**table.medians()), SMALL, seed=1)
-    switch = asp.drive_switch(asp.DeviceSettings(landed_fraction=1e-3), *asp.laws_of(cycle))
+    switch = asp.drive_switch(asp.DeviceSettings(), *asp.laws_of(cycle))
     samples = asp.monte_carlo(table, SMALL, samples=4)
-    switches = asp.drive_switch(asp.DeviceSettings(landed_fraction=1e-3), samples.closing, samples.opening)
+    switches = asp.drive_switch(asp.DeviceSettings(), samples.closing, samples.opening)
 
     # the surface was made with these
     low, high = roughness["estimates"]["hurst"]["interval"]

@@ -10,7 +10,7 @@ from workflow.schemas import STAGES, UnfitTable, schema_of
 from workflow.schemas.__main__ import PAGE, page
 
 RULES = Path(__file__).parents[2] / "workflow" / "rules"
-ROW = {"landed_fraction": 0.1, "stiction_probability": 0.5, "low": 0.4, "high": 0.6}
+ROW = {"share": 0.1, "stiction_probability": 0.5, "low": 0.4, "high": 0.6}
 TABLE = "results/mine/device/stiction.csv"
 
 
@@ -65,7 +65,7 @@ def test_what_was_written_is_read(tmp_path):
         (lambda text: text[:-5], "row 1 ends before column high"),
         (lambda text: text.replace("0.5", "0.\x005"), r"row 1, column stiction_probability: '0\.\\x005' is no number"),
         (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, high"),
-        (lambda text: "", "column landed_fraction is missing"),
+        (lambda text: "", "column share is missing"),
     ],
 )
 def test_a_damaged_table_is_refused_in_one_line(tmp_path, change, words):

@@ -70,18 +70,18 @@ def _cause_card(results: Results) -> dict[str, str]:
 def _switch_card(switch: dict[str, Any]) -> dict[str, str]:
     with_adhesion, without = switch["with_adhesion"], switch["without_adhesion"]
     stuck = with_adhesion["stiction_probability"]["value"]
-    fraction = f"{switch['switch']['landed_fraction']:g}"
+    last = f"{switch['switch']['last_share']:.2%} of the electrode come off last"
     release = with_adhesion["release_V"]["quantiles"]
     free = f"{show(without['release_V']['quantiles']['0.5'])} V without adhesion"
     if stuck >= 0.5 or not release:
         value = f"{stuck:.0%} stick"
-        detail = f"of the samples of the example switch, at a landed fraction of {fraction}; "
+        detail = f"of the samples of the example switch, where {last}; "
         detail += (
             f"the others release at {show(release['0.5'])} V (median); {free}" if release else f"release at {free}"
         )
     else:
         value = f"{show(release['0.5'])} V"
-        detail = f"median of the example switch; {free}; {stuck:.0%} stick at a landed fraction of {fraction}"
+        detail = f"median of the example switch; {free}; {stuck:.0%} stick, where {last}"
     return {"title": "Release", "value": value, "detail": detail}
 
 

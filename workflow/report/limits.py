@@ -41,8 +41,8 @@ def limits(results: Results) -> list[str]:
         "Time: no creep, unless the scene asks for it (history). The results hold for contacts shorter than the time "
         "over which asperities creep.",
         "No liquid films, no charging of the dielectric, no sliding.",
-        "The switch is a lumped plate on a spring; the landed fraction stands for all that a bowed or tilted beam "
-        "does.",
+        "The switch on one cell's law is a lumped plate on a spring that lands flat; the strip that comes off last "
+        "stands for how a beam peels. The switch on the pad bends, place by place.",
     ]
 
 

@@ -115,3 +115,31 @@ rule assemble_pad:
         "assemble the pad and drive the switch with it"
     script:
         "../scripts/assemble_pad.py"
+
+
+rule measure_pad_accuracy:
+    input:
+        **SURFACE,
+        inputs=f"{RESULTS}/inputs.csv",
+        grid=f"{RESULTS}/pad/grid.csv",
+        chunks=[f"{RESULTS}/pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS],
+        draws=[f"{RESULTS}/pad/draws/chunk_{chunk}.csv" for chunk in DRAW_CHUNKS],
+    output:
+        f"{RESULTS}/accuracy/pad.csv",
+    log:
+        f"{RESULTS}/logs/measure_pad_accuracy.log",
+    threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
+    params:
+        contact=settings("contact"),
+        pad=DRAW_SETTINGS,
+        device=settings("device"),
+        cells=SCENE.pad.cells,
+    message:
+        "study the error of the release on the pad against run time"
+    script:
+        "../scripts/measure_pad_accuracy.py"
+
+
+ACCURACY.append(f"{RESULTS}/accuracy/pad.csv")

@@ -144,7 +144,7 @@ TABLES = (
             *(number(f"opening_{row.name}", row.unit, f"{row.meaning}, on opening", empty=True) for row in LAW),
             text("opening_status", "ok, or why the fit of the opening is poor or missing"),
             number("release_V", "V", "release voltage of the switch (0: stuck)", empty=True),
-            number("critical_landed_fraction", "1", "landed fraction beyond which the switch sticks", empty=True),
+            number("critical_share", "1", "share in contact beyond which the switch sticks", empty=True),
             boolean("converged", "whether the cycle and its hold converged"),
         ),
     ),

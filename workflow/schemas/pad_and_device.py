@@ -114,14 +114,14 @@ TABLES = (
             number("release_V", "V", "release voltage (0: stuck)"),
             number("release_nm", "nm", "separation at release"),
             integer("stuck", "1 where the switch sticks, else 0"),
-            number("critical_landed_fraction", "1", "landed fraction beyond which the switch sticks"),
+            number("critical_share", "1", "share in contact beyond which the switch sticks"),
         ),
     ),
     Table(
         ("device/stiction.csv",),
-        "One landed fraction.",
+        "One share of the electrode in contact.",
         (
-            number("landed_fraction", "1", "share of the electrode that lands"),
+            number("share", "1", "share of the electrode that is in contact"),
             number("stiction_probability", "1", "share of the samples that stick"),
             number("low", "1", "lower end of its 95 % interval"),
             number("high", "1", "upper end of its 95 % interval"),

@@ -12,31 +12,22 @@ from mesoscale.device.pad_switch import switch_on_pad
 from mesoscale.device.release import try_answer
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import from_rows
-from mesoscale.pad.cells import grid_of_rows
 from mesoscale.pad.compact import compact_summary
-from mesoscale.pad.curves import PadCells, adhesion_by_cells, curve_rows
-from mesoscale.pad.draws import laws_of_rows, plan_draws
+from mesoscale.pad.curves import adhesion_by_cells, curve_rows
 from mesoscale.pad.memory import law_of
-from mesoscale.pad.response import SampledPad
 from mesoscale.pad.tail import fit_tail, tail_summary
 from mesoscale.settings import DeviceSettings, PadSettings
 from workflow.contact_settings import contact_settings
 from workflow.job import job
-from workflow.results import Dataset, load_csv, load_h5, load_numbers, write_csv, write_h5, write_json, write_text
+from workflow.pad_files import load_cells, load_draws
+from workflow.results import Dataset, load_csv, write_csv, write_h5, write_json, write_text
 
 with job(snakemake) as run:
-    grid = grid_of_rows(load_numbers(snakemake.input.grid))
-    chunks = [load_h5(path)[0]["cells"] for path in snakemake.input.chunks]
     contact = contact_settings(snakemake.params.contact, snakemake)
     pad = PadSettings(**snakemake.params.pad)
     area = contact.length_nm**2
-    cells = PadCells(
-        grid,
-        np.concatenate([chunk["first_contact_nm"] for chunk in chunks]),
-        np.concatenate([chunk["closing_nN"] for chunk in chunks]) / area,
-        np.concatenate([chunk["opening_nN"] for chunk in chunks]) / area,
-        np.concatenate([chunk["settled"] for chunk in chunks]).astype(bool),
-    )
+    cells = load_cells(snakemake.input.grid, snakemake.input.chunks, area)
+    grid = cells.grid
     device = DeviceSettings(**snakemake.params.device)
     inputs = from_rows(load_csv(snakemake.input.inputs))
     hamaker = inputs.medians()["hamaker"]
@@ -67,12 +58,7 @@ with job(snakemake) as run:
     write_text(snakemake.output.spice, spice_pad(law, cells.count))
     switch = switch_on_pad(cells, hamaker, device, area, tail)
     if pad.draws:
-        draws = plan_draws(inputs, contact, pad)
-        curves = laws_of_rows((row for path in snakemake.input.draws for row in load_csv(path)), draws)
-        pads = [
-            SampledPad(draw.values, draw.gap_cutoff_nm, pad.draw_cells, curve)
-            for draw, curve in zip(draws, curves, strict=True)
-        ]
+        pads = load_draws(snakemake.input.draws, inputs, contact, pad)
         _, central = contact_of(inputs.medians(), contact)
         switch |= try_answer(cells, pads, inputs, device, central.gap_cutoff_nm)
     write_json(snakemake.output.switch, switch, run.provenance)

@@ -247,6 +247,7 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "assemble_pad": lambda costs, wildcards: 4.0 + DRAWN_PAD_S * costs.scene.pad.draws,
     "solve_switch": _constant(1.6),
     "render_report": lambda costs, wildcards: 7.0 + len(costs.scene.stages()),
+    "measure_pad_accuracy": lambda costs, wildcards: 60.0 + 4 * costs.cell_s,
     "collect_priors": _constant(0.0),
     "follow_history": lambda costs, wildcards: history_s(costs.scene.history, costs.scene.contact),
     "observe_cycles": Costs.observe_cycles,

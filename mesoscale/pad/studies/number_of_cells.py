@@ -39,8 +39,10 @@ WITHIN_90 = 1.645
 
 def opened_grid(contact: ContactSettings, pilot_cells: int = 32) -> PadGrid:
     """Separations of the pad, opened from those at which pilot cells carry the loads."""
-    pad = PadSettings(pilot_cells=pilot_cells, max_pressure_MPa=max(LOADS_MPa), depths=2)
-    shut = PadGrid(plan_grid(INPUTS, contact, pad).separation_nm, np.empty(0, int))
+    pad = PadSettings(pilot_cells=pilot_cells, depths=2)
+    largest_GPa = max(LOADS_MPa) * 1e-3
+    grid = plan_grid(INPUTS, contact, pad, lambda separation: np.full_like(separation, largest_GPa))
+    shut = PadGrid(grid.separation_nm, np.empty(0, int))
     seeds = range(pad.first_seed, pad.first_seed + pilot_cells)
     pilots = assemble(shut, list(close_cells(INPUTS, contact, shut, seeds)), contact.length_nm**2)
     repelled = pilots.closing[:, 0].mean(axis=0) * 1e3

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from mesoscale.device.capacitance import rough_capacitance_F
-from mesoscale.device.switch import switch_from_settings
+from mesoscale.device.switch import rough_capacitance_F, switch_from_settings
 from mesoscale.settings import DeviceSettings
 
 SWITCH = switch_from_settings(DeviceSettings())

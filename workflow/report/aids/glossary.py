@@ -13,7 +13,6 @@ TERMS = {
     "gate": "Test that a stage must pass before its numbers are trusted.",
     "pad": "The whole area that lands: many cells under one plane.",
     "cell": "A square of rough surface, one square micrometre by default, that is computed by itself.",
-    "landed fraction": "Share of the electrode that meets the dielectric as flat as one cell.",
     "elementary effect": "Change of an output when one input moves over its whole range, averaged over the others.",
     "response": "Fast fit of the outputs to the inputs, made from direct runs.",
     "pull-in": "Voltage at which the open switch snaps shut.",

@@ -21,7 +21,7 @@ def describe(results: Results) -> Section | None:
         "The law in a switch",
         "An electrostatic switch that lands on the rough dielectric: closing law on the way down, "
         f"opening law on the way up; stiffness {show(switch['spring_N_per_m'])} N/m, gap "
-        f"{show(switch['gap_nm'] / 1e3)} µm, landed fraction {switch['landed_fraction']:g}.",
+        f"{show(switch['gap_nm'] / 1e3)} µm. It lands flat, and {switch['last_share']:.2%} of it come off last.",
         COMPUTED,
     )
     section.add(
@@ -68,9 +68,9 @@ def _switch_lines(switches: dict[str, Any]) -> list[tuple[str, ...]]:
         ("pull-in (V), median and 5 to 95 %", *(spread(case, "pull_in_V") for case in cases)),
         ("release (V) of those that release", *(spread(case, "release_V") for case in cases)),
         ("probability of stiction, 95 % interval", *(stiction(case) for case in cases)),
-        ("critical landed fraction", *(spread(case, "critical_landed_fraction") for case in cases)),
+        ("share in contact beyond which it sticks", *(spread(case, "critical_share") for case in cases)),
         ("separation held closed (nm)", *(spread(case, "hold_nm") for case in cases)),
-        ("pressure on the landed part (MPa)", *(spread(case, "hold_pressure_MPa") for case in cases)),
+        ("pressure held closed (MPa)", *(spread(case, "hold_pressure_MPa") for case in cases)),
     ]
     capacitance = switches["capacitance_fF"]
     up = show(capacitance["up"], 4)
@@ -123,10 +123,10 @@ def _release_fold(rows: list[Row], gap_nm: float) -> tuple[float, float]:
 
 
 def release_distribution(results: Results) -> str:
-    """Release voltage over the samples, with and without adhesion, and stiction against landed fraction."""
+    """Release voltage over the samples, with and without adhesion, and stiction against the share in contact."""
     rows = results.csv("device/release.csv")
     curve = results.csv("device/stiction.csv")
-    chosen = number(results.json("device/switch.json")["switch"]["landed_fraction"])
+    chosen = number(results.json("device/switch.json")["switch"]["last_share"])
 
     def plot(axis, other):
         volts = {
@@ -150,12 +150,12 @@ def release_distribution(results: Results) -> str:
                 axis.annotate(f"{stuck:.0%} stuck", (bins[1], free_top), va="top", ha="left", color=RED)
         axis.set(xlabel="release voltage (V)", ylabel="share of samples per bin")
         axis.legend()
-        fraction = column(curve, "landed_fraction")
+        fraction = column(curve, "share")
         other.fill_between(fraction, column(curve, "low"), column(curve, "high"), color=PURPLE, alpha=0.2, linewidth=0)
         other.plot(fraction, column(curve, "stiction_probability"), color=PURPLE)
         other.axvline(chosen, color=SOFT, linestyle=":")
         other.annotate("this scene ", (chosen, 0.97), ha="right", va="top", color=SOFT, fontsize=9)
-        other.set(xscale="log", ylim=(0, 1), xlabel="landed fraction of the electrode")
+        other.set(xscale="log", ylim=(0, 1), xlabel="share of the electrode in contact")
         other.set_ylabel("probability of stiction")
 
     return draw("release", "Release voltage and probability of stiction", plot, (9.4, 3.7), columns=2)

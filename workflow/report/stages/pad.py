@@ -37,7 +37,11 @@ def describe(results: Results) -> Section | None:
         Table("The switch, its whole electrode flat on the pad", ("quantity", "value"), _lines(switch))
     )
     section.blocks.append(
-        Table("Release voltage, cause by cause", ("model", "release (V)", "note"), _causes(results, switch))
+        Table(
+            "Release voltage, cause by cause, at central inputs; 0: it sticks",
+            ("model", "release (V)", "cause", "change (V)", "note"),
+            _causes(results, switch),
+        )
     )
     if switch.get("answer"):
         section.blocks += _answer(switch["answer"])
@@ -57,7 +61,8 @@ def describe(results: Results) -> Section | None:
         )
     section.notes.append(
         "Curves and causes are at the central inputs, with the scene's bow and tilt (device.bow_nm, device.tilt_nm); "
-        "only the table of the release over all causes holds the uncertainty of the inputs."
+        "only the table of the release over all causes holds the uncertainty of the inputs. The deviations of bow and "
+        "tilt in it (device.bow_deviation_nm, device.tilt_deviation_nm) are assumptions unless the scene measured them."
     )
     section.files += ["pad/curves.csv", "pad/curves.h5", "pad/adhesion.csv", "pad/tail.json", "device/pad_switch.json"]
     gate = switch["gate"]
@@ -96,42 +101,39 @@ def _answer(answer: dict) -> list[Table]:
     ]
 
 
-def _causes(results: Results, switch: dict) -> list[tuple[str, str, str]]:
-    """The number of one cell's law beside that of the pad, step by step."""
-    lines = []
+def _causes(results: Results, switch: dict) -> list[tuple[str, ...]]:
+    """The number of one cell's law beside that of the pad, step by step: what each step changes, and its cause."""
+    steps: list[tuple[str, str, float | None, str]] = []
     if results.has("device/switch.json"):
         old = results.json("device/switch.json")
         stuck = old["with_adhesion"]["stiction_probability"]["value"]
         middle = old["with_adhesion"]["release_V"]["quantiles"].get("0.5")
-        lines.append(
-            (
-                f"law of one cell, landed fraction {old['switch']['landed_fraction']:g}",
-                "–" if middle is None else show(middle),
-                f"{stuck:.0%} of the samples stick; median of the others",
-            )
-        )
-    by_law = switch.get("by_law")
-    if by_law:
-        lines.append(
-            (
-                "the same form of law fitted to the pad, whole electrode flat",
-                show(by_law["release_V"]),
-                f"its well: {show(by_law['well_law_kPa'])} kPa, the pad's {show(by_law['well_curve_kPa'])} kPa",
-            )
-        )
+        model = f"law of one cell, on the {old['switch']['last_share']:.2%} that come off last"
+        steps.append(("–", model, middle, f"{stuck:.0%} of the samples stick; median of the others"))
+    if by_law := switch.get("by_law"):
+        wells = f"its well: {show(by_law['well_law_kPa'])} kPa, the pad's {show(by_law['well_curve_kPa'])} kPa"
+        bare = by_law["release_without_memory_V"]
+        steps.append(("pad", "the same form of law fitted to the pad's closing, opened the same way, flat", bare, ""))
+        steps.append(("memory", "with the law of the opening from the held state, flat", by_law["release_V"], wells))
     if compact := switch.get("by_compact"):
-        note = f"its well: {show(compact['deepest_net_kPa'])} kPa; pad/compact.json"
-        lines.append(("closed form with memory, whole electrode flat", show(compact["release_V"]), note))
+        well = compact["deepest_net_kPa"]
+        note = "" if well is None else f"its well: {show(well)} kPa; pad/compact.json"
+        steps.append(("law", "closed form with memory, flat", compact["release_V"], note))
     if switch["mean"] is not None:
         low, middle, high = (switch["estimate"]["release_V"]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
-        note = "with memory; interval of the computed cells; 0 where it sticks"
-        lines.append(("curves of the pad, whole electrode flat", f"{show(middle)} [{show(low)}, {show(high)}]", note))
+        note = f"resampled cells: {show(low)} to {show(high)} V, 0 where it sticks"
+        steps.append(("law", "curves of the pad, flat", middle, note))
     if beam := switch.get("beam"):
         note = (
             f"{beam['landed_share']:.0%} of it has landed at {show(beam['hold_V'])} V, {beam['landed_at_release']:.1%} "
             "before it lets go"
         )
-        lines.append(("curves of the pad, electrode bends", show(beam["release_V"]), note))
+        steps.append(("geometry", "curves of the pad, electrode bends", beam["release_V"], note))
+    lines, before = [], None
+    for cause, model, release, note in steps:
+        change = "–" if before is None or release is None else f"{release - before:+.2f}"
+        lines.append((model, "–" if release is None else show(release), cause, change, note))
+        before = release
     return lines
 
 

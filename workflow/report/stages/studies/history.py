@@ -45,7 +45,7 @@ def describe(results: Results) -> Section | None:
             show(row["dissipated_nN_nm"]),
             show(row["pull_off_nN"]),
             "stuck" if number(row["release_V"]) == 0 else show(row["release_V"]),
-            show(row["critical_landed_fraction"]),
+            show(row["critical_share"]),
         )
         for row in shown
     ]
@@ -59,7 +59,7 @@ def describe(results: Results) -> Section | None:
         "energy lost (nN nm)",
         "pull-off (nN)",
         "release (V)",
-        "critical landed fraction",
+        "critical share in contact",
     )
     section.blocks.append(Table("Cycles, and the switch that would follow each", header, lines, heads=2))
     if not all(row["converged"] == "True" for row in rows):

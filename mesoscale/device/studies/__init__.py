@@ -1,0 +1,1 @@
+"""What the numerical choices of the switch on a pad cost, and what they leave open."""

@@ -1,0 +1,221 @@
+"""Error of the release on a pad against run time, one choice at a time, and of ways to know it at other inputs.
+
+Everything is done with the cells and draws that the scene has computed; some cells are closed again, to time them and
+to see what their steps do.
+"""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.contact.displacement import Displacement
+from mesoscale.device.beam_switch import solve_beam
+from mesoscale.device.pad_switch import solve_on_pad
+from mesoscale.device.release import FAR_NM, solve_or_bound
+from mesoscale.device.switch import switch_from_settings
+from mesoscale.errors import InputError
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.cells import PadGrid, close_cells
+from mesoscale.pad.compact import CompactPad
+from mesoscale.pad.curves import PadCells
+from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.pad.response import SampledPad, fit_response, law_of_compact
+from mesoscale.settings import ContactSettings, DeviceSettings
+
+Array = NDArray[np.float64]
+Row = dict[str, Any]
+
+TIMED_CELLS = 2
+"""Cells that are closed again."""
+GROUPS = 4
+ELEMENTS = (16, 32, 64, 128, 256)
+FINEST_ELEMENTS = 512
+STEPS = (4, 2)
+"""Coarser grids: every so many separations of the pad's own."""
+FEWER_DRAWS = (0.6, 0.8, 1.0)
+
+
+def accuracy_points(
+    cells: PadCells,
+    draws: Sequence[SampledPad],
+    table: InputTable,
+    inputs: ContactInputs,
+    contact: ContactSettings,
+    device: DeviceSettings,
+    seeds: Sequence[int],
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[Row]:
+    """Rows of accuracy/pad.csv.
+
+    Parameters
+    ----------
+    cells : of the pad at central inputs.
+    draws : pads at other inputs.
+    seeds : of surfaces of the pad's cells.
+    """
+    law = law_of(cells, inputs.hamaker)
+    again = list(_closed_again(inputs, contact, cells.grid, seeds[:TIMED_CELLS]))
+    parts: list[tuple[str, Iterator[Row]]] = [
+        ("cells", _cells(cells, inputs.hamaker, device, again[0][1])),
+        ("steps", _steps(again)),
+        ("depths", _depths(law, device)),
+        ("elements", _elements(law, device)),
+        ("emulators", _emulators(law, draws, table, cells.count, device)),
+    ]
+    for done, (name, rows) in enumerate(parts):
+        yield from rows
+        if progress:
+            progress((done + 1) / len(parts), name)
+
+
+def _row(case: str, knob: str, value: object, error: float, metric: str, reference: str, cpu_s: float) -> Row:
+    return {
+        "case": case,
+        "knob": knob,
+        "value": value,
+        "error": error,
+        "error_metric": metric,
+        "reference": reference,
+        "wall_s": cpu_s,
+        "cpu_s": cpu_s,
+    }
+
+
+def _release_V(law: PadLaw, device: DeviceSettings, elements: int | None = None) -> tuple[float, float]:
+    """Release (0: stuck; NaN: not computed) and the processor time it took."""
+    started = time.process_time()
+    try:
+        if device.spring_N_per_m is not None:
+            release = solve_on_pad(switch_from_settings(device), law, device.hold_voltage_V).release_V
+        elif elements is None:
+            release = solve_or_bound(device, law)["release_V"]
+        else:
+            release = solve_beam(device, law, elements).release_V
+    except InputError:
+        release = np.nan
+    return release, time.process_time() - started
+
+
+def _cells(cells: PadCells, hamaker: float, device: DeviceSettings, cell_s: float) -> Iterator[Row]:
+    """Fewer cells: disjoint groups of them, and the time to compute a group."""
+    wanted, _ = _release_V(law_of(cells, hamaker), device)
+    size = 8
+    while size <= cells.count // 2:
+        groups = [np.arange(k * size, (k + 1) * size) for k in range(min(cells.count // size, GROUPS))]
+        deviations = []
+        for group in groups:
+            weights = np.zeros(cells.count)
+            weights[group] = 1.0 / size
+            deviations.append(_release_V(law_of(cells, hamaker, weights), device)[0] - wanted)
+        error = float(np.sqrt(np.nanmean(np.square(deviations))))
+        metric = f"RMS deviation over {len(groups)} groups, V"
+        yield _row("release", "cells", size, error, metric, f"{cells.count} cells", size * cell_s)
+        size *= 2
+
+
+def _closed_again(
+    inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, seeds: Sequence[int]
+) -> Iterator[tuple[list[Displacement], float]]:
+    """Cells at the separations of the pad and at every second and fourth of them, with the time of one."""
+    for every in (1, *sorted(STEPS)):
+        # from the deepest, which stays, and with the depths that the coarse grid has
+        kept = np.arange(grid.separation_nm.size)[::-1][::every][::-1]
+        depths = np.flatnonzero(np.isin(kept, grid.depths))
+        started = time.process_time()
+        closed = list(close_cells(inputs, contact, PadGrid(grid.separation_nm[kept], depths), seeds))
+        yield closed, (time.process_time() - started) / len(seeds)
+
+
+def _steps(again: Sequence[tuple[list[Displacement], float]]) -> Iterator[Row]:
+    """Coarser steps of separation: the force at the deepest closing, and the well on opening from there."""
+    (fine, _), *coarser = again
+    for every, (closed, cpu_s) in zip(sorted(STEPS), coarser, strict=True):
+        for case, of in (("force at the deepest closing", _force), ("well on opening from there", _well)):
+            error = float(np.mean([abs(of(a) / of(b) - 1.0) for a, b in zip(closed, fine, strict=True)]))
+            metric = "mean relative deviation over cells"
+            yield _row(case, "steps of pad.step_nm", every, error, metric, "the pad's own steps", cpu_s)
+
+
+def _force(cell: Displacement) -> float:
+    return float(cell.closing[0, -1])
+
+
+def _well(cell: Displacement) -> float:
+    return float(-np.nanmin(cell.opening[-1].sum(axis=0)))
+
+
+def _depths(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
+    """Fewer depths in the memory, the first and the last always among them."""
+    wanted, _ = _release_V(law, device)
+    count = law.depth_nm.size
+    for fewer in sorted({2, 3, (count + 1) // 2, count - 1} - {count}):
+        kept = np.unique(np.linspace(0, count - 1, fewer).round().astype(int))
+        release, cpu_s = _release_V(replace(law, depth_nm=law.depth_nm[kept], opening=law.opening[kept]), device)
+        yield _row("release", "pad.depths", fewer, abs(release - wanted), "deviation, V", f"{count} depths", cpu_s)
+
+
+def _elements(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
+    """Elements of the bending electrode."""
+    if device.spring_N_per_m is not None:
+        return
+    wanted, _ = _release_V(law, device, FINEST_ELEMENTS)
+    for elements in ELEMENTS:
+        release, cpu_s = _release_V(law, device, elements)
+        reference = f"{FINEST_ELEMENTS} elements"
+        yield _row("release", "elements of the beam", elements, abs(release - wanted), "deviation, V", reference, cpu_s)
+
+
+def _emulators(
+    law: PadLaw, draws: Sequence[SampledPad], table: InputTable, count: int, device: DeviceSettings
+) -> Iterator[Row]:
+    """Ways to know the release at inputs that no pad has: each draw is left out and foretold from others.
+
+    The truth is the release on the draw's own curves, with the scatter of its few cells.
+    """
+    central = SampledPad(table.medians(), min((draw.gap_cutoff_nm for draw in draws), default=np.nan), count, law)
+    truth = np.array([_release_V(draw.law, device)[0] for draw in draws])
+    known = np.flatnonzero(np.isfinite(truth))
+    names = [name for name in table.names if np.ptp([draw.values[name] for draw in draws]) > 0] if len(draws) else []
+    x = np.array([[*(draw.values[name] for name in names), draw.gap_cutoff_nm] for draw in draws])
+    for share in FEWER_DRAWS:
+        ways: dict[str, list[float]] = {"closed form": [], "line through the releases": [], "mean of the releases": []}
+        cpu = dict.fromkeys(ways, 0.0)
+        size = int(share * (len(known) - 1))
+        if size < x.shape[-1] + 2:
+            continue
+        for left in known:
+            others = known[known != left]
+            used = np.random.default_rng(int(left)).permutation(others)[:size]
+            for way, errors in ways.items():
+                started = time.process_time()
+                if way == "closed form":
+                    foretold = _by_form([central, *(draws[k] for k in used)], draws[left], table, device)
+                elif way == "mean of the releases":
+                    foretold = float(truth[used].mean())
+                else:
+                    columns = np.column_stack([np.ones(size), x[used]])
+                    line = np.linalg.lstsq(columns, truth[used], rcond=None)[0]
+                    foretold = float(max(np.append(1.0, x[left]) @ line, 0.0))
+                errors.append(foretold - float(truth[left]))
+                cpu[way] += time.process_time() - started
+        for way, errors in ways.items():
+            error = float(np.sqrt(np.nanmean(np.square(errors))))
+            metric, reference = "RMS deviation over draws left out, V", "the draw's own curves"
+            yield _row(f"release by {way}", "draws", size, error, metric, reference, cpu[way] / len(errors))
+
+
+def _by_form(pads: Sequence[SampledPad], at: SampledPad, table: InputTable, device: DeviceSettings) -> float:
+    """Release on the closed form through some pads, at the inputs of another and to the pressure of its closing."""
+    try:
+        form: CompactPad = fit_response(pads, table).at(at.values, at.gap_cutoff_nm)
+        step = 0.01 * at.values["rms"]
+        near = np.arange(step, 8.0 * at.values["rms"], step)
+        s = np.concatenate([near, np.geomspace(near[-1], max(FAR_NM, 2.0 * near[-1]), 24)[1:]])
+        return _release_V(law_of_compact(form, np.full(s.size, at.law.closing[0].max()), s), device)[0]
+    except InputError:
+        return float("nan")

@@ -1,0 +1,61 @@
+"""The accuracy table of the pad: what it must hold, on a pad of few small cells."""
+
+import numpy as np
+import pytest
+
+from mesoscale.device.release import pressure_to_compute
+from mesoscale.device.studies.accuracy import accuracy_points
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
+from mesoscale.pad.cells import close_cells, plan_grid
+from mesoscale.pad.curves import assemble
+from mesoscale.pad.draws import close_draws, plan_draws
+from mesoscale.pad.response import SampledPad
+from mesoscale.settings import ContactSettings, DeviceSettings, PadSettings
+
+FIXED = {"e_star": 91.0, "h_macro": 1.95, "h_prime": 8.375, "q0": 0.025, "hurst": 0.75}
+RANGES = {"hamaker": (0.2, 0.23), "rms": (7.5, 9.5)}
+DISTRIBUTIONS = {name: Distribution("fixed", value) for name, value in FIXED.items()} | {
+    name: Distribution("uniform", *ends) for name, ends in RANGES.items()
+}
+TABLE = InputTable(
+    tuple(UncertainInput(name, "", distribution, "literature", "") for name, distribution in DISTRIBUTIONS.items()),
+    np.eye(len(DISTRIBUTIONS)),
+)
+CONTACT = ContactSettings(pixels=64)
+DEVICE = DeviceSettings()
+PAD = PadSettings(cells=16, pilot_cells=4, step_nm=0.2, depths=4, draws=8, draw_cells=2)
+
+
+@pytest.fixture(scope="module")
+def rows():
+    inputs = ContactInputs(**TABLE.medians())
+    wanted = pressure_to_compute(DEVICE)
+    grid = plan_grid(inputs, CONTACT, PAD, wanted)
+    seeds = range(PAD.first_seed, PAD.first_seed + PAD.cells)
+    cells = assemble(grid, list(close_cells(inputs, CONTACT, grid, seeds)), CONTACT.length_nm**2)
+    draws = plan_draws(TABLE, CONTACT, PAD)
+    laws = close_draws(draws, CONTACT, PAD, wanted)
+    pads = [
+        SampledPad(draw.values, draw.gap_cutoff_nm, PAD.draw_cells, law) for draw, law in zip(draws, laws, strict=True)
+    ]
+    return list(accuracy_points(cells, pads, TABLE, inputs, CONTACT, DEVICE, list(seeds)))
+
+
+def test_every_choice_has_errors_and_times(rows):
+    knobs = {row["knob"] for row in rows}
+    assert knobs == {"cells", "steps of pad.step_nm", "pad.depths", "elements of the beam", "draws"}
+    assert all(np.isfinite(row["cpu_s"]) for row in rows)
+
+
+def test_errors_fall_towards_the_finest(rows):
+    elements = [row for row in rows if row["knob"] == "elements of the beam"]
+    assert elements[-1]["error"] <= elements[0]["error"] + 1e-9
+    assert elements[-1]["error"] < 0.2
+    force = {row["value"]: row["error"] for row in rows if row["case"] == "force at the deepest closing"}
+    assert force[2] < force[4]
+
+
+def test_ways_to_know_the_release_elsewhere_stand_side_by_side(rows):
+    ways = {row["case"] for row in rows if row["knob"] == "draws"}
+    assert ways == {"release by closed form", "release by line through the releases", "release by mean of the releases"}
