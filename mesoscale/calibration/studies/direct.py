@@ -129,11 +129,13 @@ def compare(chains: Sequence[Array], ours: Array) -> list[dict[str, Any]]:
     }
     rows = []
     for k, name in enumerate(FREE):
-        parts, every, found = [half[:, k] for half in halves], np.concatenate(halves)[:, k], ours[:, k]
+        parts, every, inferred = [half[:, k] for half in halves], np.concatenate(halves)[:, k], ours[:, k]
         for quantity, of in kinds.items():
             error = float(np.std([of(part) for part in parts], ddof=1) / np.sqrt(len(parts)))
-            rows.append(_row(name, quantity, float(of(every)), error, float(of(found)), float(of(found) - of(every))))
-        distance = float(wasserstein_distance(every, found))
+            rows.append(
+                _row(name, quantity, float(of(every)), error, float(of(inferred)), float(of(inferred) - of(every)))
+            )
+        distance = float(wasserstein_distance(every, inferred))
         rows.append(_row(name, "distance", 0.0, _own_distance(parts), distance, distance))
     return rows
 
@@ -147,13 +149,13 @@ def _own_distance(parts: Sequence[Array]) -> float:
     return float(np.mean(apart) / 2)
 
 
-def _row(name: str, quantity: str, direct: float, error: float, found: float, off: float) -> dict[str, Any]:
+def _row(name: str, quantity: str, direct: float, error: float, inferred: float, off: float) -> dict[str, Any]:
     return {
         "input": name,
         "quantity": quantity,
         "direct": direct,
         "monte_carlo_error": error,
-        "responses": found,
+        "responses": inferred,
         "difference_in_errors": off / error,
     }
 
