@@ -109,13 +109,15 @@ def switch_from_settings(settings: DeviceSettings, range_nm: float | None = None
     range_nm : of the law's near attraction; None: it comes off at once, as the plate of a given spring.
     """
     area = settings.electrode_um2 or settings.length_um * settings.width_um
-    bends = range_nm is not None and settings.spring_N_per_m is None
+    last_share = 1.0
+    if range_nm is not None and settings.spring_N_per_m is None:
+        last_share = min(float(np.sqrt(range_nm / (3.0 * settings.gap_um * 1e3))), 1.0)
     return Switch(
         spring_N_per_m=settings.spring_N_per_m or beam_stiffness_N_per_m(settings),
         gap_nm=settings.gap_um * 1e3,
         area_m2=area * 1e-12,
         dielectric_nm=settings.dielectric_nm / settings.permittivity,
-        last_share=min(float(np.sqrt(range_nm / (3.0 * settings.gap_um * 1e3))), 1.0) if bends else 1.0,
+        last_share=last_share,
     )
 
 

@@ -122,7 +122,7 @@ def fit_response(pads: Sequence[SampledPad], table: InputTable) -> PadResponse:
             # each pad's points share their scatter: a pad counts by its cells and not by its separations
             share = np.sqrt(pad.cells / max(len(new[1]), 1))
             kept.append((*new, np.full(len(new[1]), share)))
-    closing, opening, attraction = ([np.concatenate(kind) for kind in zip(*part, strict=True)] for part in parts)
+    closing, opening, attraction = (_joined(part) for part in parts)
     lifted = _lifted(*attraction)
     return PadResponse(
         names,
@@ -135,6 +135,12 @@ def fit_response(pads: Sequence[SampledPad], table: InputTable) -> PadResponse:
         _attraction(*attraction, lifted)[0],
         lifted,
     )
+
+
+def _joined(part: Sequence[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:
+    """Columns, wanted values and weights of all pads."""
+    columns, wanted, weights = zip(*part, strict=True)
+    return np.concatenate(columns), np.concatenate(wanted), np.concatenate(weights)
 
 
 def _solve(columns: Array, wanted: Array, weights: Array, signed: int) -> tuple[Array, float]:

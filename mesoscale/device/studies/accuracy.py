@@ -188,7 +188,7 @@ def _emulators(
         size = int(share * (len(known) - 1))
         if size < x.shape[-1] + 2:
             continue
-        for left in known:
+        for left in known.tolist():
             others = known[known != left]
             used = np.random.default_rng(int(left)).permutation(others)[:size]
             for way, errors in ways.items():
