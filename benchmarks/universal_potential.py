@@ -7,6 +7,7 @@ silicon with their deviation from PBE or experiment, then B of every glass by th
 positions (docs/elastic.md, Universal potentials).
 """
 
+import csv
 import sys
 import time
 from pathlib import Path
@@ -14,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from ase import Atoms
 from ase.calculators.calculator import Calculator
+from ase.io import read
 
 from atomistic.elastic.energy_scans import scan_volumes
 from atomistic.elastic.equation_of_state import fit_equation_of_state
@@ -22,8 +24,6 @@ from atomistic.elastic.networks import crystal
 from atomistic.elastic.studies.constants import beside_published
 from atomistic.materials import load_material
 from atomistic.settings import TensorSettings
-from workflow.results import load_csv
-from workflow.structure_files import load_structure
 
 MATERIALS = Path(__file__).parents[1] / "config/materials"
 STRAINS = (-0.03, -0.015, 0.0, 0.015, 0.03)
@@ -60,13 +60,14 @@ def bulk_modulus(atoms: Atoms, calculator: Calculator) -> tuple[float, float]:
 
 def glasses(calculator: Calculator, results: Path) -> None:
     """Print B and volume of every glass whose clamped PBE curve there is."""
-    rows = load_csv(results / "elastic/bulk_moduli.csv")
+    with (results / "elastic/bulk_moduli.csv").open(encoding="utf-8", newline="") as table:
+        rows = list(csv.DictReader(table))
     pairs = []
     for row in rows:
         path = results / f"elastic/structures/{row['structure']}.xyz"
         if (row["xc"], row["ions"]) != ("GGA", "clamped") or not row["structure"].startswith("a"):
             continue
-        B, volume = bulk_modulus(load_structure(path), calculator)
+        B, volume = bulk_modulus(read(path), calculator)
         pairs.append((B - float(row["B_GPa"]), volume / float(row["V0_A3"]) - 1))
         print(f"{row['structure']}: B {B:.1f}, by DFT {float(row['B_GPa']):.1f} GPa; volume {pairs[-1][1]:+.2%}")
     shift, volume = np.array(pairs).T

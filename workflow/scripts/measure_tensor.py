@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from atomistic.elastic.dft import PyscfGamma, TwoMeshes
 from atomistic.elastic.energy_scans import make_calculator
 from atomistic.elastic.joint_moduli import Measured, measure_constants
 from atomistic.materials import load_material
@@ -24,6 +25,8 @@ with job(snakemake) as run:
         calculator = make_calculator(dft, "GGA", atoms.cell.array * 1.03, store, cutoff_Ha)
         if snakemake.input.get("orbitals"):
             start_from(calculator, snakemake.input.orbitals)
+        if isinstance(calculator, PyscfGamma):
+            calculator = TwoMeshes(calculator)  # curvatures feel the ripple of one mesh
         measured = measure_constants(atoms, calculator, TensorSettings(**settings["tensor"]), run.progress)
     write_json(snakemake.output.tensor, measured.report(snakemake.wildcards.structure), run.provenance)
     store.remove()

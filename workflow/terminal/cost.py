@@ -148,9 +148,9 @@ class Costs:
         return RELAXATION_STEP_S * (1 + relaxation.max_steps) * self.scf_size * relaxation.cutoff_Ha / 100
 
     def measure_tensor(self, wildcards: Mapping[str, str]) -> float:
-        """Relaxation of cell and ions in half of the steps allowed, twelve strains, both signs of each direction."""
+        """Cell and ions relaxed in half of the steps allowed, twelve strains, both signs of each direction; two meshes."""
         elastic = self.scene.elastic
-        states = elastic.tensor.max_steps / 2 + 12 + 12 * elastic.tensor.rounds
+        states = 2 * (elastic.tensor.max_steps / 2 + 12 + 12 * elastic.tensor.rounds)
         return STRESS_STEP_S * states * self.scf_size * elastic.relaxation.cutoff_Ha / 100
 
     def compute_runs(self, wildcards: Mapping[str, str]) -> float:

@@ -8,7 +8,15 @@ from ase.build import bulk
 from ase.units import Hartree
 
 from atomistic.constants import EV_PER_A3_IN_GPA
-from atomistic.elastic.dft import FUNCTIONALS, PyscfGamma, ScfNotConverged, Solution, build_cell, extrapolated_orbitals
+from atomistic.elastic.dft import (
+    FUNCTIONALS,
+    PyscfGamma,
+    ScfNotConverged,
+    Solution,
+    TwoMeshes,
+    build_cell,
+    extrapolated_orbitals,
+)
 from atomistic.elastic.orbitals_on_grid import atom_orbitals, collocate
 
 MESH = (24, 24, 24)
@@ -141,3 +149,33 @@ def test_orbitals_along_a_line_are_extrapolated_as_a_polynomial():
         errors.append(np.linalg.norm(start @ start.T - density))
     assert errors[0] > 2 * errors[1] > 4 * errors[2]
     assert extrapolated_orbitals([], goal.overlap) is None
+
+
+def test_two_meshes_take_most_of_the_ripple_away():
+    """A crystal moved as a whole keeps its energy; on a coarse mesh it does not."""
+    mesh = (12, 12, 12)
+    step = silicon(0.0).cell.array.sum(0) / 12
+
+    def ripple(calculator):
+        energies = []
+        for share in (0.0, 0.25, 0.5):
+            atoms = silicon(0.0)
+            atoms.positions += share * step
+            atoms.calc = calculator
+            energies.append(atoms.get_potential_energy())
+        return float(np.ptp(energies))
+
+    engine = PyscfGamma(xc="LDA", basis="gth-szv", mesh=mesh, tolerance_Ha=1e-8)
+    assert ripple(TwoMeshes(engine)) < 0.2 * ripple(engine)
+
+
+def test_two_meshes_give_the_slope_of_their_mean_energy():
+    engine = TwoMeshes(PyscfGamma(xc="LDA", basis="gth-szv", mesh=(14, 14, 14), tolerance_Ha=1e-9))
+    energies = []
+    for shift in (0.01, -0.01):
+        atoms = silicon(0.1 + shift)
+        atoms.calc = engine
+        energies.append(atoms.get_potential_energy())
+    atoms = silicon()
+    atoms.calc = engine
+    assert atoms.get_forces()[0, 0] == pytest.approx(-(energies[0] - energies[1]) / 0.02, abs=2e-3)
