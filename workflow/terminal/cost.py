@@ -148,7 +148,7 @@ class Costs:
         return RELAXATION_STEP_S * (1 + relaxation.max_steps) * self.scf_size * relaxation.cutoff_Ha / 100
 
     def measure_tensor(self, wildcards: Mapping[str, str]) -> float:
-        """Cell and ions relaxed in half of the steps allowed, twelve strains, both signs of each direction; two meshes."""
+        """Ions and cell relaxed in half of the steps allowed, twelve strains, each direction both ways; two meshes."""
         elastic = self.scene.elastic
         states = 2 * (elastic.tensor.max_steps / 2 + 12 + 12 * elastic.tensor.rounds)
         return STRESS_STEP_S * states * self.scf_size * elastic.relaxation.cutoff_Ha / 100
