@@ -122,6 +122,7 @@ def _closed_again(
     inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, seeds: Sequence[int]
 ) -> Iterator[tuple[list[Displacement], float]]:
     """Cells at the separations of the pad and at every second and fourth of them, with the time of one."""
+    list(close_cells(inputs, contact, PadGrid(grid.separation_nm, np.empty(0, int)), seeds[:1]))  # compiles
     for every in (1, *sorted(STEPS)):
         # from the deepest, which stays, and with the depths that the coarse grid has
         kept = np.arange(grid.separation_nm.size)[::-1][::every][::-1]
