@@ -15,6 +15,8 @@ LARGEST_STEP_NM = 20.0
 LARGEST_CHANGE_NM = 1.0
 SHARE_OF_WAY = 0.25
 """A place that is about to land moves by this share of its way."""
+PATIENCE = 10
+"""Turns after which the motion forgets half as fast that it was held back."""
 SETTLED_NM = 1e-3
 """Last step of a beam in balance, a thousandth of the length over which the pressure of a pad changes."""
 SETTLED_Pa = 1.0
@@ -126,7 +128,7 @@ def creep(nodal, deepest_nm, rest_m, beam, pad, electric, contact_nm, free_nm):
     contact_nm : separation at which a place is about to land.
     free_nm : the motion ends where no place is below this separation.
     """
-    inertia, least = 1e9, 0.0
+    inertia, least, turns = 1e9, 0.0, 0
     last = np.zeros(nodal.shape[0])
     pressure, slope = np.empty_like(rest_m), np.empty_like(rest_m)
     nothing = np.zeros_like(rest_m)
@@ -156,8 +158,10 @@ def creep(nodal, deepest_nm, rest_m, beam, pad, electric, contact_nm, free_nm):
             return FREE
         back = (change[:, 0] * last).sum() < 0.0
         last = change[:, 0].copy()
-        # the curves are of straight pieces, between which plain steps may cycle: hold back more after each turn
-        least = max(10.0 * least, 1e9) if back else 0.7 * least
+        # the curves are of straight pieces, between which plain steps may cycle: hold back more after each turn, and
+        # forget it the later the more turns there were
+        turns += back
+        least = max(10.0 * least, 1e9) if back else least * (1.0 - 0.3 * PATIENCE / (PATIENCE + turns))
         if excess < 0.5 or back:
             inertia = max(0.3 * inertia, least)
         if most < SETTLED_NM and most * NM * inertia < SETTLED_Pa:

@@ -6,7 +6,7 @@ const BANDS = 3; // on either side of the diagonal
 const WIDTH = 3 * BANDS + 1; // with room for row exchanges
 const BEAM = {
   elements: 128, contact_GPa: 1e-6, steps: 6000, largestStep_nm: 20, largestChange_nm: 1, shareOfWay: 0.25,
-  settled_nm: 1e-3, settled_Pa: 1, releaseTolerance: 1e-3, depths: 96, rises: 1200, highestRise_nm: 60,
+  patience: 10, settled_nm: 1e-3, settled_Pa: 1, releaseTolerance: 1e-3, depths: 96, rises: 1200, highestRise_nm: 60,
   freeShare: 0.5,
 };
 
@@ -222,7 +222,7 @@ class MovingBeam {
 
   creep() { // to the balance at its voltage, every place remembering how deep it came; whether it is then closed
     const free = BEAM.freeShare * Math.min(...this.beam.rest_nm);
-    let [inertia, least] = [1e9, 0];
+    let [inertia, least, turns] = [1e9, 0, 0];
     let last = new Float64Array(this.beam.unknowns);
     for (let k = 0; k < BEAM.steps; k++) {
       const [change] = this.beam.step(this.nodal, this.load(this.voltage ** 2), inertia, null);
@@ -246,7 +246,8 @@ class MovingBeam {
       let turned = 0;
       for (let i = 0; i < change.length; i += 2) turned += change[i] * last[i];
       last = change;
-      least = turned < 0 ? Math.max(10 * least, 1e9) : 0.7 * least;
+      if (turned < 0) turns += 1;
+      least = turned < 0 ? Math.max(10 * least, 1e9) : least * (1 - 0.3 * BEAM.patience / (BEAM.patience + turns));
       if (excess < 0.5 || turned < 0) inertia = Math.max(0.3 * inertia, least);
       if (most < BEAM.settled_nm && most * 1e-9 * inertia < BEAM.settled_Pa) return true;
     }
