@@ -154,7 +154,8 @@ def with_lift_error(topography: Topography, error: float, settings: TopographySe
 
 def lift_doubt(before: Sequence[TrustedSpectrum], after: Sequence[TrustedSpectrum], error: float) -> list[Doubt]:
     """In words what was taken off, where that is worth a word."""
-    gain = max(2 * float(np.log(a.rms_nm / b.rms_nm)) for a, b in zip(before, after, strict=True) if b.rms_nm > 0)
+    rough = [(a.rms_nm, b.rms_nm) for a, b in zip(before, after, strict=True) if b.rms_nm > 0]
+    gain = max((2 * float(np.log(a / b)) for a, b in rough), default=0.0)
     if gain < CLEAR_LIFT:
         return []
     text = (
