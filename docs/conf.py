@@ -3,6 +3,8 @@
 import importlib.metadata
 from pathlib import Path
 
+import SurfaceTopography  # noqa: F401  (autodoc imports with TYPE_CHECKING set, which its pydantic models do not bear)
+
 ROOT = Path(__file__).parents[1]
 
 project = "Asperity"

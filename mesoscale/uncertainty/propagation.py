@@ -72,7 +72,7 @@ def transform_of(output: int, settings: UncertaintySettings) -> str:
 
 CLOSING_CONTACT, OPENING_CONTACT = (FITTED.index(f"{branch}_d_c_nm") for branch in ("closing", "opening"))
 SMALLEST_DROP_NM = 0.01
-"""Last contact lies at least so far below first contact where `opening_contact: below_closing` takes the logarithm."""
+"""Last contact lies at least so far below first contact where the logarithm of their distance is fitted."""
 
 
 def exported_responses(
