@@ -55,10 +55,10 @@ def release_cards(results: Results) -> list[Card]:
 
 
 def release_causes(results: Results) -> list[tuple[str, float]]:
-    """Share of the variance of the release voltage that each cause has, largest first; empty where not computed."""
+    """Share of the variance of the release voltage of each cause that has one, largest first."""
     pad = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
     rows = (pad.get("answer") or {}).get("sensitivity", [])
-    return [(symbol(row["name"]), row["share_of_variance"]) for row in rows]
+    return [(symbol(row["name"]), row["share_of_variance"]) for row in rows if row["share_of_variance"] > 0]
 
 
 def symbol(name: str) -> str:
