@@ -18,8 +18,8 @@ def describe(results: Results) -> Section | None:
         "pad",
         "From a cell to a pad",
         f"{switch['cells_computed']} cells with surfaces of their own, brought to one separation and opened "
-        "together, at central inputs. Single cells pull at separations that differ by nanometres, so their adhesion "
-        "does not add up: the highest cells still push while others pull.",
+        "together, at central inputs. Cells pull at separations that differ by nanometres; where their wells are "
+        "narrower than that, the highest cells still push while others pull, and adhesion does not add up.",
         COMPUTED,
     )
     section.add(
