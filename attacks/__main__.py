@@ -1,14 +1,14 @@
 """Run a campaign and add its rows to a table: `python -m attacks scenes|planned|scans|results|kills|disk [options]`."""
 
 import argparse
-import csv
-import itertools
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
+
+from mesoscale.tables import grow_table, read_table
 
 TABLES = Path(__file__).resolve().parent.parent / "docs" / "data"
 
@@ -60,14 +60,6 @@ CAMPAIGNS: dict[str, Callable[[Path, argparse.Namespace], Iterator[dict[str, Any
 }
 
 
-def _rows_of(table: Path) -> list[dict[str, str]]:
-    """What a table holds by now."""
-    if not table.is_file():
-        return []
-    with table.open(newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
-
-
 def main() -> None:
     """Rows are added as they come, so that a campaign that is cut short has its part."""
     parser = argparse.ArgumentParser(prog="python -m attacks", description=__doc__)
@@ -79,25 +71,22 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, help="where to work and keep the undisturbed runs; default: temporary")
     given = parser.parse_args()
     table = TABLES / f"attacks_{given.campaign}.csv"
-    given.done = _rows_of(table)
+    given.done = read_table(table)
     if given.seed is None:
         given.seed = 0 if given.campaign == "scans" else 1 + max((int(row["seed"]) for row in given.done), default=-1)
     outcomes: Counter[str] = Counter()
     with ExitStack() as stack:
         folder = given.folder or Path(stack.enter_context(tempfile.TemporaryDirectory()))
         folder.mkdir(parents=True, exist_ok=True)
-        stream = stack.enter_context(table.open("a", newline="", encoding="utf-8"))
-        rows = CAMPAIGNS[given.campaign](folder.resolve(), given)
-        first = next(rows, None)
-        if first is None:
-            parser.exit(message=f"{table}: has all of these attacks\n")
-        writer = csv.DictWriter(stream, list(first), lineterminator="\n")
-        if stream.tell() == 0:
-            writer.writeheader()
-        for row in itertools.chain([first], rows):
-            writer.writerow({key: f"{value:.3g}" if isinstance(value, float) else value for key, value in row.items()})
-            stream.flush()
-            outcomes[str(row.get("outcome", row.get("equal")))] += 1
+
+        def counted() -> Iterator[dict[str, Any]]:
+            for row in CAMPAIGNS[given.campaign](folder.resolve(), given):
+                outcomes[str(row.get("outcome", row.get("equal")))] += 1
+                yield row
+
+        grow_table(table, counted(), digits=3)
+    if not outcomes:
+        parser.exit(message=f"{table}: has all of these attacks\n")
     print(f"{table}: {', '.join(f'{count} {outcome}' for outcome, count in sorted(outcomes.items()))}")
 
 

@@ -8,7 +8,6 @@ pushes that much, a switch that sticks; that depends on the data alone, and so k
 `python -m mesoscale.calibration.studies.coverage FOLDER` keeps its cycles in FOLDER and writes coverage.csv there.
 """
 
-import csv
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -29,6 +28,7 @@ from mesoscale.calibration.switches import SwitchModel
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import input_table
 from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings, UncertaintySettings
+from mesoscale.tables import grow_table, read_table, write_table
 from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
@@ -225,26 +225,17 @@ def _kept(path: Path, runs: Sequence[Run], contact: ContactSettings, names: Sequ
     if not path.exists():
         rows = observe_runs(runs, contact, LawSettings())
         part = path.with_suffix(".part")
-        with part.open("w", newline="", encoding="utf-8") as stream:
-            writer = csv.DictWriter(stream, list(rows[0]))
-            writer.writeheader()
-            writer.writerows(rows)
+        write_table(part, rows)
         part.rename(path)
-    with path.open(newline="", encoding="utf-8") as stream:
-        return cycles_of_rows(list(csv.DictReader(stream)), names)
+    return cycles_of_rows(read_table(path), names)
 
 
 def main(folder: Path) -> None:
-    """Write coverage.csv, row by row."""
+    """Write coverage.csv anew, row by row."""
     folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "coverage.csv").open("w", newline="", encoding="utf-8") as stream:
-        writer = None
-        for row in study(folder):
-            if writer is None:
-                writer = csv.DictWriter(stream, list(row), lineterminator="\n")
-                writer.writeheader()
-            writer.writerow(row)
-            stream.flush()
+    table = folder / "coverage.csv"
+    table.unlink(missing_ok=True)
+    grow_table(table, study(folder))
 
 
 if __name__ == "__main__":

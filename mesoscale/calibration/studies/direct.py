@@ -8,7 +8,6 @@ Ann. Stat. 37, 697 (2009), doi 10.1214/07-AOS574).
 `python -m mesoscale.calibration.studies.direct FOLDER` writes direct.csv there, and every chain as it goes on.
 """
 
-import csv
 import sys
 from collections.abc import Sequence
 from itertools import combinations
@@ -31,6 +30,7 @@ from mesoscale.settings import (
     MeasurementsSettings,
     UncertaintySettings,
 )
+from mesoscale.tables import write_table
 from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
@@ -174,10 +174,7 @@ def main(folder: Path) -> None:
     )
     chains = [direct_chain(table, data, number, folder / f"chain_{number}.txt") for number in range(CHAINS)]
     rows = compare(chains, responses_posterior(table, data))
-    with (folder / "direct.csv").open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_table(folder / "direct.csv", rows)
 
 
 if __name__ == "__main__":

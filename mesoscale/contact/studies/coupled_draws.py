@@ -3,7 +3,6 @@
 python -m mesoscale.contact.studies.coupled_draws FIRST LAST FILE.csv
 """
 
-import csv
 import sys
 import time
 from collections.abc import Iterator
@@ -17,6 +16,7 @@ from mesoscale.contact.studies.draws import draw_inputs
 from mesoscale.contact.studies.stability import violations
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
+from mesoscale.tables import grow_table
 
 GRIDS = (64, 128, 256)
 SECOND_LOSS = 0.01  # of the first cycle's dissipation, what a second one to the same load may lose
@@ -73,14 +73,9 @@ def coupled_draw_rows(first: int, last: int) -> Iterator[dict[str, Any]]:
 
 
 def main() -> None:
-    """Write the rows of some draws to a file."""
+    """Add the rows of some draws to a file."""
     first, last, file = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
-    with file.open("w", newline="") as out:
-        writer = csv.DictWriter(out, COLUMNS)
-        writer.writeheader()
-        for row in coupled_draw_rows(first, last):
-            writer.writerow(row)
-            out.flush()
+    grow_table(file, coupled_draw_rows(first, last), columns=COLUMNS)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ noisy mean is too deep by an amount that falls as 1/n (half samples of the cells
 cells differs from the mean by the scatter of groups, which falls as 1/sqrt(N).
 """
 
-import csv
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -21,6 +20,7 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.cells import PadGrid, close_cells, plan_grid
 from mesoscale.pad.curves import PadCells, assemble, deepest_net_GPa
 from mesoscale.settings import ContactSettings, PadSettings
+from mesoscale.tables import read_table, write_table
 
 Array = NDArray[np.float64]
 
@@ -117,19 +117,8 @@ def adhesion_rows(mechanics: str, cells: PadCells, sizes: Sequence[int] = SIZES)
 
 def update_table(path: Path, mechanics: str, rows: Iterable[dict[str, Any]]) -> None:
     """Replace the rows of a mechanics in the table."""
-    kept = []
-    if path.exists():
-        with path.open(newline="", encoding="utf-8") as stream:
-            kept = [row for row in csv.DictReader(stream) if row["mechanics"] != mechanics]
-    table = [*kept, *({key: _short(value) for key, value in row.items()} for row in rows)]
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, table[0], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(table)
-
-
-def _short(value: Any) -> Any:
-    return f"{value:.4g}" if isinstance(value, float) else value
+    kept = [row for row in read_table(path) if row["mechanics"] != mechanics]
+    write_table(path, [*kept, *rows], digits=4)
 
 
 def main(table: str, count: str, *mechanics: str) -> None:

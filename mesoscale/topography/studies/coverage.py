@@ -4,7 +4,6 @@ python -m mesoscale.topography.studies.coverage KIND FIRST LAST TABLE adds the r
 kind to a table (about 5 s a set); without KIND it prints the shares of the table.
 """
 
-import csv
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -15,6 +14,7 @@ import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
+from mesoscale.tables import grow_table, read_table
 from mesoscale.topography.analysis import trusted_measurement
 from mesoscale.topography.description.heights import common_heights, compare_heights, height_quantiles, not_gaussian
 from mesoscale.topography.description.likelihood import TrustedSpectrum
@@ -168,21 +168,13 @@ def main(arguments: Sequence[str]) -> None:
     """Add rows to a table as they are made, or print its shares."""
     path = Path(arguments[-1])
     if len(arguments) == 1:
-        with path.open() as stream:
-            rows = list(csv.DictReader(stream))
+        rows = read_table(path)
         for kind in KINDS:
             if any(row["kind"] == kind for row in rows):
                 print(kind, *(f"{key} {value:.3g}" for key, value in shares(rows, kind).items()), sep="  ")
         return
     kind, first, last = arguments[0], int(arguments[1]), int(arguments[2])
-    new = not path.exists()
-    with path.open("a") as stream:
-        writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
-        if new:
-            writer.writeheader()
-        for row in coverage_rows(kind, range(first, last)):
-            writer.writerow({key: f"{v:.6g}" if isinstance(v, float) else v for key, v in row.items()})
-            stream.flush()
+    grow_table(path, coverage_rows(kind, range(first, last)), 6, COLUMNS)
 
 
 if __name__ == "__main__":

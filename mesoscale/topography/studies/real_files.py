@@ -6,9 +6,8 @@ and pressed quantity to NUMBERS, and prints the shares inside the stated 90 % in
 grainy.
 """
 
-import csv
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.judged_scans import judge
 from mesoscale.settings import ContactSettings, TopographySettings
+from mesoscale.tables import write_table
 from mesoscale.topography.description.heights import common_heights
 from mesoscale.topography.height_synthesis import Z, synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan
@@ -106,23 +106,14 @@ def study(folder: Path) -> Iterator[tuple[dict[str, Any], list[dict[str, Any]]]]
             yield examined(path)
 
 
-def write(path: Path, columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> None:
-    """Write a table of the documentation, numbers to four digits."""
-    with path.open("w") as stream:
-        writer = csv.DictWriter(stream, columns, extrasaction="ignore", lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({key: f"{v:.4g}" if isinstance(v, float) else v for key, v in row.items()})
-
-
 def main(folder: str, table: str, numbers: str) -> None:
     """Write both tables after every file, so that a run cut short leaves what it has."""
     files, judged = [], []
     for row, rows in made_up(int(folder.split(":")[1])) if folder.startswith("made-up:") else study(Path(folder)):
         files.append(row)
         judged += rows
-        write(Path(table), FILE_COLUMNS, files)
-        write(Path(numbers), NUMBER_COLUMNS, judged)
+        write_table(Path(table), files, 4, FILE_COLUMNS)
+        write_table(Path(numbers), judged, 4, NUMBER_COLUMNS)
         print(*(f"{key} {value}" for key, value in row.items()), sep="; ", flush=True)
     first = [row["inside"] for row in files if "inside" in row]
     print(f"files {len(files)}, refused {sum('refused' in row for row in files)}, maps pressed {len(first)}")

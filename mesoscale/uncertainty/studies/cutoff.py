@@ -8,7 +8,6 @@ python -m mesoscale.uncertainty.studies.cutoff FILE.csv show    tables of the me
 A surface of a seed has the same waves on every grid that resolves its cut-off, so its outputs differ by the grid alone.
 """
 
-import csv
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -23,6 +22,7 @@ from mesoscale.contact import ContactInputs, run_cycle
 from mesoscale.contact.studies.accuracy import grids_of
 from mesoscale.contact.studies.stability import MIDDLE
 from mesoscale.settings import ContactSettings, LawSettings
+from mesoscale.tables import grow_table, read_table
 from mesoscale.uncertainty.runs import compute
 from mesoscale.uncertainty.studies.model_form import QUANTITIES, quantities
 
@@ -188,21 +188,12 @@ def passes(relative: np.ndarray, scatter: np.ndarray) -> bool:
 def main() -> None:
     """Compute what the file lacks, or show what it has."""
     file = Path(sys.argv[1])
-    known: list[dict[str, str]] = []
-    if file.exists():
-        with file.open(newline="", encoding="utf-8") as stream:
-            known = list(csv.DictReader(stream))
+    known = read_table(file)
     if sys.argv[2:] == ["show"]:
         for line in show(known):
             print(line)
         return
-    with file.open("a", newline="", encoding="utf-8") as out:
-        writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
-        if not known:
-            writer.writeheader()
-        for row in cycle_rows(known):
-            writer.writerow(row)
-            out.flush()
+    grow_table(file, cycle_rows(known), columns=COLUMNS)
 
 
 if __name__ == "__main__":
