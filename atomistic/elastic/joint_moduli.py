@@ -22,7 +22,7 @@ ASSUMPTIONS = (
     "Poisson's ratio is computed: bulk and shear modulus of each structure come from its elastic constants.",
     "LDA scales bulk and shear modulus by one factor, that of the bulk modulus under clamped ions.",
     "Anisotropy is what a small cell leaves of the difference between Voigt's and Reuss's bounds; the size of the cell "
-    "beyond it and broken bonds are not in the interval.",
+    "beyond it is not in the interval.",
 )
 
 

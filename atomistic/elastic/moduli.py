@@ -117,11 +117,17 @@ def grid_shares(axes: Mapping[str, tuple[np.ndarray, np.ndarray]], function: Cal
     return {"mean_GPa": mean, "std_GPa": float(np.sqrt(variance)), "shares": shares}
 
 
-NOTES = (
+IDEAL_NETWORKS = (
     "The glasses are ideal networks: every Si has four N and every N three Si. Films hold a few per cent of broken "
-    "bonds, which soften them, so B and E* are upper estimates.",
+    "bonds, which soften them, so B and E* are upper estimates."
+)
+BROKEN_BONDS = (
+    "Up to {} atoms of a quenched cell may lack or exceed their valence. Cells without a gap are left out, so of the "
+    "broken bonds only those without levels in the gap are represented."
+)
+CLAMPED_IONS = (
     "Ions clamped to fractional coordinates (the paper's scaling) stiffen the glass; relaxed_over_clamped says by how "
-    "much.",
+    "much."
 )
 SAMPLE_COLUMNS = {
     "e_star_GPa": ("GPa", "effective modulus E*"),
@@ -188,7 +194,10 @@ def effective_modulus(
             "nu": other_nu,
         },
         "paper": PAPER,
-        "notes": list(NOTES[: 2 if settings.ions == "clamped" else 1]),
+        "notes": [
+            BROKEN_BONDS.format(settings.glass.max_defects) if settings.glass.max_defects else IDEAL_NETWORKS,
+            *([CLAMPED_IONS] if settings.ions == "clamped" else []),
+        ],
     }
     nan = float("nan")
     if not used:

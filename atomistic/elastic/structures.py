@@ -38,6 +38,7 @@ class Structure:
             "atoms": len(self.atoms),
             "density_g_cm3": self.verdict.density_g_cm3,
             **{f"coordination_{element}": value for element, value in self.verdict.coordination.items()},
+            "defects": self.verdict.defects,
             "bond_spread_A": self.verdict.bond_spread_A,
             "relaxation": asdict(self.relaxation),
             "gate": {"passed": not self.reasons, "reasons": list(self.reasons)},
@@ -49,16 +50,18 @@ def relaxed_structure(
     criteria: NetworkGlass,
     make_calculator: Callable[[], Calculator],
     settings: RelaxationSettings,
+    max_defects: int = 0,
     progress: Progress | None = None,
 ) -> Structure:
-    """Relax a quenched cell and judge the result; a cell that is no perfect network is not relaxed at all.
+    """Relax a quenched cell and judge the result; a cell whose network is not good enough is not relaxed at all.
 
     Parameters
     ----------
     criteria : the `network_glass` of a material
     make_calculator : called only if the cell is relaxed
+    max_defects : atoms of the quenched cell that may lack or exceed their valence
     """
-    verdict = examine(quenched, criteria, perfect=True)
+    verdict = examine(quenched, criteria, max_defects)
     atoms, calculator, done = quenched, None, UNTOUCHED
     if verdict.passed:
         calculator = make_calculator()
@@ -96,6 +99,7 @@ def structure_rows(reports: Sequence[Mapping[str, Any]], quenches: Sequence[int]
             "atoms": report["atoms"],
             "density_g_cm3": report["density_g_cm3"],
             **{key: value for key, value in report.items() if key.startswith("coordination_")},
+            "defects": report["defects"],
             "bond_spread_A": report["bond_spread_A"],
             **report["relaxation"],
             "quenches": count,

@@ -25,6 +25,13 @@ class NitrideGlassSettings(Settings):
         default=300, ge=10, le=1000, description="end of the quench", json_schema_extra={"unit": "K"}
     )
     timestep_fs: float = Field(default=1, ge=0.1, le=1, description="time step", json_schema_extra={"unit": "fs"})
+    max_defects: int = Field(
+        default=0,
+        ge=0,
+        le=1000,
+        description="atoms of a quenched cell that may lack or exceed their valence; 3 of 28 are as many as in large "
+        "melt-quenched models",
+    )
     attempts: int = Field(
         default=300,
         ge=1,

@@ -82,7 +82,7 @@ rule relax_amorphous:
         f"{RESULTS}/logs/relax_amorphous_{{amorphous}}.log",
     priority: 90
     params:
-        settings=elastic_settings("material", "dft", "relaxation"),
+        settings=elastic_settings("material", "dft", "relaxation", "glass"),
         store=f"{RESULTS}/work/scf/relax_{{amorphous}}",
     message:
         "relax amorphous cell {wildcards.amorphous}"

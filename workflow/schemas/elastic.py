@@ -80,6 +80,7 @@ TABLES = (
             text("structure", "name of the structure"),
             integer("atoms", "atoms in the cell"),
             *_NETWORK,
+            integer("defects", "atoms without their valence, after the relaxation"),
             _BOND_SPREAD,
             integer("steps", "ionic steps of the relaxation"),
             number("force_left_eV_A", "eV/Å", "largest force left", empty=True),

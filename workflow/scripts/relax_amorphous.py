@@ -22,6 +22,7 @@ with job(snakemake) as run:
         material.part("network_glass"),
         lambda: make_calculator(dft, "GGA", largest_cell, store),
         relaxation,
+        snakemake.params.settings["glass"]["max_defects"],
         run.progress,
     )
     write_text(snakemake.output.structure, structure_text(relaxed.atoms))

@@ -179,7 +179,7 @@ def broken_by_shear(cell: Atoms, criteria: NetworkGlass) -> Verdict:
     """A shear that breaks bonds leaves atoms without their valence: the gate names them."""
     sheared = strained(cell, 0.0)
     sheared.set_cell(cell.cell.array @ np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1.0]]), scale_atoms=True)
-    verdict = examine(sheared, criteria, perfect=True)
+    verdict = examine(sheared, criteria, max_defects=0)
     return verdict.defects > 0 and not verdict.passed, "; ".join(verdict.reasons)
 
 

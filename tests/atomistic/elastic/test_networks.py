@@ -71,7 +71,7 @@ def test_a_missing_bond_fails_the_gate_of_a_quenched_cell_only():
     beta.positions[nitrogen, 2] += 0.9
     assert examine(beta, GLASS).defects > 0
     assert not any("valence" in reason for reason in examine(beta, GLASS).reasons)
-    assert any("valence" in reason for reason in examine(beta, GLASS, perfect=True).reasons)
+    assert any("valence" in reason for reason in examine(beta, GLASS, max_defects=0).reasons)
 
 
 def test_cores_leave_beta_untouched():

@@ -51,6 +51,14 @@ def test_no_calculation_is_spent_on_a_cell_with_broken_bonds(shaken):
     assert any("without their valence" in reason for reason in rejected.reasons)
 
 
+def test_a_broken_bond_is_relaxed_where_it_is_allowed_and_its_gap_decides(shaken):
+    shaken.positions[shaken.symbols.indices()["N"][0], 0] += 1.2  # leaves one of its three neighbours
+    broken = relaxed_structure(shaken, GLASS, tersoff, SETTINGS, max_defects=8)
+    assert broken.calculator is not None
+    assert broken.report("a01")["defects"] == broken.verdict.defects
+    assert not any("valence" in reason for reason in broken.reasons)
+
+
 def test_a_failed_calculation_and_a_closed_gap_are_reasons(shaken):
     class Fails(type(tersoff())):
         gap_eV = 0.1
@@ -74,6 +82,7 @@ def report(name, *reasons):
     gate = {"passed": not reasons, "reasons": list(reasons)}
     relaxation = {"steps": 3, "force_left_eV_A": 0.1, "converged": True, "energy_gained_eV": 1.0, "gap_eV": 2.0}
     made = {"structure": name, "atoms": 28, "density_g_cm3": 3.0, "coordination_Si": 4.0, "coordination_N": 3.0}
+    made["defects"] = 0
     return {**made, "bond_spread_A": 0.05, "relaxation": relaxation, "gate": gate}
 
 
