@@ -12,9 +12,9 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.description.choice import carried_on
 from mesoscale.topography.description.heights import common_heights, height_quantiles
-from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.one_spectrum import OneSpectrum, merge
 from mesoscale.topography.description.parameters import Topography, analyse
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.height_synthesis import synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.pressing import contacting_heights

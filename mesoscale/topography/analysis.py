@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.description.likelihood import TrustedSpectrum, trusted_range
 from mesoscale.topography.description.profile_range import trusted_profile
+from mesoscale.topography.description.trusted_range import TrustedSpectrum, trusted_range
 from mesoscale.topography.measurements.cleaning import Scan, clean, form_share
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile, clean_profile

@@ -12,11 +12,11 @@ from mesoscale.topography.description.choice import Choice, choose, description_
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.end import cutoff_row, rms_before
 from mesoscale.topography.description.heights import HeightTest, compare_heights, not_gaussian
-from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.one_spectrum import OneSpectrum, Overlap, merge, overlaps, refuse_different_films
 from mesoscale.topography.description.parameters import Topography, analyse
 from mesoscale.topography.description.tip_error import with_radius_error
 from mesoscale.topography.description.tip_on_grains import lift_doubt, with_lift_error, without_lift
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.records import is_profile, trusted_record
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import Spectrum

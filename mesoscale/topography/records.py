@@ -9,8 +9,8 @@ import numpy as np
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import analyse_scan, limited_spectrum, thumbnail, trusted
 from mesoscale.topography.description.heights import height_quantiles
-from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.profile_range import trusted_profile
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.measurements.cleaning import Scan, alignment_effect
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile, clean_profile

@@ -10,8 +10,8 @@ from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description.choice import DESCRIPTIONS
 from mesoscale.topography.description.end import cutoff_row, trusted_end
-from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.parameters import Topography, analyse, inputs
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.pooling import Pooled
 from mesoscale.topography.roughness_spectrum import hurst_from_slope, mean_square

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.parameters import Topography
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.roughness_spectrum import SpectrumTable, mean_square
 
 TIP_RADIUS_ERROR = 0.2  # relative, of a stated radius; it moves the wave vector at which the tip ends the range

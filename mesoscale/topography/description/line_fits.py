@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesoscale.topography.description.likelihood import TrustedSpectrum, blur
+from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur
 from mesoscale.topography.roughness_spectrum import mean_square
 
 SIGNIFICANCE = 0.01

@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
-from mesoscale.topography.description.likelihood import DISCREPANCY, TrustedSpectrum, with_ends
+from mesoscale.topography.description.likelihood import DISCREPANCY
+from mesoscale.topography.description.trusted_range import TrustedSpectrum, with_ends
 
 BANDS_PER_DECADE = 10
 DIFFERENT_FILMS = 100.0  # ratio of C, a factor of 10 in RMS height, beyond which two files are not of one surface

@@ -9,8 +9,9 @@ import numpy as np
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description import likelihood, line_fits
 from mesoscale.topography.description.doubts import Doubt
-from mesoscale.topography.description.likelihood import LikelihoodFit, TrustedSpectrum
+from mesoscale.topography.description.likelihood import LikelihoodFit
 from mesoscale.topography.description.line_fits import LineFit
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.roughness_spectrum import Convention, hurst_from_slope, mean_square
 
 MAX_MISFIT = 0.3  # RMS logarithmic residual of pooled bins above which equation 9 does not describe them

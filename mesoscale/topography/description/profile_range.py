@@ -3,7 +3,7 @@
 import numpy as np
 
 from mesoscale.errors import InputError
-from mesoscale.topography.description.likelihood import MOST_CURVED, TrustedSpectrum
+from mesoscale.topography.description.trusted_range import MOST_CURVED, TrustedSpectrum
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile
 from mesoscale.topography.profile_conversion import binned_line, isotropic_spectrum, line_spectrum
@@ -22,7 +22,7 @@ def trusted_profile(cleaned: Profile, measured: Measurement) -> TrustedSpectrum:
     """Isotropic spectrum of a levelled profile within what its instrument shows.
 
     Above, the first of pixels, noise (as seen at the Nyquist wave vector, or as stated), the instrument's shortest
-    wave, and the tip, by the same measure as for scans (`likelihood.trusted_range`).
+    wave, and the tip, by the same measure as for scans (`trusted_range`).
 
     Raises
     ------

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.description.likelihood import TrustedSpectrum, trusted_range
 from mesoscale.topography.description.parameters import Estimate, Topography, analyse
+from mesoscale.topography.description.trusted_range import TrustedSpectrum, trusted_range
 
 RADIUS_ERROR = 0.2  # relative; a radius is anywhere within, as a maker states it or a worn tip has it
 WIDTH_OF_UNIFORM = np.sqrt(3.0)  # half the width of a uniform distribution over its standard deviation

@@ -18,8 +18,9 @@ import numpy as np
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.doubts import Doubt
-from mesoscale.topography.description.likelihood import LikelihoodFit, TrustedSpectrum
+from mesoscale.topography.description.likelihood import LikelihoodFit
 from mesoscale.topography.description.parameters import MAX_MISFIT, Estimate, Topography
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.height_synthesis import Z
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
 from mesoscale.topography.synthesis import synthesize_spectrum

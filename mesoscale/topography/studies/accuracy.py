@@ -8,8 +8,9 @@ import numpy as np
 
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.description.likelihood import fit, skip_blurred_shells, trusted_range
+from mesoscale.topography.description.likelihood import fit, skip_blurred_shells
 from mesoscale.topography.description.parameters import analyse
+from mesoscale.topography.description.trusted_range import trusted_range
 from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.roughness_spectrum import mean_square
 from mesoscale.topography.spectrum import radial_spectrum

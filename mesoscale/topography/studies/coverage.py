@@ -17,7 +17,7 @@ from mesoscale.settings import SyntheticScanSettings, TopographySettings
 from mesoscale.tables import grow_table, read_table
 from mesoscale.topography.analysis import trusted_measurement
 from mesoscale.topography.description.heights import common_heights, compare_heights, height_quantiles, not_gaussian
-from mesoscale.topography.description.likelihood import TrustedSpectrum
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.height_synthesis import Z, synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.measurements.loading import Measurement

@@ -7,8 +7,8 @@ import numpy as np
 
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
 from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.description.likelihood import TrustedSpectrum
 from mesoscale.topography.description.parameters import Topography, analyse
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.synthetic_scans import synthetic_scans
 
 TOLERANCE = {"q0": 0.20, "slope": 0.15, "rms": 0.05}  # relative for q0 and rms, absolute for the slope

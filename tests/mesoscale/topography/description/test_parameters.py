@@ -9,8 +9,8 @@ from scipy.special import beta, betainc
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
 from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description import likelihood
-from mesoscale.topography.description.likelihood import TrustedSpectrum, blur
 from mesoscale.topography.description.parameters import MAX_MISFIT, analyse, inputs
+from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, slope_from_hurst
 from mesoscale.topography.spectrum import Spectrum
@@ -183,7 +183,7 @@ def test_without_a_plateau_q0_has_no_lower_end():
     q = np.geomspace(0.05, 0.5, 200)
     rng = np.random.default_rng(3)
     spectrum = Spectrum(q, q**-3.0 * rng.gamma(20, 1 / 20, 200), np.full(200, 20.0), 0.001, 1.0)
-    item = likelihood.TrustedSpectrum("a", spectrum, 0.05, 0.5, "pixels", 0.0)
+    item = TrustedSpectrum("a", spectrum, 0.05, 0.5, "pixels", 0.0)
     fitted = likelihood.fit([item])
     low, high = likelihood.q0_interval([item], fitted, 1.645)
     assert low < 0.001

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mesoscale.topography.description.likelihood import trusted_range
+from mesoscale.topography.description.trusted_range import trusted_range
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import Spectrum
 
