@@ -28,7 +28,10 @@ TOUCHED, PRESSED = 40, 20  # surfaces that are brought to first contact, and of 
 MOST_CONTACT = 0.5  # share of the cell; beyond, contacts have merged and asperities one by one say nothing
 CONFIDENCE = 0.9
 LOADS_NN = (1000.0, 7000.0)  # per cell of the contact settings: 1 and 7 uN
-COLUMNS = ("scan", "description", "left_out", "quantity", "unit", "pressed", "median", "low", "high", "inside")
+COLUMNS = (
+    *("scan", "description", "left_out", "quantity", "unit", "in_contact"),
+    *("pressed", "median", "low", "high", "inside"),
+)
 
 
 @dataclass(frozen=True)
@@ -65,13 +68,13 @@ def judge(
     inputs: ContactInputs,
     settings: TopographySettings,
     contact: ContactSettings,
+    most_contact: float = MOST_CONTACT,
 ) -> Iterator[dict[str, Any]]:
     """Rows of topography/judged.csv: pressing each scan, and what its description says of it.
 
     Each scan is left out of the description that it judges, as far as there are others; a lone scan judges the
     description made from itself. The surfaces go the way of the scan: they are cut from larger ones, levelled as it
-    is, and made periodic. They are as blunt as the scan: what the tips took is left out of both. Loads that press more
-    than half of the scan into contact are left out.
+    is, and made periodic. They are as blunt as the scan: what the tips took is left out of both.
 
     Parameters
     ----------
@@ -79,6 +82,7 @@ def judge(
     spectra : of all measurements, line profiles too, as the images show them.
     name : a key of `choice.DESCRIPTIONS`.
     inputs : of the contact; the surfaces replace its roughness.
+    most_contact : loads that press more than this share of the scan into contact are left out.
     """
     cleaned = {scan.name: clean(scan, settings) for scan in scans}
     spectra = [replace(item, tip_radius_nm=0.0) for item in spectra]
@@ -88,7 +92,7 @@ def judge(
         others = [item for item in cleaned.values() if item.name != scan.name] or [scan]
         heights = tuple(height_maps(others)) if name == "measured_heights" else ()
         described = Described(analyse(used, settings), merge(used) if name != "power_law" else None, heights)
-        yield from _judged(scan, described, name, left_out, inputs, settings, contact)
+        yield from _judged(scan, described, name, left_out, inputs, settings, contact, most_contact)
 
 
 def height_maps(scans: Sequence[Scan], count: int = MAPS) -> Iterator[tuple[float, ...]]:
@@ -111,6 +115,7 @@ def _judged(
     inputs: ContactInputs,
     settings: TopographySettings,
     contact: ContactSettings,
+    most_contact: float,
 ) -> Iterator[dict[str, Any]]:
     measured, side = contacting_heights(scan)
     stride = -(-len(measured) // SITES)
@@ -118,7 +123,7 @@ def _judged(
     sites = len(measured)
     chosen = contact.model_copy(update={"pixels": sites, "length_nm": side})
     truth, share = _press(measured, inputs, chosen, contact.length_nm)
-    truth = {quantity: value for quantity, value in truth.items() if share.get(quantity, 0.0) <= MOST_CONTACT}
+    truth = {quantity: value for quantity, value in truth.items() if share.get(quantity, 0.0) <= most_contact}
     made: dict[str, list[float]] = {quantity: [] for quantity in truth}
     for number, psd in enumerate(described.spectra(TOUCHED)):
         height = _rms(psd, 2 * side, 2 * sites)
@@ -143,6 +148,7 @@ def _judged(
             "left_out": left_out,
             "quantity": quantity,
             "unit": "nm^2" if quantity.startswith("area") else "nm",
+            "in_contact": share.get(quantity, 0.0),
             "pressed": value,
             "median": middle,
             "low": low,

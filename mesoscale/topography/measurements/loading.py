@@ -202,7 +202,7 @@ def _open(path: Path, start: bytes) -> Any:
     detail = f" ({reasons[0]})" if reasons else ""
     raise InputError(
         f"{path}: no reader understands this file{detail}; accepted are the formats of SurfaceTopography "
-        "(gwy, ibw, di, jpk, mi, nid, ps tiff, ...) except NumPy files"
+        "(gwy, ibw, di, jpk, mi, nid, ps tiff, ...; all 40: docs/topography.md, Formats) except NumPy files"
     )
 
 

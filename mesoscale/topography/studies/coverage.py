@@ -153,7 +153,10 @@ def _trusted(
 
 
 def shares(rows: Sequence[Mapping[str, Any]], kind: str) -> dict[str, float]:
-    """Sets of a kind; of each parameter the share covered, and mean and RMS error (relative, of the slope absolute)."""
+    """Sets of a kind; of each parameter the share covered, and mean, RMS and largest error.
+
+    Errors are relative, that of the slope absolute.
+    """
     mine = [row for row in rows if row["kind"] == kind and row.get("q0")]
     result: dict[str, float] = {"sets": len(mine)}
     for name in TOLERANCE:
@@ -161,6 +164,7 @@ def shares(rows: Sequence[Mapping[str, Any]], kind: str) -> dict[str, float]:
         error = value - true if name == "slope" else value / true - 1
         result[f"{name}_covered"] = float(np.mean([str(row[f"{name}_covered"]) == "True" for row in mine]))
         result[f"{name}_bias"], result[f"{name}_error"] = float(error.mean()), float(np.sqrt(np.mean(error**2)))
+        result[f"{name}_worst"] = float(np.abs(error).max())
     return result
 
 

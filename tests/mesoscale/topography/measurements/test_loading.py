@@ -1,6 +1,7 @@
 """Reading AFM files: heights, units, channels, and one clear line for whatever cannot be used."""
 
 import pickle
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,7 +11,7 @@ import pytest
 from mesoscale.errors import InputError
 from mesoscale.settings import InstrumentSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan, clean
-from mesoscale.topography.measurements.loading import load_measurements, load_scan, write_gwy
+from mesoscale.topography.measurements.loading import REFUSED_FORMATS, load_measurements, load_scan, write_gwy
 
 IN_NM = TopographySettings(instruments=(InstrumentSettings(files="*", unit="nm"),))
 AFM = Path(__file__).resolve().parents[5] / "shared" / "afm"
@@ -37,6 +38,16 @@ def test_missing_and_foreign_files_are_named(tmp_path):
     text.write_text("not a scan")
     with pytest.raises(InputError, match="no reader understands"):
         load_scan(text)
+
+
+def test_the_page_lists_every_format_that_is_read():
+    from SurfaceTopography.IO import readers
+
+    read = {reader.format() for reader in readers} - REFUSED_FORMATS
+    page = (Path(__file__).resolve().parents[4] / "docs/topography.md").read_text(encoding="utf-8")
+    listed = page.split("### Formats")[1].split("\n## ")[0].split("Besides containers")[0]
+    assert {name for name in re.findall(r"`(\w+)`", listed)} == read
+    assert len(read) >= 40
 
 
 def test_truncated_file_is_refused(tmp_path):
