@@ -41,7 +41,7 @@ setup: .venv/.asperity-ready
 
 .venv/.asperity-ready: pyproject.toml uv.lock | $(UV)
 	@echo "setting up the environment (about 1.5 GB, once)"
-	@$(UV) sync --locked --quiet
+	@$(UV) sync --locked --quiet --compile-bytecode
 	@touch $@
 
 .uv/bin/uv:

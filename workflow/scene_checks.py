@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
 from atomistic.settings.hardness import BASE_OVER_CONTACT
+from mesoscale.device.statistics import least_pull_in_V, never_closes
 from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.table import check_literature
@@ -82,12 +83,10 @@ def _stages(scene: Scene) -> Iterator[str]:
             f"device: an electrode of {area_um2:g} um^2 (electrode_um2, or length_um times width_um) is smaller than "
             f"one cell of {side_um:g} um (contact.length_nm); take a larger electrode or a smaller cell"
         )
-    lowest_nm = 1e3 * device.gap_um + min(device.bow_nm, 0.0) - device.tilt_nm / 2
-    if device.spring_N_per_m is None and lowest_nm <= 0:
-        yield (
-            f"device: at rest the electrode is {lowest_nm:.4g} nm above the dielectric at its lowest; lower bow_nm or "
-            "tilt_nm, or raise gap_um"
-        )
+    if device.touching_at_rest:
+        yield device.touching_at_rest
+    elif line := never_closes(device, least_pull_in_V(device)):
+        yield line
     synthetic = scene.topography.synthetic
     if "topography" in scene.stages() and not (
         scene.topography.scans or synthetic.small_scans or synthetic.large_scans

@@ -41,12 +41,62 @@ class Displacement:
     settled: bool
 
 
+class Closing:
+    """A rough surface that is brought to one separation after another, and may be opened in between.
+
+    An opening is elastic and changes nothing: closing goes on from the surface as flow has left it.
+
+    Attributes
+    ----------
+    first_contact_nm : separation at which the surface first touches (nm).
+    settled : whether flow came to rest at every separation so far.
+    """
+
+    def __init__(self, inputs: ContactInputs, settings: ContactSettings, heights: Array) -> None:
+        """Take (N, N) heights in nm, with contact at their minima; flow changes them in place."""
+        self._contact = contact_on(heights, inputs, settings)
+        self._touching = self._contact.touching_separation
+        self._flats: list[float] = []
+        self._forces: list[tuple[float, float]] = []
+        self._has_flowed = False
+        self.first_contact_nm = self._touching + self._contact.offset
+        self.settled = True
+
+    def close_to(self, separation_nm: float, attraction: bool = True) -> float:
+        """Bring the flat down to a separation from the mean plane before contact; the repulsive force (nN).
+
+        Parameters
+        ----------
+        attraction : whether it is wanted, too; it takes half of the time.
+        """
+        flat, repulsive = separation_nm - self._contact.offset, 0.0
+        if flat < self._touching:
+            moved = _bring_down(self._contact, self._flats[-1] if self._flats else flat, flat)
+            self.settled &= moved.settled and not moved.stuck
+            repulsive = moved.force
+        self._flats.append(flat)
+        self._forces.append((repulsive, self._contact.attraction(flat) if attraction else np.nan))
+        return repulsive
+
+    @property
+    def closing(self) -> Array:
+        """Repulsive and attractive force (nN, attraction negative) at all separations so far, shape (2, n)."""
+        return np.array(self._forces).T
+
+    def opening(self) -> Array:
+        """The same on the way back from here to the first separation, in the order of closing, shape (2, n)."""
+        forces = self.closing
+        self._has_flowed |= self._contact.changed_sites > 0
+        if self._has_flowed:  # else the way back is the way there
+            forces[:, :-1] = _way_back(self._contact, np.array(self._flats[:-1]))
+            self._contact.move_to(self._flats[-1], False)
+        return forces
+
+
 def close_by_separation(
     inputs: ContactInputs, settings: ContactSettings, heights: Array, separations_nm: Array, depths: Positions
 ) -> Displacement:
     """Close a rough surface to falling separations, and open it again from some of them.
-
-    After an opening the closing goes on from the surface as it was left: an opening is elastic and changes nothing.
 
     Parameters
     ----------
@@ -61,26 +111,13 @@ def close_by_separation(
     separations_nm = np.asarray(separations_nm, float)
     if not (np.diff(separations_nm) < 0).all():
         raise InputError("separations_nm: accepted are falling separations in nm, from far to near")
-    contact = contact_on(heights, inputs, settings)
-    flats = separations_nm - contact.offset
-    closing = np.zeros((2, flats.size))
-    opening = np.full((len(depths), 2, flats.size), np.nan)
-    touching = contact.touching_separation
-    settled = True
-    changed = 0
-    for place, flat in enumerate(flats):
-        if flat < touching:
-            moved = _bring_down(contact, flats[place - 1] if place else flat, flat)
-            settled &= moved.settled and not moved.stuck
-            closing[0, place] = moved.force
-        closing[1, place] = contact.attraction(flat)
+    surface = Closing(inputs, settings, heights)
+    opening = np.full((len(depths), 2, separations_nm.size), np.nan)
+    for place, separation in enumerate(separations_nm.tolist()):
+        surface.close_to(separation)
         for number in np.flatnonzero(depths == place):
-            opening[number, :, : place + 1] = closing[:, : place + 1]
-            changed += contact.changed_sites
-            if changed:  # else nothing has flowed yet: the way back is the way there
-                opening[number, :, :place] = _way_back(contact, flats[:place])
-                contact.move_to(flat, False)
-    return Displacement(touching + contact.offset, closing, opening, settled)
+            opening[number, :, : place + 1] = surface.opening()
+    return Displacement(surface.first_contact_nm, surface.closing, opening, surface.settled)
 
 
 def _bring_down(contact: Contact, start: float, target: float) -> State:

@@ -9,6 +9,7 @@ with p the contact pressure (positive: apart) and q the electrostatic pull. Noda
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +55,7 @@ class Beam:
         """Length that each integration point stands for, shape (points,)."""
         return 0.5 * self.length_m / self.elements * GAUSS[1]
 
-    @property
+    @cached_property
     def mechanics(self) -> tuple[Array, Array, Array]:
         """Hermite's shapes, stiffness of an element, and weights of the points times the width, as the kernels take."""
         size = self.length_m / self.elements
@@ -63,7 +64,7 @@ class Beam:
 
     def deflection_m(self, nodal: Array) -> Array:
         """Deflection at the integration points from nodal values (nodes, 2), shape (elements, points)."""
-        return deflect(nodal, _shapes(self.length_m / self.elements))
+        return deflect(nodal, self.mechanics[0])
 
     def step(self, nodal: Array, load: Load, inertia: float = 0.0, other: Array | None = None) -> tuple[Array, Array]:
         """One Newton step towards balance, and the answer to another load on top, both of shape (nodes, 2).
@@ -85,6 +86,8 @@ def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
     ------
     InputError : it touches the dielectric at rest.
     """
+    if touching := settings.touching_at_rest:
+        raise InputError(touching)
     length, width = settings.length_um * 1e-6, settings.width_um * 1e-6
     thickness = settings.thickness_um * 1e-6
     bending = settings.youngs_modulus_GPa * 1e9 * width * thickness**3 / 12.0
@@ -95,11 +98,6 @@ def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
     rest = settings.gap_um * 1e-6 + NM * (
         settings.bow_nm * 0.5 * (1.0 - np.cos(2.0 * np.pi * share)) + settings.tilt_nm * (share - 0.5)
     )
-    if rest.min() <= 0.0:
-        raise InputError(
-            f"device: at rest the electrode is {rest.min() / NM:.4g} nm above the dielectric at its lowest; lower "
-            "bow_nm or tilt_nm, or raise gap_um"
-        )
     return Beam(length, width, bending, tension, rest, at)
 
 

@@ -100,8 +100,10 @@ def newton_step(nodal, pressure_Pa, slope_Pa_m, other_Pa, inertia, shape, stiffn
                 bands[row, column - row + BANDS] += entry
     solve_bands(bands, right)
     change, answer = np.zeros((elements + 1, 2)), np.zeros((elements + 1, 2))
-    change[1:-1] = right[:, 0].copy().reshape(-1, 2)
-    answer[1:-1] = right[:, 1].copy().reshape(-1, 2)
+    # in loops: what numba brings for assigning a part of an array takes seconds to compile
+    for row in range(unknowns):
+        change[1 + row // 2, row % 2] = right[row, 0]
+        answer[1 + row // 2, row % 2] = right[row, 1]
     return change, answer
 
 
@@ -151,7 +153,9 @@ def creep(nodal, deepest_nm, rest_m, beam, pad, electric, contact_nm, free_nm):
                 continue
         nodal += change
         s += moved
-        deepest_nm[:] = np.minimum(deepest_nm, s)
+        for e in range(s.shape[0]):
+            for g in range(s.shape[1]):
+                deepest_nm[e, g] = min(deepest_nm[e, g], s[e, g])
         if deepest_nm.min() < pad[0][0]:
             return BEYOND
         if s.min() > free_nm:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.statistics import describe, probability
+from mesoscale.device.statistics import describe, never_closes, probability
 from mesoscale.device.switch import GPA, NM, Switch, solve_switch, switch_from_settings
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.law.branches import law_of_fit
@@ -149,11 +149,14 @@ def switch_on_pad(
     }
     stuck = sum(state.stuck for state in resampled)
     reasons = _doubts(content, spread, stuck)
+    bending = None
     try:
-        bending = asdict(solve_beam(settings, law_of(cells, hamaker))) if settings.spring_N_per_m is None else None
+        if settings.spring_N_per_m is None:
+            bending = asdict(solve_beam(settings, law_of(cells, hamaker)))
     except InputError as error:
-        bending = None
         reasons.append(str(error))
+    if line := never_closes(settings, bending["pull_in_V"] if bending else mean.pull_in_V):
+        reasons.append(line)
     return {
         **content,
         "mean": asdict(mean),

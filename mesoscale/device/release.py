@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from mesoscale.device.beam_switch import solve_beam
 from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.statistics import analytic_pull_in_V, describe, probability
+from mesoscale.device.statistics import analytic_pull_in_V, describe, never_closes, probability
 from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, switch_from_settings
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import InputTable
@@ -128,8 +128,16 @@ def solve_or_bound(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
 
     Raises
     ------
-    InputError : see `solve_electrode`; the held state was not computed, and the bound does not decide.
+    InputError : see `solve_electrode`; the hold voltage never closes the switch; the held state was not computed, and
+        the bound does not decide.
     """
+    state = _held_or_bounded(settings, law)
+    if line := never_closes(settings, state["pull_in_V"]):
+        raise InputError(line)
+    return state
+
+
+def _held_or_bounded(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
     try:
         return {**solve_electrode(settings, law), "bounded": 0.0}
     except NotComputed as error:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.contact.displacement import Displacement, close_by_separation
+from mesoscale.contact.displacement import Closing, Displacement, close_by_separation
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.surfaces import FilmPieces
@@ -20,7 +20,6 @@ FAR_NM = 200.0
 """Beyond, the attraction of the pad is that of two flats to 1 %: 1 + 6 (rms / separation)^2."""
 FAR_POINTS = 24
 MAX_PILOT_STEPS = 4000
-FIRST_PILOT_STEPS = 16
 PILOT_STEP = 5.0
 """Pilot cells are closed in coarser steps than the pad: where the grid ends need not be known to better than that."""
 
@@ -89,27 +88,23 @@ def _separation_at(
     start_nm: float,
     pad: PadSettings,
 ) -> float:
-    """Separation at which the mean repulsion of the surfaces is the wanted pressure."""
-    size, area = FIRST_PILOT_STEPS, contact.length_nm**2
-    while True:
-        separations = np.asarray(start_nm - pad.step_nm * PILOT_STEP * np.arange(size), float)
-        repelled = np.zeros(size)
-        for heights in surfaces:
-            closed = _close(inputs, contact, heights.copy(), PadGrid(separations, np.empty(0, int)))
-            repelled += closed.closing[0] / (len(surfaces) * area)
-        share = repelled / wanted_GPa(separations)
-        if share[-1] >= 1.0:
-            return float(separations[np.argmax(share >= 1.0)])
-        if size == MAX_PILOT_STEPS:
-            break
-        # not much deeper than the last steps promise: pressing far beyond what is asked for costs most
-        recent = size // 4
-        growth = np.log(max(share[-1], 1e-3) / max(share[-1 - recent], 1e-3)) / recent
-        missing = -np.log(max(share[-1], 1e-3)) / max(growth, 0.02)
-        size = min(size + int(np.clip(np.ceil(missing), 2, size)), MAX_PILOT_STEPS)
+    """Separation at which the mean repulsion of the surfaces, closed side by side, is the wanted pressure."""
+    planes = [float(heights.mean()) for heights in surfaces]
+    pilots = [Closing(inputs, contact, heights) for heights in surfaces]
+    area = len(surfaces) * contact.length_nm**2
+    separation, repelled, wanted = start_nm, 0.0, 0.0
+    for step in range(MAX_PILOT_STEPS):
+        separation = start_nm - pad.step_nm * PILOT_STEP * step
+        repelled = sum(
+            pilot.close_to(separation + plane, attraction=False) / area
+            for pilot, plane in zip(pilots, planes, strict=True)
+        )
+        wanted = float(wanted_GPa(np.array([separation]))[0])
+        if repelled >= wanted:
+            return separation
     raise InputError(
-        f"pad.max_pressure_MPa = {wanted_GPa(separations)[-1] * 1e3:g}: {len(surfaces)} cells closed by "
-        f"{start_nm - separations[-1]:g} nm carry {repelled[-1] * 1e3:.3g} MPa; lower it"
+        f"pad.max_pressure_MPa = {wanted * 1e3:g}: {len(surfaces)} cells closed by "
+        f"{start_nm - separation:g} nm carry {repelled * 1e3:.3g} MPa; lower it"
     )
 
 

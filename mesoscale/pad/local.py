@@ -21,6 +21,8 @@ class LocalPad:
 
     def __init__(self, law: PadLaw):
         self.law = law
+        # in a row in memory, whichever way the curves came: the loops are compiled once
+        self.at_nm = np.ascontiguousarray(law.separation_nm)
         self.closing = law.closing.sum(axis=0)
         self.depth_nm = np.linspace(law.depth_nm[0], law.depth_nm[-1], DEPTHS)
         self.rise_nm = np.linspace(0.0, min(law.separation_nm[-1] - law.depth_nm[-1], HIGHEST_RISE_NM), RISES)
@@ -29,8 +31,7 @@ class LocalPad:
     @property
     def tables(self) -> tuple[Array, Array, Array, Array, Array, float]:
         """What `pad_pressure` takes of the pad."""
-        law = self.law
-        return law.separation_nm, self.closing, self.depth_nm, self.rise_nm, self.opening, law.hamaker
+        return self.at_nm, self.closing, self.depth_nm, self.rise_nm, self.opening, self.law.hamaker
 
     def __call__(self, separation_nm: Array, deepest_nm: Array) -> tuple[Array, Array]:
         """Pressure and slope, of the shape (e, p) of both; continued in a line below the computed closing."""

@@ -1,8 +1,13 @@
 """Settings of the switch."""
 
+import math
+
 from pydantic import Field
 
 from mesoscale.settings.base import Settings
+
+PLACES_AT_REST = 1000
+"""Parts of the beam among whose ends the lowest place at rest is sought."""
 
 
 class DeviceSettings(Settings):
@@ -110,3 +115,22 @@ class DeviceSettings(Settings):
         le=1_000_000,
         description="samples of the law taken from the propagation of uncertainty",
     )
+
+    @property
+    def lowest_at_rest_nm(self) -> float:
+        """Separation from the dielectric of the lowest place of the bending electrode at rest (nm)."""
+        shares = (place / PLACES_AT_REST for place in range(PLACES_AT_REST + 1))
+        return 1e3 * self.gap_um + min(
+            self.bow_nm * 0.5 * (1.0 - math.cos(2.0 * math.pi * share)) + self.tilt_nm * (share - 0.5)
+            for share in shares
+        )
+
+    @property
+    def touching_at_rest(self) -> str:
+        """One line on a bending electrode that touches the dielectric at rest; empty where it does not."""
+        if self.spring_N_per_m is not None or self.lowest_at_rest_nm > 0.0:
+            return ""
+        return (
+            f"device: at rest the electrode is {self.lowest_at_rest_nm:.4g} nm above the dielectric at its lowest; "
+            "lower bow_nm or tilt_nm, or raise gap_um"
+        )

@@ -8,6 +8,10 @@ from mesoscale.settings.base import Settings
 from mesoscale.settings.inputs import WorkAndRangeSettings
 
 Length = Annotated[float, Field(gt=0, le=1e6)]
+Step = Annotated[
+    float,
+    Field(gt=0, le=10, description="step of separation in and near contact", json_schema_extra={"unit": "nm"}),
+]
 
 
 class PadSettings(Settings):
@@ -25,13 +29,7 @@ class PadSettings(Settings):
         "edge of what has landed included. A switch that presses harder is refused",
         json_schema_extra={"unit": "MPa"},
     )
-    step_nm: float = Field(
-        default=0.1,
-        gt=0,
-        le=10,
-        description="step of separation in and near contact",
-        json_schema_extra={"unit": "nm"},
-    )
+    step_nm: Step = 0.1
     depths: int = Field(
         default=8,
         ge=2,
@@ -89,13 +87,7 @@ class AdhesionSettings(Settings):
     works: tuple[WorkAndRangeSettings, ...] = Field(
         default=(), description="attractions by work and range beside that of the inputs"
     )
-    step_nm: float = Field(
-        default=0.1,
-        gt=0,
-        le=10,
-        description="step of separation in and near contact",
-        json_schema_extra={"unit": "nm"},
-    )
+    step_nm: Step = 0.1
     sphere_radius_um: float = Field(
         default=250.0,
         gt=0,

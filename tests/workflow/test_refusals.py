@@ -2,6 +2,12 @@
 
 import fcntl
 
+import pytest
+import yaml
+
+from workflow.scene import Scene
+from workflow.scene_checks import mistakes
+
 
 def errors(done):
     return [line for line in (done.stdout + done.stderr).splitlines() if line.startswith("ERROR")]
@@ -23,6 +29,21 @@ def test_contradictions_are_told_all_at_once(workflow_in):
     for line, words in zip(errors(done), ("needs at least 14", "'zzz' is no reading", "GB of memory"), strict=True):
         assert line.startswith(f"ERROR {scene}: ")
         assert words in line
+
+
+@pytest.mark.parametrize(
+    ("device", "words"),
+    [
+        ("{hold_voltage_V: 40}", "device.hold_voltage_V = 40: never closes this switch, which pulls in at 62.69 V"),
+        ("{hold_voltage_V: 40, bow_nm: -2000}", ""),
+        ("{gap_um: 1, tilt_nm: 2100}", "at rest the electrode is -50 nm above the dielectric at its lowest"),
+        ("{gap_um: 1, tilt_nm: 1900, bow_nm: -700}", ""),  # the middle and the end that are low are not one place
+    ],
+)
+def test_a_switch_that_never_closes_or_is_never_open(device, words):
+    scene = Scene.model_validate({"device": yaml.safe_load(device)})
+    found = [line for line in mistakes(scene, {}) if line.startswith("device")]
+    assert [words in line for line in found] == [True] * bool(words)
 
 
 def test_a_run_of_weeks_is_planned_with_its_time_and_refused(workflow_in):

@@ -509,7 +509,7 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, wor
 
     Returns the sweeps done and whether no asperity is left above its hardness.
     """
-    actives = 0
+    actives = np.int64(0)
     for number in range(asperities.used[0]):
         if asperities.sites[number] > 0:
             work.active[actives] = number
@@ -539,14 +539,14 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, wor
                         heights, n, spacing, site, rise, work.width[k], rule, changes, work.narrow, work.wide
                     )
                     flows += 1
-        waiting = 0
+        waiting = np.int64(0)  # else the callee is compiled for the number 0, too
         for k in range(flows):
             # one ring more than the flow: a site's curvature sees its neighbours
             reach = min(work.half[k] + 1, (n - 1) // 2)
             waiting = _release(heights, n, level, work.site[k], reach, asperities, work.seeds, waiting)
         if asperities.used[1] > 2 * heights.size or asperities.used[0] > heights.size:
             compact(asperities)
-        actives = 0
+        actives = np.int64(0)
         for k in range(waiting):
             if asperities.label[work.seeds[k]] == -1:
                 work.active[actives] = grow(asperities, heights, n, level, spacing, mechanics.eight, work.seeds[k])

@@ -73,7 +73,9 @@ def accuracy_points(
             progress((done + 1) / len(parts), name)
 
 
-def _row(case: str, knob: str, value: object, error: float, metric: str, reference: str, cpu_s: float) -> Row:
+def _row(case: str, knob: str, value: object, error: float, metric: str, reference: str, cost: Array) -> Row:
+    """A row; `cost` is wall and processor time (s)."""
+    wall_s, cpu_s = cost.tolist()
     return {
         "case": case,
         "knob": knob,
@@ -81,14 +83,18 @@ def _row(case: str, knob: str, value: object, error: float, metric: str, referen
         "error": error,
         "error_metric": metric,
         "reference": reference,
-        "wall_s": cpu_s,
+        "wall_s": wall_s,
         "cpu_s": cpu_s,
     }
 
 
-def _release_V(law: PadLaw, device: DeviceSettings, elements: int | None = None) -> tuple[float, float]:
-    """Release (0: stuck; NaN: not computed) and the processor time it took."""
-    started = time.process_time()
+def _clock() -> Array:
+    return np.array([time.perf_counter(), time.process_time()])
+
+
+def _release_V(law: PadLaw, device: DeviceSettings, elements: int | None = None) -> tuple[float, Array]:
+    """Release (0: stuck; NaN: not computed), and the wall and processor time it took."""
+    started = _clock()
     try:
         if device.spring_N_per_m is not None:
             release = solve_on_pad(switch_from_settings(device), law, device.hold_voltage_V).release_V
@@ -98,10 +104,10 @@ def _release_V(law: PadLaw, device: DeviceSettings, elements: int | None = None)
             release = solve_beam(device, law, elements).release_V
     except InputError:
         release = np.nan
-    return release, time.process_time() - started
+    return release, _clock() - started
 
 
-def _cells(cells: PadCells, hamaker: float, device: DeviceSettings, cell_s: float) -> Iterator[Row]:
+def _cells(cells: PadCells, hamaker: float, device: DeviceSettings, cost: Array) -> Iterator[Row]:
     """Fewer cells: disjoint groups of them, and the time to compute a group."""
     wanted, _ = _release_V(law_of(cells, hamaker), device)
     size = 8
@@ -114,32 +120,32 @@ def _cells(cells: PadCells, hamaker: float, device: DeviceSettings, cell_s: floa
             deviations.append(_release_V(law_of(cells, hamaker, weights), device)[0] - wanted)
         error = float(np.sqrt(np.nanmean(np.square(deviations))))
         metric = f"RMS deviation over {len(groups)} groups, V"
-        yield _row("release", "cells", size, error, metric, f"{cells.count} cells", size * cell_s)
+        yield _row("release", "cells", size, error, metric, f"{cells.count} cells", size * cost)
         size *= 2
 
 
 def _closed_again(
     inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, seeds: Sequence[int]
-) -> Iterator[tuple[list[Displacement], float]]:
+) -> Iterator[tuple[list[Displacement], Array]]:
     """Cells at the separations of the pad and at every second and fourth of them, with the time of one."""
     list(close_cells(inputs, contact, PadGrid(grid.separation_nm, np.empty(0, int)), seeds[:1]))  # compiles
     for every in (1, *sorted(STEPS)):
         # from the deepest, which stays, and with the depths that the coarse grid has
         kept = np.arange(grid.separation_nm.size)[::-1][::every][::-1]
         depths = np.flatnonzero(np.isin(kept, grid.depths))
-        started = time.process_time()
+        started = _clock()
         closed = list(close_cells(inputs, contact, PadGrid(grid.separation_nm[kept], depths), seeds))
-        yield closed, (time.process_time() - started) / len(seeds)
+        yield closed, (_clock() - started) / len(seeds)
 
 
-def _steps(again: Sequence[tuple[list[Displacement], float]]) -> Iterator[Row]:
+def _steps(again: Sequence[tuple[list[Displacement], Array]]) -> Iterator[Row]:
     """Coarser steps of separation: the force at the deepest closing, and the well on opening from there."""
     (fine, _), *coarser = again
-    for every, (closed, cpu_s) in zip(sorted(STEPS), coarser, strict=True):
+    for every, (closed, cost) in zip(sorted(STEPS), coarser, strict=True):
         for case, of in (("force at the deepest closing", _force), ("well on opening from there", _well)):
             error = float(np.mean([abs(of(a) / of(b) - 1.0) for a, b in zip(closed, fine, strict=True)]))
             metric = "mean relative deviation over cells"
-            yield _row(case, "steps of pad.step_nm", every, error, metric, "the pad's own steps", cpu_s)
+            yield _row(case, "steps of pad.step_nm", every, error, metric, "the pad's own steps", cost)
 
 
 def _force(cell: Displacement) -> float:
@@ -156,8 +162,8 @@ def _depths(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
     count = law.depth_nm.size
     for fewer in sorted({2, 3, (count + 1) // 2, count - 1} - {count}):
         kept = np.unique(np.linspace(0, count - 1, fewer).round().astype(int))
-        release, cpu_s = _release_V(replace(law, depth_nm=law.depth_nm[kept], opening=law.opening[kept]), device)
-        yield _row("release", "pad.depths", fewer, abs(release - wanted), "deviation, V", f"{count} depths", cpu_s)
+        release, cost = _release_V(replace(law, depth_nm=law.depth_nm[kept], opening=law.opening[kept]), device)
+        yield _row("release", "pad.depths", fewer, abs(release - wanted), "deviation, V", f"{count} depths", cost)
 
 
 def _elements(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
@@ -166,9 +172,9 @@ def _elements(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
         return
     wanted, _ = _release_V(law, device, FINEST_ELEMENTS)
     for elements in ELEMENTS:
-        release, cpu_s = _release_V(law, device, elements)
+        release, cost = _release_V(law, device, elements)
         reference = f"{FINEST_ELEMENTS} elements"
-        yield _row("release", "elements of the beam", elements, abs(release - wanted), "deviation, V", reference, cpu_s)
+        yield _row("release", "elements of the beam", elements, abs(release - wanted), "deviation, V", reference, cost)
 
 
 def _emulators(
@@ -185,7 +191,7 @@ def _emulators(
     x = np.array([[*(draw.values[name] for name in names), draw.gap_cutoff_nm] for draw in draws])
     for share in FEWER_DRAWS:
         ways: dict[str, list[float]] = {"closed form": [], "line through the releases": [], "mean of the releases": []}
-        cpu = dict.fromkeys(ways, 0.0)
+        costs = {way: np.zeros(2) for way in ways}
         size = int(share * (len(known) - 1))
         if size < x.shape[-1] + 2:
             continue
@@ -193,7 +199,7 @@ def _emulators(
             others = known[known != left]
             used = np.random.default_rng(int(left)).permutation(others)[:size]
             for way, errors in ways.items():
-                started = time.process_time()
+                started = _clock()
                 if way == "closed form":
                     foretold = _by_form([central, *(draws[k] for k in used)], draws[left], table, device)
                 elif way == "mean of the releases":
@@ -203,11 +209,11 @@ def _emulators(
                     line = np.linalg.lstsq(columns, truth[used], rcond=None)[0]
                     foretold = float(max(np.append(1.0, x[left]) @ line, 0.0))
                 errors.append(foretold - float(truth[left]))
-                cpu[way] += time.process_time() - started
+                costs[way] += _clock() - started
         for way, errors in ways.items():
             error = float(np.sqrt(np.nanmean(np.square(errors))))
             metric, reference = "RMS deviation over draws left out, V", "the draw's own curves"
-            yield _row(f"release by {way}", "draws", size, error, metric, reference, cpu[way] / len(errors))
+            yield _row(f"release by {way}", "draws", size, error, metric, reference, costs[way] / len(errors))
 
 
 def _by_form(pads: Sequence[SampledPad], at: SampledPad, table: InputTable, device: DeviceSettings) -> float:

@@ -133,6 +133,18 @@ def test_a_switch_that_the_bound_does_not_decide_stays_refused():
         solve_or_bound(DeviceSettings(), law_of_compact(smooth, np.full(s.size, 0.005), s))
 
 
+@pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
+def test_a_hold_voltage_that_never_closes_the_switch_is_refused_in_one_line(settings):
+    s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
+    law = law_of_compact(true_pad(MIDDLE, 0.165), pressure_to_compute(settings, 0.0, 80.0)(s), s)
+    pull_in = solve_or_bound(settings, law)["pull_in_V"]
+    assert solve_or_bound(settings.model_copy(update={"hold_voltage_V": 1.01 * pull_in}), law)["release_V"] >= 0.0
+    for share in (0.8, 0.99):
+        with pytest.raises(InputError, match=f"never closes this switch, which pulls in at {pull_in:.4g} V") as caught:
+            solve_or_bound(settings.model_copy(update={"hold_voltage_V": share * pull_in}), law)
+        assert "\n" not in str(caught.value)
+
+
 def test_refused_points_widen_the_probability_of_sticking():
     closed, opened = _probability(4, 10, 0), _probability(4, 8, 2)
     assert opened["value"] == 0.5
