@@ -8,7 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from mesoscale.tables import grow_table, read_table
+from mesoscale.tables import grow_table, load_table
 
 TABLES = Path(__file__).resolve().parent.parent / "docs" / "data"
 
@@ -71,7 +71,7 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, help="where to work and keep the undisturbed runs; default: temporary")
     given = parser.parse_args()
     table = TABLES / f"attacks_{given.campaign}.csv"
-    given.done = read_table(table)
+    given.done = load_table(table)
     if given.seed is None:
         given.seed = 0 if given.campaign == "scans" else 1 + max((int(row["seed"]) for row in given.done), default=-1)
     outcomes: Counter[str] = Counter()

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 
-def read_table(path: Path) -> list[dict[str, str]]:
+def load_table(path: Path) -> list[dict[str, str]]:
     """The rows by now, all values text; none where there is no file."""
     if not path.is_file():
         return []

@@ -1,14 +1,14 @@
 import pytest
 
-from mesoscale.tables import grow_table, read_table, write_table
+from mesoscale.tables import grow_table, load_table, write_table
 
 
 def test_a_table_keeps_its_columns_as_it_grows(tmp_path):
     path = tmp_path / "t.csv"
-    assert read_table(path) == []
+    assert load_table(path) == []
     grow_table(path, [{"a": 1.23456, "b": "x"}], digits=3)
     grow_table(path, iter([{"b": "y"}]))
-    assert read_table(path) == [{"a": "1.23", "b": "x"}, {"a": "", "b": "y"}]
+    assert load_table(path) == [{"a": "1.23", "b": "x"}, {"a": "", "b": "y"}]
     with pytest.raises(ValueError, match="c"):
         grow_table(path, [{"c": 1}])
 
@@ -20,9 +20,9 @@ def test_a_campaign_cut_short_has_its_rows(tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         grow_table(tmp_path / "t.csv", rows(), columns=("b", "a"))
-    assert read_table(tmp_path / "t.csv") == [{"b": "", "a": "1"}]
+    assert load_table(tmp_path / "t.csv") == [{"b": "", "a": "1"}]
 
 
 def test_a_table_is_written_with_the_columns_asked_for(tmp_path):
     write_table(tmp_path / "t.csv", [{"a": 0.123456, "b": 2}], 2, ("a",))
-    assert read_table(tmp_path / "t.csv") == [{"a": "0.12"}]
+    assert load_table(tmp_path / "t.csv") == [{"a": "0.12"}]

@@ -37,8 +37,8 @@ def _pad(stuck=0.02, cells=0.1, **more):
     }
 
 
-def _results(pad):
-    return SimpleNamespace(has=lambda *names: pad is not None, json=lambda name: pad)
+def _results(pad, coupled=False):
+    return SimpleNamespace(has=lambda *names: pad is not None, json=lambda name: pad, coupled=coupled)
 
 
 def test_verdict_says_outcome_cause_and_next_step():
@@ -55,6 +55,12 @@ def test_verdict_says_outcome_cause_and_next_step():
 )
 def test_verdict_says_when_it_is_not_decided(stuck, words):
     assert words in verdict(_results(_pad(stuck)), SOUND)
+
+
+def test_a_coupled_switch_that_sticks_does_so_by_an_upper_bound():
+    assert "measure a pull-off force next" in verdict(_results(_pad(1.0), coupled=True), SOUND)
+    assert "upper bound" in release_cards(_results(_pad(0.3), coupled=True))[1]["detail"]
+    assert "upper bound" not in release_cards(_results(_pad(0.3)))[1]["detail"]
 
 
 def test_few_cells_are_named_before_any_measurement():

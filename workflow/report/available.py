@@ -1,5 +1,6 @@
 """The result files a report may show: what exists is read, what does not exist leaves no section."""
 
+import json
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
@@ -58,6 +59,16 @@ class Results:
         """Name of the method behind samples, explorer and switch."""
         method = self.json("uq/surrogate.json")["method"] if self.has("uq/surrogate.json") else ""
         return f"response ({method}; mean over random surfaces)" if method else "response"
+
+    @property
+    def contact(self) -> dict[str, Any]:
+        """The contact settings that the curves were made with; none without curves."""
+        return json.loads(self.h5("curves/nominal.h5")[1]["contact"]) if self.has("curves/nominal.h5") else {}
+
+    @property
+    def coupled(self) -> bool:
+        """Whether asperities deform each other's ground."""
+        return self.contact.get("mechanics") == "coupled"
 
     def uses(self, stage: str) -> bool:
         """Whether an input of this scene comes from the stage."""

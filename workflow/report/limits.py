@@ -4,7 +4,6 @@ import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.numbers import column, show
-from workflow.report.stages.contact import reading_of
 
 _ASPERITY = (
     "True contact area: asperities are found by cutting the surface with a plane (bearing area), which "
@@ -22,8 +21,7 @@ _DROPPED = ("Flowed volume is not kept: the rim that it would make carries no lo
 def limits(results: Results) -> list[str]:
     """What a reader must know before using the numbers, with the figures of this scene where they exist."""
     paper = results.beside_paper
-    reading = reading_of(results) if results.has("curves/nominal.h5") else {}
-    coupled = reading.get("mechanics") == "coupled"
+    reading, coupled = results.contact, results.coupled
     shortest = "that the grid resolves" if reading.get("q1_per_nm") is None else "that the cut-off q₁ leaves"
     return [
         f"Adhesion: {_adhesion(results)}measured dry adhesion of such surfaces is 5 to 30 µJ/m². The law's attraction "

@@ -28,7 +28,7 @@ from mesoscale.calibration.switches import SwitchModel
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import input_table
 from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings, UncertaintySettings
-from mesoscale.tables import grow_table, read_table, write_table
+from mesoscale.tables import grow_table, load_table, write_table
 from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
@@ -227,7 +227,7 @@ def _kept(path: Path, runs: Sequence[Run], contact: ContactSettings, names: Sequ
         part = path.with_suffix(".part")
         write_table(part, rows)
         part.rename(path)
-    return cycles_of_rows(read_table(path), names)
+    return cycles_of_rows(load_table(path), names)
 
 
 def main(folder: Path) -> None:

@@ -20,7 +20,7 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.cells import PadGrid, close_cells, plan_grid
 from mesoscale.pad.curves import PadCells, assemble, deepest_net_GPa
 from mesoscale.settings import ContactSettings, PadSettings
-from mesoscale.tables import read_table, write_table
+from mesoscale.tables import load_table, write_table
 
 Array = NDArray[np.float64]
 
@@ -117,7 +117,7 @@ def adhesion_rows(mechanics: str, cells: PadCells, sizes: Sequence[int] = SIZES)
 
 def update_table(path: Path, mechanics: str, rows: Iterable[dict[str, Any]]) -> None:
     """Replace the rows of a mechanics in the table."""
-    kept = [row for row in read_table(path) if row["mechanics"] != mechanics]
+    kept = [row for row in load_table(path) if row["mechanics"] != mechanics]
     write_table(path, [*kept, *rows], digits=4)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.settings import SyntheticScanSettings, TopographySettings
-from mesoscale.tables import grow_table, read_table
+from mesoscale.tables import grow_table, load_table
 from mesoscale.topography.analysis import trusted_measurement
 from mesoscale.topography.description.heights import common_heights, compare_heights, height_quantiles, not_gaussian
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
@@ -172,7 +172,7 @@ def main(arguments: Sequence[str]) -> None:
     """Add rows to a table as they are made, or print its shares."""
     path = Path(arguments[-1])
     if len(arguments) == 1:
-        rows = read_table(path)
+        rows = load_table(path)
         for kind in KINDS:
             if any(row["kind"] == kind for row in rows):
                 print(kind, *(f"{key} {value:.3g}" for key, value in shares(rows, kind).items()), sep="  ")

@@ -22,7 +22,7 @@ from mesoscale.contact import ContactInputs, run_cycle
 from mesoscale.contact.studies.accuracy import grids_of
 from mesoscale.contact.studies.stability import MIDDLE
 from mesoscale.settings import ContactSettings, LawSettings
-from mesoscale.tables import grow_table, read_table
+from mesoscale.tables import grow_table, load_table
 from mesoscale.uncertainty.runs import compute
 from mesoscale.uncertainty.studies.model_form import QUANTITIES, quantities
 
@@ -188,7 +188,7 @@ def passes(relative: np.ndarray, scatter: np.ndarray) -> bool:
 def main() -> None:
     """Compute what the file lacks, or show what it has."""
     file = Path(sys.argv[1])
-    known = read_table(file)
+    known = load_table(file)
     if sys.argv[2:] == ["show"]:
         for line in show(known):
             print(line)

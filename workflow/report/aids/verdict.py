@@ -14,6 +14,8 @@ NAMES = {
     "tilt_nm": ("tilt", "the tilt of the electrode at rest"),
 }
 CAUSES = {"inputs": "inputs", "gap_cutoff": "D₀", "geometry": "bow and tilt", "cells": "the finite number of cells"}
+UPPER_BOUND = "; an upper bound, as the model overrates the pull of tops that were pressed flat"
+"""Of coupled mechanics: attraction does not deform the contact (docs/contact.md)."""
 DECIDED = 0.95
 """Probability from which on a switch is said to stick, or to let go."""
 
@@ -34,7 +36,7 @@ def verdict(results: Results, gates: Sequence[Gate]) -> str:
             said += f"; where the electrode bends, it {_bending(pad['beam'])}"
     else:
         said = "The release voltage is not known"
-    return f"{said}; {_next(pad, gates)}."
+    return f"{said}; {_next(pad, gates, results.coupled)}."
 
 
 def release_cards(results: Results) -> list[Card]:
@@ -44,11 +46,12 @@ def release_cards(results: Results) -> list[Card]:
     if answer:
         held = ", ".join(CAUSES[row["cause"]] for row in answer["causes"] if row["share_of_variance"] > 0)
         electrode = {"bending": "electrode that bends", "flat": "electrode flat on the pad"}[answer["electrode"]]
-        return _cards(answer, electrode, f"the interval holds {held}" if held else "all points give the same")
+        held = f"the interval holds {held}" if held else "all points give the same"
+        return _cards(answer, electrode, held, results.coupled)
     if not pad or pad["mean"] is None:
         return []
     held = f"the interval holds the {pad['cells_computed']} computed cells alone, at central inputs"
-    flat = _cards(pad["estimate"], "electrode flat on the pad", held)
+    flat = _cards(pad["estimate"], "electrode flat on the pad", held, results.coupled)
     if pad["beam"]:
         flat[0]["detail"] += f"; bending, the electrode {_bending(pad['beam'])}"
     return flat
@@ -66,10 +69,11 @@ def symbol(name: str) -> str:
     return NAMES[name][0] if name in NAMES else SYMBOLS.get(name, name)
 
 
-def _cards(states: dict[str, Any], electrode: str, held: str) -> list[Card]:
+def _cards(states: dict[str, Any], electrode: str, held: str, coupled: bool) -> list[Card]:
     release, stuck = states["release_V"]["quantiles"], states["stuck"]
     interval = f"5 to 95 %: {show(release['0.05'])} to {show(release['0.95'])} V, 0 where it sticks"
     share = f"95 %: {stuck['low']:.0%} to {stuck['high']:.0%}, from {stuck['samples']} switches"
+    share += UPPER_BOUND * (coupled and stuck["value"] > 0)
     return [
         {"title": "Release", "value": _volts(release["0.5"]), "detail": f"median, {electrode}; {interval}; {held}"},
         {"title": "Probability of sticking", "value": f"{stuck['value']:.0%}", "detail": f"{electrode}; {share}"},
@@ -104,7 +108,7 @@ def _cause(answer: dict[str, Any]) -> str:
     return f"{first['share_of_variance']:.0%} of the spread comes from {symbol(first['name'])}"
 
 
-def _next(pad: dict[str, Any], gates: Sequence[Gate]) -> str:
+def _next(pad: dict[str, Any], gates: Sequence[Gate], coupled: bool) -> str:
     failed = [gate for gate in gates if gate.used and not gate.passed]
     if failed:
         return f"before anything else, mend what failed: {', '.join(gate.stage for gate in failed)} (reasons below)"
@@ -112,6 +116,8 @@ def _next(pad: dict[str, Any], gates: Sequence[Gate]) -> str:
     if answer:
         cells = next(row["share_of_variance"] for row in answer["causes"] if row["cause"] == "cells")
         rows = answer["sensitivity"]
+        if answer["stuck"]["value"] == 1.0 and coupled:
+            return "its adhesion is an upper bound, so measure a pull-off force next (target calibrate)"
         if answer["stuck"]["value"] == 1.0:
             return "no better measurement would free it, a stiffer or shorter beam might"
         if not rows or cells > rows[0]["share_of_variance"]:

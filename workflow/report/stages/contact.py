@@ -1,6 +1,5 @@
 """Contact curves at central inputs: figures 4 and 11."""
 
-import json
 import math
 from dataclasses import fields
 
@@ -27,8 +26,7 @@ def describe(results: Results) -> Section | None:
     """Figures 4 and 11, and the readings in use."""
     if not results.has("curves/nominal.h5"):
         return None
-    reading = reading_of(results)
-    coupled = reading.get("mechanics") == "coupled"
+    reading, coupled = results.contact, results.coupled
     section = Section(
         "curves",
         "Contact curves at central inputs",
@@ -156,7 +154,7 @@ def area_against_load(results: Results) -> str | None:
     if not present:
         return None
     area = float(attributes["cell_area_nm2"])
-    settings = ContactSettings(**reading_of(results))
+    settings = ContactSettings(**results.contact)
     inputs = ContactInputs(
         **{field.name: float(curve_attributes[present[0]][field.name]) for field in fields(ContactInputs)}
     )
@@ -184,11 +182,6 @@ def area_against_load(results: Results) -> str | None:
         axis.legend()
 
     return draw("area", "Share of area in contact against nominal pressure, beside Persson's theory", plot)
-
-
-def reading_of(results: Results) -> dict[str, object]:
-    """The contact settings that a curve file was made with."""
-    return json.loads(results.h5("curves/nominal.h5")[1]["contact"])
 
 
 def _in_words(choice: object) -> str:
