@@ -44,9 +44,9 @@ def campaign(folder: Path, seed: int, count: int) -> Iterator[dict[str, Any]]:
                 "seed": seed,
                 "size_kB": size,
                 "seconds": seconds,
-                "said": last_words(full).replace(str(folder), "")[:160],
+                "said": last_words(full.stdout + full.stderr).replace(str(folder), "")[:160],
                 "kept": len(kept),
-                "next": last_words(again)[:120] if again.returncode else "finished",
+                "next": last_words(again.stdout + again.stderr)[:120] if again.returncode else "finished",
                 "equal": full.returncode != 0
                 and again.returncode == 0
                 and contents(place / "results/contact") == expected,

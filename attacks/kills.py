@@ -1,4 +1,4 @@
-"""SIGKILL at random moments: of the run with all its jobs, of its main process alone, of one of its jobs.
+"""SIGKILL at random moments: of the run with all its jobs, of its main process alone, of one of its jobs, of LAMMPS.
 
 A folder is killed several times and then finished; its results must be those of a run that was left alone.
 """
@@ -7,17 +7,17 @@ import os
 import random
 import signal
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import psutil
 
 from attacks.runs import CONTACT, GLASS, command, contents, environment, last_words, run, undisturbed
 
-COLUMNS = ("scene", "seed", "folder", "way", "after_s", "finished", "made_again", "lost", "next", "equal")
 WAYS = ("group", "main", "child")
+LAMMPS = "lmp"  # the name of its process
 KILLS_PER_FOLDER = 4
 SCENES = {
     "contact": (CONTACT, "results/contact/law/parameters.csv"),
@@ -37,7 +37,7 @@ def campaign(folder: Path, scene: str, kills: int, seed: int) -> Iterator[dict[s
         place = folder / f"{scene}_{seed}_{number}"
         killed: list[Killed] = []
         while len(killed) < min(KILLS_PER_FOLDER, kills - count):
-            one = _kill(rng, place, path, target, longest)
+            one = _kill(rng, place, path, target, longest, WAYS if scene == "contact" else (*WAYS, LAMMPS, LAMMPS))
             if one is None:
                 break
             killed.append(one)
@@ -45,7 +45,7 @@ def campaign(folder: Path, scene: str, kills: int, seed: int) -> Iterator[dict[s
         results = place / "results" / scene
         found, times = contents(results), _times(results)
         for one, after in zip(killed, [*killed[1:], None], strict=True):
-            said = last_words(last) if last.returncode else "finished"
+            said = last_words(last.stdout + last.stderr) if last.returncode else "finished"
             yield {
                 "scene": scene,
                 "seed": seed,
@@ -55,6 +55,7 @@ def campaign(folder: Path, scene: str, kills: int, seed: int) -> Iterator[dict[s
                 "finished": len(one.files),
                 "made_again": sum(times.get(name, when) != when for name, when in one.files.items()),
                 "lost": sum(name not in times for name in one.files),
+                "said": one.said,
                 "next": said if after is None else after.words,
                 "equal": last.returncode == 0 and found == expected,
             }
@@ -71,42 +72,55 @@ class Killed:
     after_s : how long the run had worked.
     files : results that were there, with the time of their making.
     words : "started" where the run worked until it was killed, else what it said before it ended by itself.
+    said : how the run ended whose job was killed; empty where the run itself was.
     """
 
     way: str
     after_s: float
     files: dict[str, int]
     words: str
+    said: str
 
 
-def _kill(rng: random.Random, place: Path, path: Path, target: str, longest: float) -> Killed | None:
+def _kill(
+    rng: random.Random, place: Path, path: Path, target: str, longest: float, ways: Sequence[str]
+) -> Killed | None:
     """Start a run and kill of it at a random moment; None where it finished before."""
     place.mkdir(parents=True, exist_ok=True)
-    way, moment = rng.choice(WAYS), rng.uniform(0.05, 0.6) * longest
-    with (place / "said.txt").open("w+") as said:
+    way, moment = rng.choice(ways), rng.uniform(0.05, 0.6) * longest
+    with (place / "said.txt").open("w+") as output:
         process = subprocess.Popen(
             command(path, target),
             cwd=place,
             env=environment(place),
-            stdout=said,
-            stderr=said,
+            stdout=output,
+            stderr=output,
             start_new_session=True,
         )
+        said = ""
         try:
             if process.wait(moment) == 0:
                 return None
-            said.seek(0)
-            words = said.read().strip().rpartition("\n")[2]
+            words = _last_words(output)
         except subprocess.TimeoutExpired:
             words = "started"
             way = _end(rng, process, way)
-    return Killed(way, moment, _times(place / "results" / path.stem), words)
+            if way not in ("group", "main"):
+                said = _last_words(output).replace(f"{place}/", "")
+    return Killed(way, moment, _times(place / "results" / path.stem), words, said)
+
+
+def _last_words(output: TextIO) -> str:
+    output.seek(0)
+    return last_words(output.read())
 
 
 def _end(rng: random.Random, process: "subprocess.Popen[str]", way: str) -> str:
     """Kill, and wait for the end of what is left; says what was killed."""
     jobs = psutil.Process(process.pid).children(recursive=True)
-    if way == "child" and jobs:
+    if way == LAMMPS:
+        jobs = [job for job in jobs if job.name() == LAMMPS]
+    if way in ("child", LAMMPS) and jobs:
         rng.choice(jobs).send_signal(signal.SIGKILL)
     elif way == "main":
         process.kill()

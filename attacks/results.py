@@ -11,7 +11,8 @@ from typing import Any
 
 from attacks.runs import CONTACT, contents, last_words, run, undisturbed
 
-TARGET = "law"
+TARGET = "all"  # another target leaves a damaged file alone that it does not ask for
+SCENE = "\n".join([CONTACT, "pad: {cells: 8, pilot_cells: 2, depths: 3, draws: 2, draw_cells: 2}"])
 DAMAGES: dict[str, Callable[[random.Random, bytes], bytes]] = {
     "empty": lambda rng, content: b"",
     "half": lambda rng, content: content[: len(content) // 2],
@@ -31,7 +32,7 @@ def _one_bit(rng: random.Random, content: bytes) -> bytes:
 def campaign(folder: Path, seed: int, count: int) -> Iterator[dict[str, Any]]:
     """Rows of `count` rounds; a round damages every file of a copy, or its checksum, in one way each."""
     scene = folder / "contact.yaml"
-    scene.write_text(CONTACT, encoding="utf-8")
+    scene.write_text(SCENE, encoding="utf-8")
     whole = folder / "whole"
     expected, _ = undisturbed(whole, scene, TARGET)
     for number in range(seed, seed + count):
@@ -56,6 +57,6 @@ def campaign(folder: Path, seed: int, count: int) -> Iterator[dict[str, Any]]:
                 "damage": kind,
                 "named": named,
                 "equal": equal,
-                "words": "" if equal else last_words(done)[:120],
+                "words": "" if equal else last_words(said)[:120],
             }
         shutil.rmtree(copy)

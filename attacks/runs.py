@@ -62,9 +62,9 @@ def contents(results: Path) -> dict[str, str]:
     }
 
 
-def last_words(done: subprocess.CompletedProcess[str]) -> str:
-    """What a run says at its end: its first ERROR line, else its last line; 'Traceback' where it shows one."""
-    lines = (done.stdout + done.stderr).strip().splitlines()
+def last_words(said: str) -> str:
+    """How a run ends by what it said: its first ERROR line, else its last line; 'Traceback' where it shows one."""
+    lines = said.strip().splitlines()
     if any("Traceback" in line for line in lines):
         return "Traceback"
     return next((line for line in lines if line.startswith("ERROR ")), lines[-1] if lines else "")

@@ -25,7 +25,6 @@ from workflow.scene_checks import mistakes
 from workflow.scene_schema import SCHEMA
 from workflow.scene_yaml import load_mapping
 
-COLUMNS = ("seed", "outcome", "seconds", "words")
 LONGEST_LINE = 1500  # an unknown key lists the known ones
 PLAIN = re.compile(r"[-+]?(0|[1-9][0-9]*)?(\.[0-9]*)?([eE][-+]?[0-9]+)?")
 TRUTH = {True: {"true", "yes", "on"}, False: {"false", "no", "off"}, None: {"", "~", "null"}}
