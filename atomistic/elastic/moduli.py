@@ -126,8 +126,7 @@ BROKEN_BONDS = (
     "broken bonds only those without levels in the gap are represented."
 )
 CLAMPED_IONS = (
-    "Ions clamped to fractional coordinates (the paper's scaling) stiffen the glass; relaxed_over_clamped says by how "
-    "much."
+    "Ions clamped to fractional coordinates stiffen the glass; relaxed_over_clamped in e_star.json says by how much."
 )
 SAMPLE_COLUMNS = {
     "e_star_GPa": ("GPa", "effective modulus E*"),

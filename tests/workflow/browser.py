@@ -15,6 +15,11 @@ WATCH = """<script>window.failures = [];
 window.addEventListener("error", (event) => failures.push(event.message));
 window.addEventListener("unhandledrejection", (event) => failures.push(String(event.reason)));</script>"""
 
+WHOLE_NUMBERS = """
+const { toPrecision } = Number.prototype; // numbers shown with three digits tell all that were computed
+Number.prototype.toPrecision = function () { return toPrecision.call(this, 15); };
+"""
+
 
 def probed(
     page: str, folder: Path, width: int, probe: str, budget_ms: int = 3000, dark: bool = False

@@ -1,5 +1,6 @@
 """Small made-up result files of every stage, in the formats that the stages write."""
 
+import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -145,16 +146,8 @@ def _uncertainty(root: Path) -> None:
         root / "uq/validation.csv",
         [{"output": name, "runs": 50, "missing": 0, "q2": 0.9, "q2_low": 0.8, "q2_high": 0.95} for name in outputs],
     )
-    zero, last = [0] * 7, [0] * 6 + [1]
     responses = [
-        {
-            "name": f"{branch}_{name}",
-            "transform": "identity",
-            "terms": [
-                {"degrees": zero, "coefficient": value},
-                {"degrees": last, "coefficient": 0.5 * value if name == "d_c_nm" else 0.0},
-            ],
-        }
+        _response(branch, name, value)
         for branch, law in (("closing", LAW), ("opening", OPENED))
         for name, value in law.items()
     ]
@@ -181,6 +174,25 @@ def _uncertainty(root: Path) -> None:
         },
     }
     write_json(root / "uq/surrogate.json", content, PROVENANCE)
+
+
+def _response(branch: str, name: str, value: float) -> dict[str, Any]:
+    """An output that every input moves, of each kind that the format has; `value` in the middle of the ranges."""
+    terms = {(0,) * 7: 1.0, (0, 1, 0, 0, 0, 0, 1): 0.03, (0, 0, 0, 0, 0, 3, 0): 0.04}
+    terms |= {tuple(int(k == number) for k in range(7)): 0.01 * (number + 1) for number in range(6)}
+    terms[0, 0, 0, 0, 0, 0, 1] = 0.5 if name == "d_c_nm" else 0.0
+    if name == "rho_r_nm":
+        kind = {"transform": "log"}
+        scaled = {degrees: share if any(degrees) else math.log(value) for degrees, share in terms.items()}
+    elif (branch, name) == ("opening", "d_c_nm"):
+        kind = {"transform": "log", "below": "closing_d_c_nm"}
+        drop = math.log(LAW[name] - value)
+        scaled = {degrees: share if any(degrees) else drop for degrees, share in terms.items()}
+    else:
+        kind = {"transform": "identity"}
+        scaled = {degrees: share * value for degrees, share in terms.items()}
+    listed = [{"degrees": list(degrees), "coefficient": number} for degrees, number in scaled.items()]
+    return {"name": f"{branch}_{name}", **kind, "terms": listed}
 
 
 def _device(root: Path) -> None:

@@ -18,7 +18,7 @@ from mesoscale.device.switch import beam_stiffness_N_per_m, switch_from_settings
 from mesoscale.errors import InputError
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
-from tests.workflow.browser import probed
+from tests.workflow.browser import WHOLE_NUMBERS, probed
 from tests.workflow.made_up_results import write_all
 from workflow.report.available import Results
 from workflow.report.live.device import switch_data
@@ -167,7 +167,9 @@ def test_page_computes_what_the_library_computes(data, tmp_path):
     assert any(0 < case["sticking"] < 1 for case in known if case["sticking"] is not None)
 
 
-MOVE = """
+MOVE = (
+    WHOLE_NUMBERS
+    + """
 window.addEventListener("load", async () => {
   const rest = () => new Promise((done) => setTimeout(done, 600));
   const table = () => Object.fromEntries([...document.querySelectorAll("#switch-results tbody tr")].map((row) =>
@@ -189,6 +191,7 @@ window.addEventListener("load", async () => {
   parent.document.body.append(text);
 });
 """
+)
 
 
 def test_every_slider_of_the_switch_in_a_browser(results, data, tmp_path):
@@ -204,15 +207,19 @@ def test_every_slider_of_the_switch_in_a_browser(results, data, tmp_path):
                 assert "No number" in move["status"]
                 assert math.isnan(told["release"][place])
                 continue
-            assert told["pull-in"][place] == pytest.approx(library[kind]["pull_in_V"], rel=5e-3)  # three digits
-            assert told["release"][place] == pytest.approx(library[kind]["release_V"], rel=5e-3)
+            assert told["pull-in"][place] == pytest.approx(library[kind]["pull_in_V"], rel=1e-6)
+            assert told["release"][place] == pytest.approx(library[kind]["release_V"], rel=1e-6)
+        if library["flat"] is not None:
+            assert told["pressure while held"][0] == pytest.approx(library["flat"]["hold_MPa"], rel=1e-6)
+            adhesion = told["largest net adhesion on opening"][0]
+            assert adhesion == pytest.approx(library["flat"]["deepest_net_kPa"], rel=1e-6, abs=1e-9)
         if library["sticking"] is not None:
-            assert told["probability of sticking"][0] == pytest.approx(100 * library["sticking"], rel=5e-3)
+            assert told["probability of sticking"][0] == pytest.approx(100 * library["sticking"], rel=1e-6)
 
 
 def _told(cell):
     """Number in a cell; 0 V where the switch sticks, NaN where there is none."""
     if cell == "sticks":
         return 0.0
-    found = re.match(r"[\d.]+", cell)
-    return float(found[0]) if found else math.nan
+    found = re.match(r"[-−\d.e]+", cell)
+    return float(found[0].replace("−", "-")) if found else math.nan

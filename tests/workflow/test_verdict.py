@@ -114,6 +114,6 @@ def test_a_switch_that_always_sticks_is_not_said_to_depend_on_an_input():
     answer["release_V"] = _described(0.0, 0.0, 0.0)
     answer["design"] = {"points": 64}
     said = verdict(_results(pad), SOUND)
-    assert said.startswith("The switch sticks; so it does at all 64 points")
+    assert said.startswith("The switch sticks; it does so in all 64 computed combinations of inputs, D₀, bow and tilt")
     assert "stiffer" in said
-    assert release_cards(_results(pad))[0]["detail"].endswith("all points give the same")
+    assert release_cards(_results(pad))[0]["detail"].endswith("sticks; nothing uncertain changes that")

@@ -112,7 +112,7 @@ def error_against_time(stage: str, rows: list[Row]) -> str | None:
             style = "o-" if number_ < len(SERIES) else "s--"
             axis.plot(*zip(*shown, strict=True), style, color=SERIES[number_ % len(SERIES)], markersize=4, label=knob)
         axis.set(xscale="log", yscale="log", xlabel="run time (s)", ylabel="largest error")
-        axis.legend(fontsize=8)
+        axis.legend()
 
     return draw(f"accuracy-{stage}", f"Error against run time of stage {stage}, by setting", plot)
 

@@ -16,6 +16,10 @@ TERMS = {
     "elementary effect": "Change of an output when one input moves over its whole range, averaged over the others.",
     "response": "Fast fit of the outputs to the inputs, made from direct runs.",
     "pull-in": "Voltage at which the open switch snaps shut.",
+    "release": "Voltage at which the closed switch lets go, as its voltage is lowered.",
+    "stiction": "The switch stays closed without a voltage.",
+    "D₀": "Smallest gap at which surfaces attract; the smaller it is, the stronger the adhesion.",
+    "RMS": "Root mean square of the heights of a surface about their mean.",
 }
 PLURAL = {"reading", "gate", "pad", "cell", "elementary effect", "response"}
 

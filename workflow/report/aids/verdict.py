@@ -46,7 +46,7 @@ def release_cards(results: Results) -> list[Card]:
     if answer:
         held = ", ".join(CAUSES[row["cause"]] for row in answer["causes"] if row["share_of_variance"] > 0)
         electrode = {"bending": "electrode that bends", "flat": "electrode flat on the pad"}[answer["electrode"]]
-        held = f"the interval holds {held}" if held else "all points give the same"
+        held = f"the interval holds {held}" if held else "nothing uncertain changes that"
         return _cards(answer, electrode, held, results.coupled)
     if not pad or pad["mean"] is None:
         return []
@@ -71,11 +71,13 @@ def symbol(name: str) -> str:
 
 def _cards(states: dict[str, Any], electrode: str, held: str, coupled: bool) -> list[Card]:
     release, stuck = states["release_V"]["quantiles"], states["stuck"]
-    interval = f"5 to 95 %: {show(release['0.05'])} to {show(release['0.95'])} V, 0 where it sticks"
+    detail = f"median, {electrode}; 5 to 95 %: {show(release['0.05'])} to {show(release['0.95'])} V, 0 where it sticks"
+    if not any(release.values()):
+        detail = f"{electrode}; 5 to 95 %: sticks"
     share = f"95 %: {stuck['low']:.0%} to {stuck['high']:.0%}, from {stuck['samples']} switches"
     share += UPPER_BOUND * (coupled and stuck["value"] > 0)
     return [
-        {"title": "Release", "value": _volts(release["0.5"]), "detail": f"median, {electrode}; {interval}; {held}"},
+        {"title": "Release", "value": _volts(release["0.5"]), "detail": f"{detail}; {held}"},
         {"title": "Probability of sticking", "value": f"{stuck['value']:.0%}", "detail": f"{electrode}; {share}"},
     ]
 
@@ -101,7 +103,7 @@ def _bending(beam: dict[str, Any]) -> str:
 def _cause(answer: dict[str, Any]) -> str:
     largest = max(answer["causes"], key=lambda row: row["share_of_variance"])
     if largest["share_of_variance"] == 0:
-        return f"so it does at all {answer['design']['points']} points of inputs, D₀ and geometry"
+        return f"it does so in all {answer['design']['points']} computed combinations of inputs, D₀, bow and tilt"
     if largest["cause"] == "cells" or not answer["sensitivity"]:
         return f"{largest['share_of_variance']:.0%} of the spread is {CAUSES[largest['cause']]}"
     first = answer["sensitivity"][0]

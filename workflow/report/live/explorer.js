@@ -129,20 +129,13 @@
   }
 
   function fill(both, hamaker) {
-    const rows = [[symbol("d", "c", "nm"), (law) => law[0]], [symbol("C", "a", "10⁻⁵ GPa/nm"), (law) => 1e5 * law[1]],
-      [symbol("C", "r", "10⁻⁴ GPa"), (law) => 1e4 * law[2]], [symbol("ρ", "r", "nm"), (law) => law[3]],
+    const rows = [["d_c (nm)", (law) => law[0]], ["C_a (10⁻⁵ GPa/nm)", (law) => 1e5 * law[1]],
+      ["C_r (10⁻⁴ GPa)", (law) => 1e4 * law[2]], ["ρ_r (nm)", (law) => law[3]],
       [`separation at ${READ} MPa (nm)`, (law) => (usable(law) ? separation(READ, law, hamaker) : NaN)]];
     body.replaceChildren(...rows.map(([label, value]) => tableRow(label, both.map(({ mean, cells }) => {
       const ends = cells.length ? [0.16, 0.84].map((q) => show(quantile(cells.map(value), q))) : [];
       return show(value(mean)) + (ends.length ? ` [${ends.join(", ")}]` : "");
     }))));
-  }
-
-  function symbol(letter, index, unit) {
-    const [whole, low] = [document.createElement("span"), document.createElement("sub")];
-    low.textContent = index;
-    whole.append(letter, low, ` (${unit})`);
-    return whole;
   }
 
   function show(value) { return Number.isFinite(value) ? value.toPrecision(3).replace("-", "−") : "–"; }
@@ -163,7 +156,7 @@
     const width = Math.max(svg.clientWidth, 260);
     const height = Math.min(340, Math.max(220, 0.55 * width));
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    const [left, right, top, bottom] = [58, width - 10, 10, height - 44];
+    const [left, right, top, bottom] = [72, width - 10, 10, height - 44];
     const limit = (p) => Math.min(Math.max(p, 2 * lowest - highest), 2 * highest - lowest);
     const x = (s) => (left + ((right - left) * (s - from)) / (to - from)).toFixed(1);
     const y = (p) => (bottom - ((bottom - top) * (limit(p) - lowest)) / (highest - lowest)).toFixed(1);
@@ -189,7 +182,10 @@
   function node(tag, attributes, text) {
     const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
     for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-    if (text !== undefined) element.textContent = text;
+    if (text === undefined) return element;
+    const [before, letter = "", index = "", after = ""] = text.split(/([A-Za-zρ])_([a-z])(?![A-Za-z_])/);
+    element.append(before + letter);
+    if (index) element.append(node("tspan", { dy: 3, "font-size": "75%" }, index), node("tspan", { dy: -3 }, after));
     return element;
   }
 

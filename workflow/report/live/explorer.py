@@ -8,6 +8,7 @@ import numpy as np
 from mesoscale.inputs.definitions import definition
 from mesoscale.law.parameters import PARAMETERS
 from workflow.report.available import Results
+from workflow.report.numbers import shown_unit
 
 SURROGATE_KEYS = ("name", "transform", "terms", "below")
 
@@ -22,8 +23,8 @@ def explorer(results: Results) -> dict[str, Any] | None:
     inputs = [
         {
             "name": row["name"],
-            "label": f"{definition(row['name']).label} {definition(row['name']).symbol}",
-            "unit": row["unit"],
+            "label": _label(row["name"]),
+            "unit": shown_unit(row["unit"]),
             "low": row["low"],
             "high": row["high"],
         }
@@ -31,6 +32,12 @@ def explorer(results: Results) -> dict[str, Any] | None:
     ]
     outputs = [{key: output[key] for key in SURROGATE_KEYS if key in output} for output in surrogate["outputs"]]
     return {"inputs": inputs, "outputs": outputs, "law": surrogate["law"], "scatter": _scatter(surrogate["scatter"])}
+
+
+def _label(name: str) -> str:
+    """An input in words with its symbol, which some have among the words."""
+    label, symbol = definition(name).label, definition(name).symbol
+    return label if symbol in label.split() else f"{label} {symbol}"
 
 
 def _scatter(joint: dict[str, Any] | None) -> dict[str, Any] | None:

@@ -121,7 +121,7 @@ def prior_and_posterior(results: Results) -> str:
         for edge in (0, 1):
             axis.axvline(edge, color=SOFT, linewidth=0.8)
 
-    return draw("calibrated", "Prior and posterior of the inputs", plot, (6.4, 3.2))
+    return draw("calibrated", "Prior and posterior of the inputs", plot, (5.2, 3.2))
 
 
 def predicted_curves(results: Results) -> str:

@@ -147,14 +147,14 @@ def release_distribution(results: Results) -> str:
             free_top = max(axis.get_ylim()[1] if stuck < 0.3 else 0, 0.15)
             if stuck > 2 * free_top:
                 axis.set_ylim(0, free_top)
-                axis.annotate(f"{stuck:.0%} stuck", (bins[1], free_top), va="top", ha="left", color=RED)
+                axis.annotate(f" {stuck:.0%} stuck", (bins[1], free_top), va="top", ha="left", color=RED)
         axis.set(xlabel="release voltage (V)", ylabel="share of samples per bin")
         axis.legend()
         fraction = column(curve, "share")
         other.fill_between(fraction, column(curve, "low"), column(curve, "high"), color=PURPLE, alpha=0.2, linewidth=0)
         other.plot(fraction, column(curve, "stiction_probability"), color=PURPLE)
         other.axvline(chosen, color=SOFT, linestyle=":")
-        other.annotate("this scene ", (chosen, 0.97), ha="right", va="top", color=SOFT, fontsize=9)
+        other.annotate("this scene  ", (chosen, 0.5), ha="right", va="top", color=SOFT, fontsize=9)
         other.set(xscale="log", ylim=(0, 1), xlabel="share of the electrode in contact")
         other.set_ylabel("probability of stiction")
 

@@ -140,7 +140,7 @@ def energy_volume(results: Results) -> str | None:
         axis.set(xlabel="strain (%)", ylabel="energy above lowest point (eV per cell)")
         axis.legend()
 
-    return draw("energy", "Energy against strain of every structure", plot, (5.6, 3.6))
+    return draw("energy", "Energy against strain of every structure", plot, (5.0, 3.4))
 
 
 def _normal(x: np.ndarray, mean: float, std: float) -> np.ndarray:

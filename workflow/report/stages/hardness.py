@@ -67,6 +67,8 @@ def describe(results: Results) -> Section | None:
         "run", "energy scale", "geometry", "λ (nm)", "contact length (nm)", "hardness (GPa)",
         "bond exchanges per 0.1 nm: before → onset → after", "p of the onset", "status",
     )  # fmt: skip
+    if len({line[2] for line in lines}) == 1:  # one geometry: its column says nothing
+        header, *lines = ((*line[:2], *line[3:]) for line in (header, *lines))
     section.blocks.append(Table("Every run and what became of it", header, lines))
     section.notes += _fit_notes(fit)
     section.files += ["hardness/points.csv", "hardness/fit.json"]

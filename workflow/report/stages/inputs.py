@@ -5,7 +5,7 @@ import json
 import numpy as np
 
 from workflow.report.available import Results, Row
-from workflow.report.numbers import SYMBOLS, number, show
+from workflow.report.numbers import SYMBOLS, number, show, shown_unit
 from workflow.report.page import Section, Table
 
 
@@ -22,7 +22,7 @@ def describe(results: Results) -> Section | None:
     lines = [
         (
             SYMBOLS.get(row["parameter"], row["parameter"]),
-            row["unit"],
+            shown_unit(row["unit"]) or "–",
             _distribution(row),
             row["origin"],
             row.get("file", ""),

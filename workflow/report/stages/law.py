@@ -77,7 +77,7 @@ def band(results: Results) -> str:
         axis.legend()
 
     label = "Contact pressure against separation with the spread over uncertain inputs, and its adhesion well"
-    return draw("law", label, plot, (5.4, 5.6), rows=2)
+    return draw("law", label, plot, (4.6, 5.2), rows=2)
 
 
 def _wells(results: Results) -> dict[str, tuple[np.ndarray, ...]]:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from workflow.report.aids.verdict import CAUSES, symbol
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import column, show
@@ -38,7 +39,7 @@ def describe(results: Results) -> Section | None:
     )
     section.blocks.append(
         Table(
-            "Release voltage, cause by cause, at central inputs; 0: it sticks",
+            "Release voltage, cause by cause, at central inputs",
             ("model", "release (V)", "cause", "change (V)", "note"),
             _causes(results, switch),
         )
@@ -81,24 +82,30 @@ def _answer(answer: dict) -> list[Table]:
         return f"{show(middle)} [{show(low)}, {show(high)}]"
 
     stuck, design = answer["stuck"], answer["design"]
+    varies = any(row["share_of_variance"] > 0 for row in answer["causes"])
     released = [
-        ("release (V), 0 where it sticks, median and 5 to 95 %", spread("release_V")),
+        ("release (V), 0 where it sticks, median and 5 to 95 %", spread("release_V") if varies else "sticks"),
         ("probability of sticking, 95 % interval", f"{stuck['value']:.2f} [{stuck['low']:.2f}, {stuck['high']:.2f}]"),
         ("pull-in (V)", spread("pull_in_V")),
         ("capacitance closed (fF)", spread("capacitance_fF")),
-        *((f"share of the variance by {row['cause']}", f"{row['share_of_variance']:.1%}") for row in answer["causes"]),
-        ("switches solved, and refused", f"{design['points']}, {len(design['refused'])}"),
-        ("of them stick already when held by less than what was computed", str(design["bounded"])),
+        *(
+            (f"share of the release's variance from {CAUSES[row['cause']]}", f"{row['share_of_variance']:.1%}")
+            for row in answer["causes"]
+            if varies
+        ),
+        ("switches computed; of them without an answer", f"{design['points']}; {len(design['refused'])}"),
+        ("of them known to stick before they press as hard as they do", str(design["bounded"])),
     ]
-    measured = [
-        (row["name"], f"{row['share_of_variance']:.1%}", f"{row['interval_shrinks_by']:.1%}")
-        for row in answer["sensitivity"]
-    ]
-    columns = ("uncertain", "share of the variance", "known exactly, the interval shrinks by")
-    return [
-        Table("The switch over cells, inputs, D0 and geometry", ("quantity", "value"), released),
-        Table("What to measure better for the release voltage", columns, measured),
-    ]
+    held = "the finite number of cells, inputs, D₀, bow and tilt"
+    tables = [Table(f"The switch, over {held}", ("quantity", "value"), released)]
+    if varies:
+        measured = [
+            (symbol(row["name"]), f"{row['share_of_variance']:.1%}", f"{row['interval_shrinks_by']:.1%}")
+            for row in answer["sensitivity"]
+        ]
+        columns = ("uncertain", "share of the variance", "known exactly, the interval shrinks by")
+        tables.append(Table("What to measure better for the release voltage", columns, measured))
+    return tables
 
 
 def _causes(results: Results, switch: dict) -> list[tuple[str, ...]]:
@@ -131,8 +138,9 @@ def _causes(results: Results, switch: dict) -> list[tuple[str, ...]]:
         steps.append(("geometry", "curves of the pad, electrode bends", beam["release_V"], note))
     lines, before = [], None
     for cause, model, release, note in steps:
-        change = "–" if before is None or release is None else f"{release - before:+.2f}"
-        lines.append((model, "–" if release is None else show(release), cause, change, note))
+        change = "–" if before is None or release is None else f"{release - before:+.2f}".replace("-", "−")
+        told = "–" if release is None else "sticks" if release == 0 else show(release)
+        lines.append((model, told, cause, change, note))
         before = release
     return lines
 
@@ -233,6 +241,7 @@ def adhesion_by_cells(results: Results) -> str:
                 mfc="none",
             )
         axis.set(xscale="log", yscale="log", xlabel="cells of the pad", ylabel="net adhesive pressure (kPa)")
-        axis.legend()
+        axis.set_ylim(top=30 * axis.get_ylim()[1])  # room for the legend
+        axis.legend(loc="upper right")
 
     return draw("pad-adhesion", "Net adhesive pressure against the number of cells", plot)

@@ -7,7 +7,7 @@ import numpy as np
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SKY, SOFT, draw
 from workflow.report.measured_surface import describe_surface
-from workflow.report.numbers import SYMBOLS, number, show
+from workflow.report.numbers import SYMBOLS, number, show, shown_unit
 from workflow.report.page import SYNTHETIC, Section, Table
 
 
@@ -56,7 +56,7 @@ def describe(results: Results) -> Section | None:
         lines.append(
             (
                 SYMBOLS.get(name, name),
-                str(estimate.get("unit", "")),
+                shown_unit(str(estimate.get("unit", ""))) or "–",
                 show(estimate.get("value")),
                 _pair(estimate.get("interval")),
                 _pair(estimate.get("scatter")),
@@ -111,13 +111,13 @@ def maps(results: Results) -> str | None:
             bar = axis.figure.colorbar(image, ax=axis, shrink=0.8, label="height (nm)" if name == shown[-1] else None)
             bar.outline.set_visible(False)
             rms = float(scan_attributes[name].get("rms_nm", np.nan))
-            axis.set_title(f"{name.removeprefix('scans/')}: RMS {rms:.2f} nm", fontsize=9)
-            axis.set_xlabel("µm", fontsize=8)
+            axis.set_title(f"{name.removeprefix('scans/')}: RMS {rms:.2f} nm")
+            axis.set_xlabel("µm")
             axis.grid(False)
         for axis in axes[len(shown) :]:
             axis.set_visible(False)
 
-    return draw("fig9", "Height maps of the scans", plot, (3.2 * columns, 2.9 * rows), columns, rows)
+    return draw("fig9", "Height maps of the scans", plot, (2.7 * columns, 2.5 * rows), columns, rows)
 
 
 def spectra(results: Results) -> str | None:
@@ -168,7 +168,7 @@ def spectra(results: Results) -> str | None:
         )
         axis.legend()
 
-    return draw("fig10", "Power spectra of the scans with fits", plot, (5.6, 4.4))
+    return draw("fig10", "Power spectra of the scans with fits", plot, (5.0, 4.2))
 
 
 def recovery(results: Results) -> str | None:

@@ -72,7 +72,7 @@ def adhesion_figure(rows: list[Row]) -> str:
             if central:
                 _bars(pull, central, "load_MPa", "pull_off_kPa", style, SERIES[0], mechanics)
         energy.set(yscale="log", xlabel="RMS height (nm)", ylabel="energy (µJ/m²)")
-        energy.legend(fontsize=7, ncols=2)
+        energy.legend(ncols=2)
         pull.set(xscale="log", yscale="log", xlabel="largest load (MPa)", ylabel="pull-off (kPa)")
         pull.legend()
 
