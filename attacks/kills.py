@@ -115,7 +115,7 @@ def _last_words(output: TextIO) -> str:
     return last_words(output.read())
 
 
-def _end(rng: random.Random, process: "subprocess.Popen[str]", way: str) -> str:
+def _end(rng: random.Random, process: "subprocess.Popen[bytes]", way: str) -> str:
     """Kill, and wait for the end of what is left; says what was killed."""
     jobs = psutil.Process(process.pid).children(recursive=True)
     if way == LAMMPS:

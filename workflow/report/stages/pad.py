@@ -139,8 +139,8 @@ def _causes(results: Results, switch: dict) -> list[tuple[str, ...]]:
     lines, before = [], None
     for cause, model, release, note in steps:
         change = "–" if before is None or release is None else f"{release - before:+.2f}".replace("-", "−")
-        told = "–" if release is None else "sticks" if release == 0 else show(release)
-        lines.append((model, told, cause, change, note))
+        volts = "–" if release is None else "sticks" if release == 0 else show(release)
+        lines.append((model, volts, cause, change, note))
         before = release
     return lines
 
