@@ -12,18 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact.attraction import retardation_rate
+from mesoscale.contact.displacement import Closing, Displacement
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
-from mesoscale.pad.cells import PadGrid, close_cells, plan_grid
+from mesoscale.pad.cells import DEVIATIONS_ABOVE, PadGrid, far_nm
 from mesoscale.pad.curves import PadCells, assemble
 from mesoscale.pad.memory import law_of
 from mesoscale.pad.sphere import press_sphere
-from mesoscale.settings import AdhesionSettings, ContactSettings, PadSettings
+from mesoscale.pad.surfaces import FilmPieces
+from mesoscale.settings import AdhesionSettings, ContactSettings
 
 Array = NDArray[np.float64]
 
-SPHERE_DEPTHS = 8
-"""Depths of closing for the memory under a sphere, from the deepest to the first contact of the highest cell."""
+SPHERE_STEP_RMS = 0.25
+"""Distance of the depths of closing for the memory under a sphere, in units of the RMS height: some eight of them."""
+MOST_STEPS = 20_000
 
 
 @dataclass(frozen=True)
@@ -107,37 +110,57 @@ def open_from(separation_nm: Array, net_GPa: Array, beyond_J_m2: float) -> Opene
 
 
 def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range, step_nm: float) -> tuple[PadCells, list[int]]:
-    """Cells under one plane, opened from the separations at which their mean repulsion reaches each load.
+    """Cells under one plane, closed side by side once, and opened where their mean repulsion reaches each load.
 
-    Returns the cells, and the position among the depths for each load; further depths reach up to first contact.
+    Returns the cells, and the position among the depths for each load; between the loads and up to first contact they
+    are opened from further depths.
 
     Raises
     ------
     InputError : the cells never carry the largest load.
     """
-    pad = PadSettings(
-        pilot_cells=len(seeds),
-        first_seed=seeds.start,
-        step_nm=step_nm,
-        depths=2,
-    )
-    grid = plan_grid(case.inputs, case.contact, pad, lambda separation: np.full_like(separation, max(loads_GPa)))
-    area = case.contact.length_nm**2
-    shut = PadGrid(grid.separation_nm, np.empty(0, int))
-    closing = assemble(shut, list(close_cells(case.inputs, case.contact, shut, seeds)), area)
-    repelled = closing.closing[:, 0].mean(axis=0)
-    if repelled[-1] < max(loads_GPa):
+    pieces = FilmPieces(case.inputs, case.contact)
+    surfaces = [pieces.surface(seed) for seed in seeds]
+    planes = [float(heights.mean()) for heights in surfaces]
+    cells = [Closing(case.inputs, case.contact, heights) for heights in surfaces]
+    first = np.array([cell.first_contact_nm - plane for cell, plane in zip(cells, planes, strict=True)])
+    top = float(first.mean()) + DEVIATIONS_ABOVE * max(float(first.std(ddof=1)), step_nm)
+    separations, openings = [*far_nm(top)[::-1].tolist()], []
+    for separation in separations:
+        _bring_to(cells, planes, separation)
+    area = len(seeds) * case.contact.length_nm**2
+    repelled, last_opened, loaded = 0.0, np.inf, {}
+    for step in range(MOST_STEPS):
+        separation = top - step_nm * step
+        separations.append(separation)
+        repelled = _bring_to(cells, planes, separation) / area
+        reached = [load for load in loads_GPa if load <= repelled and load not in loaded]
+        if reached or (repelled > 0.0 and last_opened - separation >= SPHERE_STEP_RMS * case.inputs.rms):
+            openings.append((len(separations) - 1, [cell.opening() for cell in cells]))
+            last_opened = separation
+            loaded |= dict.fromkeys(reached, len(openings) - 1)
+        if len(loaded) == len(set(loads_GPa)):
+            break
+    else:
         raise InputError(
-            f"adhesion.loads_MPa: cells closed to {grid.separation_nm[-1]:.4g} nm carry {repelled[-1] * 1e3:.3g} MPa; "
-            "lower the largest load"
+            f"adhesion.loads_MPa = {max(loads_GPa) * 1e3:g}: cells closed by {top - separations[-1]:.4g} nm carry "
+            f"{repelled * 1e3:.3g} MPa; lower it"
         )
-    loaded = [int(np.argmax(repelled >= load)) for load in loads_GPa]
-    touched = int(np.argmax(repelled > 0.0)) - 1
-    depths = np.union1d(loaded, np.linspace(touched, max(loaded), SPHERE_DEPTHS).round()).astype(int)
-    depths = depths[depths <= max(loaded)]
-    opened = PadGrid(grid.separation_nm[: max(loaded) + 1], depths)
-    cells = assemble(opened, list(close_cells(case.inputs, case.contact, opened, seeds)), area)
-    return cells, [int(np.flatnonzero(depths == place)[0]) for place in loaded]
+    opened = np.full((len(cells), len(openings), 2, len(separations)), np.nan)
+    for depth, (place, branches) in enumerate(openings):
+        for number, branch in enumerate(branches):
+            opened[number, depth, :, : place + 1] = branch
+    closed = [
+        Displacement(contact, cell.closing, branches, cell.settled)
+        for contact, cell, branches in zip(first.tolist(), cells, opened, strict=True)
+    ]
+    grid = PadGrid(np.array(separations), np.array([place for place, _ in openings]))
+    return assemble(grid, closed, case.contact.length_nm**2), [loaded[load] for load in loads_GPa]
+
+
+def _bring_to(cells: Sequence[Closing], planes: Sequence[float], separation_nm: float) -> float:
+    """Bring all cells to one separation from the mean plane of the film; the sum of their repulsions (nN)."""
+    return sum(cell.close_to(separation_nm + plane) for cell, plane in zip(cells, planes, strict=True))
 
 
 def pad_rows(case: Case, adhesion: AdhesionSettings, number: int) -> list[dict[str, Any]]:

@@ -73,11 +73,15 @@ def plan_grid(
     lowest = _separation_at(inputs, contact, surfaces, wanted_GPa, float(first.max()), pad)
     top = typical + DEVIATIONS_ABOVE * max(deviation, pad.step_nm)
     near = lowest + pad.step_nm * np.arange(np.ceil((top - lowest) / pad.step_nm) + 1)
-    far = np.geomspace(near[-1], max(FAR_NM, 2.0 * near[-1]), FAR_POINTS)[1:]
-    separation = np.concatenate([near, far])[::-1]
+    separation = np.concatenate([near, far_nm(float(near[-1]))])[::-1]
     shallow = int(np.searchsorted(-separation, -typical))
     depths = np.unique(np.linspace(shallow, separation.size - 1, pad.depths).round().astype(int))
     return PadGrid(separation, depths)
+
+
+def far_nm(top_nm: float) -> Array:
+    """Separations, rising, from that of no contact to where a pad attracts as two flats."""
+    return np.geomspace(top_nm, max(FAR_NM, 2.0 * top_nm), FAR_POINTS)[1:]
 
 
 def _separation_at(

@@ -34,7 +34,7 @@ rule plan_pad:
         f"{RESULTS}/logs/plan_pad.log",
     threads: 1
     resources:
-        mem_mb=CONTACT_MB,
+        mem_mb=side_by_side_MB(SCENE.contact, SCENE.pad.pilot_cells),
     params:
         contact=settings("contact"),
         pad=GRID_SETTINGS,

@@ -16,6 +16,11 @@ def contact_MB(contact: ContactSettings) -> int:
     return round(PROCESS_MB + SITE_MB[contact.mechanics] * contact.pixels**2)
 
 
+def side_by_side_MB(contact: ContactSettings, cells: int) -> int:
+    """Memory of a process that closes so many contacts side by side, in MB."""
+    return round(PROCESS_MB + cells * SITE_MB[contact.mechanics] * contact.pixels**2)
+
+
 def history_MB(history: HistorySettings, contact: ContactSettings) -> int:
     """Memory of the process that closes and opens again and again, in MB."""
     held = history.dwell_steps + 1 if history.dwell_s > 0 else 0

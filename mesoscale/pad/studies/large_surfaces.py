@@ -1,0 +1,137 @@
+"""Assembled pads beside surfaces of 4 um x 4 um that are computed directly, and the tail beside brute force.
+
+`python -m mesoscale.pad.studies.large_surfaces TABLE DIRECT CELLS` closes and opens so many large surfaces and so many
+cells of 1 um at the same separations; sixteen cells are a pad of the area of one large surface.
+`python -m mesoscale.pad.studies.large_surfaces TABLE tail FITTED BRUTE` fits the distribution of first contacts to
+some cells, and looks at other ones. Both replace their rows of the table and print them.
+"""
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.pad.cells import close_cells
+from mesoscale.pad.curves import PadCells, assemble
+from mesoscale.pad.studies.number_of_cells import INPUTS, PIXELS, LOADS_MPa, deepest_kPa, opened_grid
+from mesoscale.pad.surfaces import FilmPieces
+from mesoscale.pad.tail import fit_tail
+from mesoscale.settings import ContactSettings, PadSettings
+from mesoscale.tables import read_table, write_table
+
+Array = NDArray[np.float64]
+Row = dict[str, Any]
+
+SIDE = 4
+"""Cells along a large surface."""
+FIRST_LARGE_SEED = 500_000
+TAIL_PIXELS = 256
+TAIL_SIZES = (16, 64, 256)
+
+
+def mean_and_error(values: Array) -> tuple[float, float]:
+    """Mean and its standard error."""
+    return float(values.mean()), float(values.std(ddof=1) / len(values) ** 0.5)
+
+
+def comparison_rows(cells: PadCells, large: PadCells) -> Iterator[Row]:
+    """Closing pressure and deepest net pressure on opening of both, for each load.
+
+    The interval of the pads holds 95 % by their standard error and that of the large surfaces.
+    """
+    size = SIDE**2
+    pads = cells.count // size
+    groups = np.arange(pads * size).reshape(pads, size)
+    for k, load in enumerate(LOADS_MPa):
+        place = cells.grid.depths[k]
+        net = cells.opening[:, k].sum(axis=1)
+        way = np.isfinite(net).all(axis=0)
+        single = large.opening[:, k].sum(axis=1)
+        yield _row(
+            "closing pressure, MPa",
+            load,
+            cells.closing[:, 0, place].reshape(-1)[: pads * size].reshape(pads, size).mean(axis=1) * 1e3,
+            large.closing[:, 0, place] * 1e3,
+        )
+        yield _row(
+            "deepest net pressure on opening, kPa",
+            load,
+            np.array([deepest_kPa(net[group][:, way]) for group in groups]),
+            np.array([deepest_kPa(one[None, way]) for one in single]),
+        )
+
+
+def _row(quantity: str, at: float, pads: Array, direct: Array) -> Row:
+    mean, error = mean_and_error(pads)
+    known, spread = mean_and_error(direct)
+    return {
+        "quantity": quantity,
+        "at": at,
+        "assembled_from": len(pads),
+        "assembled": mean,
+        "assembled_error": error,
+        "direct_from": len(direct),
+        "direct": known,
+        "direct_error": spread,
+        "ratio": mean / known,
+        "apart_in_errors": (mean - known) / float(np.hypot(error, spread)),
+    }
+
+
+def tail_rows(fitted: Array, others: Array) -> Iterator[Row]:
+    """First contact (nm) of pads of several sizes: by the distribution fitted to some cells, and of other cells."""
+    tail = fit_tail(fitted)
+    for size in (*TAIL_SIZES, len(others)):
+        groups = len(others) // size
+        found = others[: groups * size].reshape(groups, size).max(axis=1)
+        (mean, scatter), error = tail.first_contact_nm(size), tail.standard_error_nm(size)
+        # one pad alone has the scatter of pads
+        spread = float(found.std(ddof=1) / groups**0.5) if groups > 2 else float(scatter)
+        yield {
+            "quantity": "first contact, nm, of so many cells",
+            "at": size,
+            "assembled_from": len(fitted),
+            "assembled": float(mean),
+            "assembled_error": float(error),
+            "direct_from": len(others),
+            "direct": float(found.mean()),
+            "direct_error": spread,
+            "ratio": float(mean / found.mean()),
+            "apart_in_errors": float((mean - found.mean()) / np.hypot(error, spread)),
+        }
+
+
+def first_contacts_nm(count: int, first_seed: int) -> Array:
+    """First contacts of cells, which need no closing."""
+    pieces = FilmPieces(INPUTS, ContactSettings(pixels=TAIL_PIXELS))
+    return np.array([-float(pieces.surface(seed).min()) for seed in range(first_seed, first_seed + count)])
+
+
+def main(table: str, *arguments: str) -> None:
+    """See above."""
+    seed = PadSettings().first_seed
+    if arguments[0] == "tail":
+        fitted, brute = (int(number) for number in arguments[1:])
+        rows = list(tail_rows(first_contacts_nm(fitted, seed), first_contacts_nm(brute, seed + fitted)))
+    else:
+        direct, count = (int(number) for number in arguments)
+        contact = ContactSettings(pixels=PIXELS)
+        wide = contact.model_copy(update={"pixels": SIDE * PIXELS, "length_nm": SIDE * contact.length_nm})
+        grid = opened_grid(contact)
+        small = close_cells(INPUTS, contact, grid, range(seed, seed + count))
+        large = close_cells(INPUTS, wide, grid, range(FIRST_LARGE_SEED, FIRST_LARGE_SEED + direct))
+        cells = assemble(grid, list(small), contact.length_nm**2)
+        surfaces = assemble(grid, list(large), wide.length_nm**2)
+        rows = list(comparison_rows(cells, surfaces))
+    path = Path(table)
+    names = {row["quantity"] for row in rows}
+    write_table(path, [*(row for row in read_table(path) if row["quantity"] not in names), *rows], digits=4)
+    for row in rows:
+        print(row)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

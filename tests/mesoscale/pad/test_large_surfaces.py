@@ -1,0 +1,38 @@
+"""The comparison of assembled pads with large surfaces, on made-up cells whose answer is known."""
+
+import numpy as np
+import pytest
+
+from mesoscale.pad.cells import PadGrid
+from mesoscale.pad.curves import PadCells
+from mesoscale.pad.studies.large_surfaces import SIDE, comparison_rows, tail_rows
+
+SEPARATION = np.linspace(60.0, 20.0, 81)
+
+
+def made_up(count, well_kPa, press_GPa):
+    net = np.broadcast_to(-well_kPa * 1e-6 * np.exp(-(((SEPARATION - 35.0) / 4.0) ** 2)), (count, 81))
+    noise = 1.0 + 1e-3 * np.arange(count)[:, None]
+    forces = np.stack([press_GPa * noise * np.ones_like(net), net * noise], axis=1)
+    opening = np.stack([np.stack([np.zeros_like(net), net * noise], axis=1)] * 2, axis=1)
+    return PadCells(
+        PadGrid(SEPARATION, np.array([70, 80])), np.full(count, 40.0), forces, opening, np.ones(count, bool)
+    )
+
+
+def test_pads_are_set_beside_large_surfaces_in_their_standard_errors():
+    rows = list(comparison_rows(made_up(4 * SIDE**2, 10.0, 2e-3), made_up(6, 8.0, 2e-3)))
+    closing, well, _, deep = rows
+    assert closing["ratio"] == pytest.approx(1.0, rel=0.05)
+    assert (well["assembled_from"], well["direct_from"]) == (4, 6)
+    assert well["ratio"] == deep["ratio"] == pytest.approx(10.0 / 8.0, rel=0.05)
+    assert well["apart_in_errors"] > 3.0
+
+
+def test_the_tail_foretells_the_largest_of_many_gumbel_numbers():
+    """Mean of the largest of N of location 30 and scale 2: 30 + 2 (ln N + 0.5772)."""
+    rng = np.random.default_rng(3)
+    for row in tail_rows(rng.gumbel(30.0, 2.0, 256), rng.gumbel(30.0, 2.0, 2048)):
+        known = 30.0 + 2.0 * (np.log(row["at"]) + np.euler_gamma)
+        assert abs(row["assembled"] - known) < 3.0 * row["assembled_error"]
+        assert abs(row["direct"] - known) < 4.0 * row["direct_error"]
