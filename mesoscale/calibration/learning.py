@@ -1,4 +1,4 @@
-"""What measurements teach: information gained, contradictions, what the model can give, what to measure next."""
+"""What measurements teach: information gained, contradictions, what the model can give."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.calibration.likelihood import Posterior, posterior_of
+from mesoscale.calibration.likelihood import Posterior
 from mesoscale.calibration.measurements import CURVES, Measurements, by_specimen
 from mesoscale.calibration.observables import CURVES as BRANCHES
 from mesoscale.calibration.observables import LAWS, NAMES, curve_names, force_levels_nN
 from mesoscale.calibration.posterior import Calibration, Cycles, draw
-from mesoscale.calibration.surfaces import SCALAR_COLUMNS
+from mesoscale.calibration.surfaces import SCALAR_COLUMNS, pseudo_inverse
 from mesoscale.calibration.switches import SwitchModel
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
@@ -28,7 +28,6 @@ OUTLIER = 0.01
 """The same for the least likely of all specimens."""
 MARGIN = 0.5
 """A value farther outside than this share of the range that the model gives over the prior is refused."""
-DRAWS = 500
 
 
 def information_bits(z: Array, others: Array | None = None) -> float:
@@ -55,25 +54,15 @@ def learned(
     settings: MeasurementsSettings,
 ) -> list[dict[str, Any]]:
     """What each table taught: one row per kind, with bits and contradictions."""
-
-    def given(chosen: Sequence[Measurements]) -> Posterior:
-        return posterior_of(
-            result.posterior.table,
-            chosen,
-            result.responses,
-            result.laws,
-            result.switch,
-            max_force_nN,
-            result.expected,
-        )
-
     rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 0xCC]))
     rows = []
     for data in tables:
-        only = given([data])
+        only = result.given([data], max_force_nN)
         rest = [other for other in tables if other is not data]
         by_itself = draw(only, settings).z if rest else result.chain.z
-        without = draw(given(rest), settings).z if rest else rng.standard_normal(result.chain.z.shape)
+        without = (
+            draw(result.given(rest, max_force_nN), settings).z if rest else rng.standard_normal(result.chain.z.shape)
+        )
         probability = predictive_probability(only, only.inputs(without), rng)
         rows.append(
             {
@@ -107,14 +96,14 @@ def predictive_probability(data: Posterior, x: Array, rng: np.random.Generator) 
     predicted = data.predict(x[rng.integers(len(x), size=REPLICATES)])
     inverses = None
     if data.surfaces is not None:
-        inverses = np.linalg.pinv(data.surfaces.precision, rcond=1e-10, hermitian=True)
+        inverses = np.array([pseudo_inverse(precision)[0] for precision in data.surfaces.precision])
 
     def log_predictive(some: Posterior) -> float:
         if some.surfaces is not None and inverses is not None:
             # without the part of the likelihood that no input decides: points about their curve
             known = some.surfaces.information
             constant = float(np.einsum("sj,sjk,sk->", known, inverses, known))
-            some = replace(some, surfaces=replace(some.surfaces, constant=constant))
+            some = replace(some, surfaces=replace(some.surfaces, constant=constant, begins=None))
         return float(np.logaddexp.reduce(some.likelihood_of(predicted)))
 
     measured = log_predictive(data)
@@ -204,94 +193,3 @@ def _check_curves(data: Measurements, cycles: Cycles, max_force_nN: float) -> No
                 f"{force[high]:.4g} nN, the model gives {spans.min():.3g} .. {spans.max():.3g} nm anywhere in the "
                 "prior; look at units, columns and contact area"
             )
-
-
-def candidates(max_force_nN: float, contact_begin_nm: float) -> dict[str, tuple[str, Measurements]]:
-    """What could be measured next, by kind: in words, and as a table whose values are made up later.
-
-    Parameters
-    ----------
-    contact_begin_nm : where contact is expected to begin, which makes its error in nm a relative one.
-    """
-    levels = force_levels_nN(max_force_nN)
-    forces = np.geomspace(levels[0], levels[-1], 30)
-    curve = {"separation": np.linspace(10, 0, 30), "force": forces, "separation_error": np.full(30, 0.2)}
-    one, ten = np.ones(1), np.ones(10)
-
-    def table(kind: str, columns: dict[str, Array]) -> Measurements:
-        rows = len(next(iter(columns.values())))
-        names = ("next",) * rows if kind in CURVES else tuple(f"next {k}" for k in range(rows))
-        return Measurements(kind, columns, names, False, 0.0, "next")
-
-    return {
-        "closing_curves": ("one curve, 30 points to 0.2 nm", table("closing_curves", curve)),
-        "opening_curves": ("one curve, 30 points to 0.2 nm", table("opening_curves", curve)),
-        "contact_begin": (
-            "ten surfaces to 0.5 nm",
-            table("contact_begin", {"contact_begin": contact_begin_nm * ten, "contact_begin_error": 0.5 * ten}),
-        ),
-        "pull_off": ("ten surfaces to 10 %", table("pull_off", {"pull_off": 100 * ten, "pull_off_error": 10 * ten})),
-        "hardness": (
-            "one indent of 100 nm2 to 5 %",
-            table("hardness", {"area": 100 * one, "hardness": 4 * one, "hardness_error": 0.2 * one}),
-        ),
-        "modulus": ("one to 3 GPa", table("modulus", {"e_star": 90 * one, "e_star_error": 3 * one})),
-        "release": ("one switch to 0.5 V", table("release", {"release": 20 * one, "release_error": 0.5 * one})),
-        "sticking": ("twenty switches", table("sticking", {"stuck": 10 * one, "switches": 20 * one})),
-    }
-
-
-def next_measurements(result: Calibration, max_force_nN: float, seed: int) -> list[dict[str, Any]]:
-    """Expected width of the release voltage's 90 % interval after one more measurement of each kind.
-
-    Data are made up at samples of the posterior, and the posterior is weighed by their likelihood (pre-posterior
-    analysis: Raiffa and Schlaifer, Applied Statistical Decision Theory, 1961). A switch that sticks counts with a
-    negative voltage (`mesoscale.calibration.switches`).
-    """
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xCD]))
-    x = result.x[rng.integers(len(result.x), size=DRAWS)]
-    hamaker = x[:, result.posterior.table.names.index("hamaker")]
-    with_switch = replace(result.posterior, switch=result.switch, law_responses=result.laws)
-    volts = with_switch.switch_voltages(x, hamaker)["release"][0]
-    order = np.argsort(volts)
-    now = _width(volts[order], np.full(DRAWS, 1 / DRAWS))
-    begin = float(np.exp(result.responses.pick(["contact_begin_nm"])(x).mean.mean()))
-    rows = []
-    for kind, (words, data) in candidates(max_force_nN, begin).items():
-        posterior = posterior_of(
-            result.posterior.table,
-            [data],
-            result.responses,
-            result.laws,
-            result.switch,
-            max_force_nN,
-            result.expected,
-        )
-        predicted = posterior.predict(x)
-        widths, effective = [], []
-        for point in rng.integers(DRAWS, size=REPLICATES // 2):
-            logs = posterior.simulated(predicted.at(point), rng).likelihood_of(predicted)
-            weights = np.exp(logs - logs.max())
-            weights /= weights.sum()
-            effective.append(1 / (weights**2).sum())
-            widths.append(_width(volts[order], weights[order]))
-        mean, error = np.mean(widths), np.std(widths) / np.sqrt(len(widths))
-        rows.append(
-            {
-                "kind": kind,
-                "measurement": words,
-                "width_now_V": now,
-                "width_then_V": mean,
-                "reduction": 1 - mean / now,
-                "standard_error": error / now,
-                "effective_samples": float(np.median(effective)),
-            }
-        )
-    return sorted(rows, key=lambda row: -row["reduction"])
-
-
-def _width(values: Array, weights: Array) -> float:
-    """Width of the central 90 % of sorted, weighted values."""
-    shares = np.cumsum(weights) - 0.5 * weights
-    low, high = np.interp([0.05, 0.95], shares, values)
-    return float(high - low)

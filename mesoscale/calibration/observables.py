@@ -31,7 +31,7 @@ class Observable:
     ----------
     name : column of result files.
     unit, scale : what has a response: `length`, its ratio to the RMS height; `log_length`, the logarithm of that;
-        `log`.
+        `inverse_length`, the inverse of that; `log`.
     """
 
     name: str
@@ -54,7 +54,7 @@ CURVES = {"closing_curves": "closing", "opening_curves": "opening"}
 OBSERVABLES = (
     *_curve("closing"),
     *_curve("opening"),
-    Observable("contact_begin_nm", "nm", "log_length"),  # less skewed so
+    Observable("contact_begin_nm", "nm", "inverse_length"),  # hardly skewed so (`first_contact`)
     Observable("pull_off_nN", "nN", "log"),
 )
 """What can be measured of a surface."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mesoscale.calibration.likelihood import SWITCH_KINDS, Posterior, posterior_of
 from mesoscale.calibration.measurements import ON_SURFACES, Measurements
 from mesoscale.calibration.observables import LAWS, NAMES, OBSERVABLES, observe
-from mesoscale.calibration.responses import ResponseFits, Responses, fit_responses, in_logs
+from mesoscale.calibration.responses import ResponseFits, Responses, fit_responses, transformed
 from mesoscale.calibration.sampling import Chain, sample
 from mesoscale.calibration.surfaces import Expected, SurfaceData
 from mesoscale.calibration.switches import SwitchModel
@@ -54,6 +54,8 @@ class Calibration:
     posterior, chain, x : samples of the inputs, shape (s, n).
     responses : of the observables, to be picked from.
     laws, expected, switch, checks : the responses where the posterior lies, one row per round and observable.
+    cycles : how many are behind the responses.
+    added : those of them where the posterior lies, as rows of `observe_runs`.
     """
 
     posterior: Posterior
@@ -65,6 +67,12 @@ class Calibration:
     switch: SwitchModel
     checks: list[dict[str, Any]] = field(default_factory=list)
     cycles: int = 0
+    added: list[dict[str, Any]] = field(default_factory=list)
+
+    def given(self, tables: Sequence[Measurements], max_force_nN: float) -> Posterior:
+        """The posterior given other tables, by the same responses."""
+        prior = self.posterior.table
+        return posterior_of(prior, tables, self.responses, self.laws, self.switch, max_force_nN, self.expected)
 
     @property
     def reasons(self) -> list[str]:
@@ -96,7 +104,7 @@ def cycles_of_rows(rows: Sequence[Mapping[str, Any]], names: Sequence[str]) -> C
 
 def expected_of(cycles: Cycles) -> Expected:
     """What the prior expects of the observables."""
-    seen = in_logs(OBSERVABLES, cycles.y[:, : len(OBSERVABLES)])
+    seen = transformed(OBSERVABLES, cycles.y[:, : len(OBSERVABLES)])
     mean = np.nanmean(seen, axis=0)
     centred = np.where(np.isnan(seen), 0.0, seen - mean)
     return Expected(
@@ -147,7 +155,7 @@ def calibrate(
     needs_cycles = any(data.kind in (*ON_SURFACES, *SWITCH_KINDS) for data in tables)
     checks: list[dict[str, Any]] = []
     rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 0xCB]))
-    turn = 0
+    turn, local = 0, []
     while True:
         responses, laws = responses_of(table, cycles)
         posterior = posterior_of(table, tables, responses, laws, switch, contact.max_force_nN, expected)
@@ -165,13 +173,15 @@ def calibrate(
             Run(first + k, -1, FIRST_LOCAL_SEED + first + k, dict(zip(table.names, row, strict=True)))
             for k, row in enumerate(x.tolist())
         ]
-        added = cycles_of_rows(observe_runs(runs, contact, law, progress), table.names)
+        found = observe_runs(runs, contact, law, progress)
+        local += found
+        added = cycles_of_rows(found, table.names)
         for row, bias in zip(rows, response_bias(posterior, added), strict=True):
             row |= bias
         cycles = Cycles(np.vstack([cycles.x, added.x]), np.vstack([cycles.y, added.y]))
         turn += 1
     return Calibration(
-        posterior, chain, posterior.inputs(chain.z), responses, laws, expected, switch, checks, len(cycles.x)
+        posterior, chain, posterior.inputs(chain.z), responses, laws, expected, switch, checks, len(cycles.x), local
     )
 
 
@@ -242,7 +252,7 @@ def response_bias(posterior: Posterior, added: Cycles) -> list[dict[str, float]]
         return []
     responses, names = seen
     places = [NAMES.index(name) for name in names]
-    off = in_logs(responses.observables, added.y[:, places]) - responses(added.x).mean
+    off = transformed(responses.observables, added.y[:, places]) - responses(added.x).mean
     count = np.maximum(np.isfinite(off).sum(axis=0), 1)
     return [
         {"bias": float(bias), "bias_error": float(error)}

@@ -34,7 +34,7 @@ MEAN_LOG_CHI2 = -1.2703628
 
 @dataclass(frozen=True)
 class Prediction:
-    """Observables at m points: lengths in nm, others as the logarithm of their value.
+    """Observables at m points: lengths in nm, the first contact as its inverse, others as the logarithm of their value.
 
     Attributes
     ----------
@@ -100,9 +100,9 @@ def scaled(x: Array, ranges: Array) -> Array:
 
 
 def lengths(observables: Sequence[Observable], rms: Array) -> Array:
-    """Unit of every observable at every point, shape (m, k): the RMS height for lengths, else 1."""
-    is_length = np.array([row.scale == "length" for row in observables])
-    return np.where(is_length, rms[:, None], 1.0)
+    """Unit of every observable at every point, shape (m, k): the RMS height for lengths, its inverse, or 1."""
+    power = np.array([{"length": 1.0, "inverse_length": -1.0}.get(row.scale, 0.0) for row in observables])
+    return rms[:, None] ** power
 
 
 def log_units(observables: Sequence[Observable], rms: Array) -> Array:
@@ -111,16 +111,26 @@ def log_units(observables: Sequence[Observable], rms: Array) -> Array:
     return np.where(is_length, np.log(np.maximum(rms, 1e-300))[:, None], 0.0)
 
 
-def in_logs(observables: Sequence[Observable], y: Array) -> Array:
-    """Values (m, k) as `Prediction` has them; NaN where there is no logarithm."""
-    is_log = np.array([row.scale != "length" for row in observables])
+def transformed(observables: Sequence[Observable], y: Array) -> Array:
+    """Values (m, k) as `Prediction` has them; NaN where there is no logarithm or inverse."""
+    is_length = np.array([row.scale == "length" for row in observables])
+    inverse = np.array([row.scale == "inverse_length" for row in observables])
+    positive = np.where(is_length | (y > 0), y, np.nan)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(is_log, np.log(np.where(is_log & (y > 0), y, np.nan)), y)
+        return np.where(is_length, y, np.where(inverse, 1 / positive, np.log(positive)))
+
+
+def untransformed(observables: Sequence[Observable], f: Array) -> Array:
+    """Values in their units, shape (m, k), of numbers as `Prediction` has them."""
+    is_length = np.array([row.scale == "length" for row in observables])
+    inverse = np.array([row.scale == "inverse_length" for row in observables])
+    logs = np.where(is_length | inverse, 0.0, f)
+    return np.where(is_length, f, np.where(inverse, 1 / np.where(inverse, f, 1.0), np.exp(logs)))
 
 
 def to_scaled(observables: Sequence[Observable], y: Array, rms: Array) -> Array:
-    """Values (m, k) in the space of the responses: lengths per RMS height, logarithms; NaN where there is none."""
-    return (in_logs(observables, y) - log_units(observables, rms)) / lengths(observables, rms)
+    """Values (m, k) in the space of the responses, with the RMS height as unit; NaN where there is none."""
+    return (transformed(observables, y) - log_units(observables, rms)) / lengths(observables, rms)
 
 
 def fit_responses(

@@ -12,6 +12,7 @@ from mesoscale.calibration.learning import information_bits
 from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.observables import CURVES, LEVELS, curve_names, force_levels_nN
 from mesoscale.calibration.posterior import Calibration
+from mesoscale.calibration.responses import untransformed
 
 Array = NDArray[np.float64]
 
@@ -129,8 +130,7 @@ def _next_surface(result: Calibration, x: Array, rng: np.random.Generator) -> Ar
         prediction.scatter * (1 + prediction.error)[:, None, None] + 1e-12 * np.eye(prediction.mean.shape[1])
     )
     drawn = prediction.mean + np.einsum("mjk,mk->mj", root, rng.standard_normal(prediction.mean.shape))
-    is_log = np.array([row.scale != "length" for row in result.responses.observables])
-    return np.where(is_log, np.exp(np.where(is_log, drawn, 0.0)), drawn)
+    return untransformed(result.responses.observables, drawn)
 
 
 def posterior_json(

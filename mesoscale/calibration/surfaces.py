@@ -2,7 +2,8 @@
 
 Every specimen has observables f = response(inputs) + model error (one for all specimens) + its own scatter, all normal,
 and data with known normal errors, linearised where they lie: exp(-f A f / 2 + b f - c / 2). So all but the inputs is
-integrated exactly (Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, appendix A).
+integrated exactly (Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, appendix A). First contacts,
+whose observable is their inverse, get a correction of their own (`first_contact`).
 """
 
 from collections.abc import Iterable, Sequence
@@ -11,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.calibration.first_contact import FirstContacts, first_contacts
 from mesoscale.calibration.measurements import CURVES as CURVE_KINDS
 from mesoscale.calibration.measurements import Measurements, by_specimen
 from mesoscale.calibration.observables import CURVES, LEVELS, curve_names, force_levels_nN
@@ -25,9 +27,11 @@ CORRELATION_DECADES = 1.0
 """Range of force, in decades, over which the model's own error of a curve stays correlated."""
 ERRORS_ABOVE_ZERO = 3.0
 """Points whose force is less than so many of its errors are left out: its logarithm would be biased."""
+SMALLEST_SHARE = 1e-9
+"""Eigenvalues below this share of one of unit diagonal are rounding."""
 SCALAR_COLUMNS = {"contact_begin": "contact_begin_nm", "pull_off": "pull_off_nN"}
 LARGEST_RELATIVE_ERROR = 0.5
-"""Of a value that enters by its logarithm."""
+"""Of a value that enters by its logarithm or inverse."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,7 @@ class SurfaceData:
     model_error : covariance of the model's own error, shape (k, k).
     left_out : points of curves outside the range of forces of the responses.
     points : numbers used.
+    begins : measured first contacts, whose normal likelihood is put right; None of made-up data and without any.
     """
 
     names: tuple[str, ...]
@@ -54,6 +59,7 @@ class SurfaceData:
     model_error: Array
     left_out: int
     points: int
+    begins: FirstContacts | None
 
     def log_likelihood(self, prediction: Prediction) -> Array:
         """Logarithm of the likelihood at m points, shape (m,).
@@ -86,6 +92,9 @@ class SurfaceData:
         result += np.einsum("mk,mk->m", mean, total_information)
         result -= 0.5 * np.einsum("mj,mjk,mk->m", mean, total_precision, mean)
         result += 0.5 * (moved**2).sum(axis=1) - np.log(np.einsum("mkk->mk", factor)).sum(axis=1)
+        if self.begins is not None:
+            place = self.names.index("contact_begin_nm")
+            result += self.begins.correction(mean[:, place], (scatter + common)[:, place, place])
         return result
 
     def _model_error_at(self, mean: Array) -> Array:
@@ -100,9 +109,9 @@ class SurfaceData:
             for place in range(self.names.index(begin) + 1, self.names.index(begin) + LEVELS):
                 slopes[:, place, place - 1] = np.exp(-mean[:, place])
                 slopes[:, place, place] = -slopes[:, place, place - 1]
-        if "contact_begin_nm" in self.names:  # its error is in nm, it enters by its logarithm
+        if "contact_begin_nm" in self.names:  # its error is in nm, it enters by its inverse
             place = self.names.index("contact_begin_nm")
-            slopes[:, place, place] = np.exp(-mean[:, place])
+            slopes[:, place, place] = -(mean[:, place] ** 2)
         return slopes @ self.model_error @ np.swapaxes(slopes, 1, 2)
 
     def simulated(self, prediction: Prediction, rng: np.random.Generator) -> "SurfaceData":
@@ -114,7 +123,7 @@ class SurfaceData:
         f = mean + shared + rng.multivariate_normal(np.zeros(size), scatter, len(self.specimens), method="svd")
         noise = np.stack([rng.multivariate_normal(np.zeros(size), a, method="svd") for a in self.precision])
         information = np.einsum("sjk,sk->sj", self.precision, f) + noise
-        return replace(self, information=information, constant=0.0)
+        return replace(self, information=information, constant=0.0, begins=None)
 
     def misfits(self, prediction: Prediction) -> Array:
         """Probability of a specimen as far off as each is, at one point, shape (s,)."""
@@ -125,9 +134,18 @@ class SurfaceData:
         for precision, information in zip(self.precision, self.information, strict=True):
             spread = precision @ scatter @ precision + precision
             off = information - precision @ prediction.mean[0]
-            inverse = np.linalg.pinv(spread, rcond=1e-9, hermitian=True)
-            shares.append(chi2.sf(off @ inverse @ off, np.linalg.matrix_rank(spread, tol=1e-9 * spread.max())))
+            inverse, rank = pseudo_inverse(spread)
+            shares.append(chi2.sf(off @ inverse @ off, rank))
         return np.array(shares)
+
+
+def pseudo_inverse(matrix: Array) -> tuple[Array, int]:
+    """Pseudo-inverse and rank of a covariance or precision, whatever the units of its rows."""
+    diagonal = np.diag(matrix)
+    unit = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    alike = matrix / np.outer(unit, unit)
+    inverse = np.linalg.pinv(alike, rcond=SMALLEST_SHARE, hermitian=True)
+    return inverse / np.outer(unit, unit), int(np.linalg.matrix_rank(alike, tol=SMALLEST_SHARE, hermitian=True))
 
 
 @dataclass(frozen=True)
@@ -167,8 +185,11 @@ def surface_data(tables: Iterable[Measurements], max_force_nN: float, expected: 
     names = _names(tables)
     prior = expected.pick(names)
     parts: dict[str, list[Part]] = {}
-    left_out = 0
+    left_out, begins = 0, None
     for table in tables:
+        if table.kind == "contact_begin":
+            place = names.index("contact_begin_nm")
+            begins = first_contacts(*_scalars(table), float(prior[0][place]), float(prior[1][place, place]))
         for specimen, rows in by_specimen(table).items():
             if table.kind in CURVE_KINDS:
                 projection, values, variances, dropped = _curve(table, specimen, rows, max_force_nN)
@@ -177,7 +198,11 @@ def surface_data(tables: Iterable[Measurements], max_force_nN: float, expected: 
                 columns = np.zeros((len(values), len(names)))
                 columns[:, first : first + LEVELS] = projection
             else:
-                values, variances = _scalars(table, rows)
+                if table.kind == "contact_begin" and begins is not None:
+                    values, variances = begins.inverse[rows], begins.variances[rows]
+                else:
+                    measured, errors = _scalars(table)
+                    values, variances = np.log(measured[rows]), (errors / measured)[rows] ** 2
                 columns = np.zeros((len(values), len(names)))
                 columns[:, names.index(SCALAR_COLUMNS[table.kind])] = 1.0
             free = np.full(len(values), float(table.kind in CURVE_KINDS and not table.zero_known))
@@ -187,22 +212,22 @@ def surface_data(tables: Iterable[Measurements], max_force_nN: float, expected: 
     points = sum(len(values) for part in parts.values() for _, values, _, _ in part)
     model_error = _model_error(tables, names)
     return SurfaceData(
-        tuple(names), tuple(parts), precision, information, float(constant.sum()), model_error, left_out, points
+        tuple(names), tuple(parts), precision, information, float(constant.sum()), model_error, left_out, points, begins
     )
 
 
 def check_points(table: Measurements, max_force_nN: float) -> None:
-    """Refuse curves with too few points in the range of forces of the responses, and pull-off forces hardly known.
+    """Refuse curves with too few points in the range of forces of the responses, and values that are hardly known.
 
     Raises
     ------
     InputError
     """
-    for specimen, rows in by_specimen(table).items():
-        if table.kind in CURVE_KINDS:
+    if table.kind in SCALAR_COLUMNS:
+        _scalars(table)
+    elif table.kind in CURVE_KINDS:
+        for specimen, rows in by_specimen(table).items():
             _curve(table, specimen, rows, max_force_nN)
-        elif table.kind in SCALAR_COLUMNS:
-            _scalars(table, rows)
 
 
 def _names(tables: Sequence[Measurements]) -> list[str]:
@@ -239,15 +264,16 @@ def _curve(
     return projection, separation[usable], np.maximum(variances, floor), int((~usable).sum())
 
 
-def _scalars(table: Measurements, rows: NDArray[np.int_]) -> tuple[Array, Array]:
-    values, errors = table.columns[table.kind][rows], table.columns[f"{table.kind}_error"][rows]
+def _scalars(table: Measurements) -> tuple[Array, Array]:
+    """Values and errors of a table that gives one number per row."""
+    values, errors = table.columns[table.kind], table.columns[f"{table.kind}_error"]
     wide = np.flatnonzero(errors > LARGEST_RELATIVE_ERROR * values)
     if wide.size:
         raise InputError(
-            f"{table.file}: row {rows[wide[0]] + 1}: {table.kind}_error is more than half of {table.kind}; its "
-            "logarithm is compared with the model, so leave the row out or measure it better"
+            f"{table.file}: row {wide[0] + 1}: {table.kind}_error is more than half of {table.kind}; its logarithm or "
+            "inverse is compared with the model, so leave the row out or measure it better"
         )
-    return np.log(values), (errors / values) ** 2
+    return values, errors
 
 
 def _separations(names: Sequence[str], f: Array) -> tuple[Array, Array]:

@@ -29,6 +29,8 @@ Array = NDArray[np.float64]
 
 POINTS = 64
 """Solved switches behind the interval: its ends are quantiles known to 3 % in probability."""
+SOLVED = 0.8
+"""Share of the points that must be solved, since those that cannot be are no random part of them."""
 RESAMPLES = 24
 """Resampled central pads: their standard deviation is known to 15 %."""
 ELEMENTS = 64
@@ -154,14 +156,14 @@ def _held_or_bounded(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
 
 
 def plan_points(
-    table: InputTable, settings: DeviceSettings, low_nm: float, high_nm: float
+    table: InputTable, settings: DeviceSettings, low_nm: float, high_nm: float, count: int = POINTS
 ) -> tuple[list[str], list[str], Array, list[Point]]:
     """Names and causes of what varies, its probabilities at the points, shape (points, k), and the points."""
     from scipy.special import ndtri
     from scipy.stats import qmc  # slow to import
 
     inputs = len(table.rows)
-    units = qmc.LatinHypercube(inputs + 3, rng=0).random(POINTS)
+    units = qmc.LatinHypercube(inputs + 3, rng=0).random(count)
     values = table.transform(units[:, :inputs])
     cutoffs = low_nm + (high_nm - low_nm) * units[:, inputs]
     bows = settings.bow_nm + settings.bow_deviation_nm * ndtri(units[:, inputs + 1])
@@ -183,6 +185,46 @@ def plan_points(
     ]
     chosen = [k for k, _, _ in columns]
     return [name for _, name, _ in columns], [cause for _, _, cause in columns], units[:, chosen], points
+
+
+def cutoff_range(gap_cutoff_nm: float, draws: Sequence[SampledPad]) -> tuple[float, float]:
+    """D0 (nm) of the central pad, and the largest of the draws."""
+    return gap_cutoff_nm, max(gap_cutoff_nm, *(draw.gap_cutoff_nm for draw in draws))
+
+
+def released_on_pad(
+    cells: PadCells,
+    draws: Sequence[SampledPad],
+    table: InputTable,
+    settings: DeviceSettings,
+    cutoffs_nm: tuple[float, float],
+    count: int,
+) -> tuple[Array, Array]:
+    """Inputs (m, n) and release voltages (m,) of switches over inputs, D0 and geometry; 0 V where one sticks.
+
+    Parameters
+    ----------
+    cells, draws, cutoffs_nm : as `answer` takes them.
+    count : points that are tried; those that cannot be solved are left out.
+
+    Raises
+    ------
+    InputError : too few draws, or a fifth of the points cannot be solved.
+    """
+    response = _response(cells, draws, table, cutoffs_nm[0])
+    wanted = pressure_to_compute(settings, DEVIATIONS)
+    solved, reason = [], ""
+    for point in plan_points(table, settings, *cutoffs_nm, count)[3]:
+        try:
+            released = _on_response(point, response, wanted)["release_V"]
+        except InputError as error:
+            reason = str(error)
+        else:
+            solved.append([*(point.values[name] for name in table.names), released])
+    if len(solved) < SOLVED * count:
+        raise InputError(f"device: {count - len(solved)} of {count} switches cannot be solved, the last: {reason}")
+    found = np.array(solved)
+    return found[:, :-1], found[:, -1]
 
 
 def answer(
@@ -207,7 +249,7 @@ def answer(
     middle = table.medians()
     hamaker = middle["hamaker"]
     central = law_of(cells, hamaker)
-    response = fit_response([SampledPad(middle, cutoffs_nm[0], cells.count, central), *draws], table)
+    response = _response(cells, draws, table, cutoffs_nm[0])
     wanted = pressure_to_compute(settings, DEVIATIONS)
     by_curves = solve_or_bound(settings, central)
     by_form = _on_response(Point(middle, cutoffs_nm[0], settings), response, wanted)
@@ -219,7 +261,7 @@ def answer(
             solved.append((place, _on_response(point, response, wanted)))
         except InputError as error:
             refused.append(str(error))
-    if len(solved) < 0.8 * len(points):
+    if len(solved) < SOLVED * len(points):
         raise InputError(f"device: {len(refused)} of {len(points)} switches cannot be solved, the first: {refused[0]}")
     places = [place for place, _ in solved]
     solved_values = {key: np.array([state[key] for _, state in solved]) for key in by_form}
@@ -283,9 +325,11 @@ def try_answer(
     gap_cutoff_nm: float,
 ) -> dict[str, Any]:
     """`answer` for device/pad_switch.json, or None with `answer_status` that says why there is none."""
-    cutoffs = gap_cutoff_nm, max(gap_cutoff_nm, *(draw.gap_cutoff_nm for draw in draws))
     try:
-        return {"answer": answer(cells, draws, table, settings, cutoffs), "answer_status": "ok"}
+        return {
+            "answer": answer(cells, draws, table, settings, cutoff_range(gap_cutoff_nm, draws)),
+            "answer_status": "ok",
+        }
     except InputError as error:
         return {"answer": None, "answer_status": str(error)}
 
@@ -295,6 +339,13 @@ def _probability(stuck: int, solved: int, refused: int) -> dict[str, float | int
     total = solved + refused
     least, most = probability(stuck, total), probability(stuck + refused, total)
     return {**probability(stuck, solved), "low": least["low"], "high": most["high"]}
+
+
+def _response(cells: PadCells, draws: Sequence[SampledPad], table: InputTable, gap_cutoff_nm: float) -> PadResponse:
+    """The closed form through the central pad and the draws."""
+    middle = table.medians()
+    central = SampledPad(middle, gap_cutoff_nm, cells.count, law_of(cells, middle["hamaker"]))
+    return fit_response([central, *draws], table)
 
 
 def _on_response(point: Point, response: PadResponse, wanted_GPa: Callable[[Array], Array]) -> dict[str, float]:

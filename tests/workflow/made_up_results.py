@@ -464,13 +464,12 @@ def _calibration(root: Path) -> None:
         [*curves, {"quantity": "release", "unit": "V", "force_nN": "", **prior, **after}],
     )
     further = {"width_now_V": 1.0, "standard_error": 0.012}
-    _write(
-        root / "calibration/next.csv",
-        [
-            {"kind": "contact_begin", "measurement": "ten", "width_then_V": 0.4, "reduction": 0.6, **further},
-            {"kind": "sticking", "measurement": "twenty", "width_then_V": 1.0, "reduction": -1e-16, **further},
-        ],
-    )
+    rows = [
+        {"kind": "contact_begin", "measurement": "ten", "width_then_V": 0.4, "reduction": 0.6, **further},
+        {"kind": "sticking", "measurement": "twenty", "width_then_V": 1.0, "reduction": -1e-16, **further},
+    ]
+    _write(root / "calibration/next.csv", rows)
+    _write(root / "calibration/next_on_pad.csv", rows[:1])
     tables = {kind: {"file": f"{kind}.csv", "source": "made up, no measurement"} for kind in ("pull_off", "hardness")}
     chain = {"sampler": "emcee 3", "r_hat": 1.004, "independent_draws": 1700.0}
     content = {"gate": {"passed": True, "reasons": []}, "remarks": [f"hardness (hardness.csv) {far}"], "chain": chain}

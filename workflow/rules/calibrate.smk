@@ -77,6 +77,7 @@ rule sample_posterior:
         next=f"{RESULTS}/calibration/next.csv",
         predictive=f"{RESULTS}/calibration/predictive.csv",
         responses=f"{RESULTS}/calibration/responses.csv",
+        local_cycles=f"{RESULTS}/calibration/local_cycles.csv",
         posterior=f"{RESULTS}/calibration/posterior.json",
     log:
         f"{RESULTS}/logs/sample_posterior.log",
@@ -92,6 +93,33 @@ rule sample_posterior:
         "sample the posterior of the inputs"
     script:
         "../scripts/sample_posterior.py"
+
+
+rule rank_next_on_pad:
+    input:
+        **SURFACE,
+        priors=f"{RESULTS}/calibration/priors.csv",
+        inputs=f"{RESULTS}/inputs.csv",
+        cycles=[f"{RESULTS}/calibration/cycles/chunk_{chunk}.csv" for chunk in MEASUREMENT_CHUNKS],
+        local_cycles=f"{RESULTS}/calibration/local_cycles.csv",
+        grid=f"{RESULTS}/pad/grid.csv",
+        cells=lambda wildcards: [f"{RESULTS}/pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS],
+        draws=lambda wildcards: [f"{RESULTS}/pad/draws/chunk_{chunk}.csv" for chunk in DRAW_CHUNKS],
+    output:
+        f"{RESULTS}/calibration/next_on_pad.csv",
+    log:
+        f"{RESULTS}/logs/rank_next_on_pad.log",
+    threads: 1
+    params:
+        seed=SCENE.measurements.seed,
+        contact=settings("contact"),
+        law=settings("law"),
+        pad=lambda wildcards: DRAW_SETTINGS,
+        device=settings("device"),
+    message:
+        "rank what to measure next for the switch on the pad"
+    script:
+        "../scripts/rank_next_on_pad.py"
 
 
 rule check_calibration_stability:

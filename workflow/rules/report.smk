@@ -36,6 +36,8 @@ def report_inputs():
     if SCENE.measurements.tables:
         tables = ("samples", "summary", "learned", "next", "predictive", "responses")
         files += ["calibration/posterior.json", *(f"calibration/{table}.csv" for table in tables)]
+        if SCENE.pad.draws:
+            files += ["calibration/next_on_pad.csv"]
     if SCENE.coupling.surfaces > 0:
         files += ["coupling/comparison.csv"]
     studies = [*ACCURACY, *STABILITY] if SCENE.report.studies else []

@@ -17,8 +17,8 @@ def _spread(unit: str, state: str) -> tuple[Column, ...]:
 
 TABLES = (
     Table(
-        ("calibration/cycles/chunk_*.csv",),
-        "One contact cycle over the prior, and what can be measured of it.",
+        ("calibration/cycles/chunk_*.csv", "calibration/local_cycles.csv"),
+        "One contact cycle over the prior (local: where the posterior lies), and what can be measured of it.",
         (
             integer("run", "number of the run"),
             SEED,
@@ -61,8 +61,8 @@ TABLES = (
         ),
     ),
     Table(
-        ("calibration/next.csv",),
-        "One kind of measurement that could be made next.",
+        ("calibration/next.csv", "calibration/next_on_pad.csv"),
+        "One kind of measurement that could be made next; the release is that of the lumped switch, or on the pad.",
         (
             text("kind", "kind of measurement"),
             text("measurement", "what is measured, and how well"),

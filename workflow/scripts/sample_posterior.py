@@ -2,11 +2,14 @@
 
 In: the tables of measurements, calibration/priors.csv, calibration/cycles/chunk_NNN.csv.
 Out: calibration/posterior.json, and what it means: samples.csv, summary.csv (prior and posterior of the inputs),
-learned.csv (bits, contradictions), next.csv (what to measure), predictive.csv, responses.csv (their error).
+learned.csv (bits, contradictions), next.csv (what to measure), predictive.csv, responses.csv (their error),
+local_cycles.csv (where the posterior lies).
 """
 
-from mesoscale.calibration.learning import check_range, learned, next_measurements, outliers
+from mesoscale.calibration.further import next_measurements
+from mesoscale.calibration.learning import check_range, learned, outliers
 from mesoscale.calibration.measurements import load_measurements
+from mesoscale.calibration.observables import NAMES
 from mesoscale.calibration.posterior import calibrate, cycles_of_rows, response_remarks
 from mesoscale.calibration.summary import (
     LEARNED_COLUMNS,
@@ -39,6 +42,7 @@ with job(snakemake) as run:
     result = calibrate(prior, tables, cycles, contact, law, device, settings, run.progress)
 
     write_csv(snakemake.output.responses, result.checks, RESPONSE_COLUMNS)
+    write_csv(snakemake.output.local_cycles, result.added, ["run", "seed", *prior.names, *NAMES])
     converged = result.chain.converged
     lessons = learned(result, tables, contact.max_force_nN, settings) if converged else []
     write_csv(snakemake.output.learned, lessons, LEARNED_COLUMNS)

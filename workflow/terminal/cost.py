@@ -252,6 +252,7 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "follow_history": lambda costs, wildcards: history_s(costs.scene.history, costs.scene.contact),
     "observe_cycles": Costs.observe_cycles,
     "sample_posterior": Costs.sample_posterior,
+    "rank_next_on_pad": _constant(20.0),
 }
 
 

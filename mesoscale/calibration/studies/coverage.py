@@ -5,11 +5,12 @@ product's responses and likelihood, by importance sampling of prior draws. Ranks
 well (Talts et al., arXiv 1804.06788). A set is left out only where its own datum is missing: a surface that never
 pushes that much, a switch that sticks; that depends on the data alone, and so keeps ranks uniform.
 
-`python -m mesoscale.calibration.studies.coverage FOLDER` keeps its cycles in FOLDER and writes coverage.csv there.
+`python -m mesoscale.calibration.studies.coverage FOLDER` keeps its cycles in FOLDER and writes coverage.csv there;
+with a table that was written (docs/data/calibration_coverage.csv) it prints what the table says.
 """
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -44,6 +45,8 @@ FORCE_POINTS = 20
 RUNS = 3200
 """Cycles behind the responses: their error is shared by all sets and would shift all ranks together."""
 CONTACT = ContactSettings(pixels=128)
+SIGNIFICANCE = 0.05
+"""Chance that any of the tests of uniform ranks fails although all are uniform."""
 D0_SPREAD = 0.15
 """Standard deviation of ln D0 between sets whose law of attraction the responses do not know; they have 0.165 nm."""
 PULL_OFF_SPREAD = 2.8 * D0_SPREAD
@@ -230,12 +233,33 @@ def _kept(path: Path, runs: Sequence[Run], contact: ContactSettings, names: Sequ
     return cycles_of_rows(load_table(path), names)
 
 
-def main(folder: Path) -> None:
-    """Write coverage.csv anew, row by row."""
-    folder.mkdir(parents=True, exist_ok=True)
-    table = folder / "coverage.csv"
+def summary(rows: Sequence[Mapping[str, str]]) -> list[str]:
+    """What a table says, in words: coverage, and uniformity (Kolmogorov and Smirnov's test, Bonferroni's bound)."""
+    known = [row for row in rows if row["wrong_d0"] == "False"]
+    doubts = [row for row in rows if row["wrong_d0"] == "True"]
+    shares = [float(row[key]) for row in known for key in row if key.startswith("coverage_")]
+    tests = [float(row[key]) for row in known for key in row if key.startswith("uniform_p_")]
+    bound = SIGNIFICANCE / len(tests)
+    lines = [
+        f"{len(known)} kinds of data, {min(int(row['sets']) for row in known)} sets or more of each",
+        f"90 % intervals cover {min(shares):.3f} to {max(shares):.3f}",
+        f"ranks: {len(tests)} tests, smallest p {min(tests):.4f}; {sum(p < bound for p in tests)} below {bound:.5f}",
+    ]
+    for row in doubts:
+        held = [float(row[key]) for key in row if key.startswith("coverage_")]
+        lines.append(f"wrong D0, discrepancy {row['discrepancy']}: {min(held):.3f} to {max(held):.3f}")
+    return lines
+
+
+def main(path: Path) -> None:
+    """Write coverage.csv, row by row, or print what a table says."""
+    if path.is_file():
+        print("\n".join(summary(load_table(path))))
+        return
+    path.mkdir(parents=True, exist_ok=True)
+    table = path / "coverage.csv"
     table.unlink(missing_ok=True)
-    grow_table(table, study(folder))
+    grow_table(table, study(path))
 
 
 if __name__ == "__main__":

@@ -3,7 +3,8 @@
 The direct chain walks over inputs and surfaces together: every step proposes inputs near the last ones and a surface
 that was never seen, computes its cycle, and accepts by the likelihood of the data on that very surface. Its inputs then
 follow the exact posterior, whatever the distribution over surfaces (pseudo-marginal Metropolis: Andrieu and Roberts,
-Ann. Stat. 37, 697 (2009), doi 10.1214/07-AOS574).
+Ann. Stat. 37, 697 (2009), doi 10.1214/07-AOS574). As a second way without responses, cycles over the prior are weighed
+by the same likelihood.
 
 `python -m mesoscale.calibration.studies.direct FOLDER` writes direct.csv there, and every chain as it goes on.
 """
@@ -30,7 +31,7 @@ from mesoscale.settings import (
     MeasurementsSettings,
     UncertaintySettings,
 )
-from mesoscale.tables import write_table
+from mesoscale.tables import load_table, write_table
 from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
@@ -42,10 +43,12 @@ MIDDLE = {"e_star": 91.0, "h_macro": 1.95, "h_prime": 8.4, "q0": 0.025, "hurst":
 TRUTH = {**MIDDLE, "hamaker": 0.21, "rms": 6.0}
 CONTACT_BEGIN_ERROR_NM, PULL_OFF_ERROR = 2.0, 0.3
 """Standard deviations of the data; the second as a share."""
-CHAINS, STEPS, BURN_IN = 4, 5000, 200
+CHAINS, STEPS, BURN_IN = 8, 5000, 200
 STEP = 0.35
 """Of a proposal, as a share of an input's range."""
 FIRST_SURFACE = 2_000_000_000
+PARTS, PART_RUNS, FIRST_WEIGHED = 10, 1000, 1_200_000_000
+"""Cycles that are weighed, each on a surface of its own, and how they are parted to know their Monte Carlo error."""
 SETTINGS = MeasurementsSettings(max_steps=8000, walkers=128, samples=20000)
 """Many walkers: the Monte Carlo error of the product's own chain stays small beside that of the direct ones."""
 
@@ -112,14 +115,34 @@ def responses_posterior(table: InputTable, data: Array) -> Array:
     return result.x[:, [table.names.index(name) for name in FREE]]
 
 
-def compare(chains: Sequence[Array], ours: Array) -> list[dict[str, Any]]:
-    """Mean, deviation and quantiles by both ways, and the distance of the distributions, one row each.
+def weighed_part(table: InputTable, data: Array, number: int, path: Path) -> Array:
+    """Free inputs of cycles over the prior, resampled by the likelihood of the data, shape (PART_RUNS, 2)."""
+    if not path.exists():
+        first, last = number * PART_RUNS, (number + 1) * PART_RUNS
+        runs = random_runs(table, UncertaintySettings(sample_seed=91), first, last, first_surface=FIRST_WEIGHED)
+        write_table(
+            path, observe_runs(runs, CONTACT, LawSettings()), columns=[*FREE, "contact_begin_nm", "pull_off_nN"]
+        )
+    rows = np.array([[float(value) for value in row.values()] for row in load_table(path)])
+    logs = np.array([log_likelihood(seen, data) for seen in rows[:, len(FREE) :]])
+    weights = np.exp(logs - logs.max())
+    shares = (np.arange(len(rows)) + 0.5) / len(rows)  # systematic resampling adds next to no noise
+    return rows[np.searchsorted(np.cumsum(weights) / weights.sum(), shares), : len(FREE)]
 
-    The Monte Carlo error is that of the direct chains, from the scatter of their halves. The distance is Wasserstein's
-    first, in the input's unit; its Monte Carlo error is half of that between one half of the direct chains and the
-    other, averaged over all ways to halve them: each half has twice the variance of the whole.
+
+def compare(way: str, parts: Sequence[Array], ours: Array) -> list[dict[str, Any]]:
+    """Mean, deviation and quantiles without and with responses, and the distance of the distributions, one row each.
+
+    The Monte Carlo error is that of all parts, from their scatter. The distance is Wasserstein's first, in the input's
+    unit; its Monte Carlo error is half of that between one half of the parts and the other, averaged over all ways to
+    halve them: each half has twice the variance of the whole. It is what the distance would be on average, were the
+    two distributions the same.
+
+    Parameters
+    ----------
+    parts : draws without responses, independent of each other, shape (s, 2) each.
+    ours : by the responses, shape (m, 2).
     """
-    halves = [half for chain in chains for half in np.array_split(chain[BURN_IN:], 2)]
     kinds = {
         "mean": np.mean,
         "sd": np.std,
@@ -129,14 +152,13 @@ def compare(chains: Sequence[Array], ours: Array) -> list[dict[str, Any]]:
     }
     rows = []
     for k, name in enumerate(FREE):
-        parts, every, inferred = [half[:, k] for half in halves], np.concatenate(halves)[:, k], ours[:, k]
+        column, every, inferred = [part[:, k] for part in parts], np.concatenate(parts)[:, k], ours[:, k]
         for quantity, of in kinds.items():
-            error = float(np.std([of(part) for part in parts], ddof=1) / np.sqrt(len(parts)))
-            rows.append(
-                _row(name, quantity, float(of(every)), error, float(of(inferred)), float(of(inferred) - of(every)))
-            )
+            error = float(np.std([of(part) for part in column], ddof=1) / np.sqrt(len(column)))
+            off = float(of(inferred) - of(every))
+            rows.append(_row(way, name, quantity, float(of(every)), error, float(of(inferred)), off))
         distance = float(wasserstein_distance(every, inferred))
-        rows.append(_row(name, "distance", 0.0, _own_distance(parts), distance, distance))
+        rows.append(_row(way, name, "distance", 0.0, _own_distance(column), distance, distance))
     return rows
 
 
@@ -149,8 +171,11 @@ def _own_distance(parts: Sequence[Array]) -> float:
     return float(np.mean(apart) / 2)
 
 
-def _row(name: str, quantity: str, direct: float, error: float, inferred: float, off: float) -> dict[str, Any]:
+def _row(
+    way: str, name: str, quantity: str, direct: float, error: float, inferred: float, off: float
+) -> dict[str, Any]:
     return {
+        "way": way,
         "input": name,
         "quantity": quantity,
         "direct": direct,
@@ -161,7 +186,7 @@ def _row(name: str, quantity: str, direct: float, error: float, inferred: float,
 
 
 def main(folder: Path) -> None:
-    """Both ways on the same made-up data."""
+    """All ways on the same made-up data."""
     folder.mkdir(parents=True, exist_ok=True)
     table = prior()
     seen = observed(TRUTH, FIRST_SURFACE - 1)
@@ -173,8 +198,10 @@ def main(folder: Path) -> None:
         ]
     )
     chains = [direct_chain(table, data, number, folder / f"chain_{number}.txt") for number in range(CHAINS)]
-    rows = compare(chains, responses_posterior(table, data))
-    write_table(folder / "direct.csv", rows)
+    parts = [weighed_part(table, data, number, folder / f"cycles_{number}.csv") for number in range(PARTS)]
+    ours = responses_posterior(table, data)
+    rows = compare("chains", [chain[BURN_IN:] for chain in chains], ours)
+    write_table(folder / "direct.csv", rows + compare("weighed cycles", parts, ours))
 
 
 if __name__ == "__main__":

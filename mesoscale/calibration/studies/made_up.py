@@ -1,6 +1,7 @@
 """Made-up measurements of known truth: the engine's surfaces with drawn errors.
 
 `python -m mesoscale.calibration.studies.made_up FOLDER` writes the tables of the shipped example, scene `made_up`.
+`python -m mesoscale.calibration.studies.made_up release` prints the release voltage that its truth has.
 """
 
 import csv
@@ -10,10 +11,11 @@ from pathlib import Path
 
 import numpy as np
 
-from mesoscale.calibration.observables import force_levels_nN, separations_at
+from mesoscale.calibration.observables import LAWS, force_levels_nN, observe, separations_at
+from mesoscale.calibration.switches import SwitchModel
 from mesoscale.contact import run_cycle
 from mesoscale.inputs.contact import contact_of
-from mesoscale.settings import ContactSettings
+from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings
 
 TRUTH = {
     "hamaker": 0.21,
@@ -31,6 +33,9 @@ SEPARATION_ERROR_NM, PULL_OFF_ERROR, HARDNESS_ERROR, MODULUS_ERROR_GPA = 0.2, 0.
 POINTS = 25
 """Of a curve."""
 INDENTS_NM2 = (40.0, 100.0, 400.0, 1000.0, 4000.0)
+CONTACT = ContactSettings(pixels=256)
+RELEASE_SURFACES, RELEASE_SEED, RESAMPLES = 400, 78_000_000, 200
+"""Surfaces whose mean law gives the release at the truth, the first of them, and resampled sets for its error."""
 
 Rows = list[dict[str, float | str]]
 
@@ -79,10 +84,28 @@ def made_up(truth: Mapping[str, float], contact: ContactSettings, curves: int, s
     return {"closing_curves": closing, "pull_off": pull_off, "hardness": hardness, "modulus": modulus}
 
 
+def release_at_truth(surfaces: int) -> tuple[float, float]:
+    """Release voltage (V) of the default switch on the mean law of surfaces at TRUTH, and its standard error."""
+    inputs, chosen = contact_of(TRUTH, CONTACT)
+    rows = [
+        observe(run_cycle(inputs, chosen, RELEASE_SEED + k), LawSettings(), CONTACT.max_force_nN)
+        for k in range(surfaces)
+    ]
+    laws = np.array([[row[law.name] for law in LAWS] for row in rows])
+    laws = laws[np.isfinite(laws).all(axis=1)]
+    picks = np.random.default_rng(1).integers(len(laws), size=(RESAMPLES, len(laws)))
+    means = np.vstack([laws.mean(axis=0), laws[picks].mean(axis=1)])
+    switch = SwitchModel.of(DeviceSettings(), LawSettings(), CONTACT.length_nm**2)
+    volts = switch.release_V(switch.laws(means, np.full(len(means), TRUTH["hamaker"]))[1])
+    return float(volts[0]), float(volts[1:].std())
+
+
 def main(folder: str) -> None:
-    """Write the tables of the shipped example."""
-    contact = ContactSettings(pixels=256)
-    for kind, rows in made_up(TRUTH, contact, 20, EXAMPLE_SEED).items():
+    """Write the tables of the shipped example, or print its release voltage."""
+    if folder == "release":
+        print("release at the truth: {:.3f} +- {:.3f} V".format(*release_at_truth(RELEASE_SURFACES)))
+        return
+    for kind, rows in made_up(TRUTH, CONTACT, 20, EXAMPLE_SEED).items():
         with (Path(folder) / f"{kind}.csv").open("w", newline="", encoding="utf-8") as stream:
             stream.write("# made up by mesoscale.calibration.studies.made_up, with known truth: no measurement\n")
             writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")

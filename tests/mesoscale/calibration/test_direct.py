@@ -43,12 +43,28 @@ def test_an_interrupted_chain_goes_on_as_if_it_had_not_been(chain, tmp_path):
     assert part.read_text() == text
 
 
+def test_weighed_cycles_have_the_posterior_of_the_inputs(monkeypatch, tmp_path):
+    """The same made-up engine: cycles over the prior, weighed by the data."""
+
+    def observe(runs, *_):
+        names = ("contact_begin_nm", "pull_off_nN")
+        return [{**run.values, **dict(zip(names, engine(run.values, run.seed), strict=True))} for run in runs]
+
+    monkeypatch.setattr(direct, "observe_runs", observe)
+    monkeypatch.setattr(direct, "PART_RUNS", 4000)
+    rms = direct.weighed_part(direct.prior(), DATA, 0, tmp_path / "part.csv")[:, direct.FREE.index("rms")]
+    assert rms.mean() == pytest.approx(20 / 3.4, abs=0.1)  # some 900 independent draws: 0.025
+    assert rms.std() == pytest.approx(np.hypot(2, 1.5) / 3.4, rel=0.1)
+    again = direct.weighed_part(direct.prior(), DATA, 0, tmp_path / "part.csv")
+    assert np.array_equal(again[:, direct.FREE.index("rms")], rms)
+
+
 def test_distance_of_like_and_unlike_distributions():
     rng = np.random.default_rng(1)
-    chains = list(rng.standard_normal((4, 1000 + direct.BURN_IN, 2)))
+    parts = list(rng.standard_normal((8, 500, 2)))
 
     def distances(shift):
-        rows = direct.compare(chains, rng.standard_normal((4000, 2)) + shift)
+        rows = direct.compare("parts", parts, rng.standard_normal((4000, 2)) + shift)
         return [row["difference_in_errors"] for row in rows if row["quantity"] == "distance"]
 
     assert max(distances(0.0)) < 2

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mesoscale.calibration.further import next_measurements, next_on_pad
 from mesoscale.calibration.learning import (
     check_range,
     information_bits,
     learned,
-    next_measurements,
     outliers,
     predictive_probability,
 )
@@ -17,6 +17,7 @@ from mesoscale.calibration.likelihood import normal_with_common, posterior_of
 from mesoscale.calibration.measurements import Measurements
 from mesoscale.calibration.observables import OBSERVABLES, force_levels_nN
 from mesoscale.calibration.posterior import Calibration, Cycles, draw, expected_of, responses_of
+from mesoscale.calibration.responses import transformed
 from mesoscale.calibration.sampling import NormalProposal, autocorrelation, diagnose, sample
 from mesoscale.calibration.summary import posterior_json, predictive_rows, sample_rows, summary_rows
 from mesoscale.calibration.surfaces import check_points
@@ -95,8 +96,7 @@ def test_responses_find_mean_and_scatter(prior, parts):
     x = prior.sample(4000, 11)
     y = made_up_observables(x, np.random.default_rng(11))[:, : len(OBSERVABLES)]
     prediction = parts[0].every(x)
-    is_log = np.array([row.scale != "length" for row in OBSERVABLES])
-    off = np.where(is_log, np.log(y), y) - prediction.mean
+    off = transformed(OBSERVABLES, y) - prediction.mean
     sd = np.sqrt(np.einsum("mkk->mk", prediction.scatter) * (1 + prediction.error[:, None]))
     assert np.abs((off / sd).mean(axis=0)).max() < 0.12  # 900 runs know the mean to 0.03, a region of them less
     assert np.abs((off / sd).std(axis=0) - 1).max() < 0.08
@@ -354,3 +354,32 @@ def test_a_release_voltage_teaches_most_of_the_release_voltage(prior, parts):
     rows = {row["kind"]: row for row in next_measurements(result, MAX_FORCE_NN, 1)}
     assert rows["release"]["reduction"] > 0.2
     assert abs(rows["modulus"]["reduction"]) < 0.1
+
+
+def test_next_on_pad_finds_what_its_release_depends_on(prior, parts):
+    """Made-up release that falls with the RMS and knows nothing of E*: exact where it is measured itself."""
+    x = prior.sample(128, 5)
+    volts = 20 - x[:, 6] + 0.3 * np.random.default_rng(2).standard_normal(128)
+    responses = parts[0]
+    rows = {
+        row["kind"]: row
+        for row in next_on_pad(lambda tables: given(prior, parts, *tables), responses, x, volts, MAX_FORCE_NN, 1)
+    }
+    assert set(rows) == {
+        "closing_curves",
+        "opening_curves",
+        "contact_begin",
+        "pull_off",
+        "hardness",
+        "modulus",
+        "release",
+    }
+    assert rows["contact_begin"]["reduction"] > 0.5
+    assert rows["release"]["reduction"] > 0.7
+    assert abs(rows["modulus"]["reduction"]) < 4 * rows["modulus"]["standard_error"] + 0.02
+
+
+def test_next_on_pad_has_nothing_to_narrow_where_all_stick(prior, parts):
+    x = prior.sample(40, 5)
+    rows = next_on_pad(lambda tables: given(prior, parts, *tables), parts[0], x, np.zeros(40), MAX_FORCE_NN, 1)
+    assert all(row["reduction"] == 0 and row["width_now_V"] == 0 for row in rows)

@@ -65,17 +65,13 @@ def describe(results: Results) -> Section | None:
     header = ("quantity", "before, median and 5 to 95 %", "after")
     section.blocks.append(Table("What the next surface and the next switch show", header, lines))
     section.add(predicted_curves(results), "Closing and opening (dashed) of the next surface, 5 to 95 %.")
-    lines = [
-        (
-            row["kind"].replace("_", " "),
-            row["measurement"],
-            show(row["width_then_V"]),
-            _percent(row),
-        )
-        for row in results.csv("calibration/next.csv")
-    ]
-    header = ("measurement", "what", "expected width of the release voltage's 90 % (V)", "reduction")
-    section.blocks.append(Table("What to measure next", header, lines))
+    section.blocks.append(_next(results, "next.csv", "What to measure next, for the lumped switch"))
+    on_pad = results.has("calibration/next_on_pad.csv") and results.csv("calibration/next_on_pad.csv")
+    if on_pad and number(on_pad[0]["width_now_V"]) > 0:
+        section.blocks.append(_next(results, "next_on_pad.csv", "What to measure next, for the switch on the pad"))
+        section.files.append("calibration/next_on_pad.csv")
+    elif on_pad:
+        section.notes.append("The switch on the pad sticks throughout its 90 % interval: nothing narrows its release.")
     chain = posterior["chain"]
     section.notes.append(
         "Release here is that of the lumped switch on the compact law, which every measurement of a release voltage is "
@@ -93,6 +89,15 @@ def describe(results: Results) -> Section | None:
         )
     section.files += [f"calibration/{name}" for name in ("next.csv", "predictive.csv", "responses.csv")]
     return section
+
+
+def _next(results: Results, name: str, title: str) -> Table:
+    """Expected width of the release voltage's interval after one more measurement of each kind."""
+    lines = [
+        (row["kind"].replace("_", " "), row["measurement"], show(row["width_then_V"]), _percent(row))
+        for row in results.csv(f"calibration/{name}")
+    ]
+    return Table(title, ("measurement", "what", "expected width of the release voltage's 90 % (V)", "reduction"), lines)
 
 
 def _percent(row: dict[str, str]) -> str:
