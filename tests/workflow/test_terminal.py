@@ -27,7 +27,7 @@ class Job(SimpleNamespace):
 
 
 def job(name):
-    return Job(rule=SimpleNamespace(name=name, norun=False), wildcards_dict={})
+    return Job(rule=SimpleNamespace(name=name, norun=False), wildcards_dict={}, priority=0)
 
 
 def send(terminal, event, **about):
@@ -122,6 +122,12 @@ def test_jobs_wait_for_what_they_need():
     assert wall_seconds([1.0, 2.0, 3.0, 4.0], chain, cores=2) == 6.0
     assert wall_seconds([1.0, 2.0, 3.0, 4.0], chain, cores=1) == 10.0
     assert wall_seconds([1.0, 1.0, 5.0], [[], [], [0, 1]], cores=2) == 6.0
+
+
+def test_the_longest_jobs_go_first_where_they_have_priority():
+    alone = [[], [], []]
+    assert wall_seconds([1.0, 1.0, 4.0], alone, cores=2) == 5.0
+    assert wall_seconds([1.0, 1.0, 4.0], alone, cores=2, priorities=[0, 0, 1]) == 4.0
 
 
 def test_speed_is_a_positive_number():

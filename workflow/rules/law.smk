@@ -24,7 +24,7 @@ rule compute_runs:
         f"{RESULTS}/curves/runs/chunk_{{chunk}}.h5",
     log:
         f"{RESULTS}/logs/compute_runs_{{chunk}}.log",
-    priority: 1  # a long chain of jobs waits for them, for the pad only the report does
+    priority: 1  # a chain of jobs waits for them
     threads: 1
     resources:
         mem_mb=CONTACT_MB,

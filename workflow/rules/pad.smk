@@ -32,6 +32,7 @@ rule plan_pad:
         f"{RESULTS}/pad/grid.csv",
     log:
         f"{RESULTS}/logs/plan_pad.log",
+    priority: 2  # first of all: the rest then fills the other cores while the pad is assembled
     threads: 1
     resources:
         mem_mb=side_by_side_MB(SCENE.contact, SCENE.pad.pilot_cells),
@@ -54,6 +55,7 @@ rule close_cells:
         f"{RESULTS}/pad/cells/chunk_{{chunk}}.h5",
     log:
         f"{RESULTS}/logs/close_cells_{{chunk}}.log",
+    priority: 2
     threads: 1
     resources:
         mem_mb=CONTACT_MB,
@@ -74,6 +76,7 @@ rule close_draws:
         f"{RESULTS}/pad/draws/chunk_{{chunk}}.csv",
     log:
         f"{RESULTS}/logs/close_draws_{{chunk}}.log",
+    priority: 2
     threads: 1
     resources:
         mem_mb=CONTACT_MB,
@@ -106,6 +109,7 @@ rule assemble_pad:
         spice=f"{RESULTS}/device/rough_pad.sub",
     log:
         f"{RESULTS}/logs/assemble_pad.log",
+    priority: 2
     threads: 1
     params:
         contact=settings("contact"),

@@ -34,7 +34,7 @@ rule compute_direct_runs:
         f"{RESULTS}/logs/compute_direct_runs_{{design}}_{{chunk}}.log",
     wildcard_constraints:
         design="direct|replicate|morris",
-    priority: 1  # a long chain of jobs waits for them, for the pad only the report does
+    priority: 1  # a chain of jobs waits for them
     threads: 1
     resources:
         mem_mb=CONTACT_MB,

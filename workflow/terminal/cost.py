@@ -1,12 +1,12 @@
 """What the jobs of a scene cost before they run: seconds of one core by rule.
 
-The figures were measured on one idle core of the development machine; `relative_speed` sets another machine against it.
+The figures were measured on the development machine, two cores of a server with both of them busy (one of them alone is
+some 10 % faster), with compiled bytecode; `relative_speed` sets another machine against it.
 """
 
 import heapq
 import math
 import time
-from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
@@ -19,22 +19,22 @@ from mesoscale.settings import ContactSettings, HistorySettings
 from mesoscale.uncertainty.chunks import collocation_run_count
 from workflow.scene import Scene
 
-START_S = 1.5  # Snakemake's start of a job, and the packages
-ENGINE_S = 1.4  # more packages for a contact
+START_S = 0.8  # Snakemake's start of a job, and the packages
+ENGINE_S = 0.9  # more packages for a contact, and its loops from numba's cache
 GRID = 1024**2  # sites of the reference
 # of any cycle; of one on the reference grid, besides; the power of the sites with which that grows
-CYCLE_S = {"asperity": (0.005, 0.046, 1.0), "coupled": (0.01, 2.1, 2.2)}
+CYCLE_S = {"asperity": (0.005, 0.054, 1.0), "coupled": (0.01, 2.5, 2.2)}
 CHAIN_S = 10.0  # a posterior of some twenty curves; scene made_up
 FITTED_RUN_S = 0.004  # law of a run and its row
 LATER_CYCLE, HOLD = 0.6, 0.05  # of a history, over a first cycle; of each time within a hold
 CURVE_S = 0.01  # fit of both branches of a run, with fits repeated from other starts
 RESPONSE_RUN_S = 0.0082  # of a direct run, in regressions and their validation
-DRAWN_PAD_S = 0.9  # of a set of inputs, in the answer of the switch
+ANSWER_S = 6.0  # 89 switches solved on pads at other inputs
 RELEASE_S = 0.015  # law and switch after a cycle
-CELL_S = {"asperity": 3.2, "coupled": 4.5}  # a pad's cell over a cycle: it opens from several depths
+CELL_S = {"asperity": 2.75, "coupled": 3.9}  # a pad's cell over a cycle: it opens from several depths
 PRESSED = {"asperity": 1.0, "coupled": 9.0}  # that which a switch presses over it
-DRAW_CELL = {"asperity": 1.5, "coupled": 0.8}  # a cell of a pad at other inputs over one of the pad
-OPENED_CELL = 2.0  # a cell of scene adhesion over one of the pad: it is closed twice
+DRAW_CELL = {"asperity": 0.9, "coupled": 0.45}  # a cell of a pad at other inputs: fewer steps, half of the depths
+PILOT_CELL = {"asperity": 0.45, "coupled": 0.15}  # a cell that is only closed, in coarse steps
 SCAN_S = 0.8  # analysis of a scan of the reference grid
 SCF_S = 9.0  # one volume of 28 atoms at 100 hartree
 RELAXATION_STEP_S = 8.0  # the same, tightly converged and with forces
@@ -185,24 +185,24 @@ class Costs:
 
     def plan_pad(self, wildcards: Mapping[str, str]) -> float:
         """Pilot cells."""
-        return ENGINE_S + self.scene.pad.pilot_cells * self.cell_s
+        return ENGINE_S + self.scene.pad.pilot_cells * PILOT_CELL[self.scene.contact.mechanics] * self.cell_s
 
     def close_cells(self, wildcards: Mapping[str, str]) -> float:
         """A chunk of the pad's cells."""
         return ENGINE_S + min(self.scene.pad.chunk_cells, self.scene.pad.cells) * self.cell_s
 
     def close_draws(self, wildcards: Mapping[str, str]) -> float:
-        """A chunk of pads at other inputs; their cells are pressed harder, and two of each draw are pilots."""
-        pad = self.scene.pad
-        draw_cell_s = DRAW_CELL[self.scene.contact.mechanics] * self.cell_s
-        return ENGINE_S + min(pad.chunk_draws, pad.draws) * (pad.draw_cells + 2) * draw_cell_s
+        """A chunk of pads at other inputs; two pilots for each."""
+        pad, mechanics = self.scene.pad, self.scene.contact.mechanics
+        cells = pad.draw_cells * DRAW_CELL[mechanics] + 2 * PILOT_CELL[mechanics]
+        return ENGINE_S + min(pad.chunk_draws, pad.draws) * cells * self.cell_s
 
     def open_pads(self, wildcards: Mapping[str, str]) -> float:
         """The pads of one case; the first half of the cases is of the first mechanics."""
         adhesion = self.scene.adhesion
         mechanics = adhesion.mechanics[int(wildcards["adhesion_case"]) * len(adhesion.mechanics) // adhesion.case_count]
         cycle = cycle_s(self.scene.contact.model_copy(update={"mechanics": mechanics}))
-        return OPENED_CELL * adhesion.pads * adhesion.cells * CELL_S[mechanics] * cycle
+        return ENGINE_S + adhesion.pads * adhesion.cells * CELL_S[mechanics] * cycle
 
 
 def _at(content: Any, key: str) -> Any:
@@ -244,9 +244,9 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "close_draws": Costs.close_draws,
     "open_pads": Costs.open_pads,
     "summarise_adhesion": _constant(0.0),
-    "assemble_pad": lambda costs, wildcards: 4.0 + DRAWN_PAD_S * costs.scene.pad.draws,
+    "assemble_pad": lambda costs, wildcards: 2.0 + (ANSWER_S if costs.scene.pad.draws else 0.0),
     "solve_switch": _constant(1.6),
-    "render_report": lambda costs, wildcards: 7.0 + len(costs.scene.stages()),
+    "render_report": lambda costs, wildcards: 5.5 + 0.5 * len(costs.scene.stages()),
     "measure_pad_accuracy": lambda costs, wildcards: 60.0 + 4 * costs.cell_s,
     "collect_priors": _constant(0.0),
     "follow_history": lambda costs, wildcards: history_s(costs.scene.history, costs.scene.contact),
@@ -256,31 +256,36 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
 }
 
 
-def wall_seconds(seconds: Sequence[float], needs: Sequence[Iterable[int]], cores: int) -> float:
+def wall_seconds(
+    seconds: Sequence[float], needs: Sequence[Iterable[int]], cores: int, priorities: Sequence[int] | None = None
+) -> float:
     """Time that jobs take side by side, each started as soon as what it needs is done and a core is free.
 
     Parameters
     ----------
     seconds : of each job on one core.
     needs : which other jobs each waits for, by their numbers.
+    priorities : of each job; of those that could start the highest does, of equal ones the first.
     """
+    ranks = [0] * len(seconds) if priorities is None else [-priority for priority in priorities]
     missing = [set(others) for others in needs]
     waited_for: list[list[int]] = [[] for _ in seconds]
     for number, others in enumerate(missing):
         for other in others:
             waited_for[other].append(number)
-    ready = deque(number for number, others in enumerate(missing) if not others)
+    ready = [(ranks[number], number) for number, others in enumerate(missing) if not others]
+    heapq.heapify(ready)
     running: list[tuple[float, int]] = []
     now = 0.0
     while ready or running:
         while ready and len(running) < cores:
-            number = ready.popleft()
+            _, number = heapq.heappop(ready)
             heapq.heappush(running, (now + seconds[number], number))
         now, done = heapq.heappop(running)
         for number in waited_for[done]:
             missing[number].remove(done)
             if not missing[number]:
-                ready.append(number)
+                heapq.heappush(ready, (ranks[number], number))
     return now
 
 

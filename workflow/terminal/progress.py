@@ -69,7 +69,7 @@ class Terminal(logging.Handler):
         for rule, cost in zip(rules, seconds, strict=True):
             self._seconds_left[rule] += cost
         self._jobs = len(jobs)
-        wall_s = wall_seconds(seconds, self._needs(jobs), self._cores)
+        wall_s = wall_seconds(seconds, self._needs(jobs), self._cores, [job.priority for job in jobs])
         if self._workflow.local_exec:
             self.refusal = self._costs.refusal(self._seconds_left, wall_s, self._cores, self._hours)
         wall = duration(wall_s) if jobs else "no time"
