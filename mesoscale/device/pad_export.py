@@ -7,7 +7,7 @@ The state is `closed` = start - (smallest separation so far) >= 0. It follows st
 from dataclasses import asdict
 
 from mesoscale.errors import InputError
-from mesoscale.pad.compact import CompactPad, fit_compact
+from mesoscale.pad.compact import CompactPad, fit_compact, well_status, wells_of
 from mesoscale.pad.memory import PadLaw
 
 START_NM = 200.0
@@ -102,5 +102,6 @@ def _closed_form(law: PadLaw, cells: int) -> tuple[CompactPad | None, str]:
     low, high = float(law.depth_nm[0]), float(law.depth_nm[-1])
     return fitted, (
         f"from {cells} cells, closed to {low:.4g} .. {high:.4g} nm; misfit {residuals.closing:.0%} closing, "
-        f"{residuals.opening:.0%} opening, {residuals.attraction_opening:.0%} attraction on opening"
+        f"{residuals.opening:.0%} opening, {residuals.attraction_opening:.0%} attraction on opening; "
+        f"well: {well_status(wells_of(fitted, law))}"
     )

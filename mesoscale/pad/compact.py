@@ -13,6 +13,7 @@ Without it and the far attraction the well on opening is at g^(1-n) = n a, with 
 depth is a^2 p_c(D) / 4 for n = 1/2.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -21,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import least_squares
 
 from mesoscale.errors import InputError
+from mesoscale.law.wells import MOST_MISSED
 from mesoscale.pad.memory import PadLaw
 
 Array = NDArray[np.float64]
@@ -156,18 +158,38 @@ def compact_summary(law: PadLaw) -> dict[str, Any]:
         fitted, residuals = fit_compact(law)
     except InputError as error:
         return {"parameters": None, "status": str(error)}
-    wells = []
-    for depth, branch in zip(law.depth_nm, law.opening, strict=True):
-        curve = max(-float(np.nanmin(branch.sum(axis=0))), 0.0) * 1e6
-        wells.append(
-            {
-                "depth_nm": float(depth),
-                "closed_to_MPa": float(law.closing_GPa(depth)) * 1e3,
-                "well_compact_kPa": fitted.well_kPa(float(depth)),
-                "well_curve_kPa": curve,
-            }
-        )
-    return {"parameters": asdict(fitted), "status": "ok", "residuals": asdict(residuals), "wells": wells}
+    wells = wells_of(fitted, law)
+    return {
+        "parameters": asdict(fitted),
+        "status": well_status(wells),
+        "residuals": asdict(residuals),
+        "wells": wells,
+    }
+
+
+def wells_of(fitted: CompactPad, law: PadLaw) -> list[dict[str, float]]:
+    """The well on opening of the closed form beside that of the curves, for each depth."""
+    return [
+        {
+            "depth_nm": float(depth),
+            "closed_to_MPa": float(law.closing_GPa(depth)) * 1e3,
+            "well_compact_kPa": fitted.well_kPa(float(depth)),
+            "well_curve_kPa": max(-float(np.nanmin(branch.sum(axis=0))), 0.0) * 1e6,
+        }
+        for depth, branch in zip(law.depth_nm, law.opening, strict=True)
+    ]
+
+
+def well_status(wells: Sequence[Mapping[str, float]]) -> str:
+    """`ok`, or at how many depths the closed form misses the well of the curves, and by how much."""
+    ratios = [row["well_compact_kPa"] / row["well_curve_kPa"] for row in wells if row["well_curve_kPa"] > 0]
+    missed = [ratio for ratio in ratios if abs(ratio - 1.0) > MOST_MISSED]
+    if not missed:
+        return "ok"
+    return (
+        f"misses_well: {min(missed):.2g} to {max(missed):.2g} times the curves' at {len(missed)} of {len(ratios)} "
+        "depths; for release and sticking use the curves (pad/curves.h5)"
+    )
 
 
 def tabulated(compact: CompactPad, law: PadLaw) -> PadLaw:

@@ -86,10 +86,10 @@ def tail_rows(fitted: Array, others: Array) -> Iterator[Row]:
     tail = fit_tail(fitted)
     for size in (*TAIL_SIZES, len(others)):
         groups = len(others) // size
-        found = others[: groups * size].reshape(groups, size).max(axis=1)
+        highest = others[: groups * size].reshape(groups, size).max(axis=1)
         (mean, scatter), error = tail.first_contact_nm(size), tail.standard_error_nm(size)
         # one pad alone has the scatter of pads
-        spread = float(found.std(ddof=1) / groups**0.5) if groups > 2 else float(scatter)
+        spread = float(highest.std(ddof=1) / groups**0.5) if groups > 2 else float(scatter)
         yield {
             "quantity": "first contact, nm, of so many cells",
             "at": size,
@@ -97,10 +97,10 @@ def tail_rows(fitted: Array, others: Array) -> Iterator[Row]:
             "assembled": float(mean),
             "assembled_error": float(error),
             "direct_from": len(others),
-            "direct": float(found.mean()),
+            "direct": float(highest.mean()),
             "direct_error": spread,
-            "ratio": float(mean / found.mean()),
-            "apart_in_errors": float((mean - found.mean()) / np.hypot(error, spread)),
+            "ratio": float(mean / highest.mean()),
+            "apart_in_errors": float((mean - highest.mean()) / np.hypot(error, spread)),
         }
 
 

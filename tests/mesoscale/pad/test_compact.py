@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mesoscale.errors import InputError
-from mesoscale.pad.compact import CompactPad, fit_compact, tabulated
+from mesoscale.pad.compact import CompactPad, fit_compact, tabulated, well_status
 from mesoscale.pad.memory import PadLaw
 
 TRUE = CompactPad(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 0.0, 0.215)
@@ -54,3 +54,11 @@ def test_the_well_without_far_attraction_is_a_quarter_of_the_square_of_the_attra
 def test_too_few_depths_are_refused():
     with pytest.raises(InputError, match=r"pad\.depths"):
         fit_compact(curves(depths=(20.0, 24.0)))
+
+
+def test_a_closed_form_that_misses_the_well_says_so():
+    near = {"well_compact_kPa": 10.0, "well_curve_kPa": 9.0}
+    assert well_status([near, {"well_compact_kPa": 1.0, "well_curve_kPa": 0.0}]) == "ok"
+    assert well_status([near, {"well_compact_kPa": 4.0, "well_curve_kPa": 9.0}]).startswith(
+        "misses_well: 0.44 to 0.44 times the curves' at 1 of 2 depths"
+    )
