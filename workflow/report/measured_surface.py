@@ -6,8 +6,8 @@ from typing import Any
 from workflow.report.available import Results
 from workflow.report.drawing import draw
 from workflow.report.numbers import show
-from workflow.report.page import Gate, Section, Table
-from workflow.report.surface_picture import draw_one_spectrum
+from workflow.report.page import Doubt, Gate, Section, Table
+from workflow.report.surface_picture import draw_one_spectrum, short_names
 
 JUDGED = "topography/judged.csv"
 UNSEEN = "topography/unseen.csv"
@@ -37,21 +37,31 @@ def describe_surface(results: Results, parameters: Mapping[str, Any], section: S
     )
     rows = [(row["test"], row["outcome"], "yes" if row["passed"] else "no") for row in description["evidence"]]
     section.blocks.append(Table("Which description of the surface", ("question", "answer", "passed"), rows))
-    for doubt in parameters.get("doubts", []):
-        remedy = f" To do: {doubt['remedy']}." if doubt["remedy"] else ""
-        section.notes.append(f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}.{remedy}")
+    place_doubts(parameters, section, "heights")
     if parameters.get("synthetic"):
+        place_doubts(parameters, section, "rms", "spectrum", "contact")
         return
     section.add(
         _one_spectrum(results, parameters),
         "One spectrum over all scales from all measurements, with its band. Grey is what levelling, tip, noise or "
         "pixels disturb; line profiles are converted to the spectrum of an isotropic surface.",
     )
+    place_doubts(parameters, section, "spectrum")
     _statistics(parameters, section)
+    place_doubts(parameters, section, "rms")
     if results.has(JUDGED):
         _judgement(results, section)
+    place_doubts(parameters, section, "contact")
     if results.has(UNSEEN):
         _unseen(results, section)
+
+
+def place_doubts(parameters: Mapping[str, Any], section: Section, *about: str) -> None:
+    """Put the doubts about some quantities behind what the section has by now."""
+    for doubt in parameters.get("doubts", []):
+        if doubt["about"] in about:
+            remedy = f" To do: {doubt['remedy']}." if doubt["remedy"] else ""
+            section.blocks.append(Doubt(f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}.{remedy}"))
 
 
 def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None:
@@ -75,13 +85,26 @@ def _statistics(parameters: Mapping[str, Any], section: Section) -> None:
         (text, one[key]["unit"], show(one[key]["value"]), " to ".join(show(end) for end in one[key]["interval"]))
         for key, text in names.items()
     ]
+    rms = parameters["inputs"].get("rms", {})
+    if parameters["surface"] and "b" in rms:
+        rows.append(
+            (
+                "RMS height of the waves on a cell, before the cut-off",
+                "nm",
+                "–",
+                f"{show(rms['a'])} to {show(rms['b'])}",
+            )
+        )
     ends = f"{show(one['from_q'])} to {show(one['to_q'])} /nm"
     section.blocks.append(Table(f"The measured surface, all waves from {ends}", header, rows))
+    if not one["overlaps"] and len(one["measurements"]) > 1:
+        section.notes.append("No two measurements see common waves: none can be checked by another.")
     if one["overlaps"]:
+        short = short_names(one["measurements"])
         header = ("measurements", "shared q (1/nm)", "ratio of C", "expected within", "agree")
         rows = [
             (
-                f"{pair['first']}, {pair['second']}",
+                f"{short[pair['first']]}, {short[pair['second']]}",
                 f"{show(pair['from_q'])} to {show(pair['to_q'])}",
                 show(pair["ratio"]),
                 f"a factor of {show(pair['expected_within'])}",
@@ -96,9 +119,10 @@ def _judgement(results: Results, section: Section) -> None:
     rows = results.csv(JUDGED)
     if not rows:
         return
+    short = short_names(list(dict.fromkeys(row["scan"] for row in rows)))
     lines = [
         (
-            row["scan"],
+            short[row["scan"]],
             QUANTITIES.get(row["quantity"], row["quantity"]),
             show(float(row["pressed"])),
             f"{show(float(row['low']))} to {show(float(row['high']))}",
@@ -108,7 +132,13 @@ def _judgement(results: Results, section: Section) -> None:
         for row in rows
     ]
     header = ("scan", "quantity", "pressed", "description, 90 % interval", "inside", "description made")
-    section.blocks.append(Table("The scans pressed, beside surfaces made from their description", header, lines))
+    section.blocks.append(
+        Table(
+            "The scans pressed (their largest square, made periodic), beside surfaces made from their description",
+            header,
+            lines,
+        )
+    )
     outside = [row for row in rows if row["quantity"] == "first_contact" and row["inside"] != "True"]
     reasons = [
         f"{row['scan']} touches first at {show(float(row['pressed']))} nm, its description says "

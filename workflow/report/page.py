@@ -28,6 +28,13 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Doubt:
+    """A doubt, beside the numbers that it touches."""
+
+    text: str
+
+
+@dataclass(frozen=True)
 class Gate:
     """Whether a number can be trusted, and why not.
 
@@ -50,7 +57,7 @@ class Section:
     title: str
     lead: str
     origin: str = ""
-    blocks: list[Figure | Table] = field(default_factory=list)
+    blocks: list[Figure | Table | Doubt] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     files: list[str] = field(default_factory=list)
     gates: list[Gate] = field(default_factory=list)
@@ -61,9 +68,9 @@ class Section:
             self.blocks.append(Figure(svg, caption, paper, wide))
 
 
-def kind(block: Figure | Table) -> str:
+def kind(block: Figure | Table | Doubt) -> str:
     """Name of a block's class, for the template."""
-    return "figure" if isinstance(block, Figure) else "table"
+    return type(block).__name__.lower()
 
 
 @dataclass(frozen=True)

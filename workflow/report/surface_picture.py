@@ -1,6 +1,7 @@
 """A picture of the measured surface for the eye: one map in nm with its colour bar, and the spectrum."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -8,10 +9,19 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from workflow.report.drawing import INK, ORANGE, SKY, SOFT
+from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, SOFT
 
 # the page's figures take their colours from the page; a picture alone has them itself
 PLAIN = {INK: "#222222", SOFT: "#b5b5b5", SKY: "#56b4e9", ORANGE: "#d55e00"}
+PLAIN |= {BLUE: "#0072b2", GREEN: "#009e73", PURPLE: "#cc79a7"}
+
+
+def short_names(names: Sequence[str]) -> dict[str, str]:
+    """Names of measurements without what all of them begin with."""
+    parts = [name.split("_") for name in names]
+    alike = sum(1 for _ in takewhile(lambda column: len(set(column)) == 1, zip(*parts, strict=False)))
+    cut = min(alike, *(len(part) - 1 for part in parts)) if len(names) > 1 else 0
+    return {name: "_".join(part[cut:]) for name, part in zip(names, parts, strict=True)}
 
 
 def surface_picture(
@@ -60,14 +70,21 @@ def draw_one_spectrum(
 
     `colors` replace the page's marker colours.
     """
-    ink, soft, sky, orange = ((colors or {}).get(color, color) for color in (INK, SOFT, SKY, ORANGE))
-    for name in sorted(name for name in groups if name.startswith("scans/")):
+    ink, soft, sky, orange, *apart = (
+        (colors or {}).get(color, color) for color in (INK, SOFT, SKY, ORANGE, BLUE, GREEN, PURPLE, SKY)
+    )
+    names = sorted(name for name in groups if name.startswith("scans/"))
+    short = short_names([name.removeprefix("scans/") for name in names])
+    several = 1 < len(names) <= len(apart)
+    for name, color in zip(names, apart if several else [sky] * len(names), strict=False):
         q, psd = groups[name]["q"], groups[name]["psd"]
         low, high = float(attributes[name]["trusted_low"]), float(attributes[name]["trusted_high"])
         trusted = (q >= low) & (q <= high)
+        label = f"{short[name.removeprefix('scans/')]}, trusted range" if several else None
         axis.loglog(q, psd, color=soft, linewidth=0.6, alpha=0.7, zorder=1)
-        axis.loglog(q[trusted], psd[trusted], color=sky, linewidth=1.2, zorder=2)
-    axis.plot([], [], color=sky, label="measurements, trusted range")
+        axis.loglog(q[trusted], psd[trusted], color=color, linewidth=1.6, zorder=4, label=label)
+    if not several:
+        axis.plot([], [], color=sky, label="measurements, trusted range")
     axis.plot([], [], color=soft, label="limited by levelling, tip, noise or pixels")
     one = groups.get("one_spectrum")
     if one is not None:

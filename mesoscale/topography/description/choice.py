@@ -77,7 +77,10 @@ def choose(
 
 def _fitted(topography: Topography) -> str:
     fitted = topography.likelihood
-    return f"misses the bands by {np.expm1(fitted.misfit):.0%} (RMS)" if fitted else ""
+    if fitted is None:
+        return ""
+    apart = f"; each measurement at a level of its own, a factor of {np.exp(fitted.amplitude_sd):.2g} apart in C"
+    return f"misses the bands by {np.expm1(fitted.misfit):.0%} (RMS)" + (apart if fitted.amplitude_sd > 0 else "")
 
 
 def surface_of(

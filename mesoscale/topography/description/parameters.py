@@ -16,6 +16,8 @@ from mesoscale.topography.roughness_spectrum import Convention, hurst_from_slope
 
 MAX_MISFIT = 0.3  # RMS logarithmic residual of pooled bins above which equation 9 does not describe them
 MIN_GAIN = 12.0  # improvement of 2 ln L that a plateau or a power law must bring
+# standard deviation of ln C between measurements; where RMS heights of places scatter by 40 % it is 0.8
+MOST_APART = 1.5
 MIN_SPAN = 2.5  # the trusted range must reach this multiple of q0
 
 
@@ -121,6 +123,13 @@ def _doubts(
             f"{np.exp(fitted.misfit):.2g} (RMS); the ranges are those of the scans, each on its own"
         )
         doubts.append(Doubt("no_common_power_law", text, "use the measured spectrum (topography.description)"))
+    if fitted.amplitude_sd > MOST_APART:
+        text = (
+            f"no level common to the measurements: about a power law of one shape their C scatters by a factor of "
+            f"{np.exp(fitted.amplitude_sd):.2g} (standard deviation)"
+        )
+        remedy = "use the measured spectrum (topography.description), check units and height scales"
+        doubts.append(Doubt("levels_differ", text, remedy, "rms"))
     hurst = hurst_from_slope(fitted.slope, settings.convention)
     if not 0 < hurst < 1:
         other: Convention = "profile" if settings.convention == "areal" else "areal"

@@ -36,6 +36,7 @@ LEAST_LIFT_NM = 1e-6
 ROUNDS = 4
 # share of the lift that is found from images, which lose skewness, and what that leaves uncertain (see above)
 FOUND, THEORY_ERROR = 0.85, 0.2
+SLOPE_COVERED = 0.78  # of 23 sets (docs/topography.md, Coverage by kind of measurement)
 CLEAR_LIFT = 0.05  # of ln C; less is not worth a word
 WEIGHT = np.exp(-(Z**2) / 2) / np.sum(np.exp(-(Z**2) / 2))
 SHAPES = np.stack([np.ones_like(Z), Z, Z**2 - 1, Z**3 - 3 * Z])  # Hermite polynomials: tables of few grains are rough
@@ -161,6 +162,7 @@ def lift_doubt(before: Sequence[TrustedSpectrum], after: Sequence[TrustedSpectru
         return []
     text = (
         f"on tall grains the tip makes long waves higher: {np.expm1(gain / 2):.0%} of the RMS height are taken off, "
-        f"uncertain by {error / 2:.0%}"
+        f"uncertain by {error / 2:.0%}; on made-up grains 90% intervals of the slope held the truth in "
+        f"{SLOPE_COVERED:.0%} of the cases"
     )
     return [Doubt("tip_on_grains", text, "scan with a sharper tip, or state the radius of yours", "rms")]

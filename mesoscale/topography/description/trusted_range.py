@@ -135,7 +135,10 @@ def trusted_range(
     """
     q, psd = spectrum.q, spectrum.psd
     low = lowest_shell * spectrum.spacing
-    tail = float(np.median(psd[q > 0.93 * spectrum.nyquist])) if len(q) > 20 else float(psd[-1])
+    tail = float(psd[-1])
+    if len(q) > 20:  # a converted profile ends before, where its noise has been looked for
+        end = psd[q > 0.93 * spectrum.nyquist]
+        tail = float(np.median(end)) if len(end) else 0.0
     tail = max(tail, noise_psd)
     smooth = np.exp(_running_mean(np.log(psd), q))
     limits = {"pixels": 0.7 * spectrum.nyquist}

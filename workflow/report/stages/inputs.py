@@ -45,6 +45,8 @@ def _distribution(row: Row) -> str:
     if kind == "samples":
         low, median, high = np.quantile(json.loads(values), [0.05, 0.5, 0.95])
         return f"samples, median {show(median)}, 5 to 95 %: {show(low)} to {show(high)}"
+    if row["distribution"] == "fixed":
+        return f"fixed at {number(row['a']):.4g}"
     a, b = f"{number(row['a']):.4g}", f"{number(row['b']):.4g}"
     if row["distribution"] == "uniform":
         return f"uniform from {a} to {b}"

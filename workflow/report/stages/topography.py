@@ -1,14 +1,18 @@
 """Surface topography: figures 9 and 10, recovery of known truth, contact of the scans themselves."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SKY, SOFT, draw
-from workflow.report.measured_surface import describe_surface
+from workflow.report.measured_surface import describe_surface, place_doubts
 from workflow.report.numbers import SYMBOLS, number, show, shown_unit
 from workflow.report.page import SYNTHETIC, Section, Table
+from workflow.report.surface_picture import short_names
+
+MOST_LETTERS = 32  # of a name above a map
 
 
 def describe(results: Results) -> Section | None:
@@ -30,7 +34,8 @@ def describe(results: Results) -> Section | None:
         + f"The Hurst exponent follows the {parameters['convention']} convention.",
         SYNTHETIC if synthetic else results.origin_of("topography"),
     )
-    section.add(maps(results), "Height maps after levelling, in nm about their mean.", "Figure 9", wide=True)
+    caption = "Height maps and line profiles after levelling, in nm about their mean."
+    section.add(maps(results), caption, "Figure 9", wide=True)
     section.add(
         spectra(results),
         "Power spectra of all scans, pooled, with the fits behind q₀, Hurst exponent and RMS. The fits use the trusted "
@@ -60,14 +65,17 @@ def describe(results: Results) -> Section | None:
                 show(estimate.get("value")),
                 _pair(estimate.get("interval")),
                 _pair(estimate.get("scatter")),
-                show(true) if true is not None else "–",
+                *([show(true) if true is not None else "–"] if truth else []),
                 *([paper.get(name, "–")] if results.beside_paper else []),
             )
         )
     if lines:
-        header = ("parameter", "unit", "estimate", "interval", "scatter of scans", "truth")
-        header += ("paper",) if results.beside_paper else ()
-        section.blocks.append(Table("Roughness parameters", header, lines))
+        header = ("parameter", "unit", "estimate", "interval", "scatter of scans")
+        header += (("truth",) if truth else ()) + (("paper",) if results.beside_paper else ())
+        used = parameters.get("description", {}).get("name", "power_law") == "power_law"
+        caption = "Roughness parameters" if used else "Eq. 9 fitted for comparison; random surfaces do not follow it"
+        section.blocks.append(Table(caption, header, lines))
+    place_doubts(parameters, section, "q0", "slope")
     section.files += ["topography/spectra.h5", "topography/parameters.json"]
     if results.has("law/scans.csv"):
         section.add(
@@ -84,35 +92,50 @@ def describe(results: Results) -> Section | None:
         ]
         section.blocks.append(Table("Law of the measured scans, closing", header, lines))
         section.files += ["curves/scans.h5", "law/scans.csv"]
-    section.gates += results.gate_of("topography", "topography/parameters.json")
+    for gate in results.gate_of("topography", "topography/parameters.json"):
+        doubts = [doubt["code"] for doubt in parameters.get("doubts", []) if doubt["text"] not in gate.reasons]
+        remark = [f"Doubts, each beside the numbers it touches: {', '.join(doubts)}."] if doubts else []
+        section.gates.append(replace(gate, reasons=[*gate.reasons, *remark]))
     describe_surface(results, parameters, section)
     return section
 
 
 def maps(results: Results) -> str | None:
-    """Figure 9: height maps of the scans."""
+    """Figure 9: height maps of the scans, and heights along line profiles."""
     groups, _, scan_attributes = results.h5("topography/spectra.h5")
-    names = [name for name in sorted(groups) if name.startswith("scans/") and "heights" in groups[name]]
+    names = [name for name in sorted(groups) if name.startswith("scans/") and {"heights", "line"} & set(groups[name])]
     if not names:
         return None
+    short = short_names([name.removeprefix("scans/") for name in names])
     # one of each size first, then more up to six
     names.sort(key=lambda name: (float(scan_attributes[name].get("length_x_nm", 0)), name))
     shown = names if len(names) <= 6 else names[:3] + names[-3:]
     columns = min(3, len(shown))
     rows = -(-len(shown) // columns)
+    last_map = next((name for name in reversed(shown) if "heights" in groups[name]), "")
 
     def plot(*axes):
         for axis, name in zip(axes, shown, strict=False):
+            size, unit = float(scan_attributes[name]["length_x_nm"]), "nm"
+            if size >= 1000:
+                size, unit = size / 1e3, "µm"
+            rms = float(scan_attributes[name].get("rms_nm", np.nan))
+            title = short[name.removeprefix("scans/")]
+            title = title if len(title) <= MOST_LETTERS else f"…{title[-MOST_LETTERS:]}"
+            axis.set_title(f"{title}:\nRMS {rms:.3g} nm")
+            axis.set_xlabel(unit)
+            axis.locator_params(axis="x", nbins=4)
+            if "line" in groups[name]:
+                line = groups[name]["line"]
+                axis.plot(np.linspace(0, size, len(line)), line, color=BLUE, linewidth=0.7)
+                axis.set_ylabel("height (nm)")
+                continue
             heights = _thin(groups[name]["heights"])
-            size = float(scan_attributes[name]["length_x_nm"]) / 1e3
             limit = float(np.quantile(np.abs(heights), 0.995))
             shades = {"cmap": "cividis", "vmin": -limit, "vmax": limit, "interpolation": "none"}
             image = axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), **shades)
-            bar = axis.figure.colorbar(image, ax=axis, shrink=0.8, label="height (nm)" if name == shown[-1] else None)
+            bar = axis.figure.colorbar(image, ax=axis, shrink=0.8, label="height (nm)" if name == last_map else None)
             bar.outline.set_visible(False)
-            rms = float(scan_attributes[name].get("rms_nm", np.nan))
-            axis.set_title(f"{name.removeprefix('scans/')}: RMS {rms:.2f} nm")
-            axis.set_xlabel("µm")
             axis.grid(False)
         for axis in axes[len(shown) :]:
             axis.set_visible(False)

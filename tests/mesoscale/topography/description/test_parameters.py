@@ -1,5 +1,6 @@
 """Recovery of known roughness, and "not identifiable" where there is nothing to recover."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -78,6 +79,18 @@ def test_the_interval_of_the_typical_rms_covers_it_though_places_differ():
     assert not all(high / low > 2 for low, high in (estimate.interval for estimate in estimates))
     errors = [np.log(estimate.value / 6.0) for estimate in estimates]
     assert np.std(errors) == pytest.approx(0.4 / np.sqrt(11), rel=0.4)  # the scatter of the mean of eleven places
+
+
+def test_instruments_without_a_common_level_are_no_power_law():
+    """Half of the scans a hundred times as high in C: each has the shape of eq. 9, together they have no RMS height."""
+    items = drawn_set(np.random.default_rng(5), 0.0)
+    lifted = [
+        replace(item, spectrum=replace(item.spectrum, psd=item.spectrum.psd * (100.0 if k % 2 else 1.0)))
+        for k, item in enumerate(items)
+    ]
+    codes = [{doubt.code for doubt in analyse(set_, TopographySettings()).doubts} for set_ in (items, lifted)]
+    assert "levels_differ" not in codes[0]
+    assert "levels_differ" in codes[1]
 
 
 def test_heights_and_spectrum_scale_together():
