@@ -20,7 +20,7 @@ from mesoscale.pad.studies.number_of_cells import INPUTS, PIXELS, LOADS_MPa, dee
 from mesoscale.pad.surfaces import FilmPieces
 from mesoscale.pad.tail import fit_tail
 from mesoscale.settings import ContactSettings, PadSettings
-from mesoscale.tables import read_table, write_table
+from mesoscale.tables import load_table, write_table
 
 Array = NDArray[np.float64]
 Row = dict[str, Any]
@@ -128,7 +128,7 @@ def main(table: str, *arguments: str) -> None:
         rows = list(comparison_rows(cells, surfaces))
     path = Path(table)
     names = {row["quantity"] for row in rows}
-    write_table(path, [*(row for row in read_table(path) if row["quantity"] not in names), *rows], digits=4)
+    write_table(path, [*(row for row in load_table(path) if row["quantity"] not in names), *rows], digits=4)
     for row in rows:
         print(row)
 
