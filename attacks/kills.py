@@ -7,6 +7,7 @@ import os
 import random
 import signal
 import subprocess
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -119,16 +120,28 @@ def _end(rng: random.Random, process: "subprocess.Popen[bytes]", way: str) -> st
     """Kill, and wait for the end of what is left; says what was killed."""
     jobs = psutil.Process(process.pid).children(recursive=True)
     if way == LAMMPS:
-        jobs = [job for job in jobs if job.name() == LAMMPS]
+        jobs = _wait_for_lammps(process)
     if way in ("child", LAMMPS) and jobs:
         rng.choice(jobs).send_signal(signal.SIGKILL)
     elif way == "main":
         process.kill()
-    else:
+    elif process.poll() is None:
         way = "group"
         os.killpg(process.pid, signal.SIGKILL)
+    else:
+        way = "nothing"  # the run ended before LAMMPS ran
     process.wait()
     return way
+
+
+def _wait_for_lammps(process: "subprocess.Popen[bytes]") -> list[psutil.Process]:
+    """The processes of LAMMPS, as soon as there is one; none where the run ends before."""
+    while process.poll() is None:
+        for job in psutil.Process(process.pid).children(recursive=True):
+            if job.name() == LAMMPS:
+                return [job]
+        time.sleep(0.1)
+    return []
 
 
 def _times(results: Path) -> dict[str, int]:

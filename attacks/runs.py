@@ -20,11 +20,11 @@ GLASS = scene(
 )
 
 
-def command(scene_file: Path, target: str) -> list[str]:
-    """Run a target of a scene on two cores, as `asperity run` does, without the time that its packages take to load."""
+def command(scene_file: Path, *targets: str) -> list[str]:
+    """Run targets of a scene on two cores, as `asperity run` does, without the time that its packages take to load."""
     places = ["--snakefile", str(ROOT / "Snakefile"), "--workflow-profile", str(ROOT / "workflow/profiles/local")]
     return [
-        sys.executable, "-m", "snakemake", *places, target, "--cores", "2", "--config", f"scene={scene_file}"
+        sys.executable, "-m", "snakemake", *places, *targets, "--cores", "2", "--config", f"scene={scene_file}"
     ]  # fmt: skip
 
 
@@ -33,11 +33,11 @@ def environment(folder: Path) -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder.with_name(f"{folder.name}_cache"))}
 
 
-def run(folder: Path, scene_file: Path, target: str) -> subprocess.CompletedProcess[str]:
+def run(folder: Path, scene_file: Path, *targets: str) -> subprocess.CompletedProcess[str]:
     """Run to the end, with results below `folder`."""
     folder.mkdir(parents=True, exist_ok=True)
     return subprocess.run(
-        command(scene_file, target), cwd=folder, env=environment(folder), capture_output=True, text=True, check=False
+        command(scene_file, *targets), cwd=folder, env=environment(folder), capture_output=True, text=True, check=False
     )
 
 

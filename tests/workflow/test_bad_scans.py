@@ -91,3 +91,17 @@ def test_a_constant_scan_stops_where_its_numbers_would_be_used(workflow_in):
     (line,) = errors(done)
     assert "not identifiable" in line
     assert (workflow_in.folder / "results/mine/topography/parameters.json").is_file()
+
+
+def test_a_failing_run_whose_reader_went_away_ends(workflow_in):
+    """As where the pager that it writes to is closed: it must not wait for ever and keep the next run out."""
+    (workflow_in.folder / "bad.gwy").write_bytes(b"nothing")
+    run = workflow_in.start(scene(workflow_in.folder, "bad.gwy"), "topography")
+    assert run.stderr is not None
+    for line in run.stderr:
+        if "jobs, about" in line:
+            break
+    run.stderr.close()
+    assert run.wait(300) != 0
+    (line,) = errors(workflow_in.run(str(workflow_in.folder / "mine.yaml"), "topography"))
+    assert "bad.gwy: no reader understands this file" in line

@@ -337,6 +337,10 @@ def test_a_chain_that_has_not_converged_shows_no_posterior(files, tmp_path):
     assert "What to measure next" not in page
 
 
+def test_an_input_that_is_fixed_says_so():
+    assert _distribution({"distribution": "fixed", "a": "0", "b": ""}) == "fixed at 0"
+
+
 def test_an_input_given_by_samples_shows_their_quantiles():
     row = {"distribution": f"samples {json.dumps([k / 100 for k in range(101)])}", "a": "", "b": ""}
     assert _distribution(row) == "samples, median 0.500, 5 to 95 %: 0.0500 to 0.950"

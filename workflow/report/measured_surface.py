@@ -5,7 +5,7 @@ from typing import Any
 
 from workflow.report.available import Results
 from workflow.report.drawing import draw
-from workflow.report.numbers import show
+from workflow.report.numbers import show, shown_unit
 from workflow.report.page import Doubt, Gate, Section, Table
 from workflow.report.surface_picture import draw_one_spectrum, short_names
 
@@ -82,7 +82,12 @@ def _statistics(parameters: Mapping[str, Any], section: Section) -> None:
     header = ("what", "unit", "value", f"{float(parameters['confidence']):.0%} interval")
     names = {"rms_height": "RMS height", "rms_slope": "RMS slope", "rms_curvature": "RMS curvature"}
     rows = [
-        (text, one[key]["unit"], show(one[key]["value"]), " to ".join(show(end) for end in one[key]["interval"]))
+        (
+            text,
+            shown_unit(one[key]["unit"]) or "–",
+            show(one[key]["value"]),
+            " to ".join(show(end) for end in one[key]["interval"]),
+        )
         for key, text in names.items()
     ]
     rms = parameters["inputs"].get("rms", {})
@@ -157,7 +162,7 @@ def _unseen(results: Results, section: Section) -> None:
             f"{show(float(row['seen_q']))} to {show(float(row['end_q']))}",
             show(float(row["seen"])),
             show(float(row["all"])),
-            f"{float(row['shift']):+.0%}",
+            f"{float(row['shift']):+.0%}".replace("-", "−"),
             f"{float(row['share']):.0%}",
         )
         for row in rows

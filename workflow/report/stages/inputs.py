@@ -48,6 +48,8 @@ def _distribution(row: Row) -> str:
     if row["distribution"] == "fixed":
         return f"fixed at {number(row['a']):.4g}"
     a, b = f"{number(row['a']):.4g}", f"{number(row['b']):.4g}"
+    if kind == "fixed":
+        return f"fixed at {a}"
     if row["distribution"] == "uniform":
         return f"uniform from {a} to {b}"
     text = f"normal, {a} ± {b}"

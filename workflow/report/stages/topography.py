@@ -134,13 +134,13 @@ def maps(results: Results) -> str | None:
             limit = float(np.quantile(np.abs(heights), 0.995))
             shades = {"cmap": "cividis", "vmin": -limit, "vmax": limit, "interpolation": "none"}
             image = axis.imshow(heights.T, origin="lower", extent=(0, size, 0, size), **shades)
-            bar = axis.figure.colorbar(image, ax=axis, shrink=0.8, label="height (nm)" if name == last_map else None)
+            bar = axis.figure.colorbar(image, ax=axis, shrink=0.7, label="height (nm)" if name == last_map else None)
             bar.outline.set_visible(False)
             axis.grid(False)
         for axis in axes[len(shown) :]:
             axis.set_visible(False)
 
-    return draw("fig9", "Height maps of the scans", plot, (2.7 * columns, 2.5 * rows), columns, rows)
+    return draw("fig9", "Height maps of the scans", plot, (max(3.4, 2.7 * columns), 2.7 * rows), columns, rows)
 
 
 def spectra(results: Results) -> str | None:
