@@ -163,7 +163,9 @@ def sample(
     half = done // 2
     draws = np.concatenate([sampler.get_chain(discard=half, flat=True) for sampler, *_ in samplers])
     logs = np.concatenate([sampler.get_log_prob(discard=half, flat=True) for sampler, *_ in samplers])
-    picks = np.linspace(0, len(draws) - 1, min(samples, len(draws))).astype(int)
+    # at random: an even stride would follow the same few walkers
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xCC]))
+    picks = rng.choice(len(draws), min(samples, len(draws)), replace=False)
     reasons = []
     if not r_hat < LARGEST_R_HAT:
         reasons.append(f"R-hat {r_hat:.3f}, above {LARGEST_R_HAT}")

@@ -31,6 +31,8 @@ POINTS = 64
 """Solved switches behind the interval: its ends are quantiles known to 3 % in probability."""
 SOLVED = 0.8
 """Share of the points that must be solved, since those that cannot be are no random part of them."""
+SOLVED_TO_RANK = 0.5
+"""The same where causes are only compared with each other."""
 RESAMPLES = 24
 """Resampled central pads: their standard deviation is known to 15 %."""
 ELEMENTS = 64
@@ -209,7 +211,7 @@ def released_on_pad(
 
     Raises
     ------
-    InputError : too few draws, or a fifth of the points cannot be solved.
+    InputError : too few draws, or half of the points cannot be solved.
     """
     response = _response(cells, draws, table, cutoffs_nm[0])
     wanted = pressure_to_compute(settings, DEVIATIONS)
@@ -221,7 +223,7 @@ def released_on_pad(
             reason = str(error)
         else:
             solved.append([*(point.values[name] for name in table.names), released])
-    if len(solved) < SOLVED * count:
+    if len(solved) < SOLVED_TO_RANK * count:
         raise InputError(f"device: {count - len(solved)} of {count} switches cannot be solved, the last: {reason}")
     found = np.array(solved)
     return found[:, :-1], found[:, -1]

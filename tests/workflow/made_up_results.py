@@ -469,7 +469,7 @@ def _calibration(root: Path) -> None:
         {"kind": "sticking", "measurement": "twenty", "width_then_V": 1.0, "reduction": -1e-16, **further},
     ]
     _write(root / "calibration/next.csv", rows)
-    _write(root / "calibration/next_on_pad.csv", rows[:1])
+    _write(root / "calibration/next_on_pad.csv", [{**rows[0], "solved": 100, "refused": 28}])
     tables = {kind: {"file": f"{kind}.csv", "source": "made up, no measurement"} for kind in ("pull_off", "hardness")}
     chain = {"sampler": "emcee 3", "r_hat": 1.004, "independent_draws": 1700.0}
     content = {"gate": {"passed": True, "reasons": []}, "remarks": [f"hardness (hardness.csv) {far}"], "chain": chain}

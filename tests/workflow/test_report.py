@@ -316,6 +316,9 @@ def test_calibration_says_what_was_learned_from_where_and_what_contradicts(page)
     section = section[: section.index("</section>")]
     assert "5.00 [4.50, 5.50]" in section
     assert "made up, no measurement" in section
+    assert "What the measurements do to the release voltage" in section
+    assert "for the switch on the pad" in section
+    assert "stands on 100 switches; 28 more" in section
     assert "hardness (hardness.csv) contradicts what the other measurements" in page
     assert "60 ± 1.2 %" in section
     assert "0 ± 1.2 %" in section

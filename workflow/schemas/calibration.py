@@ -15,6 +15,16 @@ def _spread(unit: str, state: str) -> tuple[Column, ...]:
     )
 
 
+_NEXT = (
+    text("kind", "kind of measurement"),
+    text("measurement", "what is measured, and how well"),
+    number("width_now_V", "V", "width of the central 90 % of the release voltage"),
+    number("width_then_V", "V", "its expected width after the measurement"),
+    number("reduction", "1", "expected reduction as a share"),
+    number("standard_error", "1", "its standard error by the finite number of made-up data"),
+    number("effective_samples", "1", "effective samples of the posterior behind one made-up data set"),
+)
+
 TABLES = (
     Table(
         ("calibration/cycles/chunk_*.csv", "calibration/local_cycles.csv"),
@@ -61,16 +71,17 @@ TABLES = (
         ),
     ),
     Table(
-        ("calibration/next.csv", "calibration/next_on_pad.csv"),
-        "One kind of measurement that could be made next; the release is that of the lumped switch, or on the pad.",
+        ("calibration/next.csv",),
+        "One kind of measurement that could be made next, for the lumped switch.",
+        _NEXT,
+    ),
+    Table(
+        ("calibration/next_on_pad.csv",),
+        "One kind of measurement that could be made next, for the switch on the pad; no row if too few are solved.",
         (
-            text("kind", "kind of measurement"),
-            text("measurement", "what is measured, and how well"),
-            number("width_now_V", "V", "width of the central 90 % of the release voltage"),
-            number("width_then_V", "V", "its expected width after the measurement"),
-            number("reduction", "1", "expected reduction as a share"),
-            number("standard_error", "1", "its standard error by the finite number of made-up data"),
-            number("effective_samples", "1", "effective samples of the posterior behind one made-up data set"),
+            *_NEXT,
+            integer("solved", "switches that were solved on the pad"),
+            integer("refused", "switches that press the pad harder than it was computed"),
         ),
     ),
     Table(

@@ -50,4 +50,5 @@ with job(snakemake) as run:
         print(error, file=run.log, flush=True)  # answer_status of device/pad_switch.json has it, too
     else:
         ranked = next_on_pad(given, responses, x, volts, contact.max_force_nN, snakemake.params.seed)
-    write_csv(snakemake.output[0], ranked, NEXT_COLUMNS)
+        ranked = [{**row, "solved": len(volts), "refused": POINTS - len(volts)} for row in ranked]
+    write_csv(snakemake.output[0], ranked, [*NEXT_COLUMNS, "solved", "refused"])

@@ -49,8 +49,8 @@ STEP = 0.35
 FIRST_SURFACE = 2_000_000_000
 PARTS, PART_RUNS, FIRST_WEIGHED = 10, 1000, 1_200_000_000
 """Cycles that are weighed, each on a surface of its own, and how they are parted to know their Monte Carlo error."""
-SETTINGS = MeasurementsSettings(max_steps=8000, walkers=128, samples=20000)
-"""Many walkers: the Monte Carlo error of the product's own chain stays small beside that of the direct ones."""
+SETTINGS = MeasurementsSettings(max_steps=8000, walkers=400, samples=50000, response_error=0.1)
+"""Many walkers and cycles: the errors of chain and responses stay small beside the Monte Carlo error of the others."""
 
 
 def prior() -> InputTable:

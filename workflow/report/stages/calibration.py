@@ -27,6 +27,11 @@ def describe(results: Results) -> Section | None:
     if not gate["passed"]:
         section.notes.append("The chain has not converged, so there is no posterior.")
         return section
+    for row in results.csv("calibration/predictive.csv"):
+        if row["quantity"] == "release":
+            header = ("release of the next lumped switch (V)", "before, median and 5 to 95 %", "after")
+            line = ("below 0: it sticks", _interval(row, "prior"), _interval(row, "posterior"))
+            section.blocks.append(Table("What the measurements do to the release voltage", header, [line]))
     rows = results.csv("calibration/summary.csv")
     lines = [
         (
@@ -70,6 +75,11 @@ def describe(results: Results) -> Section | None:
     if on_pad and number(on_pad[0]["width_now_V"]) > 0:
         section.blocks.append(_next(results, "next_on_pad.csv", "What to measure next, for the switch on the pad"))
         section.files.append("calibration/next_on_pad.csv")
+        if refused := int(number(on_pad[0]["refused"])):
+            section.notes.append(
+                f"What to measure next on the pad stands on {on_pad[0]['solved']} switches; {refused} more press the "
+                "pad harder than it was computed and are left out."
+            )
     elif on_pad:
         section.notes.append("The switch on the pad sticks throughout its 90 % interval: nothing narrows its release.")
     chain = posterior["chain"]
