@@ -70,8 +70,8 @@ def first_contacts(values: Array, errors: Array, mean: float, variance: float) -
     weights /= weights.sum(axis=1, keepdims=True)
     middle = (weights * f).sum(axis=1)
     width = (weights * (f - middle[:, None]) ** 2).sum(axis=1)
-    own = np.maximum(1 / width - 1 / variance, SMALLEST_PRECISION_SHARE / variance)
-    return FirstContacts(values, errors, (middle / width - mean / variance) / own, 1 / own)
+    precision = np.maximum(1 / width - 1 / variance, SMALLEST_PRECISION_SHARE / variance)
+    return FirstContacts(values, errors, (middle / width - mean / variance) / precision, 1 / precision)
 
 
 def _log_density(values: Array, errors: Array, inverse: Array) -> Array:

@@ -173,9 +173,9 @@ def calibrate(
             Run(first + k, -1, FIRST_LOCAL_SEED + first + k, dict(zip(table.names, row, strict=True)))
             for k, row in enumerate(x.tolist())
         ]
-        found = observe_runs(runs, contact, law, progress)
-        local += found
-        added = cycles_of_rows(found, table.names)
+        observed = observe_runs(runs, contact, law, progress)
+        local += observed
+        added = cycles_of_rows(observed, table.names)
         for row, bias in zip(rows, response_bias(posterior, added), strict=True):
             row |= bias
         cycles = Cycles(np.vstack([cycles.x, added.x]), np.vstack([cycles.y, added.y]))

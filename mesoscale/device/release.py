@@ -225,8 +225,8 @@ def released_on_pad(
             solved.append([*(point.values[name] for name in table.names), released])
     if len(solved) < SOLVED_TO_RANK * count:
         raise InputError(f"device: {count - len(solved)} of {count} switches cannot be solved, the last: {reason}")
-    found = np.array(solved)
-    return found[:, :-1], found[:, -1]
+    points = np.array(solved)
+    return points[:, :-1], points[:, -1]
 
 
 def answer(
