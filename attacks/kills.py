@@ -86,7 +86,7 @@ class Killed:
 def _kill(
     rng: random.Random, place: Path, path: Path, target: str, longest: float, ways: Sequence[str]
 ) -> Killed | None:
-    """Start a run and kill of it at a random moment; None where it finished before."""
+    """Start a run and kill of it at a random moment; None where it ended before."""
     place.mkdir(parents=True, exist_ok=True)
     way, moment = rng.choice(ways), rng.uniform(0.05, 0.6) * longest
     with (place / "said.txt").open("w+") as output:
@@ -106,6 +106,8 @@ def _kill(
         except subprocess.TimeoutExpired:
             words = "started"
             way = _end(rng, process, way)
+            if way == "nothing":
+                return None
             if way not in ("group", "main"):
                 said = _last_words(output).replace(f"{place}/", "")
     return Killed(way, moment, _times(place / "results" / path.stem), words, said)
