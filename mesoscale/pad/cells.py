@@ -19,6 +19,8 @@ DEVIATIONS_ABOVE = 6.0
 FAR_NM = 200.0
 """Beyond, the attraction of the pad is that of two flats to 1 %: 1 + 6 (rms / separation)^2."""
 FAR_POINTS = 24
+LIGHT = 0.1
+"""Part of the largest pressure from which the pad is opened at least; a flat electrode presses with 0.4 of it."""
 MAX_PILOT_STEPS = 4000
 PILOT_STEP = 5.0
 """Pilot cells are closed in coarser steps than the pad: where the grid ends need not be known to better than that."""
@@ -70,11 +72,12 @@ def plan_grid(
     surfaces = [pieces.surface(seed) for seed in seeds]
     first = np.array([-float(heights.min()) for heights in surfaces])
     typical, deviation = float(first.mean()), float(first.std(ddof=1))
-    lowest = _separation_at(inputs, contact, surfaces, wanted_GPa, float(first.max()), pad)
+    lowest, light = _close_pilots(inputs, contact, surfaces, wanted_GPa, float(first.max()), pad)
     top = typical + DEVIATIONS_ABOVE * max(deviation, pad.step_nm)
     near = lowest + pad.step_nm * np.arange(np.ceil((top - lowest) / pad.step_nm) + 1)
     separation = np.concatenate([near, far_nm(float(near[-1]))])[::-1]
-    shallow = int(np.searchsorted(-separation, -typical))
+    # a few tall grains may carry the switch where most cells do not touch yet
+    shallow = int(np.searchsorted(-separation, -max(typical, light)))
     depths = np.unique(np.linspace(shallow, separation.size - 1, pad.depths).round().astype(int))
     return PadGrid(separation, depths)
 
@@ -84,19 +87,19 @@ def far_nm(top_nm: float) -> Array:
     return np.geomspace(top_nm, max(FAR_NM, 2.0 * top_nm), FAR_POINTS)[1:]
 
 
-def _separation_at(
+def _close_pilots(
     inputs: ContactInputs,
     contact: ContactSettings,
     surfaces: Sequence[Array],
     wanted_GPa: Callable[[Array], Array],
     start_nm: float,
     pad: PadSettings,
-) -> float:
-    """Separation at which the mean repulsion of the surfaces, closed side by side, is the wanted pressure."""
+) -> tuple[float, float]:
+    """Separations at which the mean repulsion of surfaces closed side by side is the wanted one, and LIGHT of it."""
     planes = [float(heights.mean()) for heights in surfaces]
     pilots = [Closing(inputs, contact, heights) for heights in surfaces]
     area = len(surfaces) * contact.length_nm**2
-    separation, repelled, wanted = start_nm, 0.0, 0.0
+    separation, repelled, wanted, light = start_nm, 0.0, 0.0, None
     for step in range(MAX_PILOT_STEPS):
         separation = start_nm - pad.step_nm * PILOT_STEP * step
         repelled = sum(
@@ -104,8 +107,10 @@ def _separation_at(
             for pilot, plane in zip(pilots, planes, strict=True)
         )
         wanted = float(wanted_GPa(np.array([separation]))[0])
-        if repelled >= wanted:
-            return separation
+        if light is None and repelled >= LIGHT * wanted:
+            light = separation
+        if light is not None and repelled >= wanted:
+            return separation, light
     raise InputError(
         f"pad.max_pressure_MPa = {wanted * 1e3:g}: {len(surfaces)} cells closed by "
         f"{start_nm - separation:g} nm carry {repelled * 1e3:.3g} MPa; lower it"

@@ -59,6 +59,22 @@ def test_the_grid_reaches_the_pressure_and_all_first_contacts(pad):
     assert (np.diff(pad.grid.separation_nm) < 0).all()
 
 
+def test_a_pad_that_one_tall_grain_carries_is_opened_from_light_loads(monkeypatch):
+    piece = FilmPieces.surface
+
+    def with_a_grain(self, seed):
+        heights = piece(self, seed)
+        if seed == PAD.first_seed:
+            heights[:48, :48] -= 20.0
+        return heights
+
+    monkeypatch.setattr(FilmPieces, "surface", with_a_grain)
+    grid = plan_grid(MIDDLE, CONTACT, PAD, wanted_GPa)
+    cells = list(close_cells(MIDDLE, CONTACT, grid, range(PAD.first_seed, PAD.first_seed + PAD.pilot_cells)))
+    pressure = assemble(grid, cells, CONTACT.length_nm**2).closing[:, 0].mean(axis=0)
+    assert pressure[grid.depths[0]] < 0.3e-3 * WANTED_MPa
+
+
 def test_a_pressure_out_of_reach_is_refused():
     rigid = ContactSettings(pixels=32, length_nm=1000.0)
     soft = ContactInputs(**{**vars(MIDDLE), "e_star": 1e-6, "hamaker": 0.0})
