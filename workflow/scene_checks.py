@@ -17,7 +17,7 @@ from mesoscale.inputs.table import check_literature
 from mesoscale.uncertainty.studies.readings import audited_readings
 from workflow.scene import ROOT, Scene
 from workflow.terminal.cost import START_S, history_s
-from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB, side_by_side_MB
+from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
 
 MATERIALS = ROOT / "config" / "materials"
 MOST_JOBS = 10_000  # of one design; Snakemake plans some 450 jobs a second
@@ -145,7 +145,7 @@ def _machine(scene: Scene) -> Iterator[str]:
     if scene.adhesion.pads:
         together["adhesion.cells"] = scene.adhesion.cells
     for key, cells in together.items():
-        if present >= contact_MB(scene.contact) and (needed := side_by_side_MB(scene.contact, cells)) > present:
+        if present >= contact_MB(scene.contact) and (needed := contact_MB(scene.contact, cells)) > present:
             yield (
                 f"{key} = {cells}: they are closed side by side, which needs {needed / 1000:.1f} GB of memory, this "
                 f"machine has {present / 1000:.1f}; take fewer of them"

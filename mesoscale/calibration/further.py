@@ -104,12 +104,13 @@ def next_on_pad(
         measured = volts[point] + RELEASE_ERROR_V * rng.standard_normal()
         return -0.5 * ((volts - measured) / RELEASE_ERROR_V) ** 2
 
+    possible = candidates(max_force_nN, _begin_nm(responses, x))
     further = {
         kind: (words, _made_up(given([data]), x))
-        for kind, (words, data) in candidates(max_force_nN, _begin_nm(responses, x)).items()
+        for kind, (words, data) in possible.items()
         if kind not in SWITCH_KINDS  # their likelihood is that of the lumped switch
     }
-    further["release"] = (f"one switch to {RELEASE_ERROR_V} V", released)
+    further["release"] = (possible["release"][0], released)
     return _ranked(volts, further, rng)
 
 

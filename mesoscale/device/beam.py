@@ -94,10 +94,7 @@ def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
     tension = settings.residual_stress_MPa * 1e6 * (1.0 - settings.poisson_ratio) * width * thickness
     middles = (np.arange(elements) + 0.5)[:, None] * length / elements
     at = middles + 0.5 * length / elements * GAUSS[0]
-    share = at / length
-    rest = settings.gap_um * 1e-6 + NM * (
-        settings.bow_nm * 0.5 * (1.0 - np.cos(2.0 * np.pi * share)) + settings.tilt_nm * (share - 0.5)
-    )
+    rest = settings.gap_um * 1e-6 + NM * settings.shape_at_rest_nm(at / length)
     return Beam(length, width, bending, tension, rest, at)
 
 

@@ -12,14 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact.attraction import retardation_rate
-from mesoscale.contact.displacement import Closing, Displacement
+from mesoscale.contact.displacement import Displacement
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
-from mesoscale.pad.cells import DEVIATIONS_ABOVE, PadGrid, far_nm
+from mesoscale.pad.cells import PadGrid, SideBySide, far_nm
 from mesoscale.pad.curves import PadCells, assemble
 from mesoscale.pad.memory import law_of
 from mesoscale.pad.sphere import press_sphere
-from mesoscale.pad.surfaces import FilmPieces
 from mesoscale.settings import AdhesionSettings, ContactSettings
 
 Array = NDArray[np.float64]
@@ -119,24 +118,19 @@ def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range, step_nm
     ------
     InputError : the cells never carry the largest load.
     """
-    pieces = FilmPieces(case.inputs, case.contact)
-    surfaces = [pieces.surface(seed) for seed in seeds]
-    planes = [float(heights.mean()) for heights in surfaces]
-    cells = [Closing(case.inputs, case.contact, heights) for heights in surfaces]
-    first = np.array([cell.first_contact_nm - plane for cell, plane in zip(cells, planes, strict=True)])
-    top = float(first.mean()) + DEVIATIONS_ABOVE * max(float(first.std(ddof=1)), step_nm)
-    separations, openings = [*far_nm(top)[::-1].tolist()], []
+    film = SideBySide(case.inputs, case.contact, seeds)
+    top = film.top_nm(step_nm)
+    separations, openings = far_nm(top)[::-1].tolist(), []
     for separation in separations:
-        _bring_to(cells, planes, separation)
-    area = len(seeds) * case.contact.length_nm**2
+        film.close_to(separation)
     repelled, last_opened, loaded = 0.0, np.inf, {}
     for step in range(MOST_STEPS):
         separation = top - step_nm * step
         separations.append(separation)
-        repelled = _bring_to(cells, planes, separation) / area
+        repelled = film.close_to(separation)
         reached = [load for load in loads_GPa if load <= repelled and load not in loaded]
         if reached or (repelled > 0.0 and last_opened - separation >= SPHERE_STEP_RMS * case.inputs.rms):
-            openings.append((len(separations) - 1, [cell.opening() for cell in cells]))
+            openings.append((len(separations) - 1, [cell.opening() for cell in film.cells]))
             last_opened = separation
             loaded |= dict.fromkeys(reached, len(openings) - 1)
         if len(loaded) == len(set(loads_GPa)):
@@ -146,21 +140,16 @@ def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range, step_nm
             f"adhesion.loads_MPa = {max(loads_GPa) * 1e3:g}: cells closed by {top - separations[-1]:.4g} nm carry "
             f"{repelled * 1e3:.3g} MPa; lower it"
         )
-    opened = np.full((len(cells), len(openings), 2, len(separations)), np.nan)
+    opened = np.full((len(film.cells), len(openings), 2, len(separations)), np.nan)
     for depth, (place, branches) in enumerate(openings):
         for number, branch in enumerate(branches):
             opened[number, depth, :, : place + 1] = branch
     closed = [
         Displacement(contact, cell.closing, branches, cell.settled)
-        for contact, cell, branches in zip(first.tolist(), cells, opened, strict=True)
+        for contact, cell, branches in zip(film.first_contact_nm.tolist(), film.cells, opened, strict=True)
     ]
     grid = PadGrid(np.array(separations), np.array([place for place, _ in openings]))
     return assemble(grid, closed, case.contact.length_nm**2), [loaded[load] for load in loads_GPa]
-
-
-def _bring_to(cells: Sequence[Closing], planes: Sequence[float], separation_nm: float) -> float:
-    """Bring all cells to one separation from the mean plane of the film; the sum of their repulsions (nN)."""
-    return sum(cell.close_to(separation_nm + plane) for cell, plane in zip(cells, planes, strict=True))
 
 
 def pad_rows(case: Case, adhesion: AdhesionSettings, number: int) -> list[dict[str, Any]]:

@@ -45,6 +45,36 @@ class PadGrid:
         return self.separation_nm[self.depths]
 
 
+class SideBySide:
+    """Cells under one plane that are brought to one separation after another, all of them together.
+
+    Attributes
+    ----------
+    cells : the surfaces as they are closed.
+    first_contact_nm : separation from the film's mean plane at which each first touches (nm), shape (n,).
+    """
+
+    def __init__(self, inputs: ContactInputs, contact: ContactSettings, seeds: Sequence[int]) -> None:
+        pieces = FilmPieces(inputs, contact)
+        surfaces = [pieces.surface(seed) for seed in seeds]
+        self.first_contact_nm = np.array([-float(heights.min()) for heights in surfaces])
+        self._planes = [float(heights.mean()) for heights in surfaces]
+        self._area_nm2 = len(surfaces) * contact.length_nm**2
+        self.cells = [Closing(inputs, contact, heights) for heights in surfaces]
+
+    def top_nm(self, step_nm: float) -> float:
+        """Separation above which hardly a cell of the film touches; first contacts scatter by a step at least."""
+        deviation = float(self.first_contact_nm.std(ddof=1))
+        return float(self.first_contact_nm.mean()) + DEVIATIONS_ABOVE * max(deviation, step_nm)
+
+    def close_to(self, separation_nm: float, attraction: bool = True) -> float:
+        """Bring all to a separation from the film's mean plane; their mean repulsion (GPa)."""
+        return sum(
+            cell.close_to(separation_nm + plane, attraction) / self._area_nm2
+            for cell, plane in zip(self.cells, self._planes, strict=True)
+        )
+
+
 def grid_of_rows(rows: Sequence[Mapping[str, float]]) -> PadGrid:
     """The grid from the rows of pad/grid.csv."""
     separation = np.array([row["separation_nm"] for row in rows])
@@ -67,13 +97,9 @@ def plan_grid(
     ------
     InputError : the pilot cells never reach the pressure.
     """
-    seeds = range(pad.first_seed, pad.first_seed + pad.pilot_cells)
-    pieces = FilmPieces(inputs, contact)
-    surfaces = [pieces.surface(seed) for seed in seeds]
-    first = np.array([-float(heights.min()) for heights in surfaces])
-    typical, deviation = float(first.mean()), float(first.std(ddof=1))
-    lowest, light = _close_pilots(inputs, contact, surfaces, wanted_GPa, float(first.max()), pad)
-    top = typical + DEVIATIONS_ABOVE * max(deviation, pad.step_nm)
+    pilots = SideBySide(inputs, contact, range(pad.first_seed, pad.first_seed + pad.pilot_cells))
+    lowest, light = _close_pilots(pilots, wanted_GPa, pad.step_nm * PILOT_STEP)
+    top, typical = pilots.top_nm(pad.step_nm), float(pilots.first_contact_nm.mean())
     near = lowest + pad.step_nm * np.arange(np.ceil((top - lowest) / pad.step_nm) + 1)
     separation = np.concatenate([near, far_nm(float(near[-1]))])[::-1]
     # a few tall grains may carry the switch where most cells do not touch yet
@@ -87,32 +113,20 @@ def far_nm(top_nm: float) -> Array:
     return np.geomspace(top_nm, max(FAR_NM, 2.0 * top_nm), FAR_POINTS)[1:]
 
 
-def _close_pilots(
-    inputs: ContactInputs,
-    contact: ContactSettings,
-    surfaces: Sequence[Array],
-    wanted_GPa: Callable[[Array], Array],
-    start_nm: float,
-    pad: PadSettings,
-) -> tuple[float, float]:
-    """Separations at which the mean repulsion of surfaces closed side by side is the wanted one, and LIGHT of it."""
-    planes = [float(heights.mean()) for heights in surfaces]
-    pilots = [Closing(inputs, contact, heights) for heights in surfaces]
-    area = len(surfaces) * contact.length_nm**2
+def _close_pilots(pilots: SideBySide, wanted_GPa: Callable[[Array], Array], step_nm: float) -> tuple[float, float]:
+    """Separations at which the mean repulsion of the pilots is the wanted one, and LIGHT of it."""
+    start_nm = float(pilots.first_contact_nm.max())
     separation, repelled, wanted, light = start_nm, 0.0, 0.0, None
     for step in range(MAX_PILOT_STEPS):
-        separation = start_nm - pad.step_nm * PILOT_STEP * step
-        repelled = sum(
-            pilot.close_to(separation + plane, attraction=False) / area
-            for pilot, plane in zip(pilots, planes, strict=True)
-        )
+        separation = start_nm - step_nm * step
+        repelled = pilots.close_to(separation, attraction=False)
         wanted = float(wanted_GPa(np.array([separation]))[0])
         if light is None and repelled >= LIGHT * wanted:
             light = separation
         if light is not None and repelled >= wanted:
             return separation, light
     raise InputError(
-        f"pad.max_pressure_MPa = {wanted * 1e3:g}: {len(surfaces)} cells closed by "
+        f"pad.max_pressure_MPa = {wanted * 1e3:g}: {len(pilots.cells)} cells closed by "
         f"{start_nm - separation:g} nm carry {repelled * 1e3:.3g} MPa; lower it"
     )
 

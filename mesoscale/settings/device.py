@@ -1,7 +1,7 @@
 """Settings of the switch."""
 
-import math
-
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
 from mesoscale.settings.base import Settings
@@ -116,21 +116,19 @@ class DeviceSettings(Settings):
         description="samples of the law taken from the propagation of uncertainty",
     )
 
-    @property
-    def lowest_at_rest_nm(self) -> float:
-        """Separation from the dielectric of the lowest place of the bending electrode at rest (nm)."""
-        shares = (place / PLACES_AT_REST for place in range(PLACES_AT_REST + 1))
-        return 1e3 * self.gap_um + min(
-            self.bow_nm * 0.5 * (1.0 - math.cos(2.0 * math.pi * share)) + self.tilt_nm * (share - 0.5)
-            for share in shares
-        )
+    def shape_at_rest_nm(self, share: ArrayLike) -> NDArray[np.float64]:
+        """Height of the bending electrode at rest over its flat place (nm), at shares of its length from one end."""
+        share = np.asarray(share, float)
+        return self.bow_nm * 0.5 * (1.0 - np.cos(2.0 * np.pi * share)) + self.tilt_nm * (share - 0.5)
 
     @property
     def touching_at_rest(self) -> str:
         """One line on a bending electrode that touches the dielectric at rest; empty where it does not."""
-        if self.spring_N_per_m is not None or self.lowest_at_rest_nm > 0.0:
+        shares = np.arange(PLACES_AT_REST + 1) / PLACES_AT_REST
+        lowest_nm = 1e3 * self.gap_um + float(self.shape_at_rest_nm(shares).min())
+        if self.spring_N_per_m is not None or lowest_nm > 0.0:
             return ""
         return (
-            f"device: at rest the electrode is {self.lowest_at_rest_nm:.4g} nm above the dielectric at its lowest; "
+            f"device: at rest the electrode is {lowest_nm:.4g} nm above the dielectric at its lowest; "
             "lower bow_nm or tilt_nm, or raise gap_um"
         )

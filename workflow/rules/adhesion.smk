@@ -20,7 +20,7 @@ rule open_pads:
         adhesion_case="\\d+",
     threads: 1
     resources:
-        mem_mb=side_by_side_MB(SCENE.contact, ADHESION.cells),
+        mem_mb=contact_MB(SCENE.contact, ADHESION.cells),
     params:
         contact=settings("contact"),
         adhesion=settings("adhesion"),

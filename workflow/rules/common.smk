@@ -6,7 +6,7 @@ from pathlib import Path
 
 from atomistic.errors import InputError
 from atomistic.materials import load_materials, oxide_glasses
-from workflow.terminal.memory import contact_MB, propagation_MB, side_by_side_MB
+from workflow.terminal.memory import contact_MB, propagation_MB
 from workflow.scene import ROOT, SceneError, files_of, load_scene, locate
 
 # one thread per process: the jobs themselves fill the cores, and results do not depend on their number

@@ -35,7 +35,7 @@ rule plan_pad:
     priority: 2  # first of all: the rest then fills the other cores while the pad is assembled
     threads: 1
     resources:
-        mem_mb=side_by_side_MB(SCENE.contact, SCENE.pad.pilot_cells),
+        mem_mb=contact_MB(SCENE.contact, SCENE.pad.pilot_cells),
     params:
         contact=settings("contact"),
         pad=GRID_SETTINGS,

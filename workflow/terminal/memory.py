@@ -11,14 +11,9 @@ RESAMPLED_MB = 32e-6  # a direct run in each resampling; measured with 10,000 ru
 ROW_MB = 1.4e-3  # a row of a history's table, as it is made and written
 
 
-def contact_MB(contact: ContactSettings) -> int:
-    """Memory of a process that closes and opens a contact, in MB."""
-    return round(PROCESS_MB + SITE_MB[contact.mechanics] * contact.pixels**2)
-
-
-def side_by_side_MB(contact: ContactSettings, cells: int) -> int:
-    """Memory of a process that closes so many contacts side by side, in MB."""
-    return round(PROCESS_MB + cells * SITE_MB[contact.mechanics] * contact.pixels**2)
+def contact_MB(contact: ContactSettings, surfaces: int = 1) -> int:
+    """Memory of a process that closes and opens so many contacts side by side, in MB."""
+    return round(PROCESS_MB + surfaces * SITE_MB[contact.mechanics] * contact.pixels**2)
 
 
 def history_MB(history: HistorySettings, contact: ContactSettings) -> int:

@@ -9,7 +9,7 @@ some cells, and looks at other ones. Both replace their rows of the table and pr
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,9 +32,17 @@ TAIL_PIXELS = 256
 TAIL_SIZES = (16, 64, 256)
 
 
-def mean_and_error(values: Array) -> tuple[float, float]:
-    """Mean and its standard error."""
-    return float(values.mean()), float(values.std(ddof=1) / len(values) ** 0.5)
+class Estimate(NamedTuple):
+    """A mean of so many values, with its standard error."""
+
+    count: int
+    mean: float
+    error: float
+
+
+def sampled(values: Array) -> Estimate:
+    """The mean of independent values."""
+    return Estimate(len(values), float(values.mean()), float(values.std(ddof=1) / len(values) ** 0.5))
 
 
 def comparison_rows(cells: PadCells, large: PadCells) -> Iterator[Row]:
@@ -53,31 +61,29 @@ def comparison_rows(cells: PadCells, large: PadCells) -> Iterator[Row]:
         yield _row(
             "closing pressure, MPa",
             load,
-            cells.closing[:, 0, place].reshape(-1)[: pads * size].reshape(pads, size).mean(axis=1) * 1e3,
-            large.closing[:, 0, place] * 1e3,
+            sampled(cells.closing[groups, 0, place].mean(axis=1) * 1e3),
+            sampled(large.closing[:, 0, place] * 1e3),
         )
         yield _row(
             "deepest net pressure on opening, kPa",
             load,
-            np.array([deepest_kPa(net[group][:, way]) for group in groups]),
-            np.array([deepest_kPa(one[None, way]) for one in single]),
+            sampled(np.array([deepest_kPa(net[group][:, way]) for group in groups])),
+            sampled(np.array([deepest_kPa(one[None, way]) for one in single])),
         )
 
 
-def _row(quantity: str, at: float, pads: Array, direct: Array) -> Row:
-    mean, error = mean_and_error(pads)
-    known, spread = mean_and_error(direct)
+def _row(quantity: str, at: float, assembled: Estimate, direct: Estimate) -> Row:
     return {
         "quantity": quantity,
         "at": at,
-        "assembled_from": len(pads),
-        "assembled": mean,
-        "assembled_error": error,
-        "direct_from": len(direct),
-        "direct": known,
-        "direct_error": spread,
-        "ratio": mean / known,
-        "apart_in_errors": (mean - known) / float(np.hypot(error, spread)),
+        "assembled_from": assembled.count,
+        "assembled": assembled.mean,
+        "assembled_error": assembled.error,
+        "direct_from": direct.count,
+        "direct": direct.mean,
+        "direct_error": direct.error,
+        "ratio": assembled.mean / direct.mean,
+        "apart_in_errors": (assembled.mean - direct.mean) / float(np.hypot(assembled.error, direct.error)),
     }
 
 
@@ -90,18 +96,12 @@ def tail_rows(fitted: Array, others: Array) -> Iterator[Row]:
         (mean, scatter), error = tail.first_contact_nm(size), tail.standard_error_nm(size)
         # one pad alone has the scatter of pads
         spread = float(highest.std(ddof=1) / groups**0.5) if groups > 2 else float(scatter)
-        yield {
-            "quantity": "first contact, nm, of so many cells",
-            "at": size,
-            "assembled_from": len(fitted),
-            "assembled": float(mean),
-            "assembled_error": float(error),
-            "direct_from": len(others),
-            "direct": float(highest.mean()),
-            "direct_error": spread,
-            "ratio": float(mean / highest.mean()),
-            "apart_in_errors": float((mean - highest.mean()) / np.hypot(error, spread)),
-        }
+        yield _row(
+            "first contact, nm, of so many cells",
+            size,
+            Estimate(len(fitted), float(mean), float(error)),
+            Estimate(len(others), float(highest.mean()), spread),
+        )
 
 
 def first_contacts_nm(count: int, first_seed: int) -> Array:
