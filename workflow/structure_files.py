@@ -32,9 +32,14 @@ def load_structure(path: str | Path) -> Atoms:
     return read(io.StringIO(Path(path).read_text(encoding="utf-8")), format="extxyz")  # type: ignore[return-value]
 
 
-def write_orbitals(path: str | Path, calculator: Calculator | None, provenance: Mapping[str, Any]) -> None:
-    """Keep the orbitals a calculator ended with, for the next job to start from; other engines: nothing stored."""
+def write_start(
+    path: str | Path, calculator: Calculator | None, hessian_eV_A2: np.ndarray | None, provenance: Mapping[str, Any]
+) -> None:
+    """Keep what a relaxation ended with for the next job to start from: the ions' Hessian and PySCF's orbitals."""
     groups = {}
+    if hessian_eV_A2 is not None:
+        along = ("coordinate", "coordinate")
+        groups["ions"] = {"hessian": Dataset(hessian_eV_A2, "eV/A2", "Hessian of the ions, approximate", along)}
     if isinstance(calculator, PyscfGamma) and calculator.history:
         overlap, orbitals = calculator.history[-1]
         groups["last"] = {
@@ -44,11 +49,12 @@ def write_orbitals(path: str | Path, calculator: Calculator | None, provenance: 
     write_h5(path, groups, {}, provenance)
 
 
-def start_from(calculator: Calculator, path: str | Path) -> None:
-    """Let a calculator start from what `write_orbitals` kept."""
+def start_from(calculator: Calculator, path: str | Path) -> np.ndarray | None:
+    """Let a calculator start from what `write_start` kept; returns the Hessian of the ions, (3n, 3n), eV/Å²."""
     groups = load_h5(path)[0]
-    if isinstance(calculator, PyscfGamma):
-        calculator.history = [Solution(group["overlap"], group["orbitals"]) for group in groups.values()]
+    if isinstance(calculator, PyscfGamma) and "last" in groups:
+        calculator.history = [Solution(groups["last"]["overlap"], groups["last"]["orbitals"])]
+    return groups["ions"]["hessian"] if "ions" in groups else None
 
 
 class ScfStore(MutableMapping[str, dict[str, np.ndarray]]):

@@ -29,6 +29,7 @@ Store = MutableMapping[str, dict[str, np.ndarray]]
 COARSE = 0.6  # mesh on which an SCF without a former one starts, over the mesh itself: a fifth of the points
 COARSE_TOLERANCE_HA = 1e-3
 SINGLE_PRECISION_HA = 1e-7  # SCF tolerance from which orbitals on the grid need no double precision
+ROUNDING_HA = 5e-8  # per atom: the energy's jitter from cycle to cycle in single precision stays below it
 HISTORY = 5  # former solutions a start is extrapolated from
 GUESS_DAMPING = 1e-7  # of the weights' normal equations
 
@@ -169,14 +170,16 @@ class PyscfGamma(Calculator):
         mf: Any = dft.RKS(cell)
         mf.xc = FUNCTIONALS[p.xc][0]
         mf.verbose = 0
-        mf.conv_tol = p.tolerance_Ha
-        mf.conv_tol_grad = 10 * np.sqrt(p.tolerance_Ha)
+        single = p.numerics == "cached-grid" and p.tolerance_Ha >= SINGLE_PRECISION_HA
+        # the gradient feels no rounding and decides: its square is about the error of the energy
+        mf.conv_tol = max(p.tolerance_Ha, ROUNDING_HA * cell.natm) if single else p.tolerance_Ha
+        mf.conv_tol_grad = np.sqrt(p.tolerance_Ha) * (1 if single else 10)
         mf.max_cycle = p.max_cycles
         mf.conv_check = False  # the extra cycle after convergence would change the energy by less than the tolerance
         if p.numerics == "cached-grid":
             from atomistic.elastic.gamma_scf import CachedGrid
 
-            mf._numint = CachedGrid(cell, np.float32 if p.tolerance_Ha >= SINGLE_PRECISION_HA else np.float64)
+            mf._numint = CachedGrid(cell, np.float32 if single else np.float64)
         elif p.numerics == "multigrid":
             mf = mf.multigrid_numint()
         else:
@@ -234,31 +237,55 @@ class PyscfGamma(Calculator):
         return coarse.make_rdm1()
 
 
-class TwoMeshes(Calculator):
-    """Means of an engine's energy, forces and stress on its mesh and on the mesh half a step aside.
+class ShiftedMesh(Calculator):
+    """An engine whose mesh lies aside by a share of its step along every lattice vector.
 
-    On a mesh the energy ripples as an atom moves through it, most where the pseudopotential is hard.  Half a step along
-    every lattice vector turns the sign of the ripple's first harmonic, so the mean does not have it; a mesh so fine
-    that the ripple vanishes would cost more than two coarse ones (docs/elastic.md).
+    Attributes
+    ----------
+    engine : shared with other shifts, so that each calculation starts from the orbitals of all
     """
 
     implemented_properties = PyscfGamma.implemented_properties
 
-    def __init__(self, engine: PyscfGamma):
+    def __init__(self, engine: PyscfGamma, share: float):
         super().__init__()
-        self.engine = engine
+        self.engine, self.share = engine, share
 
     def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes):
         super().calculate(atoms, properties, system_changes)
         assert self.atoms is not None
         p = self.engine.parameters
         mesh = np.array(p.mesh or commensurate_mesh(self.atoms.cell.array, p.cutoff_Ha))
+        moved = self.atoms.copy()
+        moved.positions += self.share / mesh @ self.atoms.cell.array
+        self.engine.calculate(moved, properties, all_changes)
+        self.results = self.engine.results
+
+
+class TwoMeshes(Calculator):
+    """Means of an engine's energy, forces and stress on its mesh and on the mesh half a step aside.
+
+    On a mesh the energy ripples as an atom moves through it, most where the pseudopotential is hard.  Half a step along
+    every lattice vector turns the sign of the ripple's first harmonic, so the mean does not have it; a mesh so fine
+    that the ripple vanishes would cost more than two coarse ones (docs/elastic.md).
+
+    Attributes
+    ----------
+    sides : the engine on either mesh
+    """
+
+    implemented_properties = PyscfGamma.implemented_properties
+
+    def __init__(self, engine: PyscfGamma):
+        super().__init__()
+        self.sides = (ShiftedMesh(engine, 0.0), ShiftedMesh(engine, 0.5))
+
+    def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes):
+        super().calculate(atoms, properties, system_changes)
         both = []
-        for share in (0.0, 0.5):
-            moved = self.atoms.copy()
-            moved.positions += share / mesh @ self.atoms.cell.array
-            self.engine.calculate(moved, properties, all_changes)
-            both.append(self.engine.results)
+        for side in self.sides:
+            side.calculate(self.atoms, properties, system_changes)
+            both.append(side.results)
         self.results = {name: 0.5 * (both[0][name] + both[1][name]) for name in both[0]}
 
 

@@ -8,6 +8,7 @@ from ase import Atoms
 from ase.calculators.calculator import CalculationFailed, Calculator
 
 from atomistic.constants import AMU_PER_A3_IN_G_CM3
+from atomistic.elastic.dft import TwoMeshes
 from atomistic.elastic.moduli import grid_shares, plane_strain_modulus, spread
 from atomistic.elastic.relaxation import Rest, relax_cell, strained
 from atomistic.elastic.response import Response, elastic_response
@@ -60,20 +61,29 @@ class Measured(NamedTuple):
 
 
 def measure_constants(
-    atoms: Atoms, calculator: Calculator, settings: TensorSettings, progress: Progress | None = None
+    atoms: Atoms,
+    calculator: Calculator,
+    settings: TensorSettings,
+    hessian: np.ndarray | None = None,
+    progress: Progress | None = None,
 ) -> Measured:
-    """Relax ions and cell, then elastic constants; whatever fails costs this structure only and is named."""
+    """Relax ions and cell, then elastic constants; whatever fails costs this structure only and is named.
+
+    Parameters
+    ----------
+    hessian : (3n, 3n) of the ions, eV/Å², to start from; None is a spring on every bond
+    """
     atoms = strained(atoms, 0.0)
     atoms.calc = calculator
     rest = None
     try:
-        rest = relax_cell(atoms, settings.force_eV_A, settings.max_steps)
+        rest = relax_cell(atoms, settings.force_eV_A, settings.max_steps, hessian)
         if not rest.converged:
             left = f"{rest.force_left_eV_A:.2f} eV/A left on an atom"
             return Measured(atoms, rest, None, f"ions and cell not at rest after {rest.steps} steps, {left}")
         constants = elastic_response(
             atoms,
-            calculator,
+            calculator.sides if isinstance(calculator, TwoMeshes) else (calculator, calculator),
             rest.hessian_eV_A2,
             settings.strain,
             settings.displacement_A,

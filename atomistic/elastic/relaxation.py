@@ -154,24 +154,30 @@ UNTOUCHED = Relaxation(0, float("nan"), False, 0.0, float("nan"))
 
 def relax_glass(
     atoms: Atoms, calculator: Calculator, settings: RelaxationSettings, progress: Progress | None = None
-) -> tuple[Atoms, Relaxation]:
+) -> tuple[Atoms, Relaxation, np.ndarray]:
     """Relax the ions of a glass in its cell, for as many steps as the settings afford.
 
     The cell keeps shape and size: its volume is found by the E(V) scan, stress anisotropy is left in it.
+
+    Returns
+    -------
+    the relaxed cell, how it came to rest, and the Hessian of its ions, (3n, 3n), eV/Å²
     """
     current = strained(atoms, 0.0)
+    springs = bond_hessian(atoms)
     if settings.max_steps == 0:
-        return current, UNTOUCHED
+        return current, UNTOUCHED, springs
     current.calc = calculator
     if progress:
         progress(0.0, f"relaxing ions, at most {settings.max_steps} steps")
     try:
         current.get_forces()  # asked for first, so that the energy comes from the same calculation
         before = current.get_potential_energy()
-        rest = relax_ions(current, settings.force_eV_A, settings.max_steps)
+        rest = relax_ions(current, settings.force_eV_A, settings.max_steps, springs)
         gained = float(before - current.get_potential_energy())
     except CalculationFailed as error:
         # the E(V) scan of this structure will meet the same trouble and name the strains; the others go on
-        return strained(atoms, 0.0), replace(UNTOUCHED, failure=f"relaxation: {error}")
+        return strained(atoms, 0.0), replace(UNTOUCHED, failure=f"relaxation: {error}"), springs
     gap = float(getattr(calculator, "gap_eV", np.nan))
-    return strained(current, 0.0), Relaxation(rest.steps, rest.force_left_eV_A, rest.converged, gained, gap)
+    done = Relaxation(rest.steps, rest.force_left_eV_A, rest.converged, gained, gap)
+    return strained(current, 0.0), done, rest.hessian_eV_A2

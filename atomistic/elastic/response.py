@@ -2,13 +2,17 @@
 
 Each strain is one calculation with clamped ions: its stress gives the clamped constants, its forces say where the ions
 want to go.  What they gain by going there needs the Hessian K of the ions only along the six directions K⁻¹Λ, Λ the
-slope of the forces by the strain:
+slope of the forces by the strain::
 
     C_relaxed = C_clamped − Λᵀ K⁻¹ Λ / V          (Wu, Vanderbilt and Hamann, Phys. Rev. B 72, 035105 (2005), eq. 17)
 
 K is measured by small displacements along a growing set of directions W that starts from a rough Hessian M: W = M⁻¹Λ,
-then M⁻¹ of what is left.  The gain inside W is found exactly (Galerkin), so it is a lower bound, and its error is of
-second order in what is left.
+then M⁻¹ of what is left.  The gain inside W is found exactly (Galerkin), a lower bound whose error is of second order
+in the forces R that are left; Rᵀ M⁻¹ R estimates it and is added.
+
+Differences are taken between both signs of a strain or displacement, each against the state at rest.  The two signs may
+come from two engines, each with its own state at rest: one on a mesh and one on the mesh half a step aside, whose
+ripples have opposite signs, so the mean of the two slopes has neither the ripple nor the next order of elasticity.
 """
 
 from collections.abc import Callable
@@ -32,15 +36,15 @@ class InternalStrain(NamedTuple):
 
     Attributes
     ----------
-    softening_eV : (6, 6) ΛᵀK⁻¹Λ
-    left_eV : (6,) estimate of what the directions tried leave out of its diagonal
-    calculations : displacements computed
+    softening_eV : (6, 6) ΛᵀK⁻¹Λ, with an estimate of what the directions tried leave out
+    left_eV : (6,) the diagonal of that estimate
+    directions : along which the Hessian was measured
     softest_eV_A2 : least curvature along the directions tried
     """
 
     softening_eV: np.ndarray
     left_eV: np.ndarray
-    calculations: int
+    directions: int
     softest_eV_A2: float
 
 
@@ -52,8 +56,8 @@ class Response:
     ----------
     clamped : with ions at fixed fractional coordinates
     relaxed : (6, 6) with ions that follow
-    relaxed_left : (6,) estimate by how much the diagonal of `relaxed` is still too high
-    calculations : strained and displaced states computed
+    relaxed_left : (6,) what of the softening of the diagonal of `relaxed` is estimated and not measured
+    calculations : states at rest, strained and displaced that were computed
     softest_eV_A2 : least curvature met along the ions' displacements
     """
 
@@ -66,7 +70,7 @@ class Response:
 
 def elastic_response(
     atoms: Atoms,
-    calculator: Calculator,
+    sides: tuple[Calculator, Calculator],
     hessian: np.ndarray,
     strain: float,
     displacement_A: float,
@@ -79,6 +83,7 @@ def elastic_response(
     Parameters
     ----------
     atoms : a structure whose forces nearly vanish
+    sides : engines of the positive and of the negative strains and displacements; twice the same one, or two meshes
     hessian : (3n, 3n) rough Hessian of the ions, eV/Å²; the better, the fewer displacements
     strain : size of the strains
     displacement_A : largest displacement of an atom where the Hessian is measured
@@ -92,28 +97,34 @@ def elastic_response(
         where the engine fails
     """
     states = strain_states(strain)
-    if "stress" not in calculator.implemented_properties:
+    if "stress" not in sides[0].implemented_properties:
         raise InputError(
-            f"elastic constants: {type(calculator).__name__} gives no stress; choose an engine that does "
+            f"elastic constants: {type(sides[0]).__name__} gives no stress; choose an engine that does "
             "(elastic.dft.numerics: cached-grid)"
         )
+    rest = [strained_state(atoms, side, np.zeros(6)) for side in dict.fromkeys(sides)]
+    at_rest = [rest[0], rest[-1]]
     stresses, forces = [], []
     for done, state in enumerate(states):
         if progress:
             progress(0.5 * done / len(states), f"strain {done + 1} of {len(states)}")
-        stress, force = strained_state(atoms, calculator, state)
-        stresses.append(stress)
-        forces.append(force)
+        side = int(state.sum() < 0)
+        stress, force = strained_state(atoms, sides[side], state)
+        stresses.append(stress + 0.5 * (at_rest[1 - side][0] - at_rest[side][0]))
+        forces.append(force - at_rest[side][1])
     clamped = fit_stiffness(states, stresses)
     eta = np.array([green_lagrange(state) for state in states])
     follow = np.linalg.lstsq(np.hstack([np.ones((len(eta), 1)), eta]), np.array(forces), rcond=None)[0][1:]
     volume = atoms.get_volume()
 
     def push(direction: np.ndarray) -> np.ndarray:
-        """K times a direction, by central differences."""
+        """K times a direction, by differences to both sides."""
         step = displacement_A / np.linalg.norm(direction.reshape(-1, 3), axis=1).max()
-        sides = [_forces(atoms, calculator, sign * step * direction) for sign in (1, -1)]
-        return (sides[1] - sides[0]) / (2 * step)
+        up, down = (
+            _forces(atoms, side, sign * step * direction) - force
+            for side, sign, (_, force) in zip(sides, (1, -1), at_rest, strict=True)
+        )
+        return (down - up) / (2 * step)
 
     inside = internal_strain(follow.T, push, hessian, rounds, tolerance_GPa / EV_PER_A3_IN_GPA * volume, progress)
     unit = EV_PER_A3_IN_GPA
@@ -121,7 +132,7 @@ def elastic_response(
         Stiffness(clamped.C * unit, clamped.stress * unit, clamped.error * unit),
         (clamped.C - inside.softening_eV / volume) * unit,
         inside.left_eV / volume * unit,
-        len(states) + 2 * inside.calculations,
+        len(rest) + len(states) + 2 * inside.directions,
         inside.softest_eV_A2,
     )
 
@@ -197,5 +208,6 @@ def internal_strain(
         weights = np.linalg.solve(curvature, directions.T @ slope)
         softening = (directions.T @ slope).T @ weights
         left = slope - pushed @ weights
-    estimate = np.einsum("ij,ij->j", left, np.linalg.solve(hessian, left))
-    return InternalStrain(0.5 * (softening + softening.T), estimate, directions.shape[1], softest)
+    estimate = left.T @ np.linalg.solve(hessian, left)
+    softening = softening + estimate
+    return InternalStrain(0.5 * (softening + softening.T), np.diag(estimate), directions.shape[1], softest)

@@ -126,18 +126,18 @@ class TensorSettings(Settings):
     structures: int = Field(default=6, ge=1, le=1000, description="glasses whose elastic constants are computed")
     strain: float = Field(default=0.005, gt=0, le=0.03, description="size of the six strains, taken with both signs")
     displacement_A: float = Field(
-        default=0.03,
+        default=0.01,
         gt=0,
         le=0.2,
         description="largest displacement of an atom where the ions' Hessian is measured",
         json_schema_extra={"unit": "A"},
     )
-    rounds: int = Field(default=3, ge=1, le=20, description="times six directions the ions may follow a strain along")
+    rounds: int = Field(default=2, ge=1, le=20, description="times six directions the ions may follow a strain along")
     tolerance_GPa: float = Field(
-        default=1.0,
+        default=5.0,
         gt=0,
         le=100,
-        description="what ions that follow may still take from a constant when no more directions are sought",
+        description="what of a constant's softening by the ions may be estimated instead of measured",
         json_schema_extra={"unit": "GPa"},
     )
     force_eV_A: float = Field(

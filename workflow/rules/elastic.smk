@@ -77,7 +77,7 @@ rule relax_amorphous:
     output:
         structure=f"{RESULTS}/elastic/structures/{{amorphous}}.xyz",
         report=f"{RESULTS}/elastic/structures/{{amorphous}}.json",
-        orbitals=f"{RESULTS}/elastic/structures/{{amorphous}}.h5",
+        start=f"{RESULTS}/elastic/structures/{{amorphous}}.h5",
     log:
         f"{RESULTS}/logs/relax_amorphous_{{amorphous}}.log",
     priority: 90
@@ -91,11 +91,11 @@ rule relax_amorphous:
 
 
 def relaxed_glass(wildcards):
-    """Verdict on a glass, and its orbitals to start from; a crystal has neither."""
+    """Verdict on a glass, and its orbitals and Hessian to start from; a crystal has neither."""
     if wildcards.structure in CRYSTALS:
         return {}
     stem = f"{RESULTS}/elastic/structures/{wildcards.structure}"
-    return {"report": f"{stem}.json", "orbitals": f"{stem}.h5"}
+    return {"report": f"{stem}.json", "start": f"{stem}.h5"}
 
 
 rule scan_volumes:

@@ -8,7 +8,7 @@ from atomistic.materials import load_material
 from atomistic.settings import DftSettings, RelaxationSettings
 from workflow.job import job
 from workflow.results import write_json, write_text
-from workflow.structure_files import ScfStore, load_structure, structure_text, write_orbitals
+from workflow.structure_files import ScfStore, load_structure, structure_text, write_start
 
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)
@@ -26,6 +26,6 @@ with job(snakemake) as run:
         run.progress,
     )
     write_text(snakemake.output.structure, structure_text(relaxed.atoms))
-    write_orbitals(snakemake.output.orbitals, relaxed.calculator, run.provenance)
+    write_start(snakemake.output.start, relaxed.calculator, relaxed.hessian_eV_A2, run.provenance)
     write_json(snakemake.output.report, relaxed.report(snakemake.wildcards.amorphous), run.provenance)
     store.remove()

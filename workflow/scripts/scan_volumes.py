@@ -29,8 +29,8 @@ with job(snakemake) as run:
 
     reasons = load_json(snakemake.input.report)["gate"]["reasons"] if snakemake.input.get("report") else []
     if not reasons:
-        if snakemake.input.get("orbitals"):
-            start_from(calculator, snakemake.input.orbitals)
+        if snakemake.input.get("start"):
+            start_from(calculator, snakemake.input.start)
         points = scan_volumes(atoms, calculator, settings["strains"], relax if relaxed else None, run.progress)
     else:
         points = rejected_points(atoms, settings["strains"], "; ".join(reasons))

@@ -158,7 +158,11 @@ def turned_crystal(cell: Atoms, criteria: NetworkGlass) -> Verdict:
         atoms.set_cell(atoms.cell.array @ axes, scale_atoms=True)
         atoms.calc = tersoff_calculator(criteria.tersoff)
         rest = relax_cell(atoms, 5e-3, 100)
-        means.append(isotropic(elastic_response(atoms, atoms.calc, rest.hessian_eV_A2, 2e-3, 0.01, 8, 0.01).relaxed))
+        means.append(
+            isotropic(
+                elastic_response(atoms, (atoms.calc, atoms.calc), rest.hessian_eV_A2, 2e-3, 0.01, 8, 0.01).relaxed
+            )
+        )
     apart = abs(means[0].G / means[1].G - 1)
     return apart < MAX_TURNED, f"G {means[0].G:.2f} and {means[1].G:.2f} GPa, {apart:.1e} apart"
 
@@ -166,7 +170,9 @@ def turned_crystal(cell: Atoms, criteria: NetworkGlass) -> Verdict:
 def saddle(cell: Atoms, criteria: NetworkGlass) -> Verdict:
     """Bonds stretched beyond their inflection push ions away from where they are: a saddle, and refused."""
     atoms, calculator = strained(cell, 0.2), tersoff_calculator(criteria.tersoff)
-    return refused(lambda: elastic_response(atoms, calculator, bond_hessian(cell), 2e-3, 0.01, 3, 0.01), "saddle")
+    return refused(
+        lambda: elastic_response(atoms, (calculator, calculator), bond_hessian(cell), 2e-3, 0.01, 3, 0.01), "saddle"
+    )
 
 
 def unstable_body() -> Verdict:
@@ -219,7 +225,9 @@ def without_stress(cell: Atoms) -> Verdict:
     class Blind(Calculator):
         implemented_properties = ["energy", "forces"]  # noqa: RUF012
 
-    return refused(lambda: elastic_response(cell, Blind(), np.eye(3 * len(cell)), 0.005, 0.01, 1, 1.0), "no stress")
+    return refused(
+        lambda: elastic_response(cell, (Blind(), Blind()), np.eye(3 * len(cell)), 0.005, 0.01, 1, 1.0), "no stress"
+    )
 
 
 def stability_checks(cell: Atoms, criteria: NetworkGlass) -> list[Check]:

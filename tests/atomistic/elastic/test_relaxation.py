@@ -51,7 +51,8 @@ def test_a_failed_calculation_leaves_the_glass_as_it_was_and_says_why(shaken):
         def calculate(self, *args, **kwargs):
             raise CalculationFailed("SCF not converged in 50 cycles")
 
-    atoms, done = relax_glass(shaken, Fails(shaken.calc.parameters), RelaxationSettings())
+    atoms, done, hessian = relax_glass(shaken, Fails(shaken.calc.parameters), RelaxationSettings())
     assert np.allclose(atoms.positions, shaken.positions)  # to rounding: the cell is scaled by one
     assert not done.converged
+    assert np.array_equal(hessian, bond_hessian(shaken))
     assert "SCF not converged" in done.failure
