@@ -38,8 +38,8 @@ def write_start(
     """Keep what a relaxation ended with for the next job to start from: the ions' Hessian and PySCF's orbitals."""
     groups = {}
     if hessian_eV_A2 is not None:
-        along = ("coordinate", "coordinate")
-        groups["ions"] = {"hessian": Dataset(hessian_eV_A2, "eV/A2", "Hessian of the ions, approximate", along)}
+        axes = ("coordinate", "coordinate")
+        groups["ions"] = {"hessian": Dataset(hessian_eV_A2, "eV/A2", "Hessian of the ions, approximate", axes)}
     if isinstance(calculator, PyscfGamma) and calculator.history:
         overlap, orbitals = calculator.history[-1]
         groups["last"] = {

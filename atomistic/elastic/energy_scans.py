@@ -143,7 +143,7 @@ def fit_scan(scan: Sequence[Mapping[str, str]]) -> dict[str, Any]:
     good = [row for row in scan if row["converged"] == "True"]
     failed = list(dict.fromkeys(row["detail"] for row in scan if row["converged"] != "True"))
     result: dict[str, Any] = {key: scan[0][key] for key in ("structure", "xc", "ions", "atoms")}
-    empty = ("B_GPa", "B_prime", "V0_A3", "B_vinet_GPa", "residual_meV")
+    empty = ("B_GPa", "B_prime", "V0_A3", "B_vinet_GPa", "B_error_GPa", "residual_meV")
     if len(good) < MIN_POINTS:
         flags = [f"{len(good)} of {len(scan)} strains converged, {MIN_POINTS} are needed", *failed]
         return {

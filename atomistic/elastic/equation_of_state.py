@@ -32,6 +32,7 @@ class EquationOfState:
     ----------
     V0_A3, E0_eV, B_GPa, B_prime : equilibrium volume, energy, bulk modulus and its pressure derivative
     B_vinet_GPa : bulk modulus by Vinet's form
+    B_error_GPa : standard error of B by the misfit
     residual_meV : root mean square misfit of the Birch–Murnaghan fit, per cell
     points : number of points fitted
     flags : what is wrong, in words; empty when the numbers can be trusted
@@ -42,6 +43,7 @@ class EquationOfState:
     B_GPa: float
     B_prime: float
     B_vinet_GPa: float
+    B_error_GPa: float
     residual_meV: float
     points: int
     flags: tuple[str, ...]
@@ -91,13 +93,14 @@ def fit_equation_of_state(volumes_A3: Sequence[float], energies_eV: Sequence[flo
     basis = np.vander((volume / centre) ** (-2 / 3), 4, increasing=True)
     shift = energy.mean()
     coefficients, *_ = np.linalg.lstsq(basis, energy - shift, rcond=None)
-    residual = float(np.sqrt(np.mean((basis @ coefficients - (energy - shift)) ** 2)) * 1000)
+    misfits = basis @ coefficients - (energy - shift)
+    residual = float(np.sqrt(np.mean(misfits**2)) * 1000)
     V0, E0, B, B_prime = _minimum(coefficients, float(centre), volume)
     E0 += float(shift)
     if not np.isfinite(V0):
         flags.append("E(V) has no minimum")
         nan = float("nan")
-        return EquationOfState(nan, nan, nan, nan, nan, residual, len(volume), tuple(flags))
+        return EquationOfState(nan, nan, nan, nan, nan, nan, residual, len(volume), tuple(flags))
     if not volume.min() < V0 < volume.max():
         flags.append(f"V0 {V0:.1f} Å3 outside the scanned {volume.min():.1f} to {volume.max():.1f} Å3")
     if not B_PRIME_RANGE[0] <= B_prime <= B_PRIME_RANGE[1]:
@@ -115,9 +118,15 @@ def fit_equation_of_state(volumes_A3: Sequence[float], energies_eV: Sequence[flo
             f"Birch-Murnaghan {B * EV_PER_A3_IN_GPA:.1f} and Vinet {B_vinet * EV_PER_A3_IN_GPA:.1f} GPa "
             f"differ by more than {FORMS_AGREE:.0%}"
         )
-    return EquationOfState(
-        V0, E0, B * EV_PER_A3_IN_GPA, B_prime, B_vinet * EV_PER_A3_IN_GPA, residual, len(volume), tuple(flags)
-    )
+    # B moves by row k of `slopes` when energy k does
+    step = 1e-6 * scale
+    slopes = [
+        (_minimum(coefficients + step * column, float(centre), volume)[2] - B) / step
+        for column in np.linalg.pinv(basis).T
+    ]
+    error = float(np.linalg.norm(slopes) * np.linalg.norm(misfits) / np.sqrt(len(volume) - len(coefficients)))
+    unit = EV_PER_A3_IN_GPA
+    return EquationOfState(V0, E0, B * unit, B_prime, B_vinet * unit, error * unit, residual, len(volume), tuple(flags))
 
 
 def _minimum(coefficients: np.ndarray, centre: float, volume: np.ndarray) -> tuple[float, float, float, float]:

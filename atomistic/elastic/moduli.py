@@ -15,7 +15,7 @@ from atomistic.settings import ElasticSettings
 
 @dataclass(frozen=True)
 class Modulus:
-    """A bulk modulus that entered or was kept out of E*."""
+    """A bulk modulus that entered or was kept out of E*; `error_GPa` is its standard error by the misfit of its fit."""
 
     structure: str
     xc: str
@@ -23,6 +23,7 @@ class Modulus:
     B_GPa: float
     trusted: bool
     reason: str = ""
+    error_GPa: float = 0.0
 
 
 def plane_strain_modulus(B_GPa, nu, other_E_GPa, other_nu):
@@ -57,6 +58,7 @@ def functional_shift(moduli: Sequence[Modulus], ions: str) -> dict[str, Any]:
 
 def variance_shares(
     B_GPa: Sequence[float] | np.ndarray,
+    B_error_GPa: Sequence[float] | np.ndarray,
     shift_GPa: float,
     nu: tuple[float, float],
     other_E: tuple[float, float],
@@ -64,27 +66,36 @@ def variance_shares(
 ) -> dict[str, Any]:
     """Mean, standard deviation and first-order and total shares of the variance of E*, without sampling error.
 
-    The four inputs are independent: structure (the ensemble, equal weights), functional (GGA or GGA + shift, equal
-    weights), ν (uniform), E of the other body (normal).  Gauss quadrature makes a weighted grid on which the
-    analysis of variance is exact.
+    The five inputs are independent: structure (the ensemble, equal weights), the error of its fit (normal), functional
+    (GGA or GGA + shift, equal weights), ν (uniform), E of the other body (normal).  Gauss quadrature makes a weighted
+    grid on which the analysis of variance is exact.
     """
+    B, B_error = np.asarray(B_GPa, float), np.asarray(B_error_GPa, float)
+    normal, normal_weights = np.polynomial.hermite_e.hermegauss(5)
     nodes_nu, weights_nu = np.polynomial.legendre.leggauss(12)
     nodes_E, weights_E = np.polynomial.hermite_e.hermegauss(9)
     values = [
-        np.asarray(B_GPa, float),
+        np.arange(len(B)),
+        normal,
         np.array([0.0, shift_GPa]),
         0.5 * (nu[0] + nu[1]) + 0.5 * (nu[1] - nu[0]) * nodes_nu,
         other_E[0] + other_E[1] * nodes_E,
     ]
     weights = [
-        np.full(len(values[0]), 1 / len(values[0])),
+        np.full(len(B), 1 / len(B)),
+        normal_weights / normal_weights.sum(),
         np.full(2, 0.5),
         weights_nu / 2,
         weights_E / weights_E.sum(),
     ]
-    names = ("structure", "functional", "poisson_ratio", "counter_body")
+    names = ("structure", "fit", "functional", "poisson_ratio", "counter_body")
     axes: dict[str, tuple[np.ndarray, np.ndarray]] = dict(zip(names, zip(values, weights, strict=True), strict=True))
-    return grid_shares(axes, lambda B, f, n, E: plane_strain_modulus(B + f, n, E, other_nu))
+
+    def e_star(structure, error, functional, nu, E):
+        of_structure = B[structure.astype(int)] + error * B_error[structure.astype(int)]
+        return plane_strain_modulus(of_structure + functional, nu, E, other_nu)
+
+    return grid_shares(axes, e_star)
 
 
 def grid_shares(axes: Mapping[str, tuple[np.ndarray, np.ndarray]], function: Callable[..., np.ndarray]):
@@ -208,31 +219,33 @@ def effective_modulus(
         }
         return summary, {name: np.empty(0) for name in SAMPLE_COLUMNS}
     delta = shift["mean_GPa"] if shift["structures"] else 0.0
-    B = np.array([m.B_GPa for m in used])
-    summary |= variance_shares(B, delta, settings.poisson_ratio, other_E, other_nu)
+    B, B_error = np.array([(m.B_GPa, m.error_GPa) for m in used]).T
+    summary |= variance_shares(B, B_error, delta, settings.poisson_ratio, other_E, other_nu)
     rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 51]))
     n = settings.samples
     lda = rng.integers(0, 2, n)
-    B_samples = rng.choice(B, n) + delta * lda
+    drawn = rng.integers(0, len(B), n)
+    B_samples = B[drawn] + delta * lda
     nu = rng.uniform(*settings.poisson_ratio, n)
     E = rng.normal(other_E[0], other_E[1], n)
+    B_samples = B_samples + B_error[drawn] * rng.standard_normal(n)
     e_star = plane_strain_modulus(B_samples, nu, E, other_nu)
     quantiles = (0.025, 0.16, 0.5, 0.84, 0.975)
     summary["quantiles_GPa"] = dict(zip(map(str, quantiles), np.quantile(e_star, quantiles).tolist(), strict=True))
-    summary["standard_error_of_mean_GPa"] = _standard_error(B, delta, settings, other_E, other_nu)
+    summary["standard_error_of_mean_GPa"] = _standard_error(B, B_error, delta, settings, other_E, other_nu)
     summary["inputs"] = {"e_star": {"distribution": "normal", "a": summary["mean_GPa"], "b": summary["std_GPa"]}}
     summary["gate"] = {"passed": not reasons, "reasons": reasons}
     return summary, {"e_star_GPa": e_star, "B_GPa": B_samples, "nu": nu, "counter_E_GPa": E, "xc": lda}
 
 
-def _standard_error(B: np.ndarray, delta: float, settings: ElasticSettings, other_E, other_nu: float) -> float:
+def _standard_error(
+    B: np.ndarray, B_error: np.ndarray, delta: float, settings: ElasticSettings, other_E, other_nu: float
+) -> float:
     """Standard error of the mean of E* from the finite number of structures (jackknife)."""
     if len(B) < 2:
         return float("nan")
-    means = [
-        variance_shares(np.delete(B, k), delta, settings.poisson_ratio, other_E, other_nu)["mean_GPa"]
-        for k in range(len(B))
-    ]
+    without = [np.delete(np.stack([B, B_error]), k, axis=1) for k in range(len(B))]
+    means = [variance_shares(*rest, delta, settings.poisson_ratio, other_E, other_nu)["mean_GPa"] for rest in without]
     return float(np.sqrt((len(B) - 1) / len(B) * np.sum((np.array(means) - np.mean(means)) ** 2)))
 
 

@@ -90,7 +90,8 @@ def trusted_moduli(fits: Sequence[Mapping[str, str]], reports: Sequence[Mapping[
         if row["structure"] in gates:
             reasons = [*filter(None, [row["flags"]]), *gates[row["structure"]]["reasons"]]
             B = float(row["B_GPa"] or "nan")
-            moduli.append(Modulus(row["structure"], row["xc"], row["ions"], B, not reasons, "; ".join(reasons)))
+            error = float(row["B_error_GPa"] or "nan")
+            moduli.append(Modulus(row["structure"], row["xc"], row["ions"], B, not reasons, "; ".join(reasons), error))
     return moduli
 
 

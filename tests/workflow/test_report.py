@@ -80,6 +80,13 @@ def test_every_stage_has_its_section_and_every_figure_is_drawn(page):
     assert "Table 3 of the paper" in page
 
 
+def test_shares_of_e_star_stand_beside_those_of_the_papers_way(page):
+    table = page[page.index("What the variance of E* comes from") :]
+    for words in ("anisotropy of a small cell", "30%", "41%"):
+        assert words in table[: table.index("</table>")]
+    assert "E* would be 100 ± 3" in page
+
+
 def test_page_is_self_contained_small_and_well_formed(files, page):
     found = outline(page)
     root, paths = files

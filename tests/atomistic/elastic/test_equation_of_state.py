@@ -22,6 +22,14 @@ def test_vinet_curve_gives_the_same_modulus_within_the_difference_of_the_forms()
     assert fit.B_GPa == pytest.approx(235, rel=0.005)
 
 
+def test_error_of_the_modulus_is_its_scatter_when_energies_scatter():
+    rng = np.random.default_rng(1)
+    energies = birch_murnaghan(VOLUMES, 300, -5000, 235 / EV_PER_A3_IN_GPA, 4.2)
+    fits = [fit_equation_of_state(VOLUMES, energies + 0.003 * rng.standard_normal(len(VOLUMES))) for _ in range(300)]
+    scatter = np.std([fit.B_GPa for fit in fits])
+    assert scatter == pytest.approx(np.sqrt(np.mean([fit.B_error_GPa**2 for fit in fits])), rel=0.1)
+
+
 def test_minimum_outside_the_scan_is_flagged():
     fit = fit_equation_of_state(VOLUMES, birch_murnaghan(VOLUMES, 350, -5000, 1.4, 4.2))
     assert any("outside the scanned" in flag for flag in fit.flags)

@@ -44,19 +44,22 @@ def test_failed_strain_is_named_and_the_rest_survives():
 
 
 def test_shares_of_an_additive_case_add_to_one_and_agree_with_samples():
-    B, shift = [150.0, 170.0], 15.0
-    exact = variance_shares(B, shift, (0.15, 0.25), (116.0, 3.0), 0.32)
+    B, error, shift = np.array([150.0, 170.0]), np.array([4.0, 8.0]), 15.0
+    exact = variance_shares(B, error, shift, (0.15, 0.25), (116.0, 3.0), 0.32)
     assert sum(s["first_order"] for s in exact["shares"].values()) == pytest.approx(1, abs=0.01)
     rng = np.random.default_rng(1)
     n = 200_000
+    drawn = rng.integers(0, 2, n)
     samples = plane_strain_modulus(
-        rng.choice(B, n) + shift * rng.integers(0, 2, n),
+        B[drawn] + error[drawn] * rng.standard_normal(n) + shift * rng.integers(0, 2, n),
         rng.uniform(0.15, 0.25, n),
         rng.normal(116, 3, n),
         0.32,
     )
     assert exact["mean_GPa"] == pytest.approx(samples.mean(), abs=5 * samples.std() / np.sqrt(n))
     assert exact["std_GPa"] == pytest.approx(samples.std(), rel=0.02)
+    assert exact["shares"]["fit"]["total"] > 0.05
+    assert variance_shares(B, 0 * error, shift, (0.15, 0.25), (116.0, 3.0), 0.32)["shares"]["fit"]["total"] < 1e-12
 
 
 def test_too_few_trusted_structures_fail_the_gate_with_the_reason():

@@ -88,7 +88,7 @@ def report(name, *reasons):
 
 def test_a_modulus_counts_if_neither_its_fit_nor_its_structure_has_a_flag():
     def fit(name, B_GPa, flags=""):
-        return {"structure": name, "xc": "GGA", "ions": "clamped", "B_GPa": B_GPa, "flags": flags}
+        return {"structure": name, "xc": "GGA", "ions": "clamped", "B_GPa": B_GPa, "B_error_GPa": "0.2", "flags": flags}
 
     fits = [fit("beta", "240.0"), fit("a01", "157.0"), fit("a02", "160.0"), fit("a03", "", "3 of 5 strains converged")]
     good, gapless, unfitted = trusted_moduli(fits, [report("a01"), report("a02", "no insulator"), report("a03")])

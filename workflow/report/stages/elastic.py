@@ -1,13 +1,24 @@
 """Effective elastic modulus: figure 5."""
 
+from collections.abc import Mapping
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 
 from workflow.report.available import Results, Row
-from workflow.report.drawing import BLUE, ORANGE, SERIES, draw
+from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, draw
 from workflow.report.numbers import column, number, show
 from workflow.report.page import Section, Table
+
+SHARES = {
+    "structure": "structure of the glass",
+    "fit": "misfit of E(V)",
+    "anisotropy": "anisotropy of a small cell",
+    "functional": "functional (GGA or LDA)",
+    "poisson_ratio": "Poisson's ratio",
+    "counter_body": "counter body",
+}
 
 
 def describe(results: Results) -> Section | None:
@@ -25,8 +36,8 @@ def describe(results: Results) -> Section | None:
     )
     section.add(
         elastic_distribution(results),
-        "Left: bulk moduli of the glasses; dashed: a crystal. Right: the modulus E* of the contact, variability and "
-        "model-form error included.",
+        "Left: bulk moduli of the glasses by E(V) and, where elastic constants were computed, by these; dashed: a "
+        "crystal. Right: the modulus E* of the contact, variability and model-form error included.",
         "Figure 5",
         wide=True,
     )
@@ -46,11 +57,13 @@ def describe(results: Results) -> Section | None:
     ]
     header = ("structure", "functional", "ions", "B (GPa)", "B′", "V₀ (Å³)", "flags")
     section.blocks.append(Table("Equation of state of every structure", header, lines))
+    if summary.get("shares"):
+        section.blocks.append(shares_table(summary))
     if results.has("elastic/isotropic_moduli.csv"):
         section.blocks.append(isotropic_table(results))
         literature = summary["by_literature_poisson"]
         section.notes.append(
-            "With Poisson's ratio from the literature and the bulk modulus alone, the paper's way, E* would be "
+            "With Poisson's ratio from the literature and the bulk modulus alone E* would be "
             f"{show(literature['mean_GPa'])} ± {show(literature['std_GPa'])} GPa."
         )
         section.files.append("elastic/isotropic_moduli.csv")
@@ -58,6 +71,19 @@ def describe(results: Results) -> Section | None:
     section.files += ["elastic/points.csv", "elastic/bulk_moduli.csv", "elastic/e_star.json"]
     section.gates += results.gate_of("elastic", "elastic/e_star.json")
     return section
+
+
+def shares_table(summary: Mapping[str, Any]) -> Table:
+    """What the variance of E* comes from, and would come from with Poisson's ratio from the literature."""
+    methods = {"share of the variance": summary["shares"]}
+    if "by_literature_poisson" in summary:
+        methods["with Poisson's ratio from the literature"] = summary["by_literature_poisson"]["shares"]
+    lines = [
+        (words, *(f"{shares[key]['total']:.0%}" if shares.get(key) else "–" for shares in methods.values()))
+        for key, words in SHARES.items()
+        if any(shares.get(key) for shares in methods.values())
+    ]
+    return Table("What the variance of E* comes from", ("source", *methods), lines)
 
 
 def isotropic_table(results: Results) -> Table:
@@ -76,13 +102,15 @@ def elastic_distribution(results: Results) -> str | None:
     rows = results.csv("elastic/bulk_moduli.csv")
     summary = results.json("elastic/e_star.json")
     names = sorted({(row["xc"], row.get("ions", "")) for row in rows})
+    constants = results.csv("elastic/isotropic_moduli.csv") if results.has("elastic/isotropic_moduli.csv") else []
     samples = results.h5("elastic/e_star.h5")[0] if results.has("elastic/e_star.h5") else {}
     flat = {name: values for group in samples.values() for name, values in group.items()}
     glasses = {*summary.get("structures_used", []), *(kept["structure"] for kept in summary.get("kept_out", []))}
     trusted = [row for row in rows if not row.get("flags") and np.isfinite(number(row.get("B_GPa")))]
+    relaxed = [row for row in constants if row["ions"] == "relaxed" and not row["flags"]]
 
     def plot(axis, other):
-        every = column(trusted, "B_GPa")
+        every = column([*trusted, *relaxed], "B_GPa")
         bins = np.linspace(every.min() - 5, every.max() + 5, 12) if every.size else np.linspace(0, 1, 2)
         for (xc, ions), color in zip(names, cycle(SERIES), strict=False):
             kind = [row for row in trusted if (row["xc"], row.get("ions", "")) == (xc, ions)]
@@ -94,6 +122,9 @@ def elastic_distribution(results: Results) -> str | None:
                 if row["structure"] not in glasses:
                     crystal = f"{row['structure']} crystal, {xc.upper()}"
                     axis.axvline(number(row["B_GPa"]), color=color, linestyle="--", label=crystal)
+        if relaxed:
+            label = "GGA, elastic constants, relaxed ions"
+            axis.hist(column(relaxed, "B_GPa"), bins=bins, color=INK, histtype="step", label=label)
         axis.set(xlabel="bulk modulus B (GPa)", ylabel="structures")
         axis.set_ylim(0, 1.7 * axis.get_ylim()[1])  # room for the legend
         axis.yaxis.get_major_locator().set_params(integer=True)
