@@ -244,8 +244,11 @@ def _standard_error(
     """Standard error of the mean of E* from the finite number of structures (jackknife)."""
     if len(B) < 2:
         return float("nan")
-    without = [np.delete(np.stack([B, B_error]), k, axis=1) for k in range(len(B))]
-    means = [variance_shares(*rest, delta, settings.poisson_ratio, other_E, other_nu)["mean_GPa"] for rest in without]
+    means = [
+        variance_shares(np.delete(B, k), np.delete(B_error, k), delta, settings.poisson_ratio, other_E, other_nu)
+        for k in range(len(B))
+    ]
+    means = [without["mean_GPa"] for without in means]
     return float(np.sqrt((len(B) - 1) / len(B) * np.sum((np.array(means) - np.mean(means)) ** 2)))
 
 

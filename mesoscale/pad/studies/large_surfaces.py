@@ -35,7 +35,7 @@ TAIL_SIZES = (16, 64, 256)
 class Estimate(NamedTuple):
     """A mean of so many values, with its standard error."""
 
-    count: int
+    values: int
     mean: float
     error: float
 
@@ -76,10 +76,10 @@ def _row(quantity: str, at: float, assembled: Estimate, direct: Estimate) -> Row
     return {
         "quantity": quantity,
         "at": at,
-        "assembled_from": assembled.count,
+        "assembled_from": assembled.values,
         "assembled": assembled.mean,
         "assembled_error": assembled.error,
-        "direct_from": direct.count,
+        "direct_from": direct.values,
         "direct": direct.mean,
         "direct_error": direct.error,
         "ratio": assembled.mean / direct.mean,
