@@ -166,7 +166,8 @@ def with_computed_poisson(
             for ions, p in pairs.items()
         },
         "by_literature_poisson": {
-            key: by_literature.get(key) for key in ("mean_GPa", "std_GPa", "shares", "quantiles_GPa", "ions", "gate")
+            key: by_literature.get(key)
+            for key in ("mean_GPa", "std_GPa", "shares", "quantiles_GPa", "ions", "structures_used", "gate")
         },
         "notes": [by_literature["notes"][0], *ASSUMPTIONS],
         "gate": {"passed": not reasons, "reasons": reasons},

@@ -26,6 +26,7 @@ def report_inputs():
         files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness", "snapshots") for run in CLOSINGS]
     if needed("elastic"):
         files += [f"elastic/{name}" for name in ("points.csv", "bulk_moduli.csv", "e_star.json", "e_star.h5")]
+        files += ["elastic/isotropic_moduli.csv"] if TENSORS else []
     if needed("topography"):
         files += ["topography/spectra.h5", "topography/parameters.json"]
         files += [str(Path(path).relative_to(RESULTS)) for path in JUDGED]

@@ -105,7 +105,8 @@ def elastic_distribution(results: Results) -> str | None:
     constants = results.csv("elastic/isotropic_moduli.csv") if results.has("elastic/isotropic_moduli.csv") else []
     samples = results.h5("elastic/e_star.h5")[0] if results.has("elastic/e_star.h5") else {}
     flat = {name: values for group in samples.values() for name, values in group.items()}
-    glasses = {*summary.get("structures_used", []), *(kept["structure"] for kept in summary.get("kept_out", []))}
+    by_volume = summary.get("by_literature_poisson", summary)  # elastic constants leave out more than E(V) does
+    glasses = {*by_volume.get("structures_used", []), *(kept["structure"] for kept in summary.get("kept_out", []))}
     trusted = [row for row in rows if not row.get("flags") and np.isfinite(number(row.get("B_GPa")))]
     relaxed = [row for row in constants if row["ions"] == "relaxed" and not row["flags"]]
 
