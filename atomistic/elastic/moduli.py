@@ -245,10 +245,11 @@ def _standard_error(
     if len(B) < 2:
         return float("nan")
     means = [
-        variance_shares(np.delete(B, k), np.delete(B_error, k), delta, settings.poisson_ratio, other_E, other_nu)
+        variance_shares(np.delete(B, k), np.delete(B_error, k), delta, settings.poisson_ratio, other_E, other_nu)[
+            "mean_GPa"
+        ]
         for k in range(len(B))
     ]
-    means = [without["mean_GPa"] for without in means]
     return float(np.sqrt((len(B) - 1) / len(B) * np.sum((np.array(means) - np.mean(means)) ** 2)))
 
 

@@ -37,7 +37,7 @@ class InternalStrain(NamedTuple):
     Attributes
     ----------
     softening_eV : (6, 6) ΛᵀK⁻¹Λ, with an estimate of what the directions tried leave out
-    left_eV : (6,) the diagonal of that estimate
+    left_eV : (6, 6) that estimate; without it the softening is a lower bound
     directions : along which the Hessian was measured
     softest_eV_A2 : least curvature along the directions tried
     """
@@ -131,7 +131,7 @@ def elastic_response(
     return Response(
         Stiffness(clamped.C * unit, clamped.stress * unit, clamped.error * unit),
         (clamped.C - inside.softening_eV / volume) * unit,
-        inside.left_eV / volume * unit,
+        np.diag(inside.left_eV) / volume * unit,
         len(rest) + len(states) + 2 * inside.directions,
         inside.softest_eV_A2,
     )
@@ -210,4 +210,5 @@ def internal_strain(
         left = slope - pushed @ weights
     estimate = left.T @ np.linalg.solve(hessian, left)
     softening = softening + estimate
-    return InternalStrain(0.5 * (softening + softening.T), np.diag(estimate), directions.shape[1], softest)
+    softening, estimate = (0.5 * (matrix + matrix.T) for matrix in (softening, estimate))
+    return InternalStrain(softening, estimate, directions.shape[1], softest)
