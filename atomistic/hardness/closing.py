@@ -64,7 +64,7 @@ def run_closing(
     counter_glass : glass of a counterface of oxide; None: that of the asperity.
     """
     require_calibration(potential, settings.area)
-    closing, plan = settings.closing, plan_closing(settings, run.asperity)
+    closing, plan = settings.closing, plan_closing(settings, run)
     identity = {
         "potential": potential.model_dump(),
         "run": [run.asperity.model_dump(), run.seed, run.energy_scale],
@@ -88,7 +88,7 @@ def run_closing(
     @cache
     def readout(geometry: Geometry) -> Readout:
         cutoff = material.part("oxide_glass").cutoff_A
-        return Readout(workspace, plan.segment_steps, settings.area, geometry, kinds, cutoff)
+        return Readout(workspace, plan.segment_steps, plan.timestep, settings.area, geometry, kinds, cutoff)
 
     def read(geometry: Geometry, reached: Plan) -> Closing:
         relaxed = range(reached.segments + reached.back + 1)

@@ -24,7 +24,7 @@ def plan_rows(
     rows: list[dict[str, float | str]] = []
     edge_nm = (settings.glass.atoms / density) ** (1 / 3)
     for run in planned_runs(settings):
-        plan, closing = plan_closing(settings, run.asperity), settings.closing
+        plan, closing = plan_closing(settings, run), settings.closing
         wavelength, amplitude = run.asperity.tiles * edge_nm, run.asperity.amplitude_nm
         atoms = density * wavelength**2 * (base_thickness_nm(settings, wavelength) + MEAN_HEIGHT * amplitude)
         if closing.counterface in ("oxide", "asperity"):

@@ -110,7 +110,7 @@ def find_hardness(
         column["contact_stress_GPa"],
         column["displacement_nm"],
     )
-    elapsed_ps = (column["step"][-1] - column["step"][0]) * closing.timestep_fs / 1000
+    elapsed_ps = column["time_ps"][-1] - column["time_ps"][0]
     drift = float(np.max(np.abs(column["energy_drift_meV_per_atom"])) / elapsed_ps)
     temperature = column["temperature_K"]
     warming = float(np.max(temperature) - np.mean(temperature[:4]))

@@ -19,7 +19,7 @@ from atomistic.hardness.readout import Geometry
 from atomistic.hardness.runs import ClosingRun
 from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
 from atomistic.potentials import CONTACT_A, Potential
-from atomistic.settings import AsperitySettings, HardnessSettings
+from atomistic.settings import HardnessSettings
 
 FORCE_TOLERANCE_EV_A = 0.02  # norm of all forces at which a quasi-static step is at rest
 
@@ -53,10 +53,10 @@ class Plan:
         return (self.segments + self.back) * self.segment_steps + 2 * self.anneal_steps
 
 
-def plan_closing(settings: HardnessSettings, asperity: AsperitySettings) -> Plan:
+def plan_closing(settings: HardnessSettings, run: ClosingRun) -> Plan:
     """Divide the run into samples (for averages) and segments (for restart files)."""
     closing, area = settings.closing, settings.area
-    timestep = closing.timestep_fs / 1000
+    timestep = closing.timestep_fs / 1000 / np.sqrt(run.energy_scale)  # the same share of a vibration's period
     anneal = round(closing.anneal_ps / timestep)
     if closing.control == "force":
         sample = max(5, 5 * round(closing.dwell_ps / timestep / area.snapshots / 5))
@@ -64,7 +64,7 @@ def plan_closing(settings: HardnessSettings, asperity: AsperitySettings) -> Plan
         force_steps = np.ceil(1000 * closing.max_stress_GPa / closing.force_step_MPa)
         segments = int(np.ceil(force_steps / closing.segment_force_steps))
         return Plan(timestep, 0.0, sample, dwell * closing.segment_force_steps, segments, 0, anneal, dwell)
-    size = closing.sphere_radius_nm if closing.counterface == "sphere" else asperity.amplitude_nm
+    size = closing.sphere_radius_nm if closing.counterface == "sphere" else run.asperity.amplitude_nm
     travel = clearance_A(settings) + 10 * closing.depth_over_amplitude * size
     if closing.control == "steps":
         step = area.travel_A / area.snapshots
@@ -103,7 +103,7 @@ def prepare_body(
     progress: Progress | None = None,
 ) -> Atoms:
     """Cut a body, anneal its surface, remove strays."""
-    closing, plan = settings.closing, plan_closing(settings, run.asperity)
+    closing, plan = settings.closing, plan_closing(settings, run)
     done = workspace.segments_done(2)
     if not done:
         cut = cut_asperity(glass, run.asperity.tiles, 10 * amplitude_nm, 10 * base_nm, _lammps_seed(*place, 3))

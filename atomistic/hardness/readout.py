@@ -44,7 +44,7 @@ class Sample:
 
     Attributes
     ----------
-    averages : position, force, temperature, energy, driving force, as the script wrote them.
+    averages : position, force, temperature, driving force, as the script wrote them.
     areas_A2 : contact area by the depth that counts as touching, Å².
     touching : atoms in contact.
     """
@@ -75,12 +75,13 @@ class Readout:
         self,
         workspace: Workspace,
         segment_steps: int,
+        timestep_ps: float,
         area: AreaSettings,
         geometry: Geometry,
         cation_types: list[int],
         cutoff_A: float,
     ) -> None:
-        self._workspace, self._segment_steps = workspace, segment_steps
+        self._workspace, self._segment_steps, self._timestep_ps = workspace, segment_steps, timestep_ps
         self._area, self._geometry = area, geometry
         self._cation_types, self._cutoff_A = cation_types, cutoff_A
         self._samples: dict[int, dict[int, Sample]] = {}
@@ -93,7 +94,8 @@ class Readout:
             if n not in self._samples:
                 self._samples[n] = load_samples(self._workspace, n, self._area, self._geometry)
             samples = self._samples[n] | samples
-        return curve_rows(samples, self._segment_steps, self._area, self._geometry)
+        drift = energy_drift(self._workspace, segments, self._segment_steps, samples)
+        return curve_rows(samples, drift, self._timestep_ps, self._area, self._geometry)
 
     def relaxed(self, segment: int) -> Relaxed:
         """The relaxed snapshot after a segment; 0: before the first."""
@@ -120,17 +122,41 @@ def load_samples(workspace: Workspace, segment: int, area: AreaSettings, geometr
     return samples
 
 
-def curve_rows(samples: Mapping[int, Sample], segment_steps: int, area: AreaSettings, geometry: Geometry) -> Rows:
-    """Rows of the curve of the samples of consecutive segments."""
+def energy_drift(
+    workspace: Workspace, segments: range, segment_steps: int, samples: Mapping[int, Sample]
+) -> dict[int, float]:
+    """What the energy balance gained until the end of each segment, eV by step; empty for a quasi-static run.
+
+    The work of what moves is the only energy that may come in, the heat of the thermostats the only one that may leave.
+    """
+    drift = {(segments[0] - 1) * segment_steps: 0.0}
+    for n in segments:
+        if not (workspace / f"energy.{n}").exists():
+            return {}
+        (start, before, _), (end, after, heat) = (load_averages(workspace / f"energy.{k}")[0] for k in (n - 1, n))
+        first, last = (n - 1) * segment_steps, n * segment_steps
+        position, _, _, drive = np.array([samples[step].averages for step in sorted(samples) if first < step <= last]).T
+        bounds = np.concatenate([[start], 0.5 * (position[1:] + position[:-1]), [end]])
+        drift[last] = drift[first] + after - before + heat + float(drive @ np.diff(bounds))
+    return drift
+
+
+def curve_rows(
+    samples: Mapping[int, Sample],
+    drift: Mapping[int, float],
+    timestep_ps: float,
+    area: AreaSettings,
+    geometry: Geometry,
+) -> Rows:
+    """Rows of the curve of the samples of consecutive segments.
+
+    Parameters
+    ----------
+    drift : of `energy_drift`; a row has the value between two ends of segments on the line through them.
+    """
     steps = sorted(samples)
-    position, force, temperature, energy, drive = np.array([samples[step].averages for step in steps]).T
-    # energy balance: the work of what moves is the only energy that may come in; segments start afresh
-    # because the count of the thermostat's energy does
-    gained = np.zeros(len(steps))
-    for k in range(1, len(steps)):
-        new_segment = (steps[k] - 1) // segment_steps != (steps[k - 1] - 1) // segment_steps
-        work = 0.5 * (drive[k] + drive[k - 1]) * (position[k - 1] - position[k])
-        gained[k] = gained[k - 1] + (0.0 if new_segment else energy[k] - energy[k - 1] - work)
+    position, force, temperature, _ = np.array([samples[step].averages for step in steps]).T
+    gained = np.interp(steps, list(drift), list(drift.values())) if drift else np.full(len(steps), np.nan)
     curve = []
     per = area.snapshots
     for k in range(0, len(steps) - per + 1, per):
@@ -142,6 +168,7 @@ def curve_rows(samples: Mapping[int, Sample], segment_steps: int, area: AreaSett
         curve.append(
             {
                 "step": steps[k + per - 1],
+                "time_ps": steps[k + per - 1] * timestep_ps,
                 "displacement_nm": float(position[0] - np.mean(position[part])) / 10,
                 "force_nN": push * EV_PER_A3_IN_GPA / 100,
                 "nominal_stress_GPa": push / geometry.wavelength_A**2 * EV_PER_A3_IN_GPA,

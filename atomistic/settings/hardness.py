@@ -77,7 +77,13 @@ class ClosingSettings(Settings):
         default=2, gt=0, le=1000, description="radius of the spherical counterface", json_schema_extra={"unit": "nm"}
     )
     speed_m_s: float = Field(default=50, gt=0, le=1000, description="closing speed", json_schema_extra={"unit": "m/s"})
-    timestep_fs: float = Field(default=2, ge=0.1, le=4, description="time step", json_schema_extra={"unit": "fs"})
+    timestep_fs: float = Field(
+        default=3,
+        ge=0.1,
+        le=4,
+        description="time step (over the square root of the energy scale: softer bonds vibrate more slowly)",
+        json_schema_extra={"unit": "fs"},
+    )
     temperature_K: float = Field(default=300, ge=1, le=1500, description="temperature", json_schema_extra={"unit": "K"})
     anneal_temperature_K: float = Field(
         default=1000,
@@ -132,7 +138,7 @@ class ClosingSettings(Settings):
         json_schema_extra={"unit": "nm"},
     )
     depth_over_amplitude: float = Field(
-        default=1.7,
+        default=2.2,
         gt=0,
         le=4,
         description="largest travel below the highest atom, in amplitudes (in radii of a spherical counterface); "

@@ -95,6 +95,7 @@ TABLES = (
         "One average of a closing run.",
         (
             _STEP,
+            number("time_ps", "ps", "time since the counterface began to move"),
             _DISPLACEMENT,
             number("force_nN", "nN", "force on the counterface"),
             number("nominal_stress_GPa", "GPa", "force over the cross-section of the cell"),
@@ -105,7 +106,7 @@ TABLES = (
             number(
                 "energy_drift_meV_per_atom",
                 "meV/atom",
-                "energy minus work of what moves minus heat of the thermostat",
+                "energy minus work of what moves minus heat of the thermostat, between the ends of segments by a line",
             ),
             number("contact_atoms", "1", "atoms in contact, mean over the samples of the average"),
             integer("atoms", "number of atoms"),

@@ -54,7 +54,7 @@ def pressed_layers(
     )
     settings = settings.model_copy(update={"closing": closing})
     run = ClosingRun("slab", AsperitySettings(name="slab", tiles=SLAB_TILES, amplitude_nm=0), 1, energy_scale)
-    plan = plan_closing(settings, run.asperity)
+    plan = plan_closing(settings, run)
     start = plan.segments * plan.segment_steps  # from the clearance to first touch; the slab is pressed after it
     steps = start + round(SLAB_TRAVEL_A[bodies - 1] / (plan.speed * plan.timestep))
     plan = replace(plan, segments=-(-steps // plan.segment_steps))

@@ -188,7 +188,7 @@ class _Draw:
         stress = self.stress(truth)
         curve = [
             {
-                "step": 25 * (k + 1),
+                "time_ps": 0.5 * (k + 1),
                 "displacement_nm": float(self.travel[k]),
                 "contact_length_nm": float(self.length[k]),
                 "contact_area_nm2": float(self.length[k] ** 2),

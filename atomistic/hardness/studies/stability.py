@@ -174,7 +174,7 @@ def _closing(
         curve = run_closing(run, material, glass, potential, settings, work / "closing").curve
     except InputError as error:
         return False, str(error).split("; details")[0]
-    elapsed_ps = (curve[-1]["step"] - curve[0]["step"]) * settings.closing.timestep_fs / 1000
+    elapsed_ps = curve[-1]["time_ps"] - curve[0]["time_ps"]
     drift = (curve[-1]["energy_drift_meV_per_atom"] - curve[0]["energy_drift_meV_per_atom"]) / elapsed_ps
     hottest = max(row["temperature_K"] for row in curve)
     return abs(drift) < MAX_DRIFT_CLOSING, f"{drift:+.3f} meV per atom and ps; up to {hottest:.0f} K"

@@ -13,7 +13,7 @@ def curve(stress, length=None, temperature=300.0, drift=0.0):
     length = np.maximum(0, 3.2 * (TRAVEL - 0.25)) if length is None else length
     return [
         {
-            "step": 25 * (k + 1),
+            "time_ps": 0.5 * (k + 1),
             "displacement_nm": float(TRAVEL[k]),
             "contact_length_nm": float(length[k]),
             "contact_area_nm2": float(length[k] ** 2),

@@ -28,6 +28,7 @@ def settings(amplitude_nm=0.2, **closing):
         "frozen_nm": 0.3,
         "thermostat_nm": 0.3,
         "speed_m_s": 400,
+        "depth_over_amplitude": 1.7,
     }
     return HardnessSettings.model_validate(
         {
@@ -171,7 +172,7 @@ def test_contact_repulsion_ends_smoothly_and_is_its_own_derivative():
 
 def test_rough_bodies_start_further_apart():
     assert clearance_A(settings(counterface="oxide")) == clearance_A(settings()) + STRAY_A
-    one, other = (plan_closing(own, own.asperities[0]) for own in (settings(), settings(counterface="oxide")))
+    one, other = (plan_closing(own, planned_runs(own)[0]) for own in (settings(), settings(counterface="oxide")))
     assert other.segments > one.segments
 
 
