@@ -27,6 +27,7 @@ from pyscf.pbc.lib.kpts_helper import is_gamma_point
 from scipy.linalg.blas import ssyrk  # pyright: ignore[reportAttributeAccessIssue]  (generated at run time)
 
 from atomistic.elastic.orbitals_on_grid import atom_orbitals, collocate, pulay_terms
+from atomistic.elastic.projectors import nonlocal_slopes, orbital_atoms
 
 if TYPE_CHECKING:
     from pyscf.pbc.gto import Cell
@@ -209,7 +210,8 @@ class CachedGrid(MultiGridNumInt2):
         cell = self.cell
         dm = np.asarray(mf.make_rdm1())
         energy_weighted = (mf.mo_coeff * (mf.mo_occ * mf.mo_energy)) @ mf.mo_coeff.T
-        gradient = ewald_methods.ewald_nuc_grad(cell) + pp_int.vppnl_nuc_grad(cell, dm)
+        by_ion, strained = nonlocal_slopes(cell, dm, STEP_OF_K if with_stress else None)
+        gradient = ewald_methods.ewald_nuc_grad(cell) + by_ion
         # Γ, and for the stress a small step along each axis of k: Σ_L L <∇µ|ν_L> is the slope of Σ_L exp(ikL) <∇µ|ν_L>
         k_points = np.vstack([np.zeros(3), STEP_OF_K * np.eye(3)]) if with_stress else np.zeros((1, 3))
         kinetic = [-np.asarray(m) for m in cell.pbc_intor("int1e_ipkin", kpts=k_points)]
@@ -226,7 +228,6 @@ class CachedGrid(MultiGridNumInt2):
         twice[0] = 1.0
         if self.mesh[2] % 2 == 0:
             twice[-1] = 1.0
-        strained = np.zeros((3, 3))  # dE/dε
         for atom in range(cell.natm):
             a, b = slices[atom, 2:]
             gradient[atom] += 2 * np.einsum("xuv,uv->x", np.real(kinetic[0][:, a:b]), dm[a:b])
@@ -244,7 +245,7 @@ class CachedGrid(MultiGridNumInt2):
             return forces, None
         strained += self._strain_slope_of_pairs(kinetic, dm) - self._strain_slope_of_pairs(overlap, energy_weighted)
         strained += self._strain_slope_of_fields(mf.xc, rho, spectrum, twice)
-        strained += self._strain_slope_of_ions(dm)
+        strained += self._strain_slope_of_ions()
         return forces, (strained + strained.T) / (2 * cell.vol)
 
     def _strain_slope_of_pairs(self, slopes: list[np.ndarray], dm: np.ndarray) -> np.ndarray:
@@ -254,7 +255,7 @@ class CachedGrid(MultiGridNumInt2):
         ----------
         slopes : derivatives by the position of µ at Γ and a small step along each axis of k, (3, orbitals, orbitals)
         """
-        centres = np.repeat(self.cell.atom_coords(), np.diff(self.cell.aoslice_by_atom()[:, 2:]).ravel(), axis=0)
+        centres = self.cell.atom_coords()[orbital_atoms(self.cell)]
         at_gamma = np.real(slopes[0]) * dm
         total = (at_gamma.sum(axis=1) - at_gamma.sum(axis=2)) @ centres
         for axis, matrix in enumerate(slopes[1:]):
@@ -287,8 +288,8 @@ class CachedGrid(MultiGridNumInt2):
             total -= self.weight * fields[1:] @ potential[1:4].T
         return total + self.weight * (rho @ energy) * np.eye(3)
 
-    def _strain_slope_of_ions(self, dm: np.ndarray) -> np.ndarray:
-        """dE/dε of the ions' Coulomb energy and of the nonlocal pseudopotential, by central differences."""
+    def _strain_slope_of_ions(self) -> np.ndarray:
+        """dE/dε of the ions' Coulomb energy, by central differences."""
         total = np.zeros((3, 3))
         for a, b in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)):
             for sign in (1, -1):
@@ -298,8 +299,7 @@ class CachedGrid(MultiGridNumInt2):
                 cell = self.cell.set_geom_(
                     self.cell.atom_coords() @ strain, "B", a=self.lattice @ strain, inplace=False
                 )
-                energy = cell.energy_nuc() + np.sum(np.asarray(pp_int.get_pp_nl(cell)).real * dm)
-                total[a, b] += 0.5 * sign * energy / STEP_OF_STRAIN
+                total[a, b] += 0.5 * sign * cell.energy_nuc() / STEP_OF_STRAIN
         return total + np.triu(total, 1).T
 
 

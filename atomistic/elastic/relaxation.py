@@ -45,7 +45,7 @@ class Rest(NamedTuple):
     ----------
     steps : ionic steps
     force_left_eV_A, converged : largest force left, and whether it is below the goal
-    hessian_eV_A2 : (3n, 3n), as the optimiser has it in the end
+    hessian_eV_A2 : as the optimiser has it in the end, (3n, 3n); where the cell relaxes, nine rows of it follow
     depth_eV : how far the minimum lies below, by that Hessian and the forces left
     """
 
@@ -74,20 +74,16 @@ def relax_cell(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndar
     ----------
     force_eV_A : largest force left on an atom; a stress counts as the force that its strain exerts on a coordinate as
         stiff as a bond, in a cell of 28 atoms 0.1 eV/Å for 0.2 GPa
-    hessian : of the ions, to start from, eV/Å²
-
-    Returns
-    -------
-    As `relax_ions`; the Hessian is that of the ions alone
+    hessian : to start from, eV/Å²; of the ions, or of ions and cell as a former relaxation left it
     """
     from ase.filters import FrechetCellFilter
 
     n = 3 * len(atoms)
     scale = np.sqrt(atoms.get_volume() * CELL_STIFFNESS_EV_A3 / STRETCH_EV_A2)
+    known = bond_hessian(atoms) if hessian is None else hessian
     whole = STRETCH_EV_A2 * np.eye(n + 9)
-    whole[:n, :n] = bond_hessian(atoms) if hessian is None else hessian
-    rest = _minimise(FrechetCellFilter(atoms, exp_cell_factor=scale), atoms, force_eV_A, max_steps, whole)
-    return rest._replace(hessian_eV_A2=rest.hessian_eV_A2[:n, :n])
+    whole[: len(known), : len(known)] = known
+    return _minimise(FrechetCellFilter(atoms, exp_cell_factor=scale), atoms, force_eV_A, max_steps, whole)
 
 
 def _minimise(target: Any, atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndarray) -> Rest:

@@ -84,7 +84,8 @@ def elastic_response(
     ----------
     atoms : a structure whose forces nearly vanish
     sides : engines of the positive and of the negative strains and displacements; twice the same one, or two meshes
-    hessian : (3n, 3n) rough Hessian of the ions, eV/Å²; the better, the fewer displacements
+    hessian : (3n, 3n) rough Hessian of the ions, eV/Å²; the better, the fewer displacements.  Rows of the cell, which
+        `relax_cell` leaves after those of the ions, are not used
     strain : size of the strains
     displacement_A : largest displacement of an atom where the Hessian is measured
     rounds, tolerance_GPa : at most so many times six directions; fewer once no constant can fall by more than this
@@ -126,7 +127,10 @@ def elastic_response(
         )
         return (down - up) / (2 * step)
 
-    inside = internal_strain(follow.T, push, hessian, rounds, tolerance_GPa / EV_PER_A3_IN_GPA * volume, progress)
+    ions = 3 * len(atoms)
+    inside = internal_strain(
+        follow.T, push, hessian[:ions, :ions], rounds, tolerance_GPa / EV_PER_A3_IN_GPA * volume, progress
+    )
     unit = EV_PER_A3_IN_GPA
     return Response(
         Stiffness(clamped.C * unit, clamped.stress * unit, clamped.error * unit),

@@ -33,6 +33,7 @@ class Hardness:
     Attributes
     ----------
     status : yield, no_yield, or "rejected: why".
+    window_exponent, plateau_exponent : n of stress ~ length^n in the whole window of lengths, and on the plateau.
     """
 
     status: str
@@ -43,6 +44,7 @@ class Hardness:
     hardness_hi: float = float("nan")
     length_min_nm: float = float("nan")
     length_max_nm: float = float("nan")
+    window_exponent: float = float("nan")
     plateau_exponent: float = float("nan")
     plateau_points: int = 0
     onset_displacement_nm: float = float("nan")
@@ -128,6 +130,7 @@ def find_hardness(
         return Hardness(f"rejected: warms by {warming:.0f} K", **measured)
     if np.sum(window) < settings.min_points:
         return Hardness("rejected: contact too small for the window of lengths", **measured)
+    measured["window_exponent"] = _exponent(length[window], stress[window])
     start = onset.displacement_nm
     if start is None:
         return Hardness("no_yield", **measured)
@@ -145,7 +148,7 @@ def find_hardness(
         return Hardness("rejected: too few averages between onset and the end of the window", **measured)
     first = settled(stress[beyond])
     plateau, lengths = stress[beyond][first:], length[beyond][first:]
-    exponent = float(np.polyfit(np.log(lengths), np.log(plateau), 1)[0])
+    exponent = _exponent(lengths, plateau)
     low, high = interval_of_mean(plateau)
     measured |= {
         "contact_length_nm": float(np.mean(lengths)),
@@ -205,6 +208,13 @@ def point(curve: Rows, witness: Rows, run: Mapping[str, Any], settings: Hardness
         "python_cpu_s": run["python_cpu_s"],
         **{key: run[key] for key in UNLOADED if key in run},
     }
+
+
+def _exponent(length: np.ndarray, stress: np.ndarray) -> float:
+    """n of stress ~ length^n; NaN where adhesion pulls."""
+    if np.any(stress <= 0):
+        return float("nan")
+    return float(np.polyfit(np.log(length), np.log(stress), 1)[0])
 
 
 def _first_stretch(mask: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ from the points.
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from scipy.special import stdtrit
 
 from atomistic.settings import FitSettings, HardnessSettings
 
@@ -57,6 +58,7 @@ def fit_size_effect(
     result["free_fit"] = {name: free_fit(group, fit) for name, group in free.items()}
     result["halved_over_full"] = scale_ratios(used)
     result["size_effect"] = size_exponents(used, fit)
+    result["rise_within_runs"] = rise_within_runs(points)
     systematic = systematic_deviations(fit, area_error)
     h_macro, h_prime = (literature_samples if fit.h_macro == "literature" else free_samples)(used, fit, systematic)
     result["inputs"] = {
@@ -208,6 +210,23 @@ def size_exponents(points: Sequence[Point], fit: FitSettings) -> dict:
             "length_max_nm": length.max(),
         }
     return fits
+
+
+def rise_within_runs(points: Sequence[Point]) -> dict:
+    """Mean n of stress ~ length^n in the window of lengths, at each energy scale, with its 68 % interval.
+
+    All runs that reached the window count, also those that the rule on n refuses: else the mean would be too low.
+    Student's t from the scatter between runs, which holds what noise does within them.
+    """
+    rises = {}
+    for scale in sorted({float(point["energy_scale"]) for point in points}):
+        group = [point for point in _of_scale(points, scale) if np.isfinite(float(point["window_exponent"]))]
+        n = np.array([float(point["window_exponent"]) for point in group])
+        if len(n) < 2:
+            continue
+        middle, half = float(np.mean(n)), float(stdtrit(len(n) - 1, INTERVAL[1]) * np.sqrt(_scatter(n)))
+        rises[f"scale_{scale:g}"] = {"mean": middle, "low": middle - half, "high": middle + half, "runs": len(n)}
+    return rises
 
 
 def scale_ratios(points: Sequence[Point]) -> list[dict]:

@@ -147,7 +147,9 @@ class TensorSettings(Settings):
         description="largest force left when ions and cell relax before",
         json_schema_extra={"unit": "eV/A"},
     )
-    max_steps: int = Field(default=25, ge=1, le=500, description="steps of that relaxation")
+    max_steps: int = Field(
+        default=40, ge=1, le=500, description="steps of that relaxation, on one mesh and again on both"
+    )
 
 
 class ElasticSettings(Settings):

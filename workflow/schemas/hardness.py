@@ -24,6 +24,7 @@ POINT: tuple[Column, ...] = (
     number("hardness_hi", "GPa", "upper end of the 68 % interval of hardness_GPa"),
     number("length_min_nm", "nm", "smallest contact length of the plateau"),
     number("length_max_nm", "nm", "largest contact length of the plateau"),
+    number("window_exponent", "1", "n of stress ~ length^n in the whole window of lengths"),
     number("plateau_exponent", "1", "n of stress ~ length^n on the plateau"),
     integer("plateau_points", "averages on the plateau"),
     number("onset_displacement_nm", "nm", "travel at the onset of plasticity"),

@@ -27,7 +27,8 @@ def settings(amplitude_nm=0.2, **closing):
         "counter_base_nm": 1,
         "frozen_nm": 0.3,
         "thermostat_nm": 0.3,
-        "speed_m_s": 400,
+        "speed_m_s": 400,  # violent: with the time step of slower closings an atom can be driven through the thin base
+        "timestep_fs": 2,
         "depth_over_amplitude": 1.7,
     }
     return HardnessSettings.model_validate(

@@ -1,13 +1,19 @@
 import numpy as np
 import pytest
 
-from atomistic.hardness.size_effect import fit_size_effect, literature_samples, scale_ratios, variance_budget
+from atomistic.hardness.size_effect import (
+    fit_size_effect,
+    literature_samples,
+    rise_within_runs,
+    scale_ratios,
+    variance_budget,
+)
 from atomistic.settings import FitSettings, HardnessSettings
 
 GLASS = [{"gate": {"passed": True, "reasons": []}}]
 
 
-def point(hardness, length, scale=1.0, asperity="a", status="yield", spread=0.05):
+def point(hardness, length, scale=1.0, asperity="a", status="yield", spread=0.05, rise=0.1):
     return {
         "run": f"{asperity}_{scale}_{length}",
         "status": status,
@@ -17,6 +23,7 @@ def point(hardness, length, scale=1.0, asperity="a", status="yield", spread=0.05
         "hardness_lo": str(hardness - spread),
         "hardness_hi": str(hardness + spread),
         "contact_length_nm": str(length),
+        "window_exponent": str(rise),
         "atom_steps": "1e6",
         "lammps_cpu_s": "0.98",
         "python_cpu_s": "0.02",
@@ -130,3 +137,16 @@ def test_budget_is_the_variance_of_what_is_handed_on():
     budget = variance_budget(points, fit, systematic)
     assert budget["std"] == pytest.approx(np.std(h_prime), rel=0.02)
     assert budget["statistical"]["share"] + budget["systematic"]["share"] == pytest.approx(1)
+
+
+def test_the_rise_within_runs_counts_those_that_its_rule_refuses():
+    rises = (-0.1, 0.2, 0.5, 0.6)
+    points = [point(9, 3, status="yield" if n < 0.4 else "rejected: stress still rises", rise=n) for n in rises]
+    points.append(point(5, 3, scale=0.5, rise=0.3))  # alone at its scale: no scatter, no interval
+    points.append(point(np.nan, np.nan, status="rejected: contact too small", rise=np.nan))
+    found = rise_within_runs(points)
+    assert list(found) == ["scale_1"]
+    assert found["scale_1"]["mean"] == pytest.approx(0.3)
+    assert found["scale_1"]["runs"] == 4
+    # Student's t of three degrees of freedom: 1.189 at 84 %
+    assert found["scale_1"]["high"] - 0.3 == pytest.approx(1.189 * np.std(rises, ddof=1) / 2, rel=2e-3)
