@@ -1,7 +1,7 @@
-"""Error of B against run time.  In: material; bulk moduli and points if there are any.  Out: accuracy/elastic.csv."""
+"""Error of B and G against run time.  In: material, bulk moduli and points if any.  Out: accuracy/elastic.csv."""
 
 from atomistic.elastic.networks import crystal
-from atomistic.elastic.studies.accuracy import accuracy_points, constants_points, ensemble_points
+from atomistic.elastic.studies.accuracy import accuracy_points, constants_points, ensemble_points, shear_points
 from atomistic.materials import load_material
 from workflow.checks import accuracy_rows
 from workflow.job import job
@@ -12,6 +12,7 @@ with job(snakemake) as run:
     small = crystal(material, "beta", (1, 1, 1))
     points = accuracy_points(small, crystal(material, "beta"), run.progress)
     rows = list(accuracy_rows("elastic", points))
+    rows += accuracy_rows("elastic", shear_points(small, run.progress))
     rows += accuracy_rows("elastic", constants_points(small, material.part("network_glass")))
     if snakemake.input.get("moduli"):
         clamped = [

@@ -1,4 +1,4 @@
-"""Error of the bulk modulus against run time: one knob of the calculation at a time, on small cells of β-Si3N4."""
+"""Error of bulk and shear modulus against run time: one knob of the calculation at a time, on cells of β-Si3N4."""
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 from ase import Atoms
+from ase.calculators.calculator import Calculator
 
-from atomistic.elastic.dft import PyscfGamma, commensurate_mesh
+from atomistic.elastic.dft import PyscfGamma, TwoMeshes, commensurate_mesh
 from atomistic.elastic.energy_scans import Point, scan_volumes
 from atomistic.elastic.equation_of_state import fit_equation_of_state
 from atomistic.elastic.joint_moduli import measure_constants
@@ -128,25 +129,62 @@ def constants_points(cell: Atoms, criteria: NetworkGlass) -> Iterator[dict[str, 
         "force_eV_A": (0.3, 0.1, 0.03, 1e-3),
     }
 
-    def shear_modulus(settings: TensorSettings) -> tuple[float, dict[str, float]]:
-        wall, cpu = time.perf_counter(), time.process_time()
-        measured = measure_constants(cell, tersoff_calculator(criteria.tersoff), settings)
-        cost = {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}
-        return (isotropic(measured.response.relaxed).G if measured.response else float("nan")), cost
-
-    finest, _ = shear_modulus(base)
+    finest, _ = shear_modulus(cell, tersoff_calculator(criteria.tersoff), base)
     for knob, values in knobs.items():
         for value in values:
-            G, cost = shear_modulus(base.model_copy(update={knob: value}))
-            yield {
-                "case": f"G {G:.2f} GPa, Tersoff potential",
-                "knob": f"tensor.{knob}",
-                "value": value,
-                "error": G / finest - 1,
-                "error_metric": "relative error of G",
-                "reference": f"finest of each: {finest:.2f} GPa",
-                **cost,
-            }
+            settings = base.model_copy(update={knob: value})
+            G, cost = shear_modulus(cell, tersoff_calculator(criteria.tersoff), settings)
+            yield shear_point(f"tensor.{knob}", value, G, finest, "finest of each, Tersoff potential", cost)
+
+
+def shear_modulus(cell: Atoms, calculator: Calculator, settings: TensorSettings) -> tuple[float, dict[str, float]]:
+    """G of ions that follow, GPa, NaN if the cell gave none, and what it cost."""
+    wall, cpu = time.perf_counter(), time.process_time()
+    measured = measure_constants(cell, calculator, settings)
+    cost = {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}
+    return (isotropic(measured.response.relaxed).G if measured.response else float("nan")), cost
+
+
+def shear_point(knob: str, value: Any, G_GPa: float, reference_GPa: float, reference: str, cost: Mapping):
+    """Error of G and cost of one value of a knob."""
+    return {
+        "case": f"G {G_GPa:.2f} GPa",
+        "knob": knob,
+        "value": value,
+        "error": G_GPa / reference_GPa - 1,
+        "error_metric": "relative error of G",
+        "reference": f"{reference}: {reference_GPa:.2f} GPa",
+        **cost,
+    }
+
+
+def shear_points(cell: Atoms, progress: Progress | None = None) -> Iterator[dict[str, Any]]:
+    """What cutoff, one mesh instead of two, SCF tolerance and basis do to the shear modulus by PBE.
+
+    Parameters
+    ----------
+    cell : β-Si3N4 with 14 atoms
+    """
+    base = {**BASE, "cutoff_Ha": 80.0, "tolerance_Ha": 1e-7}
+    knobs: list[tuple[str, Any]] = [
+        ("cutoff_Ha", 80.0),
+        ("cutoff_Ha", 60.0),
+        ("cutoff_Ha", 100.0),
+        ("tolerance_Ha", 1e-6),
+        ("tolerance_Ha", 1e-8),
+        ("basis", "gth-szv-molopt-sr"),
+        ("meshes", 1),
+    ]
+    reference = float("nan")
+    for k, (knob, value) in enumerate(knobs):
+        if progress:
+            progress(k / len(knobs), f"shear modulus, {knob} {value}")
+        p = {**base, knob: value}
+        meshes = p.pop("meshes", 2)
+        engine = PyscfGamma(xc="GGA", mesh=commensurate_mesh(cell.cell.array * 1.03, p["cutoff_Ha"]), **p)
+        G, cost = shear_modulus(cell, TwoMeshes(engine) if meshes == 2 else engine, TensorSettings())
+        reference = G if k == 0 else reference
+        yield shear_point(f"tensor, {knob}", value, G, reference, "80 Ha, 1e-7 Ha, two meshes", cost)
 
 
 def ensemble_points(moduli_GPa: Sequence[float], wall_s: float) -> Iterator[dict[str, Any]]:
