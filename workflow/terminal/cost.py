@@ -149,7 +149,7 @@ class Costs:
         return RELAXATION_STEP_S * (1 + relaxation.max_steps) * self.scf_size * relaxation.cutoff_Ha / 100
 
     def measure_tensor(self, wildcards: Mapping[str, str]) -> float:
-        """Ions and cell come to rest in a third of the steps allowed and a sixth on two meshes; then strained states."""
+        """Ions and cell come to rest in a third of the steps allowed, a sixth on two meshes; then strained states."""
         elastic = self.scene.elastic
         states = elastic.tensor.max_steps * (1 / 3 + 2 / 6) + 14 + 9 * elastic.tensor.rounds
         return STRESS_STEP_S * states * self.scf_size * elastic.relaxation.cutoff_Ha / 100
