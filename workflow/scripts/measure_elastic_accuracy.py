@@ -10,9 +10,9 @@ from workflow.results import load_csv, write_csv
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)
     small = crystal(material, "beta", (1, 1, 1))
-    points = accuracy_points(small, crystal(material, "beta"), run.progress)
-    rows = list(accuracy_rows("elastic", points))
-    rows += accuracy_rows("elastic", shear_points(small, run.progress))
+    doubled = crystal(material, "beta")
+    rows = list(accuracy_rows("elastic", accuracy_points(small, doubled, run.progress)))
+    rows += accuracy_rows("elastic", shear_points(doubled, run.progress))
     rows += accuracy_rows("elastic", constants_points(small, material.part("network_glass")))
     if snakemake.input.get("moduli"):
         clamped = [

@@ -255,6 +255,13 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
         notes.append(f"Free fit of both constants to all points: {', '.join(pairs)}{word}.")
     if budget := fit.get("budget"):
         notes += [_budget_note(budget, kind) for kind in ("statistical", "systematic")]
+    for scale, rise in fit.get("rise_within_runs", {}).items():
+        words = SCALES.get(str(float(scale.removeprefix("scale_"))), (f"energy {scale}",))[0]
+        notes.append(
+            f"Within the runs with {words} the stress rises as length to the power {show(rise['mean'])} "
+            f"[{show(rise['low'])}, {show(rise['high'])}] ({rise['runs']} runs, also those refused for rising); "
+            "0 would be a hardness that does not depend on where a run ends."
+        )
     for ratio in fit.get("halved_over_full", []):
         notes.append(
             f"Halved over full energies, asperity {ratio['asperity']}: {show(ratio['median'])} "
