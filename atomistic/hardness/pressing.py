@@ -73,7 +73,8 @@ def plan_closing(settings: HardnessSettings, run: ClosingRun) -> Plan:
     speed = closing.speed_m_s / 100
     per_sample = area.travel_A / area.snapshots / (speed * timestep)
     sample = max(5, 5 * round(per_sample / 5))
-    segment = sample * max(1, round(10 * closing.segment_nm / (sample * speed * timestep)))
+    # rounded down: a segment as long as the approach ends before contact, where its bonds are the background
+    segment = sample * max(1, int(10 * closing.segment_nm / (sample * speed * timestep) + 1e-9))
     per_segment = segment * speed * timestep
     segments, back = (int(np.ceil(way / per_segment - 1e-9)) for way in (travel, 10 * closing.unload_nm))
     return Plan(timestep, speed, sample, segment, segments, back, anneal, 0)
