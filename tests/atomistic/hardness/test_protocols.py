@@ -214,3 +214,13 @@ def test_other_potentials_make_a_glass_and_close(name, material, coordination, b
     closing = run_closing(planned, oxides[material], made, other, own, tmp_path / "work")
     assert closing.curve[-1]["force_nN"] > 1
     assert np.abs(column(closing.curve, "energy_drift_meV_per_atom")).max() < 3
+
+
+@pytest.mark.parametrize("energy_scale", [1.0, 0.5])
+@pytest.mark.parametrize("speed_m_s", [50, 100, 400])
+def test_the_first_segment_ends_before_contact(speed_m_s, energy_scale):
+    """Its relaxed snapshot is the background of bond exchanges."""
+    own = settings(speed_m_s=speed_m_s, timestep_fs=3, segment_nm=0.1)
+    [run] = planned_runs(own.model_copy(update={"energy_scales": [energy_scale]}))
+    plan = plan_closing(own, run)
+    assert plan.segment_steps * plan.timestep * plan.speed <= clearance_A(own) + 1e-6
