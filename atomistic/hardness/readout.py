@@ -85,6 +85,7 @@ class Readout:
         self._area, self._geometry = area, geometry
         self._cation_types, self._cutoff_A = cation_types, cutoff_A
         self._samples: dict[int, dict[int, Sample]] = {}
+        self._ends: dict[int, np.ndarray] = {}
         self._relaxed: dict[int, Relaxed] = {}
 
     def curve(self, segments: range) -> Rows:
@@ -94,8 +95,16 @@ class Readout:
             if n not in self._samples:
                 self._samples[n] = load_samples(self._workspace, n, self._area, self._geometry)
             samples = self._samples[n] | samples
-        drift = energy_drift(self._workspace, segments, self._segment_steps, samples)
+        ends = {n: end for n in (segments[0] - 1, *segments) if (end := self._end(n)) is not None}
+        drift = energy_drift(ends, self._segment_steps, samples) if ends else {}
         return curve_rows(samples, drift, self._timestep_ps, self._area, self._geometry)
+
+    def _end(self, segment: int) -> np.ndarray | None:
+        """Position, energy and heat at the end of a segment; None of a quasi-static run, which has no balance."""
+        path = self._workspace / f"energy.{segment}"
+        if segment not in self._ends and path.exists():
+            self._ends[segment] = load_averages(path)[0]
+        return self._ends.get(segment)
 
     def relaxed(self, segment: int) -> Relaxed:
         """The relaxed snapshot after a segment; 0: before the first."""
@@ -122,23 +131,26 @@ def load_samples(workspace: Workspace, segment: int, area: AreaSettings, geometr
     return samples
 
 
-def energy_drift(
-    workspace: Workspace, segments: range, segment_steps: int, samples: Mapping[int, Sample]
-) -> dict[int, float]:
-    """What the energy balance gained until the end of each segment, eV by step; empty for a quasi-static run.
+def energy_drift(ends: Mapping[int, np.ndarray], segment_steps: int, samples: Mapping[int, Sample]) -> dict[int, float]:
+    """What the energy balance gained until the end of each segment, eV by step.
 
     The work of what moves is the only energy that may come in, the heat of the thermostats the only one that may leave.
+
+    Parameters
+    ----------
+    ends : position, energy and heat at the ends of consecutive segments, by segment; the first is where the balance
+        begins.
     """
-    drift = {(segments[0] - 1) * segment_steps: 0.0}
-    for n in segments:
-        if not (workspace / f"energy.{n}").exists():
-            return {}
-        (start, before, _), (end, after, heat) = (load_averages(workspace / f"energy.{k}")[0] for k in (n - 1, n))
-        first, last = (n - 1) * segment_steps, n * segment_steps
-        position, _, _, drive = np.array([samples[step].averages for step in sorted(samples) if first < step <= last]).T
-        bounds = np.concatenate([[start], 0.5 * (position[1:] + position[:-1]), [end]])
-        drift[last] = drift[first] + after - before + heat + float(drive @ np.diff(bounds))
-    return drift
+    numbers = sorted(ends)
+    place, energy, heat = np.array([ends[n] for n in numbers]).T
+    steps = sorted(samples)
+    position, _, _, drive = np.array([samples[step].averages for step in steps]).T
+    # between the samples by trapezoids, since the force rises; beyond the last before an end it is held
+    between = np.concatenate([[0.0], np.cumsum(0.5 * (drive[1:] + drive[:-1]) * (position[:-1] - position[1:]))])
+    last = np.searchsorted(steps, segment_steps * np.array(numbers[1:]), side="right") - 1
+    work = drive[0] * (place[0] - position[0]) + between[last] + drive[last] * (position[last] - place[1:])
+    gained = energy[1:] - energy[0] + np.cumsum(heat[1:]) - work
+    return dict(zip([segment_steps * n for n in numbers], [0.0, *gained.tolist()], strict=True))
 
 
 def curve_rows(
@@ -152,7 +164,8 @@ def curve_rows(
 
     Parameters
     ----------
-    drift : of `energy_drift`; a row has the value between two ends of segments on the line through them.
+    drift : of `energy_drift`, empty where there is no balance; a row has the value between two ends of segments on the
+        line through them.
     """
     steps = sorted(samples)
     position, force, temperature, _ = np.array([samples[step].averages for step in steps]).T

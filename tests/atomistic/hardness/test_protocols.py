@@ -109,6 +109,14 @@ def test_controlled_force_is_the_contact_force(close):
     assert np.abs(column(curve, "energy_drift_meV_per_atom")).max() < 3
 
 
+def test_a_quasi_static_closing_has_no_heat_and_no_balance(close):
+    curve = close(settings(control="steps", depth_over_amplitude=0.8)).curve
+    assert column(curve, "force_nN")[0] == 0
+    assert column(curve, "force_nN")[-1] > 0.1
+    assert np.all(column(curve, "temperature_K") == 0)
+    assert np.all(np.isnan(column(curve, "energy_drift_meV_per_atom")))
+
+
 def test_unloading_ends_with_less_force_and_keeps_the_closing_as_it_was(close):
     there = close(settings())
     back = close(settings(unload_nm=0.3))

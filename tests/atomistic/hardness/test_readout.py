@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from atomistic.hardness.readout import Sample, energy_drift
-from atomistic.lammps import Workspace
 
 
 def samples(position, drive):
@@ -13,22 +12,24 @@ def samples(position, drive):
     }
 
 
-def write_energy(workspace, segment, position, energy, heat):
-    (workspace / f"energy.{segment}").write_text(f"{position} {energy} {heat}\n", encoding="utf-8")
-
-
-def test_energy_that_work_and_heat_explain_is_no_drift(tmp_path):
+def test_energy_that_work_and_heat_explain_is_no_drift():
     """A spring of 2 eV/Å² pressed from 10 to 8 Å stores 4 eV; 1 eV of them leaves as heat, 0.5 appear from nowhere."""
-    workspace = Workspace(tmp_path / "work", {}, "closing.in")
     middles = 10 - 0.2 * (np.arange(10) + 0.5)
-    write_energy(workspace, 0, 10.0, -100.0, 0.0)
-    write_energy(workspace, 1, 9.0, -100.0 + 1.0 - 0.4, 0.4)
-    write_energy(workspace, 2, 8.0, -100.0 + 4.0 - 1.0 + 0.5, 0.6)
-    drift = energy_drift(workspace, range(1, 3), 50, samples(middles, 2 * (10 - middles)))
+    ends = {
+        0: np.array([10.0, -100.0, 0.0]),
+        1: np.array([9.0, -100.0 + 1.0 - 0.4, 0.4]),
+        2: np.array([8.0, -100.0 + 4.0 - 1.0 + 0.5, 0.6]),
+    }
+    drift = energy_drift(ends, 50, samples(middles, 2 * (10 - middles)))
     assert list(drift) == [0, 50, 100]
     assert drift[50] == pytest.approx(0, abs=1e-12)
     assert drift[100] == pytest.approx(0.5)
 
 
-def test_a_quasi_static_run_has_no_balance(tmp_path):
-    assert energy_drift(Workspace(tmp_path / "work", {}, "quasistatic.in"), range(1, 3), 50, {}) == {}
+def test_work_by_samples_at_the_end_of_their_interval_gains_nothing():
+    """As in fast closings, where an average is one value; the spring is met at 9 Å."""
+    positions = 10 - 0.2 * np.arange(1, 11)
+    places = {0: 10.0} | {n: positions[2 * n - 1] for n in range(1, 6)}
+    ends = {n: np.array([x, max(0, 9 - x) ** 2, 0.0]) for n, x in places.items()}
+    drift = energy_drift(ends, 20, samples(positions, 2 * np.maximum(0, 9 - positions)))
+    assert list(drift.values()) == pytest.approx([0] * 6, abs=1e-12)
