@@ -27,13 +27,13 @@ from pyscf.pbc.lib.kpts_helper import is_gamma_point
 from scipy.linalg.blas import ssyrk  # pyright: ignore[reportAttributeAccessIssue]  (generated at run time)
 
 from atomistic.elastic.orbitals_on_grid import atom_orbitals, collocate, pulay_terms
-from atomistic.elastic.projectors import nonlocal_slopes, orbital_atoms
 
 if TYPE_CHECKING:
     from pyscf.pbc.gto import Cell
 
 STEP_OF_K = 1e-4  # 1/bohr; the error of a slope by it is (step × 30 bohr)²/6, some 1e-6
 STEP_OF_STRAIN = 1e-4
+PROJECTOR_SLOPES = ("int1e_ipovlp", "int1e_r2_origi_ip2", "int1e_r4_origi_ip2")  # <p|∇µ>; the first <∇p|µ>
 BLOCK = 4096  # grid points per matrix product: a block of 364 orbitals stays in the cache
 
 
@@ -210,10 +210,10 @@ class CachedGrid(MultiGridNumInt2):
         cell = self.cell
         dm = np.asarray(mf.make_rdm1())
         energy_weighted = (mf.mo_coeff * (mf.mo_occ * mf.mo_energy)) @ mf.mo_coeff.T
-        by_ion, strained = nonlocal_slopes(cell, dm, STEP_OF_K if with_stress else None)
-        gradient = ewald_methods.ewald_nuc_grad(cell) + by_ion
         # Γ, and for the stress a small step along each axis of k: Σ_L L <∇µ|ν_L> is the slope of Σ_L exp(ikL) <∇µ|ν_L>
         k_points = np.vstack([np.zeros(3), STEP_OF_K * np.eye(3)]) if with_stress else np.zeros((1, 3))
+        by_ion, strained = nonlocal_slopes(cell, dm, k_points)
+        gradient = ewald_methods.ewald_nuc_grad(cell) + by_ion
         kinetic = [-np.asarray(m) for m in cell.pbc_intor("int1e_ipkin", kpts=k_points)]
         overlap = [-np.asarray(m) for m in cell.pbc_intor("int1e_ipovlp", kpts=k_points)]
         factor, _ = self.occupied_orbitals(mf.make_rdm1())
@@ -301,6 +301,52 @@ class CachedGrid(MultiGridNumInt2):
                 )
                 total[a, b] += 0.5 * sign * cell.energy_nuc() / STEP_OF_STRAIN
         return total + np.triu(total, 1).T
+
+
+def nonlocal_slopes(cell: Any, dm: np.ndarray, k_points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """dE/dR of every ion and dE/dε of E = Σ D_µν <µ|p> h <p|ν> (Hartwigsen et al., PRB 58, 3641 (1998)).
+
+    An overlap of a projector and an orbital depends on the vector between their centres alone.  Under a strain that
+    vector changes by ε times itself; the lattice vectors in it come from the slope by k of the Bloch sums.
+
+    Parameters
+    ----------
+    cell : PySCF's
+    dm : density matrix, (orbitals, orbitals)
+    k_points : Γ, and where the strain is asked for a small step along each axis, 1/bohr
+
+    Returns
+    -------
+    (ions, 3) hartree/bohr and (3, 3) hartree, zero for Γ alone
+    """
+    projectors, strengths = pp_int.fake_cell_vnl(cell)
+    overlaps = pp_int._int_vnl(cell, projectors, strengths, k_points[:1])
+    slopes = pp_int._int_vnl(cell, projectors, strengths, k_points, PROJECTOR_SLOPES, 3)
+    centres, atoms = cell.atom_coords(), orbital_atoms(cell)
+    by_ion, by_strain = np.zeros((cell.natm, 3)), np.zeros((3, 3))
+    taken = [0, 0, 0]
+    for block, strength in enumerate(strengths):
+        rows = []
+        for i in range(len(strength)):
+            rows.append(slice(taken[i], taken[i] + 2 * projectors.bas_angular(block) + 1))
+            taken[i] = rows[i].stop
+        ion = projectors.bas_atom(block)
+        onto = [np.real(overlaps[j][0][rows[j]]) @ dm for j in range(len(strength))]
+        for i, row in enumerate(rows):
+            # 2 from bra and ket; the orbital's centre moves against ∇µ
+            weight = (-2 if i else 2) * sum(h * part for h, part in zip(strength[i], onto, strict=True))
+            per_orbital = np.einsum("xpu,pu->ux", np.real(slopes[i][0][:, row]), weight)
+            np.add.at(by_ion, atoms, per_orbital)
+            by_ion[ion] -= per_orbital.sum(axis=0)
+            by_strain += per_orbital.T @ (centres[atoms] - centres[ion])
+            for axis, slope in enumerate(slopes[i][1:]):
+                by_strain[:, axis] += np.einsum("xpu,pu->x", np.imag(slope[:, row]), weight) / STEP_OF_K
+    return by_ion, by_strain
+
+
+def orbital_atoms(cell: Any) -> np.ndarray:
+    """The atom of every orbital, (orbitals,)."""
+    return np.repeat(np.arange(cell.natm), np.diff(cell.aoslice_by_atom()[:, 2:]).ravel())
 
 
 def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
