@@ -78,15 +78,10 @@ def measure_constants(
     sides = calculator.sides if isinstance(calculator, TwoMeshes) else (calculator, calculator)
     rest = None
     try:
-        for engine, share in ((sides[0], ROUGH), (calculator, 1.0)):
-            atoms.calc = engine
-            before, hessian = (rest.steps, rest.hessian_eV_A2) if rest else (0, hessian)
-            rest = relax_cell(atoms, share * settings.force_eV_A, settings.max_steps, hessian)
-            rest = rest._replace(steps=before + rest.steps)
-            if not rest.converged:
-                left = f"{rest.force_left_eV_A:.2f} eV/A left on an atom"
-                return Measured(atoms, rest, None, f"ions and cell not at rest after {rest.steps} steps, {left}")
-        assert rest is not None
+        rest = _relax(atoms, calculator, settings, hessian)
+        if not rest.converged:
+            left = f"{rest.force_left_eV_A:.2f} eV/A left on an atom"
+            return Measured(atoms, rest, None, f"ions and cell not at rest after {rest.steps} steps, {left}")
         constants = elastic_response(
             atoms,
             sides,
@@ -100,6 +95,20 @@ def measure_constants(
     except (CalculationFailed, NotImplementedError, InputError, np.linalg.LinAlgError, FloatingPointError) as error:
         return Measured(atoms, rest, None, str(error))
     return Measured(atoms, rest, constants, "")
+
+
+def _relax(atoms: Atoms, calculator: Calculator, settings: TensorSettings, hessian: np.ndarray | None) -> Rest:
+    """Ions and cell at rest; of two meshes the first goes ahead as far as its ripple lets it."""
+    before = 0
+    if isinstance(calculator, TwoMeshes):
+        atoms.calc = calculator.sides[0]
+        rough = relax_cell(atoms, ROUGH * settings.force_eV_A, settings.max_steps, hessian)
+        if not rough.converged:
+            return rough
+        before, hessian = rough.steps, rough.hessian_eV_A2
+    atoms.calc = calculator
+    rest = relax_cell(atoms, settings.force_eV_A, settings.max_steps, hessian)
+    return rest._replace(steps=before + rest.steps)
 
 
 def isotropic_rows(report: Mapping[str, Any]) -> list[dict[str, Any]]:
