@@ -27,7 +27,6 @@ CUTOFFS_HA = (40.0, 60.0, 80.0, 100.0, 140.0)
 TOLERANCES_HA = (1e-3, 1e-4, 1e-6, 1e-8)
 RANGES = (0.02, 0.04, 0.06)  # five of the dense strains each
 COUNTS = (5, 7, 13)  # over the whole range
-METRIC = "relative error of B"
 
 
 def timed_scan(atoms: Atoms, strains: Sequence[float], **changes: Any) -> tuple[list[Point], dict[str, float]]:
@@ -48,15 +47,17 @@ def modulus(points: Sequence[Point]) -> float:
     return fit_equation_of_state([p.volume_A3 for p in good], [p.energy_eV for p in good]).B_GPa
 
 
-def point(knob: str, value: Any, B_GPa: float, reference_GPa: float, reference: str, cost: Mapping) -> dict[str, Any]:
-    """Error and cost of one value of a knob."""
+def point(
+    knob: str, value: Any, modulus_GPa: float, reference_GPa: float, reference: str, cost: Mapping, symbol: str = "B"
+) -> dict[str, Any]:
+    """Error and cost of one value of a knob; `symbol` names the modulus, B or G."""
     return {
-        "case": f"B {B_GPa:.1f} GPa",
+        "case": f"{symbol} {modulus_GPa:.2f} GPa",
         "knob": knob,
         "value": value,
-        "error": B_GPa / reference_GPa - 1,
-        "error_metric": METRIC,
-        "reference": f"{reference}: {reference_GPa:.1f} GPa",
+        "error": modulus_GPa / reference_GPa - 1,
+        "error_metric": f"relative error of {symbol}",
+        "reference": f"{reference}: {reference_GPa:.2f} GPa",
         **cost,
     }
 
@@ -140,7 +141,7 @@ def constants_points(cell: Atoms, criteria: NetworkGlass) -> Iterator[dict[str, 
     for knob, values in knobs.items():
         for value in values:
             G, cost = shear_modulus(base.model_copy(update={knob: value}))
-            yield shear_point(f"tensor.{knob}", value, G, finest, "finest of each, Tersoff potential", cost)
+            yield point(f"tensor.{knob}", value, G, finest, "finest of each, Tersoff potential", cost, "G")
 
 
 def shear_points(cell: Atoms, progress: Progress | None = None) -> Iterator[dict[str, Any]]:
@@ -167,7 +168,7 @@ def shear_points(cell: Atoms, progress: Progress | None = None) -> Iterator[dict
             response = elastic_response(cell, sides, bond_hessian(cell), settings.strain, 0.0, 0, 0.0)
         G = isotropic(response.relaxed).G
         reference = G if done == 0 else reference
-        yield shear_point(f"{knob}, strained", value, G, reference, "80 Ha, 1e-7 Ha, two meshes", cost)
+        yield point(f"{knob}, strained", value, G, reference, "80 Ha, 1e-7 Ha, two meshes", cost, "G")
 
 
 @contextmanager
@@ -177,21 +178,6 @@ def timed() -> Iterator[dict[str, float]]:
     wall, cpu = time.perf_counter(), time.process_time()
     yield cost
     cost |= {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}
-
-
-def shear_point(
-    knob: str, value: float, G_GPa: float, reference_GPa: float, reference: str, cost: Mapping[str, float]
-) -> dict[str, Any]:
-    """Error of G and cost of one value of a knob."""
-    return {
-        "case": f"G {G_GPa:.2f} GPa",
-        "knob": knob,
-        "value": value,
-        "error": G_GPa / reference_GPa - 1,
-        "error_metric": "relative error of G",
-        "reference": f"{reference}: {reference_GPa:.2f} GPa",
-        **cost,
-    }
 
 
 def ensemble_points(moduli_GPa: Sequence[float], wall_s: float) -> Iterator[dict[str, Any]]:
