@@ -256,7 +256,7 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
     if budget := fit.get("budget"):
         notes += [_budget_note(budget, kind) for kind in ("statistical", "systematic")]
     for scale, rise in fit.get("rise_within_runs", {}).items():
-        words = SCALES.get(str(float(scale.removeprefix("scale_"))), (f"energy {scale}",))[0]
+        words, _, _ = _scale({"energy_scale": scale.removeprefix("scale_")})
         notes.append(
             f"Within the runs with {words} the stress rises as length to the power {show(rise['mean'])} "
             f"[{show(rise['low'])}, {show(rise['high'])}] ({rise['runs']} runs, also those refused for rising); "
