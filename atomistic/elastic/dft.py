@@ -302,9 +302,11 @@ def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> n
     c = last.orbitals
     if older:
         known = np.stack([(old.overlap - last.overlap).ravel() for old in older])
+        wanted = (overlap - last.overlap).ravel()
         gram = known @ known.T
-        gram += GUESS_DAMPING * np.trace(gram) * np.eye(len(older))
-        weights = np.linalg.lstsq(gram, known @ (overlap - last.overlap).ravel())[0]  # tolerates repeated geometries
+        # also by the size of what is wanted: former geometries that differ by rounding alone get no weight
+        gram += GUESS_DAMPING * (np.trace(gram) + wanted @ wanted) * np.eye(len(older))
+        weights = np.linalg.lstsq(gram, known @ wanted)[0]  # tolerates repeated geometries
         c = (1 - weights.sum()) * c
         for weight, old in zip(weights, older, strict=True):
             left, _, right = np.linalg.svd(old.orbitals.T @ old.overlap @ last.orbitals)

@@ -150,6 +150,13 @@ def test_orbitals_along_a_line_are_extrapolated_as_a_polynomial():
     assert errors[0] > 2 * errors[1] > 4 * errors[2]
     assert extrapolated_orbitals([], goal.overlap) is None
 
+    # two meshes at one geometry: overlaps alike but for rounding, orbitals not
+    twin = solution(0.35)
+    other = solution(0.1)._replace(overlap=twin.overlap + 1e-15 * np.eye(6))
+    start = extrapolated_orbitals([other, twin], goal.overlap)
+    assert start is not None
+    assert np.linalg.norm(start @ start.T - density) == pytest.approx(errors[0])
+
 
 def test_two_meshes_take_most_of_the_ripple_away():
     """A crystal moved as a whole keeps its energy; on a coarse mesh it does not."""
