@@ -57,7 +57,7 @@ class CachedGrid(MultiGridNumInt2):
         self.points = int(np.prod(self.mesh))
         self.weight = cell.vol / self.points
         self.lattice = cell.lattice_vectors()
-        self.atoms = atom_orbitals(cell)
+        self.atoms = atom_orbitals(cell, max(cell.precision, float(np.finfo(precision).eps)))
         self.orbitals = collocate(self.atoms, self.lattice, tuple(self.mesh), cell.nao, precision)
         self.wave_vectors = _wave_vectors(cell, self.mesh)
         g2 = np.einsum("xijk,xijk->ijk", self.wave_vectors[1], self.wave_vectors[1])
@@ -214,8 +214,10 @@ class CachedGrid(MultiGridNumInt2):
         k_points = np.vstack([np.zeros(3), STEP_OF_K * np.eye(3)]) if with_stress else np.zeros((1, 3))
         by_ion, strained = nonlocal_slopes(cell, dm, k_points)
         gradient = ewald_methods.ewald_nuc_grad(cell) + by_ion
-        kinetic = [-np.asarray(m) for m in cell.pbc_intor("int1e_ipkin", kpts=k_points)]
-        overlap = [-np.asarray(m) for m in cell.pbc_intor("int1e_ipovlp", kpts=k_points)]
+        kinetic, overlap = (  # hermi 2: antihermitian, so PySCF computes half
+            [-np.asarray(m) for m in cell.pbc_intor(name, hermi=2, kpts=k_points)]
+            for name in ("int1e_ipkin", "int1e_ipovlp")
+        )
         factor, _ = self.occupied_orbitals(mf.make_rdm1())
         rho = self.density(mf.make_rdm1())
         v, _, _ = self.potential(mf.xc, rho)
