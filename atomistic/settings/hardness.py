@@ -279,7 +279,7 @@ class YieldSettings(Settings):
         description="averages beyond the onset",
     )
     max_exponent: float = Field(
-        default=0.4,
+        default=0.35,
         gt=0,
         le=2,
         description="largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic",
