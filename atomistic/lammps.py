@@ -213,12 +213,21 @@ def run_lammps(
             if line.startswith("ERROR"):
                 error_line = error_line or line.strip()
             elif on_step is not None:
-                first = line.split(maxsplit=1)[:1]
-                if first and first[0].isdigit() and line.startswith(" "):
-                    on_step(int(first[0]))
+                step, *values = line.split() or [""]
+                # numbers alone: also "1 by 1 by 1 MPI processor grid" is indented
+                if line.startswith(" ") and step.isdigit() and all(map(_is_number, values)):
+                    on_step(int(step))
     if process.returncode != 0:
         reason = error_line or f"stopped by signal or exit code {process.returncode}"
         raise InputError(f"LAMMPS {script}: {reason}; details in {log_path}")
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def executable() -> Path:

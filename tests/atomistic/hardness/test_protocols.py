@@ -129,16 +129,17 @@ def test_unloading_ends_with_less_force_and_keeps_the_closing_as_it_was(close):
 
 
 def test_two_processes_move_the_same_atoms(potential, glass, tmp_path):
-    """`mpirun -np 2`: sums in another order, else the same motion."""
-    ends = []
+    """`mpirun -np 2`: sums in another order, else the same motion; progress is that of the thermo lines alone."""
+    ends, steps = [], []
     for processes in (1, 2):
         workspace = Workspace(tmp_path / str(processes), {}, "nve.in")
         write_forcefield(workspace, potential, glass.elements, 1.0)
         write_data(workspace / "start.data", glass, {"Si": 28.085, "O": 15.999})
         variables = {"data": "start.data", "pairs": "pairs", "timestep": 0.001, "steps": 20, "every": 10}
-        run_lammps("nve.in", workspace, variables, processes=processes)
+        run_lammps("nve.in", workspace, variables, steps.append, processes)
         ends.append(load_data(workspace / "end.data", glass.elements).positions_A)
     np.testing.assert_allclose(ends[1], ends[0], atol=1e-9)
+    assert steps == 2 * [0, 10, 20]
 
 
 def test_the_machine_says_what_starts_several_processes(potential, glass, tmp_path, monkeypatch):
