@@ -316,6 +316,7 @@ class SystematicSettings(Settings):
     rate: float = Field(default=0.05, ge=0, le=1, description="closing speed in use against rest")
     base: float = Field(default=0.04, ge=0, le=1, description="base in use against a thicker one")
     potential: float = Field(default=0.1, ge=0, le=1, description="one potential of silica against another")
+    shape: float = Field(default=0.23, ge=0, le=1, description="asperities half and twice as steep as those in use")
 
 
 class FitSettings(Settings):

@@ -39,7 +39,7 @@ def series(h_macro, h_prime, lengths=(2, 4, 8, 16), scales=(1.0, 0.5)):
 
 
 def test_free_fit_finds_both_parameters_of_a_wide_series():
-    exact = {"rate": 0, "base": 0, "potential": 0}
+    exact = {"rate": 0, "base": 0, "potential": 0, "shape": 0}
     settings = HardnessSettings.model_validate(
         {"fit": {"h_macro": "free", "systematic": exact}, "energy_scales": [1.0]}
     )
