@@ -222,7 +222,7 @@ _SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
     "make_crystal": _constant(0.0),
     "make_glass": Costs.make_glass,
     "run_closing": Costs.run_closing,
-    "make_amorphous": lambda costs, wildcards: QUENCH_S * costs.scf_size,
+    "make_amorphous": lambda costs, wildcards: QUENCH_S * costs.scene.elastic.glass.formula_units / 4,
     "relax_amorphous": Costs.relax_amorphous,
     "scan_volumes": Costs.scan_volumes,
     "scan_relaxed_volumes": Costs.scan_volumes,
