@@ -32,14 +32,9 @@ def load_structure(path: str | Path) -> Atoms:
     return read(io.StringIO(Path(path).read_text(encoding="utf-8")), format="extxyz")  # type: ignore[return-value]
 
 
-def write_start(
-    path: str | Path, calculator: Calculator | None, hessian_eV_A2: np.ndarray | None, provenance: Mapping[str, Any]
-) -> None:
-    """Keep what a relaxation ended with for the next job to start from: the ions' Hessian and PySCF's orbitals."""
+def write_start(path: str | Path, calculator: Calculator | None, provenance: Mapping[str, Any]) -> None:
+    """Keep the orbitals that a relaxation with PySCF ended with, for the next job to start from."""
     groups = {}
-    if hessian_eV_A2 is not None:
-        axes = ("coordinate", "coordinate")
-        groups["ions"] = {"hessian": Dataset(hessian_eV_A2, "eV/A2", "Hessian of the ions, approximate", axes)}
     if isinstance(calculator, PyscfGamma) and calculator.history:
         overlap, orbitals = calculator.history[-1]
         groups["last"] = {
@@ -49,12 +44,11 @@ def write_start(
     write_h5(path, groups, {}, provenance)
 
 
-def start_from(calculator: Calculator, path: str | Path) -> np.ndarray | None:
-    """Let a calculator start from what `write_start` kept; returns the Hessian of the ions, (3n, 3n), eV/Å²."""
+def start_from(calculator: Calculator, path: str | Path) -> None:
+    """Let a calculator start from what `write_start` kept."""
     groups = load_h5(path)[0]
     if isinstance(calculator, PyscfGamma) and "last" in groups:
         calculator.history = [Solution(groups["last"]["overlap"], groups["last"]["orbitals"])]
-    return groups["ions"]["hessian"] if "ions" in groups else None
 
 
 class ScfStore(MutableMapping[str, dict[str, np.ndarray]]):

@@ -194,7 +194,7 @@ class PyscfGamma(Calculator):
         p = self.parameters
         mf = self._mean_field(mesh)
         overlap = np.asarray(mf.cell.pbc_intor("int1e_ovlp", hermi=1))  # half the time of PySCF's own call
-        mf.get_ovlp = lambda *_: overlap  # asked for again and again
+        self._keep_overlap(mf, overlap)
         energy = mf.kernel(self._guess(mf.cell, overlap))
         converged = bool(mf.converged) and bool(np.isfinite(energy))
         filled = np.asarray(mf.mo_occ) > 0
@@ -220,6 +220,11 @@ class PyscfGamma(Calculator):
             raise NotImplementedError(f"{wanted} with numerics {p.numerics!r}; use 'cached-grid'")
         return solved
 
+    @staticmethod
+    def _keep_overlap(mf: Any, overlap: np.ndarray) -> None:
+        mf.get_ovlp = lambda *_: overlap  # asked for again and again
+        mf._numint.basis_overlap = overlap
+
     def _guess(self, cell, overlap: np.ndarray) -> Any:
         """Density matrix of extrapolated orbitals; where none fit, that of a loose SCF on a coarse mesh."""
         from pyscf import lib
@@ -231,7 +236,7 @@ class PyscfGamma(Calculator):
         if self.parameters.numerics != "cached-grid":
             return None
         coarse = self._mean_field(tuple(int(np.ceil(COARSE * n)) for n in cell.mesh))
-        coarse.get_ovlp = lambda *_: overlap
+        self._keep_overlap(coarse, overlap)
         coarse.conv_tol, coarse.conv_tol_grad = COARSE_TOLERANCE_HA, 10 * np.sqrt(COARSE_TOLERANCE_HA)
         coarse.kernel()  # where it does not converge the fine mesh goes on from where it ended
         return coarse.make_rdm1()

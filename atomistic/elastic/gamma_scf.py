@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 STEP_OF_K = 1e-4  # 1/bohr; the error of a slope by it is (step × 30 bohr)²/6, some 1e-6
 STEP_OF_STRAIN = 1e-4
 PROJECTOR_SLOPES = ("int1e_ipovlp", "int1e_r2_origi_ip2", "int1e_r4_origi_ip2")  # <p|∇µ>; the first <∇p|µ>
+LAG = 0.002  # share of the electrons that may have moved since the last full matrix; 0.02 costs a cycle now and then
 BLOCK = 4096  # grid points per matrix product: a block of 364 orbitals stays in the cache
 
 
@@ -67,6 +68,9 @@ class CachedGrid(MultiGridNumInt2):
         for atom in range(cell.natm):
             local += self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
         self.local = self._to_grid(local) / self.weight  # v_loc(r), hartree
+        self.waves = np.empty((0, self.points), precision)
+        self.basis_overlap: np.ndarray | None = None  # given by whoever has it
+        self._full: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
     # -- Fourier helpers: half spectrum of real fields
     def _to_grid(self, spectrum: np.ndarray) -> np.ndarray:
@@ -106,14 +110,18 @@ class CachedGrid(MultiGridNumInt2):
         return vectors[:, keep] * np.sqrt(abs(values[keep])), np.sign(values[keep])
 
     def density(self, density_matrix: np.ndarray) -> np.ndarray:
-        """ρ on the grid, shape (grid points,)."""
+        """ρ on the grid, shape (grid points,); `waves` then holds the orbitals it is made of."""
         factor, sign = self.occupied_orbitals(density_matrix)
         rows, sign = factor.T.astype(self.precision), sign.astype(self.precision)
+        if self.waves.shape != (len(rows), self.points):
+            self.waves = np.empty((len(rows), self.points), self.precision)
         rho = np.empty(self.points)
         for start in range(0, self.points, BLOCK):
-            waves = rows @ self.orbitals[:, start : start + BLOCK]
-            np.multiply(waves, waves, out=waves)
-            rho[start : start + BLOCK] = sign @ waves
+            here = slice(start, start + BLOCK)
+            part = rows @ self.orbitals[:, here]
+            self.waves[:, here] = part
+            np.multiply(part, part, out=part)
+            rho[here] = sign @ part
         return rho
 
     @cached_property
@@ -180,8 +188,34 @@ class CachedGrid(MultiGridNumInt2):
             raise NotImplementedError("CachedGrid is for the Γ point only: use a supercell")
         rho = self.density(dm_kpts)
         v, electrostatic, exc = self.potential(xc_code, rho)
-        veff = lib.tag_array(self.matrix(v), ecoul=electrostatic, exc=exc, vj=None, vk=None)
+        veff = lib.tag_array(self._matrix_of(dm_kpts, rho, v), ecoul=electrostatic, exc=exc, vj=None, vk=None)
         return float(rho.sum() * self.weight), exc, veff
+
+    def _matrix_of(self, density_matrix: Any, rho: np.ndarray, potential: np.ndarray) -> np.ndarray:
+        """`matrix` of a potential, which after the first one of an SCF lags behind between empty orbitals.
+
+        With δ the change since the last full matrix and Q the projector onto empty orbitals, δ − Qᵀ δ Q is added to it:
+        half the work or less.  The gradient of the orbitals is exact, so the SCF ends at the same solution.
+        """
+        if self.basis_overlap is not None and getattr(density_matrix, "mo_coeff", None) is not None and self._full:
+            matrix, old_rho, old_potential = self._full
+            if self.weight * float(abs(rho - old_rho).sum()) < LAG * self.cell.nelectron:
+                c = self.occupied_orbitals(density_matrix)[0] * np.sqrt(0.5)
+                change = np.sqrt(0.5) * self._onto_waves(potential - old_potential)
+                s_c = self.basis_overlap @ c
+                update = (change - 0.5 * s_c @ (c.T @ change)) @ s_c.T
+                return matrix + update + update.T
+        self._full = self.matrix(potential), rho, potential
+        return self._full[0]
+
+    def _onto_waves(self, potential: np.ndarray) -> np.ndarray:
+        """Σ_r w φ_µ v ψ_i with the orbitals ψ of the last density, shape (basis functions, orbitals)."""
+        weighted = (self.weight * potential).astype(self.precision)
+        total = np.zeros((len(self.orbitals), len(self.waves)))
+        for start in range(0, self.points, BLOCK):
+            here = slice(start, start + BLOCK)
+            total += self.orbitals[:, here] @ (self.waves[:, here] * weighted[here]).T
+        return total
 
     def get_pp(self, kpts=None, return_full=False):
         vpp = np.asarray(pp_int.get_pp_nl(self.cell)).real
@@ -221,8 +255,7 @@ class CachedGrid(MultiGridNumInt2):
         factor, _ = self.occupied_orbitals(mf.make_rdm1())
         rho = self.density(mf.make_rdm1())
         v, _, _ = self.potential(mf.xc, rho)
-        waves = factor.T.astype(self.precision) @ self.orbitals
-        waves *= (self.weight * v).astype(self.precision)
+        waves = self.waves * (self.weight * v).astype(self.precision)
         spectrum = self._spectrum(rho)
         slices = cell.aoslice_by_atom()
         # half spectrum: every wave vector but those in the planes k_z = 0 and Nyquist stands for two

@@ -65,20 +65,14 @@ def measure_constants(
     atoms: Atoms,
     calculator: Calculator,
     settings: TensorSettings,
-    hessian: np.ndarray | None = None,
     progress: Progress | None = None,
 ) -> Measured:
-    """Relax ions and cell, then elastic constants; whatever fails costs this structure only and is named.
-
-    Parameters
-    ----------
-    hessian : (3n, 3n) of the ions, eV/Å², to start from; None is a spring on every bond
-    """
+    """Relax ions and cell, then elastic constants; whatever fails costs this structure only and is named."""
     atoms = strained(atoms, 0.0)
     sides = calculator.sides if isinstance(calculator, TwoMeshes) else (calculator, calculator)
     rest = None
     try:
-        rest = _relax(atoms, calculator, settings, hessian)
+        rest = _relax(atoms, calculator, settings)
         if not rest.converged:
             left = f"{rest.force_left_eV_A:.2f} eV/A left on an atom"
             return Measured(atoms, rest, None, f"ions and cell not at rest after {rest.steps} steps, {left}")
@@ -97,12 +91,12 @@ def measure_constants(
     return Measured(atoms, rest, constants, "")
 
 
-def _relax(atoms: Atoms, calculator: Calculator, settings: TensorSettings, hessian: np.ndarray | None) -> Rest:
+def _relax(atoms: Atoms, calculator: Calculator, settings: TensorSettings) -> Rest:
     """Ions and cell at rest; of two meshes the first goes ahead as far as its ripple lets it."""
-    before = 0
+    before, hessian = 0, None
     if isinstance(calculator, TwoMeshes):
         atoms.calc = calculator.sides[0]
-        rough = relax_cell(atoms, ROUGH * settings.force_eV_A, settings.max_steps, hessian)
+        rough = relax_cell(atoms, ROUGH * settings.force_eV_A, settings.max_steps)
         if not rough.converged:
             return rough
         before, hessian = rough.steps, rough.hessian_eV_A2

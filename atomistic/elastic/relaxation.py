@@ -11,9 +11,12 @@ from ase.calculators.calculator import CalculationFailed, Calculator
 from atomistic.settings import RelaxationSettings
 
 Progress = Callable[[float, str], None]
-BOND_A = 2.3
-STRETCH_EV_A2, BEND_EV_A2, FLOOR_EV_A2 = 25.0, 4.0, 2.0  # of a Si-N bond, about; only the speed depends on them
-CELL_STIFFNESS_EV_A3 = 1.5  # 240 GPa; likewise
+BOND_A, EDGE_A = 2.3, 3.2  # longest Si-N bond, longest edge of a tetrahedron of N
+# of springs along bonds, across them, along edges and under every coordinate; only the speed depends on them.  Fitted to
+# the forces that one glass met on its way to rest
+ALONG_EV_A2, ACROSS_EV_A2, EDGE_EV_A2, FLOOR_EV_A2 = 14.0, 2.5, 3.5, 2.0
+LONGEST_STEP_A = 0.3
+COORDINATE_EV_A2, CELL_STIFFNESS_EV_A3 = 25.0, 1.5  # of a bond, and 240 GPa: by these a strain counts as a coordinate
 
 
 def strained(atoms: Atoms, strain: float) -> Atoms:
@@ -23,19 +26,40 @@ def strained(atoms: Atoms, strain: float) -> Atoms:
     return result
 
 
-def bond_hessian(atoms: Atoms) -> np.ndarray:
-    """Hessian of springs along and across every bond between unlike atoms, shape (3n, 3n), eV/Å²."""
+def cell_scale_A(atoms: Atoms) -> float:
+    """Length by which a strain becomes a coordinate as stiff as a bond."""
+    return float(np.sqrt(atoms.get_volume() * CELL_STIFFNESS_EV_A3 / COORDINATE_EV_A2))
+
+
+def spring_hessian(atoms: Atoms) -> np.ndarray:
+    """Hessian of ions and cell by springs along and across bonds between unlike atoms and along edges between N.
+
+    Shape (3n + 9, 3n + 9), eV/Å²; the last nine are the strain's components times `cell_scale_A`.
+    """
     from ase.neighborlist import neighbor_list
 
-    symbols = atoms.get_chemical_symbols()
-    hessian = FLOOR_EV_A2 * np.eye(3 * len(atoms))
-    for i, j, bond in zip(*neighbor_list("ijD", atoms, BOND_A), strict=True):
-        if symbols[i] != symbols[j]:
-            projection = np.outer(bond, bond) / (bond @ bond)
-            spring = STRETCH_EV_A2 * projection + BEND_EV_A2 * (np.eye(3) - projection)
-            hessian[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] += spring
-            hessian[3 * i : 3 * i + 3, 3 * j : 3 * j + 3] -= spring
-    return hessian
+    n, scale = len(atoms), cell_scale_A(atoms)
+    symbols = np.array(atoms.get_chemical_symbols())
+    stretched = []  # weighted slopes of the springs' lengths by every coordinate
+    for i, j, vector in zip(*neighbor_list("ijD", atoms, EDGE_A), strict=True):
+        length = np.linalg.norm(vector)
+        along = np.outer(vector, vector) / length**2
+        if i > j or symbols[i] == symbols[j] != "N" or (symbols[i] != symbols[j] and length > BOND_A):
+            continue
+        if symbols[i] == symbols[j]:
+            directions = np.sqrt(EDGE_EV_A2) * along
+        else:
+            directions = np.sqrt(ALONG_EV_A2) * along + np.sqrt(ACROSS_EV_A2) * (np.eye(3) - along)
+        for direction in directions:
+            slope = np.zeros((n + 3, 3))
+            slope[j] += direction
+            slope[i] -= direction
+            slope[n:] += (np.outer(vector, direction) + np.outer(direction, vector)) / (
+                2 * scale
+            )  # a turn costs nothing
+            stretched.append(slope.ravel())
+    slopes = np.array(stretched).reshape(-1, 3 * n + 9)
+    return slopes.T @ slopes + FLOOR_EV_A2 * np.eye(3 * n + 9)
 
 
 class Rest(NamedTuple):
@@ -45,7 +69,7 @@ class Rest(NamedTuple):
     ----------
     steps : ionic steps
     force_left_eV_A, converged : largest force left, and whether it is below the goal
-    hessian_eV_A2 : as the optimiser has it in the end, (3n, 3n); where the cell relaxes, nine rows of it follow
+    hessian_eV_A2 : as the optimiser has it in the end, (3n, 3n), or (3n + 9, 3n + 9) where the cell relaxes
     depth_eV : how far the minimum lies below, by that Hessian and the forces left
     """
 
@@ -61,10 +85,12 @@ def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndar
 
     Parameters
     ----------
-    hessian : to start from, eV/Å²; None is a spring on every bond.  With ASE's own start, a multiple of the unit
+    hessian : to start from, (3n, 3n), eV/Å²; None takes springs.  With ASE's own start, a multiple of the unit
         matrix, a cell takes about three times as many steps
     """
-    return _minimise(atoms, atoms, force_eV_A, max_steps, bond_hessian(atoms) if hessian is None else hessian)
+    n = 3 * len(atoms)
+    start = spring_hessian(atoms)[:n, :n] if hessian is None else hessian
+    return _minimise(atoms, atoms, force_eV_A, max_steps, start)
 
 
 def relax_cell(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndarray | None = None) -> Rest:
@@ -74,16 +100,12 @@ def relax_cell(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndar
     ----------
     force_eV_A : largest force left on an atom; a stress counts as the force that its strain exerts on a coordinate as
         stiff as a bond, in a cell of 28 atoms 0.1 eV/Å for 0.2 GPa
-    hessian : to start from, eV/Å²; of the ions, or of ions and cell as a former relaxation left it
+    hessian : of ions and cell to start from, as a former relaxation left it; None takes springs
     """
     from ase.filters import FrechetCellFilter
 
-    n = 3 * len(atoms)
-    scale = np.sqrt(atoms.get_volume() * CELL_STIFFNESS_EV_A3 / STRETCH_EV_A2)
-    known = bond_hessian(atoms) if hessian is None else hessian
-    whole = STRETCH_EV_A2 * np.eye(n + 9)
-    whole[: len(known), : len(known)] = known
-    return _minimise(FrechetCellFilter(atoms, exp_cell_factor=scale), atoms, force_eV_A, max_steps, whole)
+    target = FrechetCellFilter(atoms, exp_cell_factor=cell_scale_A(atoms))
+    return _minimise(target, atoms, force_eV_A, max_steps, spring_hessian(atoms) if hessian is None else hessian)
 
 
 def _minimise(target: Any, atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndarray) -> Rest:
@@ -99,7 +121,7 @@ def _minimise(target: Any, atoms: Atoms, force_eV_A: float, max_steps: int, hess
             curvature, modes = np.linalg.eigh(self.state.hessian)
             self.state.hessian = modes * np.maximum(abs(curvature), FLOOR_EV_A2) @ modes.T
 
-    with Cautious(target, logfile=None, maxstep=0.15) as optimizer:
+    with Cautious(target, logfile=None, maxstep=LONGEST_STEP_A) as optimizer:
         optimizer.H0 = hessian
         converged = bool(optimizer.run(fmax=force_eV_A, steps=max_steps))
         forces = target.get_forces()
@@ -150,30 +172,29 @@ UNTOUCHED = Relaxation(0, float("nan"), False, 0.0, float("nan"))
 
 def relax_glass(
     atoms: Atoms, calculator: Calculator, settings: RelaxationSettings, progress: Progress | None = None
-) -> tuple[Atoms, Relaxation, np.ndarray]:
+) -> tuple[Atoms, Relaxation]:
     """Relax the ions of a glass in its cell, for as many steps as the settings afford.
 
     The cell keeps shape and size: its volume is found by the E(V) scan, stress anisotropy is left in it.
 
     Returns
     -------
-    the relaxed cell, how it came to rest, and the Hessian of its ions, (3n, 3n), eV/Å²
+    the relaxed cell, and how it came to rest
     """
     current = strained(atoms, 0.0)
-    springs = bond_hessian(atoms)
     if settings.max_steps == 0:
-        return current, UNTOUCHED, springs
+        return current, UNTOUCHED
     current.calc = calculator
     if progress:
         progress(0.0, f"relaxing ions, at most {settings.max_steps} steps")
     try:
         current.get_forces()  # asked for first, so that the energy comes from the same calculation
         before = current.get_potential_energy()
-        rest = relax_ions(current, settings.force_eV_A, settings.max_steps, springs)
+        rest = relax_ions(current, settings.force_eV_A, settings.max_steps)
         gained = float(before - current.get_potential_energy())
     except CalculationFailed as error:
         # the E(V) scan of this structure will meet the same trouble and name the strains; the others go on
-        return strained(atoms, 0.0), replace(UNTOUCHED, failure=f"relaxation: {error}"), springs
+        return strained(atoms, 0.0), replace(UNTOUCHED, failure=f"relaxation: {error}")
     gap = float(getattr(calculator, "gap_eV", np.nan))
     done = Relaxation(rest.steps, rest.force_left_eV_A, rest.converged, gained, gap)
-    return strained(current, 0.0), done, rest.hessian_eV_A2
+    return strained(current, 0.0), done

@@ -84,8 +84,8 @@ def elastic_response(
     ----------
     atoms : a structure whose forces nearly vanish
     sides : engines of the positive and of the negative strains and displacements; twice the same one, or two meshes
-    hessian : (3n, 3n) rough Hessian of the ions, eV/Å²; the better, the fewer displacements.  Rows of the cell, which
-        `relax_cell` leaves after those of the ions, are not used
+    hessian : rough Hessian of ions and cell as `relax_cell` leaves it, eV/Å²; the better, the fewer displacements.
+        Only the ions' part, its first 3n rows and columns, is used
     strain : size of the strains
     displacement_A : largest displacement of an atom where the Hessian is measured
     rounds, tolerance_GPa : at most so many times six directions; fewer once no constant can fall by more than this

@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import numpy as np
 from ase import Atoms
 from ase.calculators.calculator import Calculator
 
@@ -22,14 +21,12 @@ class Structure:
     Attributes
     ----------
     calculator : as it ended; None where the quenched cell was rejected and nothing was calculated
-    hessian_eV_A2 : (3n, 3n) of the ions, as the relaxation left it; None likewise
     verdict : on the relaxed cell, or on the quenched one that was rejected
     reasons : why the structure does not enter E*; empty for a good one
     """
 
     atoms: Atoms
     calculator: Calculator | None
-    hessian_eV_A2: np.ndarray | None
     verdict: Gate
     relaxation: Relaxation
     reasons: tuple[str, ...]
@@ -65,15 +62,15 @@ def relaxed_structure(
     max_defects : atoms of the quenched cell that may lack or exceed their valence
     """
     verdict = examine(quenched, criteria, max_defects)
-    atoms, calculator, done, hessian = quenched, None, UNTOUCHED, None
+    atoms, calculator, done = quenched, None, UNTOUCHED
     if verdict.passed:
         calculator = make_calculator()
-        atoms, done, hessian = relax_glass(quenched, calculator, settings, progress)
+        atoms, done = relax_glass(quenched, calculator, settings, progress)
         verdict = examine(atoms, criteria)
     reasons = [*verdict.reasons, *filter(None, [done.failure])]
     if done.gap_eV < criteria.gap_eV:
         reasons.append(f"gap {done.gap_eV:.2f} eV: no insulator")
-    return Structure(atoms, calculator, hessian, verdict, done, tuple(reasons))
+    return Structure(atoms, calculator, verdict, done, tuple(reasons))
 
 
 def trusted_moduli(fits: Sequence[Mapping[str, str]], reports: Sequence[Mapping[str, Any]]) -> list[Modulus]:

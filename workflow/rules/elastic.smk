@@ -91,7 +91,7 @@ rule relax_amorphous:
 
 
 def relaxed_glass(wildcards):
-    """Verdict on a glass, and its orbitals and Hessian to start from; a crystal has neither."""
+    """Verdict on a glass, and its orbitals to start from; a crystal has neither."""
     if wildcards.structure in CRYSTALS:
         return {}
     stem = f"{RESULTS}/elastic/structures/{wildcards.structure}"

@@ -23,10 +23,10 @@ with job(snakemake) as run:
         crystal = load_material(snakemake.input.material).crystals.get(snakemake.wildcards.structure)
         cutoff_Ha = crystal.cutoff_Ha if crystal else None
         calculator = make_calculator(dft, "GGA", atoms.cell.array * 1.03, store, cutoff_Ha)
-        start = snakemake.input.get("start")
-        hessian = start_from(calculator, start) if start else None
+        if snakemake.input.get("start"):
+            start_from(calculator, snakemake.input.start)
         if isinstance(calculator, PyscfGamma):
             calculator = TwoMeshes(calculator)  # curvatures feel the ripple of one mesh
-        measured = measure_constants(atoms, calculator, TensorSettings(**settings["tensor"]), hessian, run.progress)
+        measured = measure_constants(atoms, calculator, TensorSettings(**settings["tensor"]), run.progress)
     write_json(snakemake.output.tensor, measured.report(snakemake.wildcards.structure), run.provenance)
     store.remove()

@@ -26,6 +26,6 @@ with job(snakemake) as run:
         run.progress,
     )
     write_text(snakemake.output.structure, structure_text(relaxed.atoms))
-    write_start(snakemake.output.start, relaxed.calculator, relaxed.hessian_eV_A2, run.provenance)
+    write_start(snakemake.output.start, relaxed.calculator, run.provenance)
     write_json(snakemake.output.report, relaxed.report(snakemake.wildcards.amorphous), run.provenance)
     store.remove()

@@ -13,7 +13,7 @@ from atomistic.elastic.energy_scans import Point, scan_volumes
 from atomistic.elastic.equation_of_state import fit_equation_of_state
 from atomistic.elastic.joint_moduli import measure_constants
 from atomistic.elastic.networks import tersoff_calculator
-from atomistic.elastic.relaxation import bond_hessian
+from atomistic.elastic.relaxation import spring_hessian
 from atomistic.elastic.response import elastic_response
 from atomistic.elastic.tensor import isotropic
 from atomistic.materials import NetworkGlass
@@ -165,7 +165,7 @@ def shear_points(cell: Atoms, progress: Progress | None = None) -> Iterator[dict
         engine = PyscfGamma(xc="GGA", mesh=commensurate_mesh(cell.cell.array * 1.03, p["cutoff_Ha"]), **p)
         sides = TwoMeshes(engine).sides if meshes == 2 else (engine, engine)
         with timed() as cost:
-            response = elastic_response(cell, sides, bond_hessian(cell), settings.strain, 0.0, 0, 0.0)
+            response = elastic_response(cell, sides, spring_hessian(cell), settings.strain, 0.0, 0, 0.0)
         G = isotropic(response.relaxed).G
         reference = G if done == 0 else reference
         yield point(f"{knob}, strained", value, G, reference, "80 Ha, 1e-7 Ha, two meshes", cost, "G")

@@ -15,7 +15,7 @@ from atomistic.elastic.energy_scans import fit_scan, scan_volumes
 from atomistic.elastic.joint_moduli import measure_constants
 from atomistic.elastic.moduli import plane_strain_modulus
 from atomistic.elastic.networks import examine, tersoff_calculator
-from atomistic.elastic.relaxation import bond_hessian, relax_cell, strained
+from atomistic.elastic.relaxation import relax_cell, spring_hessian, strained
 from atomistic.elastic.response import elastic_response
 from atomistic.elastic.tensor import fit_stiffness, isotropic, strain_states
 from atomistic.errors import InputError
@@ -171,7 +171,7 @@ def saddle(cell: Atoms, criteria: NetworkGlass) -> Verdict:
     """Bonds stretched beyond their inflection push ions away from where they are: a saddle, and refused."""
     atoms, calculator = strained(cell, 0.2), tersoff_calculator(criteria.tersoff)
     return refused(
-        lambda: elastic_response(atoms, (calculator, calculator), bond_hessian(cell), 2e-3, 0.01, 3, 0.01), "saddle"
+        lambda: elastic_response(atoms, (calculator, calculator), spring_hessian(cell), 2e-3, 0.01, 3, 0.01), "saddle"
     )
 
 

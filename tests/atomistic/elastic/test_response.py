@@ -10,7 +10,7 @@ from ase.neighborlist import neighbor_list
 
 from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.elastic.networks import crystal, tersoff_calculator
-from atomistic.elastic.relaxation import bond_hessian, relax_cell
+from atomistic.elastic.relaxation import relax_cell, spring_hessian
 from atomistic.elastic.response import elastic_response, internal_strain
 from atomistic.elastic.tensor import isotropic
 from atomistic.errors import InputError
@@ -199,7 +199,7 @@ def test_a_calculator_without_stress_is_refused_before_anything_is_computed():
 
 def test_springs_of_bonds_are_a_hessian_good_enough_for_three_rounds(nitride):
     atoms, _ = nitride
-    rough = elastic_response(atoms, (atoms.calc, atoms.calc), bond_hessian(atoms), 2e-3, 0.01, 3, 0.5)
-    fine = elastic_response(atoms, (atoms.calc, atoms.calc), bond_hessian(atoms), 2e-3, 0.01, 9, 0.01)
+    rough = elastic_response(atoms, (atoms.calc, atoms.calc), spring_hessian(atoms), 2e-3, 0.01, 3, 0.5)
+    fine = elastic_response(atoms, (atoms.calc, atoms.calc), spring_hessian(atoms), 2e-3, 0.01, 9, 0.01)
     assert pytest.approx(isotropic(fine.relaxed).G, rel=0.02) == isotropic(rough.relaxed).G
     assert rough.calculations < fine.calculations
