@@ -12,8 +12,8 @@ from atomistic.settings import RelaxationSettings
 
 Progress = Callable[[float, str], None]
 BOND_A, EDGE_A = 2.3, 3.2  # longest Si-N bond, longest edge of a tetrahedron of N
-# of springs along bonds, across them, along edges and under every coordinate; only the speed depends on them.  Fitted to
-# the forces that one glass met on its way to rest
+# of springs along bonds, across them, along edges and under every coordinate, after the forces that a glass met on its
+# way to rest; only the speed depends on them
 ALONG_EV_A2, ACROSS_EV_A2, EDGE_EV_A2, FLOOR_EV_A2 = 14.0, 2.5, 3.5, 2.0
 LONGEST_STEP_A = 0.3
 COORDINATE_EV_A2, CELL_STIFFNESS_EV_A3 = 25.0, 1.5  # of a bond, and 240 GPa: by these a strain counts as a coordinate
