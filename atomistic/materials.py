@@ -66,6 +66,13 @@ class PublishedConstants(_Section):
     source: str
 
 
+class StrainedCell(_Section):
+    """Cell and mesh for the elastic constants of a crystal, where those of its E(V) are too coarse."""
+
+    supercell: Supercell
+    cutoff_Ha: Positive
+
+
 class Crystal(_Section):
     """A crystal by its space group; lengths in Å, angles in degrees."""
 
@@ -77,6 +84,7 @@ class Crystal(_Section):
     supercell: Supercell
     source: str
     cutoff_Ha: Positive | None = Field(default=None, description="of the density; None: that of the scene")
+    constants_cell: StrainedCell | None = Field(default=None, description="None: as for E(V)")
     published: dict[Literal["GGA", "LDA", "experiment"], Published] = Field(default={})
     constants: dict[Literal["GGA", "experiment"], PublishedConstants] = Field(default={})
 

@@ -143,11 +143,16 @@ rule fit_bulk_moduli:
 TENSORS = GLASSES[: ELASTIC["tensor"]["structures"]] if ELASTIC["poisson"] == "computed" else []
 
 
+def glass_to_strain(wildcards):
+    """A glass with its verdict and orbitals; a crystal comes from its material in a cell of its own."""
+    glass = relaxed_glass(wildcards)
+    return glass and {**glass, "structure": f"{RESULTS}/elastic/structures/{wildcards.structure}.xyz"}
+
+
 rule measure_tensor:
     input:
-        unpack(relaxed_glass),
+        unpack(glass_to_strain),
         material=lambda wildcards: CRYSTALS.get(wildcards.structure, MATERIAL),
-        structure=f"{RESULTS}/elastic/structures/{{structure}}.xyz",
     output:
         tensor=f"{RESULTS}/elastic/tensors/{{structure}}.json",
     log:

@@ -1,10 +1,11 @@
-"""Elastic constants.  In: elastic/structures/NAME.xyz (Å), material.  Out: elastic/tensors/NAME.json (GPa)."""
+"""Elastic constants.  In: material, elastic/structures/GLASS.xyz (Å).  Out: elastic/tensors/NAME.json (GPa)."""
 
 from pathlib import Path
 
 from atomistic.elastic.dft import PyscfGamma, TwoMeshes
 from atomistic.elastic.energy_scans import make_calculator
 from atomistic.elastic.joint_moduli import Measured, measure_constants
+from atomistic.elastic.networks import crystal
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings, RelaxationSettings, TensorSettings
 from workflow.job import job
@@ -15,18 +16,22 @@ with job(snakemake) as run:
     settings = snakemake.params.settings
     dft = RelaxationSettings(**settings["relaxation"]).applied_to(DftSettings(**settings["dft"]))
     store = ScfStore(Path(snakemake.params.store))
-    atoms = load_structure(snakemake.input.structure)
+    material = load_material(snakemake.input.material)
+    name, cutoff_Ha = snakemake.wildcards.structure, None
+    if name in material.crystals:
+        cell = material.crystals[name].constants_cell or material.crystals[name]
+        atoms, cutoff_Ha = crystal(material, name, cell.supercell), cell.cutoff_Ha
+    else:
+        atoms = load_structure(snakemake.input.structure)
     reasons = load_json(snakemake.input.report)["gate"]["reasons"] if snakemake.input.get("report") else []
     if reasons:
         measured = Measured(atoms, None, None, "; ".join(reasons))
     else:
-        crystal = load_material(snakemake.input.material).crystals.get(snakemake.wildcards.structure)
-        cutoff_Ha = crystal.cutoff_Ha if crystal else None
         calculator = make_calculator(dft, "GGA", atoms.cell.array * 1.03, store, cutoff_Ha)
         if snakemake.input.get("start"):
             start_from(calculator, snakemake.input.start)
         if isinstance(calculator, PyscfGamma):
             calculator = TwoMeshes(calculator)  # curvatures feel the ripple of one mesh
         measured = measure_constants(atoms, calculator, TensorSettings(**settings["tensor"]), run.progress)
-    write_json(snakemake.output.tensor, measured.report(snakemake.wildcards.structure), run.provenance)
+    write_json(snakemake.output.tensor, measured.report(name), run.provenance)
     store.remove()
