@@ -58,6 +58,47 @@ def test_energy_at_fixed_density_against_fftdf(xc, tolerance_Ha):
     assert abs(energy - reference) / cell.natm < tolerance_Ha
 
 
+def test_a_potential_that_lags_between_empty_orbitals_is_exact_on_filled_ones(monkeypatch):
+    from pyscf.pbc import dft
+
+    from atomistic.elastic import gamma_scf
+
+    monkeypatch.setattr(gamma_scf, "LAG", 1.0)  # even far from the last full matrix
+    cell = build_cell(silicon(), "GGA", "gth-dzvp-molopt-sr", MESH)
+    mf: Any = dft.RKS(cell, xc="pbe")
+    mf.verbose = 0
+    mf._numint = grid = gamma_scf.CachedGrid(cell)
+    mf.max_cycle = 1
+    mf.kernel()
+    first = mf.make_rdm1()
+    mf.max_cycle = 20
+    mf.kernel()
+    second = mf.make_rdm1()
+    filled = mf.mo_coeff[:, mf.mo_occ > 0]
+    full = [np.asarray(grid.nr_rks(cell, None, "pbe", dm)[2]) for dm in (first, second)]
+    grid.basis_overlap = mf.get_ovlp()
+    grid._full = None
+    lagging = [np.asarray(grid.nr_rks(cell, None, "pbe", dm)[2]) for dm in (first, second)]
+    assert np.array_equal(lagging[0], full[0])
+    assert abs(full[1] - full[0]).max() > 1e-4
+    assert lagging[1] @ filled == pytest.approx(full[1] @ filled, abs=2e-6)
+    assert lagging[1] == pytest.approx(lagging[1].T, abs=1e-12)
+    assert abs(lagging[1] - full[1]).max() > 1e-5  # between empty orbitals
+
+
+def test_an_scf_ends_the_same_whether_its_potentials_lag_or_not(monkeypatch):
+    from atomistic.elastic import gamma_scf
+
+    ends = []
+    for lag in (0.0, 1.0):
+        monkeypatch.setattr(gamma_scf, "LAG", lag)
+        atoms = silicon(0.1)
+        atoms.calc = PyscfGamma(basis="gth-dzvp-molopt-sr", mesh=MESH, tolerance_Ha=1e-9)
+        ends.append((atoms.get_potential_energy(), atoms.get_forces(), atoms.get_stress()))
+    for full, lagging, error in zip(*ends, (1e-6, 1e-3, 1e-5), strict=True):
+        assert lagging == pytest.approx(full, abs=error)
+
+
 def test_forces_are_the_slope_of_the_energy():
     calculator = PyscfGamma(basis="gth-szv", mesh=MESH, tolerance_Ha=1e-10)
     energies = []
