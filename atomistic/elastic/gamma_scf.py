@@ -14,7 +14,6 @@ Because gradient and divergence are each other's negative adjoints on the grid, 
 discrete energy, and so are forces and stress.  Atomic units throughout.
 """
 
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,7 +23,6 @@ from pyscf.pbc.dft.multigrid import MultiGridNumInt2
 from pyscf.pbc.gto import ewald_methods
 from pyscf.pbc.gto.pseudo import pp_int
 from pyscf.pbc.lib.kpts_helper import is_gamma_point
-from scipy.linalg.blas import ssyrk  # pyright: ignore[reportAttributeAccessIssue]  (generated at run time)
 
 from atomistic.elastic.orbitals_on_grid import atom_orbitals, collocate, pulay_terms
 
@@ -124,33 +122,18 @@ class CachedGrid(MultiGridNumInt2):
             rho[here] = sign @ part
         return rho
 
-    @cached_property
-    def overlap(self) -> np.ndarray:
-        """Σ_r w φ_µ φ_ν, shape (orbitals, orbitals): the overlap as the grid sees it."""
-        return self._weighted_products(np.full(self.points, self.weight))
-
     def matrix(self, potential: np.ndarray) -> np.ndarray:
         """Σ_r w φ_µ v φ_ν, shape (orbitals, orbitals).
 
-        As v_max S − Σ_r w φ_µ (v_max − v) φ_ν, with the grid's overlap S: all weights have one sign, and a symmetric
-        rank-k update does half the work of a product.  Products of a block run in single precision and are summed in
-        double: the energy is stationary in the orbitals and feels this error (1e-6 hartree per element) only squared.
+        Products of a block run in single precision and are summed in double: the energy is stationary in the orbitals
+        and feels this error (1e-6 hartree per element) only squared.
         """
-        top = float(potential.max())
-        return top * self.overlap - self._weighted_products(self.weight * (top - potential))
-
-    def _weighted_products(self, weights: np.ndarray) -> np.ndarray:
-        """Σ_r φ_µ weight φ_ν for weights ≥ 0."""
-        n = len(self.orbitals)
-        total = np.zeros((n, n), order="F")
-        root = np.sqrt(weights).astype(np.float32)
-        block = np.empty((n, BLOCK), dtype=np.float32)
+        total = np.zeros((len(self.orbitals),) * 2)
+        weights = (self.weight * potential).astype(np.float32)
         for start in range(0, self.points, BLOCK):
-            here = slice(start, min(start + BLOCK, self.points))
-            part = block[:, : here.stop - start]
-            np.multiply(self.orbitals[:, here], root[here], out=part, casting="same_kind")
-            total += ssyrk(1.0, part.T, trans=1)
-        return np.triu(total) + np.triu(total, 1).T
+            part = self.orbitals[:, start : start + BLOCK].astype(np.float32, copy=False)
+            total += (part * weights[start : start + BLOCK]) @ part.T
+        return 0.5 * (total + total.T)
 
     def exchange_correlation(self, xc_code: str, rho: np.ndarray) -> tuple[float, np.ndarray]:
         """Energy (hartree) and potential on the grid."""
