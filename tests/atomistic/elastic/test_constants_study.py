@@ -5,6 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from atomistic.elastic.dft import commensurate_mesh
+from atomistic.elastic.networks import crystal
 from atomistic.elastic.studies.constants import beside_published, full_matrix
 from atomistic.elastic.tensor import isotropic
 from atomistic.materials import load_material
@@ -42,3 +44,13 @@ def test_deviations_and_breaches_of_symmetry_are_measured():
 
 def test_a_crystal_that_failed_has_no_rows():
     assert list(beside_published(report(np.eye(6), "SCF not converged"), BETA)) == []
+
+
+def test_nitrogen_of_beta_lies_where_its_mesh_ripples_least():
+    """Of an odd number of points to each c none lies at its quarter, where the N are (docs/elastic.md)."""
+    nitride = load_material(MATERIALS / "silicon_nitride.yaml")
+    cell = nitride.crystals["beta"].constants_cell
+    assert cell
+    atoms = crystal(nitride, "beta", cell.supercell)
+    assert len(atoms) == 42
+    assert commensurate_mesh(atoms.cell.array * 1.03, cell.cutoff_Ha)[2] == 3 * 25
