@@ -132,7 +132,7 @@ class TensorSettings(Settings):
         description="largest displacement of an atom where the ions' Hessian is measured",
         json_schema_extra={"unit": "A"},
     )
-    rounds: int = Field(default=2, ge=1, le=20, description="times six directions the ions may follow a strain along")
+    rounds: int = Field(default=4, ge=1, le=20, description="times six directions the ions may follow a strain along")
     tolerance_GPa: float = Field(
         default=5.0,
         gt=0,

@@ -151,7 +151,7 @@ class Costs:
     def measure_tensor(self, wildcards: Mapping[str, str]) -> float:
         """Ions and cell come to rest in a third of the steps allowed, a sixth on two meshes; then strained states."""
         elastic = self.scene.elastic
-        states = 2 * elastic.tensor.max_steps / 3 + 14 + 9 * elastic.tensor.rounds
+        states = 2 * elastic.tensor.max_steps / 3 + 14 + 6 * elastic.tensor.rounds
         return STRESS_STEP_S * states * self.scf_size * elastic.relaxation.cutoff_Ha / 100
 
     def compute_runs(self, wildcards: Mapping[str, str]) -> float:

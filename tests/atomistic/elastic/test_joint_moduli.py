@@ -119,6 +119,16 @@ def test_whatever_fails_is_named_and_costs_its_structure_only(measured):
     assert "unstable" in relaxed["flags"]
 
 
+def test_a_constant_that_rests_on_an_estimate_is_flagged(measured):
+    report = measured.report("a01")
+    C44 = report["C_relaxed_GPa"][3][3]
+    for share, flagged in ((0.19, False), (0.21, True)):
+        left = [0.0, 0.0, 0.0, share * C44, 0.0, 0.0]
+        clamped, relaxed = isotropic_rows({**report, "still_softer_GPa": left})
+        assert clamped["flags"] == ""
+        assert (f"C44 of {C44:.0f} GPa rests on an estimate" in relaxed["flags"]) is flagged
+
+
 def test_a_rejected_glass_keeps_its_reasons():
     atoms = crystal(NITRIDE, "beta", (1, 1, 1))
     rows = isotropic_rows(Measured(atoms, None, None, "3 atoms without their valence").report("a01"))
