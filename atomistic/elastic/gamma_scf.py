@@ -47,6 +47,12 @@ class CachedGrid(MultiGridNumInt2):
     cell : built PySCF cell, all atoms with GTH pseudopotentials; its `mesh` is the grid
     precision : of the orbitals on the grid and of products with them; single precision rounds the energy by some 1e-7
         hartree per atom, much the same for neighbouring geometries, and leaves 1e-8 hartree from cycle to cycle
+
+    Attributes
+    ----------
+    waves : orbitals of the last density on the grid, (orbitals, grid points)
+    basis_overlap : of the basis functions, None until it is set; with it only the first potential of an SCF is a full
+        matrix (`_matrix_of`)
     """
 
     def __init__(self, cell: "Cell", precision: type[np.floating] = np.float64):
@@ -67,7 +73,7 @@ class CachedGrid(MultiGridNumInt2):
             local += self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
         self.local = self._to_grid(local) / self.weight  # v_loc(r), hartree
         self.waves = np.empty((0, self.points), precision)
-        self.basis_overlap: np.ndarray | None = None  # given by whoever has it
+        self.basis_overlap: np.ndarray | None = None
         self._full: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
     # -- Fourier helpers: half spectrum of real fields
