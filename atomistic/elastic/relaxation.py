@@ -43,20 +43,19 @@ def spring_hessian(atoms: Atoms) -> np.ndarray:
     stretched = []  # weighted slopes of the springs' lengths by every coordinate
     for i, j, vector in zip(*neighbor_list("ijD", atoms, EDGE_A), strict=True):
         length = np.linalg.norm(vector)
-        along = np.outer(vector, vector) / length**2
+        projector = np.outer(vector, vector) / length**2
         if i > j or symbols[i] == symbols[j] != "N" or (symbols[i] != symbols[j] and length > BOND_A):
             continue
         if symbols[i] == symbols[j]:
-            directions = np.sqrt(EDGE_EV_A2) * along
+            directions = np.sqrt(EDGE_EV_A2) * projector
         else:
-            directions = np.sqrt(ALONG_EV_A2) * along + np.sqrt(ACROSS_EV_A2) * (np.eye(3) - along)
+            directions = np.sqrt(ALONG_EV_A2) * projector + np.sqrt(ACROSS_EV_A2) * (np.eye(3) - projector)
         for direction in directions:
             slope = np.zeros((n + 3, 3))
             slope[j] += direction
             slope[i] -= direction
-            slope[n:] += (np.outer(vector, direction) + np.outer(direction, vector)) / (
-                2 * scale
-            )  # a turn costs nothing
+            strain = np.outer(vector, direction) / scale
+            slope[n:] += 0.5 * (strain + strain.T)  # a turn costs nothing
             stretched.append(slope.ravel())
     slopes = np.array(stretched).reshape(-1, 3 * n + 9)
     return slopes.T @ slopes + FLOOR_EV_A2 * np.eye(3 * n + 9)
