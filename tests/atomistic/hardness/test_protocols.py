@@ -17,6 +17,7 @@ from atomistic.potentials import CONTACT_A, contact_energy_and_force, load_poten
 from atomistic.settings import GlassSettings, HardnessSettings
 
 POTENTIALS = Path(__file__).parents[3] / "config" / "potentials"
+# which glass this gives depends on the processor (its last bits grow in a melt): bounds hold for ten glasses
 GLASS = GlassSettings(atoms=120, melt_ps=0.5, quench_rate_K_ps=2000, rest_ps=0.3, segment_steps=2000)
 
 
@@ -94,7 +95,7 @@ def test_asperity_on_asperity_without_adhesion(close):
     assert force.min() == 0
     assert force[-1] > 1
     assert np.all(area[force == 0] < 0.2)
-    assert area[-1] > 0.3
+    assert area[-1] > 0.1  # 0.20 to 1.23 in ten glasses
 
 
 def test_controlled_force_is_the_contact_force(close):
@@ -105,7 +106,8 @@ def test_controlled_force_is_the_contact_force(close):
     nominal = column(curve, "nominal_stress_GPa")
     asked = 0.2 * np.arange(1, 16)
     assert np.mean(nominal[-8:]) == pytest.approx(np.mean(asked[-8:]), rel=0.1)
-    assert np.all(np.diff(column(curve, "displacement_nm")) > -0.03)  # the first touch throws it back a little
+    thrown_back_nm = -np.diff(column(curve, "displacement_nm")).min()
+    assert thrown_back_nm < 0.07  # by the first touch; 0.006 to 0.043 in ten glasses
     assert np.abs(column(curve, "energy_drift_meV_per_atom")).max() < 3
 
 
