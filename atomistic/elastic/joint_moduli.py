@@ -110,9 +110,11 @@ def isotropic_rows(report: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Rows of elastic/isotropic_moduli.csv of one structure, clamped and relaxed, from its `Measured.report`."""
     rows = []
     for ions in IONS:
-        flags = [*filter(None, [report["failure"], _unmeasured(report) if ions == "relaxed" else ""])]
+        flags = [*filter(None, [report["failure"]])]
         values = dict.fromkeys(("B_GPa", "G_GPa", "E_GPa", "nu", "B_error_GPa", "G_error_GPa"))
         if not report["failure"]:
+            if ions == "relaxed":
+                flags += _resting_on_estimates(report)
             try:
                 mean = isotropic(np.array(report[f"C_{ions}_GPa"]))
                 values = dict(zip(values, (mean.B, mean.G, mean.E, mean.nu, mean.B_error, mean.G_error), strict=True))
@@ -123,15 +125,13 @@ def isotropic_rows(report: Mapping[str, Any]) -> list[dict[str, Any]]:
     return rows
 
 
-def _unmeasured(report: Mapping[str, Any]) -> str:
-    """Which constant's softening by the ions is estimated for a large part; empty where none is."""
-    if report["failure"]:
-        return ""
+def _resting_on_estimates(report: Mapping[str, Any]) -> list[str]:
+    """What to say of the first constant whose softening by the ions is estimated for a large part, if there is one."""
     names = ("C11", "C22", "C33", "C44", "C55", "C66")
     for name, value, left in zip(names, np.diag(report["C_relaxed_GPa"]), report["still_softer_GPa"], strict=True):
         if left > MOST_ESTIMATED * abs(value):
-            return f"{name} of {value:.0f} GPa rests on an estimate of {left:.0f} GPa: raise elastic.tensor.rounds"
-    return ""
+            return [f"{name} of {value:.0f} GPa rests on an estimate of {left:.0f} GPa: raise elastic.tensor.rounds"]
+    return []
 
 
 def with_computed_poisson(

@@ -42,14 +42,16 @@ def spring_hessian(atoms: Atoms) -> np.ndarray:
     symbols = np.array(atoms.get_chemical_symbols())
     stretched = []  # weighted slopes of the springs' lengths by every coordinate
     for i, j, vector in zip(*neighbor_list("ijD", atoms, EDGE_A), strict=True):
+        if i > j:
+            continue  # the list names every pair twice
         length = np.linalg.norm(vector)
         projector = np.outer(vector, vector) / length**2
-        if i > j or symbols[i] == symbols[j] != "N" or (symbols[i] != symbols[j] and length > BOND_A):
-            continue
-        if symbols[i] == symbols[j]:
+        if symbols[i] == symbols[j] == "N":
             directions = np.sqrt(EDGE_EV_A2) * projector
-        else:
+        elif symbols[i] != symbols[j] and length <= BOND_A:
             directions = np.sqrt(ALONG_EV_A2) * projector + np.sqrt(ACROSS_EV_A2) * (np.eye(3) - projector)
+        else:
+            continue
         for direction in directions:
             slope = np.zeros((n + 3, 3))
             slope[j] += direction
