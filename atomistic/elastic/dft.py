@@ -285,6 +285,11 @@ class TwoMeshes(Calculator):
         super().__init__()
         self.sides = (ShiftedMesh(engine, 0.0), ShiftedMesh(engine, 0.5))
 
+    @property
+    def gap_eV(self) -> float:
+        """Of the last calculation."""
+        return self.sides[0].engine.gap_eV
+
     def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes):
         super().calculate(atoms, properties, system_changes)
         both = []

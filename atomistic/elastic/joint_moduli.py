@@ -10,11 +10,12 @@ from ase.calculators.calculator import CalculationFailed, Calculator
 from atomistic.constants import AMU_PER_A3_IN_G_CM3
 from atomistic.elastic.dft import TwoMeshes
 from atomistic.elastic.moduli import grid_shares, plane_strain_modulus, spread
+from atomistic.elastic.networks import examine
 from atomistic.elastic.relaxation import Rest, relax_cell, strained
 from atomistic.elastic.response import Response, elastic_response
 from atomistic.elastic.tensor import isotropic, poisson, young
 from atomistic.errors import InputError
-from atomistic.materials import Material, Polycrystal
+from atomistic.materials import Material, NetworkGlass, Polycrystal
 from atomistic.settings import ElasticSettings, TensorSettings
 
 Progress = Callable[[float, str], None]
@@ -24,8 +25,8 @@ MOST_ESTIMATED = 0.2  # of a constant: a third of the estimate may be wrong (doc
 ASSUMPTIONS = (
     "Poisson's ratio is computed: bulk and shear modulus of each structure come from its elastic constants.",
     "LDA scales bulk and shear modulus by one factor, that of the bulk modulus under clamped ions.",
-    "Anisotropy is what a small cell leaves of the difference between Voigt's and Reuss's bounds; the size of the cell "
-    "beyond it is not in the interval.",
+    "Anisotropy is what a small cell leaves of the difference between Voigt's and Reuss's bounds. What its size "
+    "changes beyond that is taken from larger cells of a crystal and of single glasses, not from an ensemble of them.",
 )
 
 
@@ -67,8 +68,14 @@ def measure_constants(
     calculator: Calculator,
     settings: TensorSettings,
     progress: Progress | None = None,
+    criteria: NetworkGlass | None = None,
 ) -> Measured:
-    """Relax ions and cell, then elastic constants; whatever fails costs this structure only and is named."""
+    """Relax ions and cell, then elastic constants; whatever fails costs this structure only and is named.
+
+    Parameters
+    ----------
+    criteria : what a glass must still fulfil when its cell has come to rest; None for a crystal
+    """
     atoms = strained(atoms, 0.0)
     sides = calculator.sides if isinstance(calculator, TwoMeshes) else (calculator, calculator)
     rest = None
@@ -77,6 +84,9 @@ def measure_constants(
         if not rest.converged:
             left = f"{rest.force_left_eV_A:.2f} eV/A left on an atom"
             return Measured(atoms, rest, None, f"ions and cell not at rest after {rest.steps} steps, {left}")
+        reasons = _no_glass(atoms, calculator, criteria) if criteria else []
+        if reasons:
+            return Measured(atoms, rest, None, "at rest: " + "; ".join(reasons))
         constants = elastic_response(
             atoms,
             sides,
@@ -90,6 +100,15 @@ def measure_constants(
     except (CalculationFailed, NotImplementedError, InputError, np.linalg.LinAlgError, FloatingPointError) as error:
         return Measured(atoms, rest, None, str(error))
     return Measured(atoms, rest, constants, "")
+
+
+def _no_glass(atoms: Atoms, calculator: Calculator, criteria: NetworkGlass) -> list[str]:
+    """Why a cell at rest is no insulating glass: without the stress of its box it may have turned into a crystal."""
+    reasons = [*examine(atoms, criteria).reasons]
+    gap_eV = float(getattr(calculator, "gap_eV", np.inf))
+    if gap_eV < criteria.gap_eV:
+        reasons.append(f"gap {gap_eV:.2f} eV: no insulator")
+    return reasons
 
 
 def _relax(atoms: Atoms, calculator: Calculator, settings: TensorSettings) -> Rest:
@@ -202,14 +221,16 @@ def with_computed_poisson(
     nodes, weights = np.polynomial.legendre.leggauss(8)
     normal, normal_weights = np.polynomial.hermite_e.hermegauss(9)
 
-    def modulus(structure, anisotropy, scale, counter_E):
+    def modulus(structure, anisotropy, size, functional, counter_E):
         B, G, B_error, G_error = used[np.asarray(structure, int)].T
+        scale = functional * (1 + settings.size_error * size)
         B, G = scale * (B + anisotropy * B_error).T, scale * (G + anisotropy * G_error).T
         return plane_strain_modulus(B, poisson(B, G), counter_E, other.poisson_ratio), B, G
 
     axes = {
         "structure": (np.arange(len(used)), np.full(len(used), 1 / len(used))),
         "anisotropy": (nodes, weights / 2),  # uniform between the bounds
+        "size": (normal, normal_weights / normal_weights.sum()),
         "functional": (np.array([1.0, factor]), np.full(2, 0.5)),
         "counter_body": (other.young_GPa + other.young_std_GPa * normal, normal_weights / normal_weights.sum()),
     }
@@ -218,10 +239,11 @@ def with_computed_poisson(
     n = settings.samples
     lda = rng.integers(0, 2, n)
     counter = rng.normal(other.young_GPa, other.young_std_GPa, n)
-    e_star, B, G = modulus(rng.integers(0, len(used), n), rng.uniform(-1, 1, n), np.where(lda, factor, 1.0), counter)
+    structure, anisotropy, size = rng.integers(0, len(used), n), rng.uniform(-1, 1, n), rng.standard_normal(n)
+    e_star, B, G = modulus(structure, anisotropy, size, np.where(lda, factor, 1.0), counter)
     quantiles = (0.025, 0.16, 0.5, 0.84, 0.975)
     summary["quantiles_GPa"] = dict(zip(map(str, quantiles), np.quantile(e_star, quantiles).tolist(), strict=True))
-    means = [modulus(k, 0.0, 0.5 * (1 + factor), other.young_GPa)[0] for k in range(len(used))]
+    means = [modulus(k, 0.0, 0.0, 0.5 * (1 + factor), other.young_GPa)[0] for k in range(len(used))]
     summary["standard_error_of_mean_GPa"] = (
         float(np.std(means, ddof=1) / np.sqrt(len(used))) if len(used) > 1 else float("nan")
     )

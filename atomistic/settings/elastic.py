@@ -25,6 +25,11 @@ class NitrideGlassSettings(Settings):
         default=300, ge=10, le=1000, description="end of the quench", json_schema_extra={"unit": "K"}
     )
     timestep_fs: float = Field(default=1, ge=0.1, le=1, description="time step", json_schema_extra={"unit": "fs"})
+    shape: Literal["fixed", "relaxed"] = Field(
+        default="fixed",
+        description="of the cell: that of the melt, or relaxed after the quench at constant volume, so that no stress "
+        "hides a crystal (docs/elastic.md)",
+    )
     max_defects: int = Field(
         default=0,
         ge=0,
@@ -204,6 +209,12 @@ class ElasticSettings(Settings):
     poisson: Literal["literature", "computed"] = Field(
         default="literature",
         description="Poisson's ratio from the range above (the paper), or with B from elastic constants of the glasses",
+    )
+    size_error: float = Field(
+        default=0.02,
+        ge=0,
+        le=1,
+        description="with 'computed', standard deviation of a factor on B and G for what the size of the cell changes",
     )
     min_structures: int = Field(
         default=4,

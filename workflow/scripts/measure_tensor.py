@@ -17,12 +17,12 @@ with job(snakemake) as run:
     dft = RelaxationSettings(**settings["relaxation"]).applied_to(DftSettings(**settings["dft"]))
     store = ScfStore(Path(snakemake.params.store))
     material = load_material(snakemake.input.material)
-    name, cutoff_Ha = snakemake.wildcards.structure, None
+    name, cutoff_Ha, criteria = snakemake.wildcards.structure, None, None
     if name in material.crystals:
         cell = material.crystals[name].constants_cell or material.crystals[name]
         atoms, cutoff_Ha = crystal(material, name, cell.supercell), cell.cutoff_Ha
     else:
-        atoms = load_structure(snakemake.input.structure)
+        atoms, criteria = load_structure(snakemake.input.structure), material.part("network_glass")
     reasons = load_json(snakemake.input.report)["gate"]["reasons"] if snakemake.input.get("report") else []
     if reasons:
         measured = Measured(atoms, None, None, "; ".join(reasons))
@@ -32,6 +32,7 @@ with job(snakemake) as run:
             start_from(calculator, snakemake.input.start)
         if isinstance(calculator, PyscfGamma):
             calculator = TwoMeshes(calculator)  # curvatures feel the ripple of one mesh
-        measured = measure_constants(atoms, calculator, TensorSettings(**settings["tensor"]), run.progress)
+        tensor = TensorSettings(**settings["tensor"])
+        measured = measure_constants(atoms, calculator, tensor, run.progress, criteria)
     write_json(snakemake.output.tensor, measured.report(name), run.provenance)
     store.remove()

@@ -54,6 +54,24 @@ def test_shares_add_to_one_and_mean_and_scatter_are_those_of_the_samples():
     assert summary["std_GPa"] == pytest.approx(e_star.std(), rel=0.02)
 
 
+def test_the_size_of_the_cell_scales_bulk_and_shear_modulus_together():
+    rows = [row("a0", 150, 90), row("a1", 150, 90)]
+    stds, shares = [], []
+    for error in (0.0, 0.02):
+        settings = SETTINGS.model_copy(update={"size_error": error})
+        summary, samples = with_computed_poisson(literature(), rows, TITANIUM, settings)
+        assert samples["nu"] == pytest.approx(poisson(150, 90))
+        stds.append(summary["std_GPa"])
+        shares.append(summary["shares"]["size"]["total"])
+    # d ln E* / d ln E of one body is its share of the compliance
+    other = TITANIUM.part("polycrystal")
+    e_star = summary["mean_GPa"]
+    share = 1 - e_star * (1 - other.poisson_ratio**2) / other.young_GPa
+    assert np.sqrt(stds[1] ** 2 - stds[0] ** 2) == pytest.approx(0.02 * share * e_star, rel=0.05)
+    assert shares[0] == pytest.approx(0, abs=1e-12)
+    assert shares[1] == pytest.approx(1 - (stds[0] / stds[1]) ** 2, rel=0.01)
+
+
 def test_flagged_and_clamped_rows_do_not_enter_and_too_few_fail_the_gate():
     rows = [row("a0", 150, 80), row("a1", 999, 1, flags="unstable"), row("a0", 300, 200, ions="clamped")]
     summary, samples = with_computed_poisson(literature(), rows, TITANIUM, SETTINGS)

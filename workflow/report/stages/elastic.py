@@ -15,6 +15,7 @@ SHARES = {
     "structure": "structure of the glass",
     "fit": "misfit of E(V)",
     "anisotropy": "anisotropy of a small cell",
+    "size": "size of the cell",
     "functional": "functional (GGA or LDA)",
     "poisson_ratio": "Poisson's ratio",
     "counter_body": "counter body",
