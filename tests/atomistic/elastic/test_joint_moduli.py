@@ -137,6 +137,19 @@ def test_whatever_fails_is_named_and_costs_its_structure_only(measured):
     assert "unstable" in relaxed["flags"]
 
 
+def test_a_cell_that_is_a_crystal_at_rest_gives_no_constants():
+    atoms = crystal(NITRIDE, "beta", (1, 1, 1))
+    network = NITRIDE.part("network_glass")
+    settings = TensorSettings(force_eV_A=0.01, max_steps=60)
+    judged = measure_constants(atoms, tersoff_calculator(network.tersoff), settings, criteria=network)
+    assert judged.failure.startswith("at rest: ")
+    assert "crystalline" in judged.failure
+    assert (judged.rest and judged.rest.converged, judged.response) == (True, None)
+    metal = tersoff_calculator(network.tersoff)
+    metal.gap_eV = 0.1
+    assert "gap 0.10 eV: no insulator" in measure_constants(atoms, metal, settings, criteria=network).failure
+
+
 def test_a_constant_that_rests_on_an_estimate_is_flagged(measured):
     report = measured.report("a01")
     C44 = report["C_relaxed_GPa"][3][3]

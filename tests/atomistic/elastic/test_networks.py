@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 
 from atomistic.elastic.networks import (
+    SoftCores,
     core_commands,
     crystal,
     examine,
     random_structure,
     tersoff_calculator,
     tersoff_table,
+    with_relaxed_shape,
 )
 from atomistic.errors import InputError
 from atomistic.materials import load_material
@@ -82,6 +84,33 @@ def test_cores_leave_beta_untouched():
         assert core.r_A < shortest[pair] + 0.1
     assert core_commands(GLASS.cores, ("Si", "N")).count("harmonic/cut") == 3
     assert "1 2 harmonic/cut 0.0" in core_commands(GLASS.cores, ("Si", "N"))
+
+
+def test_forces_and_stress_of_the_cores_are_the_slopes_of_their_energy():
+    from ase.calculators.fd import calculate_numerical_forces, calculate_numerical_stress
+
+    atoms = crystal(NITRIDE, "beta", (1, 1, 1))
+    atoms.set_cell(0.95 * atoms.cell.array, scale_atoms=True)
+    atoms.rattle(0.1, seed=3)
+    atoms.calc = SoftCores(GLASS.cores)
+    assert np.abs(atoms.get_forces()).max() > 1
+    assert atoms.get_forces() == pytest.approx(calculate_numerical_forces(atoms, 1e-5), abs=1e-7)
+    assert atoms.get_stress() == pytest.approx(calculate_numerical_stress(atoms, 1e-6), abs=1e-8)
+
+
+def test_a_crystal_bent_to_fit_its_box_passes_for_a_glass_until_its_shape_relaxes():
+    from ase.optimize import BFGS
+
+    beta = crystal(NITRIDE, "beta")
+    bent = beta.copy()
+    bent.set_cell(beta.cell.array @ np.diag([1.10, 1 / 1.10 / 0.95, 0.95]), scale_atoms=True)
+    bent.rattle(0.02, seed=1)
+    bent.calc = tersoff_calculator(GLASS.tersoff)
+    BFGS(bent, logfile=None).run(fmax=0.05, steps=100)
+    assert examine(bent, GLASS, 0).passed
+    relaxed = with_relaxed_shape(bent, GLASS)
+    assert relaxed.get_volume() == pytest.approx(beta.get_volume())
+    assert any("crystalline" in reason for reason in examine(relaxed, GLASS, 0).reasons)
 
 
 def test_box_has_the_wanted_density_and_edges():
