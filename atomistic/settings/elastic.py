@@ -153,7 +153,7 @@ class TensorSettings(Settings):
         json_schema_extra={"unit": "eV/A"},
     )
     max_steps: int = Field(
-        default=40, ge=1, le=500, description="steps of that relaxation, on one mesh and again on both"
+        default=80, ge=1, le=500, description="steps of that relaxation, on one mesh and again on both"
     )
 
 
