@@ -36,12 +36,14 @@ class Measured(NamedTuple):
     Attributes
     ----------
     atoms : ions and cell as they came to rest
+    doubts : why a cell at rest is no insulating glass any more
     """
 
     atoms: Atoms
     rest: Rest | None
     response: Response | None
     failure: str
+    doubts: tuple[str, ...] = ()
 
     def report(self, name: str) -> dict[str, Any]:
         """What elastic/tensors/NAME.json says; GPa in Voigt's order xx, yy, zz, yz, xz, xy."""
@@ -60,6 +62,7 @@ class Measured(NamedTuple):
             "C_clamped_GPa": constants.clamped.C.tolist() if constants else None,
             "C_relaxed_GPa": constants.relaxed.tolist() if constants else None,
             "failure": self.failure,
+            "doubts": list(self.doubts),
         }
 
 
@@ -74,19 +77,17 @@ def measure_constants(
 
     Parameters
     ----------
-    criteria : what a glass must still fulfil when its cell has come to rest; None for a crystal
+    criteria : what a glass should still fulfil when its cell has come to rest; None for a crystal
     """
     atoms = strained(atoms, 0.0)
     sides = calculator.sides if isinstance(calculator, TwoMeshes) else (calculator, calculator)
-    rest = None
+    rest, doubts = None, ()
     try:
         rest = _relax(atoms, calculator, settings)
         if not rest.converged:
             left = f"{rest.force_left_eV_A:.2f} eV/A left on an atom"
             return Measured(atoms, rest, None, f"ions and cell not at rest after {rest.steps} steps, {left}")
-        reasons = _no_glass(atoms, calculator, criteria) if criteria else []
-        if reasons:
-            return Measured(atoms, rest, None, "at rest: " + "; ".join(reasons))
+        doubts = _no_glass(atoms, calculator, criteria) if criteria else ()
         constants = elastic_response(
             atoms,
             sides,
@@ -98,17 +99,15 @@ def measure_constants(
             progress,
         )
     except (CalculationFailed, NotImplementedError, InputError, np.linalg.LinAlgError, FloatingPointError) as error:
-        return Measured(atoms, rest, None, str(error))
-    return Measured(atoms, rest, constants, "")
+        return Measured(atoms, rest, None, str(error), doubts)
+    return Measured(atoms, rest, constants, "", doubts)
 
 
-def _no_glass(atoms: Atoms, calculator: Calculator, criteria: NetworkGlass) -> list[str]:
+def _no_glass(atoms: Atoms, calculator: Calculator, criteria: NetworkGlass) -> tuple[str, ...]:
     """Why a cell at rest is no insulating glass: without the stress of its box it may have turned into a crystal."""
-    reasons = [*examine(atoms, criteria).reasons]
     gap_eV = float(getattr(calculator, "gap_eV", np.inf))
-    if gap_eV < criteria.gap_eV:
-        reasons.append(f"gap {gap_eV:.2f} eV: no insulator")
-    return reasons
+    no_gap = (f"gap {gap_eV:.2f} eV: no insulator",) if gap_eV < criteria.gap_eV else ()
+    return (*examine(atoms, criteria).reasons, *no_gap)
 
 
 def _relax(atoms: Atoms, calculator: Calculator, settings: TensorSettings) -> Rest:
@@ -140,7 +139,7 @@ def isotropic_rows(report: Mapping[str, Any]) -> list[dict[str, Any]]:
             except InputError as error:
                 flags.append(str(error))
         head = {key: report[key] for key in ("structure", "atoms", "density_g_cm3")}
-        rows.append({**head, "ions": ions, **values, "flags": "; ".join(flags)})
+        rows.append({**head, "ions": ions, **values, "flags": "; ".join(flags), "doubts": "; ".join(report["doubts"])})
     return rows
 
 
@@ -151,6 +150,15 @@ def _resting_on_estimates(report: Mapping[str, Any]) -> list[str]:
         if left > MOST_ESTIMATED * abs(value):
             return [f"{name} of {value:.0f} GPa rests on an estimate of {left:.0f} GPa: raise elastic.tensor.rounds"]
     return []
+
+
+def _on_doubtful(rows: Sequence[Mapping[str, str]], sound: Mapping[str, Any]) -> str:
+    """What to say of cells that are no insulating glass at rest, and of E* without them."""
+    said = ", ".join(f"{row['structure']} ({row['doubts']})" for row in rows if row["doubts"])
+    without = (
+        f"Without them it is {sound['mean_GPa']:.1f} ± {sound['std_GPa']:.1f} GPa" if sound else "None is left without"
+    )
+    return f"Cells that are no insulating glass when they are at rest: {said}. They are in E*. {without}."
 
 
 def with_computed_poisson(
@@ -171,15 +179,10 @@ def with_computed_poisson(
     As `effective_modulus`
     """
     other: Polycrystal = counter_body.part("polycrystal")
+    trusted = {ions: [row for row in rows if row["ions"] == ions and not row["flags"]] for ions in IONS}
+    columns = ("B_GPa", "G_GPa", "B_error_GPa", "G_error_GPa")
     pairs = {
-        ions: np.array(
-            [
-                [float(row[key]) for key in ("B_GPa", "G_GPa", "B_error_GPa", "G_error_GPa")]
-                for row in rows
-                if row["ions"] == ions and not row["flags"]
-            ]
-        ).reshape(-1, 4)
-        for ions in IONS
+        ions: np.array([[float(row[c]) for c in columns] for row in trusted[ions]]).reshape(-1, 4) for ions in IONS
     }
     used = pairs["relaxed"]
     shift = by_literature["LDA_minus_GGA"]["mean_GPa"]
@@ -194,7 +197,7 @@ def with_computed_poisson(
     summary = {
         **by_literature,
         "ions": "relaxed",
-        "structures_used": [row["structure"] for row in rows if row["ions"] == "relaxed" and not row["flags"]],
+        "structures_used": [row["structure"] for row in trusted["relaxed"]],
         "poisson_ratio": {"distribution": "computed", **spread(poisson(used[:, 0], used[:, 1]))},
         "isotropic_moduli": {
             ions: {
@@ -235,6 +238,16 @@ def with_computed_poisson(
         "counter_body": (other.young_GPa + other.young_std_GPa * normal, normal_weights / normal_weights.sum()),
     }
     summary |= grid_shares(axes, lambda *values: modulus(*values)[0])
+    sound = np.array([k for k, row in enumerate(trusted["relaxed"]) if not row["doubts"]], int)
+    if len(sound) < len(used):
+        of_sound = {**axes, "structure": (sound, np.full(len(sound), 1 / max(1, len(sound))))}
+        without = grid_shares(of_sound, lambda *values: modulus(*values)[0]) if len(sound) else {}
+        summary["without_doubtful"] = {
+            "structures": len(sound),
+            "mean_GPa": without.get("mean_GPa"),
+            "std_GPa": without.get("std_GPa"),
+        }
+        summary["notes"].append(_on_doubtful(trusted["relaxed"], without))
     rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 52]))
     n = settings.samples
     lda = rng.integers(0, 2, n)

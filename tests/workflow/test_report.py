@@ -85,6 +85,7 @@ def test_shares_of_e_star_stand_beside_those_of_the_papers_way(page):
     for words in ("anisotropy of a small cell", "30%", "41%"):
         assert words in table[: table.index("</table>")]
     assert "E* would be 100 ± 3" in page
+    assert "<td>bond lengths spread by 0.020 A only: crystalline</td>" in page
     assert "elastic constants, relaxed ions" in page
     assert "beta crystal, GGA" in page
     assert "a03 crystal" not in page

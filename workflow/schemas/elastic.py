@@ -59,6 +59,7 @@ TABLES = (
             number("B_error_GPa", "GPa", "half of the distance between the bounds of B", empty=True),
             number("G_error_GPa", "GPa", "half of the distance between the bounds of G", empty=True),
             text("flags", "why they are not trusted", empty=True),
+            text("doubts", "why the cell at rest is no insulating glass; it enters E* all the same", empty=True),
         ),
     ),
     Table(

@@ -91,10 +91,15 @@ def isotropic_table(results: Results) -> Table:
     """Moduli of every structure from its elastic constants."""
     columns = ("B_GPa", "G_GPa", "E_GPa", "nu", "B_error_GPa", "G_error_GPa")
     lines = [
-        (row["structure"], row["ions"], *(show(row.get(key), 3) for key in columns), row.get("flags", "") or "–")
+        (
+            row["structure"],
+            row["ions"],
+            *(show(row.get(key), 3) for key in columns),
+            "; ".join(filter(None, (row["flags"], row["doubts"]))) or "–",
+        )
         for row in results.csv("elastic/isotropic_moduli.csv")
     ]
-    header = ("structure", "ions", "B (GPa)", "G (GPa)", "E (GPa)", "ν", "± B", "± G", "flags")
+    header = ("structure", "ions", "B (GPa)", "G (GPa)", "E (GPa)", "ν", "± B", "± G", "flags and doubts")
     return Table("Isotropic moduli from elastic constants; ± is half of the distance between the bounds", header, lines)
 
 
