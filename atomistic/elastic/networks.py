@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement, product
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from ase import Atoms
@@ -147,7 +147,7 @@ def tersoff_calculator(parameters: Tersoff):
 class SoftCores(Calculator):
     """Soft cores k (r_c − r)² between pairs of elements, each pair within its r_c."""
 
-    implemented_properties: ClassVar[list[str]] = ["energy", "free_energy", "forces", "stress"]
+    implemented_properties = ["energy", "free_energy", "forces", "stress"]  # noqa: RUF012 (ASE's interface)
 
     def __init__(self, cores: Mapping[str, Core]):
         super().__init__()
@@ -262,7 +262,8 @@ def with_relaxed_shape(atoms: Atoms, network: NetworkGlass) -> Atoms:
 
     relaxed = Atoms(atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True)
     relaxed.calc = SumCalculator([tersoff_calculator(network.tersoff), SoftCores(network.cores)])
-    with BFGS(FrechetCellFilter(relaxed, constant_volume=True), logfile=None) as optimizer:
+    shape_and_ions: Any = FrechetCellFilter(relaxed, constant_volume=True)
+    with BFGS(shape_and_ions, logfile=None) as optimizer:
         optimizer.run(fmax=SHAPE_FORCE_EV_A, steps=SHAPE_STEPS)
     relaxed.calc = None
     return relaxed
