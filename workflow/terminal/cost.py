@@ -149,9 +149,9 @@ class Costs:
         return RELAXATION_STEP_S * (1 + relaxation.max_steps) * self.scf_size * relaxation.cutoff_Ha / 100
 
     def measure_tensor(self, wildcards: Mapping[str, str]) -> float:
-        """Ions and cell come to rest in a third of the steps allowed, a sixth on two meshes; then strained states."""
+        """Ions and cell come to rest in a sixth of the steps allowed, a twelfth on two meshes; then strained states."""
         elastic = self.scene.elastic
-        states = 2 * elastic.tensor.max_steps / 3 + 14 + 6 * elastic.tensor.rounds
+        states = elastic.tensor.max_steps / 3 + 14 + 6 * elastic.tensor.rounds
         return STRESS_STEP_S * states * self.scf_size * elastic.relaxation.cutoff_Ha / 100
 
     def compute_runs(self, wildcards: Mapping[str, str]) -> float:
