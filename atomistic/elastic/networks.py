@@ -113,6 +113,11 @@ def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None
     return Gate(density, coordination, shortest, spread, defects, tuple(reasons))
 
 
+def no_insulator(gap_eV: float, criteria: NetworkGlass) -> list[str]:
+    """Why a cell with this gap is no insulator; nothing where it is one or the engine does not tell its gap (NaN)."""
+    return [f"gap {gap_eV:.2f} eV: no insulator"] if gap_eV < criteria.gap_eV else []
+
+
 def tersoff_table(parameters: Tersoff) -> str:
     """Tersoff parameters in the format of LAMMPS (and ASE), one line per triplet.
 

@@ -8,7 +8,7 @@ from ase import Atoms
 from ase.calculators.calculator import Calculator
 
 from atomistic.elastic.moduli import Modulus
-from atomistic.elastic.networks import Gate, examine
+from atomistic.elastic.networks import Gate, examine, no_insulator
 from atomistic.elastic.relaxation import UNTOUCHED, Progress, Relaxation, relax_glass
 from atomistic.materials import NetworkGlass
 from atomistic.settings import RelaxationSettings
@@ -67,9 +67,7 @@ def relaxed_structure(
         calculator = make_calculator()
         atoms, done = relax_glass(quenched, calculator, settings, progress)
         verdict = examine(atoms, criteria)
-    reasons = [*verdict.reasons, *filter(None, [done.failure])]
-    if done.gap_eV < criteria.gap_eV:
-        reasons.append(f"gap {done.gap_eV:.2f} eV: no insulator")
+    reasons = [*verdict.reasons, *filter(None, [done.failure]), *no_insulator(done.gap_eV, criteria)]
     return Structure(atoms, calculator, verdict, done, tuple(reasons))
 
 
