@@ -178,6 +178,7 @@ class NetworkGlass(_Section):
     shortest_A: dict[ElementPair, Distance]
     gap_eV: Positive = Field(description="least gap after relaxation")
     bond_spread_A: Positive = Field(description="standard deviation of bond lengths: below it the cell is crystalline")
+    symmetry_tolerance_A: Positive = Field(description="by which atoms may miss each other under a symmetry operation")
     cutoff_A: Distance = Field(description="longest bond of unlike elements")
     start_density_g_cm3: Positive
     edges: tuple[Positive, Positive, Positive] = Field(description="ratio of the cell's edges")

@@ -1,7 +1,8 @@
 """Structures for the elastic stage: crystals from data files, amorphous silicon nitride by melt and quench.
 
-Lengths in Å.  A glass cell is melted and quenched at the density of experiment with a Tersoff potential and soft
-cores in LAMMPS, minimised, and must then be a disordered network in which (almost) every atom has its valence.
+Lengths in Å.  A glass cell is melted at the density of experiment and quenched with a Tersoff potential and soft cores
+in LAMMPS, its shape free as soon as it is stiff.  At rest it must be a network without symmetry in which (almost)
+every atom has its valence.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -12,8 +13,7 @@ from typing import Any
 
 import numpy as np
 from ase import Atoms
-from ase.calculators.calculator import Calculator, all_changes
-from ase.stress import full_3x3_to_voigt_6_stress
+from ase.data import atomic_numbers
 
 from atomistic.constants import AMU_PER_A3_IN_G_CM3
 from atomistic.errors import InputError
@@ -21,7 +21,7 @@ from atomistic.materials import SEARCHED_A, Core, Material, NetworkGlass, Superc
 from atomistic.settings import NitrideGlassSettings
 
 START_DISTANCE_A = 1.4  # random start: nothing closer than this
-SHAPE_FORCE_EV_A, SHAPE_STEPS = 0.02, 300  # 28 atoms take 40 to 60 steps; DFT relaxes further
+FREE_BELOW_K = 2500.0  # a melt has no shape to keep; below this its network can still change and settles as a glass
 
 
 def crystal(material: Material, name: str, supercell: Supercell | None = None) -> Atoms:
@@ -64,6 +64,7 @@ class Gate:
     coordination: dict[str, float]
     shortest_A: dict[str, float]
     bond_spread_A: float
+    symmetry_operations: int
     defects: int
     reasons: tuple[str, ...]
 
@@ -73,7 +74,7 @@ class Gate:
 
 
 def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None) -> Gate:
-    """Measure density, coordination and shortest distances and hold them against `criteria`.
+    """Measure density, coordination, shortest distances and symmetry and hold them against `criteria`.
 
     Parameters
     ----------
@@ -110,7 +111,23 @@ def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None
     spread = float(distance[bonds].std()) if bonds.any() else 0.0
     if spread < criteria.bond_spread_A:
         reasons.append(f"bond lengths spread by {spread:.3f} A only: crystalline")
-    return Gate(density, coordination, shortest, spread, defects, tuple(reasons))
+    operations = symmetry_operations(atoms, criteria.symmetry_tolerance_A)
+    if operations > 1:
+        reasons.append(f"{operations} symmetry operations: a crystal")
+    return Gate(density, coordination, shortest, spread, operations, defects, tuple(reasons))
+
+
+def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
+    """Operations that map the cell onto itself within a tolerance; one, the identity, where there is no symmetry."""
+    import spglib.error
+
+    spglib.error.OLD_ERROR_HANDLING = False  # it shall raise
+    cell: Any = (atoms.cell.array, atoms.get_scaled_positions(), atoms.numbers)
+    try:
+        found: Any = spglib.get_symmetry_dataset(cell, tolerance_A)
+    except spglib.error.SpglibError:
+        return 1  # atoms overlap: their distance is judged
+    return len(found.rotations)
 
 
 def no_insulator(gap_eV: float, criteria: NetworkGlass) -> list[str]:
@@ -147,33 +164,6 @@ def tersoff_calculator(parameters: Tersoff):
         i, j, k, *numbers = line.split()
         table[(i, j, k)] = TersoffParameters(*map(float, numbers))
     return Tersoff(table)
-
-
-class SoftCores(Calculator):
-    """Soft cores k (r_c − r)² between pairs of elements, each pair within its r_c."""
-
-    implemented_properties = ["energy", "free_energy", "forces", "stress"]  # noqa: RUF012 (ASE's interface)
-
-    def __init__(self, cores: Mapping[str, Core]):
-        super().__init__()
-        self.cores = cores
-
-    def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes):
-        from ase.neighborlist import neighbor_list
-
-        super().calculate(atoms, properties, system_changes)
-        assert self.atoms is not None
-        energy, forces, virial = 0.0, np.zeros((len(self.atoms), 3)), np.zeros((3, 3))
-        for pair, core in self.cores.items():
-            a, b = pair.split("-")
-            first, vectors, distances = neighbor_list("iDd", self.atoms, {(a, b): core.r_A})  # every pair twice
-            depth = core.r_A - distances
-            energy += 0.5 * core.k_eV_A2 * float(depth @ depth)
-            pull = (-2 * core.k_eV_A2 * depth / distances)[:, None] * vectors
-            np.add.at(forces, first, pull)
-            virial += 0.5 * vectors.T @ pull
-        stress = full_3x3_to_voigt_6_stress(virial / self.atoms.get_volume())
-        self.results = {"energy": energy, "free_energy": energy, "forces": forces, "stress": stress}
 
 
 def core_commands(cores: Mapping[str, Core], elements: Sequence[str]) -> str:
@@ -236,9 +226,6 @@ def make_glass(
         quench_seed = int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
         atoms = quench(material, settings, quench_seed, work)
         verdict = examine(atoms, network, settings.max_defects)
-        if verdict.passed and settings.shape == "relaxed":
-            atoms = with_relaxed_shape(atoms, network)
-            verdict = examine(atoms, network, settings.max_defects)
         attempts.append(
             {
                 "attempt": attempt,
@@ -246,6 +233,7 @@ def make_glass(
                 **{f"coordination_{e}": n for e, n in verdict.coordination.items()},
                 **{f"shortest_{p}_A": d for p, d in verdict.shortest_A.items()},
                 "bond_spread_A": verdict.bond_spread_A,
+                "symmetry_operations": verdict.symmetry_operations,
                 "defects": verdict.defects,
                 "status": "accepted" if verdict.passed else "rejected: " + "; ".join(verdict.reasons),
             }
@@ -255,29 +243,16 @@ def make_glass(
     return atoms, attempts
 
 
-def with_relaxed_shape(atoms: Atoms, network: NetworkGlass) -> Atoms:
-    """The cell after ions and shape have come to rest together at constant volume, by the potential of the quench.
-
-    The box of the melt is arbitrary: DFT finds up to 30 GPa of shear stress in it, and a crystal bent to fit it passes
-    for a glass until it is let go.
-    """
-    from ase.calculators.mixing import SumCalculator
-    from ase.filters import FrechetCellFilter
-    from ase.optimize import BFGS
-
-    relaxed = Atoms(atoms.get_chemical_symbols(), positions=atoms.positions, cell=atoms.cell.array, pbc=True)
-    relaxed.calc = SumCalculator([tersoff_calculator(network.tersoff), SoftCores(network.cores)])
-    shape_and_ions: Any = FrechetCellFilter(relaxed, constant_volume=True)
-    with BFGS(shape_and_ions, logfile=None) as optimizer:
-        optimizer.run(fmax=SHAPE_FORCE_EV_A, steps=SHAPE_STEPS)
-    relaxed.calc = None
-    return relaxed
-
-
 def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: Path) -> Atoms:
-    """One melt and quench at constant volume, then energy minimisation (LAMMPS, `protocols/nitride.in`)."""
+    """One melt and quench, then ions and cell at rest together (LAMMPS, `protocols/nitride.in`).
+
+    Down to `FREE_BELOW_K` the volume is constant; below it volume and shape follow a pressure of zero.  In the box of
+    the melt a network is left under up to 30 GPa of shear stress, and slides far when it is let go.
+    """
+    from ase.io import read
+
     from atomistic.lammps import Atoms as LammpsAtoms
-    from atomistic.lammps import Workspace, load_data, run_lammps, write_data
+    from atomistic.lammps import Workspace, run_lammps, write_data
 
     elements = tuple(material.formula)
     network: NetworkGlass = material.part("network_glass")
@@ -305,7 +280,8 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
         network.masses_u,
     )
     steps_per_ps = 1000 / settings.timestep_fs
-    span = settings.melt_temperature_K - settings.final_temperature_K
+    free_K = min(FREE_BELOW_K, settings.melt_temperature_K)
+    steps_per_K = steps_per_ps / settings.quench_rate_K_ps
     run_lammps(
         "nitride.in",
         workspace,
@@ -314,16 +290,14 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
             "seed": seed,
             "timestep": settings.timestep_fs / 1000,
             "melt": settings.melt_temperature_K,
+            "free": free_K,
             "final": settings.final_temperature_K,
             "melt_steps": round(settings.melt_ps * steps_per_ps),
-            "quench_steps": round(span / settings.quench_rate_K_ps * steps_per_ps),
+            "quench_steps": round((settings.melt_temperature_K - free_K) * steps_per_K),
+            "free_steps": round((free_K - settings.final_temperature_K) * steps_per_K),
         },
     )
-    result = load_data(workspace / "glass.data", elements)
+    numbers = {kind: atomic_numbers[element] for kind, element in enumerate(elements, 1)}
+    quenched: Any = read(workspace / "glass.data", format="lammps-data", atom_style="atomic", Z_of_type=numbers)
     workspace.remove()
-    return Atoms(
-        [elements[t - 1] for t in result.types],
-        positions=result.positions_A,
-        cell=np.diag(result.cell_A),
-        pbc=True,
-    )
+    return Atoms(quenched.get_chemical_symbols(), positions=quenched.positions, cell=quenched.cell.array, pbc=True)

@@ -40,6 +40,7 @@ class Structure:
             **{f"coordination_{element}": value for element, value in self.verdict.coordination.items()},
             "defects": self.verdict.defects,
             "bond_spread_A": self.verdict.bond_spread_A,
+            "symmetry_operations": self.verdict.symmetry_operations,
             "relaxation": asdict(self.relaxation),
             "gate": {"passed": not self.reasons, "reasons": list(self.reasons)},
         }
@@ -100,6 +101,7 @@ def structure_rows(reports: Sequence[Mapping[str, Any]], quenches: Sequence[int]
             **{key: value for key, value in report.items() if key.startswith("coordination_")},
             "defects": report["defects"],
             "bond_spread_A": report["bond_spread_A"],
+            "symmetry_operations": report["symmetry_operations"],
             **report["relaxation"],
             "quenches": count,
             "status": "accepted" if report["gate"]["passed"] else "rejected: " + "; ".join(report["gate"]["reasons"]),

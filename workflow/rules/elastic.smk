@@ -155,6 +155,7 @@ rule measure_tensor:
         material=lambda wildcards: CRYSTALS.get(wildcards.structure, MATERIAL),
     output:
         tensor=f"{RESULTS}/elastic/tensors/{{structure}}.json",
+        at_rest=f"{RESULTS}/elastic/tensors/{{structure}}.xyz",
     log:
         f"{RESULTS}/logs/measure_tensor_{{structure}}.log",
     priority: 94

@@ -12,7 +12,10 @@ _NETWORK: tuple[Column, ...] = (
     number("density_g_cm3", "g/cm³", "density"),
     number("coordination_*", "1", "mean coordination number of an element"),
 )
-_BOND_SPREAD = number("bond_spread_A", "Å", "standard deviation of the bond lengths")
+_ORDER: tuple[Column, ...] = (
+    number("bond_spread_A", "Å", "standard deviation of the bond lengths"),
+    integer("symmetry_operations", "that map the cell onto itself; one, the identity, in a glass"),
+)
 
 TABLES = (
     Table(
@@ -70,7 +73,7 @@ TABLES = (
             integer("attempt", "number of the attempt, from 0"),
             *_NETWORK,
             number("shortest_*_A", "Å", "shortest distance between two elements"),
-            _BOND_SPREAD,
+            *_ORDER,
             integer("defects", "atoms without their valence"),
             text("status", "accepted, or rejected: why"),
         ),
@@ -83,7 +86,7 @@ TABLES = (
             integer("atoms", "atoms in the cell"),
             *_NETWORK,
             integer("defects", "atoms without their valence, after the relaxation"),
-            _BOND_SPREAD,
+            *_ORDER,
             integer("steps", "ionic steps of the relaxation"),
             number("force_left_eV_A", "eV/Å", "largest force left", empty=True),
             boolean("converged", "whether the forces met their goal"),

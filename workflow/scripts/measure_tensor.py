@@ -1,4 +1,4 @@
-"""Elastic constants.  In: material, elastic/structures/GLASS.xyz (Å).  Out: elastic/tensors/NAME.json (GPa)."""
+"""Elastic constants.  In: material, elastic/structures/GLASS.xyz.  Out: elastic/tensors/NAME.{json (GPa), xyz (Å)}."""
 
 from pathlib import Path
 
@@ -9,8 +9,8 @@ from atomistic.elastic.networks import crystal
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings, RelaxationSettings, TensorSettings
 from workflow.job import job
-from workflow.results import load_json, write_json
-from workflow.structure_files import ScfStore, load_structure, start_from
+from workflow.results import load_json, write_json, write_text
+from workflow.structure_files import ScfStore, load_structure, start_from, structure_text
 
 with job(snakemake) as run:
     settings = snakemake.params.settings
@@ -34,5 +34,6 @@ with job(snakemake) as run:
             calculator = TwoMeshes(calculator)  # curvatures feel the ripple of one mesh
         tensor = TensorSettings(**settings["tensor"])
         measured = measure_constants(atoms, calculator, tensor, run.progress, criteria)
+    write_text(snakemake.output.at_rest, structure_text(measured.atoms))
     write_json(snakemake.output.tensor, measured.report(name), run.provenance)
     store.remove()

@@ -83,7 +83,7 @@ def report(name, *reasons):
     relaxation = {"steps": 3, "force_left_eV_A": 0.1, "converged": True, "energy_gained_eV": 1.0, "gap_eV": 2.0}
     made = {"structure": name, "atoms": 28, "density_g_cm3": 3.0, "coordination_Si": 4.0, "coordination_N": 3.0}
     made["defects"] = 0
-    return {**made, "bond_spread_A": 0.05, "relaxation": relaxation, "gate": gate}
+    return {**made, "bond_spread_A": 0.05, "symmetry_operations": 1, "relaxation": relaxation, "gate": gate}
 
 
 def test_a_modulus_counts_if_neither_its_fit_nor_its_structure_has_a_flag():
