@@ -124,10 +124,10 @@ def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
     spglib.error.OLD_ERROR_HANDLING = False  # it shall raise
     cell: Any = (atoms.cell.array, atoms.get_scaled_positions(), atoms.numbers)
     try:
-        found: Any = spglib.get_symmetry_dataset(cell, tolerance_A)
+        symmetry: Any = spglib.get_symmetry_dataset(cell, tolerance_A)
     except spglib.error.SpglibError:
         return 1  # atoms overlap: their distance is judged
-    return len(found.rotations)
+    return len(symmetry.rotations)
 
 
 def no_insulator(gap_eV: float, criteria: NetworkGlass) -> list[str]:
