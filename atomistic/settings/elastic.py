@@ -36,7 +36,7 @@ class NitrideGlassSettings(Settings):
         default=1000,
         ge=1,
         le=10_000,
-        description="quenches per structure until one passes the gates; of 28 atoms about one in seventy does",
+        description="quenches per structure until one passes the gates; of 28 atoms about one in sixty does",
     )
 
 
