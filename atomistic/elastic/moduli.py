@@ -129,7 +129,7 @@ def grid_shares(axes: Mapping[str, tuple[np.ndarray, np.ndarray]], function: Cal
 
 
 IDEAL_NETWORKS = (
-    "The glasses are ideal networks: every Si has four N and every N three Si. Films hold a few per cent of broken "
+    "The glasses are quenched as ideal networks: every Si has four N and every N three Si. Films hold a few per cent of broken "
     "bonds, which may soften them: take B and E* for upper estimates."
 )
 BROKEN_BONDS = (
