@@ -129,8 +129,8 @@ def grid_shares(axes: Mapping[str, tuple[np.ndarray, np.ndarray]], function: Cal
 
 
 IDEAL_NETWORKS = (
-    "The glasses are quenched as ideal networks: every Si has four N and every N three Si. Films hold a few per cent of broken "
-    "bonds, which may soften them: take B and E* for upper estimates."
+    "The glasses are quenched as ideal networks: every Si has four N and every N three Si. Films hold a few per cent "
+    "of broken bonds, which may soften them: take B and E* for upper estimates."
 )
 BROKEN_BONDS = (
     "Up to {} atoms of a quenched cell may lack or exceed their valence. Cells without a gap are left out, so of the "
