@@ -125,7 +125,9 @@ def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
     cell: Any = (atoms.cell.array, atoms.get_scaled_positions(), atoms.numbers)
     try:
         symmetry: Any = spglib.get_symmetry_dataset(cell, tolerance_A)
-    except spglib.error.SpglibError:
+    except spglib.error.SpglibError as error:
+        if "too close" not in str(error):
+            raise
         return 1  # atoms overlap: their distance is judged
     return len(symmetry.rotations)
 

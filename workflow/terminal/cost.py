@@ -41,7 +41,7 @@ SCF_S = 9.0  # one volume of 28 atoms at 100 hartree
 RELAXATION_STEP_S = 8.0  # the same, tightly converged and with forces
 STRESS_STEP_S = 12.0  # the same with the stress; 80 hartree on a loaded machine, not yet on an idle one
 QUENCH_S = 1.3  # one quench of 28 atoms
-QUENCHES = {"perfect": 55, "with broken bonds": 10}  # until a network passes its gates
+PERFECT_QUENCHES, BROKEN_QUENCHES = 55, 10  # until a network passes its gates: perfect, or with broken bonds
 TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
 LONGEST_RUN_H = 12.0  # of a run on one machine, unless it is said to be meant: what a night finishes
 GROWS_BY = {  # the key that makes a rule's jobs many or long
@@ -147,7 +147,7 @@ class Costs:
     def make_amorphous(self, wildcards: Mapping[str, str]) -> float:
         """Quenches of a glass cell until one passes its gates."""
         glass = self.scene.elastic.glass
-        quenches = QUENCHES["with broken bonds" if glass.max_defects else "perfect"]
+        quenches = BROKEN_QUENCHES if glass.max_defects else PERFECT_QUENCHES
         return QUENCH_S * quenches * glass.formula_units / 4
 
     def relax_amorphous(self, wildcards: Mapping[str, str]) -> float:
