@@ -123,11 +123,16 @@ def _relax(atoms: Atoms, calculator: Calculator, settings: TensorSettings) -> Re
     return rest._replace(steps=before + rest.steps)
 
 
-def isotropic_rows(report: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Rows of elastic/isotropic_moduli.csv of one structure, clamped and relaxed, from its `Measured.report`."""
+def isotropic_rows(report: Mapping[str, Any], copied: str | None = None) -> list[dict[str, Any]]:
+    """Rows of elastic/isotropic_moduli.csv of one structure, clamped and relaxed, from its `Measured.report`.
+
+    Parameters
+    ----------
+    copied : the structure that this one is once more at rest; it counts once
+    """
     rows = []
     for ions in IONS:
-        flags = [*filter(None, [report["failure"]])]
+        flags = [*filter(None, [report["failure"], copied and f"at rest it is {copied} again"])]
         values = dict.fromkeys(("B_GPa", "G_GPa", "E_GPa", "nu", "B_error_GPa", "G_error_GPa"))
         if not report["failure"]:
             if ions == "relaxed":

@@ -2,7 +2,7 @@
 
 Lengths in Å.  A glass cell is melted at the density of experiment and quenched with a Tersoff potential and soft cores
 in LAMMPS, its shape free as soon as it is stiff.  At rest it must be a network without symmetry in which (almost)
-every atom has its valence.
+every atom has its valence, and none that the ensemble already has.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -132,6 +132,17 @@ def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
     return len(symmetry.rotations)
 
 
+def same_network(atoms: Atoms, others: Mapping[str, Atoms]) -> str | None:
+    """Name of the first of `others` that is this cell again: turned, mirrored, shifted or described by other edges.
+
+    A small cell has few good networks, so that independent quenches end in the same one (docs/elastic.md).
+    """
+    from ase.utils.structure_comparator import SymmetryEquivalenceCheck
+
+    comparison = SymmetryEquivalenceCheck()
+    return next((name for name, other in others.items() if comparison.compare(atoms.copy(), other.copy())), None)
+
+
 def no_insulator(gap_eV: float, criteria: NetworkGlass) -> list[str]:
     """Why a cell with this gap is no insulator; nothing where it is one or the engine does not tell its gap (NaN)."""
     return [f"gap {gap_eV:.2f} eV: no insulator"] if gap_eV < criteria.gap_eV else []
@@ -208,6 +219,7 @@ def make_glass(
     seed: int,
     work: Path,
     progress: Callable[[float, str], None] | None = None,
+    others: Mapping[str, Atoms] | None = None,
 ) -> tuple[Atoms, list[dict[str, Any]]]:
     """Melt and quench until a cell passes the gates.
 
@@ -215,6 +227,7 @@ def make_glass(
     ----------
     seed : of the structure; attempt k has its own stream
     work : a directory for LAMMPS
+    others : cells the ensemble already has, by name; none of them is made once more
 
     Returns
     -------
@@ -228,6 +241,9 @@ def make_glass(
         quench_seed = int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
         atoms = quench(material, settings, quench_seed, work)
         verdict = examine(atoms, network, settings.max_defects)
+        reasons = verdict.reasons
+        if not reasons and (copied := same_network(atoms, others or {})):
+            reasons = (f"the network of {copied} again",)
         attempts.append(
             {
                 "attempt": attempt,
@@ -237,10 +253,10 @@ def make_glass(
                 "bond_spread_A": verdict.bond_spread_A,
                 "symmetry_operations": verdict.symmetry_operations,
                 "defects": verdict.defects,
-                "status": "accepted" if verdict.passed else "rejected: " + "; ".join(verdict.reasons),
+                "status": "rejected: " + "; ".join(reasons) if reasons else "accepted",
             }
         )
-        if verdict.passed:
+        if not reasons:
             break
     return atoms, attempts
 

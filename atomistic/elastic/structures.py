@@ -51,23 +51,22 @@ def relaxed_structure(
     criteria: NetworkGlass,
     make_calculator: Callable[[], Calculator],
     settings: RelaxationSettings,
-    max_defects: int = 0,
+    refused: str = "",
     progress: Progress | None = None,
 ) -> Structure:
-    """Relax a quenched cell and judge the result; a cell whose network is not good enough is not relaxed at all.
+    """Relax a quenched cell and judge the result; a cell that no quench made right is not relaxed at all.
 
     Parameters
     ----------
     criteria : the `network_glass` of a material
     make_calculator : called only if the cell is relaxed
-    max_defects : atoms of the quenched cell that may lack or exceed their valence
+    refused : why the quenched cell was rejected; empty if it was accepted
     """
-    verdict = examine(quenched, criteria, max_defects)
-    atoms, calculator, done = quenched, None, UNTOUCHED
-    if verdict.passed:
-        calculator = make_calculator()
-        atoms, done = relax_glass(quenched, calculator, settings, progress)
-        verdict = examine(atoms, criteria)
+    if refused:
+        return Structure(quenched, None, examine(quenched, criteria), UNTOUCHED, (refused,))
+    calculator = make_calculator()
+    atoms, done = relax_glass(quenched, calculator, settings, progress)
+    verdict = examine(atoms, criteria)
     reasons = [*verdict.reasons, *filter(None, [done.failure]), *no_insulator(done.gap_eV, criteria)]
     return Structure(atoms, calculator, verdict, done, tuple(reasons))
 

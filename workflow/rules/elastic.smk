@@ -52,9 +52,15 @@ rule make_crystal:
         "../scripts/make_crystal.py"
 
 
+def quenched_before(wildcards):
+    """Cells that a quench must not make once more: one after the other, which costs nothing beside their DFT."""
+    return [f"{RESULTS}/elastic/quenched/a{k:02d}.xyz" for k in range(1, int(wildcards.amorphous[1:]))]
+
+
 rule make_amorphous:
     input:
         material=MATERIAL,
+        others=quenched_before,
     output:
         structure=f"{RESULTS}/elastic/quenched/{{amorphous}}.xyz",
         attempts=f"{RESULTS}/elastic/quenched/{{amorphous}}.csv",
@@ -74,6 +80,7 @@ rule relax_amorphous:
     input:
         material=MATERIAL,
         structure=f"{RESULTS}/elastic/quenched/{{amorphous}}.xyz",
+        attempts=f"{RESULTS}/elastic/quenched/{{amorphous}}.csv",
     output:
         structure=f"{RESULTS}/elastic/structures/{{amorphous}}.xyz",
         report=f"{RESULTS}/elastic/structures/{{amorphous}}.json",
@@ -82,7 +89,7 @@ rule relax_amorphous:
         f"{RESULTS}/logs/relax_amorphous_{{amorphous}}.log",
     priority: 90
     params:
-        settings=elastic_settings("material", "dft", "relaxation", "glass"),
+        settings=elastic_settings("material", "dft", "relaxation"),
         store=f"{RESULTS}/work/scf/relax_{{amorphous}}",
     message:
         "relax amorphous cell {wildcards.amorphous}"
@@ -171,6 +178,7 @@ rule measure_tensor:
 rule average_tensors:
     input:
         tensors=[f"{RESULTS}/elastic/tensors/{name}.json" for name in TENSORS],
+        at_rest=[f"{RESULTS}/elastic/tensors/{name}.xyz" for name in TENSORS],
     output:
         table=f"{RESULTS}/elastic/isotropic_moduli.csv",
     log:

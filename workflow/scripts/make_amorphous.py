@@ -1,4 +1,4 @@
-"""Melt and quench one amorphous cell.  In: material file.  Out: elastic/quenched/NAME.xyz (Å), NAME.csv (attempts)."""
+"""Melt and quench one amorphous cell.  In: material file, cells before it.  Out: elastic/quenched/NAME.{xyz,csv}."""
 
 from pathlib import Path
 
@@ -9,13 +9,14 @@ from atomistic.materials import load_material
 from atomistic.settings import NitrideGlassSettings
 from workflow.job import job
 from workflow.results import write_csv, write_text
-from workflow.structure_files import structure_text
+from workflow.structure_files import load_structure, structure_text
 
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)
     settings = NitrideGlassSettings(**snakemake.params.settings["glass"])
     number = int(snakemake.wildcards.amorphous[1:])
     seed = int(np.random.SeedSequence([settings.seed, number]).generate_state(1)[0])
-    atoms, attempts = make_glass(material, settings, seed, Path(snakemake.params.work), run.progress)
+    others = {Path(path).stem: load_structure(path) for path in snakemake.input.others}
+    atoms, attempts = make_glass(material, settings, seed, Path(snakemake.params.work), run.progress, others)
     write_csv(snakemake.output.attempts, [{"structure": snakemake.wildcards.amorphous, **row} for row in attempts])
     write_text(snakemake.output.structure, structure_text(atoms))

@@ -1,4 +1,4 @@
-"""Relax one amorphous cell by DFT.  In: elastic/quenched/NAME.xyz.  Out: elastic/structures/NAME.{xyz,json,h5}."""
+"""Relax one amorphous cell by DFT.  In: elastic/quenched/NAME.{xyz,csv}.  Out: elastic/structures/NAME.*."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ from atomistic.elastic.structures import relaxed_structure
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings, RelaxationSettings
 from workflow.job import job
-from workflow.results import write_json, write_text
+from workflow.results import load_csv, write_json, write_text
 from workflow.structure_files import ScfStore, load_structure, structure_text, write_start
 
 with job(snakemake) as run:
@@ -16,13 +16,14 @@ with job(snakemake) as run:
     dft = relaxation.applied_to(DftSettings(**snakemake.params.settings["dft"]))
     store = ScfStore(Path(snakemake.params.store))
     quenched = load_structure(snakemake.input.structure)
+    status = load_csv(snakemake.input.attempts)[-1]["status"]
     largest_cell = quenched.cell.array * 1.02  # the mesh of a cell that would swell by this much
     relaxed = relaxed_structure(
         quenched,
         material.part("network_glass"),
         lambda: make_calculator(dft, "GGA", largest_cell, store),
         relaxation,
-        snakemake.params.settings["glass"]["max_defects"],
+        "" if status == "accepted" else status.removeprefix("rejected: "),
         run.progress,
     )
     write_text(snakemake.output.structure, structure_text(relaxed.atoms))

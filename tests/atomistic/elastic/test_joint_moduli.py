@@ -138,6 +138,11 @@ def test_whatever_fails_is_named_and_costs_its_structure_only(measured):
     assert "unstable" in relaxed["flags"]
 
 
+def test_a_network_counts_once_even_if_two_cells_come_to_rest_in_it(measured):
+    lines = isotropic_rows(measured.report("a02"), copied="a01")
+    assert all(line["flags"] == "at rest it is a01 again" and line["B_GPa"] > 0 for line in lines)
+
+
 def test_a_cell_that_is_no_insulating_glass_at_rest_is_doubted():
     atoms = crystal(NITRIDE, "beta", (1, 1, 1))
     network = NITRIDE.part("network_glass")

@@ -6,12 +6,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from atomistic.elastic import networks
 from atomistic.elastic.networks import (
     core_commands,
     crystal,
     examine,
+    make_glass,
     quench,
     random_structure,
+    same_network,
     symmetry_operations,
     tersoff_calculator,
     tersoff_table,
@@ -107,6 +110,32 @@ def test_symmetry_is_counted_in_crystals_and_absent_from_disorder():
     assert symmetry_operations(beta, 0.1) == 1
     beta.positions[1] = beta.positions[0]
     assert symmetry_operations(beta, 0.1) == 1
+
+
+def test_a_network_is_known_again_in_another_orientation_order_and_description():
+    beta = crystal(NITRIDE, "beta")
+    beta.rattle(0.3, seed=2)
+    again = beta[np.random.default_rng(3).permutation(len(beta))]
+    mirrored_edges = np.diag([1, -1, 1]) @ beta.cell.array @ np.diag([1, -1, 1])  # another hand, the same handed cell
+    again.set_cell(np.array([[1, 1, 0], [0, 1, 0], [0, 0, 1]]) @ mirrored_edges)
+    again.positions = again.positions @ np.diag([1, -1, 1]) + 0.7
+    again.rotate(40, (1, 2, 3), rotate_cell=True)
+    other = beta.copy()
+    other.rattle(0.3, seed=4)
+    assert same_network(again, {"a01": other, "a02": beta}) == "a02"
+    assert same_network(again, {"a01": other}) is None
+    assert same_network(again, {}) is None
+
+
+def test_a_quench_goes_on_when_it_ends_in_a_network_that_is_there_already(tmp_path, monkeypatch):
+    first, second = (crystal(NITRIDE, "beta") for _ in range(2))
+    for seed, cell in enumerate((first, second)):
+        cell.rattle(0.08, seed=seed)
+    results = iter([first.copy(), second.copy()])
+    monkeypatch.setattr(networks, "quench", lambda *_: next(results))
+    made, rows = make_glass(NITRIDE, NitrideGlassSettings(), 1, tmp_path, others={"a01": first})
+    assert [row["status"] for row in rows] == ["rejected: the network of a01 again", "accepted"]
+    assert np.array_equal(made.positions, second.positions)
 
 
 def test_a_quenched_cell_rests_in_a_shape_of_its_own(tmp_path):
