@@ -11,7 +11,7 @@ from atomistic.constants import AMU_PER_A3_IN_G_CM3
 from atomistic.elastic.dft import TwoMeshes
 from atomistic.elastic.moduli import grid_shares, plane_strain_modulus, spread
 from atomistic.elastic.networks import examine, no_insulator
-from atomistic.elastic.relaxation import Rest, relax_cell, strained
+from atomistic.elastic.relaxation import Rest, last_gap_eV, relax_cell, strained
 from atomistic.elastic.response import Response, elastic_response
 from atomistic.elastic.tensor import isotropic, poisson, young
 from atomistic.errors import InputError
@@ -105,8 +105,7 @@ def measure_constants(
 
 def _no_glass(atoms: Atoms, calculator: Calculator, criteria: NetworkGlass) -> tuple[str, ...]:
     """Why a cell at rest is no insulating glass: without the stress of its box it may have turned into a crystal."""
-    gap_eV = float(getattr(calculator, "gap_eV", np.nan))
-    return (*examine(atoms, criteria).reasons, *no_insulator(gap_eV, criteria))
+    return (*examine(atoms, criteria).reasons, *no_insulator(last_gap_eV(calculator), criteria))
 
 
 def _relax(atoms: Atoms, calculator: Calculator, settings: TensorSettings) -> Rest:

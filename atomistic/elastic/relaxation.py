@@ -171,6 +171,11 @@ class Relaxation:
 UNTOUCHED = Relaxation(0, float("nan"), False, 0.0, float("nan"))
 
 
+def last_gap_eV(calculator: Calculator) -> float:
+    """Gap between occupied and empty levels that a calculator found last; NaN if its engine does not tell."""
+    return float(getattr(calculator, "gap_eV", np.nan))
+
+
 def relax_glass(
     atoms: Atoms, calculator: Calculator, settings: RelaxationSettings, progress: Progress | None = None
 ) -> tuple[Atoms, Relaxation]:
@@ -196,6 +201,5 @@ def relax_glass(
     except CalculationFailed as error:
         # the E(V) scan of this structure will meet the same trouble and name the strains; the others go on
         return strained(atoms, 0.0), replace(UNTOUCHED, failure=f"relaxation: {error}")
-    gap = float(getattr(calculator, "gap_eV", np.nan))
-    done = Relaxation(rest.steps, rest.force_left_eV_A, rest.converged, gained, gap)
+    done = Relaxation(rest.steps, rest.force_left_eV_A, rest.converged, gained, last_gap_eV(calculator))
     return strained(current, 0.0), done
