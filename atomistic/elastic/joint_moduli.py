@@ -1,6 +1,6 @@
 """E* from bulk and shear moduli of the same structures, so that Poisson's ratio is theirs and not assumed."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +10,7 @@ from ase.calculators.calculator import CalculationFailed, Calculator
 from atomistic.constants import AMU_PER_A3_IN_G_CM3
 from atomistic.elastic.dft import TwoMeshes
 from atomistic.elastic.moduli import grid_shares, plane_strain_modulus, spread
-from atomistic.elastic.networks import examine, no_insulator
+from atomistic.elastic.networks import examine, no_insulator, same_network
 from atomistic.elastic.relaxation import Rest, last_gap_eV, relax_cell, strained
 from atomistic.elastic.response import Response, elastic_response
 from atomistic.elastic.tensor import isotropic, poisson, young
@@ -143,6 +143,22 @@ def isotropic_rows(report: Mapping[str, Any], copied: str | None = None) -> list
                 flags.append(str(error))
         head = {key: report[key] for key in ("structure", "atoms", "density_g_cm3")}
         rows.append({**head, "ions": ions, **values, "flags": "; ".join(flags), "doubts": "; ".join(report["doubts"])})
+    return rows
+
+
+def isotropic_table(measured: Iterable[tuple[Mapping[str, Any], Atoms]]) -> list[dict[str, Any]]:
+    """Rows of elastic/isotropic_moduli.csv; a network in which several cells come to rest counts once.
+
+    Parameters
+    ----------
+    measured : of each structure its `Measured.report` and its cell at rest
+    """
+    rows: list[dict[str, Any]] = []
+    known: dict[str, Atoms] = {}
+    for report, atoms in measured:
+        rows += isotropic_rows(report, same_network(atoms, known))
+        if not report["failure"]:
+            known[report["structure"]] = atoms
     return rows
 
 

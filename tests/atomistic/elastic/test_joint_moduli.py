@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from ase.calculators.calculator import CalculationFailed, Calculator
 
-from atomistic.elastic.joint_moduli import Measured, isotropic_rows, measure_constants, with_computed_poisson
+from atomistic.elastic.joint_moduli import (
+    Measured,
+    isotropic_rows,
+    isotropic_table,
+    measure_constants,
+    with_computed_poisson,
+)
 from atomistic.elastic.moduli import Modulus, effective_modulus, grid_shares, plane_strain_modulus
 from atomistic.elastic.networks import crystal, tersoff_calculator
 from atomistic.elastic.tensor import poisson, young
@@ -141,6 +147,10 @@ def test_whatever_fails_is_named_and_costs_its_structure_only(measured):
 def test_a_network_counts_once_even_if_two_cells_come_to_rest_in_it(measured):
     lines = isotropic_rows(measured.report("a02"), copied="a01")
     assert all(line["flags"] == "at rest it is a01 again" and line["B_GPa"] > 0 for line in lines)
+    failed = Measured(measured.atoms, None, None, "SCF not converged in 50 cycles").report("a01")
+    cells = [failed, measured.report("a02"), measured.report("a03")]
+    flags = [row["flags"] for row in isotropic_table((report, measured.atoms) for report in cells)]
+    assert flags[2:] == ["", "", *["at rest it is a02 again"] * 2]  # the one that failed counts nowhere
 
 
 def test_a_cell_that_is_no_insulating_glass_at_rest_is_doubted():
