@@ -103,12 +103,20 @@ class Source(Settings):
     doi: str | None
 
 
+class CounterfaceCalibration(Settings):
+    """What of an `AreaCalibration` differs where the counterface is of another potential's atoms."""
+
+    touch_A: Positive
+    error: float = Field(ge=0, le=0.1)
+
+
 class AreaCalibration(Settings):
     """The definition of contact area that was tested on bodies of known section with a potential's glass; lengths in Å.
 
     Attributes
     ----------
     error : largest deviation from the known area, as a fraction.
+    counterfaces : by the name of a counterface's potential.
     """
 
     depth_A: Positive
@@ -117,6 +125,7 @@ class AreaCalibration(Settings):
     rim_A: float = Field(ge=0)
     error: float = Field(ge=0, le=0.1)
     source: str
+    counterfaces: dict[Name, CounterfaceCalibration] = Field(default={})
 
 
 class Potential(Settings):

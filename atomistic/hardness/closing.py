@@ -55,18 +55,19 @@ def run_closing(
     work: Path,
     progress: Progress | None = None,
     counter_glass: Atoms | None = None,
+    counter_potential: Potential | None = None,
 ) -> Closing:
     """Carry out a run, or go on with it if `work` holds its restart files; `work` is deleted at the end.
 
     Parameters
     ----------
     material, glass : oxide of the asperity, and a cell of its glass.
-    counter_glass : glass of a counterface of oxide; None: that of the asperity.
+    counter_glass, counter_potential : glass and potential of a counterface of oxide; None: those of the asperity.
     """
-    require_calibration(potential, settings.area)
+    require_calibration(potential, settings.area, counter_potential)
     closing, plan = settings.closing, plan_closing(settings, run)
     identity = {
-        "potential": potential.model_dump(),
+        "potential": [within.model_dump() for within in (potential, counter_potential or potential)],
         "run": [run.asperity.model_dump(), run.seed, run.energy_scale],
         "settings": settings.model_dump(include={"closing": True, "area": True, "material": True, "plasticity": True}),
         "glass": [[g.cell_A.tolist(), g.positions_A.sum(axis=0).tolist()] for g in (glass, counter_glass or glass)],
@@ -77,11 +78,10 @@ def run_closing(
     bodies = [prepare_body(run, glass, potential, settings, aside, place, run.asperity.amplitude_nm, base_nm, progress)]
     if closing.counterface in ("oxide", "asperity"):
         amplitude = run.asperity.amplitude_nm if closing.counterface == "asperity" else 0.0
-        counter, thickness = _commensurate(counter_glass or glass, glass), closing.counter_base_nm
+        counter, thickness = commensurate(counter_glass or glass, glass), closing.counter_base_nm
         aside = Workspace(work / "anneal_counter", identity, "anneal.in")
-        bodies.append(
-            prepare_body(run, counter, potential, settings, aside, (*place, 6), amplitude, thickness, progress)
-        )
+        within = counter_potential or potential
+        bodies.append(prepare_body(run, counter, within, settings, aside, (*place, 6), amplitude, thickness, progress))
     workspace = Workspace(work / "closing", identity, script_of(settings))
     kinds = [glass.elements.index(ion) + 1 for ion in cations(material, potential)]
 
@@ -104,7 +104,9 @@ def run_closing(
         measured = read(geometry, replace(plan, segments=segments, back=0))
         return may_stop(measured.curve, measured.witness, cell_nm2, closing, settings.plasticity)
 
-    geometry, reached = press_bodies(run, bodies, potential, settings, plan, place, workspace, progress, complete)
+    geometry, reached = press_bodies(
+        run, bodies, potential, settings, plan, place, workspace, progress, complete, counter_potential
+    )
     result = read(geometry, reached)
     shutil.rmtree(work)
     return result
@@ -143,7 +145,7 @@ def _read(readout: Readout, plan: Plan, held_A: float, geometry: Geometry) -> Cl
     return Closing(curve, witness, slice_rows(snapshots, geometry), unloading, summary)
 
 
-def _commensurate(counter: Atoms, glass: Atoms) -> Atoms:
+def commensurate(counter: Atoms, glass: Atoms) -> Atoms:
     """The counterface's glass in a cell as wide as the asperity's.
 
     Raises

@@ -72,8 +72,14 @@ def _spacing(cell_A: tuple[float, float], settings: AreaSettings) -> np.ndarray:
     return cell / np.maximum(1, np.round(cell / settings.grid_A))
 
 
-def require_calibration(potential: Potential, settings: AreaSettings) -> AreaCalibration:
+def require_calibration(
+    potential: Potential, settings: AreaSettings, counter_potential: Potential | None = None
+) -> AreaCalibration:
     """The calibration of the area definition in use with a potential.
+
+    Parameters
+    ----------
+    counter_potential : of a counterface of other atoms.
 
     Raises
     ------
@@ -85,6 +91,15 @@ def require_calibration(potential: Potential, settings: AreaSettings) -> AreaCal
             f"potential {potential.name}: no calibration of the contact area; run target hardness_area and write "
             "its largest error as `contact_area` into the potential's file (see config/potentials/pmmcs.yaml)"
         )
+    if counter_potential is not None and counter_potential.name != potential.name:
+        against = calibration.counterfaces.get(counter_potential.name)
+        if against is None:
+            raise InputError(
+                f"potential {potential.name}: no calibration of the contact area against {counter_potential.name}; run "
+                "target hardness_area with this counterface and write `contact_area.counterfaces` into the "
+                "potential's file (see config/potentials/pmmcs.yaml)"
+            )
+        calibration = calibration.model_copy(update=against.model_dump())
     for key in ("depth_A", "touch_A", "closing_A", "rim_A"):
         if getattr(settings, key) != getattr(calibration, key):
             raise InputError(

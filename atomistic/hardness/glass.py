@@ -1,7 +1,7 @@
 """Oxide glass by melt and quench, and the gates it must pass.
 
-A glass cell is cubic and periodic; asperities are cut from a tiling of it, so that a wavelength is a whole
-number of cells and nothing is strained.
+A glass cell is periodic, and cubic unless it takes the edge of another; bodies are cut from a tiling of it, so that a
+wavelength is a whole number of cells and nothing is strained.
 """
 
 from collections.abc import Mapping
@@ -74,29 +74,33 @@ def write_forcefield(
     potential: Potential,
     elements: tuple[str, ...],
     energy_scale: float,
-    repulsive_from: int | None = None,
+    repelled: tuple[Potential, tuple[str, ...]] | None = None,
     long_range: bool = False,
 ) -> None:
-    """Write the table and the commands that use it into a workspace (files `table` and `pairs`).
+    """Write the tables and the commands that use them into a workspace (files `table`, `table_repelled`, `pairs`).
 
     Parameters
     ----------
     elements : of each LAMMPS type; an element may stand for several types.
-    repulsive_from : types from this one on (counted from 1) belong to a second body that only repels the first.
+    repelled : potential and elements of a second body, whose types follow, and which only repels the first.
     long_range : the tables leave the Coulomb sum to a `kspace_style`.
     """
-    species = tuple(dict.fromkeys(elements))
-    (workspace / "table").write_text(potential.table(species, energy_scale, not long_range), encoding="utf-8")
-    cutoff = potential.cutoff_A
+    bodies = [("table", potential, elements)]
+    if repelled is not None:
+        bodies.append(("table_repelled", *repelled))
+    types = [(body, element) for body in bodies for element in body[2]]
     lines = ["pair_style table linear 4000"]
     if long_range:
+        cutoff = potential.cutoff_A
         lines = [f"pair_style hybrid/overlay table linear 4000 coul/long {cutoff}", "pair_coeff * * coul/long"]
-    for i, first in enumerate(elements, 1):
-        for j, second in enumerate(elements[i - 1 :], i):
-            section = "_".join(sorted((first, second), key=species.index))
-            if repulsive_from is not None and i < repulsive_from <= j:
-                section = "contact"
-            lines.append(f"pair_coeff {i} {j} {'table ' * long_range}table {section} {cutoff}")
+    for i, (body, first) in enumerate(types, 1):
+        file, within, of_body = body
+        for j, (other, second) in enumerate(types[i - 1 :], i):
+            section = "_".join(sorted((first, second), key=of_body.index)) if other is body else "contact"
+            lines.append(f"pair_coeff {i} {j} {'table ' * long_range}{file} {section} {within.cutoff_A}")
+    for file, within, of_body in bodies:
+        species = tuple(dict.fromkeys(of_body))
+        (workspace / file).write_text(within.table(species, energy_scale, not long_range), encoding="utf-8")
     lines += ["neighbor 0.6 bin", "neigh_modify every 2 delay 0 check yes"]
     (workspace / "pairs").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
@@ -115,8 +119,8 @@ def make_glass(
     Parameters
     ----------
     material : an oxide, with the `oxide_glass` that its file in config/materials gives.
-    edge_A : edge of the cell, kept throughout, so that the glass tiles beside another one without strain;
-        None: the quench is at zero pressure and finds its own.
+    edge_A : edges x and y of the cell, kept throughout, so that the glass tiles beside another one without strain;
+        the height follows a pressure of zero.  None: all three do, and stay equal.
 
     Returns
     -------
@@ -136,7 +140,7 @@ def make_glass(
     }
     workspace = Workspace(work, identity, "glass.in")
     masses = {ion: potential.species[ion].mass_u for ion in elements}
-    segments = schedule(settings, fixed_volume=edge_A is not None)
+    segments = schedule(settings, "npt" if edge_A is None else "npt_height")
     done = workspace.segments_done(len(segments))
     if not done:
         write_forcefield(workspace, potential, elements, 1.0)
@@ -164,9 +168,8 @@ def make_glass(
     return glass
 
 
-def schedule(settings: GlassSettings, fixed_volume: bool = False) -> list[dict]:
-    """Segments of the melt (constant volume), the quench and the rest (at zero pressure, or fixed volume)."""
-    ensemble = "nvt" if fixed_volume else "npt"
+def schedule(settings: GlassSettings, ensemble: str = "npt") -> list[dict]:
+    """Segments of the melt (constant volume), and of the quench and the rest in `ensemble` of glass.in."""
 
     def steps(duration_ps: float) -> int:
         return max(1, round(1000 * duration_ps / settings.timestep_fs))

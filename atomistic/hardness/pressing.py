@@ -158,12 +158,14 @@ def press_bodies(
     workspace: Workspace,
     progress: Progress | None = None,
     complete: Callable[[Geometry, int], bool] | None = None,
+    counter_potential: Potential | None = None,
 ) -> tuple[Geometry, Plan]:
     """Press a prepared body against the counterface (or the second body); what was measured stays in `workspace`.
 
     Parameters
     ----------
     complete : asked after every segment whether the run may end (None: it goes on as planned).
+    counter_potential : of the second body, where it is another; the bodies then only repel each other.
 
     Returns
     -------
@@ -185,9 +187,15 @@ def press_bodies(
         top_radius_A=5 * closing.sphere_radius_nm if on_flat else np.inf,
     )
     if not workspace.segments_done(1):
-        apart = len(lower.elements) + 1 if closing.interface == "repulsive" and len(bodies) == 2 else None
-        write_forcefield(workspace, potential, atoms.elements, run.energy_scale, apart)
-        write_data(workspace / "annealed.data", atoms, _masses(potential, atoms.elements))
+        masses = _masses(potential, lower.elements)
+        if len(bodies) == 2 and closing.interface == "repulsive":
+            upper = (counter_potential or potential, bodies[1].elements)
+            write_forcefield(workspace, potential, lower.elements, run.energy_scale, repelled=upper)
+            masses |= _masses(*upper)
+        else:
+            write_forcefield(workspace, potential, atoms.elements, run.energy_scale)
+            masses |= _masses(potential, atoms.elements)
+        write_data(workspace / "annealed.data", atoms, masses)
 
     def on_step(step: int) -> None:
         if progress is not None:

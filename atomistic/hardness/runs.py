@@ -39,9 +39,10 @@ def settings_of_run(run: ClosingRun, settings: HardnessSettings) -> dict[str, An
 
 
 def needs_counter_glass(settings: HardnessSettings) -> bool:
-    """Is the counterface made of another oxide than the asperity?"""
+    """Is the counterface of another oxide than the asperity, or of another potential's glass?"""
     closing = settings.closing
-    return closing.counterface in ("oxide", "asperity") and closing.counter_material != settings.material
+    another = closing.counter_potential is not None or closing.counter_material != settings.material
+    return closing.counterface in ("oxide", "asperity") and another
 
 
 def geometry(closing: ClosingSettings, amplitude_nm: float) -> str:

@@ -70,6 +70,11 @@ class ClosingSettings(Settings):
         description="atoms of a counterface of oxide: a short-range repulsion alone, or the potential itself",
     )
     counter_material: str = Field(default="SiO2", description="oxide of the counterface, by its formula")
+    counter_potential: str | None = Field(
+        default=None,
+        description="potential of that oxide, as `potential`, where it is another (the interface is then repulsive: "
+        "what acts between atoms of two potentials is not known); null: that of the asperity",
+    )
     counter_base_nm: float = Field(
         default=2.5, ge=1, le=100, description="thickness of the oxide counterface", json_schema_extra={"unit": "nm"}
     )
@@ -371,6 +376,15 @@ class HardnessSettings(Settings):
     area: AreaSettings = AreaSettings()
     plasticity: YieldSettings = YieldSettings()
     fit: FitSettings = FitSettings()
+
+    @model_validator(mode="after")
+    def _one_potential_adheres(self) -> "HardnessSettings":
+        if self.closing.counter_potential is not None and self.closing.interface == "adhesive":
+            raise ValueError(
+                f"closing.counter_potential {self.closing.counter_potential!r:.60}: nothing is known of how atoms of "
+                "two potentials attract; set closing.interface to repulsive, or leave counter_potential out"
+            )
+        return self
 
     @model_validator(mode="after")
     def _something_to_press(self) -> "HardnessSettings":

@@ -3,14 +3,14 @@ from atomistic.hardness.runs import needs_counter_glass, planned_runs, settings_
 HARDNESS = settings("hardness")
 
 
-def potential_path(name):
-    """The file of a potential that is given by name or by path."""
+def potential_path(key, name):
+    """The file of a potential that `hardness` gives by name or by path."""
     if name.endswith((".yaml", ".yml")):
-        return named_files("hardness.potential", name)[0] if needed("hardness") else name
+        return named_files(f"hardness.{key}", name)[0] if needed("hardness") else name
     path = CONFIG / "potentials" / f"{name}.yaml"
     if needed("hardness") and not os.path.isfile(path):
         known = ", ".join(sorted(file.stem for file in path.parent.glob("*.yaml")))
-        refuse(f"{SCENE_GIVEN}: hardness.potential = {name!r:.60}: no such potential; known: {known}, or a path")
+        refuse(f"{SCENE_GIVEN}: hardness.{key} = {name!r:.60}: no such potential; known: {known}, or a path")
     return str(path)
 
 
@@ -23,7 +23,14 @@ def oxide_path(key, formula):
     return material_path(OXIDES[formula])
 
 
-POTENTIAL = potential_path(HARDNESS["potential"])
+def counter_potential(hardness):
+    """The file of the potential of a counterface of oxide: its own, or that of the asperity."""
+    if hardness.closing.counter_potential is None:
+        return potential_path("potential", hardness.potential)
+    return potential_path("closing.counter_potential", hardness.closing.counter_potential)
+
+
+POTENTIAL = potential_path("potential", HARDNESS["potential"])
 MATERIAL_OF_ASPERITY = oxide_path("material", HARDNESS["material"])
 MATERIAL_OF_COUNTERFACE = oxide_path("closing.counter_material", HARDNESS["closing"]["counter_material"])
 CLOSINGS = {run.name: run for run in planned_runs(SCENE.hardness)}
@@ -36,8 +43,8 @@ def of_run(pattern):
 
 
 def of_counter(path):
-    """As a named input: the glass of the counterface, where that is of another oxide."""
-    return {"counter_glass": path} if COUNTER_GLASS else {}
+    """As named inputs: glass and potential of the counterface, where that is of another oxide or potential."""
+    return {"counter_glass": path, "counter_potential": counter_potential(SCENE.hardness)} if COUNTER_GLASS else {}
 
 
 wildcard_constraints:
@@ -73,7 +80,7 @@ rule make_glass:
 use rule make_glass as make_counter_glass with:
     input:
         material=MATERIAL_OF_COUNTERFACE,
-        potential=POTENTIAL,
+        potential=counter_potential(SCENE.hardness),
         beside=f"{RESULTS}/hardness/glass/{{glass}}.data",
     output:
         atoms=f"{RESULTS}/hardness/glass/{{glass}}_counter.data",
@@ -133,6 +140,7 @@ rule fit_hardness:
     input:
         points=f"{RESULTS}/hardness/points.csv",
         potential=POTENTIAL,
+        counter_potentials=[counter_potential(SCENE.hardness)] if COUNTER_GLASS else [],
         glasses=[
             f"{RESULTS}/hardness/glass/{seed}{body}.json"
             for seed in dict.fromkeys(SCENE.hardness.seeds)

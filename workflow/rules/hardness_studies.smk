@@ -62,6 +62,7 @@ rule hardness_area:
 
 rule measure_area:
     input:
+        unpack(lambda wildcards: of_counter(f"{RESULTS}/hardness/glass/{SMALLEST.seed}_counter.data")),
         potential=POTENTIAL,
         glass=f"{RESULTS}/hardness/glass/{SMALLEST.seed}.data",
     output:
@@ -139,10 +140,11 @@ def study_inputs(wildcards):
     files = {
         "material": study_material(wildcards),
         "glass": study_glass(wildcards.case),
-        "potential": potential_path(study_settings(wildcards).potential),
+        "potential": potential_path("potential", study_settings(wildcards).potential),
     }
     if needs_counter_glass(study_settings(wildcards)):
         files["counter_glass"] = f"{RESULTS}/study/glass/{wildcards.case}_counter.data"
+        files["counter_potential"] = counter_potential(study_settings(wildcards))
     return files
 
 
@@ -159,7 +161,7 @@ rule hardness_study:
 use rule make_glass as make_study_glass with:
     input:
         material=study_material,
-        potential=lambda wildcards: potential_path(study_settings(wildcards).potential),
+        potential=lambda wildcards: potential_path("potential", study_settings(wildcards).potential),
     output:
         atoms=f"{RESULTS}/study/glass/{{case}}.data",
         properties=f"{RESULTS}/study/glass/{{case}}.json",
@@ -178,7 +180,7 @@ use rule make_study_glass as make_study_counter_glass with:
         material=lambda wildcards: oxide_path(
             "closing.counter_material", study_settings(wildcards).closing.counter_material
         ),
-        potential=lambda wildcards: potential_path(study_settings(wildcards).potential),
+        potential=lambda wildcards: counter_potential(study_settings(wildcards)),
         beside=lambda wildcards: study_glass(wildcards.case),
     output:
         atoms=f"{RESULTS}/study/glass/{{case}}_counter.data",

@@ -1,6 +1,7 @@
 """Close one asperity against its counterface.
 
-In:  material, potential (YAML), glass (LAMMPS data file), counter_glass where the counterface is of another oxide.
+In:  material, potential (YAML), glass (LAMMPS data file); counter_glass, counter_potential where the counterface is of
+     another oxide or potential.
 Out: curve (GPa, nm), witness (bond exchanges, nm), snapshots (nm), summary (with the unloading, where asked for).
 """
 
@@ -23,8 +24,10 @@ with job(snakemake) as run:
     potential = load_potential(snakemake.input.potential)
     material = load_material(snakemake.input.material)
     glass = load_data(snakemake.input.glass, tuple(potential.materials[material.formula_text]))
-    counter = snakemake.input.get("counter_glass")
-    counter_glass = counter and load_data(counter, tuple(potential.materials[settings.closing.counter_material]))
+    counter_glass = counter_potential = None
+    if counter := snakemake.input.get("counter_glass"):
+        counter_potential = load_potential(snakemake.input.counter_potential)
+        counter_glass = load_data(counter, tuple(counter_potential.materials[settings.closing.counter_material]))
     started = time.perf_counter()
     closing = run_closing(
         closing_run,
@@ -34,7 +37,8 @@ with job(snakemake) as run:
         settings,
         Path(snakemake.params.work),
         run.progress,
-        counter_glass or None,
+        counter_glass,
+        counter_potential,
     )
     lammps = resource.getrusage(resource.RUSAGE_CHILDREN)
     write_csv(snakemake.output.curve, closing.curve)

@@ -4,7 +4,7 @@ A flat slab of glass is pressed at the temperature in use; its frozen snapshots 
 under load.  Tiled and cut by a flank, they have a section that geometry gives exactly.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -46,9 +46,15 @@ class Layer:
 
 
 def pressed_layers(
-    potential: Potential, glass: Atoms, energy_scale: float, settings: HardnessSettings, bodies: int, work: Path
+    slabs: Sequence[tuple[Potential, Atoms]], energy_scale: float, settings: HardnessSettings, work: Path
 ) -> list[Layer]:
-    """Press a slab against a rigid flat (or, with two bodies, against a second slab that only repels it)."""
+    """Press a slab against a rigid flat (or, where there are two, against the second, which only repels it).
+
+    Parameters
+    ----------
+    slabs : potential and glass of each, in cells of one width.
+    """
+    bodies = len(slabs)
     closing = settings.closing.model_copy(
         update={"counterface": "oxide" if bodies == 2 else "flat", "interface": "repulsive", "control": "speed"}
     )
@@ -58,14 +64,16 @@ def pressed_layers(
     start = plan.segments * plan.segment_steps  # from the clearance to first touch; the slab is pressed after it
     steps = start + round(SLAB_TRAVEL_A[bodies - 1] / (plan.speed * plan.timestep))
     plan = replace(plan, segments=-(-steps // plan.segment_steps))
-    slabs = [
+    annealed = [
         prepare_body(
             run, glass, potential, settings, Workspace(work / f"anneal{k}", {}, "anneal.in"), (1, k), 0.0, SLAB_BASE_NM
         )
-        for k in range(bodies)
+        for k, (potential, glass) in enumerate(slabs)
     ]
     workspace = Workspace(work / "pressed", {}, "closing.in")
-    geometry, _ = press_bodies(run, slabs, potential, settings, plan, (1, 9), workspace)
+    geometry, _ = press_bodies(
+        run, annealed, slabs[0][0], settings, plan, (1, 9), workspace, counter_potential=slabs[-1][0]
+    )
     low, high = (energy_scale * stress for stress in STRESS_GPA)
     layers = []
     for n in range(1, plan.segments + 1):

@@ -1,12 +1,17 @@
 """Contact area against constructed geometries of known area."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from atomistic.errors import InputError
 from atomistic.hardness.contact_area import contact_area, contact_map, require_calibration
 from atomistic.hardness.studies.area import FLANKS, Layer, area_rows, cut_layer
+from atomistic.potentials import load_potential
 from atomistic.settings import AreaSettings
+
+POTENTIALS = Path(__file__).parents[3] / "config" / "potentials"
 
 AREA = AreaSettings()
 FINE = AreaSettings(grid_A=0.1)
@@ -130,3 +135,14 @@ def test_potential_without_calibration(potential):
     other = AreaSettings(depth_A=1)
     with pytest.raises(InputError, match=r"hardness.area.depth_A = 1: potential pmmcs is calibrated with 0.5 A"):
         require_calibration(potential, other)
+
+
+def test_a_counterface_of_other_atoms_has_a_calibration_of_its_own(potential):
+    titania = load_potential(POTENTIALS / "matsui_akaogi.yaml")
+    calibrated = AREA.model_copy(update={"touch_A": 2.55})
+    assert require_calibration(potential, calibrated, titania).error == 0.04
+    with pytest.raises(InputError, match=r"touch_A = 2.4: potential pmmcs is calibrated with 2.55 A"):
+        require_calibration(potential, AREA, titania)
+    with pytest.raises(InputError, match="potential pmmcs: no calibration of the contact area against teter; run"):
+        require_calibration(potential, AREA, load_potential(POTENTIALS / "teter.yaml"))
+    assert require_calibration(potential, AREA, potential) == require_calibration(potential, AREA)

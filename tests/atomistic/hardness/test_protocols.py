@@ -1,5 +1,6 @@
 """Each counterface and each control, for real but tiny: what must hold whatever the size."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from atomistic.hardness.cost import plan_rows
 from atomistic.hardness.glass import glass_properties, make_glass, random_start, write_forcefield
 from atomistic.hardness.pressing import clearance_A, plan_closing
 from atomistic.hardness.runs import geometry, needs_counter_glass, planned_runs
-from atomistic.lammps import Atoms, Workspace, load_data, run_lammps, write_data
+from atomistic.lammps import Atoms, Workspace, load_data, load_dump, run_lammps, write_data
 from atomistic.potentials import CONTACT_A, contact_energy_and_force, load_potential
 from atomistic.settings import GlassSettings, HardnessSettings
 
@@ -54,13 +55,22 @@ def titania(potential, oxides, glass, tmp_path_factory):
     return make_glass(oxides["TiO2"], potential, GLASS, 1, tmp_path_factory.mktemp("titania") / "work", edge_A=edge)
 
 
+@pytest.fixture(scope="module")
+def other_potential():
+    return load_potential(POTENTIALS / "matsui_akaogi.yaml")
+
+
+@pytest.fixture(scope="module")
+def other_titania(other_potential, oxides, glass, tmp_path_factory):
+    work, edge = tmp_path_factory.mktemp("other_titania") / "work", float(glass.cell_A[0])
+    return make_glass(oxides["TiO2"], other_potential, GLASS, 1, work, edge_A=edge)
+
+
 @pytest.fixture
 def close(potential, oxides, glass, tmp_path):
-    def run(own, counter_glass=None):
+    def run(own, *counter):
         [planned] = planned_runs(own)
-        return run_closing(
-            planned, oxides[own.material], glass, potential, own, tmp_path / "work", counter_glass=counter_glass
-        )
+        return run_closing(planned, oxides[own.material], glass, potential, own, tmp_path / "work", None, *counter)
 
     return run
 
@@ -87,6 +97,53 @@ def test_titania_counterface_shares_the_cell_and_adheres(close, glass, titania):
     assert column(adhesive.curve, "force_nN").min() < -0.5
     assert adhesive.curve[-1]["contact_area_nm2"] > 0.5
     assert {row["type"] for row in adhesive.snapshots} == {1, 2}  # the counterface is gone
+
+
+def test_a_counterface_of_another_potential_only_repels(close, other_titania, other_potential):
+    own = settings(counterface="oxide", counter_material="TiO2", counter_potential="matsui_akaogi")
+    calibrated = own.model_copy(update={"area": own.area.model_copy(update={"touch_A": 2.55})})
+    closing = close(calibrated, other_titania, other_potential)
+    force, area = column(closing.curve, "force_nN"), column(closing.curve, "contact_area_nm2")
+    assert force.min() == 0
+    assert force[-1] > 1
+    assert np.all(area[force == 0] < 0.2)
+    assert {row["type"] for row in closing.snapshots} == {1, 2}  # of the asperity
+
+
+def test_two_bodies_apart_feel_their_own_potentials(potential, other_potential, glass, other_titania, tmp_path):
+    """Forces in both together are those in each alone."""
+    masses = {"Si": 28.085, "O": 15.999, "Ti": 47.867}
+
+    def forces(name, atoms, own, elements, **repelled):
+        workspace = Workspace(tmp_path / name, {}, "forces.in")
+        write_forcefield(workspace, own, elements, 1.0, **repelled)
+        write_data(workspace / "start.data", atoms, masses)
+        charges = [f"set type {k} charge 0" for k in range(1, len(atoms.elements) + 1)]
+        (workspace / "charges").write_text("\n".join(charges) + "\n", encoding="utf-8")
+        files = {"data": "start.data", "pairs": "pairs", "charges": "charges"}
+        run_lammps("forces.in", workspace, {**files, "kspace": "none", "slab": "yes"})
+        [(_, table)] = load_dump(workspace / "forces.dump")
+        return table[:, 2:5]
+
+    both, _ = facing(glass, other_titania, 5.0)
+    upper = replace(other_titania, cell_A=both.cell_A, positions_A=both.positions_A[len(glass) :])
+    upper = replace(upper, velocities_A_ps=None)
+    lower = replace(glass, cell_A=both.cell_A, velocities_A_ps=None)
+    together = forces(
+        "both",
+        replace(both, velocities_A_ps=None),
+        potential,
+        glass.elements,
+        repelled=(other_potential, other_titania.elements),
+    )
+    np.testing.assert_allclose(together[: len(glass)], forces("lower", lower, potential, glass.elements), atol=1e-6)
+    alone = forces("upper", upper, other_potential, other_titania.elements)
+    np.testing.assert_allclose(together[len(glass) :], alone, atol=1e-6)
+
+
+def test_a_glass_beside_another_keeps_its_width_and_finds_its_height(glass, other_titania):
+    assert other_titania.cell_A[0] == other_titania.cell_A[1] == glass.cell_A[0]
+    assert other_titania.cell_A[2] != glass.cell_A[0]
 
 
 def test_asperity_on_asperity_without_adhesion(close):
@@ -191,6 +248,9 @@ def test_rough_bodies_start_further_apart():
 def test_names_and_needs_of_counterfaces():
     titania = settings(counterface="oxide", counter_material="TiO2", interface="adhesive")
     assert needs_counter_glass(titania)
+    assert needs_counter_glass(settings(counterface="oxide", counter_potential="teter"))  # the same oxide, other atoms
+    with pytest.raises(ValueError, match="nothing is known of how atoms of two potentials attract"):
+        settings(counterface="oxide", interface="adhesive", counter_potential="teter")
     assert not needs_counter_glass(settings(counterface="asperity"))
     assert geometry(titania.closing, 0.2) == "asperity-oxide TiO2 adhesive"
     assert geometry(settings(control="force").closing, 0.2) == "asperity-flat, force"
