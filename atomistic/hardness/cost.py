@@ -1,11 +1,11 @@
 """What closing runs will cost, before they are run: atoms, steps, core-hours."""
 
+from atomistic.hardness.asperity import MEAN_HEIGHT
 from atomistic.hardness.pressing import base_thickness_nm, plan_closing
 from atomistic.hardness.runs import planned_runs
 from atomistic.materials import Material
 from atomistic.settings import HardnessSettings
 
-MEAN_HEIGHT = -0.405  # of eq. 6, in amplitudes: the mean of min(sin, sin) is -4/pi^2
 ATOM_STEPS_PER_CORE_SECOND = 1.0e6  # measured, tabulated pair potential (docs/hardness.md)
 
 
@@ -26,10 +26,11 @@ def plan_rows(
     for run in planned_runs(settings):
         plan, closing = plan_closing(settings, run), settings.closing
         wavelength, amplitude = run.asperity.tiles * edge_nm, run.asperity.amplitude_nm
-        atoms = density * wavelength**2 * (base_thickness_nm(settings, wavelength) + MEAN_HEIGHT * amplitude)
+        mean_height = MEAN_HEIGHT[run.asperity.shape]
+        atoms = density * wavelength**2 * (base_thickness_nm(settings, wavelength) + mean_height * amplitude)
         if closing.counterface in ("oxide", "asperity"):
             relief = amplitude if closing.counterface == "asperity" else 0
-            thickness = closing.counter_base_nm + MEAN_HEIGHT * relief
+            thickness = closing.counter_base_nm + mean_height * relief
             atoms += counter_density * wavelength**2 * thickness
         seconds = atoms * plan.total_steps / ATOM_STEPS_PER_CORE_SECOND
         rows.append(

@@ -107,7 +107,8 @@ def prepare_body(
     closing, plan = settings.closing, plan_closing(settings, run)
     done = workspace.segments_done(2)
     if not done:
-        cut = cut_asperity(glass, run.asperity.tiles, 10 * amplitude_nm, 10 * base_nm, _lammps_seed(*place, 3))
+        tiles, shape = run.asperity.tiles, run.asperity.shape
+        cut = cut_asperity(glass, tiles, 10 * amplitude_nm, 10 * base_nm, _lammps_seed(*place, 3), shape)
         write_forcefield(workspace, potential, glass.elements, run.energy_scale)
         write_data(workspace / "cut.data", cut, _masses(potential, glass.elements))
     hot = max(closing.temperature_K, closing.anneal_temperature_K * run.energy_scale)

@@ -36,7 +36,7 @@ class GlassSettings(Settings):
 
 
 class AsperitySettings(Settings):
-    """One asperity after eq. 6, Z = min[A sin(2 pi x / lambda), A sin(2 pi y / lambda)]."""
+    """One asperity, Z = min[A w(2 pi x / lambda), A w(2 pi y / lambda)]."""
 
     name: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9]{0,39}$", description="name in file names and tables")
     tiles: int = Field(
@@ -49,6 +49,11 @@ class AsperitySettings(Settings):
         le=10,
         description="amplitude A; 0 is a flat, for a spherical counterface",
         json_schema_extra={"unit": "nm"},
+    )
+    shape: Literal["sinusoidal", "pyramidal"] = Field(
+        default="sinusoidal",
+        description="w: a sine (eq. 6), or a triangle, whose pyramids press with the same stress at every size unless "
+        "the material has a length of its own",
     )
 
 
