@@ -19,6 +19,7 @@ Rows = Sequence[Mapping[str, float]]
 ROUNDING_NM = 1e-6  # of a travel that is a whole number of steps
 LATEST_START = 3  # of as many parts of the averages beyond the onset, the first is the last to hold the plateau's start
 CLEARLY_MORE = 1.5  # times the independent averages
+SAME_SHAPE = (0.5, 0.6)  # contact length over wavelength: runs of one shape are alike there, whatever their size
 
 UNLOADED = (  # of a run with dynamic unloading: what stays, beside the snapshot relaxed before it
     "snapshot_exchanged_bonds", "unloaded_exchanged_bonds", "snapshot_lowering_nm", "unloaded_lowering_nm",
@@ -34,6 +35,8 @@ class Hardness:
     ----------
     status : yield, no_yield, or "rejected: why".
     window_exponent, plateau_exponent : n of stress ~ length^n in the whole window of lengths, and on the plateau.
+    same_shape_GPa, same_shape_length_nm : mean stress and contact length where the contact is `SAME_SHAPE` of the
+        wavelength wide.
     """
 
     status: str
@@ -45,6 +48,8 @@ class Hardness:
     length_min_nm: float = float("nan")
     length_max_nm: float = float("nan")
     window_exponent: float = float("nan")
+    same_shape_GPa: float = float("nan")
+    same_shape_length_nm: float = float("nan")
     plateau_exponent: float = float("nan")
     plateau_points: int = 0
     onset_displacement_nm: float = float("nan")
@@ -131,6 +136,10 @@ def find_hardness(
     if np.sum(window) < settings.min_points:
         return Hardness("rejected: contact too small for the window of lengths", **measured)
     measured["window_exponent"] = _exponent(length[window], stress[window])
+    low, high = (share * np.sqrt(cell_area_nm2) for share in SAME_SHAPE)
+    if np.any(alike := window & (length >= low) & (length < high)):
+        measured["same_shape_GPa"] = float(np.mean(stress[alike]))
+        measured["same_shape_length_nm"] = float(np.mean(length[alike]))
     start = onset.displacement_nm
     if start is None:
         return Hardness("no_yield", **measured)

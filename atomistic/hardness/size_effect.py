@@ -13,6 +13,7 @@ from scipy.special import stdtrit
 from atomistic.settings import FitSettings, HardnessSettings
 
 INTERVAL = (0.16, 0.84)  # 68 %, as in the paper
+SHAPES_ALIKE = 0.1  # amplitudes over wavelength that differ by less than this part are of one shape
 Point = Mapping[str, str]
 
 
@@ -58,6 +59,7 @@ def fit_size_effect(
     result["free_fit"] = {name: free_fit(group, fit) for name, group in free.items()}
     result["halved_over_full"] = scale_ratios(used)
     result["size_effect"] = size_exponents(used, fit)
+    result["size_effect_at_one_shape"] = same_shape_exponents(points)
     result["rise_within_runs"] = rise_within_runs(points)
     systematic = systematic_deviations(fit, area_error)
     h_macro, h_prime = (literature_samples if fit.h_macro == "literature" else free_samples)(used, fit, systematic)
@@ -227,6 +229,37 @@ def rise_within_runs(points: Sequence[Point]) -> dict:
         middle, half = float(np.mean(n)), float(stdtrit(len(n) - 1, INTERVAL[1]) * np.sqrt(_scatter(n)))
         rises[f"scale_{scale:g}"] = {"mean": middle, "low": middle - half, "high": middle + half, "runs": len(n)}
     return rises
+
+
+def same_shape_exponents(points: Sequence[Point]) -> dict:
+    """n in H ~ L^-n between runs whose contact takes up the same share of the wavelength, with its 68 % interval.
+
+    There the runs of one shape differ by nothing but their size.  All that reached that share count, also those that
+    the rule on n refuses.  Straight line through the logarithms, Student's t from the scatter about it.
+
+    Returns
+    -------
+    by energy scale; empty for asperities of several shapes, and without a scale that has four runs of two sizes
+    """
+    slopes = [float(point["amplitude_nm"]) / float(point["wavelength_nm"]) for point in points]
+    if max(slopes) > (1 + SHAPES_ALIKE) * min(slopes):
+        return {}
+    exponents = {}
+    for scale in sorted({float(point["energy_scale"]) for point in points}):
+        group = [point for point in _of_scale(points, scale) if np.isfinite(float(point["same_shape_GPa"]))]
+        length, stress = (
+            np.array([float(point[key]) for point in group]) for key in ("same_shape_length_nm", "same_shape_GPa")
+        )
+        if len(group) < 4 or len({point["asperity"] for point in group}) < 2 or np.any(stress <= 0):
+            continue
+        (slope, _), covariance = np.polyfit(np.log(length), np.log(stress), 1, cov=True)
+        n, half = -float(slope), float(stdtrit(len(group) - 2, INTERVAL[1]) * np.sqrt(covariance[0, 0]))
+        exponents[f"scale_{scale:g}"] = {
+            **{"mean": n, "low": n - half, "high": n + half, "runs": len(group)},
+            "length_min_nm": length.min(),
+            "length_max_nm": length.max(),
+        }
+    return exponents
 
 
 def scale_ratios(points: Sequence[Point]) -> list[dict]:

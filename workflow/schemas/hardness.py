@@ -25,6 +25,8 @@ POINT: tuple[Column, ...] = (
     number("length_min_nm", "nm", "smallest contact length of the plateau"),
     number("length_max_nm", "nm", "largest contact length of the plateau"),
     number("window_exponent", "1", "n of stress ~ length^n in the whole window of lengths"),
+    number("same_shape_GPa", "GPa", "mean contact stress where the contact is 0.5 to 0.6 wavelengths wide"),
+    number("same_shape_length_nm", "nm", "mean contact length there"),
     number("plateau_exponent", "1", "n of stress ~ length^n on the plateau"),
     integer("plateau_points", "averages on the plateau"),
     number("onset_displacement_nm", "nm", "travel at the onset of plasticity"),

@@ -55,6 +55,8 @@ def test_plateau_beyond_a_witnessed_onset():
     assert found.hardness_lo <= 10.0 <= found.hardness_hi
     assert found.length_max_nm**2 <= RULES.max_area_fraction * CELL_AREA
     assert found.contact_length_nm > found.onset_length_nm
+    assert found.same_shape_GPa == pytest.approx(10.0)
+    assert 0.5 * 6 <= found.same_shape_length_nm <= 0.6 * 6  # of the cell's side
 
 
 @pytest.mark.parametrize("rows", [witness(onset=9), witness(after=3), witness(lowering=0.02)])

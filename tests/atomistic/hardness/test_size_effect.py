@@ -5,6 +5,7 @@ from atomistic.hardness.size_effect import (
     fit_size_effect,
     literature_samples,
     rise_within_runs,
+    same_shape_exponents,
     scale_ratios,
     variance_budget,
 )
@@ -24,6 +25,10 @@ def point(hardness, length, scale=1.0, asperity="a", status="yield", spread=0.05
         "hardness_hi": str(hardness + spread),
         "contact_length_nm": str(length),
         "window_exponent": str(rise),
+        "wavelength_nm": "6",
+        "amplitude_nm": "0.6",
+        "same_shape_GPa": str(hardness),
+        "same_shape_length_nm": str(1.1 * length),
         "atom_steps": "1e6",
         "lammps_cpu_s": "0.98",
         "python_cpu_s": "0.02",
@@ -137,6 +142,34 @@ def test_budget_is_the_variance_of_what_is_handed_on():
     budget = variance_budget(points, fit, systematic)
     assert budget["std"] == pytest.approx(np.std(h_prime), rel=0.02)
     assert budget["statistical"]["share"] + budget["systematic"]["share"] == pytest.approx(1)
+
+
+def test_the_exponent_at_one_shape_counts_all_runs_and_needs_one_shape():
+    lengths = (2.0, 2.1, 4.0, 4.2, 8.0, 8.2)
+    points = [
+        point(20 * length**-0.4, length, asperity=f"a{length:.0f}", status="rejected: stress still rises")
+        for length in lengths
+    ]
+    few = [point(5, length, scale=0.5, asperity=f"a{length}") for length in (2, 4, 8)]
+    found = same_shape_exponents(points + few)
+    assert list(found) == ["scale_1"]
+    assert found["scale_1"]["mean"] == pytest.approx(0.4)
+    assert found["scale_1"]["runs"] == 6
+    assert found["scale_1"]["length_max_nm"] == pytest.approx(1.1 * 8.2)
+    assert same_shape_exponents([*points, {**points[0], "amplitude_nm": "0.9"}]) == {}  # steeper
+
+
+def test_the_interval_of_the_exponent_at_one_shape_holds_the_truth():
+    """Runs that scatter by 8 % about L^0.1: the 68 % interval holds n = -0.1 in about 68 % of such series."""
+    rng, lengths = np.random.default_rng(4), (2.4, 2.4, 2.4, 3.6, 3.6, 3.6, 4.7, 4.7, 4.7)
+    held = 0
+    for _ in range(300):
+        points = [
+            point(9 * length**0.1 * np.exp(0.08 * rng.normal()), length, asperity=f"a{length}") for length in lengths
+        ]
+        found = same_shape_exponents(points)["scale_1"]
+        held += found["low"] < -0.1 < found["high"]
+    assert held / 300 == pytest.approx(0.68, abs=0.08)
 
 
 def test_the_rise_within_runs_counts_those_that_its_rule_refuses():
