@@ -301,6 +301,12 @@ def _hardness(root: Path) -> None:
             "statistical": {"std": 1.0, "share": 0.2, "sources": {"seed": 0.8, "run": 0.6}},
             "systematic": {"std": 2.0, "share": 0.8, "sources": {"area": 0.3, "energies": 1.9}},
         },
+        "size_effect_at_one_shape": {
+            "scale_0.5": {
+                **{"mean": -0.3, "low": -0.5, "high": -0.1, "runs": 6},
+                **{"length_min_nm": 2.4, "length_max_nm": 4.4},
+            }
+        },
         "cost": {"atom_steps": 2e9, "lammps_cpu_s": 1500, "python_cpu_s": 30, "python_cpu_share": 0.02},
     }
     write_json(root / "hardness/fit.json", fit, PROVENANCE)

@@ -209,6 +209,10 @@ def test_the_cutoff_and_the_grid_stand_with_what_they_change(page):
     assert "2400" in page
 
 
+def test_hardness_tells_what_size_does_with_the_sign_of_a_slope(page):
+    assert "(2.40 to 4.40 nm), hardness goes as length to the power 0.300 [0.100, 0.500] (6 runs)" in page
+
+
 def test_hardness_shows_its_witness_and_what_it_cost(page):
     assert "Slices through the contact of run small_1" in page
     assert "onset: 0.20 nm, 20 bonds exchanged" in page

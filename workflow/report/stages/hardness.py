@@ -291,9 +291,9 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
         words, _, _ = _scale({"energy_scale": scale.removeprefix("scale_")})
         notes.append(
             f"Between the runs with {words}, each where its contact is 0.5 to 0.6 wavelengths wide "
-            f"({show(change['length_min_nm'])} to {show(change['length_max_nm'])} nm), hardness falls as length to the "
-            f"power {show(change['mean'])} [{show(change['low'])}, {show(change['high'])}] ({change['runs']} runs); "
-            "0 is no size effect, 1 the paper's two values, 10 GPa at 3 and 2 GPa at 15 nm."
+            f"({show(change['length_min_nm'])} to {show(change['length_max_nm'])} nm), hardness goes as length to the "
+            f"power {show(-change['mean'])} [{show(-change['high'])}, {show(-change['low'])}] ({change['runs']} runs); "
+            "0 is no size effect; the law in use, H_macro + H′/√L, goes as a power between −0.5 and 0."
         )
     for scale, rise in fit.get("rise_within_runs", {}).items():
         words, _, _ = _scale({"energy_scale": scale.removeprefix("scale_")})
