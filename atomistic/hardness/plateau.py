@@ -204,7 +204,7 @@ def point(curve: Rows, witness: Rows, run: Mapping[str, Any], settings: Hardness
         "run": run["run"],
         "potential": settings.potential,
         "energy_scale": run["energy_scale"],
-        "geometry": geometry(settings.closing, run["amplitude_nm"]),
+        "geometry": geometry(settings.closing, run["amplitude_nm"], run["shape"]),
         "asperity": run["asperity"],
         "wavelength_nm": run["wavelength_nm"],
         "amplitude_nm": run["amplitude_nm"],

@@ -45,9 +45,10 @@ def needs_counter_glass(settings: HardnessSettings) -> bool:
     return closing.counterface in ("oxide", "asperity") and another
 
 
-def geometry(closing: ClosingSettings, amplitude_nm: float) -> str:
+def geometry(closing: ClosingSettings, amplitude_nm: float, shape: str) -> str:
     """What is pressed against what, in words."""
-    words = f"{'asperity' if amplitude_nm else 'flat'}-{closing.counterface}"
+    body = {"sinusoidal": "asperity", "pyramidal": "pyramid"}[shape] if amplitude_nm else "flat"
+    words = f"{body}-{closing.counterface}"
     if closing.counterface in ("oxide", "asperity"):
         words += f" {closing.counter_material} {closing.interface}"
     return words if closing.control == "speed" else f"{words}, force"

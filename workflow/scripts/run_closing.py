@@ -52,6 +52,7 @@ with job(snakemake) as run:
             "energy_scale": closing_run.energy_scale,
             "seed": closing_run.seed,
             "amplitude_nm": closing_run.asperity.amplitude_nm,
+            "shape": closing_run.asperity.shape,
             **closing.summary,
             "unloading": closing.unloading,
             "wall_s": time.perf_counter() - started,

@@ -252,8 +252,9 @@ def test_names_and_needs_of_counterfaces():
     with pytest.raises(ValueError, match="nothing is known of how atoms of two potentials attract"):
         settings(counterface="oxide", interface="adhesive", counter_potential="teter")
     assert not needs_counter_glass(settings(counterface="asperity"))
-    assert geometry(titania.closing, 0.2) == "asperity-oxide TiO2 adhesive"
-    assert geometry(settings(control="force").closing, 0.2) == "asperity-flat, force"
+    assert geometry(titania.closing, 0.2, "sinusoidal") == "asperity-oxide TiO2 adhesive"
+    assert geometry(settings(control="force").closing, 0.2, "sinusoidal") == "asperity-flat, force"
+    assert geometry(settings().closing, 0.2, "pyramidal") == "pyramid-flat"
     with pytest.raises(ValueError, match="amplitude 0"):
         settings(0)
 
