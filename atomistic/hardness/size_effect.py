@@ -255,7 +255,10 @@ def same_shape_exponents(points: Sequence[Point]) -> dict:
         (slope, _), covariance = np.polyfit(np.log(length), np.log(stress), 1, cov=True)
         n, half = -float(slope), float(stdtrit(len(group) - 2, INTERVAL[1]) * np.sqrt(covariance[0, 0]))
         exponents[f"scale_{scale:g}"] = {
-            **{"mean": n, "low": n - half, "high": n + half, "runs": len(group)},
+            "mean": n,
+            "low": n - half,
+            "high": n + half,
+            "runs": len(group),
             "length_min_nm": length.min(),
             "length_max_nm": length.max(),
         }
