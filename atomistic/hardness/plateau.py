@@ -67,7 +67,7 @@ class Hardness:
 class Onset:
     """Where plasticity is first witnessed.
 
-    background : bond exchanges per snapshot before contact.
+    background : bond exchanges per snapshot before contact; NaN without such a snapshot.
     exchanges, p_value : those of the onset's snapshot, and the chance of as many without plasticity.
     """
 
@@ -77,8 +77,8 @@ class Onset:
     p_value: float = float("nan")
 
 
-def plastic_onset(witness: Rows, approach_nm: float, settings: YieldSettings) -> Onset:
-    """First witness of plasticity among the relaxed snapshots.
+def plastic_onset(witness: Rows, apart_nm: float, settings: YieldSettings) -> Onset:
+    """First witness of plasticity among the relaxed snapshots; the bodies are apart for the first `apart_nm` of travel.
 
     The background is the mean number of new exchanges between the snapshots before contact.  The onset is the
     first snapshot with `min_exchanges` more new exchanges than the background and its two-sigma Poisson noise
@@ -88,17 +88,26 @@ def plastic_onset(witness: Rows, approach_nm: float, settings: YieldSettings) ->
     displacement = np.array([row["displacement_nm"] for row in witness])
     new = np.array([row["new_exchanges"] for row in witness])
     lowering = 10 * np.array([row["lowering_nm"] for row in witness])
-    apart = displacement <= approach_nm + ROUNDING_NM
+    apart = displacement <= apart_nm + ROUNDING_NM
     before = apart & (np.arange(len(witness)) > 0)
-    background = float(np.mean(new[before])) if np.any(before) else 0.0
+    if not np.any(before):
+        return Onset(None, float("nan"))
+    background = float(np.mean(new[before]))
     limit = background + max(settings.min_exchanges, 2 * np.sqrt(background))
     lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= settings.min_lowering_A
     onsets = np.flatnonzero((new >= limit) & lasting & ~apart)
     if len(onsets) == 0:
         return Onset(None, background)
     count, earlier, snapshots = int(new[onsets[0]]), int(np.sum(new[before])), int(np.sum(before))
-    p_value = float(bdtrc(count - 1, count + earlier, 1 / (1 + snapshots))) if snapshots else float("nan")
+    p_value = float(bdtrc(count - 1, count + earlier, 1 / (1 + snapshots)))
     return Onset(float(displacement[onsets[0]]), background, float(count), p_value)
+
+
+def apart_nm(curve: Rows, closing: ClosingSettings) -> float:
+    """Travel for which nothing touches: the approach, or longer, because rough counterfaces start farther apart."""
+    area = np.array([float(row["contact_area_nm2"]) for row in curve])
+    travel = np.array([float(row["displacement_nm"]) for row in curve])
+    return float(np.max(travel[np.cumsum(area) == 0], initial=closing.approach_nm))
 
 
 def find_hardness(
@@ -123,7 +132,7 @@ def find_hardness(
     warming = float(np.max(temperature) - np.mean(temperature[:4]))
     fraction = column["contact_area_nm2"] / cell_area_nm2
     window = _first_stretch((length >= settings.min_length_nm) & (fraction <= settings.max_area_fraction))
-    onset = plastic_onset(witness, closing.approach_nm, settings)
+    onset = plastic_onset(witness, apart_nm(curve, closing), settings)
     measured: dict[str, Any] = {
         "drift_meV_atom_ps": drift,
         "warming_K": warming,
@@ -140,6 +149,12 @@ def find_hardness(
     if np.any(alike := window & (length >= low) & (length < high)):
         measured["same_shape_GPa"] = float(np.mean(stress[alike]))
         measured["same_shape_length_nm"] = float(np.mean(length[alike]))
+    if np.isnan(onset.background):
+        return Hardness(
+            "rejected: no snapshot before contact, so that exchanged bonds have no background; lower closing."
+            + ("segment_force_steps" if closing.control == "force" else "segment_nm"),
+            **measured,
+        )
     start = onset.displacement_nm
     if start is None:
         return Hardness("no_yield", **measured)

@@ -242,7 +242,7 @@ def same_shape_exponents(points: Sequence[Point]) -> dict:
     by energy scale; empty for asperities of several shapes, and without a scale that has four runs of two sizes
     """
     slopes = [float(point["amplitude_nm"]) / float(point["wavelength_nm"]) for point in points]
-    if max(slopes) > (1 + SHAPES_ALIKE) * min(slopes):
+    if max(slopes) > (1 + SHAPES_ALIKE) * min(slopes) or len({point["geometry"] for point in points}) > 1:
         return {}
     exponents = {}
     for scale in sorted({float(point["energy_scale"]) for point in points}):

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from atomistic.hardness.plateau import Rows, find_hardness, may_stop, plastic_onset
+from atomistic.hardness.plateau import Rows, apart_nm, find_hardness, may_stop, plastic_onset
 from atomistic.settings import HardnessSettings
 
 TRUTH_GPA = 10.0
@@ -45,9 +45,11 @@ def detection_points(
     measured = [noise_of(curve, settings, area) for curve, area in zip(curves, cell_areas_nm2, strict=True)]
     noises = [noise for noise in measured if noise is not None]
     backgrounds = [
-        plastic_onset(witness, settings.closing.approach_nm, settings.plasticity).background for witness in witnesses
+        plastic_onset(witness, apart_nm(curve, settings.closing), settings.plasticity).background
+        for curve, witness in zip(curves, witnesses, strict=True)
     ]
-    if not noises:
+    backgrounds = [background for background in backgrounds if np.isfinite(background)]
+    if not noises or not backgrounds:
         return []
     noise = float(np.median([deviation for deviation, _ in noises]))
     largest = float(np.max([deviation for deviation, _ in noises]))

@@ -19,12 +19,16 @@ def run(noise, correlation=0.4, background=4, seed=0):
     for k in range(1, len(length)):
         values[k] = correlation * values[k - 1] + shocks[k]
     curve = [
-        {"contact_length_nm": x, "contact_area_nm2": x**2, "contact_stress_GPa": 10 * (0.7 + x / 10) * (1 + e)}
+        {
+            "displacement_nm": 0.2 + 0.2 * x,
+            "contact_length_nm": x,
+            "contact_area_nm2": x**2,
+            "contact_stress_GPa": 10 * (0.7 + x / 10) * (1 + e),
+        }
         for x, e in zip(length.tolist(), values.tolist(), strict=True)
     ]
     witness = [
-        {"displacement_nm": 0.1 * k, "new_exchanges": background if k > 1 else 0, "lowering_nm": 0.0}
-        for k in range(1, 8)
+        {"displacement_nm": 0.1 * k, "new_exchanges": background if k else 0, "lowering_nm": 0.0} for k in range(7)
     ]
     return curve, witness
 

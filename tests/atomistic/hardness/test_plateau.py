@@ -92,6 +92,19 @@ def test_background_of_bond_exchanges_is_measured_before_contact():
     assert 0 < onset.p_value < 0.02
 
 
+def test_bodies_that_start_farther_apart_have_their_background_before_they_touch():
+    """Contact begins at 0.75 nm: the 20 exchanges of each snapshot before it are no plastic flow."""
+    late = np.maximum(0, 3.2 * (TRAVEL - 0.75))
+    assert find(curve(plateau, late), witness(onset=0.9, background=20)).exchanges_before == 20
+
+
+def test_without_a_snapshot_before_contact_no_run_yields():
+    """Snapshots every 0.4 nm, contact from 0.25 nm on."""
+    found = find(curve(plateau), [row for k, row in enumerate(witness()) if k % 4 == 0])
+    assert found.status.startswith("rejected: no snapshot before contact")
+    assert found.status.endswith("closing.segment_nm")
+
+
 def test_p_value_of_the_onset_is_that_of_two_poisson_counts():
     """Equal rates: the p value is uniform or larger, so below 0.05 at most one time in twenty."""
     rng = np.random.default_rng(0)

@@ -18,6 +18,7 @@ def point(hardness, length, scale=1.0, asperity="a", status="yield", spread=0.05
     return {
         "run": f"{asperity}_{scale}_{length}",
         "status": status,
+        "geometry": "asperity-flat",
         "asperity": asperity,
         "energy_scale": str(scale),
         "hardness_GPa": str(hardness),
@@ -157,6 +158,7 @@ def test_the_exponent_at_one_shape_counts_all_runs_and_needs_one_shape():
     assert found["scale_1"]["runs"] == 6
     assert found["scale_1"]["length_max_nm"] == pytest.approx(1.1 * 8.2)
     assert same_shape_exponents([*points, {**points[0], "amplitude_nm": "0.9"}]) == {}  # steeper
+    assert same_shape_exponents([*points, {**points[0], "geometry": "pyramid-flat"}]) == {}
 
 
 def test_the_interval_of_the_exponent_at_one_shape_holds_the_truth():
