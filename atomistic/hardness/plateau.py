@@ -103,13 +103,6 @@ def plastic_onset(witness: Rows, apart_nm: float, settings: YieldSettings) -> On
     return Onset(float(displacement[onsets[0]]), background, float(count), p_value)
 
 
-def apart_nm(curve: Rows, closing: ClosingSettings) -> float:
-    """Travel for which nothing touches: the approach, or longer, because rough counterfaces start farther apart."""
-    area = np.array([float(row["contact_area_nm2"]) for row in curve])
-    travel = np.array([float(row["displacement_nm"]) for row in curve])
-    return float(np.max(travel[np.cumsum(area) == 0], initial=closing.approach_nm))
-
-
 def find_hardness(
     curve: Rows, witness: Rows, cell_area_nm2: float, closing: ClosingSettings, settings: YieldSettings
 ) -> Hardness:
@@ -132,7 +125,9 @@ def find_hardness(
     warming = float(np.max(temperature) - np.mean(temperature[:4]))
     fraction = column["contact_area_nm2"] / cell_area_nm2
     window = _first_stretch((length >= settings.min_length_nm) & (fraction <= settings.max_area_fraction))
-    onset = plastic_onset(witness, apart_nm(curve, closing), settings)
+    # counterfaces of atoms start farther apart than the approach
+    apart = np.max(travel[np.cumsum(fraction) == 0], initial=closing.approach_nm)
+    onset = plastic_onset(witness, float(apart), settings)
     measured: dict[str, Any] = {
         "drift_meV_atom_ps": drift,
         "warming_K": warming,

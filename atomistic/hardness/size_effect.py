@@ -55,7 +55,7 @@ def fit_size_effect(
     if len(used) < 2:
         result["gate"]["reasons"] = reasons or ["fewer than two points"]
         return result
-    free = {"together": used} | {f"scale_{scale:g}": _of_scale(used, scale) for scale in sorted(scales)}
+    free = {"together": used} | _by_scale(used)
     result["free_fit"] = {name: free_fit(group, fit) for name, group in free.items()}
     result["halved_over_full"] = scale_ratios(used)
     result["size_effect"] = size_exponents(used, fit)
@@ -196,8 +196,8 @@ def size_exponents(points: Sequence[Point], fit: FitSettings) -> dict:
     """n in H ~ L^-n at each energy scale, with its 68 % interval: 0 means that no size effect shows."""
     rng = _rng(13)
     fits = {}
-    for scale in sorted({float(point["energy_scale"]) for point in points}):
-        hardness, spread, length, _ = _columns(_of_scale(points, scale))
+    for scale, group in _by_scale(points).items():
+        hardness, spread, length, _ = _columns(group)
         if len(hardness) < 3 or np.ptp(length) < 0.3:
             continue
         chosen = rng.integers(0, len(hardness), (fit.bootstrap, len(hardness)))
@@ -206,7 +206,7 @@ def size_exponents(points: Sequence[Point], fit: FitSettings) -> dict:
         x = x - x.mean(axis=1, keepdims=True)
         varies = np.sum(x**2, axis=1) > 1e-6
         slope = np.sum(x * y, axis=1)[varies] / np.sum(x**2, axis=1)[varies]
-        fits[f"scale_{scale:g}"] = {
+        fits[scale] = {
             **_summary(-slope),
             "length_min_nm": length.min(),
             "length_max_nm": length.max(),
@@ -221,13 +221,13 @@ def rise_within_runs(points: Sequence[Point]) -> dict:
     Student's t from the scatter between runs, which holds what noise does within them.
     """
     rises = {}
-    for scale in sorted({float(point["energy_scale"]) for point in points}):
-        group = [point for point in _of_scale(points, scale) if np.isfinite(float(point["window_exponent"]))]
+    for scale, group in _by_scale(points).items():
         n = np.array([float(point["window_exponent"]) for point in group])
+        n = n[np.isfinite(n)]
         if len(n) < 2:
             continue
         middle, half = float(np.mean(n)), float(stdtrit(len(n) - 1, INTERVAL[1]) * np.sqrt(_scatter(n)))
-        rises[f"scale_{scale:g}"] = {"mean": middle, "low": middle - half, "high": middle + half, "runs": len(n)}
+        rises[scale] = {"mean": middle, "low": middle - half, "high": middle + half, "runs": len(n)}
     return rises
 
 
@@ -245,8 +245,8 @@ def same_shape_exponents(points: Sequence[Point]) -> dict:
     if max(slopes) > (1 + SHAPES_ALIKE) * min(slopes) or len({point["geometry"] for point in points}) > 1:
         return {}
     exponents = {}
-    for scale in sorted({float(point["energy_scale"]) for point in points}):
-        group = [point for point in _of_scale(points, scale) if np.isfinite(float(point["same_shape_GPa"]))]
+    for scale, runs in _by_scale(points).items():
+        group = [point for point in runs if np.isfinite(float(point["same_shape_GPa"]))]
         length, stress = (
             np.array([float(point[key]) for point in group]) for key in ("same_shape_length_nm", "same_shape_GPa")
         )
@@ -254,7 +254,7 @@ def same_shape_exponents(points: Sequence[Point]) -> dict:
             continue
         (slope, _), covariance = np.polyfit(np.log(length), np.log(stress), 1, cov=True)
         n, half = -float(slope), float(stdtrit(len(group) - 2, INTERVAL[1]) * np.sqrt(covariance[0, 0]))
-        exponents[f"scale_{scale:g}"] = {
+        exponents[scale] = {
             "mean": n,
             "low": n - half,
             "high": n + half,
@@ -320,6 +320,12 @@ def _columns(points: Sequence[Point]) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
     spread = 0.5 * (column("hardness_hi") - column("hardness_lo"))
     return column("hardness_GPa"), spread, column("contact_length_nm"), column("energy_scale")
+
+
+def _by_scale(points: Sequence[Point]) -> dict[str, list[Point]]:
+    """The points of each energy scale, lowest first, under the key of its entries in fit.json."""
+    scales = sorted({float(point["energy_scale"]) for point in points})
+    return {f"scale_{scale:g}": _of_scale(points, scale) for scale in scales}
 
 
 def _of_scale(points: Sequence[Point], scale: float) -> list[Point]:

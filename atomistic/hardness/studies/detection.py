@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from atomistic.hardness.plateau import Rows, apart_nm, find_hardness, may_stop, plastic_onset
+from atomistic.hardness.plateau import Rows, find_hardness, may_stop
 from atomistic.settings import HardnessSettings
 
 TRUTH_GPA = 10.0
@@ -45,16 +45,15 @@ def detection_points(
     measured = [noise_of(curve, settings, area) for curve, area in zip(curves, cell_areas_nm2, strict=True)]
     noises = [noise for noise in measured if noise is not None]
     backgrounds = [
-        plastic_onset(witness, apart_nm(curve, settings.closing), settings.plasticity).background
-        for curve, witness in zip(curves, witnesses, strict=True)
+        find_hardness(curve, witness, area, settings.closing, settings.plasticity).exchanges_before
+        for curve, witness, area in zip(curves, witnesses, cell_areas_nm2, strict=True)
     ]
-    backgrounds = [background for background in backgrounds if np.isfinite(background)]
-    if not noises or not backgrounds:
+    if not noises or np.all(np.isnan(backgrounds)):
         return []
     noise = float(np.median([deviation for deviation, _ in noises]))
     largest = float(np.max([deviation for deviation, _ in noises]))
     correlation = float(np.median([value for _, value in noises]))
-    background = float(np.max(backgrounds))
+    background = float(np.nanmax(backgrounds))
     rows = []
     for label, deviation in (("median", noise), ("largest", largest)):
         rng = np.random.default_rng(np.random.SeedSequence([21]))

@@ -20,10 +20,13 @@ def run(noise, correlation=0.4, background=4, seed=0):
         values[k] = correlation * values[k - 1] + shocks[k]
     curve = [
         {
+            "time_ps": 10 * x,
             "displacement_nm": 0.2 + 0.2 * x,
             "contact_length_nm": x,
             "contact_area_nm2": x**2,
             "contact_stress_GPa": 10 * (0.7 + x / 10) * (1 + e),
+            "temperature_K": 300.0,
+            "energy_drift_meV_per_atom": 0.0,
         }
         for x, e in zip(length.tolist(), values.tolist(), strict=True)
     ]
