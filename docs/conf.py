@@ -5,7 +5,11 @@ from pathlib import Path
 
 import SurfaceTopography  # noqa: F401  (autodoc imports with TYPE_CHECKING set, which its pydantic models do not bear)
 
+from evidence.pages import figures, write_pages
+
 ROOT = Path(__file__).parents[1]
+
+write_pages(ROOT / "docs" / "evidence")
 
 project = "Asperity"
 author = copyright = "The Asperity developers"
@@ -24,6 +28,8 @@ html_theme = "furo"
 html_title = "Asperity"
 default_role = "code"
 myst_heading_anchors = 3
+myst_enable_extensions = ["dollarmath", "substitution"]
+myst_substitutions = figures()  # numbers that pages quote, from evidence/data
 
 # examples are Python scripts with cells, run while the site is built
 nb_custom_formats = {".py": ["jupytext.reads", {"fmt": "py:percent"}]}

@@ -9,12 +9,14 @@ import re
 import sys
 import time
 import traceback
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, TextIO, TypeVar
+
+from pydantic import BaseModel
 
 from atomistic.errors import InputError as AtomisticInputError
 from mesoscale.errors import InputError as MesoscaleInputError
@@ -74,6 +76,30 @@ class Job:
             print(line, file=sys.stderr, flush=True)
             with suppress(OSError):  # the disk is full; the job may still end well
                 print(line, file=self.log, flush=True)
+
+
+Settings = TypeVar("Settings", bound=BaseModel)
+
+
+def settings_from_job(kind: type[Settings], given: Mapping[str, Any]) -> Settings:
+    """Settings from a job's parameters, which hold every key: none falls back to its default.
+
+    Raises
+    ------
+    KeyError : a key is missing.
+    """
+    settings = kind.model_validate(dict(given))
+    if missing := _missing(given, settings.model_dump(mode="json")):
+        raise KeyError(f"{kind.__name__} without {', '.join(missing)}: the rule must hand the whole section over")
+    return settings
+
+
+def _missing(given: Mapping[str, Any], complete: Mapping[str, Any], place: str = "") -> list[str]:
+    missing = [place + key for key in complete if key not in given]
+    for key, value in complete.items():
+        if isinstance(value, dict) and isinstance(given.get(key), Mapping):
+            missing += _missing(given[key], value, f"{place}{key}.")
+    return missing
 
 
 def package_versions() -> dict[str, str]:

@@ -33,6 +33,7 @@ from mesoscale.settings import (
     UncertaintySettings,
 )
 from workflow.checksums import CLOCK_S
+from workflow.former_keys import FORMER_KEYS
 from workflow.report.settings import ReportSettings
 from workflow.scene_yaml import MistakenYaml, load_mapping
 
@@ -41,7 +42,7 @@ SCENES = ROOT / "config" / "scenes"
 DEFAULTS = ROOT / "config" / "config.yaml"
 COMPUTED = ("hardness", "elastic", "topography")
 SHOWN = 60  # characters of a value or key in a message
-GONE = {"device.landed_fraction": "no longer a setting, delete it: gap_um, bow_nm and tilt_nm say what is in contact"}
+MOST_PARENTS = 10  # scenes that extend each other in a row
 
 
 class SceneError(Exception):
@@ -55,6 +56,10 @@ class Scene(Settings):
         default="reduced",
         pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,99}$",
         description="name of the scene; results go to results/<name>/ (default: the file's name)",
+    )
+    extends: str | None = Field(
+        default=None,
+        description="scene whose keys this one takes where it has none of its own, by name or by path",
     )
     compute: tuple[Literal["hardness", "elastic", "topography"], ...] = Field(
         default=(),
@@ -123,12 +128,11 @@ def load_scene(name_or_path: str) -> Scene:
     SceneError : the scene is missing, unreadable or has a mistake; one line per mistake, each naming file,
         key, value and what is accepted.
     """
-    path = find_scene(str(name_or_path))
-    try:
-        content = load_mapping(path)
-    except MistakenYaml as error:
-        raise SceneError(f"{path}: {error}") from None
-    content.setdefault("name", path.stem)
+    path, *parents = _lineage(str(name_or_path))
+    content: dict[str, Any] = {}
+    for file in reversed([path, *parents]):
+        own = _content_of(file)
+        content = _merged(content, own) | {"name": own.get("name", file.stem)}
     if str(content["name"]) in _shipped() and path.resolve().parent != SCENES:
         raise SceneError(
             f"{path}: name = {content['name']}: the name of a shipped scene, whose results it would take; "
@@ -140,6 +144,49 @@ def load_scene(name_or_path: str) -> Scene:
     except ValidationError as error:
         lines = [_explain(path, item) for item in error.errors()]
         raise SceneError("\n".join(dict.fromkeys(lines))) from None
+
+
+def _content_of(path: Path) -> dict[str, Any]:
+    """The keys of a scene's own file."""
+    try:
+        return load_mapping(path)
+    except MistakenYaml as error:
+        raise SceneError(f"{path}: {error}") from None
+
+
+def _lineage(name_or_path: str) -> list[Path]:
+    """The file of a scene, that of the scene it extends, and so on.
+
+    Raises
+    ------
+    SceneError : one of them is missing or unreadable, or extends itself.
+    """
+    files = [find_scene(name_or_path)]
+    while parent := _content_of(files[-1]).get("extends"):
+        child = files[-1]
+        if not isinstance(parent, str):
+            raise SceneError(f"{child}: extends = {_cut(json.dumps(parent))}: accepted is the name or path of a scene")
+        beside = child.parent / parent
+        try:
+            files.append(beside if Path(parent).suffix and beside.is_file() else find_scene(parent))
+        except SceneError as error:
+            raise SceneError(f"{child}: extends: {error}") from None
+        if files[-1].resolve() in [file.resolve() for file in files[:-1]]:
+            raise SceneError(f"{child}: extends = {_cut(parent)}: this scene extends itself; name another or delete it")
+        if len(files) > MOST_PARENTS:
+            raise SceneError(f"{child}: extends = {_cut(parent)}: more than {MOST_PARENTS} scenes extend each other")
+    return files
+
+
+def _merged(parent: dict[str, Any], child: dict[str, Any]) -> dict[str, Any]:
+    """The keys of a scene over those of the scene it extends; lists and the rows of `inputs` are replaced whole."""
+    merged = dict(parent)
+    for key, value in child.items():
+        former = parent.get(key)
+        if isinstance(former, dict) and isinstance(value, dict) and "origin" not in former:
+            value = _merged(former, value)
+        merged[key] = value
+    return merged
 
 
 def find_scene(name_or_path: str) -> Path:
@@ -178,9 +225,9 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
     SceneError : a file is missing or dated in the future, or its path has braces; one line per file.
     """
     files, mistakes = [], []
-    beside = _folder_of(scene)
+    beside = _folders_of(scene)
     for name in names:
-        places = [name, os.path.normpath(beside / name)]
+        places = [name, *(os.path.normpath(folder / name) for folder in beside)]
         path = next((place for place in places if os.path.isfile(place)), None)
         if path is None:
             mistakes.append(f"{scene}: {key} = {_cut(name)}: no such file here or beside the scene; correct the path")
@@ -207,7 +254,7 @@ def files_of(scene: str, names: Iterable[str]) -> list[str]:
     """
     files: list[str] = []
     for name in names:
-        places = [Path(name), _folder_of(scene) / name]
+        places = [Path(name), *(folder / name for folder in _folders_of(scene))]
         folder = next((place for place in places if place.is_dir()), None)
         if folder is None:
             files.append(name)
@@ -216,9 +263,9 @@ def files_of(scene: str, names: Iterable[str]) -> list[str]:
     return files
 
 
-def _folder_of(scene: str) -> Path:
-    """Folder of a scene's file, which is given by name or by path."""
-    return SCENES if scene in _shipped() else Path(scene).parent
+def _folders_of(scene: str) -> list[Path]:
+    """Folders of the files of a scene, which is given by name or by path, and of those that it extends."""
+    return [file.parent for file in _lineage(scene)]
 
 
 def _cut(text: str) -> str:
@@ -230,8 +277,8 @@ def _explain(path: Path, error: Any) -> str:
     """One line for one pydantic error."""
     location = tuple(part for part in error["loc"] if part != "__root__")
     key = ".".join(_cut(str(part)) for part in location)
-    if key in GONE:
-        return f"{path}: {key}: {GONE[key]}"
+    if key in FORMER_KEYS:
+        return f"{path}: {key}: {FORMER_KEYS[key]}"
     if error["type"] == "extra_forbidden":
         owner = _model_at(location[:-1])
         known = list(owner.model_fields) if owner else []

@@ -124,7 +124,7 @@ def test_files_that_a_scene_names_are_sought_here_and_beside_it(tmp_path, monkey
     monkeypatch.chdir(tmp_path)
     scene = tmp_path / "scenes" / "mine.yaml"
     scene.parent.mkdir()
-    for path in (tmp_path / "here.csv", scene.parent / "beside.csv", scene.parent / "{a}.csv"):
+    for path in (scene, tmp_path / "here.csv", scene.parent / "beside.csv", scene.parent / "{a}.csv"):
         path.write_text("")
     found = locate("scenes/mine.yaml", "inputs.rms.file", ["here.csv", "beside.csv"])
     assert found == ["here.csv", "scenes/beside.csv"]
@@ -136,6 +136,7 @@ def test_files_that_a_scene_names_are_sought_here_and_beside_it(tmp_path, monkey
 
 def test_a_file_dated_in_the_future_is_refused(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.yaml").write_text("")
     (tmp_path / "rms.csv").write_text("rms\n5\n6\n")
     os.utime(tmp_path / "rms.csv", (time.time() + 1e6,) * 2)
     with pytest.raises(SceneError, match=r"inputs\.rms\.file = rms\.csv: dated in the future"):

@@ -1,0 +1,57 @@
+"""List the studies, or run one: `python -m evidence [room.name [options]]`."""
+
+import argparse
+import ast
+import importlib
+import os
+import shlex
+import sys
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # before any library starts its threads
+
+from evidence.record import load, record, table_of
+
+
+def studies() -> dict[str, str]:
+    """Names of all studies with the question that each answers, without importing them."""
+    found = {}
+    here = Path(__file__).parent
+    for path in sorted(here.glob("*/*.py")):
+        module = ast.parse(path.read_text(encoding="utf-8"))
+        if any(isinstance(node, ast.FunctionDef) and node.name == "rows" for node in module.body):
+            found[f"{path.parent.name}.{path.stem}"] = (ast.get_docstring(module) or "").partition("\n")[0]
+    return found
+
+
+def main() -> None:
+    """The command line."""
+    known = studies()
+    if sys.argv[1:] in ([], ["-h"], ["--help"]):
+        print("python -m evidence NAME [options]   runs a study and adds its rows to evidence/data/\n")
+        for name, question in known.items():
+            print(f"{name:<28} {question}\n{'':<28} {_state(name)}")
+        return
+    name = sys.argv[1]
+    if name not in known:
+        sys.exit(f"{name}: no such study; `python -m evidence` lists them")
+    study = importlib.import_module(f"evidence.{name}")
+    parser = argparse.ArgumentParser(prog=f"python -m evidence {name}", description=known[name])
+    if hasattr(study, "arguments"):
+        study.arguments(parser)
+    given = parser.parse_args(sys.argv[2:])
+    command = f"python -m evidence {shlex.join(sys.argv[1:])}"
+    print(f"{table_of(name)}: {record(name, study.rows(given), command)} rows added")
+    if hasattr(study, "figures"):
+        for key, value in study.figures(load(name)).items():
+            print(f"{key}: {value}")
+
+
+def _state(name: str) -> str:
+    """What there is of a study by now."""
+    rows = load(name)
+    return f"{len(rows)} rows, last of {rows[-1]['date']} at {rows[-1]['commit']}" if rows else "never run"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,90 @@
+"""What the documentation takes from the tables: a page for each study, and the numbers that other pages quote."""
+
+import ast
+import importlib
+from pathlib import Path
+
+from evidence.__main__ import studies
+from evidence.record import PROVENANCE, ROOT, load, table_of
+
+MOST_ROWS = 40
+"""Rows of a table that a page shows; the file has all."""
+
+
+def figures() -> dict[str, str]:
+    """Numbers that pages quote as `{{ room_name_number }}`, each with its commit and command under the pointer."""
+    quoted = {}
+    for name in studies():
+        for key, value in _figures(name).items():
+            last = load(name)[-1]
+            where = f"{last['command']}, commit {last['commit']}, {last['date']}"
+            quoted[f"{name.replace('.', '_')}_{key}"] = f'<abbr title="{where}">{value}</abbr>'
+    return quoted
+
+
+def write_pages(folder: Path) -> None:
+    """Write a page for each study that was run, and their index."""
+    folder.mkdir(exist_ok=True)
+    for page in folder.glob("*.md"):
+        page.unlink()
+    listed = []
+    for name, question in studies().items():
+        if rows := load(name):
+            page = folder / f"{name.replace('.', '_')}.md"
+            page.write_text(_page(name, rows), encoding="utf-8")
+            listed.append((page.stem, question))
+    lines = [
+        "# Evidence",
+        "",
+        "These studies were done once, to show that a method is right. Each page has its command, its commit and its",
+        "table. `python -m evidence` lists the studies and runs them again.",
+        "",
+        "| study | question |",
+        "| --- | --- |",
+        *(f"| [{stem}]({stem}.md) | {question} |" for stem, question in listed),
+        "",
+        "```{toctree}",
+        ":hidden:",
+        *(stem for stem, _ in listed),
+        "```",
+    ]
+    (folder / "index.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _page(name: str, rows: list[dict[str, str]]) -> str:
+    """A page of one study: its question, its command, its numbers and its table."""
+    path = ROOT / "evidence" / f"{name.replace('.', '/')}.py"
+    question, _, more = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").partition("\n")
+    table = table_of(name).relative_to(ROOT)
+    columns = [column for column in rows[0] if column not in PROVENANCE]
+    made = sorted({(row["date"], row["commit"], row["processor"] or "not recorded") for row in rows})
+    numbers = [f"| {key} | {value} |" for key, value in _figures(name).items()]
+    return "\n".join(
+        [
+            f"# {question.rstrip('.')}",
+            "",
+            more.strip(),
+            "",
+            f"Command: `{rows[-1]['command']}`",
+            "",
+            *(f"- {date}, commit {commit}, processor {processor}" for date, commit, processor in made),
+            "",
+            *(["| number | value |", "| --- | --- |", *numbers, ""] if numbers else []),
+            f"{len(rows)} rows in `{table}`" + (f", of which the first {MOST_ROWS}:" if len(rows) > MOST_ROWS else ":"),
+            "",
+            "| " + " | ".join(columns) + " |",
+            "| " + " | ".join("---" for _ in columns) + " |",
+            *("| " + " | ".join(_cell(row[column]) for column in columns) + " |" for row in rows[:MOST_ROWS]),
+            "",
+        ]
+    )
+
+
+def _cell(text: str | None) -> str:
+    return " ".join((text or "").replace("|", r"\|").split())
+
+
+def _figures(name: str) -> dict[str, str]:
+    study = importlib.import_module(f"evidence.{name}")
+    rows = load(name)
+    return study.figures(rows) if rows and hasattr(study, "figures") else {}
