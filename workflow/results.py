@@ -80,7 +80,7 @@ def write_csv(path: str | Path, rows: Iterable[Mapping[str, Any]], columns: Sequ
     Parameters
     ----------
     rows : mappings from column name (with its unit as suffix) to value; a missing value is an empty cell.
-    columns : their order; by default that of the first row.
+    columns : their order; by default that of the table's schema, of a file outside results/ that of the first row.
 
     Raises
     ------
@@ -89,11 +89,11 @@ def write_csv(path: str | Path, rows: Iterable[Mapping[str, Any]], columns: Sequ
     """
     path = Path(path)
     rows = [{key: _cell(value) for key, value in row.items()} for row in rows]
-    if columns is None:
-        if not rows:
-            raise ValueError(f"{path}: no rows and no columns given")
-        columns = list(rows[0])
     schema = schema_of(path)
+    if columns is None:
+        if not rows and schema is None:
+            raise ValueError(f"{path}: no rows and no columns given")
+        columns = schema.header(rows) if schema is not None else list(rows[0])
     if schema is None and "results" in path.parts:
         raise ValueError(f"{path}: no table of workflow/schemas/ is for this file")
     if schema is not None and (misfit := schema.misfit(columns, [dict.fromkeys(columns, "") | row for row in rows])):

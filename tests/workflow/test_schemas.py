@@ -53,6 +53,29 @@ def test_a_result_without_a_schema_is_not_written(tmp_path):
     write_csv(tmp_path / "elsewhere/new.csv", [ROW])
 
 
+def test_the_schema_orders_the_columns(tmp_path):
+    path = tmp_path / "results/mine/elastic/quenched/a.csv"
+    row = {"status": "accepted", "coordination_Si": 4.0, "coordination_N": 3.0, "defects": 0, "structure": "a"}
+    row |= {"attempt": 0, "density_g_cm3": 3.0, "shortest_SiN_A": 1.7, "bond_spread_A": 0.1, "symmetry_operations": 1}
+    write_csv(path, [row])
+    names = path.read_text().splitlines()[0].split(",")
+    assert names[:5] == ["structure", "attempt", "density_g_cm3", "coordination_Si", "coordination_N"]
+    assert names[-1] == "status"
+
+
+def test_a_table_without_rows_has_its_columns(tmp_path):
+    write_csv(tmp_path / TABLE, [])
+    assert load_csv(tmp_path / TABLE) == []
+    assert (tmp_path / TABLE).read_text() == "share,stiction_probability,low,high\n"
+
+
+def test_a_column_that_may_be_empty_needs_no_value(tmp_path):
+    path = tmp_path / "results/mine/calibration/predictive.csv"
+    spread = {f"{state}_{name}": 1.0 for state in ("prior", "posterior") for name in ("q05", "q50", "q95")}
+    write_csv(path, [{"quantity": "release", "unit": "V", **spread}])
+    assert load_csv(path)[0]["force_nN"] == ""
+
+
 def test_what_was_written_is_read(tmp_path):
     write_csv(tmp_path / TABLE, [ROW, ROW | {"low": float("nan")}])
     assert load_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {"low": "nan"}

@@ -83,6 +83,23 @@ class Table:
         """Whether a file at this path is of this kind."""
         return any(path.match(pattern) for pattern in self.paths)
 
+    def header(self, rows: Sequence[Mapping[str, Any]]) -> list[str]:
+        """The columns of rows in the order of the schema, members of a family as they first appear.
+
+        A column that may be empty is there even if no row has it; in a table without rows all are that must be.
+        A name that is not known comes last, for `misfit` to find.
+        """
+        names = dict.fromkeys(name for row in rows for name in row)
+        names |= {
+            column.name: None
+            for column in self.columns
+            if not column.optional and (column.empty or not rows) and "*" not in column.name
+        }
+        return sorted(names, key=self._place)  # stable
+
+    def _place(self, name: str) -> int:
+        return next((k for k, column in enumerate(self.columns) if column.covers(name)), len(self.columns))
+
     def misfit(self, header: Sequence[str], rows: Sequence[Mapping[Any, str | None]]) -> str:
         """What does not fit the schema, in words; empty if everything does.
 
