@@ -16,8 +16,14 @@ class OneSecondEach:
 
     refusal = staticmethod(lambda seconds, wall_s, cores, hours: "too long" if wall_s > 3600 * hours else "")
 
+    def __init__(self):
+        self.learned = []
+
     def seconds(self, rule, wildcards):
         return None if rule == "unheard_of" else 1.0
+
+    def learn(self, rule, took, planned):
+        self.learned.append((rule, planned))
 
 
 class Job(SimpleNamespace):
@@ -36,12 +42,12 @@ def send(terminal, event, **about):
 
 
 @pytest.mark.parametrize("dry", [True, False])
-def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry, monkeypatch):
-    monkeypatch.setattr("workflow.terminal.progress.relative_speed", lambda: 1.0)
+def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry):
     jobs = [job("fit_law"), job("fit_law"), job("unheard_of")]
     dag = SimpleNamespace(needrun_jobs=lambda: jobs, job_dependencies=lambda job: [])
     snakemake = SimpleNamespace(dryrun=dry, local_exec=True, cores=2, dag=dag)
-    terminal = Terminal(snakemake, OneSecondEach(), "nothing to do", 12)
+    costs = OneSecondEach()
+    terminal = Terminal(snakemake, costs, "nothing to do", 12)
     send(terminal, "run_info")
     send(terminal, "job_info", jobid=7, rule_name="fit_law", rule_msg="fit the law")
     send(terminal, "job_finished", job_id=7)
@@ -49,11 +55,11 @@ def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry, monkeypatch
     assert "3 jobs, about 1 s on 2 cores, and unheard_of, whose time nobody has measured" in said
     assert ("fit_law         2        2 s" in said) == dry
     assert ("1 of 3  fit the law (1 s), about 1 s left" in said) == (not dry)
+    assert costs.learned == ([] if dry else [("fit_law", 1.0)])
 
 
 @pytest.mark.parametrize(("local", "hours", "refusal"), [(True, 12, ""), (True, 1e-4, "too long"), (False, 1e-4, "")])
-def test_a_run_that_is_too_long_is_refused_unless_a_cluster_takes_it(monkeypatch, local, hours, refusal):
-    monkeypatch.setattr("workflow.terminal.progress.relative_speed", lambda: 1.0)
+def test_a_run_that_is_too_long_is_refused_unless_a_cluster_takes_it(local, hours, refusal):
     dag = SimpleNamespace(needrun_jobs=lambda: [job("fit_law")], job_dependencies=lambda job: [])
     snakemake = SimpleNamespace(dryrun=False, local_exec=local, cores=2, dag=dag)
     terminal = Terminal(snakemake, OneSecondEach(), "nothing to do", hours)
@@ -85,19 +91,37 @@ def test_a_full_disk_is_not_taken_for_missing_memory(capsys, monkeypatch):
     assert capsys.readouterr().err.startswith("ERROR compute_runs: no space left on the disk of ")
 
 
-def test_costs_grow_with_what_a_job_does():
+@pytest.fixture
+def development_machine(monkeypatch):
+    monkeypatch.setattr("workflow.terminal.cost.relative_speed", lambda: 1.0)
+
+
+def test_costs_grow_with_what_a_job_does(development_machine, tmp_path):
     paper = load_scene("paper")
     coarse = paper.model_copy(update={"contact": paper.contact.model_copy(update={"pixels": 512})})
-    small, large = Costs(coarse, {}), Costs(paper, {})
+    small, large = (Costs(scene, {}, tmp_path / "none.json") for scene in (coarse, paper))
     start = START_S + ENGINE_S
     assert large.seconds("compute_runs", {}) - start > 2 * (small.seconds("compute_runs", {}) - start)
     assert small.seconds("no_such_rule", {}) is None
 
 
-def test_what_takes_the_time_is_named_with_its_key_and_number():
+def test_a_plan_learns_from_what_jobs_took(development_machine, tmp_path):
+    paper, times = load_scene("paper"), tmp_path / ".snakemake/times.json"
+    costs = Costs(paper, {}, times)
+    guess = costs.seconds("fit_law", {})
+    for _ in range(round(1000 / guess)):  # a machine of a third of the speed, long enough to be believed
+        costs.learn("fit_law", 3 * guess, guess)
+    later = Costs(paper, {}, times)
+    assert later.seconds("fit_law", {}) == pytest.approx(3 * guess, rel=0.1)
+    assert later.seconds("solve_switch", {}) == costs.seconds("solve_switch", {})
+    times.write_text("{")  # a run was killed while it wrote
+    assert Costs(paper, {}, times).seconds("fit_law", {}) == guess
+
+
+def test_what_takes_the_time_is_named_with_its_key_and_number(development_machine, tmp_path):
     paper = load_scene("paper")
     million = paper.uncertainty.model_copy(update={"direct_runs": 10**6})
-    costs = Costs(paper.model_copy(update={"uncertainty": million}), {})
+    costs = Costs(paper.model_copy(update={"uncertainty": million}), {}, tmp_path / "none.json")
     hours = 10**4 * costs.seconds("compute_direct_runs", {}) / 3600
     assert 10 < hours < 100
     said = costs.refusal({"compute_direct_runs": hours * 3600, "fit_law": 2.0}, hours * 1800, 2, 5)

@@ -1,14 +1,17 @@
-"""What the jobs of a scene cost before they run: seconds of one core by rule.
+"""What the jobs of a scene cost before they run: a first guess by rule, corrected by what this machine's jobs took.
 
-The figures were measured on the development machine, two cores of a server with both of them busy (one of them alone is
-some 10 % faster), with compiled bytecode; `relative_speed` sets another machine against it.
+The first guess is in seconds of one core of the development machine, a server with two busy cores.
 """
 
 import heapq
+import json
 import math
 import statistics
 import time
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,30 +23,23 @@ from mesoscale.settings import ContactSettings, HistorySettings
 from mesoscale.uncertainty.chunks import collocation_run_count
 from workflow.scene import Scene
 
+TIMES = Path(".snakemake/asperity_seconds.json")
+"""What jobs took and their first guess, seconds by rule; delete it to start again from the first guess."""
+TRUST_S = 30.0  # jobs of so many guessed seconds count as much as the first guess
+LONGEST_RUN_H = 12.0  # of a run on one machine, unless it is said to be meant: what a night finishes
 START_S = 0.8  # Snakemake's start of a job, and the packages
 ENGINE_S = 0.9  # more packages for a contact, and its loops from numba's cache
 GRID = 1024**2  # sites of the reference
 # of any cycle; of one on the reference grid, besides; the power of the sites with which that grows
 CYCLE_S = {"asperity": (0.005, 0.054, 1.0), "coupled": (0.01, 2.5, 2.2)}
-CHAIN_S = 10.0  # a posterior of some twenty curves; scene made_up
-FITTED_RUN_S = 0.004  # law of a run and its row
-LATER_CYCLE, HOLD = 0.6, 0.05  # of a history, over a first cycle; of each time within a hold
-CURVE_S = 0.01  # fit of both branches of a run, with fits repeated from other starts
-RESPONSE_RUN_S = 0.0082  # of a direct run, in regressions and their validation
-ANSWER_S = 6.0  # 89 switches solved on pads at other inputs
-RELEASE_S = 0.015  # law and switch after a cycle
-CELL_S = {"asperity": 2.75, "coupled": 3.9}  # a pad's cell over a cycle: it opens from several depths
+RUN_S = 0.004  # law of a run and its row
+CELL = {"asperity": 2.75, "coupled": 3.9}  # a pad's cell over a cycle: it opens from several depths
 PRESSED = {"asperity": 1.0, "coupled": 9.0}  # that which a switch presses over it
-DRAW_CELL = {"asperity": 0.9, "coupled": 0.45}  # a cell of a pad at other inputs: fewer steps, half of the depths
-PILOT_CELL = {"asperity": 0.45, "coupled": 0.15}  # a cell that is only closed, in coarse steps
-SCAN_S = 0.8  # analysis of a scan of the reference grid
-SCF_S = 9.0  # one volume of 28 atoms at 100 hartree
-RELAXATION_STEP_S = 8.0  # the same, tightly converged and with forces
-STRESS_STEP_S = 12.0  # the same with the stress; 80 hartree on a loaded machine, not yet on an idle one
-QUENCH_S = 1.3  # one quench of 28 atoms
-PERFECT_QUENCHES, BROKEN_QUENCHES = 75, 10  # until a new network passes its gates: perfect, or with broken bonds
+DRAW = {"asperity": 0.9, "coupled": 0.45}  # a cell of a pad at other inputs: fewer steps, half of the depths
+PILOT = {"asperity": 0.45, "coupled": 0.15}  # a cell that is only closed, in coarse steps
 TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
-LONGEST_RUN_H = 12.0  # of a run on one machine, unless it is said to be meant: what a night finishes
+
+
 GROWS_BY = {  # the key that makes a rule's jobs many or long
     **dict.fromkeys(("make_glass", "run_closing"), "hardness.seeds"),
     **dict.fromkeys(("make_amorphous", "relax_amorphous", "scan_volumes"), "elastic.glass.structures"),
@@ -69,25 +65,47 @@ def cycle_s(contact: ContactSettings) -> float:
 
 def history_s(history: HistorySettings, contact: ContactSettings) -> float:
     """Seconds of closing and opening again and again; all but the first cycle find their surface."""
-    cycle = LATER_CYCLE + (HOLD * history.dwell_steps if history.dwell_s > 0 else 0.0)
-    return history.seeds * history.cycles * (cycle * cycle_s(contact) + RELEASE_S)
+    cycle = 0.6 + (0.05 * history.dwell_steps if history.dwell_s > 0 else 0.0)
+    return history.seeds * history.cycles * (cycle * cycle_s(contact) + 0.015)
 
 
 class Costs:
-    """Costs of the jobs of one scene; `oxides` are the glasses that hardness names by formula."""
+    """Costs of the jobs of one scene.
 
-    def __init__(self, scene: Scene, oxides: Mapping[str, Material]) -> None:
-        self.scene = scene
+    Parameters
+    ----------
+    oxides : the glasses that hardness names by formula.
+    times : see TIMES.
+    """
+
+    def __init__(self, scene: Scene, oxides: Mapping[str, Material], times: Path = TIMES) -> None:
+        self.scene, self._times = scene, times
         self.atom_steps: dict[str, float] = {}  # by closing run
         if "hardness" in scene.stages():
             bodies = (scene.hardness.material, scene.hardness.closing.counter_material)
             rows = plan_rows(scene.hardness, *(oxides[formula] for formula in bodies))
             self.atom_steps = {str(row["run"]): float(row["atom_steps"]) for row in rows[:-1]}
+        self._sums = defaultdict(lambda: [0.0, 0.0])  # seconds and their first guess, by rule; later runs count more
+        with suppress(OSError, ValueError):  # no run yet, or one that was killed
+            self._sums |= {rule: [took / 2, guess / 2] for rule, (took, guess) in json.loads(times.read_text()).items()}
+        slowness = 1 / relative_speed()
+        self._factor = defaultdict(
+            lambda: slowness,
+            {rule: (took + TRUST_S * slowness) / (guess + TRUST_S) for rule, (took, guess) in self._sums.items()},
+        )
 
     def seconds(self, rule: str, wildcards: Mapping[str, str]) -> float | None:
-        """Seconds of one core; None for a rule that nobody has measured."""
-        cost = _SECONDS.get(rule)
-        return None if cost is None else START_S + cost(self, wildcards)
+        """Seconds of one core of this machine; None for a rule without a first guess."""
+        guess = FIRST_GUESS.get(rule)
+        return None if guess is None else self._factor[rule] * (START_S + guess(self, wildcards))
+
+    def learn(self, rule: str, took: float, planned: float) -> None:
+        """Keep for later runs what a job took beside what `seconds` said."""
+        sums = self._sums[rule]
+        sums[0], sums[1] = sums[0] + took, sums[1] + planned / self._factor[rule]
+        with suppress(OSError):  # a full disk
+            self._times.parent.mkdir(exist_ok=True)
+            self._times.write_text(json.dumps(self._sums))
 
     def refusal(self, seconds: Mapping[str, float], wall_s: float, cores: int, hours: float) -> str:
         """Why a run on one machine is refused: the key behind most of its time; empty where it is not.
@@ -116,101 +134,24 @@ class Costs:
         """Seconds of one closing and opening."""
         return cycle_s(self.scene.contact)
 
-    @property
-    def cell_s(self) -> float:
-        """Seconds of one cell of a pad."""
-        mechanics = self.scene.contact.mechanics
-        return CELL_S[mechanics] * PRESSED[mechanics] * self.cycle_s
+    def cycles_s(self, runs: int) -> float:
+        """Seconds of a job of so many cycles with their laws."""
+        return ENGINE_S + runs * (self.cycle_s + RUN_S)
 
     @property
-    def scf_size(self) -> float:
-        """Cost of a glass cell over that of 28 atoms; measured to 112 atoms (docs/elastic.md)."""
-        return (self.scene.elastic.glass.formula_units / 4) ** 2.4
+    def mechanics(self) -> str:
+        """Of the contact."""
+        return self.scene.contact.mechanics
 
-    def make_glass(self, wildcards: Mapping[str, str]) -> float:
-        """Melt, quench and rest."""
-        glass = self.scene.hardness.glass
-        cooling_ps = (glass.melt_temperature_K - glass.final_temperature_K) / glass.quench_rate_K_ps
-        steps = 1e3 * (glass.melt_ps + cooling_ps + glass.rest_ps) / glass.timestep_fs
-        return steps * glass.atoms / ATOM_STEPS_PER_CORE_SECOND
+    def cells_s(self, cells: float) -> float:
+        """Seconds of a job of so many cells of a pad."""
+        return ENGINE_S + cells * CELL[self.mechanics] * PRESSED[self.mechanics] * self.cycle_s
 
-    def run_closing(self, wildcards: Mapping[str, str]) -> float:
-        """Closing of one asperity."""
-        return self.atom_steps[wildcards["run"]] / ATOM_STEPS_PER_CORE_SECOND
-
-    def scan_volumes(self, wildcards: Mapping[str, str]) -> float:
-        """Energy against volume; relaxed ions need some eight times the clamped ones."""
+    def scf_s(self, seconds: float, tight: bool = True) -> float:
+        """Seconds of DFT on a glass from those of 28 atoms at 100 hartree; the power was measured to 112 atoms."""
         elastic = self.scene.elastic
-        energies = len(elastic.strains) * (8 if wildcards["ions"] == "relaxed" else 1)
-        return SCF_S * energies * self.scf_size * elastic.dft.cutoff_Ha / 100
-
-    def make_amorphous(self, wildcards: Mapping[str, str]) -> float:
-        """Quenches of a glass cell until one passes its gates."""
-        glass = self.scene.elastic.glass
-        quenches = BROKEN_QUENCHES if glass.max_defects else PERFECT_QUENCHES
-        return QUENCH_S * quenches * glass.formula_units / 4
-
-    def relax_amorphous(self, wildcards: Mapping[str, str]) -> float:
-        """Relaxation of the ions of a glass."""
-        relaxation = self.scene.elastic.relaxation
-        return RELAXATION_STEP_S * (1 + relaxation.max_steps) * self.scf_size * relaxation.cutoff_Ha / 100
-
-    def measure_tensor(self, wildcards: Mapping[str, str]) -> float:
-        """Ions and cell come to rest in a sixth of the steps allowed, a twelfth on two meshes; then strained states."""
-        elastic = self.scene.elastic
-        states = elastic.tensor.max_steps / 3 + 14 + 6 * elastic.tensor.rounds
-        return STRESS_STEP_S * states * self.scf_size * elastic.relaxation.cutoff_Ha / 100
-
-    def compute_runs(self, wildcards: Mapping[str, str]) -> float:
-        """A chunk of cycles of a design."""
-        return ENGINE_S + self.scene.uncertainty.chunk_runs * (self.cycle_s + FITTED_RUN_S)
-
-    def compute_nominal(self, wildcards: Mapping[str, str]) -> float:
-        """A cycle at each load, and the contact spots."""
-        return ENGINE_S + 0.5 + len(self.scene.contact.nominal_loads_nN) * self.cycle_s
-
-    def fit_law(self, wildcards: Mapping[str, str]) -> float:
-        """Laws of all runs of the collocation."""
-        return CURVE_S * collocation_run_count(len(self.scene.inputs.rows()), self.scene.uncertainty)
-
-    def propagate_uncertainty(self, wildcards: Mapping[str, str]) -> float:
-        """Responses and their validation."""
-        return 0.5 + RESPONSE_RUN_S * self.scene.uncertainty.direct_runs
-
-    def observe_cycles(self, wildcards: Mapping[str, str]) -> float:
-        """A chunk of the cycles behind a calibration."""
-        return ENGINE_S + self.scene.measurements.chunk_runs * (self.cycle_s + FITTED_RUN_S)
-
-    def sample_posterior(self, wildcards: Mapping[str, str]) -> float:
-        """Chains of all tables and of subsets of them, and the cycles where the posterior lies."""
-        measurements = self.scene.measurements
-        chains = 2 * len(measurements.tables) + 1 + measurements.rounds
-        return CHAIN_S * chains + measurements.rounds * measurements.local_runs * (self.cycle_s + FITTED_RUN_S)
-
-    def analyse_scans(self, wildcards: Mapping[str, str]) -> float:
-        """A chunk of scans."""
-        return self.scene.topography.scans_per_job * SCAN_S * self.scene.topography.synthetic.pixels**2 / GRID
-
-    def plan_pad(self, wildcards: Mapping[str, str]) -> float:
-        """Pilot cells."""
-        return ENGINE_S + self.scene.pad.pilot_cells * PILOT_CELL[self.scene.contact.mechanics] * self.cell_s
-
-    def close_cells(self, wildcards: Mapping[str, str]) -> float:
-        """A chunk of the pad's cells."""
-        return ENGINE_S + min(self.scene.pad.chunk_cells, self.scene.pad.cells) * self.cell_s
-
-    def close_draws(self, wildcards: Mapping[str, str]) -> float:
-        """A chunk of pads at other inputs; two pilots for each."""
-        pad, mechanics = self.scene.pad, self.scene.contact.mechanics
-        cells = pad.draw_cells * DRAW_CELL[mechanics] + 2 * PILOT_CELL[mechanics]
-        return ENGINE_S + min(pad.chunk_draws, pad.draws) * cells * self.cell_s
-
-    def open_pads(self, wildcards: Mapping[str, str]) -> float:
-        """The pads of one case; the first half of the cases is of the first mechanics."""
-        adhesion = self.scene.adhesion
-        mechanics = adhesion.mechanics[int(wildcards["adhesion_case"]) * len(adhesion.mechanics) // adhesion.case_count]
-        cycle = cycle_s(self.scene.contact.model_copy(update={"mechanics": mechanics}))
-        return ENGINE_S + adhesion.pads * adhesion.cells * CELL_S[mechanics] * cycle
+        cutoff_Ha = elastic.relaxation.cutoff_Ha if tight else elastic.dft.cutoff_Ha
+        return seconds * (elastic.glass.formula_units / 4) ** 2.4 * cutoff_Ha / 100
 
 
 def _at(content: Any, key: str) -> Any:
@@ -219,50 +160,85 @@ def _at(content: Any, key: str) -> Any:
     return content
 
 
-def _constant(seconds: float) -> Callable[[Costs, Mapping[str, str]], float]:
-    return lambda costs, wildcards: seconds
+def _glass_steps(scene: Scene) -> float:
+    """Atoms times MD steps of a glass: melt, quench and rest."""
+    glass = scene.hardness.glass
+    cooling_ps = (glass.melt_temperature_K - glass.final_temperature_K) / glass.quench_rate_K_ps
+    return 1e3 * (glass.melt_ps + cooling_ps + glass.rest_ps) / glass.timestep_fs * glass.atoms
 
 
-_SECONDS: dict[str, Callable[[Costs, Mapping[str, str]], float]] = {
-    **dict.fromkeys(("write_scene", "collect_inputs", "export_law", "combine_e_star"), _constant(0.0)),
-    **dict.fromkeys(("find_hardness", "fit_hardness", "fit_bulk_moduli", "fit_nominal_law"), _constant(0.5)),
-    "make_crystal": _constant(0.0),
-    **dict.fromkeys(("make_glass", "make_counter_glass"), Costs.make_glass),
-    "run_closing": Costs.run_closing,
-    "make_amorphous": Costs.make_amorphous,
-    "relax_amorphous": Costs.relax_amorphous,
-    "scan_volumes": Costs.scan_volumes,
-    "scan_relaxed_volumes": Costs.scan_volumes,
-    "measure_tensor": Costs.measure_tensor,
-    "average_tensors": _constant(0.5),
-    "measure_elastic_accuracy": _constant(1100.0),
-    "write_synthetic_scans": _constant(5.0),
-    "analyse_scans": Costs.analyse_scans,
-    "pool_spectra": _constant(3.0),
-    "draw_surface": _constant(2.0),
-    "judge_scans": lambda costs, wildcards: 3.0 + 3.0 * len(costs.scene.topography.scans),
-    "weigh_unseen_waves": lambda costs, wildcards: 24 * costs.cycle_s,
-    "compute_nominal": Costs.compute_nominal,
-    "fit_law": Costs.fit_law,
-    "compute_runs": Costs.compute_runs,
-    "compute_direct_runs": Costs.compute_runs,
-    "propagate_uncertainty": Costs.propagate_uncertainty,
-    "rank_sensitivity": _constant(8.5),
-    "plan_pad": Costs.plan_pad,
-    "close_cells": Costs.close_cells,
-    "close_draws": Costs.close_draws,
-    "open_pads": Costs.open_pads,
-    "summarise_adhesion": _constant(0.0),
-    "assemble_pad": lambda costs, wildcards: 2.0 + (ANSWER_S if costs.scene.pad.draws else 0.0),
-    "solve_switch": _constant(1.6),
-    "render_report": lambda costs, wildcards: 5.5 + 0.5 * len(costs.scene.stages()),
-    "measure_pad_accuracy": lambda costs, wildcards: 60.0 + 4 * costs.cell_s,
-    "collect_priors": _constant(0.0),
-    "follow_history": lambda costs, wildcards: history_s(costs.scene.history, costs.scene.contact),
-    "observe_cycles": Costs.observe_cycles,
-    "sample_posterior": Costs.sample_posterior,
-    "rank_next_on_pad": _constant(20.0),
+def _quenches(glass: Any) -> int:
+    """Quenches until a new network passes its gates: with broken bonds, or perfect."""
+    return 10 if glass.max_defects else 75
+
+
+def _adhesion_s(scene: Scene, case: int) -> float:
+    """The pads of one case; the first half of the cases is of the first mechanics."""
+    adhesion = scene.adhesion
+    mechanics = adhesion.mechanics[case * len(adhesion.mechanics) // adhesion.case_count]
+    cycle = cycle_s(scene.contact.model_copy(update={"mechanics": mechanics}))
+    return ENGINE_S + adhesion.pads * adhesion.cells * CELL[mechanics] * cycle
+
+
+def _each(seconds: float, *rules: str) -> dict[str, Callable[[Costs, Any], float]]:
+    return dict.fromkeys(rules, lambda costs, wildcards: seconds)
+
+
+FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
+    **_each(0.0, "write_scene", "collect_inputs", "export_law", "combine_e_star", "make_crystal", "collect_priors"),
+    **_each(0.0, "summarise_adhesion"),
+    **_each(0.5, "find_hardness", "fit_hardness", "fit_bulk_moduli", "fit_nominal_law", "average_tensors"),
+    **_each(2.0, "draw_surface", "solve_switch", "pool_spectra"),
+    **_each(5.0, "write_synthetic_scans"),
+    **_each(8.5, "rank_sensitivity"),
+    **_each(20.0, "rank_next_on_pad"),
+    **_each(1100.0, "measure_elastic_accuracy"),
+    **dict.fromkeys(
+        ("make_glass", "make_counter_glass"), lambda c, _: _glass_steps(c.scene) / ATOM_STEPS_PER_CORE_SECOND
+    ),
+    "run_closing": lambda c, job: c.atom_steps[job["run"]] / ATOM_STEPS_PER_CORE_SECOND,
+    "make_amorphous": lambda c, _: 1.3 * _quenches(c.scene.elastic.glass) * c.scene.elastic.glass.formula_units / 4,
+    "relax_amorphous": lambda c, _: c.scf_s(8.0 * (1 + c.scene.elastic.relaxation.max_steps)),
+    # relaxed ions need some eight times the clamped ones
+    **dict.fromkeys(
+        ("scan_volumes", "scan_relaxed_volumes"),
+        lambda c, job: c.scf_s(
+            9.0 * len(c.scene.elastic.strains) * (8 if job["ions"] == "relaxed" else 1), tight=False
+        ),
+    ),
+    # ions and cell come to rest in a sixth of the steps allowed, a twelfth on two meshes; then strained states
+    "measure_tensor": lambda c, _: c.scf_s(
+        12.0 * (c.scene.elastic.tensor.max_steps / 3 + 14 + 6 * c.scene.elastic.tensor.rounds)
+    ),
+    "analyse_scans": lambda c, _: (
+        0.8 * c.scene.topography.scans_per_job * c.scene.topography.synthetic.pixels**2 / GRID
+    ),
+    "judge_scans": lambda c, _: 3.0 + 3.0 * len(c.scene.topography.scans),
+    "weigh_unseen_waves": lambda c, _: 24 * c.cycle_s,
+    "compute_nominal": lambda c, _: 0.5 + c.cycles_s(len(c.scene.contact.nominal_loads_nN)),
+    "compute_runs": lambda c, _: c.cycles_s(c.scene.uncertainty.chunk_runs),
+    "compute_direct_runs": lambda c, _: c.cycles_s(c.scene.uncertainty.chunk_runs),
+    "fit_law": lambda c, _: 0.01 * collocation_run_count(len(c.scene.inputs.rows()), c.scene.uncertainty),
+    "propagate_uncertainty": lambda c, _: 0.5 + 0.0082 * c.scene.uncertainty.direct_runs,
+    "observe_cycles": lambda c, _: c.cycles_s(c.scene.measurements.chunk_runs),
+    # chains of all tables and of subsets of them, and the cycles where the posterior lies
+    "sample_posterior": lambda c, _: (
+        10.0 * (2 * len(c.scene.measurements.tables) + 1 + c.scene.measurements.rounds)
+        + c.cycles_s(c.scene.measurements.rounds * c.scene.measurements.local_runs)
+    ),
+    "plan_pad": lambda c, _: c.cells_s(c.scene.pad.pilot_cells * PILOT[c.mechanics]),
+    "close_cells": lambda c, _: c.cells_s(min(c.scene.pad.chunk_cells, c.scene.pad.cells)),
+    "close_draws": lambda c, _: c.cells_s(
+        min(c.scene.pad.chunk_draws, c.scene.pad.draws)
+        * (c.scene.pad.draw_cells * DRAW[c.mechanics] + 2 * PILOT[c.mechanics])
+    ),
+    "assemble_pad": lambda c, _: 8.0 if c.scene.pad.draws else 2.0,
+    "measure_pad_accuracy": lambda c, _: 60.0 + c.cells_s(4),
+    "open_pads": lambda c, job: _adhesion_s(c.scene, int(job["adhesion_case"])),
+    "follow_history": lambda c, _: history_s(c.scene.history, c.scene.contact),
+    "render_report": lambda c, _: 5.5 + 0.5 * len(c.scene.stages()),
 }
+"""Seconds of a job of each rule, from its costs and wildcards, beside START_S."""
 
 
 def wall_seconds(

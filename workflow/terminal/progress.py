@@ -12,7 +12,7 @@ from typing import Any
 from snakemake.exceptions import WorkflowError
 
 from workflow.job import last_line
-from workflow.terminal.cost import Costs, relative_speed, wall_seconds
+from workflow.terminal.cost import Costs, wall_seconds
 
 FULL_DISK = 100_000  # bytes left: less than a job and its log need
 
@@ -36,7 +36,6 @@ class Terminal(logging.Handler):
         super().__init__()
         self._workflow, self._costs, self._nothing_to_do, self._hours = workflow, costs, nothing_to_do, hours
         self.refusal = ""
-        self._speed = relative_speed()
         self._planned = False
         self._jobs = self._done = 0
         self._counts: Counter[str] = Counter()  # of the jobs that have not finished, by rule
@@ -65,7 +64,7 @@ class Terminal(logging.Handler):
         self._counts = Counter(rules)
         costs = [(job.rule.name, self._costs.seconds(job.rule.name, dict(job.wildcards_dict))) for job in jobs]
         unknown = sorted({rule for rule, cost in costs if cost is None})
-        seconds = [(cost or 0.0) / self._speed for _, cost in costs]
+        seconds = [cost or 0.0 for _, cost in costs]
         for rule, cost in zip(rules, seconds, strict=True):
             self._seconds_left[rule] += cost
         self._jobs = len(jobs)
@@ -109,12 +108,15 @@ class Terminal(logging.Handler):
         if rule not in self._counts:  # a target that only gathers
             return
         self._done += 1
-        self._seconds_left[rule] -= self._seconds_left[rule] / self._counts[rule]
+        took, planned = time.monotonic() - started, self._seconds_left[rule] / self._counts[rule]
+        self._seconds_left[rule] -= planned
+        if self._workflow.local_exec and planned:  # on a cluster jobs wait
+            self._costs.learn(rule, took, planned)
         self._counts[rule] -= 1
         left = sum(self._seconds_left.values()) / self._cores
         rest = f", about {duration(left)} left" if self._done < self._jobs else ""
         count = f"{self._done:>{len(str(self._jobs))}} of {self._jobs}"
-        _say(f"{time.strftime('%H:%M:%S')}  {count}  {message} ({duration(time.monotonic() - started)}){rest}")
+        _say(f"{time.strftime('%H:%M:%S')}  {count}  {message} ({duration(took)}){rest}")
 
 
 def _say_if_silent(about: Mapping[str, Any]) -> None:
