@@ -1,6 +1,6 @@
 # make run [SCENE=reduced|ci|paper|full|path.yaml] [TARGET=law] [HOURS=100]   set up, then run a scene (12 hours at most)
 # make plan [SCENE=…] [TARGET=…]   which jobs would run and how long they take; runs nothing
-# make test | bench | lint | docs
+# make test | bench | lint | docs | floors
 SCENE ?= reduced
 TARGET ?=
 HOURS ?=
@@ -11,7 +11,7 @@ RUN := $(UV) run --locked --no-sync
 # trust the system's certificates, so that set-up works behind a TLS-inspecting proxy
 export UV_SYSTEM_CERTS := 1
 
-.PHONY: run plan test bench lint docs setup
+.PHONY: run plan test bench lint docs floors setup
 run: setup
 	@$(RUN) asperity run --scene "$(SCENE)" $(if $(HOURS),--hours "$(HOURS)") $(TARGET)
 
@@ -36,6 +36,9 @@ docs: setup
 	@rm -rf docs/api docs/_build
 	$(RUN) sphinx-build -W --keep-going -q -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
+
+floors: | $(UV)
+	.ci/floors
 
 setup: .venv/.asperity-ready
 
