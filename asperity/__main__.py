@@ -59,7 +59,7 @@ def main(arguments: list[str] | None = None) -> int:
         print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
         return 0
     if given.command == "compare":
-        page = [sys.executable, "-m", "workflow.report.aids.comparison", given.first, given.second, given.page]
+        page = [sys.executable, "-m", "workflow.report.comparison", given.first, given.second, given.page]
         return subprocess.run(page, env=_environment(), check=False).returncode
     if given.command == "new":
         return _new(Path(given.file))

@@ -34,7 +34,6 @@ from mesoscale.settings import (
 )
 from workflow.checksums import CLOCK_S
 from workflow.former_keys import FORMER_KEYS
-from workflow.report.settings import ReportSettings
 from workflow.scene_yaml import MistakenYaml, load_mapping
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -47,6 +46,15 @@ MOST_PARENTS = 10  # scenes that extend each other in a row
 
 class SceneError(Exception):
     """A scene that cannot be used; the message has one line per mistake."""
+
+
+class ReportSettings(Settings):
+    """The page report.html (docs/report.md)."""
+
+    studies: bool = Field(
+        default=False,
+        description="also run the accuracy and stability studies of all stages and show their tables",
+    )
 
 
 class Scene(Settings):

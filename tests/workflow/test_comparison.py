@@ -5,7 +5,7 @@ import re
 import pytest
 
 from tests.workflow.made_up_results import write_all
-from workflow.report.aids.comparison import difference_of, main
+from workflow.report.comparison import difference_of, main
 from workflow.results import load_csv, write_csv
 
 

@@ -8,11 +8,11 @@ import pytest
 
 from mesoscale.law.parameters import LAW
 from tests.workflow.made_up_results import write_all
-from workflow.report.aids.verdict import release_cards
 from workflow.report.answer import answer
 from workflow.report.available import Results
 from workflow.report.numbers import OUTPUTS
 from workflow.report.stages import pad, uncertainty
+from workflow.report.verdict import release_cards
 
 METHODS = (
     "by the response",

@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from workflow.report.aids.verdict import release_cards, release_causes, verdict
 from workflow.report.page import Gate
+from workflow.report.verdict import release_cards, release_causes, verdict
 
 SOUND = [Gate("law", True), Gate("hardness", False, ("too few runs",), used=False)]
 

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from mesoscale.law.parameters import LAW
-from workflow.report.aids.verdict import release_cards, release_causes, verdict
 from workflow.report.available import Results, Row
 from workflow.report.numbers import OUTPUTS, SYMBOLS, column, number, show
 from workflow.report.page import Gate, Table
 from workflow.report.stages import law
 from workflow.report.stages.sensitivity import ranking
+from workflow.report.verdict import release_cards, release_causes, verdict
 
 
 def answer(results: Results, gates: Sequence[Gate]) -> dict[str, Any]:

@@ -7,10 +7,10 @@ import yaml
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from workflow.report.aids.glossary import TERMS, Explainer, anchor
 from workflow.report.answer import answer
 from workflow.report.available import Results
 from workflow.report.drawing import SUBSCRIPT
+from workflow.report.glossary import TERMS, Explainer, anchor
 from workflow.report.limits import limits
 from workflow.report.live.device import switch_data
 from workflow.report.live.explorer import explorer, script_json

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from workflow.report.aids.verdict import CAUSES, symbol
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import column, show
 from workflow.report.page import COMPUTED, Gate, Section, Table
+from workflow.report.verdict import CAUSES, symbol
 
 
 def describe(results: Results) -> Section | None:

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from workflow.report.aids.verdict import release_causes
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
 from workflow.report.numbers import OUTPUTS, SYMBOLS, column, number, show
 from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.verdict import release_causes
 
 
 def describe(results: Results) -> Section | None:

@@ -9,12 +9,12 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from mesoscale.law.parameters import PARAMETERS
-from workflow.report.aids.verdict import verdict
 from workflow.report.available import Results
 from workflow.report.numbers import OUTPUTS, column, show
 from workflow.report.page import Table
 from workflow.report.render import low
 from workflow.report.stages import law
+from workflow.report.verdict import verdict
 
 ENDS = (0.05, 0.5, 0.95)
 Spread = tuple[float, float, float]
@@ -40,7 +40,7 @@ def comparison(first: Results, second: Results) -> str:
         verdicts=[(name, verdict(results, [])) for results, name in pairs],
         figures=figures,
         table=differences(first, second),
-        style=(here.parent / "style.css").read_text(encoding="utf-8"),
+        style=(here / "style.css").read_text(encoding="utf-8"),
     )
 
 
