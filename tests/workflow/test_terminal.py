@@ -84,6 +84,12 @@ def test_a_job_that_the_system_ended_is_named(capsys, tmp_path):
     assert line.startswith("ERROR compute_runs: ended by the system without a word, probably out of memory")
 
 
+def test_a_script_that_cannot_start_is_not_taken_for_missing_memory(capsys, tmp_path):
+    terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do", 12)
+    send(terminal, "job_error", rule_name="compute_runs", log=[str(tmp_path / "none.log")])
+    assert "ERROR compute_runs: ended before it began" in capsys.readouterr().err
+
+
 def test_a_full_disk_is_not_taken_for_missing_memory(capsys, monkeypatch):
     monkeypatch.setattr("workflow.terminal.progress.disk_usage", lambda folder: SimpleNamespace(free=0))
     terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do", 12)

@@ -127,6 +127,9 @@ def _say_if_silent(about: Mapping[str, Any]) -> None:
     if disk_usage(Path.cwd()).free < FULL_DISK:
         _say(f"ERROR {about['rule_name']}: no space left on the disk of {Path.cwd()}; make room, then run again")
         return
+    if about["log"] and not log.is_file():
+        _say(f"ERROR {about['rule_name']}: ended before it began, its script has a mistake: see the lines above")
+        return
     _say(
         f"ERROR {about['rule_name']}: ended by the system without a word, probably out of memory: run again with "
         "fewer --cores, or lower contact.pixels"
