@@ -285,8 +285,8 @@ def _explain(path: Path, error: Any) -> str:
     """One line for one pydantic error."""
     location = tuple(part for part in error["loc"] if part != "__root__")
     key = ".".join(_cut(str(part)) for part in location)
-    if key in FORMER_KEYS:
-        return f"{path}: {key}: {FORMER_KEYS[key]}"
+    if (former := ".".join(part for part in map(str, error["loc"]) if not part.isdigit())) in FORMER_KEYS:
+        return f"{path}: {key}: {FORMER_KEYS[former]}"
     if error["type"] == "extra_forbidden":
         owner = _model_at(location[:-1])
         known = list(owner.model_fields) if owner else []

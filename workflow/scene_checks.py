@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping
 
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
-from atomistic.settings.hardness import BASE_OVER_CONTACT
 from mesoscale.device.statistics import least_pull_in_V, never_closes
 from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME
@@ -94,12 +93,6 @@ def _stages(scene: Scene) -> Iterator[str]:
         yield "topography.scans: empty, and synthetic.small_scans and large_scans are 0: nothing to analyse; give scans"
     if "elastic" in scene.stages() and scene.elastic.dft.engine == "pyscf":
         yield from _unknown_bases(scene)
-    closing = scene.hardness.closing
-    if "hardness" in scene.stages() and closing.base_over_contact < BASE_OVER_CONTACT:
-        yield (
-            f"hardness.closing.base_over_contact = {closing.base_over_contact:g}: a base thinner than "
-            f"{BASE_OVER_CONTACT:g} of the largest contact is felt; give {BASE_OVER_CONTACT:g} or more"
-        )
 
 
 def _unknown_bases(scene: Scene) -> Iterator[str]:

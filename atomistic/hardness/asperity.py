@@ -1,6 +1,5 @@
-"""Bodies cut from a tiling of a glass cell: asperities (eq. 6 of Kim et al. 2013, or pyramids), flats, and a pair."""
+"""Bodies cut from a tiling of a glass cell: asperities (eq. 6 of Kim et al. 2013), flats, and a pair."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -10,31 +9,16 @@ from atomistic.lammps import Atoms
 VACUUM_A = 15.0
 STRAY_A = 2.5  # atoms this far above the eighth-highest one belong to no surface
 TOP_ATOMS = 8
+MEAN_HEIGHT = -4 / np.pi**2  # in amplitudes: of the smaller of two sines
 
 
-def _triangle(phase: np.ndarray) -> np.ndarray:
-    return 2 / np.pi * np.arcsin(np.sin(phase))
-
-
-WAVES: dict[str, Callable[[np.ndarray], np.ndarray]] = {"sinusoidal": np.sin, "pyramidal": _triangle}
-# heights in amplitudes: of the smaller of two sines, of the smaller of two values anywhere between -1 and 1
-MEAN_HEIGHT = {"sinusoidal": -4 / np.pi**2, "pyramidal": -1 / 3}
-
-
-def profile(x: np.ndarray, y: np.ndarray, wavelength: float, amplitude: float, shape: str = "sinusoidal") -> np.ndarray:
-    """Height Z = min[A w(2πx/λ), A w(2πy/λ)], in the unit of `amplitude`; its peak is at (λ/4, λ/4).
-
-    Parameters
-    ----------
-    shape : of `WAVES`: w is a sine (eq. 6), or a triangle, which makes pyramids
-    """
+def profile(x: np.ndarray, y: np.ndarray, wavelength: float, amplitude: float) -> np.ndarray:
+    """Height Z = min[A sin(2πx/λ), A sin(2πy/λ)] (eq. 6), in the unit of `amplitude`; its peak is at (λ/4, λ/4)."""
     k = 2 * np.pi / wavelength
-    return amplitude * np.minimum(WAVES[shape](k * x), WAVES[shape](k * y))
+    return amplitude * np.minimum(np.sin(k * x), np.sin(k * y))
 
 
-def cut_asperity(
-    glass: Atoms, tiles: int, amplitude_A: float, base_A: float, seed: int, shape: str = "sinusoidal"
-) -> Atoms:
+def cut_asperity(glass: Atoms, tiles: int, amplitude_A: float, base_A: float, seed: int) -> Atoms:
     """Cut an asperity out of `tiles` x `tiles` glass cells.
 
     The cut is placed at random (by `seed`) in the tiling, so that runs from one glass differ; a thicker base adds
@@ -54,7 +38,7 @@ def cut_asperity(
     positions = (shifted[None] + (offsets * glass.cell_A)[:, None]).reshape(-1, 3)
     positions[:, 2] += base_A
     types = np.tile(glass.types, len(offsets))
-    top = base_A + profile(positions[:, 0], positions[:, 1], wavelength, amplitude_A, shape)
+    top = base_A + profile(positions[:, 0], positions[:, 1], wavelength, amplitude_A)
     inside = (positions[:, 2] >= 0) & (positions[:, 2] < top)
     cell = np.array([wavelength, wavelength, base_A + amplitude_A + VACUUM_A])
     cut = Atoms(glass.elements, types[inside], positions[inside], cell)

@@ -1,21 +1,41 @@
-"""Contact area: one definition, used for every run, calibrated on bodies of known section (studies/area.py).
+"""Contact area: one definition, used for every run, calibrated on bodies of known section (study `hardness.area`).
 
 Atoms nearer to the counterface than a depth (or beyond it) touch.  The space between touching atoms counts as contact
 where a disc of the closing radius does not fit; enclosed holes do too.  The rim lies one rim radius outside the
 outermost touching atoms.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.ndimage import binary_fill_holes, distance_transform_edt
 from scipy.spatial import KDTree
 
 from atomistic.errors import InputError
-from atomistic.potentials import AreaCalibration, Potential
-from atomistic.settings import AreaSettings
+from atomistic.potentials import Potential
+
+
+@dataclass(frozen=True)
+class Area:
+    """Definition of the contact area, fixed by bodies of known section before any hardness was looked at; in Å.
+
+    Attributes
+    ----------
+    depth_A : atoms nearer than this to the counterface, or beyond it, touch.
+    touch_A : distance of two atoms that defines zero gap for atomic counterfaces; by the potential's calibration.
+    closing_A : the space between touching atoms is contact where a disc of this radius does not fit.
+    rim_A : the rim of the contact lies this far outside the outermost touching atoms.
+    """
+
+    depth_A: float = 0.5
+    touch_A: float = 2.4
+    closing_A: float = 4.0
+    rim_A: float = 1.7
+    grid_A: float = 0.5
 
 
 def contact_area(
-    touching_A: np.ndarray, cell_A: tuple[float, float], settings: AreaSettings, centre_A: tuple[float, float]
+    touching_A: np.ndarray, cell_A: tuple[float, float], area: Area, centre_A: tuple[float, float]
 ) -> float:
     """Area of the contact, Å².
 
@@ -26,35 +46,35 @@ def contact_area(
     centre_A : middle of the contact; the grid is rolled so that the contact does not wrap around, where holes
         would stay open.
     """
-    return float(np.sum(contact_map(touching_A, cell_A, settings, centre_A)) * _spacing(cell_A, settings).prod())
+    return float(np.sum(contact_map(touching_A, cell_A, area, centre_A)) * _spacing(cell_A, area).prod())
 
 
 def contact_map(
-    touching_A: np.ndarray, cell_A: tuple[float, float], settings: AreaSettings, centre_A: tuple[float, float]
+    touching_A: np.ndarray, cell_A: tuple[float, float], area: Area, centre_A: tuple[float, float]
 ) -> np.ndarray:
     """Share of each cell in contact; the middle of the array is `centre_A`.
 
     Discs of `closing_A` about the touching atoms, holes filled, cut back to `rim_A`; cells that the rim crosses count
     in part, so that the area does not jump with the grid.
     """
-    spacing, cell = _spacing(cell_A, settings), np.asarray(cell_A, dtype=float)
+    spacing, cell = _spacing(cell_A, area), np.asarray(cell_A, dtype=float)
     shape = np.round(cell / spacing).astype(int)
     if len(touching_A) == 0:
         return np.zeros(shape)
     shifted = np.mod(touching_A - np.asarray(centre_A) + cell / 2, cell)
     # a place that rounding puts on the far edge of the cell lies outside it for the tree
     tree = KDTree(np.where(shifted < cell, shifted, 0.0), boxsize=cell)
-    part = tuple(_reach(shifted[:, k], settings.closing_A, spacing[k], shape[k]) for k in range(2))
+    part = tuple(_reach(shifted[:, k], area.closing_A, spacing[k], shape[k]) for k in range(2))
     middles = np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in shape), indexing="ij"), axis=-1)[part] * spacing
-    distance, _ = tree.query(middles, distance_upper_bound=2 * settings.closing_A)
-    marked = np.asarray(binary_fill_holes(distance <= settings.closing_A), dtype=bool)
+    distance, _ = tree.query(middles, distance_upper_bound=2 * area.closing_A)
+    marked = np.asarray(binary_fill_holes(distance <= area.closing_A), dtype=bool)
     if marked.all():
         return np.ones(shape)
-    wide = np.pad(marked, margin := int(np.ceil(settings.closing_A / spacing.min())) + 1, mode="wrap")
+    wide = np.pad(marked, margin := int(np.ceil(area.closing_A / spacing.min())) + 1, mode="wrap")
     outside = np.asarray(distance_transform_edt(wide, sampling=spacing))[margin:-margin, margin:-margin]
-    area = np.zeros(shape)
-    area[part] = np.clip((outside - (settings.closing_A - settings.rim_A)) / spacing.mean(), 0, 1)
-    return area
+    shares = np.zeros(shape)
+    shares[part] = np.clip((outside - (area.closing_A - area.rim_A)) / spacing.mean(), 0, 1)
+    return shares
 
 
 def _reach(places_A: np.ndarray, reach_A: float, spacing_A: float, cells: int) -> slice:
@@ -67,15 +87,13 @@ def _reach(places_A: np.ndarray, reach_A: float, spacing_A: float, cells: int) -
     return slice(first, last) if first >= 0 and last <= cells else slice(0, cells)
 
 
-def _spacing(cell_A: tuple[float, float], settings: AreaSettings) -> np.ndarray:
+def _spacing(cell_A: tuple[float, float], area: Area) -> np.ndarray:
     cell = np.asarray(cell_A, dtype=float)
-    return cell / np.maximum(1, np.round(cell / settings.grid_A))
+    return cell / np.maximum(1, np.round(cell / area.grid_A))
 
 
-def require_calibration(
-    potential: Potential, settings: AreaSettings, counter_potential: Potential | None = None
-) -> AreaCalibration:
-    """The calibration of the area definition in use with a potential.
+def calibrated(potential: Potential, counter_potential: Potential | None = None) -> tuple[Area, float]:
+    """The area definition with a potential's own distance of touch, and its largest error, as a fraction.
 
     Parameters
     ----------
@@ -83,27 +101,28 @@ def require_calibration(
 
     Raises
     ------
-    InputError : the potential's file has none, or that of another definition.
+    InputError : the potential's file has no calibration, or that of another definition.
     """
     calibration = potential.contact_area
     if calibration is None:
         raise InputError(
-            f"potential {potential.name}: no calibration of the contact area; run target hardness_area and write "
-            "its largest error as `contact_area` into the potential's file (see config/potentials/pmmcs.yaml)"
+            f"potential {potential.name}: no calibration of the contact area; measure it (python -m evidence "
+            "hardness.area) and write its largest error as `contact_area` into the potential's file (see "
+            "config/potentials/pmmcs.yaml)"
         )
-    if counter_potential is not None and counter_potential.name != potential.name:
-        against = calibration.counterfaces.get(counter_potential.name)
-        if against is None:
+    for key in ("depth_A", "closing_A", "rim_A"):
+        if getattr(Area, key) != getattr(calibration, key):
             raise InputError(
-                f"potential {potential.name}: no calibration of the contact area against {counter_potential.name}; run "
-                "target hardness_area with this counterface and write `contact_area.counterfaces` into the "
-                "potential's file (see config/potentials/pmmcs.yaml)"
+                f"potential {potential.name}: contact_area.{key} = {getattr(calibration, key):g}: the contact area is "
+                f"defined with {getattr(Area, key):g} A; calibrate it with that (python -m evidence hardness.area)"
             )
-        calibration = calibration.model_copy(update=against.model_dump())
-    for key in ("depth_A", "touch_A", "closing_A", "rim_A"):
-        if getattr(settings, key) != getattr(calibration, key):
-            raise InputError(
-                f"hardness.area.{key} = {getattr(settings, key):g}: potential {potential.name} is calibrated with "
-                f"{getattr(calibration, key):g} A; keep that, or run target hardness_area and change its file"
-            )
-    return calibration
+    if counter_potential is None or counter_potential.name == potential.name:
+        return Area(touch_A=calibration.touch_A), calibration.error
+    against = calibration.counterfaces.get(counter_potential.name)
+    if against is None:
+        raise InputError(
+            f"potential {potential.name}: no calibration of the contact area against {counter_potential.name}; measure "
+            "it (python -m evidence hardness.area --counter-potential) and write `contact_area.counterfaces` into the "
+            "potential's file (see config/potentials/pmmcs.yaml)"
+        )
+    return Area(touch_A=against.touch_A), against.error

@@ -2,7 +2,7 @@
 
 from atomistic.hardness.asperity import MEAN_HEIGHT
 from atomistic.hardness.pressing import base_thickness_nm, plan_closing
-from atomistic.hardness.runs import planned_runs
+from atomistic.hardness.runs import PROTOCOL, planned_runs
 from atomistic.materials import Material
 from atomistic.settings import HardnessSettings
 
@@ -24,13 +24,12 @@ def plan_rows(
     rows: list[dict[str, float | str]] = []
     edge_nm = (settings.glass.atoms / density) ** (1 / 3)
     for run in planned_runs(settings):
-        plan, closing = plan_closing(settings, run), settings.closing
+        plan, closing = plan_closing(settings.closing, run), settings.closing
         wavelength, amplitude = run.asperity.tiles * edge_nm, run.asperity.amplitude_nm
-        mean_height = MEAN_HEIGHT[run.asperity.shape]
-        atoms = density * wavelength**2 * (base_thickness_nm(settings, wavelength) + mean_height * amplitude)
-        if closing.counterface in ("oxide", "asperity"):
+        atoms = density * wavelength**2 * (base_thickness_nm(closing, wavelength) + MEAN_HEIGHT * amplitude)
+        if closing.counterface != "flat":
             relief = amplitude if closing.counterface == "asperity" else 0
-            thickness = closing.counter_base_nm + mean_height * relief
+            thickness = PROTOCOL.counter_base_nm + MEAN_HEIGHT * relief
             atoms += counter_density * wavelength**2 * thickness
         seconds = atoms * plan.total_steps / ATOM_STEPS_PER_CORE_SECOND
         rows.append(

@@ -19,6 +19,9 @@ from atomistic.potentials import Potential
 from atomistic.settings import GlassSettings
 
 NEAREST_START_A = 1.5  # random starts keep atoms this far apart
+MELT_K, FINAL_K = 4000.0, 300.0  # every shipped potential melts in some ps; the temperature of the closings
+TIMESTEP_FS = 2.0  # energy is kept to 0.2 meV per atom and ps, also in the melt (stability/hardness.csv)
+SEGMENT_STEPS = 5000  # a killed quench loses at most as many
 
 
 def cations(material: Material, potential: Potential) -> tuple[str, ...]:
@@ -79,6 +82,8 @@ def write_forcefield(
 ) -> None:
     """Write the tables and the commands that use them into a workspace (files `table`, `table_repelled`, `pairs`).
 
+    They are written at every start, since LAMMPS executes `pairs`: one that came with a received folder must not run.
+
     Parameters
     ----------
     elements : of each LAMMPS type; an element may stand for several types.
@@ -113,6 +118,7 @@ def make_glass(
     work: Path,
     progress: Progress | None = None,
     edge_A: float | None = None,
+    segment_steps: int = SEGMENT_STEPS,
 ) -> Atoms:
     """Melt a random start and quench it; resumes in `work` after a kill.
 
@@ -124,7 +130,7 @@ def make_glass(
 
     Returns
     -------
-    Atoms at `settings.final_temperature_K`, cell at the volume of the last step.
+    Atoms at `FINAL_K`, cell at the volume of the last step.
 
     Raises
     ------
@@ -137,19 +143,20 @@ def make_glass(
         "seed": seed,
         "of": [material.formula_text, material.part("oxide_glass").density_g_cm3],
         "edge": edge_A,
+        "constants": [MELT_K, FINAL_K, TIMESTEP_FS, segment_steps],
     }
     workspace = Workspace(work, identity, "glass.in")
     masses = {ion: potential.species[ion].mass_u for ion in elements}
-    segments = schedule(settings, "npt" if edge_A is None else "npt_height")
+    segments = schedule(settings, "npt" if edge_A is None else "npt_height", segment_steps)
     done = workspace.segments_done(len(segments))
+    write_forcefield(workspace, potential, elements, 1.0)
     if not done:
-        write_forcefield(workspace, potential, elements, 1.0)
         write_data(workspace / "start.data", random_start(material, potential, settings, seed, edge_A), masses)
     total = sum(segment["steps"] for segment in segments)
 
     def on_step(step: int) -> None:
         if progress is not None:
-            progress(step / total, f"{step * settings.timestep_fs / 1000:.0f} ps of melt and quench")
+            progress(step / total, f"{step * TIMESTEP_FS / 1000:.0f} ps of melt and quench")
 
     if done < len(segments):
         left = segments[done:]
@@ -157,7 +164,7 @@ def make_glass(
             "data": "start.data",
             "pairs": "pairs",
             "seed": 1 + int(np.random.SeedSequence([seed, 2]).generate_state(1)[0] % 900_000_000),
-            "timestep": settings.timestep_fs / 1000,
+            "timestep": TIMESTEP_FS / 1000,
             "segment": range(done + 1, len(segments) + 1),
             "previous": range(done, len(segments)),
             **{key: [segment[key] for segment in left] for key in ("ensemble", "from", "to", "steps")},
@@ -168,15 +175,20 @@ def make_glass(
     return glass
 
 
-def schedule(settings: GlassSettings, ensemble: str = "npt") -> list[dict]:
+def total_ps(settings: GlassSettings) -> float:
+    """Time of melt, quench and rest."""
+    return settings.melt_ps + (MELT_K - FINAL_K) / settings.quench_rate_K_ps + settings.rest_ps
+
+
+def schedule(settings: GlassSettings, ensemble: str, segment_steps: int) -> list[dict]:
     """Segments of the melt (constant volume), and of the quench and the rest in `ensemble` of glass.in."""
 
     def steps(duration_ps: float) -> int:
-        return max(1, round(1000 * duration_ps / settings.timestep_fs))
+        return max(1, round(1000 * duration_ps / TIMESTEP_FS))
 
-    melt, end = settings.melt_temperature_K, settings.final_temperature_K
+    melt, end = MELT_K, FINAL_K
     quench_ps = (melt - end) / settings.quench_rate_K_ps
-    parts = max(1, round(steps(quench_ps) / settings.segment_steps))
+    parts = max(1, round(steps(quench_ps) / segment_steps))
     ramp = np.linspace(melt, end, parts + 1).tolist()
     segments = [
         {"ensemble": "nvt", "from": 1.5 * melt, "to": melt, "steps": steps(0.3 * settings.melt_ps)},

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from scipy.special import bdtrc, stdtrit
 
-from atomistic.hardness.runs import geometry
-from atomistic.settings import ClosingSettings, HardnessSettings, YieldSettings
+from atomistic.hardness.runs import PROTOCOL, geometry
+from atomistic.settings import ClosingSettings
 
 Rows = Sequence[Mapping[str, float]]
 
@@ -21,10 +21,36 @@ LATEST_START = 3  # of as many parts of the averages beyond the onset, the first
 CLEARLY_MORE = 1.5  # times the independent averages
 SAME_SHAPE = (0.5, 0.6)  # contact length over wavelength: runs of one shape are alike there, whatever their size
 
-UNLOADED = (  # of a run with dynamic unloading: what stays, beside the snapshot relaxed before it
-    "snapshot_exchanged_bonds", "unloaded_exchanged_bonds", "snapshot_lowering_nm", "unloaded_lowering_nm",
-    "unloaded_force_nN",
-)  # fmt: skip
+
+@dataclass(frozen=True)
+class Rules:
+    """What counts as yield, and when a run may end: fixed by the error rates of study `hardness.detection`.
+
+    Attributes
+    ----------
+    min_length_nm, max_area_fraction : contact length, and area over cell area, between which stress is judged.
+    min_exchanges, min_lowering_A : changed bonds above the background, and lasting lowering, that witness plasticity.
+    min_points : averages beyond the onset.
+    max_exponent : largest n in stress ~ length^n beyond the onset: 0 is a plateau, 1 is elastic.
+    stop_interval, stop_points, stop_area_fraction : a run has settled once half the 68 % interval of its plateau is
+        this share of it, with as many averages, on this share of the cell (a larger asperity is to give a larger one).
+    max_drift_meV_atom_ps, max_warming_K : largest drift of the conserved energy, largest rise of temperature.
+    """
+
+    min_length_nm: float = 2.0
+    max_area_fraction: float = 0.5
+    min_exchanges: int = 5
+    min_lowering_A: float = 0.5
+    min_points: int = 4
+    max_exponent: float = 0.35
+    stop_interval: float = 0.04
+    stop_points: int = 12
+    stop_area_fraction: float = 0.25
+    max_drift_meV_atom_ps: float = 0.2
+    max_warming_K: float = 150.0
+
+
+RULES = Rules()
 
 
 @dataclass(frozen=True)
@@ -34,7 +60,7 @@ class Hardness:
     Attributes
     ----------
     status : yield, no_yield, or "rejected: why".
-    window_exponent, plateau_exponent : n of stress ~ length^n in the whole window of lengths, and on the plateau.
+    plateau_exponent : n of stress ~ length^n on the plateau.
     same_shape_GPa, same_shape_length_nm : mean stress and contact length where the contact is `SAME_SHAPE` of the
         wavelength wide.
     """
@@ -47,7 +73,6 @@ class Hardness:
     hardness_hi: float = float("nan")
     length_min_nm: float = float("nan")
     length_max_nm: float = float("nan")
-    window_exponent: float = float("nan")
     same_shape_GPa: float = float("nan")
     same_shape_length_nm: float = float("nan")
     plateau_exponent: float = float("nan")
@@ -77,7 +102,7 @@ class Onset:
     p_value: float = float("nan")
 
 
-def plastic_onset(witness: Rows, apart_nm: float, settings: YieldSettings) -> Onset:
+def plastic_onset(witness: Rows, apart_nm: float, rules: Rules = RULES) -> Onset:
     """First witness of plasticity among the relaxed snapshots; the bodies are apart for the first `apart_nm` of travel.
 
     The background is the mean number of new exchanges between the snapshots before contact.  The onset is the
@@ -93,8 +118,8 @@ def plastic_onset(witness: Rows, apart_nm: float, settings: YieldSettings) -> On
     if not np.any(before):
         return Onset(None, float("nan"))
     background = float(np.mean(new[before]))
-    limit = background + max(settings.min_exchanges, 2 * np.sqrt(background))
-    lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= settings.min_lowering_A
+    limit = background + max(rules.min_exchanges, 2 * np.sqrt(background))
+    lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= rules.min_lowering_A
     onsets = np.flatnonzero((new >= limit) & lasting & ~apart)
     if len(onsets) == 0:
         return Onset(None, background)
@@ -104,7 +129,11 @@ def plastic_onset(witness: Rows, apart_nm: float, settings: YieldSettings) -> On
 
 
 def find_hardness(
-    curve: Rows, witness: Rows, cell_area_nm2: float, closing: ClosingSettings, settings: YieldSettings
+    curve: Rows,
+    witness: Rows,
+    cell_area_nm2: float,
+    approach_nm: float = PROTOCOL.approach_nm,
+    rules: Rules = RULES,
 ) -> Hardness:
     """Hardness of a closing run.
 
@@ -112,6 +141,7 @@ def find_hardness(
     ----------
     curve, witness : rows of `Closing.curve` and `Closing.witness`.
     cell_area_nm2 : cross-section of the simulation cell.
+    approach_nm : travel before a flat can touch.
     """
     column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
     length, stress, travel = (
@@ -124,32 +154,27 @@ def find_hardness(
     temperature = column["temperature_K"]
     warming = float(np.max(temperature) - np.mean(temperature[:4]))
     fraction = column["contact_area_nm2"] / cell_area_nm2
-    window = _first_stretch((length >= settings.min_length_nm) & (fraction <= settings.max_area_fraction))
+    window = _first_stretch((length >= rules.min_length_nm) & (fraction <= rules.max_area_fraction))
     # counterfaces of atoms start farther apart than the approach
-    apart = np.max(travel[np.cumsum(fraction) == 0], initial=closing.approach_nm)
-    onset = plastic_onset(witness, float(apart), settings)
+    apart = np.max(travel[np.cumsum(fraction) == 0], initial=approach_nm)
+    onset = plastic_onset(witness, float(apart), rules)
     measured: dict[str, Any] = {
         "drift_meV_atom_ps": drift,
         "warming_K": warming,
         "exchanges_before": onset.background,
     }
-    if drift > settings.max_drift_meV_atom_ps:
+    if drift > rules.max_drift_meV_atom_ps:
         return Hardness(f"rejected: energy drifts by {drift:.2g} meV per atom and ps", **measured)
-    if warming > settings.max_warming_K:
+    if warming > rules.max_warming_K:
         return Hardness(f"rejected: warms by {warming:.0f} K", **measured)
-    if np.sum(window) < settings.min_points:
+    if np.sum(window) < rules.min_points:
         return Hardness("rejected: contact too small for the window of lengths", **measured)
-    measured["window_exponent"] = _exponent(length[window], stress[window])
     low, high = (share * np.sqrt(cell_area_nm2) for share in SAME_SHAPE)
     if np.any(alike := window & (length >= low) & (length < high)):
         measured["same_shape_GPa"] = float(np.mean(stress[alike]))
         measured["same_shape_length_nm"] = float(np.mean(length[alike]))
     if np.isnan(onset.background):
-        return Hardness(
-            "rejected: no snapshot before contact, so that exchanged bonds have no background; lower closing."
-            + ("segment_force_steps" if closing.control == "force" else "segment_nm"),
-            **measured,
-        )
+        return Hardness("rejected: no snapshot before contact, so that exchanged bonds have no background", **measured)
     start = onset.displacement_nm
     if start is None:
         return Hardness("no_yield", **measured)
@@ -163,7 +188,7 @@ def find_hardness(
         "exchanges_after": float(np.mean([row["new_exchanges"] for row in witness if row["displacement_nm"] >= start])),
         "lowering_nm": float(last["lowering_nm"]),
     }
-    if np.sum(beyond) < settings.min_points:
+    if np.sum(beyond) < rules.min_points:
         return Hardness("rejected: too few averages between onset and the end of the window", **measured)
     first = settled(stress[beyond])
     plateau, lengths = stress[beyond][first:], length[beyond][first:]
@@ -180,12 +205,12 @@ def find_hardness(
         "plateau_exponent": exponent,
         "plateau_points": len(plateau),
     }
-    if exponent > settings.max_exponent:
+    if exponent > rules.max_exponent:
         status = f"rejected: stress still rises as length^{exponent:.2f} beyond the onset"
-    elif fraction[-1] < settings.stop_area_fraction:
+    elif fraction[-1] < rules.stop_area_fraction:
         status = (
             f"rejected: stopped before its rule, on {fraction[-1]:.2f} of the cell instead of "
-            f"{settings.stop_area_fraction:g}; raise closing.depth_over_amplitude"
+            f"{rules.stop_area_fraction:g}; raise closing.depth_over_amplitude"
         )
     else:
         status = "yield"
@@ -193,39 +218,42 @@ def find_hardness(
 
 
 def may_stop(
-    curve: Rows, witness: Rows, cell_area_nm2: float, closing: ClosingSettings, settings: YieldSettings
+    curve: Rows,
+    witness: Rows,
+    cell_area_nm2: float,
+    stop: str = "settled",
+    approach_nm: float = PROTOCOL.approach_nm,
+    rules: Rules = RULES,
 ) -> bool:
-    """Is a run complete: has the contact left its window, or is the interval of its plateau narrow enough?"""
-    fraction = np.array([float(row["contact_area_nm2"]) for row in curve[-settings.min_points :]]) / cell_area_nm2
-    if np.all(fraction > settings.max_area_fraction):
+    """Is a run complete: has the contact left its window, or is the interval of its plateau narrow enough?
+
+    Parameters
+    ----------
+    stop : settled, or window: only at the end of the window.
+    """
+    fraction = np.array([float(row["contact_area_nm2"]) for row in curve[-rules.min_points :]]) / cell_area_nm2
+    if np.all(fraction > rules.max_area_fraction):
         return True
-    if fraction[-1] < settings.stop_area_fraction:
+    if stop == "window" or fraction[-1] < rules.stop_area_fraction:
         return False
-    hardness = find_hardness(curve, witness, cell_area_nm2, closing, settings)
+    hardness = find_hardness(curve, witness, cell_area_nm2, approach_nm, rules)
     half = 0.5 * (hardness.hardness_hi - hardness.hardness_lo) / hardness.hardness_GPa
-    narrow = hardness.plateau_points >= settings.stop_points and half <= settings.stop_interval
-    return hardness.plateau_exponent <= settings.max_exponent and narrow
+    narrow = hardness.plateau_points >= rules.stop_points and half <= rules.stop_interval
+    return hardness.plateau_exponent <= rules.max_exponent and narrow
 
 
-def point(curve: Rows, witness: Rows, run: Mapping[str, Any], settings: HardnessSettings) -> dict[str, Any]:
-    """Row of points.csv of a run, given its summary `facts`."""
-    hardness = find_hardness(curve, witness, run["wavelength_nm"] ** 2, settings.closing, settings.plasticity)
+def point(
+    curve: Rows, witness: Rows, run: Mapping[str, Any], closing: ClosingSettings, potential: str
+) -> dict[str, Any]:
+    """Row of points.csv of a run, given its summary `run` and the name of its potential."""
+    copied = ("energy_scale", "asperity", "wavelength_nm", "amplitude_nm", "seed", "atoms", "restart_steps")
     return {
         "run": run["run"],
-        "potential": settings.potential,
-        "energy_scale": run["energy_scale"],
-        "geometry": geometry(settings.closing, run["amplitude_nm"], run["shape"]),
-        "asperity": run["asperity"],
-        "wavelength_nm": run["wavelength_nm"],
-        "amplitude_nm": run["amplitude_nm"],
-        "seed": run["seed"],
-        "atoms": run["atoms"],
-        **asdict(hardness),
+        "potential": potential,
+        "geometry": geometry(closing),
+        **{key: run[key] for key in (*copied, "lammps_cpu_s", "python_cpu_s")},
         "atom_steps": run["atoms"] * run["steps"],
-        "restart_steps": run["restart_steps"],
-        "lammps_cpu_s": run["lammps_cpu_s"],
-        "python_cpu_s": run["python_cpu_s"],
-        **{key: run[key] for key in UNLOADED if key in run},
+        **asdict(find_hardness(curve, witness, run["wavelength_nm"] ** 2)),
     }
 
 
@@ -249,7 +277,7 @@ def interval_of_mean(values: np.ndarray) -> tuple[float, float]:
     """68 % interval of the mean of correlated values: Student's t with the effective number of a first-order process.
 
     The correlation of neighbours is corrected for its bias in short series (Kendall 1954).  How often the interval
-    holds the truth, also after stopping on its width, is tested (studies/detection.py).
+    holds the truth, also after stopping on its width, is tested (study `hardness.detection`).
     """
     if len(values) < 2 or np.ptp(values) == 0:
         return float(np.mean(values)), float(np.mean(values))
@@ -264,7 +292,7 @@ def settled(stress: np.ndarray) -> int:
     The start that leaves the most independent averages (Chodera, J. Chem. Theory Comput. 12, 1799, 2016,
     doi:10.1021/acs.jctc.5b00784), if it leaves clearly more: else noise would choose, and the interval would be too
     narrow.  A start beyond the first third would make plateaus of the ends of elastic curves.  Both by the rates of
-    studies/detection.py.
+    study `hardness.detection`.
     """
     independent = [_effective_number(stress[start:]) for start in range(len(stress) // LATEST_START + 1)]
     best = int(np.argmax(independent))

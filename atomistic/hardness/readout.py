@@ -7,9 +7,8 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from atomistic.constants import EV_PER_A3_IN_GPA
-from atomistic.hardness.contact_area import contact_area
+from atomistic.hardness.contact_area import Area, contact_area
 from atomistic.lammps import Workspace, load_averages, load_dump
-from atomistic.settings import AreaSettings
 
 NEAR, FAR = 0.9, 1.2  # bond lengths in units of the first minimum of g(r)
 TOP_ATOMS = 8
@@ -25,17 +24,18 @@ class Geometry:
 
     Attributes
     ----------
-    axis_A : x and y of the peak (or of the sphere's centre).
     lower : atoms of the asperity; ids above belong to the counterface.
-    top_radius_A : the top is looked for within this distance of the axis.
     """
 
     wavelength_A: float
-    axis_A: float
     lower: int
     atoms: int
     bodies: int
-    top_radius_A: float
+
+    @property
+    def axis_A(self) -> float:
+        """x and y of the peak."""
+        return self.wavelength_A / 4
 
 
 @dataclass(frozen=True)
@@ -45,12 +45,12 @@ class Sample:
     Attributes
     ----------
     averages : position, force, temperature, driving force, as the script wrote them.
-    areas_A2 : contact area by the depth that counts as touching, Å².
+    area_A2 : contact area, Å².
     touching : atoms in contact.
     """
 
     averages: np.ndarray
-    areas_A2: dict[float, float]
+    area_A2: float
     touching: int
 
 
@@ -68,6 +68,7 @@ class Readout:
 
     Parameters
     ----------
+    per_average : samples of an average.
     cation_types, cutoff_A : what counts as a bond; the first minimum of g(r).
     """
 
@@ -76,35 +77,35 @@ class Readout:
         workspace: Workspace,
         segment_steps: int,
         timestep_ps: float,
-        area: AreaSettings,
+        per_average: int,
+        area: Area,
         geometry: Geometry,
         cation_types: list[int],
         cutoff_A: float,
     ) -> None:
         self._workspace, self._segment_steps, self._timestep_ps = workspace, segment_steps, timestep_ps
-        self._area, self._geometry = area, geometry
+        self._per_average, self._area, self._geometry = per_average, area, geometry
         self._cation_types, self._cutoff_A = cation_types, cutoff_A
         self._samples: dict[int, dict[int, Sample]] = {}
         self._ends: dict[int, np.ndarray] = {}
         self._relaxed: dict[int, Relaxed] = {}
 
     def curve(self, segments: range) -> Rows:
-        """Averages over `area.snapshots` samples of force, contact area and temperature, with the energy balance."""
+        """Averages over some samples of force, contact area and temperature, with the energy balance."""
         samples: dict[int, Sample] = {}
         for n in segments:  # the last step of a segment may stand in the next one again: the first one counts
             if n not in self._samples:
                 self._samples[n] = load_samples(self._workspace, n, self._area, self._geometry)
             samples = self._samples[n] | samples
-        ends = {n: end for n in (segments[0] - 1, *segments) if (end := self._end(n)) is not None}
-        drift = energy_drift(ends, self._segment_steps, samples) if ends else {}
-        return curve_rows(samples, drift, self._timestep_ps, self._area, self._geometry)
+        ends = {n: self._end(n) for n in (segments[0] - 1, *segments)}
+        drift = energy_drift(ends, self._segment_steps, samples)
+        return curve_rows(samples, drift, self._timestep_ps, self._per_average, self._geometry)
 
-    def _end(self, segment: int) -> np.ndarray | None:
-        """Position, energy and heat at the end of a segment; None of a quasi-static run, which has no balance."""
-        path = self._workspace / f"energy.{segment}"
-        if segment not in self._ends and path.exists():
-            self._ends[segment] = load_averages(path)[0]
-        return self._ends.get(segment)
+    def _end(self, segment: int) -> np.ndarray:
+        """Position, energy and heat at the end of a segment."""
+        if segment not in self._ends:
+            self._ends[segment] = load_averages(self._workspace / f"energy.{segment}")[0]
+        return self._ends[segment]
 
     def relaxed(self, segment: int) -> Relaxed:
         """The relaxed snapshot after a segment; 0: before the first."""
@@ -116,18 +117,15 @@ class Readout:
         return self._relaxed[segment]
 
 
-def load_samples(workspace: Workspace, segment: int, area: AreaSettings, geometry: Geometry) -> dict[int, Sample]:
+def load_samples(workspace: Workspace, segment: int, area: Area, geometry: Geometry) -> dict[int, Sample]:
     """What a segment measured, by step."""
     near = dict(load_dump(workspace / f"near.{segment}"))
     cell, axis = (geometry.wavelength_A, geometry.wavelength_A), (geometry.axis_A, geometry.axis_A)
     samples = {}
     for step, *averages in load_averages(workspace / f"averages.{segment}"):
         places, beyond = beyond_counterface(near[int(step)], geometry, area.touch_A)
-        areas = {
-            depth: contact_area(places[beyond > -depth], cell, area, axis)
-            for depth in (area.depth_A, *area.other_depths_A)
-        }
-        samples[int(step)] = Sample(np.array(averages), areas, int(np.sum(beyond > -area.depth_A)))
+        touching = places[beyond > -area.depth_A]
+        samples[int(step)] = Sample(np.array(averages), contact_area(touching, cell, area, axis), len(touching))
     return samples
 
 
@@ -154,34 +152,25 @@ def energy_drift(ends: Mapping[int, np.ndarray], segment_steps: int, samples: Ma
 
 
 def curve_rows(
-    samples: Mapping[int, Sample],
-    drift: Mapping[int, float],
-    timestep_ps: float,
-    area: AreaSettings,
-    geometry: Geometry,
+    samples: Mapping[int, Sample], drift: Mapping[int, float], timestep_ps: float, per_average: int, geometry: Geometry
 ) -> Rows:
     """Rows of the curve of the samples of consecutive segments.
 
     Parameters
     ----------
-    drift : of `energy_drift`, empty where there is no balance; a row has the value between two ends of segments on the
-        line through them.
+    drift : of `energy_drift`; a row has the value between two ends of segments on the line through them.
     """
     steps = sorted(samples)
     position, force, temperature, _ = np.array([samples[step].averages for step in steps]).T
-    gained = np.interp(steps, list(drift), list(drift.values())) if drift else np.full(len(steps), np.nan)
+    gained = np.interp(steps, list(drift), list(drift.values()))
     curve = []
-    per = area.snapshots
-    for k in range(0, len(steps) - per + 1, per):
-        part, averaged = slice(k, k + per), [samples[step] for step in steps[k : k + per]]
-        areas = {
-            depth: float(np.mean([sample.areas_A2[depth] for sample in averaged])) for depth in averaged[0].areas_A2
-        }
-        contact, push = areas[area.depth_A], float(np.mean(force[part]))
+    for k in range(0, len(steps) - per_average + 1, per_average):
+        part, averaged = slice(k, k + per_average), [samples[step] for step in steps[k : k + per_average]]
+        contact, push = float(np.mean([sample.area_A2 for sample in averaged])), float(np.mean(force[part]))
         curve.append(
             {
-                "step": steps[k + per - 1],
-                "time_ps": steps[k + per - 1] * timestep_ps,
+                "step": steps[k + per_average - 1],
+                "time_ps": steps[k + per_average - 1] * timestep_ps,
                 "displacement_nm": float(position[0] - np.mean(position[part])) / 10,
                 "force_nN": push * EV_PER_A3_IN_GPA / 100,
                 "nominal_stress_GPa": push / geometry.wavelength_A**2 * EV_PER_A3_IN_GPA,
@@ -192,7 +181,6 @@ def curve_rows(
                 "energy_drift_meV_per_atom": 1000 * float(np.mean(gained[part])) / geometry.atoms,
                 "contact_atoms": float(np.mean([sample.touching for sample in averaged])),
                 "atoms": geometry.atoms,
-                **{f"contact_area_nm2_depth_{depth:g}A": areas[depth] / 100 for depth in area.other_depths_A},
             }
         )
     return curve
@@ -215,9 +203,7 @@ def beyond_counterface(near: np.ndarray, geometry: Geometry, touch_A: float) -> 
     return near[below, 2:4], touch_A - distance
 
 
-def witness_rows(
-    snapshots: Sequence[Relaxed], displacement_nm: Callable[[int], float], held_A: float, geometry: Geometry
-) -> Rows:
+def witness_rows(snapshots: Sequence[Relaxed], displacement_nm: Callable[[int], float], held_A: float) -> Rows:
     """Bonds exchanged and lowering of the top since the first snapshot (no contact yet).
 
     A bond counts as broken (formed) when its length passes from below `NEAR` to above `FAR` times the first
@@ -225,7 +211,7 @@ def witness_rows(
     """
     first = snapshots[0].frame
     held = first[:, 3] < first[:, 3].min() + 0.8 * held_A
-    tops = [_top(s.frame, geometry) - np.mean(s.frame[held, 3] - first[held, 3]) for s in snapshots]
+    tops = [_top(s.frame) - np.mean(s.frame[held, 3] - first[held, 3]) for s in snapshots]
     return [
         {
             "step": snapshot.step,
@@ -254,12 +240,9 @@ def bonds_of(frame: Frame, cation_types: list[int], cutoff_A: float, wavelength_
     return set(map(tuple, mixed.tolist()))
 
 
-def _top(frame: Frame, geometry: Geometry) -> float:
-    """Mean height of the highest atoms about the axis."""
-    apart = frame[:, 1:3] - geometry.axis_A
-    apart -= geometry.wavelength_A * np.round(apart / geometry.wavelength_A)
-    near = np.hypot(apart[:, 0], apart[:, 1]) <= geometry.top_radius_A
-    return float(np.mean(np.sort(frame[near, 3])[-TOP_ATOMS:]))
+def _top(frame: Frame) -> float:
+    """Mean height of the highest atoms."""
+    return float(np.mean(np.sort(frame[:, 3])[-TOP_ATOMS:]))
 
 
 def slice_rows(snapshots: Sequence[Relaxed], geometry: Geometry) -> Rows:

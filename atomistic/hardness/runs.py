@@ -1,15 +1,11 @@
-"""Which closing runs a scene asks for (imports nothing heavy: the workflow reads it)."""
+"""Which closing runs a scene asks for, and what all of them have in common (imports nothing heavy)."""
 
-from dataclasses import dataclass
-from typing import Any
-
-from atomistic.settings import AsperitySettings, ClosingSettings, HardnessSettings
+from atomistic.settings import AsperitySettings, ClosingSettings, HardnessSettings, Settings
 
 SCALE_NAMES = {1.0: "full", 0.5: "halved"}
 
 
-@dataclass(frozen=True)
-class ClosingRun:
+class ClosingRun(Settings):
     """What distinguishes one closing run."""
 
     name: str
@@ -18,24 +14,69 @@ class ClosingRun:
     energy_scale: float
 
 
+class Protocol(Settings):
+    """What all closings have in common, fixed before any hardness was looked at; studies and tests vary it.
+
+    `accuracy/hardness.csv` shows the effect of time step, temperature, wall and base on a scene's own run.
+
+    Attributes
+    ----------
+    timestep_fs : over the square root of the energy scale: softer bonds vibrate more slowly.
+    temperature_K : of the closing; the anneal of the cut surface is hotter (times the energy scale).
+    base_over_contact : thickness of the base over the largest contact; a thinner one is felt (study `hardness.choices`).
+    counter_base_nm : thickness of a counterface of atoms.
+    frozen_nm, thermostat_nm : thickness of the rigid bottom, and of the Langevin layer above it.
+    wall_stiffness_eV_A3 : K of a flat, F = K depth^2, times the energy scale.
+    approach_nm : clearance at the start; bonds exchanged on this way are the background.
+    averaged_travel_A, samples : travel over which area and force are averaged, snapshots of an average.
+    segment_nm, segment_force_steps : travel, or steps of force, between restart files and relaxed snapshots.
+    force_step_MPa : rise of the nominal stress at each step of controlled force (Kim et al. 2013).
+    max_stress_GPa : nominal stress at the end of controlled force.
+    damping_ps : controlled force: time in which the sample's motion as a whole is damped.
+    """
+
+    timestep_fs: float = 3.0
+    temperature_K: float = 300.0
+    anneal_temperature_K: float = 1000.0
+    base_over_contact: float = 1.0
+    counter_base_nm: float = 2.5
+    frozen_nm: float = 0.5
+    thermostat_nm: float = 0.7
+    wall_stiffness_eV_A3: float = 10.0
+    approach_nm: float = 0.1
+    averaged_travel_A: float = 0.25
+    samples: int = 5
+    segment_nm: float = 0.1
+    segment_force_steps: int = 10
+    force_step_MPa: float = 20.0
+    max_stress_GPa: float = 5.0
+    damping_ps: float = 1.0
+
+
+PROTOCOL = Protocol()
+
+
 def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
     """Every asperity x seed x energy scale of the settings."""
     return [
-        ClosingRun(f"{asperity.name}_seed{seed}_{SCALE_NAMES.get(scale, f'x{scale:g}')}", asperity, seed, scale)
+        ClosingRun(
+            name=f"{asperity.name}_seed{seed}_{SCALE_NAMES.get(scale, f'x{scale:g}')}",
+            asperity=asperity,
+            seed=seed,
+            energy_scale=scale,
+        )
         for asperity in settings.asperities
         for seed in settings.seeds
         for scale in settings.energy_scales
     ]
 
 
-def settings_of_run(run: ClosingRun, settings: HardnessSettings) -> dict[str, Any]:
-    """Settings that plan exactly this run, with only what it depends on, as plain values."""
-    return {
-        **settings.model_dump(mode="json", include={"material", "closing", "area", "plasticity"}),
-        "asperities": [run.asperity.model_dump()],
-        "seeds": [run.seed],
-        "energy_scales": [run.energy_scale],
-    }
+def smallest_run(settings: HardnessSettings) -> ClosingRun:
+    """The cheapest run of a scene at its highest energy scale."""
+    return min(
+        planned_runs(settings),
+        key=lambda run: (run.asperity.tiles, run.asperity.amplitude_nm, -run.energy_scale),
+    )
 
 
 def needs_counter_glass(settings: HardnessSettings) -> bool:
@@ -45,10 +86,9 @@ def needs_counter_glass(settings: HardnessSettings) -> bool:
     return closing.counterface in ("oxide", "asperity") and another
 
 
-def geometry(closing: ClosingSettings, amplitude_nm: float, shape: str) -> str:
+def geometry(closing: ClosingSettings) -> str:
     """What is pressed against what, in words."""
-    body = {"sinusoidal": "asperity", "pyramidal": "pyramid"}[shape] if amplitude_nm else "flat"
-    words = f"{body}-{closing.counterface}"
-    if closing.counterface in ("oxide", "asperity"):
+    words = f"asperity-{closing.counterface}"
+    if closing.counterface != "flat":
         words += f" {closing.counter_material} {closing.interface}"
     return words if closing.control == "speed" else f"{words}, force"

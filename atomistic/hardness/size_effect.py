@@ -10,15 +10,29 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from scipy.special import stdtrit
 
-from atomistic.settings import FitSettings, HardnessSettings
+from atomistic.settings import FitSettings
 
 INTERVAL = (0.16, 0.84)  # 68 %, as in the paper
 SHAPES_ALIKE = 0.1  # amplitudes over wavelength that differ by less than this part are of one shape
+MIN_POINTS, MIN_SHARE = 6, 0.5  # defended points needed, and their share of the runs
+BOOTSTRAP = 2000
+# What moves every run of a scene alike, as standard deviations relative to the hardness (study `hardness.choices`)
+SYSTEMATIC = {
+    "rate": 0.05,  # closing speed in use against rest
+    "base": 0.04,  # base in use against a thicker one
+    "potential": 0.1,  # one potential of silica against another
+    "shape": 0.23,  # asperities half and twice as steep as those in use
+}
 Point = Mapping[str, str]
 
 
 def fit_size_effect(
-    points: Sequence[Point], glasses: Sequence[Mapping], settings: HardnessSettings, area_error: float
+    points: Sequence[Point],
+    glasses: Sequence[Mapping],
+    fit: FitSettings,
+    energy_scales: Sequence[float],
+    area_error: float,
+    others: Mapping[str, float] = SYSTEMATIC,
 ) -> dict:
     """Fit both ways, with 68 % intervals by bootstrap over runs, and judge whether the fit may be used.
 
@@ -27,21 +41,21 @@ def fit_size_effect(
     points : rows of points.csv.
     glasses : properties of the glasses, each with its gate.
     area_error : largest error of the contact area by its calibration, as a fraction.
+    others : errors that all runs share, as standard deviations relative to the hardness.
 
     Returns
     -------
     Content of fit.json (docs/hardness.md).
     """
-    fit = settings.fit
     used = [point for point in points if point["status"] == "yield"]
     refused = [{"run": point["run"], "status": point["status"]} for point in points if point["status"] != "yield"]
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
-    if len(used) < fit.min_points:
-        reasons.append(f"{len(used)} of {len(points)} runs gave a defended hardness, {fit.min_points} are needed")
-    elif len(used) < fit.min_share * len(points):
-        reasons.append(f"only {len(used)} of {len(points)} runs gave a defended hardness (gate {fit.min_share:.0%})")
+    if len(used) < MIN_POINTS:
+        reasons.append(f"{len(used)} of {len(points)} runs gave a defended hardness, {MIN_POINTS} are needed")
+    elif len(used) < MIN_SHARE * len(points):
+        reasons.append(f"only {len(used)} of {len(points)} runs gave a defended hardness (gate {MIN_SHARE:.0%})")
     scales = {float(point["energy_scale"]) for point in used}
-    if missing := sorted(set(settings.energy_scales) - scales):
+    if missing := sorted(set(energy_scales) - scales):
         reasons.append(f"no defended hardness at energy scale {', '.join(f'{scale:g}' for scale in missing)}")
     result: dict = {
         "method": fit.h_macro,
@@ -56,13 +70,15 @@ def fit_size_effect(
         result["gate"]["reasons"] = reasons or ["fewer than two points"]
         return result
     free = {"together": used} | _by_scale(used)
-    result["free_fit"] = {name: free_fit(group, fit) for name, group in free.items()}
+    result["free_fit"] = {name: free_fit(group) for name, group in free.items()}
     result["halved_over_full"] = scale_ratios(used)
-    result["size_effect"] = size_exponents(used, fit)
     result["size_effect_at_one_shape"] = same_shape_exponents(points)
-    result["rise_within_runs"] = rise_within_runs(points)
-    systematic = systematic_deviations(fit, area_error)
-    h_macro, h_prime = (literature_samples if fit.h_macro == "literature" else free_samples)(used, fit, systematic)
+    # the error of the area lies anywhere within that of its calibration: a uniform distribution
+    systematic = {"area": area_error / np.sqrt(3), **others}
+    if fit.h_macro == "literature":
+        h_macro, h_prime = literature_samples(used, fit.h_macro_GPa, systematic)
+    else:
+        h_macro, h_prime = free_samples(used, systematic)
     result["inputs"] = {
         "h_macro": {"distribution": "uniform", **_range(h_macro, fit), "unit": "GPa"},
         "h_prime": {
@@ -75,7 +91,7 @@ def fit_size_effect(
     }
     result["H_macro_GPa"] = _summary(h_macro)
     result["H_prime_GPa_nm0.5"] = _summary(h_prime)
-    result["budget"] = variance_budget(used, fit, systematic)
+    result["budget"] = variance_budget(used, fit.h_macro_GPa, systematic)
     result["curve"] = band(h_macro, h_prime, result["budget"]["statistical"]["std"])
     if result["inputs"]["h_prime"]["a"] <= 0 or result["inputs"]["h_macro"]["a"] <= 0:
         reasons.append("the fit allows a hardness that falls with decreasing size or is negative: not identifiable")
@@ -89,37 +105,28 @@ def _cost(points: Sequence[Point]) -> dict[str, float]:
     return {**total, "python_cpu_share": total["python_cpu_s"] / (total["lammps_cpu_s"] + total["python_cpu_s"])}
 
 
-def systematic_deviations(fit: FitSettings, area_error: float) -> dict[str, float]:
-    """Standard deviation, relative to the hardness, of each error that all runs of a scene share.
-
-    The error of the area lies anywhere within that of its calibration: a uniform distribution.
-    """
-    return {"area": area_error / np.sqrt(3), **fit.systematic.model_dump()}
-
-
 def literature_samples(
-    points: Sequence[Point], fit: FitSettings, systematic: Mapping[str, float]
+    points: Sequence[Point], h_macro_GPa: tuple[float, float], systematic: Mapping[str, float], count: int = BOOTSTRAP
 ) -> tuple[np.ndarray, np.ndarray]:
     """Joint samples of H_macro (uniform in its range) and H' (from the points, energy scales alike)."""
     rng = _rng(11)
     hardness, spread, length, scale = _columns(points)
     scales = np.unique(scale)
     weight = np.array([1 / np.sum(scale == one) for one in scale]) / len(scales)
-    chosen = rng.choice(len(points), size=fit.bootstrap, p=weight)
-    h_macro = rng.uniform(*fit.h_macro_GPa, fit.bootstrap)
-    drawn = (hardness[chosen] + spread[chosen] * rng.normal(size=fit.bootstrap)) * _shared(fit, systematic)
+    chosen = rng.choice(len(points), size=count, p=weight)
+    h_macro = rng.uniform(*h_macro_GPa, count)
+    drawn = (hardness[chosen] + spread[chosen] * rng.normal(size=count)) * _shared(systematic, count)
     return h_macro, (drawn - h_macro) * np.sqrt(length[chosen])
 
 
-def free_samples(
-    points: Sequence[Point], fit: FitSettings, systematic: Mapping[str, float]
-) -> tuple[np.ndarray, np.ndarray]:
+def free_samples(points: Sequence[Point], systematic: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
     """Bootstrap over runs of the straight line H against A^-0.25."""
     rng = _rng(12)
     hardness, spread, length, _ = _columns(points)
     x = 1 / np.sqrt(length)
-    chosen = rng.integers(0, len(points), (fit.bootstrap, len(points)))
-    drawn = (hardness[chosen] + spread[chosen] * rng.normal(size=chosen.shape)) * _shared(fit, systematic)[:, None]
+    chosen = rng.integers(0, len(points), (BOOTSTRAP, len(points)))
+    shared = _shared(systematic, BOOTSTRAP)[:, None]
+    drawn = (hardness[chosen] + spread[chosen] * rng.normal(size=chosen.shape)) * shared
     x = x[chosen]
     varies = np.ptp(x, axis=1) > 1e-6
     x, drawn = x[varies], drawn[varies]
@@ -128,21 +135,20 @@ def free_samples(
     return drawn.mean(axis=1) - h_prime * x.mean(axis=1), h_prime
 
 
-def _shared(fit: FitSettings, systematic: Mapping[str, float]) -> np.ndarray:
+def _shared(systematic: Mapping[str, float], count: int) -> np.ndarray:
     """Factors on the hardness of all runs alike, one for each bootstrap sample."""
-    rng = _rng(15)
-    draws = rng.normal(size=(len(systematic), fit.bootstrap))
+    draws = _rng(15).normal(size=(len(systematic), count))
     return 1 + np.array(list(systematic.values())) @ draws
 
 
-def variance_budget(points: Sequence[Point], fit: FitSettings, systematic: Mapping[str, float]) -> dict:
+def variance_budget(points: Sequence[Point], h_macro_GPa: tuple[float, float], systematic: Mapping[str, float]) -> dict:
     """Standard deviations of H' at H_macro of the literature, by source, in GPa nm^0.5.
 
     The runs are split by the law of total variance: between the energy scales, between the asperities of a scale,
     between the seeds of an asperity, and within a run.  Only the last two are scatter that more runs would average.
     """
     hardness, spread, length, scale = _columns(points)
-    root, middle = np.sqrt(length), float(np.mean(fit.h_macro_GPa))
+    root, middle = np.sqrt(length), float(np.mean(h_macro_GPa))
     h_prime = (hardness - middle) * root
     asperity = np.array([point["asperity"] for point in points])
     between = {"energies": 0.0, "size": 0.0, "seed": 0.0, "run": 0.0}
@@ -160,7 +166,7 @@ def variance_budget(points: Sequence[Point], fit: FitSettings, systematic: Mappi
     alike = np.array([weight / np.sum(scale == one) for one in scale])
     squares = float(np.sum(alike * (hardness * root) ** 2))
     shared = {name: deviation**2 * squares for name, deviation in systematic.items()}
-    macro = float(np.ptp(fit.h_macro_GPa) ** 2 / 12 * np.sum(alike * root) ** 2)
+    macro = float(np.ptp(h_macro_GPa) ** 2 / 12 * np.sum(alike * root) ** 2)
     statistical = {name: between.pop(name) for name in ("seed", "run")}
     parts = {"statistical": statistical, "systematic": {**between, **shared, "h_macro": macro}}
     total = sum(sum(part.values()) for part in parts.values())
@@ -178,11 +184,11 @@ def variance_budget(points: Sequence[Point], fit: FitSettings, systematic: Mappi
     }
 
 
-def free_fit(points: Sequence[Point], fit: FitSettings) -> dict:
+def free_fit(points: Sequence[Point]) -> dict:
     """Both parameters from the points, with intervals; `identifiable` if both intervals are positive."""
     if len({point["contact_length_nm"] for point in points}) < 3:
         return {"points": len(points), "identifiable": False}
-    h_macro, h_prime = free_samples(points, fit, {})
+    h_macro, h_prime = free_samples(points, {})
     macro, prime = _summary(h_macro), _summary(h_prime)
     return {
         "points": len(points),
@@ -190,45 +196,6 @@ def free_fit(points: Sequence[Point], fit: FitSettings) -> dict:
         "H_prime_GPa_nm0.5": prime,
         "identifiable": bool(macro["low"] > 0 and prime["low"] > 0),
     }
-
-
-def size_exponents(points: Sequence[Point], fit: FitSettings) -> dict:
-    """n in H ~ L^-n at each energy scale, with its 68 % interval: 0 means that no size effect shows."""
-    rng = _rng(13)
-    fits = {}
-    for scale, group in _by_scale(points).items():
-        hardness, spread, length, _ = _columns(group)
-        if len(hardness) < 3 or np.ptp(length) < 0.3:
-            continue
-        chosen = rng.integers(0, len(hardness), (fit.bootstrap, len(hardness)))
-        drawn = np.maximum(hardness[chosen] + spread[chosen] * rng.normal(size=chosen.shape), 0.1)
-        x, y = np.log(length[chosen]), np.log(drawn)
-        x = x - x.mean(axis=1, keepdims=True)
-        varies = np.sum(x**2, axis=1) > 1e-6
-        slope = np.sum(x * y, axis=1)[varies] / np.sum(x**2, axis=1)[varies]
-        fits[scale] = {
-            **_summary(-slope),
-            "length_min_nm": length.min(),
-            "length_max_nm": length.max(),
-        }
-    return fits
-
-
-def rise_within_runs(points: Sequence[Point]) -> dict:
-    """Mean n of stress ~ length^n in the window of lengths, at each energy scale, with its 68 % interval.
-
-    All runs that reached the window count, also those that the rule on n refuses: else the mean would be too low.
-    Student's t from the scatter between runs, which holds what noise does within them.
-    """
-    rises = {}
-    for scale, group in _by_scale(points).items():
-        n = np.array([float(point["window_exponent"]) for point in group])
-        n = n[np.isfinite(n)]
-        if len(n) < 2:
-            continue
-        middle, half = float(np.mean(n)), float(stdtrit(len(n) - 1, INTERVAL[1]) * np.sqrt(_scatter(n)))
-        rises[scale] = {"mean": middle, "low": middle - half, "high": middle + half, "runs": len(n)}
-    return rises
 
 
 def same_shape_exponents(points: Sequence[Point]) -> dict:

@@ -9,17 +9,14 @@ from atomistic.settings.elastic import (
     TensorSettings,
 )
 from atomistic.settings.hardness import (
-    AreaSettings,
     AsperitySettings,
     ClosingSettings,
     FitSettings,
     GlassSettings,
     HardnessSettings,
-    YieldSettings,
 )
 
 __all__ = [
-    "AreaSettings",
     "AsperitySettings",
     "ClosingSettings",
     "DftSettings",
@@ -31,5 +28,4 @@ __all__ = [
     "RelaxationSettings",
     "Settings",
     "TensorSettings",
-    "YieldSettings",
 ]

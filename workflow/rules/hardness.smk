@@ -1,4 +1,5 @@
-from atomistic.hardness.runs import needs_counter_glass, planned_runs, settings_of_run
+from atomistic.hardness.accuracy import VARIATIONS, varied
+from atomistic.hardness.runs import PROTOCOL, needs_counter_glass, planned_runs, smallest_run
 
 HARDNESS = settings("hardness")
 
@@ -23,18 +24,18 @@ def oxide_path(key, formula):
     return material_path(OXIDES[formula])
 
 
-def counter_potential(hardness):
-    """The file of the potential of a counterface of oxide: its own, or that of the asperity."""
-    if hardness.closing.counter_potential is None:
-        return potential_path("potential", hardness.potential)
-    return potential_path("closing.counter_potential", hardness.closing.counter_potential)
-
-
 POTENTIAL = potential_path("potential", HARDNESS["potential"])
+COUNTER_POTENTIAL = POTENTIAL
+if (own := HARDNESS["closing"]["counter_potential"]) is not None:
+    COUNTER_POTENTIAL = potential_path("closing.counter_potential", own)
 MATERIAL_OF_ASPERITY = oxide_path("material", HARDNESS["material"])
 MATERIAL_OF_COUNTERFACE = oxide_path("closing.counter_material", HARDNESS["closing"]["counter_material"])
 CLOSINGS = {run.name: run for run in planned_runs(SCENE.hardness)}
+SMALLEST = smallest_run(SCENE.hardness)
 COUNTER_GLASS = needs_counter_glass(SCENE.hardness)
+if needed("hardness"):
+    ACCURACY.append(f"{RESULTS}/accuracy/hardness.csv")
+    STABILITY.append(f"{RESULTS}/stability/hardness.csv")
 
 
 def of_run(pattern):
@@ -42,13 +43,17 @@ def of_run(pattern):
     return [f"{RESULTS}/hardness/{pattern.format(run=run)}" for run in CLOSINGS]
 
 
-def of_counter(path):
+def of_counter(seed):
     """As named inputs: glass and potential of the counterface, where that is of another oxide or potential."""
-    return {"counter_glass": path, "counter_potential": counter_potential(SCENE.hardness)} if COUNTER_GLASS else {}
+    if not COUNTER_GLASS:
+        return {}
+    glass = f"{RESULTS}/hardness/glass/{seed}_counter.data"
+    return {"counter_glass": glass, "counter_potential": COUNTER_POTENTIAL}
 
 
 wildcard_constraints:
     run="|".join(CLOSINGS),
+    variation="|".join(VARIATIONS),
     glass="\\d+",
 
 
@@ -80,7 +85,7 @@ rule make_glass:
 use rule make_glass as make_counter_glass with:
     input:
         material=MATERIAL_OF_COUNTERFACE,
-        potential=counter_potential(SCENE.hardness),
+        potential=COUNTER_POTENTIAL,
         beside=f"{RESULTS}/hardness/glass/{{glass}}.data",
     output:
         atoms=f"{RESULTS}/hardness/glass/{{glass}}_counter.data",
@@ -97,7 +102,7 @@ use rule make_glass as make_counter_glass with:
 
 rule run_closing:
     input:
-        unpack(lambda wildcards: of_counter(f"{RESULTS}/hardness/glass/{CLOSINGS[wildcards.run].seed}_counter.data")),
+        unpack(lambda wildcards: of_counter(CLOSINGS[wildcards.run].seed)),
         material=MATERIAL_OF_ASPERITY,
         potential=POTENTIAL,
         glass=lambda wildcards: f"{RESULTS}/hardness/glass/{CLOSINGS[wildcards.run].seed}.data",
@@ -111,7 +116,9 @@ rule run_closing:
     priority: 90
     threads: HARDNESS["closing"]["processes"]
     params:
-        settings=lambda wildcards: settings_of_run(CLOSINGS[wildcards.run], SCENE.hardness),
+        closing_run=lambda wildcards: CLOSINGS[wildcards.run].model_dump(mode="json"),
+        closing=HARDNESS["closing"],
+        protocol=PROTOCOL.model_dump(mode="json"),
         work=f"{RESULTS}/work/closing_{{run}}",
     message:
         "close asperity {wildcards.run}"
@@ -129,7 +136,8 @@ rule find_hardness:
     log:
         f"{RESULTS}/logs/find_hardness.log",
     params:
-        settings=[{key: HARDNESS[key] for key in ("closing", "plasticity", "potential")}] * len(CLOSINGS),
+        closing=HARDNESS["closing"],
+        potential=HARDNESS["potential"],
     message:
         "find the hardness of each closing run"
     script:
@@ -140,7 +148,7 @@ rule fit_hardness:
     input:
         points=f"{RESULTS}/hardness/points.csv",
         potential=POTENTIAL,
-        counter_potentials=[counter_potential(SCENE.hardness)] if COUNTER_GLASS else [],
+        counter_potentials=[COUNTER_POTENTIAL] if COUNTER_GLASS else [],
         glasses=[
             f"{RESULTS}/hardness/glass/{seed}{body}.json"
             for seed in dict.fromkeys(SCENE.hardness.seeds)
@@ -151,7 +159,8 @@ rule fit_hardness:
     log:
         f"{RESULTS}/logs/fit_hardness.log",
     params:
-        settings={key: HARDNESS[key] for key in ("fit", "energy_scales", "area")},
+        fit=HARDNESS["fit"],
+        energy_scales=HARDNESS["energy_scales"],
     message:
         "fit hardness against contact size"
     script:
@@ -167,8 +176,63 @@ rule plan_hardness:
     log:
         f"{RESULTS}/logs/plan_hardness.log",
     params:
-        settings=HARDNESS,
+        hardness=HARDNESS,
     message:
         "estimate what the closing runs will cost"
     script:
         "../scripts/plan_hardness.py"
+
+
+# The same run with one choice changed, and hard cases with the scene's own potentials and glasses
+
+
+use rule run_closing as vary_closing with:
+    output:
+        curve=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.csv",
+        witness=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.witness.csv",
+        snapshots=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.snapshots.csv",
+        summary=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.json",
+    log:
+        f"{RESULTS}/logs/vary_closing_{{variation}}_{{run}}.log",
+    params:
+        closing_run=lambda wildcards: CLOSINGS[wildcards.run].model_dump(mode="json"),
+        closing=lambda wildcards: varied(wildcards.variation, SCENE.hardness.closing)[0].model_dump(mode="json"),
+        protocol=lambda wildcards: varied(wildcards.variation, SCENE.hardness.closing)[1].model_dump(mode="json"),
+        work=f"{RESULTS}/work/vary_{{variation}}_{{run}}",
+    message:
+        "close asperity {wildcards.run} with {wildcards.variation}"
+
+
+rule compare_closings:
+    input:
+        summaries=[f"{RESULTS}/accuracy/hardness/{name}/{SMALLEST.name}.json" for name in VARIATIONS],
+    output:
+        table=f"{RESULTS}/accuracy/hardness.csv",
+    log:
+        f"{RESULTS}/logs/compare_closings.log",
+    params:
+        closing=HARDNESS["closing"],
+    message:
+        "compare the hardness of varied closing runs"
+    script:
+        "../scripts/compare_closings.py"
+
+
+rule check_hardness_stability:
+    input:
+        **of_counter(SMALLEST.seed),
+        potential=POTENTIAL,
+        glass=f"{RESULTS}/hardness/glass/{SMALLEST.seed}.data",
+    output:
+        table=f"{RESULTS}/stability/hardness.csv",
+    log:
+        f"{RESULTS}/logs/check_hardness_stability.log",
+    params:
+        material=HARDNESS["material"],
+        counter_material=HARDNESS["closing"]["counter_material"],
+        energy_scales=HARDNESS["energy_scales"],
+        work=f"{RESULTS}/work/stability_hardness",
+    message:
+        "check the molecular dynamics in hard cases"
+    script:
+        "../scripts/check_hardness_stability.py"

@@ -4,9 +4,6 @@ from workflow.schemas.inputs_and_law import INPUT_VALUES, SEED
 from workflow.schemas.table import Table, boolean, integer, number, text
 
 _HARDNESS = "; hardness alone"
-_DETECTION = "; hardness_detection alone"
-_AREA = "; hardness_area alone"
-_CHECKED = "; hardness_detection and hardness_area"
 
 TABLES = (
     Table(
@@ -28,17 +25,6 @@ TABLES = (
             number("hardness_hi", "GPa", "upper end of its 68 % interval" + _HARDNESS, empty=True, optional=True),
             text("status", "yield, no_yield, or rejected: why" + _HARDNESS, empty=True, optional=True),
             integer("atom_steps", "atoms times MD steps" + _HARDNESS, empty=True, optional=True),
-            number("bound", "1", "largest rate or error accepted" + _CHECKED, optional=True),
-            boolean("passed", "whether the rate or error is within its bound" + _CHECKED, optional=True),
-            integer("trials", "made-up runs or cut bodies behind it" + _CHECKED, optional=True),
-            number("noise_GPa", "GPa", "noise of the stress" + _DETECTION, optional=True),
-            number("correlation", "1", "correlation of neighbouring averages" + _DETECTION, optional=True),
-            number("background", "1", "bond exchanges per snapshot before contact" + _DETECTION, optional=True),
-            text("potential", "interatomic potential" + _AREA, optional=True),
-            number("energy_scale", "1", "factor on its energies" + _AREA, optional=True),
-            integer("bodies", "1: against a rigid counterface; 2: atoms against atoms" + _AREA, optional=True),
-            number("scatter", "1", "standard deviation between cut bodies" + _AREA, optional=True),
-            integer("snapshots", "frozen snapshots of pressed glass" + _AREA, optional=True),
         ),
     ),
     Table(

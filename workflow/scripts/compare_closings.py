@@ -1,14 +1,14 @@
-"""Hardness against loading rate, time step, wall, temperature, thickness and the definition of area.
+"""Hardness against loading rate, time step, wall, temperature and thickness of the base.
 
 In:  accuracy/hardness/VARIATION/RUN.{csv,witness.csv,json}.  Out: accuracy/hardness.csv.
 """
 
 from pathlib import Path
 
-from atomistic.hardness.studies.variations import compare
-from atomistic.settings import HardnessSettings
+from atomistic.hardness.accuracy import compare
+from atomistic.settings import ClosingSettings
 from workflow.checks import accuracy_rows
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import load_json, load_numbers, write_csv
 
 with job(snakemake) as run:
@@ -17,6 +17,6 @@ with job(snakemake) as run:
         {name: load_numbers(path.with_suffix(".csv")) for name, path in paths.items()},
         {name: load_numbers(path.with_suffix(".witness.csv")) for name, path in paths.items()},
         {name: load_json(path) for name, path in paths.items()},
-        HardnessSettings(**snakemake.params.settings),
+        settings_from_job(ClosingSettings, snakemake.params.closing),
     )
     write_csv(snakemake.output.table, accuracy_rows("hardness", points))

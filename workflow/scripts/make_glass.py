@@ -12,12 +12,12 @@ from atomistic.lammps import load_data, write_data
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
 from atomistic.settings import GlassSettings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import atomic_path, write_json
 
 with job(snakemake) as run:
     material, seed = load_material(snakemake.input.material), int(snakemake.params.seed)
-    settings = GlassSettings.model_validate(snakemake.params.glass)
+    settings = settings_from_job(GlassSettings, snakemake.params.glass)
     potential = load_potential(snakemake.input.potential)
     beside = snakemake.input.get("beside")
     edge_A = float(load_data(beside, ()).cell_A[0]) if beside else None

@@ -3,10 +3,10 @@
 from atomistic.hardness.cost import plan_rows
 from atomistic.materials import load_material
 from atomistic.settings import HardnessSettings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import write_csv
 
 with job(snakemake) as run:
-    settings = HardnessSettings.model_validate(snakemake.params.settings)
+    settings = settings_from_job(HardnessSettings, snakemake.params.hardness)
     material, counter_material = (load_material(snakemake.input[key]) for key in ("material", "counter_material"))
     write_csv(snakemake.output.plan, plan_rows(settings, material, counter_material))

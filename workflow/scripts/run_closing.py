@@ -2,7 +2,7 @@
 
 In:  material, potential (YAML), glass (LAMMPS data file); counter_glass, counter_potential where the counterface is of
      another oxide or potential.
-Out: curve (GPa, nm), witness (bond exchanges, nm), snapshots (nm), summary (with the unloading, where asked for).
+Out: curve (GPa, nm), witness (bond exchanges, nm), snapshots (nm), summary.
 """
 
 import resource
@@ -10,24 +10,25 @@ import time
 from pathlib import Path
 
 from atomistic.hardness.closing import run_closing
-from atomistic.hardness.runs import planned_runs
+from atomistic.hardness.runs import ClosingRun, Protocol
 from atomistic.lammps import load_data
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
-from atomistic.settings import HardnessSettings
-from workflow.job import job
+from atomistic.settings import ClosingSettings
+from workflow.job import job, settings_from_job
 from workflow.results import write_csv, write_json
 
 with job(snakemake) as run:
-    settings = HardnessSettings.model_validate(snakemake.params.settings)
-    [closing_run] = planned_runs(settings)
+    closing_run = settings_from_job(ClosingRun, snakemake.params.closing_run)
+    settings = settings_from_job(ClosingSettings, snakemake.params.closing)
+    protocol = settings_from_job(Protocol, snakemake.params.protocol)
     potential = load_potential(snakemake.input.potential)
     material = load_material(snakemake.input.material)
     glass = load_data(snakemake.input.glass, tuple(potential.materials[material.formula_text]))
     counter_glass = counter_potential = None
     if counter := snakemake.input.get("counter_glass"):
         counter_potential = load_potential(snakemake.input.counter_potential)
-        counter_glass = load_data(counter, tuple(counter_potential.materials[settings.closing.counter_material]))
+        counter_glass = load_data(counter, tuple(counter_potential.materials[settings.counter_material]))
     started = time.perf_counter()
     closing = run_closing(
         closing_run,
@@ -36,6 +37,7 @@ with job(snakemake) as run:
         potential,
         settings,
         Path(snakemake.params.work),
+        protocol,
         run.progress,
         counter_glass,
         counter_potential,
@@ -43,7 +45,7 @@ with job(snakemake) as run:
     lammps = resource.getrusage(resource.RUSAGE_CHILDREN)
     write_csv(snakemake.output.curve, closing.curve)
     write_csv(snakemake.output.witness, closing.witness)
-    write_csv(snakemake.output.snapshots, closing.snapshots, ["step", "type", "x_nm", "y_nm", "z_nm"])
+    write_csv(snakemake.output.snapshots, closing.snapshots)
     write_json(
         snakemake.output.summary,
         {
@@ -52,9 +54,7 @@ with job(snakemake) as run:
             "energy_scale": closing_run.energy_scale,
             "seed": closing_run.seed,
             "amplitude_nm": closing_run.asperity.amplitude_nm,
-            "shape": closing_run.asperity.shape,
             **closing.summary,
-            "unloading": closing.unloading,
             "wall_s": time.perf_counter() - started,
             "lammps_cpu_s": lammps.ru_utime + lammps.ru_stime,
             "peak_rss_MB": lammps.ru_maxrss / 1024,

@@ -18,6 +18,7 @@ import numpy as np
 from scipy import fft
 
 from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, plan_rows
+from atomistic.hardness.glass import TIMESTEP_FS, total_ps
 from atomistic.materials import Material
 from mesoscale.settings import ContactSettings, HistorySettings
 from mesoscale.uncertainty.chunks import collocation_run_count
@@ -161,10 +162,8 @@ def _at(content: Any, key: str) -> Any:
 
 
 def _glass_steps(scene: Scene) -> float:
-    """Atoms times MD steps of a glass: melt, quench and rest."""
-    glass = scene.hardness.glass
-    cooling_ps = (glass.melt_temperature_K - glass.final_temperature_K) / glass.quench_rate_K_ps
-    return 1e3 * (glass.melt_ps + cooling_ps + glass.rest_ps) / glass.timestep_fs * glass.atoms
+    """Atom-steps of a melt, quench and rest."""
+    return 1e3 * total_ps(scene.hardness.glass) / TIMESTEP_FS * scene.hardness.glass.atoms
 
 
 def _quenches(glass: Any) -> int:

@@ -1,10 +1,10 @@
 from pathlib import Path
 
 import pytest
+from atomistic.hardness.studies.cases import load_study
 
 from atomistic.errors import InputError
 from atomistic.hardness.runs import planned_runs
-from atomistic.hardness.studies.cases import load_study
 from atomistic.settings import HardnessSettings
 
 STUDY = Path(__file__).parents[3] / "config" / "studies" / "hardness.yaml"

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from atomistic.hardness.studies import stability
+from atomistic.hardness.studies.stability import half_energy_identity
 
 from atomistic.errors import InputError
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.glass import glass_properties, make_glass
 from atomistic.hardness.runs import planned_runs, settings_of_run
-from atomistic.hardness.studies import stability
-from atomistic.hardness.studies.stability import half_energy_identity
 from atomistic.lammps import Atoms, Workspace, load_data, write_data
 from atomistic.settings import GlassSettings, HardnessSettings
 

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from atomistic.hardness.studies.area import FLANKS, Layer, area_rows, cut_layer
 
 from atomistic.errors import InputError
 from atomistic.hardness.contact_area import contact_area, contact_map, require_calibration
-from atomistic.hardness.studies.area import FLANKS, Layer, area_rows, cut_layer
 from atomistic.potentials import load_potential
 from atomistic.settings import AreaSettings
 

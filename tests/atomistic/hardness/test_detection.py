@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-
 from atomistic.hardness.studies import detection
 from atomistic.hardness.studies.detection import detection_points, noise_of
+
 from atomistic.settings import HardnessSettings
 
 SETTINGS = HardnessSettings()

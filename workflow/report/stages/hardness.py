@@ -295,13 +295,6 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
             f"power {show(-change['mean'])} [{show(-change['high'])}, {show(-change['low'])}] ({change['runs']} runs); "
             "0 is no size effect; the law in use, H_macro + H′/√L, goes as a power between −0.5 and 0."
         )
-    for scale, rise in fit.get("rise_within_runs", {}).items():
-        words, _, _ = _scale({"energy_scale": scale.removeprefix("scale_")})
-        notes.append(
-            f"Within the runs with {words} the stress rises as length to the power {show(rise['mean'])} "
-            f"[{show(rise['low'])}, {show(rise['high'])}] ({rise['runs']} runs, also those refused for rising); "
-            "0 would be a hardness that does not depend on where a run ends."
-        )
     for ratio in fit.get("halved_over_full", []):
         notes.append(
             f"Halved over full energies, asperity {ratio['asperity']}: {show(ratio['median'])} "

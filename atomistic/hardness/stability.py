@@ -1,34 +1,20 @@
-"""Molecular dynamics in hard cases, on a glass of some hundred atoms: invariant checks."""
+"""Molecular dynamics with the potentials of a scene on its own glasses, in hard cases: invariant checks."""
 
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from atomistic.constants import BOLTZMANN_EV_PER_K, COULOMB_EV_A, KE_EV
-from atomistic.errors import InputError
 from atomistic.hardness.asperity import cut_asperity
-from atomistic.hardness.closing import run_closing
-from atomistic.hardness.glass import make_glass, write_forcefield
-from atomistic.hardness.runs import planned_runs
-from atomistic.lammps import (
-    Atoms,
-    Workspace,
-    load_averages,
-    load_data,
-    load_dump,
-    run_lammps,
-    write_data,
-)
-from atomistic.materials import Material
+from atomistic.hardness.glass import MELT_K, TIMESTEP_FS, write_forcefield
+from atomistic.hardness.plateau import RULES
+from atomistic.hardness.runs import PROTOCOL
+from atomistic.lammps import Atoms, Workspace, load_averages, load_data, load_dump, run_lammps, write_data
 from atomistic.potentials import Potential
-from atomistic.settings import GlassSettings, HardnessSettings
 
-QUICK = GlassSettings(atoms=150, melt_ps=1, quench_rate_K_ps=1000, rest_ps=0.5, segment_steps=500)
-MAX_DRIFT = 0.2  # meV per atom and ps, the gate of the closing runs
-MAX_DRIFT_CLOSING = 1.0  # the same for closings of some ps, in which a cut surface has hardly come to rest
 MAX_COULOMB = 0.1  # of a bond's force
 
 
@@ -73,43 +59,38 @@ def drift_meV_atom_ps(record: np.ndarray, atoms: int, timestep_fs: float) -> flo
 Check = tuple[str, str, str, Callable[[], tuple[bool, str]]]  # case, description, what is checked, the check
 
 
-def stability_checks(potentials: list[Potential], oxides: Mapping[str, Material], work: Path) -> list[Check]:
-    """Checks of every potential on a glass made here, and of closings with the first one that knows silica.
+def stability_checks(
+    bodies: Sequence[tuple[Potential, Atoms]], energy_scales: Sequence[float], work: Path
+) -> list[Check]:
+    """Checks of the potentials of a scene on the glasses that it made with them.
 
     Parameters
     ----------
-    oxides : materials with an oxide glass by formula.
+    bodies : potential and glass of the asperity, and of a counterface where that is of another oxide or potential.
     work : folder for LAMMPS, which the caller removes in the end.
     """
-    glasses = {
-        potential.name: make_glass(oxides[next(iter(potential.materials))], potential, QUICK, 1, work / potential.name)
-        for potential in potentials
-    }
-    checks = [check for potential in potentials for check in _of_potential(potential, glasses[potential.name], work)]
-    asperity = oxides[HardnessSettings().material]
-    first = next(potential for potential in potentials if asperity.formula_text in potential.materials)
-    return checks + _of_closing(asperity, first, glasses[first.name], work)
+    return [check for potential, glass in bodies for check in _of_body(potential, glass, energy_scales, work)]
 
 
-def _of_potential(potential: Potential, glass: Atoms, work: Path) -> list[Check]:
+def _of_body(potential: Potential, glass: Atoms, energy_scales: Sequence[float], work: Path) -> list[Check]:
+    name = f"{potential.name}_{''.join(glass.elements)}"
+    closing_fs = [(PROTOCOL.timestep_fs / np.sqrt(scale), scale) for scale in energy_scales]
     checks: list[Check] = [
         (
-            f"{label}_{potential.name}",
-            f"{kelvin} K, energies x {scale}, {step} fs, 4 ps at constant energy",
-            f"drift below {MAX_DRIFT} meV per atom and ps",
-            lambda k=kelvin, s=scale, h=step: _drift(glass, potential, work, k, s, h),
+            f"{label}_{name}",
+            f"{kelvin:g} K, energies x {scale:g}, {step:.3g} fs, 4 ps at constant energy",
+            f"drift below {RULES.max_drift_meV_atom_ps} meV per atom and ps",
+            lambda k=kelvin, s=scale, h=float(step): _drift(glass, potential, work, k, s, h),
         )
-        for label, kelvin, scale, step in (
-            ("room", 300, 1.0, 2.0),
-            ("halved", 300, 0.5, 2.0),
-            ("cold", 10, 1.0, 2.0),
-            ("melt", 4000, 1.0, 2.0),
-            ("long_step", 300, 1.0, 4.0),
+        for label, kelvin, step, scale in (
+            *((f"room_x{scale:g}", PROTOCOL.temperature_K, step, scale) for step, scale in closing_fs),
+            ("cold", 10.0, PROTOCOL.timestep_fs, 1.0),
+            ("melt", MELT_K, TIMESTEP_FS, 1.0),
         )
     ]
     checks.append(
         (
-            f"half_energy_identity_{potential.name}",
+            f"half_energy_identity_{name}",
             "halved energies at T against full at 2T, time x sqrt 2",
             "same path to 1e-5 A after 100 steps",
             lambda: half_energy_identity(glass, potential, work),
@@ -117,7 +98,7 @@ def _of_potential(potential: Potential, glass: Atoms, work: Path) -> list[Check]
     )
     checks += [
         (
-            f"coulomb_{shape}_{potential.name}",
+            f"coulomb_{shape}_{name}",
             f"forces on a {shape}: damped sum in the table against PPPM",
             f"rms difference below {MAX_COULOMB:.0%} of a bond's Coulomb force; no net force on the sample",
             lambda flat=shape == "slab": coulomb_difference(glass, potential, work, flat),
@@ -125,59 +106,6 @@ def _of_potential(potential: Potential, glass: Atoms, work: Path) -> list[Check]
         for shape in ("glass", "slab")
     ]
     return checks
-
-
-def _of_closing(material: Material, potential: Potential, glass: Atoms, work: Path) -> list[Check]:
-    body = {"counterface": "oxide", "interface": "adhesive"}
-    force = {"control": "force", "dwell_ps": 0.2, "max_stress_GPa": 3, "segment_force_steps": 5}
-    return [
-        (
-            "overlapping_start",
-            "two atoms 0.2 A apart",
-            "one-line error that names the cause",
-            lambda: _overlap(glass, potential, work),
-        ),
-        *(
-            (
-                case,
-                description,
-                f"no atom lost, energy balance within {MAX_DRIFT_CLOSING} meV per atom and ps",
-                lambda settings=changes: _closing(material, glass, potential, work, settings),
-            )
-            for case, description, changes in (
-                ("snap_in", "an adhesive oxide is let snap onto the asperity", body),
-                ("hot", "closing at 1200 K", {"temperature_K": 1200}),
-                ("cold", "closing at 10 K", {"temperature_K": 10}),
-                ("fast", "closing at 1000 m/s", {"speed_m_s": 1000}),
-                ("force_step", "controlled force, 60 MPa a step", {**force, "force_step_MPa": 60}),
-                ("force_step_tenfold", "controlled force, 600 MPa a step", {**force, "force_step_MPa": 600}),
-            )
-        ),
-    ]
-
-
-def _closing(
-    material: Material, glass: Atoms, potential: Potential, work: Path, changes: Mapping[str, object]
-) -> tuple[bool, str]:
-    """A closing of some hundred atoms: LAMMPS stops if it loses one, the curve tells the energy balance."""
-    quick = {"base_nm": 1.4, "base_over_contact": 0, "counter_base_nm": 1.4, "speed_m_s": 200, "anneal_ps": 0.5}
-    settings = HardnessSettings.model_validate(
-        {
-            "seeds": [1],
-            "energy_scales": [1.0],
-            "asperities": [{"name": "tiny", "tiles": 2, "amplitude_nm": 0.2}],
-            "closing": {**quick, **changes},
-        }
-    )
-    [run] = planned_runs(settings)
-    try:
-        curve = run_closing(run, material, glass, potential, settings, work / "closing").curve
-    except InputError as error:
-        return False, str(error).split("; details")[0]
-    elapsed_ps = curve[-1]["time_ps"] - curve[0]["time_ps"]
-    drift = (curve[-1]["energy_drift_meV_per_atom"] - curve[0]["energy_drift_meV_per_atom"]) / elapsed_ps
-    hottest = max(row["temperature_K"] for row in curve)
-    return abs(drift) < MAX_DRIFT_CLOSING, f"{drift:+.3f} meV per atom and ps; up to {hottest:.0f} K"
 
 
 def coulomb_difference(glass: Atoms, potential: Potential, work: Path, slab: bool) -> tuple[bool, str]:
@@ -242,15 +170,4 @@ def _drift(
         heated(glass, potential, kelvin), potential, work / "nve", step_fs, round(4000 / step_fs), scale
     )
     drift = drift_meV_atom_ps(record, len(glass), step_fs)
-    return abs(drift) < MAX_DRIFT, f"{drift:+.4f} meV per atom and ps"
-
-
-def _overlap(glass: Atoms, potential: Potential, work: Path) -> tuple[bool, str]:
-    positions = glass.positions_A.copy()
-    positions[1] = positions[0] + [0.2, 0, 0]
-    try:
-        free_motion(replace(glass, positions_A=positions), potential, work / "nve", 1.0, 10)
-    except InputError as error:
-        message = str(error).split("; details")[0]
-        return "\n" not in message and "inner cutoff" in message, message
-    return False, "no error"
+    return abs(drift) < RULES.max_drift_meV_atom_ps, f"{drift:+.4f} meV per atom and ps"
