@@ -23,7 +23,7 @@ class Protocol(Settings):
     ----------
     timestep_fs : over the square root of the energy scale: softer bonds vibrate more slowly.
     temperature_K : of the closing; the anneal of the cut surface is hotter (times the energy scale).
-    base_over_contact : thickness of the base over the largest contact; a thinner one is felt (study `hardness.choices`).
+    base_over_contact : thickness of the base over the largest contact; thinner is felt (study `hardness.choices`).
     counter_base_nm : thickness of a counterface of atoms.
     frozen_nm, thermostat_nm : thickness of the rigid bottom, and of the Langevin layer above it.
     wall_stiffness_eV_A3 : K of a flat, F = K depth^2, times the energy scale.
