@@ -127,8 +127,8 @@ def load_averages(path: str | Path) -> np.ndarray:
 class Workspace:
     """A directory for what a killed run needs to go on; emptied when anything the run depends on changed.
 
-    It may have come from elsewhere: links and other special files in it are removed, so that nothing is written or read
-    through them.  What LAMMPS executes is written anew at every start; restart files and data are only read.
+    It may have come from elsewhere.  What LAMMPS executes is therefore written anew at every start, restart files and
+    data are only read, and one that holds links or special files is emptied: they could lead out of it.
 
     Parameters
     ----------
@@ -140,13 +140,11 @@ class Workspace:
         self.path = Path(path)
         text = json.dumps(identity, sort_keys=True, default=str) + (PROTOCOLS / script).read_text(encoding="utf-8")
         fingerprint = hashlib.sha256(text.encode()).hexdigest()
+        mark = self.path / "fingerprint"
         if self.path.is_symlink():
             self.path.unlink()
-        for entry in self.path.iterdir() if self.path.is_dir() else ():
-            if entry.is_symlink() or not (entry.is_file() or entry.is_dir()):
-                entry.unlink()
-        mark = self.path / "fingerprint"
-        if not mark.exists() or mark.read_text(encoding="utf-8", errors="replace") != fingerprint:
+        plain = self.path.is_dir() and all(item.is_file() and not item.is_symlink() for item in self.path.iterdir())
+        if not (plain and mark.exists() and mark.read_text(encoding="utf-8", errors="replace") == fingerprint):
             shutil.rmtree(self.path, ignore_errors=True)
             self.path.mkdir(parents=True)
             mark.write_text(fingerprint, encoding="utf-8")

@@ -1,9 +1,9 @@
 """How large is the error of the contact area?
 
-Bodies whose section is known: a flat slab of glass is pressed at 300 K by a flat, or by a second slab that only repels
-it.  Its frozen snapshots have the layer of atoms of a contact under load.  Tiled and cut by planes, by a sphere and by a
-wave of the slopes in use, they have a section that geometry gives exactly.  The potential's file then gets the largest
-error as `contact_area`; the distance at which atoms touch is chosen so that the error is smallest.
+Bodies whose section is known: a flat slab of glass is pressed at 300 K by a flat, or by a second slab that only
+repels it.  Its frozen snapshots have the layer of atoms of a contact under load.  Tiled and cut by planes, by a sphere
+and by a wave of the slopes in use, they have a section that geometry gives exactly.  The potential's file then gets
+the largest error as `contact_area`; the distance at which atoms touch is chosen so that the error is smallest.
 """
 
 import tempfile
@@ -71,9 +71,8 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     for row in rows:
         if row["touch_A"] == ("2.55" if " on " in row["potential"] else "2.4"):
             name = {"pmmcs on matsui_akaogi": "oxides"}.get(row["potential"], row["potential"])
-            name += "_halved" * (float(row["energy_scale"]) == 0.5) + "_pair" * (
-                row["bodies"] == "2" and name != "oxides"
-            )
+            name += "_halved" * (float(row["energy_scale"]) == 0.5)
+            name += "_pair" * (row["bodies"] == "2" and name != "oxides")
             groups.setdefault(name, []).append(abs(float(row["error"])))
     return {name: f"{100 * max(errors):.1f} %" for name, errors in groups.items()}
 

@@ -1,7 +1,7 @@
 """How much do closing speed, base, potential and steepness of the asperity change the hardness?
 
-Single closing runs, each with one choice changed.  Their differences are the systematic errors that `size_effect.py` adds
-to every run alike.
+Single closing runs, each with one choice changed.  Their differences are the systematic errors that `size_effect.py`
+adds to every run alike.
 """
 
 import tempfile
@@ -36,14 +36,8 @@ CASES: dict[str, dict] = {  # asperity; what differs from a scene's default
     "steep": {"asperity": {**MEDIUM, "amplitude_nm": 1.28}, "closing": {"stop": "window"}},
 }
 COLUMNS = (
-    "status",
-    "contact_length_nm",
-    "hardness_GPa",
-    "hardness_lo",
-    "hardness_hi",
-    "plateau_exponent",
-    "same_shape_GPa",
-)
+    "status", "contact_length_nm", "hardness_GPa", "hardness_lo", "hardness_hi", "plateau_exponent", "same_shape_GPa",
+)  # fmt: skip
 
 
 def arguments(parser: ArgumentParser) -> None:

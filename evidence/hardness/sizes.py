@@ -17,8 +17,8 @@ from evidence.record import ROOT
 from mesoscale.tables import load_table
 
 COLUMNS = (
-    "energy_scale", "wavelength_nm", "seed", "status", "contact_length_nm", "hardness_GPa", "hardness_lo", "hardness_hi",
-    "same_shape_length_nm", "same_shape_GPa",
+    "energy_scale", "wavelength_nm", "seed", "status", "contact_length_nm", "hardness_GPa", "hardness_lo",
+    "hardness_hi", "same_shape_length_nm", "same_shape_GPa",
 )  # fmt: skip
 
 

@@ -87,12 +87,12 @@ def test_studies_of_a_scene_leave_out_the_stages_it_does_not_use(plan):
     studied = plan("paper", "accuracy", "stability")
     assert {"study_contact_accuracy", "study_contact_stability", "study_responses"} <= studied
     assert not (HARDNESS | ELASTIC | TOPOGRAPHY) & studied
-    foreign = ("hardness", "elastic", "topography", "closing", "detection")
+    foreign = ("hardness", "elastic", "topography", "closing")
     assert not [rule for rule in studied if any(word in rule for word in foreign)]
 
 
 def test_studies_of_a_scene_cover_every_stage_it_uses(plan):
-    expected = {"vary_closing", "measure_detection", "measure_elastic_accuracy", "measure_topography_accuracy"}
+    expected = {"vary_closing", "compare_closings", "measure_elastic_accuracy", "measure_topography_accuracy"}
     expected |= {f"check_{stage}_stability" for stage in ("hardness", "elastic", "topography")}
     assert plan("ci", "accuracy", "stability") >= expected
 

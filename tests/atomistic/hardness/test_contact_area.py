@@ -4,17 +4,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from atomistic.hardness.studies.area import FLANKS, Layer, area_rows, cut_layer
 
 from atomistic.errors import InputError
-from atomistic.hardness.contact_area import contact_area, contact_map, require_calibration
+from atomistic.hardness.contact_area import Area, calibrated, contact_area, contact_map
 from atomistic.potentials import load_potential
-from atomistic.settings import AreaSettings
 
 POTENTIALS = Path(__file__).parents[3] / "config" / "potentials"
 
-AREA = AreaSettings()
-FINE = AreaSettings(grid_A=0.1)
+AREA = Area()
+FINE = Area(grid_A=0.1)
 
 CELL = (60.0, 60.0)
 MIDDLE = (30.0, 30.0)
@@ -64,9 +62,9 @@ def test_enclosed_holes_are_contact_and_wide_bays_are_not():
 def test_space_between_atoms_counts_where_the_closing_disc_does_not_fit():
     """Four atoms at the corners of a square of 6 Å: its middle is 4.2 Å from each, so only a larger disc closes it."""
     corners = 30 + np.array([[-3.0, -3.0], [-3.0, 3.0], [3.0, -3.0], [3.0, 3.0]])
-    whole = contact_area(corners, CELL, FINE.model_copy(update={"closing_A": 4.5}), MIDDLE)
+    whole = contact_area(corners, CELL, Area(grid_A=0.1, closing_A=4.5), MIDDLE)
     assert whole > 36
-    apart = contact_area(corners, CELL, FINE.model_copy(update={"closing_A": 2.5}), MIDDLE)
+    apart = contact_area(corners, CELL, Area(grid_A=0.1, closing_A=2.5), MIDDLE)
     assert apart == pytest.approx(4 * np.pi * AREA.rim_A**2, rel=0.08)
 
 
@@ -104,45 +102,19 @@ def test_the_map_is_centred():
     np.testing.assert_allclose(where, (np.array(marked.shape) - 1) / 2, atol=1)
 
 
-@pytest.mark.parametrize("shape", FLANKS)
-def test_flanks_widen_from_the_section(shape):
-    """At the plane of contact a flank has the section's area, below it more; of the sphere, pi (R^2 - z^2)."""
-    at_plane = float(FLANKS[shape](np.zeros(1), 40.0)[0])
-    area = np.pi * at_plane**2 if shape == "sphere" else (2 * at_plane) ** 2
-    assert area == pytest.approx(1600, rel=1e-9)
-    assert FLANKS[shape](np.array([1.0]), 40.0)[0] > at_plane + 1  # slopes of about 0.6
-    if shape == "sphere":
-        radius = 2 * at_plane
-        assert FLANKS[shape](np.array([at_plane * np.sqrt(3)]), 40.0)[0] == pytest.approx(radius)
-
-
-def test_dense_layer_has_its_known_area():
-    """Atoms on a lattice of 1 Å in the plane of contact: what is left is grid and rim, below 5 % from 3 nm on."""
-    places = np.stack(np.meshgrid(np.arange(20.0), np.arange(20.0)), axis=-1).reshape(-1, 2)
-    layer = Layer(20.0, places, np.zeros(len(places)), np.zeros(len(places)))
-    thin = AREA.model_copy(update={"rim_A": 0.5})  # half the lattice's spacing
-    rows = list(area_rows([layer], thin, {}))
-    assert len(rows) == 15
-    assert {row["case"] for row in rows if row["value"] >= 3 and not row["passed"]} == set()
-    cut, _ = cut_layer(layer, "wave", 40.0, np.random.default_rng(0))
-    assert len(cut) == pytest.approx(1600, rel=0.06)
-
-
 def test_potential_without_calibration(potential):
-    assert require_calibration(potential, AREA).error <= 0.06
-    with pytest.raises(InputError, match="potential pmmcs: no calibration of the contact area; run target hard"):
-        require_calibration(potential.model_copy(update={"contact_area": None}), AREA)
-    other = AreaSettings(depth_A=1)
-    with pytest.raises(InputError, match=r"hardness.area.depth_A = 1: potential pmmcs is calibrated with 0.5 A"):
-        require_calibration(potential, other)
+    area, error = calibrated(potential)
+    assert (area, error) == (AREA, 0.05)
+    with pytest.raises(InputError, match="potential pmmcs: no calibration of the contact area; measure it"):
+        calibrated(potential.model_copy(update={"contact_area": None}))
+    other = potential.contact_area.model_copy(update={"depth_A": 1.0})
+    with pytest.raises(InputError, match=r"contact_area.depth_A = 1: the contact area is defined with 0.5 A"):
+        calibrated(potential.model_copy(update={"contact_area": other}))
 
 
 def test_a_counterface_of_other_atoms_has_a_calibration_of_its_own(potential):
     titania = load_potential(POTENTIALS / "matsui_akaogi.yaml")
-    calibrated = AREA.model_copy(update={"touch_A": 2.55})
-    assert require_calibration(potential, calibrated, titania).error == 0.04
-    with pytest.raises(InputError, match=r"touch_A = 2.4: potential pmmcs is calibrated with 2.55 A"):
-        require_calibration(potential, AREA, titania)
-    with pytest.raises(InputError, match="potential pmmcs: no calibration of the contact area against teter; run"):
-        require_calibration(potential, AREA, load_potential(POTENTIALS / "teter.yaml"))
-    assert require_calibration(potential, AREA, potential) == require_calibration(potential, AREA)
+    assert calibrated(potential, titania) == (Area(touch_A=2.55), 0.04)
+    with pytest.raises(InputError, match="potential pmmcs: no calibration of the contact area against teter; measure"):
+        calibrated(potential, load_potential(POTENTIALS / "teter.yaml"))
+    assert calibrated(potential, potential) == calibrated(potential)

@@ -1,10 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from atomistic.hardness.plateau import find_hardness, interval_of_mean, may_stop, plastic_onset, point, settled
-from atomistic.settings import ClosingSettings, HardnessSettings, YieldSettings
+from atomistic.hardness.plateau import RULES, find_hardness, interval_of_mean, may_stop, plastic_onset, point, settled
+from atomistic.settings import ClosingSettings
 
-CLOSING, RULES = ClosingSettings(approach_nm=0.3), YieldSettings()
+APPROACH_NM = 0.3
 TRAVEL = np.arange(0.0125, 1.2, 0.025)
 CELL_AREA = 36.0
 
@@ -45,7 +47,7 @@ def plateau(length):
 
 
 def find(curve_rows, witness_rows):
-    return find_hardness(curve_rows, witness_rows, CELL_AREA, CLOSING, RULES)
+    return find_hardness(curve_rows, witness_rows, CELL_AREA, APPROACH_NM)
 
 
 def test_plateau_beyond_a_witnessed_onset():
@@ -84,9 +86,9 @@ def test_gates():
 
 def test_background_of_bond_exchanges_is_measured_before_contact():
     """The halved energies flicker more: 20 exchanges per snapshot are then no witness, 40 are."""
-    onset = plastic_onset(witness(background=20, after=5), 0.35, RULES)
+    onset = plastic_onset(witness(background=20, after=5), 0.35)
     assert (onset.displacement_nm, onset.background) == (None, 20)
-    onset = plastic_onset(witness(background=20, after=20), 0.35, RULES)
+    onset = plastic_onset(witness(background=20, after=20), 0.35)
     assert onset.displacement_nm == pytest.approx(0.8)
     assert onset.exchanges == 40
     assert 0 < onset.p_value < 0.02
@@ -102,7 +104,6 @@ def test_without_a_snapshot_before_contact_no_run_yields():
     """Snapshots every 0.4 nm, contact from 0.25 nm on."""
     found = find(curve(plateau), [row for k, row in enumerate(witness()) if k % 4 == 0])
     assert found.status.startswith("rejected: no snapshot before contact")
-    assert found.status.endswith("closing.segment_nm")
 
 
 def test_p_value_of_the_onset_is_that_of_two_poisson_counts():
@@ -115,7 +116,7 @@ def test_p_value_of_the_onset_is_that_of_two_poisson_counts():
             {"displacement_nm": 0.1 * (k + 1), "new_exchanges": new, "lowering_nm": 0.0 if k < 3 else 0.1}
             for k, new in enumerate([0, *counts[:2], counts[2]])
         ]
-        onset = plastic_onset(rows, 0.35, RULES)
+        onset = plastic_onset(rows, 0.35)
         trials += 1
         small += onset.p_value < 0.05
     assert small / trials < 0.05
@@ -124,23 +125,20 @@ def test_p_value_of_the_onset_is_that_of_two_poisson_counts():
 def test_a_lowering_that_recovers_is_no_onset():
     rows = witness()
     rows[-1]["lowering_nm"] = 0.0
-    assert plastic_onset(rows, 0.35, RULES).displacement_nm is None
+    assert plastic_onset(rows, 0.35).displacement_nm is None
 
 
 def test_a_point_names_what_was_pressed_and_what_it_cost():
     facts = {
-        "run": "r", "energy_scale": 1.0, "amplitude_nm": 0.4, "shape": "sinusoidal", "asperity": "small",
+        "run": "r", "energy_scale": 1.0, "amplitude_nm": 0.4, "asperity": "small",
         "wavelength_nm": 6.0, "seed": 1, "atoms": 100, "steps": 1000, "restart_steps": 250,
         "lammps_cpu_s": 9.0, "python_cpu_s": 0.1,
     }  # fmt: skip
-    settings = HardnessSettings.model_validate({"closing": {"counterface": "oxide", "counter_material": "TiO2"}})
-    row = point(curve(plateau), witness(), facts, settings)
+    closing = ClosingSettings(counterface="oxide", counter_material="TiO2")
+    row = point(curve(plateau), witness(), facts, closing, "pmmcs")
     assert row["geometry"] == "asperity-oxide TiO2 repulsive"
     assert row["status"] == "yield"
     assert row["atom_steps"] == 100_000
-    assert "unloaded_exchanged_bonds" not in row
-    again = point(curve(plateau), witness(), {**facts, "unloaded_exchanged_bonds": 61}, settings)
-    assert again["unloaded_exchanged_bonds"] == 61
 
 
 @pytest.mark.parametrize(("correlation", "low", "high"), [(0.0, 0.63, 0.8), (0.6, 0.58, 0.75)])
@@ -162,21 +160,23 @@ def test_a_run_stops_on_a_narrow_interval_or_where_it_leaves_the_window():
     rows, seen = curve(plateau), witness(onset=0.8)
     cell = 9.0 / RULES.stop_area_fraction  # the contact of 3.0 nm takes up as much as is asked for
 
-    def stops(count, cell_area=cell, **rules):
-        return may_stop(rows[:count], seen, cell_area, CLOSING, RULES.model_copy(update=rules))
+    def stops(count, cell_area=cell, stop="settled", **rules):
+        return may_stop(rows[:count], seen, cell_area, stop, APPROACH_NM, replace(RULES, **rules))
 
     beyond = int(np.argmax(np.array([row["displacement_nm"] for row in rows]) >= 0.8))
     assert not stops(beyond + 5)  # the contact is still small
     assert stops(len(rows))
     assert not stops(len(rows), stop_points=len(rows))
-    assert stops(len(rows), cell_area=10.0)  # the last averages lie beyond half of the cell
+    assert not stops(len(rows), stop="window")
+    for stop in ("settled", "window"):
+        assert stops(len(rows), cell_area=10.0, stop=stop)  # the last averages lie beyond half of the cell
     rising = curve(lambda length: 4 * length)
-    assert not may_stop(rising, seen, cell, CLOSING, RULES)
+    assert not may_stop(rising, seen, cell, "settled", APPROACH_NM)
 
 
 def test_a_run_that_ends_before_its_rule_is_met_says_so():
     cell = 9.5 / RULES.stop_area_fraction  # the contact ends at 9 nm2
-    found = find_hardness(curve(plateau), witness(), cell, CLOSING, RULES)
+    found = find_hardness(curve(plateau), witness(), cell, APPROACH_NM)
     assert found.status == (
         "rejected: stopped before its rule, on 0.24 of the cell instead of 0.25; raise closing.depth_over_amplitude"
     )
