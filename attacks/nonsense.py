@@ -107,7 +107,6 @@ NONSENSE: dict[str, tuple[str, str]] = {
     "three strains": ("elastic: {strains: [-0.02, 0, 0.02]}", "at least 5 entries"),
     "equal strains": ("elastic: {strains: [0, 0, 0.01, 0.02, 0.03]}", "must differ"),
     "equal asperities": (f"hardness: {{asperities: {TWICE}}}", "two have the same name"),
-    "base that is felt": ("hardness: {closing: {base_over_contact: 0.8}}", "is felt"),
     "no scans at all": (
         "compute: [topography]\ntopography: {synthetic: {small_scans: 0, large_scans: 0}}",
         "nothing to analyse",

@@ -16,7 +16,7 @@ CONTACT = scene(
 )
 GLASS = scene(
     "compute: [hardness]",
-    "hardness: {seeds: [1], glass: {atoms: 600, melt_ps: 2, quench_rate_K_ps: 1000, rest_ps: 6, segment_steps: 500}}",
+    "hardness: {seeds: [1], glass: {atoms: 600, melt_ps: 2, quench_rate_K_ps: 1000, rest_ps: 6}}",
 )
 
 

@@ -107,7 +107,7 @@ def test_a_shipped_scene_is_known_by_name_wherever_the_project_lies(tmp_path):
         ownership.claim(tmp_path, tmp_path / "mine" / "paper.yaml", tmp_path / "there", write=False)
 
 
-# A glass that is quenched in some seconds, in twelve segments
+# A glass that is quenched in some seconds, in four segments
 SCENE = """
 compute: [hardness]
 inputs:
@@ -118,7 +118,7 @@ inputs:
   rms: {origin: literature, a: 2, b: 15}
 hardness:
   seeds: [1]
-  glass: {atoms: 600, melt_ps: 2, quench_rate_K_ps: 1000, rest_ps: 6, segment_steps: 500}
+  glass: {atoms: 600, melt_ps: 2, quench_rate_K_ps: 1000, rest_ps: 6}
 """
 GLASS = "results/glass/hardness/glass/1.data"
 
