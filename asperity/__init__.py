@@ -15,52 +15,30 @@ From a scan to a switch::
 Lengths are in nm, forces in nN, pressures and moduli in GPa; `help()` of every name states its units.
 """
 
-from mesoscale.contact import Branch, ContactInputs, Cycle, run_cycle
-from mesoscale.contact.energy import dissipated_energy, work
-from mesoscale.contact.surface import random_surface
-from mesoscale.device.switch import SwitchStates, drive_switch, switch_from_settings
-from mesoscale.errors import InputError
-from mesoscale.extras import MissingExtra
-from mesoscale.inputs.distributions import InputTable
-from mesoscale.inputs.table import input_table
-from mesoscale.law.branches import laws_of
-from mesoscale.law.compact import Law, force, pressure
-from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, LawSettings, TopographySettings
-from mesoscale.topography.measurements.cleaning import Scan, clean
-from mesoscale.topography.measurements.loading import load_scan
-from mesoscale.topography.pressing import contacting_heights
-from mesoscale.topography.summary import measure_roughness
-from mesoscale.uncertainty.runs import MonteCarlo, monte_carlo
+import ast
+import importlib
+from pathlib import Path
+from typing import Any
 
-__all__ = [
-    "Branch",
-    "ContactInputs",
-    "ContactSettings",
-    "Cycle",
-    "DeviceSettings",
-    "InputError",
-    "InputRow",
-    "InputTable",
-    "Law",
-    "LawSettings",
-    "MissingExtra",
-    "MonteCarlo",
-    "Scan",
-    "SwitchStates",
-    "TopographySettings",
-    "clean",
-    "contacting_heights",
-    "dissipated_energy",
-    "drive_switch",
-    "force",
-    "input_table",
-    "laws_of",
-    "load_scan",
-    "measure_roughness",
-    "monte_carlo",
-    "pressure",
-    "random_surface",
-    "run_cycle",
-    "switch_from_settings",
-    "work",
-]
+
+def _modules() -> dict[str, str]:
+    """The module of each name, as `__init__.pyi` tells it to type checkers."""
+    stub = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+    imports = [node for node in stub.body if isinstance(node, ast.ImportFrom)]
+    return {alias.name: str(node.module) for node in imports for alias in node.names}
+
+
+_MODULES = _modules()
+__all__ = sorted(_MODULES)
+
+
+def __getattr__(name: str) -> Any:
+    """A name at its first use: the command must set its environment before numba is imported (`environment`)."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value = getattr(importlib.import_module(_MODULES[name]), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__]

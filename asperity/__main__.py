@@ -3,12 +3,17 @@
 import argparse
 import importlib.util
 import os
-import subprocess
 import sys
 import webbrowser
 from pathlib import Path
+from typing import NoReturn
 
 from asperity.bundle import ROOT
+from asperity.environment import UnsafeFolder, secure
+from asperity.foreign_text import as_word, shown
+
+# Ctrl-C while Snakemake is still imported ends it without a traceback
+START = "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); import snakemake.cli; snakemake.cli.main()"
 
 TEMPLATE = """\
 # yaml-language-server: $schema={schema}
@@ -38,8 +43,8 @@ def main(arguments: list[str] | None = None) -> int:
         command.add_argument("--scene", default="reduced", help="name of a shipped scene, or path of a YAML file")
         if name != "open":
             command.add_argument("target", nargs="*", help="stage to regenerate, for instance law; default: all")
-            command.add_argument("--cores", default="all", help="how many may work at once; default: all")
-            command.add_argument("--hours", help="longest run that is not refused; default: 12")
+            command.add_argument("--cores", type=_cores, default="all", help="how many may work at once; default: all")
+            command.add_argument("--hours", type=_hours, help="longest run that is not refused; default: 12")
     commands.add_parser("new", help="write a scene file to start from").add_argument(
         "file", help="for instance film.yaml"
     )
@@ -53,14 +58,17 @@ def main(arguments: list[str] | None = None) -> int:
     server.add_argument("--port", type=int, default=4242)
     server.add_argument("--workers", type=int, default=1, help="processes that evaluate; default: 1")
     given = parser.parse_args(arguments)
+    try:
+        secure()
+    except UnsafeFolder as error:
+        return _refuse(str(error))
     if given.command == "serve":
         return _serve(given.host, given.port, given.workers)
     if given.command == "schema":
         print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
         return 0
     if given.command == "compare":
-        page = [sys.executable, "-m", "workflow.report.comparison", given.first, given.second, given.page]
-        return subprocess.run(page, env=_environment(), check=False).returncode
+        _become("-m", "workflow.report.comparison", given.first, given.second, given.page)
     if given.command == "new":
         return _new(Path(given.file))
     if given.command == "open":
@@ -111,28 +119,38 @@ def _snakemake(given: argparse.Namespace, dry: bool) -> int:
         return _refuse(
             f"{', '.join(missing)}: not installed; running a scene needs pip install 'asperity-contact[run]'"
         )
-    command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
-    command += [
-        "--workflow-profile",
-        str(ROOT / "workflow" / "profiles" / "local"),
-        *given.target,
-        "--cores",
-        given.cores,
-        "--config",
-        f"scene={given.scene}",
-    ]
-    command += [f"hours={given.hours}"] if given.hours else []
-    command[3:3] = ["--dry-run", "--quiet", "rules"] if dry else ["--resources", f"mem_mb={_memory_MB()}"]
     try:
-        return subprocess.run(command, env=_environment(), check=False).returncode
-    except KeyboardInterrupt:
-        return 130
+        given.scene.encode()
+    except UnicodeEncodeError:
+        return _refuse(f"scene={given.scene}: the name is no Unicode; rename the file")
+    options = ["--dry-run", "--quiet", "rules"] if dry else ["--resources", f"mem_mb={_memory_MB()}"]
+    _become(
+        *("-c", START, "--snakefile", str(ROOT / "Snakefile"), *options),
+        *("--workflow-profile", str(ROOT / "workflow" / "profiles" / "local"), *given.target, "--cores", given.cores),
+        *("--config", f"scene={as_word(given.scene)}", *([f"hours={given.hours:g}"] if given.hours else [])),
+    )
 
 
-def _environment() -> dict[str, str]:
-    """Of processes that import `workflow`, which is no installed package of that name."""
-    paths = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+def _become(*arguments: str) -> NoReturn:
+    """Let Python with other arguments take the place of this process, so that signals reach it and no one else."""
+    sys.stdout.flush()
+    os.execv(sys.executable, [sys.executable, *arguments])
+
+
+def _cores(text: str) -> str:
+    if text != "all" and not (text.isascii() and text.isdigit() and 1 <= int(text) <= 10_000):
+        raise argparse.ArgumentTypeError(f"{shown(text)}: accepted is a whole number of at least 1, or all")
+    return text
+
+
+def _hours(text: str) -> float:
+    try:
+        hours = float(text)
+    except ValueError:
+        hours = 0.0
+    if not 0 < hours < float("inf"):
+        raise argparse.ArgumentTypeError(f"{shown(text)}: accepted is a number > 0")
+    return hours
 
 
 def _memory_MB() -> int:
@@ -143,7 +161,7 @@ def _memory_MB() -> int:
 
 
 def _refuse(message: str) -> int:
-    print(f"ERROR {message}", file=sys.stderr)
+    print(f"ERROR {shown(message)}", file=sys.stderr)
     return 1
 
 

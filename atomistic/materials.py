@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-import yaml
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
+from asperity.foreign_yaml import MistakenYaml, load_mapping
 from atomistic.errors import InputError
 from atomistic.settings import Settings
 
@@ -297,13 +297,9 @@ def load_material(path: str | Path) -> Material:
     """
     path = Path(path)
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read ({error}); name a file of config/materials") from None
-    except yaml.YAMLError as error:
-        raise InputError(f"{path}: not valid YAML: {' '.join(str(error).split())}") from None
-    if not isinstance(content, dict):
-        raise InputError(f"{path}: expected the keys of a material, see config/materials/silicon_dioxide.yaml")
+        content = load_mapping(path, "material")
+    except MistakenYaml as error:
+        raise InputError(f"{path}: {error}; see config/materials/silicon_dioxide.yaml") from None
     try:
         material = Material.model_validate(content)
     except ValidationError as error:

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-import yaml
 from pydantic import Field, ValidationError
 from scipy.special import erfc
 
+from asperity.foreign_yaml import MistakenYaml, load_mapping
 from atomistic.constants import COULOMB_EV_A
 from atomistic.errors import InputError
 from atomistic.settings import Settings
@@ -219,15 +219,9 @@ def load_potential(path: str | Path) -> Potential:
     """
     path = Path(path)
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(
-            f"{path}: cannot be read ({error.strerror}); name an existing file of config/potentials"
-        ) from None
-    except yaml.YAMLError as error:
-        raise InputError(f"{path}: not valid YAML: {' '.join(str(error).split())}") from None
-    if not isinstance(content, dict):
-        raise InputError(f"{path}: expected the keys of a potential, see config/potentials/pmmcs.yaml")
+        content = load_mapping(path, "potential")
+    except MistakenYaml as error:
+        raise InputError(f"{path}: {error}; see config/potentials/pmmcs.yaml") from None
     try:
         potential = Potential(**content)
     except ValidationError as error:

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from pydantic import BaseModel
+from workflow.scene_yaml import load_mapping
 
 from workflow.scene import SCENES, Scene
-from workflow.scene_yaml import load_mapping
 
 VALUES: tuple[Any, ...] = (
     None, True, False, 0, -1, 1, 2, 10**9, 10**30, -0.0, 1e-300, 1e300, 0.5, -0.5, 1.0000001, "", " ", "0", "1e3",

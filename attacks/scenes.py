@@ -17,13 +17,13 @@ from typing import Any
 
 import jsonschema
 import yaml
+from workflow.scene_yaml import load_mapping
 
 from attacks.runs import environment
 from attacks.scene_mutations import mutated
 from workflow.scene import Scene, SceneError, files_of, load_scene, locate
 from workflow.scene_checks import mistakes
 from workflow.scene_schema import SCHEMA
-from workflow.scene_yaml import load_mapping
 
 LONGEST_LINE = 1500  # an unknown key lists the known ones
 PLAIN = re.compile(r"[-+]?(0|[1-9][0-9]*)?(\.[0-9]*)?([eE][-+]?[0-9]+)?")

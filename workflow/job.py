@@ -18,6 +18,7 @@ from typing import Any, TextIO, TypeVar
 
 from pydantic import BaseModel
 
+from asperity.foreign_text import shown
 from atomistic.errors import InputError as AtomisticInputError
 from mesoscale.errors import InputError as MesoscaleInputError
 from workflow.checksums import file_checksum, is_damaged
@@ -145,7 +146,7 @@ def job(snakemake: Any) -> Iterator[Job]:
             _refuse_damaged(inputs)
             yield running
         except Exception as error:
-            line = f"ERROR {running.label}: {_one_line(error, log_path)}"
+            line = shown(f"ERROR {running.label}: {_one_line(error, log_path)}")
             print(line, file=sys.stderr, flush=True)
             with suppress(OSError):  # the disk is full
                 traceback.print_exc(file=log)

@@ -17,6 +17,7 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NoReturn
 
@@ -26,6 +27,46 @@ PATIENCE_S = 60.0  # for jobs of a killed run to end
 
 class Refused(Exception):
     """The folder cannot be used now; the message is one line."""
+
+
+def inspect(*folders: Path) -> None:
+    """See that a folder of results, which may come from a stranger, holds nothing through which a run would write
+    elsewhere, wait for ever or fail without a word.
+
+    Raises
+    ------
+    Refused : a link that leads out of its folder, a pipe or device, a file or folder that cannot be read, or a lock or
+        log of another kind.
+    """
+    for folder in folders:
+        if not folder.is_dir():
+            if os.path.lexists(folder):
+                raise Refused(f"{folder}: is no folder; move it away")
+            continue
+        inside = folder.resolve()
+        for name in (".lock", ".jobs", ".scene"):
+            if (folder / name).is_dir():
+                raise Refused(f"{folder / name}: a folder where a file of the run belongs; move it away")
+        if os.path.lexists(folder / "logs") and not (folder / "logs").is_dir():
+            raise Refused(f"{folder / 'logs'}: a file where the folder of logs belongs; move it away")
+        for entry in _entries(folder):
+            path = Path(entry.path)
+            if entry.is_symlink():
+                if not path.resolve().is_relative_to(inside):
+                    raise Refused(f"{path}: a link to {os.readlink(path)}, out of its folder; remove it")
+            elif not entry.is_dir() and not entry.is_file():
+                raise Refused(f"{path}: a pipe or device; move it away")
+            elif not os.access(path, os.R_OK | (os.X_OK if entry.is_dir() else 0)):
+                raise Refused(f"{path}: may not be read; change its permissions or move it away")
+
+
+def _entries(folder: Path) -> Iterator[os.DirEntry[str]]:
+    """All that lies below a folder; links are not followed."""
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            yield entry
+            if entry.is_dir(follow_symlinks=False):
+                yield from _entries(Path(entry.path))
 
 
 def take(results: Path) -> int:

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from asperity.foreign_text import as_cell
 from workflow.checksums import record
 from workflow.schemas import UnfitTable, schema_of
 
@@ -109,6 +110,8 @@ def _cell(value: Any) -> str:
         return ""
     if isinstance(value, np.generic):
         value = value.item()
+    if isinstance(value, str):
+        return as_cell(value)
     return repr(value) if isinstance(value, float) else str(value)
 
 

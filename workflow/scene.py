@@ -17,6 +17,7 @@ from annotated_types import Ge, Gt, Le, Lt, MaxLen, MinLen
 from pydantic import BaseModel, Field, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 
+from asperity.foreign_yaml import MistakenYaml, load_mapping
 from atomistic.settings import ElasticSettings, HardnessSettings
 from mesoscale.settings import (
     AdhesionSettings,
@@ -34,7 +35,6 @@ from mesoscale.settings import (
 )
 from workflow.checksums import CLOCK_S
 from workflow.former_keys import FORMER_KEYS
-from workflow.scene_yaml import MistakenYaml, load_mapping
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENES = ROOT / "config" / "scenes"
@@ -157,7 +157,7 @@ def load_scene(name_or_path: str) -> Scene:
 def _content_of(path: Path) -> dict[str, Any]:
     """The keys of a scene's own file."""
     try:
-        return load_mapping(path)
+        return load_mapping(path, "scene")
     except MistakenYaml as error:
         raise SceneError(f"{path}: {error}") from None
 

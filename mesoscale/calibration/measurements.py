@@ -1,6 +1,5 @@
 """Tables of measurements: the CSV files, their units, and what is refused."""
 
-import csv
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from mesoscale.errors import InputError
 from mesoscale.settings.measurements import MeasurementTable
+from mesoscale.tables import foreign_table
 
 Array = NDArray[np.float64]
 
@@ -94,14 +94,8 @@ def load_measurements(table: MeasurementTable, path: str | Path | None = None) -
         positive, columns look swapped, or a curve has fewer points than unknowns.
     """
     file = table.file
-    try:
-        with Path(path or file).open(newline="", encoding="utf-8-sig") as stream:
-            reader = csv.DictReader(line for line in stream if line.strip() and not line.startswith("#"))
-            header = [name.strip() for name in reader.fieldnames or ()]
-            rows = [[(value or "").strip() for value in row.values() if not isinstance(value, list)] for row in reader]
-    except (OSError, UnicodeDecodeError) as error:
-        why = error.strerror if isinstance(error, OSError) else "no text"
-        raise InputError(f"{file}: cannot be read ({why}); give a CSV file") from None
+    header, table_rows = foreign_table(path or file, file)
+    rows = [[(value or "").strip() for value in row.values() if not isinstance(value, list)] for row in table_rows]
     if not rows:
         raise InputError(f"{file}: has no rows; give a header and at least one measurement")
     places = _places(file, table.kind, header)

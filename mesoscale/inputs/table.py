@@ -1,9 +1,7 @@
 """The table of uncertain inputs in use (the paper's Table 1): each row from literature or from a stage."""
 
-import csv
 import json
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +10,7 @@ from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
 from mesoscale.settings import TABLE_1, InputRow, InputsSettings, UncertaintySettings
+from mesoscale.tables import foreign_table
 
 COLUMNS = ("parameter", "unit", "distribution", "a", "b", "low", "high", "correlation", "origin", "file")
 
@@ -158,12 +157,9 @@ def _from_stage(name: str, origin: str, content: Mapping[str, Any], source: str)
 
 
 def _read_samples(name: str, file: str) -> np.ndarray:
-    path = Path(file)
+    rows = foreign_table(file, f"inputs.{name}.file = {file}")[1]
     try:
-        with path.open(newline="", encoding="utf-8") as stream:
-            values = np.array([float(line[name]) for line in csv.DictReader(stream)])
-    except OSError as error:
-        raise InputError(f"inputs.{name}.file = {file}: cannot be read ({error.strerror}); give a CSV file") from None
+        values = np.array([float(row[name]) for row in rows])
     except (KeyError, TypeError, ValueError):
         raise InputError(f"inputs.{name}.file = {file}: needs a column {name} with one number a row") from None
     if values.size < 2 or not np.isfinite(values).all():

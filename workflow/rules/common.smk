@@ -4,6 +4,7 @@ import os
 import sys
 from pathlib import Path
 
+from asperity.foreign_text import from_word, shown
 from atomistic.errors import InputError
 from atomistic.materials import load_materials, oxide_glasses
 from workflow.terminal.memory import contact_MB, propagation_MB
@@ -17,11 +18,14 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "
 def refuse(mistakes):
     """End before any job starts, with one ERROR line for each line of `mistakes`."""
     for line in str(mistakes).splitlines():
-        print(f"ERROR {line}", file=sys.stderr)
+        print(f"ERROR {shown(line)}", file=sys.stderr)
     sys.exit(1)
 
 
-SCENE_GIVEN = str(config.get("scene", "reduced"))  # a name or a path
+SCENE_GIVEN = from_word(str(config.get("scene", "reduced")))  # a name or a path
+for argument in workflow.config_settings.config_args or ():
+    if argument.startswith("scene=") and from_word(argument.removeprefix("scene=")) != SCENE_GIVEN:
+        refuse(f"{argument}: Snakemake reads {SCENE_GIVEN!r}; rename the file, or: asperity run --scene FILE")
 try:
     SCENE = load_scene(SCENE_GIVEN)
 except SceneError as error:

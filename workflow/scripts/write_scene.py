@@ -11,8 +11,10 @@ from workflow.scene import ROOT
 
 with job(snakemake) as run:
     commit = ""
-    if shutil.which("git"):  # absent from slim container images
-        command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=40"]
+    # an installed wheel may lie in somebody else's repository; git is absent from slim container images
+    if (ROOT / ".git").exists() and shutil.which("git"):
+        command = ["git", "-C", str(ROOT), "-c", "core.fsmonitor=false", "-c", "core.hooksPath=/dev/null"]
+        command += ["describe", "--always", "--dirty", "--abbrev=40"]
         commit = subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
     record = {
         "scene": snakemake.params.scene,

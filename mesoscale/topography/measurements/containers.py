@@ -15,8 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-import yaml
-
+from asperity.foreign_yaml import MistakenYaml, parse
 from mesoscale.errors import InputError
 
 MAX_FILES = 2000
@@ -35,17 +34,6 @@ UNREADABLE = (
     EOFError,
     OSError,
 )
-
-
-class PlainLoader(yaml.SafeLoader):
-    """Plain values, and the tuples that containers write sizes as."""
-
-
-def _tuple(loader: yaml.SafeLoader, node: yaml.SequenceNode) -> tuple[Any, ...]:
-    return tuple(loader.construct_sequence(node))
-
-
-PlainLoader.add_constructor("tag:yaml.org,2002:python/tuple", _tuple)
 
 
 @dataclass(frozen=True)
@@ -155,8 +143,8 @@ def _plain(path: Path, name: str, text: bytes) -> Any:
         except (ValueError, RecursionError) as error:
             raise InputError(f"{path}: {name} cannot be read ({_line(error)})") from None
     try:
-        return yaml.load(text, Loader=PlainLoader)
-    except (yaml.YAMLError, RecursionError, ValueError, UnicodeError, TypeError) as error:
+        return parse(text, tuples=True)
+    except MistakenYaml as error:
         raise InputError(
             f"{path}: {name} holds more than plain values ({_line(error)}); it is not read, nothing was executed"
         ) from None

@@ -1,7 +1,8 @@
-"""Scenes as YAML: plain data only, and what looks like a number is one only if everybody reads it so.
+"""YAML of a stranger: plain data only, and what looks like a number is one only if everybody reads it so.
 
 YAML 1.1 reads `16:40` as 1000 (base 60), `0200` as 128 (octal), `1_000` as 1000 and 2026-11-22 as a date; here they
-stay text, which a number's key then refuses.  Aliases are refused: a scene of 342 bytes can unfold to gigabytes.
+stay text, which a number's key then refuses.  Aliases are refused: a file of 342 bytes can unfold to gigabytes.
+Tags are refused: `!!int ""` is an error deep inside PyYAML.
 """
 
 import re
@@ -11,28 +12,39 @@ from typing import Any
 import yaml
 
 MAX_BYTES = 1_000_000
+MAX_NODES = 50_000  # a second of reading; the largest scene has 400
 MAX_DEPTH = 20  # the settings need 6
 NUMBERS = {
     "int": r"^[-+]?(?:0|[1-9][0-9]*)$",
     "float": r"^[-+]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?$",  # 7e3 too
 }
 KEPT = ("bool", "null")  # as YAML 1.1 has them
+TUPLE = "tag:yaml.org,2002:python/tuple"  # as published containers write sizes
 
 
 class MistakenYaml(Exception):
-    """A file that is no scene; the message is one line."""
+    """A file that is refused; the message is one line."""
 
 
 class _Loader(yaml.SafeLoader):
-    """Safe YAML without aliases, merge keys, duplicate keys, deep nesting, and numbers in disguise."""
+    """Safe YAML without aliases, tags, merge keys, duplicate keys, deep nesting, and numbers in disguise."""
 
     yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}  # noqa: RUF012 (PyYAML's own interface)
+    tags: tuple[str, ...] = ()
+    most_nodes = MAX_NODES
+    nodes = 0
     depth = 0
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
         event = self.peek_event()
         if isinstance(event, yaml.AliasEvent):
             self._refuse(f"alias *{event.anchor:.60}: write the value out", event.start_mark)
+        tag = getattr(event, "tag", None)
+        if tag is not None and not (tag in self.tags and isinstance(event, yaml.SequenceStartEvent)):
+            self._refuse(f"tag {tag:.60}: plain values only, delete it", event.start_mark)
+        self.nodes += 1
+        if self.nodes > self.most_nodes:
+            self._refuse(f"more than {self.most_nodes} values", event.start_mark)
         self.depth += 1
         if self.depth > MAX_DEPTH:
             self._refuse(f"nested deeper than {MAX_DEPTH} levels", event.start_mark)
@@ -56,40 +68,61 @@ class _Loader(yaml.SafeLoader):
         raise MistakenYaml(f"line {mark.line + 1}: {mistake}")
 
 
-def _resolvers() -> None:
+class _ContainerLoader(_Loader):
+    """The same with tuples, for the many measurements of a container."""
+
+    tags = (TUPLE,)
+    most_nodes = 4 * MAX_NODES
+
+
+def _prepare() -> None:
     for first, pairs in yaml.SafeLoader.yaml_implicit_resolvers.items():
         kept = [(tag, pattern) for tag, pattern in pairs if tag.rpartition(":")[2] in KEPT]
         _Loader.yaml_implicit_resolvers[first] = kept
     for kind, pattern in NUMBERS.items():
         _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{kind}", re.compile(pattern), list("-+0123456789."))
+    _ContainerLoader.yaml_implicit_resolvers = _Loader.yaml_implicit_resolvers
+    _ContainerLoader.add_constructor(TUPLE, lambda loader, node: tuple(loader.construct_sequence(node)))
 
 
-def _plain(loader: _Loader, node: yaml.Node) -> Any:
-    loader._refuse(f"tag {node.tag[:60]}: plain values only", node.start_mark)
+_prepare()
 
 
-_resolvers()
-for tag in ("binary", "timestamp", "omap", "pairs", "set"):
-    _Loader.add_constructor(f"tag:yaml.org,2002:{tag}", _plain)
+def parse(text: str | bytes, tuples: bool = False) -> Any:
+    """The plain values of a text; `tuples` accepts the one tag that containers need.
+
+    Raises
+    ------
+    MistakenYaml : no valid YAML, or more than plain data.
+    """
+    try:
+        return yaml.load(text, _ContainerLoader if tuples else _Loader)
+    except (yaml.YAMLError, ValueError) as error:  # also: text that is no Unicode, numbers of 5000 digits
+        raise MistakenYaml(f"not valid YAML ({' '.join(str(error).split()):.300})") from None
 
 
-def load_mapping(path: Path) -> dict[str, Any]:
+def load_mapping(path: Path, kind: str) -> dict[str, Any]:
     """Read a YAML file of one mapping.
+
+    Parameters
+    ----------
+    kind : what the file is, for messages: scene, material, potential.
 
     Raises
     ------
     MistakenYaml : unreadable, too large, no valid YAML, or more than plain data.
     """
     try:
-        if path.stat().st_size > MAX_BYTES:
-            raise MistakenYaml(f"{path.stat().st_size} bytes; a scene has at most {MAX_BYTES}")
-        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)
+        with path.open("rb") as stream:
+            content = stream.read(MAX_BYTES + 1)  # counted while it is read: some files never end
+        if len(content) > MAX_BYTES:
+            raise MistakenYaml(f"more than the {MAX_BYTES} bytes that a {kind} may have")
+        text = content.decode()
     except (OSError, UnicodeDecodeError) as error:
         raise MistakenYaml(f"cannot be read ({error}); give a readable YAML file") from None
-    except (yaml.YAMLError, ValueError) as error:
-        raise MistakenYaml(f"not valid YAML ({' '.join(str(error).split()):.300})") from None
-    if content is None:
+    mapping = parse(text)
+    if mapping is None:
         return {}
-    if not isinstance(content, dict):
-        raise MistakenYaml(f"a scene is a mapping of keys to values, not {type(content).__name__}")
-    return content
+    if not isinstance(mapping, dict):
+        raise MistakenYaml(f"a {kind} is a mapping of keys to values, not {type(mapping).__name__}")
+    return mapping

@@ -1,0 +1,64 @@
+"""The environment of everything that is started: the command, its jobs, the workers of the server.
+
+Python and several packages look for modules and settings in the working folder, and a working folder may come from a
+stranger. Here each is told where to look instead. What the user set himself stays.
+"""
+
+import os
+import tempfile
+from pathlib import Path
+
+from asperity.bundle import ROOT
+
+EMPTY = Path(__file__).with_name("empty_settings")
+"""In place of the settings of the working folder: PySCF would run its `.pyscf_conf.py`."""
+READ_BY_NUMBA = ".numba_config.yaml"
+"""Numba knows no other place: a folder that holds one is refused."""
+
+
+class UnsafeFolder(Exception):
+    """The working folder holds settings that a package would read; the message is one line."""
+
+
+def secure() -> None:
+    """Change the environment of this process, which all that it starts inherit.
+
+    Raises
+    ------
+    UnsafeFolder
+    """
+    os.environ["PYTHONSAFEPATH"] = "1"  # no module is taken from the working folder or from beside a job's script
+    given = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    paths = [str(ROOT), *(path for path in given if os.path.isabs(path))]
+    os.environ["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(paths))
+    for variable in ("PYSCF_CONFIG_FILE", "MATPLOTLIBRC"):
+        os.environ.setdefault(variable, str(EMPTY))
+    os.environ.setdefault("NUMBA_CACHE_DIR", "")  # beside the code, as without this variable
+    if not _writable(Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")):
+        own = _own_cache()
+        os.environ["XDG_CACHE_HOME"] = own
+        os.environ.setdefault("MPLCONFIGDIR", own)
+        os.environ["NUMBA_CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] or own
+    if os.path.lexists(READ_BY_NUMBA):
+        raise UnsafeFolder(
+            f"{READ_BY_NUMBA}: numba would take settings from this file of the folder; move it away, or set its "
+            "variables NUMBA_... in the environment"
+        )
+
+
+def _writable(folder: Path) -> bool:
+    existing = next((path for path in (folder, *folder.parents) if path.exists()), folder)
+    return folder.is_absolute() and existing.is_dir() and os.access(existing, os.W_OK | os.X_OK)
+
+
+def _own_cache() -> str:
+    """A folder of this user alone where the home folder is read-only; the next run finds it again."""
+    folder = Path(tempfile.gettempdir()) / f"asperity-cache-{os.getuid()}"
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        state = folder.lstat()
+        if not folder.is_symlink() and state.st_uid == os.getuid() and state.st_mode & 0o077 == 0:
+            return str(folder)
+    except OSError:
+        pass  # somebody else's
+    return tempfile.mkdtemp(prefix="asperity-cache-")

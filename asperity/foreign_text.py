@@ -1,0 +1,36 @@
+"""Text of a stranger: shown on the terminal, in tables that a spreadsheet opens, and handed to Snakemake."""
+
+import re
+from urllib.parse import quote, unquote
+
+PLAIN = re.compile(r"[A-Za-z0-9_./-]*[A-Za-z][A-Za-z0-9_./-]*")
+ENCODED = "percent:"
+
+SPREADSHEET_COMMANDS = "=+-@\t\r"
+"""With these a cell begins that a spreadsheet computes: `=HYPERLINK(...)` would send out what stands in others."""
+
+
+def shown(text: str) -> str:
+    """Text on one line without control characters: they could colour, hide or overwrite what a terminal shows."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape", "surrogatepass").decode() for c in text)
+
+
+def as_cell(text: str) -> str:
+    """Text that a spreadsheet shows as it stands: behind an apostrophe where it would compute it."""
+    if text[:1] not in SPREADSHEET_COMMANDS or not text:
+        return text
+    try:
+        float(text)
+    except ValueError:
+        return f"'{text}"
+    return text
+
+
+def as_word(text: str) -> str:
+    """Text as a word that YAML, Snakemake and a shell hand on unchanged; plain names stay as they are."""
+    return text if PLAIN.fullmatch(text) and text[0].isalpha() else ENCODED + quote(text)
+
+
+def from_word(word: str) -> str:
+    """The text that `as_word` made a word of."""
+    return unquote(word.removeprefix(ENCODED)) if word.startswith(ENCODED) else word
