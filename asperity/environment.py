@@ -12,8 +12,16 @@ from asperity.bundle import ROOT
 
 EMPTY = Path(__file__).with_name("empty_settings")
 """In place of the settings of the working folder: PySCF would run its `.pyscf_conf.py`."""
-READ_BY_NUMBA = ".numba_config.yaml"
-"""Numba knows no other place: a folder that holds one is refused."""
+READ = {
+    ".numba_config.yaml": "numba would take settings from it",
+    "ucx.conf": "MPI's network layer would take settings, and libraries to load, from it",
+    ".snakemake/pip-deployments": "Snakemake would run modules of it",
+    # PySCF prefers a file of a basis set's name to its own, and evaluates what stands in it
+    "gth-*": "PySCF would take it for a basis set and run what stands in it",
+    "ano": "PySCF would take it for a basis set and run what stands in it",
+    "minao": "PySCF would take it for a basis set and run what stands in it",
+}
+"""What packages read of the working folder and cannot be told to leave: a folder that holds one is refused."""
 
 
 class UnsafeFolder(Exception):
@@ -39,11 +47,10 @@ def secure() -> None:
         os.environ["XDG_CACHE_HOME"] = own
         os.environ.setdefault("MPLCONFIGDIR", own)
         os.environ["NUMBA_CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] or own
-    if os.path.lexists(READ_BY_NUMBA):
-        raise UnsafeFolder(
-            f"{READ_BY_NUMBA}: numba would take settings from this file of the folder; move it away, or set its "
-            "variables NUMBA_... in the environment"
-        )
+    for name, why in READ.items():
+        found = [*Path().glob(name)] if "*" in name else [Path(name)]
+        if found and os.path.lexists(found[0]):
+            raise UnsafeFolder(f"{found[0]}: {why}; move it away, or work in another folder")
 
 
 def _writable(folder: Path) -> bool:

@@ -75,6 +75,10 @@ class _ContainerLoader(_Loader):
     most_nodes = 4 * MAX_NODES
 
 
+def _tuple(loader: _ContainerLoader, node: Any) -> tuple[Any, ...]:
+    return tuple(loader.construct_sequence(node))
+
+
 def _prepare() -> None:
     for first, pairs in yaml.SafeLoader.yaml_implicit_resolvers.items():
         kept = [(tag, pattern) for tag, pattern in pairs if tag.rpartition(":")[2] in KEPT]
@@ -82,7 +86,7 @@ def _prepare() -> None:
     for kind, pattern in NUMBERS.items():
         _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{kind}", re.compile(pattern), list("-+0123456789."))
     _ContainerLoader.yaml_implicit_resolvers = _Loader.yaml_implicit_resolvers
-    _ContainerLoader.add_constructor(TUPLE, lambda loader, node: tuple(loader.construct_sequence(node)))
+    _ContainerLoader.add_constructor(TUPLE, _tuple)
 
 
 _prepare()

@@ -25,6 +25,9 @@ from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings, Set
 Numbers = Sequence[Sequence[float]]
 Config = Mapping[str, Any]
 
+MOST_POINTS = 1 << 26
+"""Grid points of all cells of one request."""
+MOST_SEPARATIONS = 1000
 INPUTS = tuple(field.name for field in fields(ContactInputs))
 PAD_SEPARATIONS_NM = (40.0, 35.0, 30.0, 28.0)
 
@@ -62,7 +65,11 @@ class Model:
         good = all(isinstance(x, (int, float)) and not isinstance(x, bool) for x in values)
         if len(values) != len(self.inputs) or not good:
             raise InputError(f"{self.name}: input must be one list of {len(self.inputs)} numbers: {self._named()}")
-        result = self.evaluate([float(x) for x in values], checked)
+        try:
+            numbers = [float(x) for x in values]
+        except OverflowError:
+            raise InputError(f"{self.name}: a number too large; inputs are {self._named()}") from None
+        result = self.evaluate(numbers, checked)
         if not all(np.isfinite(part).all() for part in result):
             raise InputError(
                 f"{self.name}: no finite result at these inputs (JSON has no NaN); look at {self._named()}"
@@ -94,10 +101,20 @@ def _settings(kind: type[Settings], config: Config, key: str) -> Any:
     return kind(**given)
 
 
+def _contact(config: Config, cells: int = 1) -> ContactSettings:
+    """Settings of the contact, for a number of cells that a server can afford."""
+    contact = _settings(ContactSettings, config, "contact")
+    if cells * contact.pixels**2 > MOST_POINTS:
+        raise InputError(
+            f"config.contact.pixels = {contact.pixels}, {cells} cells: accepted are {MOST_POINTS} grid points in all"
+        )
+    return contact
+
+
 def _cycle(values: Sequence[float], config: Config) -> Cycle:
     seed = config.get("seed", 1)
     check_seed(seed)
-    contact = _settings(ContactSettings, config, "contact")
+    contact = _contact(config)
     return run_cycle(ContactInputs(**dict(zip(INPUTS, values, strict=True))), contact, seed)
 
 
@@ -118,8 +135,9 @@ def _law(values: Sequence[float], config: Config) -> list[list[float]]:
 
 def _separations(config: Config) -> list[float]:
     given = config.get("separations_nm", PAD_SEPARATIONS_NM)
-    if not isinstance(given, (list, tuple)) or not given or not all(isinstance(x, (int, float)) for x in given):
-        raise InputError("config.separations_nm: must be a list of falling separations in nm")
+    listed = isinstance(given, (list, tuple)) and 0 < len(given) <= MOST_SEPARATIONS
+    if not listed or not all(isinstance(x, (int, float)) for x in given):
+        raise InputError(f"config.separations_nm: must be a list of 1 .. {MOST_SEPARATIONS} falling separations in nm")
     return [float(x) for x in given]
 
 
@@ -128,7 +146,7 @@ def _pad(values: Sequence[float], config: Config) -> list[list[float]]:
     check_seed(first)
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 100_000:
         raise InputError(f"config.cells = {count!r}: accepted is a whole number, 1 .. 100000")
-    contact = _settings(ContactSettings, config, "contact")
+    contact = _contact(config, count)
     separations = np.array(_separations(config))
     grid = PadGrid(separations, np.array([len(separations) - 1]))
     inputs = ContactInputs(**dict(zip(INPUTS, values, strict=True)))

@@ -15,8 +15,8 @@ from typing import Any
 
 import h5py
 import numpy as np
-import yaml
 
+from asperity.foreign_yaml import load_mapping
 from workflow.job import without_machine_times
 
 LEFT_OUT = ("logs", "work", "report.html")  # first part of a path below the folder
@@ -52,7 +52,7 @@ def content(path: Path) -> Any:
     if path.suffix == ".json":
         return _without_provenance(without_machine_times(json.loads(path.read_text(encoding="utf-8"))))
     if path.suffix == ".yaml":
-        return _without_provenance(yaml.safe_load(path.read_text(encoding="utf-8")))
+        return _without_provenance(load_mapping(path, "record of a run"))
     return path.read_bytes()
 
 

@@ -21,6 +21,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NoReturn
 
+from asperity.environment import READ
+
 RUN = "ASPERITY_RUN"  # environment variable with the process id of the run that a job belongs to
 PATIENCE_S = 60.0  # for jobs of a killed run to end
 
@@ -54,6 +56,8 @@ def inspect(*folders: Path) -> None:
             if entry.is_symlink():
                 if not path.resolve().is_relative_to(inside):
                     raise Refused(f"{path}: a link to {os.readlink(path)}, out of its folder; remove it")
+            elif entry.name in READ:
+                raise Refused(f"{path}: {READ[entry.name]}; move it away")
             elif not entry.is_dir() and not entry.is_file():
                 raise Refused(f"{path}: a pipe or device; move it away")
             elif not os.access(path, os.R_OK | (os.X_OK if entry.is_dir() else 0)):

@@ -12,7 +12,7 @@ class _OneLine(type(BaseModel)):
 
     if not TYPE_CHECKING:  # type checkers read the arguments off the fields
 
-        def __call__(cls, *arguments, **values):
+        def __call__(cls, /, *arguments, **values):
             try:
                 return super().__call__(*arguments, **values)
             except ValidationError as error:

@@ -45,7 +45,9 @@ def server():
 
 def post(url, path, body):
     request = urllib.request.Request(
-        f"{url}/{path}", data=body if isinstance(body, bytes) else json.dumps(body).encode()
+        f"{url}/{path}",
+        data=body if isinstance(body, bytes) else json.dumps(body).encode(),
+        headers={"Content-Type": "application/json"},
     )
     try:
         with urllib.request.urlopen(request, timeout=120) as answer:
@@ -87,7 +89,7 @@ def test_client_gets_the_librarys_digits(server, name, values, config):
         ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"seed": -1}}, "seed = -1"),
         ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": 5}, "mapping"),
         ("InputSizes", {"name": "none"}, "no such model"),
-        ("OutputSizes", {"name": "pad", "config": {"separations_nm": "x"}}, "list of falling separations"),
+        ("OutputSizes", {"name": "pad", "config": {"separations_nm": "x"}}, "falling separations"),
     ],
 )
 def test_a_malformed_request_gets_one_line(server, path, body, words):

@@ -85,7 +85,7 @@ def changed(tmp_path, name, where, value):
         ("silicon_dioxide", "oxide_glas", {}, ["oxide_glas'", "accepted are name, formula"]),
         ("silicon_dioxide", "oxide_glass/cutoff_A", None, ["oxide_glass.cutoff_A", "required"]),
         ("silicon_dioxide", "oxide_glass/density_g_cm3", -2.2, ["density_g_cm3", "greater than 0", "-2.2"]),
-        ("silicon_dioxide", "oxide_glass/density_g_cm3", float("nan"), ["density_g_cm3", "finite"]),
+        ("silicon_dioxide", "oxide_glass/density_g_cm3", float("nan"), ["density_g_cm3", "number"]),
         ("silicon_dioxide", "oxide_glass/density_g_cm3", 22, ["density_g_cm3 = 22", "2.05 to 2.45"]),
         ("silicon_dioxide", "oxide_glass/bond_range_A", [1.7, 1.5], ["bond_range_A", "must rise"]),
         ("silicon_dioxide", "oxide_glass/cutoff_A", 1.5, ["cutoff_A = 1.5", "longer than bond_A = 1.61"]),

@@ -109,3 +109,13 @@ def make_workflow():
 def workflow_in(tmp_path):
     """A workflow with an empty folder for its results."""
     return Workflow(tmp_path)
+
+
+@pytest.fixture(autouse=True)
+def _no_part_of_a_page_fails(monkeypatch):
+    """On a page a failed part is a sentence; in tests it is a failure."""
+
+    def raised(name, error):
+        raise error
+
+    monkeypatch.setattr("workflow.report.render.failed", raised)

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from asperity.foreign_text import shown
 from mesoscale.law.parameters import PARAMETERS
+from workflow.checksums import is_damaged
 from workflow.report.available import Results
 from workflow.report.numbers import OUTPUTS, column, show
 from workflow.report.page import Table
@@ -119,12 +121,24 @@ def _shown(spread: Spread) -> str:
 
 def results_in(folder: Path) -> Results:
     """All result files of a folder, for a page that no run schedules."""
-    paths = [
+    return Results(folder, files_in(folder), folder.name)
+
+
+def files_in(folder: Path) -> list[Path]:
+    """Result files of a folder; links, pipes and devices are left out."""
+    return [
         path
-        for path in folder.rglob("*")
-        if path.suffix in {".csv", ".json", ".h5"} and path.relative_to(folder).parts[0] not in {"logs", "work"}
+        for path in sorted(folder.rglob("*"))
+        if path.suffix in {".csv", ".json", ".h5"}
+        and path.relative_to(folder).parts[0] not in {"logs", "work"}
+        and path.is_file()
+        and not path.is_symlink()
     ]
-    return Results(folder, paths, folder.name)
+
+
+def _refuse(message: str) -> int:
+    print(f"ERROR {shown(message)}", file=sys.stderr)
+    return 1
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -132,12 +146,15 @@ def main(arguments: Sequence[str]) -> int:
     first, second, page = (Path(name).resolve() for name in arguments)
     for folder in (first, second):
         if not (folder / "inputs.csv").is_file():
-            print(
-                f"ERROR {folder.name}: no results of a scene are there; give two folders such as results/ci",
-                file=sys.stderr,
-            )
-            return 1
-    page.write_text(comparison(results_in(first), results_in(second)), encoding="utf-8")
+            return _refuse(f"{folder.name}: no results of a scene are there; give two folders such as results/ci")
+        if damaged := next((path for path in files_in(folder) if is_damaged(path)), None):
+            return _refuse(f"{damaged}: damaged, it differs from its checksum; run the scene again: it is made again")
+    try:
+        text = comparison(results_in(first), results_in(second))
+    except Exception as error:  # results of a stranger may hold anything
+        reason = " ".join(f"{type(error).__name__}: {error}".split())[:300]
+        return _refuse(f"{first.name}, {second.name}: not comparable ({reason}); run both with this version")
+    page.write_text(text, encoding="utf-8")
     print(f"the comparison is {page.name}")
     return 0
 

@@ -1,12 +1,17 @@
 """The page from the result files of a scene."""
 
 import re
+import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from typing import Any, TypeVar
 
-import yaml
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
+from asperity.foreign_text import shown
+from asperity.foreign_yaml import load_mapping
 from workflow.report.answer import answer
 from workflow.report.available import Results
 from workflow.report.drawing import SUBSCRIPT
@@ -14,7 +19,7 @@ from workflow.report.glossary import TERMS, Explainer, anchor
 from workflow.report.limits import limits
 from workflow.report.live.device import switch_data
 from workflow.report.live.explorer import explorer, script_json
-from workflow.report.page import Page, kind
+from workflow.report.page import Gate, Page, Section, kind
 from workflow.report.stages import STAGES
 from workflow.report.studies import studies
 
@@ -23,19 +28,34 @@ SCRIPTS = ("controls", "spots", "explorer", "pad", "beam", "device")
 """In the order in which they build on each other."""
 
 
+NO_ANSWER: dict[str, Any] = {"verdict": "", "method": "", "figure": None, "table": None, "cards": []}
+Part = TypeVar("Part")
+
+
 def render(results: Results) -> str:
-    """HTML of the report; sections appear only for results that exist."""
-    sections = [section for stage in STAGES if (section := stage.describe(results))] + studies(results)
+    """HTML of the report; sections appear only for results that exist, and one that fails costs itself alone."""
+    sections: list[Section] = []
+    for stage in STAGES:
+        name = stage.__name__.rpartition(".")[2].replace("_", " ")
+        section = guarded(name, partial(stage.describe, results), None, sections)
+        sections += [section] if section else []
+    sections += guarded("studies", partial(studies, results), [], sections)
+    live = {
+        "surrogate": guarded("explorer", partial(explorer, results), None, sections),
+        "switch_data": guarded("live switch", partial(switch_data, results), None, sections),
+    }
+    said = guarded("limits", partial(limits, results), [], sections)
+    provenance = guarded("provenance", partial(_provenance, results), [], sections)
     gates = [gate for section in sections for gate in section.gates]
-    live = {"surrogate": explorer(results), "switch_data": switch_data(results)}
+    first = guarded("first screen", partial(answer, results, gates), NO_ANSWER, sections)
     page = Page(
         scene=results.scene,
         beside_paper=results.beside_paper,
-        answer=answer(results, gates),
+        answer=first,
         sections=sections,
-        gates=gates,
-        limits=limits(results),
-        provenance=_provenance(results),
+        gates=[gate for section in sections for gate in section.gates],
+        limits=said,
+        provenance=provenance,
         moves=results.has("curves/spots.h5"),
         terms=list(TERMS.items()),
         files=sorted(results.paths),
@@ -57,6 +77,27 @@ def render(results: Results) -> str:
     )
 
 
+def guarded(name: str, build: Callable[[], Part], instead: Part, sections: list[Section]) -> Part:
+    """A part of the page; where it fails, `instead` and a section that says so."""
+    try:
+        return build()
+    except Exception as error:
+        sections.append(failed(name, error))
+        return instead
+
+
+def failed(name: str, error: Exception) -> Section:
+    """What stands on the page in place of a part that failed; the console says it, too."""
+    reason = " ".join(f"{type(error).__name__}: {error}".split())[:300]
+    print(f"report: {name} could not be drawn ({shown(reason)})", file=sys.stderr)
+    return Section(
+        f"failed-{name.replace(' ', '-')}",
+        name.capitalize(),
+        f"This part of the page could not be drawn ({reason}). Its numbers stand in the result files.",
+        gates=[Gate(name, False, [f"Its part of the page could not be drawn: {reason}."])],
+    )
+
+
 def low(text: str) -> Markup:
     """Escaped text in which names such as d_c have their index set low."""
     return _lowered(escape(text))
@@ -71,6 +112,6 @@ def _lowered(text: Markup) -> Markup:
 def _provenance(results: Results) -> list[tuple[str, str]]:
     if not results.has("scene.yaml"):
         return []
-    record = yaml.safe_load((results.root / "scene.yaml").read_text(encoding="utf-8"))
+    record = load_mapping(results.root / "scene.yaml", "record of a run")
     rows = [("git commit", str(record.get("git_commit", "")))]
     return rows + [(name, str(version)) for name, version in record.get("versions", {}).items()]

@@ -1,6 +1,7 @@
 """Scans and line profiles from files, through the readers of SurfaceTopography; Gwyddion files for synthetic scans.
 
-Files come from strangers: readers that may run code (pickles inside NumPy files) are never tried.
+Files come from strangers: each is read in a process with limits (`guarded`), and readers that may run code (pickles
+inside NumPy files) are never tried.
 """
 
 import re
@@ -18,6 +19,7 @@ from mesoscale.extras import needs
 from mesoscale.settings import InstrumentSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.containers import is_container, stated_radius, unpacked
+from mesoscale.topography.measurements.guarded import guarded
 from mesoscale.topography.measurements.light_readers import light_reader
 from mesoscale.topography.measurements.profiles import Profile, profile_of
 from mesoscale.topography.measurements.text_units import column_units
@@ -65,11 +67,24 @@ def load_measurements(
     InputError : as `load_scan`, a container that cannot be trusted, or a profile without unit.
     """
     path, settings = Path(path), settings or TopographySettings()
+    _check_present(path)
+    _import_readers(path)
+    return guarded(path, lambda: _measurements(path, name, settings))
+
+
+def _import_readers(path: Path) -> None:
+    """Import what reads a file in this process, of which the one with limits is a fork."""
+    with light_reader(path) as light:
+        if light is None:
+            with needs("scans"):
+                import SurfaceTopography.IO  # noqa: F401
+
+
+def _measurements(path: Path, name: str | None, settings: TopographySettings) -> list[Measurement]:
     if not is_container(path):
         instrument = _instrument(path.name, settings)
         data = _load(path, name or path.stem, instrument.channel or settings.channel, instrument.unit, True)
         return [_limited(data, instrument, settings)]
-    _check_present(path)
     measurements = []
     with unpacked(path) as members:
         for number, member in enumerate(members):
@@ -118,7 +133,10 @@ def load_scan(path: str | Path, name: str | None = None, channel: str | None = N
     InputError : file missing, unreadable or of unknown format; no or several height channels; no physical
         size or unit; pixels not on a regular two-dimensional grid.
     """
-    data = _load(Path(path), name or Path(path).stem, channel, None)
+    path = Path(path)
+    _check_present(path)
+    _import_readers(path)
+    data = guarded(path, lambda: _load(path, name or path.stem, channel, None))
     assert isinstance(data, Scan)  # profiles are refused
     return data
 

@@ -4,8 +4,8 @@ import base64
 from typing import Any
 
 import numpy as np
-import yaml
 
+from asperity.foreign_yaml import load_mapping
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.inputs.table import medians
 from mesoscale.settings import DeviceSettings
@@ -25,7 +25,7 @@ def switch_data(results: Results) -> dict[str, Any] | None:
         return None
     if results.json("device/pad_switch.json")["mean"] is None:
         return None
-    scene = yaml.safe_load((results.root / "scene.yaml").read_text(encoding="utf-8"))["scene"]
+    scene = load_mapping(results.root / "scene.yaml", "record of a run")["scene"]
     device = DeviceSettings(**scene["device"])
     switch = switch_from_settings(device)
     bends = device.spring_N_per_m is None and device.electrode_um2 is None

@@ -1,0 +1,98 @@
+"""A file of a stranger is read in a process of its own, which may take so much time and memory and no more.
+
+Readers of 40 formats meet files that point at themselves, unfold to gigabytes, or fill the terminal with warnings. The
+process is a fork, which costs some milliseconds and needs no second import of the readers.
+"""
+
+import multiprocessing
+import os
+import resource
+import signal
+import sys
+import tempfile
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, NoReturn
+
+from mesoscale.errors import InputError
+
+CPU_S, CPU_S_PER_MB = 10.0, 2.0
+"""The slowest good file at hand, text of 60 MB, takes a tenth of it."""
+PATIENCE = 4.0  # seconds by the clock for one of the processor: the machine may be busy
+MEMORY_MB, MEMORY_MB_PER_MB = 2000, 20.0
+OUTPUT_BYTES = 600 * 2**20  # of one file: a container is unpacked while it is read
+
+
+def guarded(path: Path, read: Callable[[], Any]) -> Any:
+    """What `read` returns, from a process with limits; on systems without fork, read in this process.
+
+    Raises
+    ------
+    InputError : that of `read`; its limits are reached, or it fails otherwise.
+    """
+    if sys.platform != "linux":
+        return read()
+    size_MB = path.stat().st_size / 2**20
+    cpu_s, memory_MB = CPU_S + CPU_S_PER_MB * size_MB, MEMORY_MB + MEMORY_MB_PER_MB * size_MB
+    with tempfile.TemporaryDirectory(prefix="asperity-") as folder:  # ours: the process may be killed
+        here, there = multiprocessing.Pipe(duplex=False)
+        child = os.fork()  # not multiprocessing.Process, which a worker of a pool may not start
+        if child == 0:
+            _in_child(read, there, folder, cpu_s, memory_MB)
+        there.close()
+        with here:
+            outcome, result = "slow", None
+            try:
+                if here.poll(PATIENCE * cpu_s):
+                    outcome, result = here.recv()
+            except EOFError:  # ended by a limit or by a fault of a reader
+                outcome = "ended"
+            finally:
+                if outcome == "slow":  # or this process is interrupted
+                    os.kill(child, signal.SIGKILL)
+                status = os.waitpid(child, 0)[1]
+        if outcome == "ended" and os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGXCPU:
+            outcome = "slow"
+    if outcome == "read":
+        return result
+    if outcome == "refused":
+        raise InputError(result)
+    reason = {
+        "memory": f"reading it needs more than {memory_MB:.0f} MB",
+        "slow": f"reading it takes more than {cpu_s:.0f} s",
+        "failed": f"its reader failed: {result}",
+        "ended": "its reader ended without a word",
+    }[outcome]
+    raise InputError(f"{path}: {reason}; the file may be damaged or made to do so: save it again (.gwy)")
+
+
+def _in_child(read: Callable[[], Any], pipe: Connection, folder: str, cpu_s: float, memory_MB: float) -> NoReturn:
+    """Read, answer and end, without what the forked process would do at its end."""
+    try:
+        _limit(folder, cpu_s, memory_MB)
+        pipe.send(("read", read()))
+    except InputError as error:
+        pipe.send(("refused", str(error)))
+    except MemoryError:
+        pipe.send(("memory", None))
+    except BaseException as error:  # readers of foreign formats fail in many ways
+        pipe.send(("failed", " ".join(f"{type(error).__name__}: {error}".split())[:200]))
+    finally:
+        os._exit(0)
+
+
+def _limit(folder: str, cpu_s: float, memory_MB: float) -> None:
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for stream in (0, 1, 2):
+        os.dup2(nothing, stream)
+    tempfile.tempdir = folder
+    used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    for limit, value in (
+        (resource.RLIMIT_AS, used + int(memory_MB * 2**20)),
+        (resource.RLIMIT_CPU, int(cpu_s) + 1),
+        (resource.RLIMIT_FSIZE, OUTPUT_BYTES),
+        (resource.RLIMIT_CORE, 0),
+    ):
+        hard = resource.getrlimit(limit)[1]
+        resource.setrlimit(limit, (value if hard == resource.RLIM_INFINITY else min(value, hard), hard))
