@@ -15,13 +15,13 @@ from evidence.record import load, record, table_of
 
 def studies() -> dict[str, str]:
     """Names of all studies with the question that each answers, without importing them."""
-    found = {}
+    known = {}
     here = Path(__file__).parent
     for path in sorted(here.glob("*/*.py")):
         module = ast.parse(path.read_text(encoding="utf-8"))
         if any(isinstance(node, ast.FunctionDef) and node.name == "rows" for node in module.body):
-            found[f"{path.parent.name}.{path.stem}"] = (ast.get_docstring(module) or "").partition("\n")[0]
-    return found
+            known[f"{path.parent.name}.{path.stem}"] = (ast.get_docstring(module) or "").partition("\n")[0]
+    return known
 
 
 def main() -> None:

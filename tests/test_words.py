@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-FOLDERS = ("atomistic", "asperity", "benchmarks", "config", "docs", "mesoscale", "workflow")
+FOLDERS = ("atomistic", "asperity", "config", "docs", "evidence", "mesoscale", "workflow")
 SUFFIXES = {".j2", ".js", ".md", ".py", ".smk", ".yaml"}
 BUILT = (ROOT / "docs" / "_build", ROOT / "docs" / "api")
 PAGES = [
@@ -24,7 +24,7 @@ CODE = [path for path in PAGES if path.suffix == ".py"]
 OTHER_MEANINGS = {
     "surface is roughness; a fitted function is a response": r"(response|linear|regression|polynomial) surface",
     "files are loaded; a reading is an interpretation of the paper": r"def read_\w+\(",
-    "a study measures error or stability; a switch is driven": r"study_(switch|surfaces)|studied|case study",
+    "a study is done once, in evidence; a switch is driven": r"study_(switch|surfaces)|studied|case study",
     "a design is where the engine is run": r"design (matrix|choice|decision)|^\s*design = ",
 }
 VAGUE_NAMES = {"alone", "along", "each", "facts", "found", "own", "told"}

@@ -139,8 +139,8 @@ def load_scene(name_or_path: str) -> Scene:
     path, *parents = _lineage(str(name_or_path))
     content: dict[str, Any] = {}
     for file in reversed([path, *parents]):
-        own = _content_of(file)
-        content = _merged(content, own) | {"name": own.get("name", file.stem)}
+        stated = _content_of(file)
+        content = _merged(content, stated) | {"name": stated.get("name", file.stem)}
     if str(content["name"]) in _shipped() and path.resolve().parent != SCENES:
         raise SceneError(
             f"{path}: name = {content['name']}: the name of a shipped scene, whose results it would take; "
