@@ -21,11 +21,11 @@ TEMPLATE = """\
 # This scene takes all inputs from the literature: minutes. Leave a row out, and its stage computes it from atoms
 # (e_star: DFT, h_prime: molecular dynamics) or scans (q0, hurst, rms: name them in topography.scans).
 inputs:
-  e_star: {{origin: literature, distribution: normal, a: 91, b: 3.8}}  # GPa
-  h_prime: {{origin: literature, a: 1.95, b: 14.8}}  # GPa nm^0.5
-  q0: {{origin: literature, a: 0.015, b: 0.035}}  # 1/nm
-  hurst: {{origin: literature, a: 0.5, b: 1.0}}
-  rms: {{origin: literature, a: 2, b: 15}}  # nm
+  e_star: {{origin: literature, distribution: normal, values: [91, 3.8]}}  # GPa
+  h_prime: {{origin: literature, values: [1.95, 14.8]}}  # GPa nm^0.5
+  q0: {{origin: literature, values: [0.015, 0.035]}}  # 1/nm
+  hurst: {{origin: literature, values: [0.5, 1.0]}}
+  rms: {{origin: literature, values: [2, 15]}}  # nm
 contact: {{pixels: 512}}
 """
 

@@ -12,7 +12,7 @@ from workflow.job import result_checksum
 
 CONTACT = scene(
     "contact: {pixels: 64, nominal_loads_nN: [1000]}",
-    "uncertainty: {seeds: 1, chunk_runs: 8, response: polynomial}",
+    "uncertainty: {seeds: 1, direct_runs: 200, response: polynomial}",
 )
 GLASS = scene(
     "compute: [hardness]",

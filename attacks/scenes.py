@@ -55,8 +55,8 @@ def _beyond_keys(scene: Scene, path: Path) -> list[str]:
     """As the workflow's rules check a scene: the files it names, then contradictions and the machine."""
     samples = {}
     for name, row in scene.inputs.rows().items():
-        if row.prior_origin == "literature" and row.distribution == "samples":
-            samples[name] = locate(str(path), f"inputs.{name}.file", [str(row.file)])[0]
+        if isinstance(row.values, str):
+            samples[name] = locate(str(path), f"inputs.{name}.values", [row.values])[0]
     if "topography" in scene.stages():
         locate(str(path), "topography.scans", files_of(str(path), scene.topography.scans))
     for table in scene.measurements.tables if "calibration" in scene.inputs.origins() else ():

@@ -1,9 +1,18 @@
 """Keys of scenes that are no more, with what to write instead; a scene that has one is refused in one line."""
 
+from mesoscale.inputs.definitions import BY_NAME
+from mesoscale.settings.inputs import FORMS
+
 FORMER_KEYS: dict[str, str] = {
     # device
     "device.landed_fraction": "no longer a setting, delete it: gap_um, bow_nm and tilt_nm say what is in contact",
     # inputs
+    **{
+        f"inputs.{row}.{key}": f"now among `values`, as one of {FORMS}"
+        for row in BY_NAME
+        for key in ("a", "b", "low", "high", "file")
+    },
+    **{f"inputs.{row}.prior": "no longer a key: without `values` the prior is that of the stage" for row in BY_NAME},
     # hardness
     **{
         f"hardness.glass.{key}": "no longer a setting, delete it: all glasses have the same (docs/hardness.md)"
@@ -43,4 +52,33 @@ FORMER_KEYS: dict[str, str] = {
     # law
     # pad and adhesion
     # uncertainty and calibration
+    **{
+        f"{section}.{key}": f"no longer a setting, delete it: {value}"
+        for section, values in {
+            "uncertainty": {
+                "chaos_degree": "it is 3",
+                "first_seed": "the first surface has seed 0",
+                "central_share": "it is 0.999",
+                "chunk_runs": "a job has 100 cycles",
+                "sample_seed": "it is 1",
+                "sobol_samples": "they are 2048",
+                "sobol_bootstrap": "they are 40",
+                "bootstrap": "they are 200",
+                "morris_trajectories": "they are 24",
+                "audit_seeds": "see `python -m evidence uncertainty.audit --help`",
+                "audit_readings": "see `python -m evidence uncertainty.audit --help`",
+                "study_runs": "see `python -m evidence uncertainty.work_precision --help`",
+                "study_replicates": "see `python -m evidence uncertainty.work_precision --help`",
+            },
+            "measurements": {
+                "chunk_runs": "a job has 100 cycles",
+                "response_error": "it is 0.5",
+                "walkers": "they are 32",
+                "max_steps": "they are 4000",
+                "samples": "4000 are kept",
+                "seed": "it is 1",
+            },
+        }.items()
+        for key, value in values.items()
+    },
 }

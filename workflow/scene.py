@@ -108,7 +108,7 @@ class Scene(Settings):
         wanted = {"contact.q1_per_nm": self.contact.q1_per_nm}
         row = self.inputs.rows().get("q1")
         if row is not None and row.origin == "literature":
-            wanted["inputs.q1"] = row.b if row.distribution == "uniform" else row.high or row.a
+            wanted["inputs.q1"] = row.reaches
         for key, q1 in wanted.items():
             if q1 is not None and q1 > resolved * (1 + 1e-9):
                 raise ValueError(

@@ -13,7 +13,6 @@ from mesoscale.device.statistics import least_pull_in_V, never_closes
 from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.table import check_literature
-from mesoscale.uncertainty.studies.readings import audited_readings
 from workflow.scene import ROOT, Scene
 from workflow.terminal.cost import START_S, history_s
 from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
@@ -39,9 +38,9 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
     for name in rows:
         if BY_NAME[name].setting in scene.contact.model_fields_set:
             yield f"contact.{BY_NAME[name].setting} and inputs.{name} give the same number; leave one out"
-    located = {name: row.model_copy(update={"file": samples.get(name)}) for name, row in rows.items()}
+    located = {name: rows[name].model_copy(update={"values": path}) for name, path in samples.items()}
     try:
-        spans = check_literature(scene.inputs.model_copy(update=located), scene.uncertainty.central_share)
+        spans = check_literature(scene.inputs.model_copy(update=located))
     except InputError as error:
         yield str(error)
         return
@@ -66,10 +65,6 @@ def _stages(scene: Scene) -> Iterator[str]:
             f"uncertainty.direct_runs = {uncertainty.direct_runs}: a regression over {needed // 2} inputs needs at "
             f"least {needed}; give more, or set uncertainty.response to polynomial"
         )
-    try:
-        audited_readings(uncertainty.audit_readings)
-    except InputError as error:
-        yield f"uncertainty.{error}"
     if scene.history.cycles and scene.contact.model != "plastic":
         yield (
             f"contact.model = {scene.contact.model} with history.cycles = {scene.history.cycles}: only plastic "
@@ -116,18 +111,13 @@ def _unknown_bases(scene: Scene) -> Iterator[str]:
 
 
 def _machine(scene: Scene) -> Iterator[str]:
-    designs = {
-        "uncertainty": ("chunk_runs", scene.uncertainty.direct_runs, scene.uncertainty.chunk_runs),
-        "pad": ("chunk_cells", scene.pad.cells, scene.pad.chunk_cells),
-        "measurements": ("chunk_runs", scene.measurements.runs, scene.measurements.chunk_runs),
-    }
-    for section, (key, count, size) in designs.items():
-        if (jobs := math.ceil(count / size)) > MOST_JOBS:
-            yield (
-                f"{section}.{key} = {size}: {count} of them need {jobs} jobs, whose start alone takes "
-                f"{jobs * START_S / 3600:.3g} hours of one core; accepted are {MOST_JOBS}: give at least "
-                f"{math.ceil(count / MOST_JOBS)}"
-            )
+    count, size = scene.pad.cells, scene.pad.chunk_cells
+    if (jobs := math.ceil(count / size)) > MOST_JOBS:
+        yield (
+            f"pad.chunk_cells = {size}: {count} of them need {jobs} jobs, whose start alone takes "
+            f"{jobs * START_S / 3600:.3g} hours of one core; accepted are {MOST_JOBS}: give at least "
+            f"{math.ceil(count / MOST_JOBS)}"
+        )
     pixels, needed, present = scene.contact.pixels, contact_MB(scene.contact), machine_MB()
     if needed > present:
         yield (
@@ -143,11 +133,11 @@ def _machine(scene: Scene) -> Iterator[str]:
                 f"{key} = {cells}: they are closed side by side, which needs {needed / 1000:.1f} GB of memory, this "
                 f"machine has {present / 1000:.1f}; take fewer of them"
             )
-    runs, resamplings = scene.uncertainty.direct_runs, scene.uncertainty.bootstrap
+    runs = scene.uncertainty.direct_runs
     if (needed := propagation_MB(scene.uncertainty)) > present:
         yield (
-            f"uncertainty.direct_runs = {runs}: with {resamplings} resamplings (bootstrap) they need "
-            f"{needed / 1000:.1f} GB of memory, this machine has {present / 1000:.1f}; take fewer of either"
+            f"uncertainty.direct_runs = {runs}: they need {needed / 1000:.1f} GB of memory, this machine has "
+            f"{present / 1000:.1f}; take fewer"
         )
     cycles = scene.history.cycles
     if cycles and (needed := history_MB(scene.history, scene.contact)) > present:

@@ -12,9 +12,9 @@ import asperity as asp
 measured = "our AFM"
 table = asp.input_table(  # rows that are not named here are those of the paper's Table 1
     e_star=asp.InputRow(distribution="normal", a=91, b=3.8, source="Kim et al. (2013), Table 1"),
-    q0=asp.InputRow(a=0.02, b=0.03, source=measured),
-    hurst=asp.InputRow(a=0.7, b=0.9, source=measured),
-    rms=asp.InputRow(a=4.0, b=5.0, source=measured),
+    q0=asp.InputRow(values=(0.02, 0.03), source=measured),
+    hurst=asp.InputRow(values=(0.7, 0.9), source=measured),
+    rms=asp.InputRow(values=(4.0, 5.0), source=measured),
 )
 settings = asp.ContactSettings(pixels=256, max_force_nN=7000.0)
 samples = asp.monte_carlo(table, settings, samples=24)

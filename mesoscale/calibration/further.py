@@ -16,6 +16,7 @@ from mesoscale.calibration.measurements import CURVES, Measurements
 from mesoscale.calibration.observables import force_levels_nN
 from mesoscale.calibration.posterior import Calibration
 from mesoscale.calibration.responses import ResponseFits
+from mesoscale.calibration.sampling import SEED
 
 Array = NDArray[np.float64]
 MadeUp = Callable[[int, np.random.Generator], Array]
@@ -66,12 +67,12 @@ def candidates(max_force_nN: float, contact_begin_nm: float) -> dict[str, tuple[
     }
 
 
-def next_measurements(result: Calibration, max_force_nN: float, seed: int) -> list[dict[str, Any]]:
+def next_measurements(result: Calibration, max_force_nN: float) -> list[dict[str, Any]]:
     """Rows of calibration/next.csv: for the lumped switch on the law of a cell.
 
     A switch that sticks counts with a negative voltage (`mesoscale.calibration.switches`).
     """
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xCD]))
+    rng = np.random.default_rng(np.random.SeedSequence([SEED, 0xCD]))
     x = result.x[rng.integers(len(result.x), size=DRAWS)]
     hamaker = x[:, result.posterior.table.names.index("hamaker")]
     with_switch = replace(result.posterior, switch=result.switch, law_responses=result.laws)
@@ -89,7 +90,6 @@ def next_on_pad(
     x: Array,
     volts: Array,
     max_force_nN: float,
-    seed: int,
 ) -> list[dict[str, Any]]:
     """Rows of calibration/next_on_pad.csv: for the switch on the pad.
 
@@ -98,7 +98,7 @@ def next_on_pad(
     given : the posterior given some tables.
     x, volts : inputs of solved switches, shape (m, n), and their release voltages; 0 where one sticks.
     """
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xCF]))
+    rng = np.random.default_rng(np.random.SeedSequence([SEED, 0xCF]))
 
     def released(point: int, rng: np.random.Generator) -> Array:
         measured = volts[point] + RELEASE_ERROR_V * rng.standard_normal()

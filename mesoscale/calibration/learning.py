@@ -12,11 +12,11 @@ from mesoscale.calibration.measurements import CURVES, Measurements, by_specimen
 from mesoscale.calibration.observables import CURVES as BRANCHES
 from mesoscale.calibration.observables import LAWS, NAMES, curve_names, force_levels_nN
 from mesoscale.calibration.posterior import Calibration, Cycles, draw
+from mesoscale.calibration.sampling import SEED
 from mesoscale.calibration.surfaces import SCALAR_COLUMNS, pseudo_inverse
 from mesoscale.calibration.switches import SwitchModel
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.settings import MeasurementsSettings
 
 Array = NDArray[np.float64]
 
@@ -47,22 +47,15 @@ def information_bits(z: Array, others: Array | None = None) -> float:
     return float(nats / np.log(2))
 
 
-def learned(
-    result: Calibration,
-    tables: Sequence[Measurements],
-    max_force_nN: float,
-    settings: MeasurementsSettings,
-) -> list[dict[str, Any]]:
+def learned(result: Calibration, tables: Sequence[Measurements], max_force_nN: float) -> list[dict[str, Any]]:
     """What each table taught: one row per kind, with bits and contradictions."""
-    rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 0xCC]))
+    rng = np.random.default_rng(np.random.SeedSequence([SEED, 0xCC]))
     rows = []
     for data in tables:
         only = result.given([data], max_force_nN)
         rest = [other for other in tables if other is not data]
-        by_itself = draw(only, settings).z if rest else result.chain.z
-        without = (
-            draw(result.given(rest, max_force_nN), settings).z if rest else rng.standard_normal(result.chain.z.shape)
-        )
+        by_itself = draw(only).z if rest else result.chain.z
+        without = draw(result.given(rest, max_force_nN)).z if rest else rng.standard_normal(result.chain.z.shape)
         probability = predictive_probability(only, only.inputs(without), rng)
         rows.append(
             {

@@ -113,7 +113,7 @@ class Posterior:
     @cached_property
     def free(self) -> NDArray[np.int_]:
         """Inputs that have a width; the others are not sampled."""
-        return np.flatnonzero([np.ptp(row.distribution.span(0.999)) > 0 for row in self.table.rows])
+        return np.flatnonzero([np.ptp(row.distribution.span()) > 0 for row in self.table.rows])
 
     def inputs(self, z: Array) -> Array:
         """Inputs (m, n) from points z (m, free) where their prior is standard normal."""

@@ -11,7 +11,7 @@ from mesoscale.calibration.likelihood import SWITCH_KINDS, Posterior, posterior_
 from mesoscale.calibration.measurements import ON_SURFACES, Measurements
 from mesoscale.calibration.observables import LAWS, NAMES, OBSERVABLES, observe
 from mesoscale.calibration.responses import ResponseFits, Responses, fit_responses, transformed
-from mesoscale.calibration.sampling import Chain, sample
+from mesoscale.calibration.sampling import MAX_STEPS, SEED, Chain, sample
 from mesoscale.calibration.surfaces import Expected, SurfaceData
 from mesoscale.calibration.switches import SwitchModel
 from mesoscale.errors import InputError
@@ -28,7 +28,8 @@ FIRST_SEED = 1_500_000_000
 FIRST_LOCAL_SEED = 1_700_000_000
 WIDENING = 1.3
 """Cycles near the posterior are spread wider than it, so that its tails are known, too."""
-CENTRAL_SHARE = 0.999
+RESPONSE_ERROR = 0.5
+"""Error of the responses that is small enough, in standard deviations of the posterior prediction."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +120,7 @@ def responses_of(table: InputTable, cycles: Cycles) -> tuple[ResponseFits, Respo
     ------
     InputError : too few cycles give all of the laws.
     """
-    ranges, rms = table.ranges(CENTRAL_SHARE), table.names.index("rms")
+    ranges, rms = table.ranges(), table.names.index("rms")
     count = len(OBSERVABLES)
     return (
         ResponseFits(OBSERVABLES, cycles.x, cycles.y[:, :count], ranges, rms),
@@ -154,15 +155,15 @@ def calibrate(
     expected = expected_of(cycles)
     needs_cycles = any(data.kind in (*ON_SURFACES, *SWITCH_KINDS) for data in tables)
     checks: list[dict[str, Any]] = []
-    rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 0xCB]))
+    rng = np.random.default_rng(np.random.SeedSequence([SEED, 0xCB]))
     turn, local = 0, []
     while True:
         responses, laws = responses_of(table, cycles)
         posterior = posterior_of(table, tables, responses, laws, switch, contact.max_force_nN, expected)
-        chain = draw(posterior, settings, progress)
+        chain = draw(posterior, progress=progress)
         rows = response_errors(posterior, chain, turn)
         checks += rows
-        small = all(row["error_share"] <= settings.response_error for row in rows)
+        small = all(row["error_share"] <= RESPONSE_ERROR for row in rows)
         if not needs_cycles or not chain.converged or turn == settings.rounds or (turn > 0 and small):
             break
         picks = rng.integers(len(chain.z), size=settings.local_runs)
@@ -185,16 +186,13 @@ def calibrate(
     )
 
 
-def draw(posterior: Posterior, settings: MeasurementsSettings, progress: Progress | None = None) -> Chain:
+def draw(posterior: Posterior, max_steps: int = MAX_STEPS, progress: Progress | None = None) -> Chain:
     """Samples of a posterior."""
     return sample(
         lambda z: posterior.log_likelihood(posterior.inputs(z)),
         len(posterior.free),
-        settings.walkers,
-        settings.max_steps,
-        settings.samples,
-        settings.seed,
-        progress,
+        max_steps=max_steps,
+        progress=progress,
     )
 
 
@@ -232,15 +230,15 @@ def response_errors(posterior: Posterior, chain: Chain, turn: int) -> list[dict[
     ]
 
 
-def response_remarks(result: Calibration, settings: MeasurementsSettings) -> list[str]:
+def response_remarks(result: Calibration) -> list[str]:
     """What the last round left of the responses' error, in words; nothing where it is small enough."""
     last = [row for row in result.checks if row["round"] == result.checks[-1]["round"]]
     worst = max(last, key=lambda row: row["error_share"], default=None)
-    if worst is None or worst["error_share"] <= settings.response_error:
+    if worst is None or worst["error_share"] <= RESPONSE_ERROR:
         return []
     return [
         f"the responses' error is {worst['error_share']:.2g} of the posterior's width ({worst['observable']}), above "
-        f"measurements.response_error {settings.response_error:g}; it is part of that width: raise "
+        f"{RESPONSE_ERROR:g}; it is part of that width: raise "
         "measurements.local_runs or measurements.rounds to narrow it"
     ]
 

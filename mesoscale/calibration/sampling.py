@@ -32,6 +32,13 @@ TAILS = (0.05, 0.95)
 FITTED_PER_INPUT = 20
 """Draws behind the first normal proposal."""
 SMALLEST_VARIANCE = 1e-14
+WALKERS = 32
+"""Of each ensemble."""
+MAX_STEPS = 4000
+"""Of each ensemble, after which sampling is given up; a posterior of twenty curves takes 200 to 400."""
+SAMPLES = 4000
+"""Draws that are kept."""
+SEED = 1
 
 
 class NormalProposal:
@@ -134,10 +141,10 @@ def advanced(samplers: list[tuple[Any, Any, NormalProposal]], steps: int) -> lis
 def sample(
     log_likelihood: Callable[[Array], Array],
     dimensions: int,
-    walkers: int,
-    max_steps: int,
-    samples: int,
-    seed: int,
+    walkers: int = WALKERS,
+    max_steps: int = MAX_STEPS,
+    samples: int = SAMPLES,
+    seed: int = SEED,
     progress: Callable[[float, str], None] | None = None,
 ) -> Chain:
     """Sample a posterior whose prior is standard normal.

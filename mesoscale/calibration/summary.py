@@ -20,31 +20,7 @@ QUANTILES = {"q05": 0.05, "q50": 0.5, "q95": 0.95}
 MARGINAL_POINTS = 401
 """Quantiles of a posterior that stand in posterior.json and go on into inputs.csv."""
 PREDICTED = 1000
-RESPONSE_COLUMNS = (
-    "round",
-    "observable",
-    "runs",
-    "terms",
-    "error",
-    "posterior_sd",
-    "error_share",
-    "bias",
-    "bias_error",
-)
-LEARNED_COLUMNS = ("kind", "file", "rows", "alone_bits", "added_bits", "probability", "verdict")
-NEXT_COLUMNS = (
-    "kind",
-    "measurement",
-    "width_now_V",
-    "width_then_V",
-    "reduction",
-    "standard_error",
-    "effective_samples",
-)
 _STATES = ("prior", "posterior")
-_SPREAD = tuple(f"{state}_{name}" for state in _STATES for name in QUANTILES)
-PREDICTIVE_COLUMNS = ("quantity", "unit", "force_nN", *_SPREAD)
-SUMMARY_COLUMNS = ("parameter", "unit", "prior_mean", "prior_sd", "posterior_mean", "posterior_sd", "bits", *_SPREAD)
 
 
 def _spread(state: str, values: Array) -> dict[str, float]:

@@ -9,6 +9,9 @@ from mesoscale.errors import InputError
 
 Array = NDArray[np.float64]
 
+CENTRAL_SHARE = 0.999
+"""Central share of an unbounded distribution that responses and nodes span."""
+
 
 @dataclass(frozen=True)
 class Distribution:
@@ -47,7 +50,7 @@ class Distribution:
         below, above = ndtr((self.low - self.a) / self.b), ndtr((self.high - self.a) / self.b)
         return np.clip(self.a + self.b * ndtri(below + p * (above - below)), self.low, self.high)
 
-    def span(self, central_share: float) -> tuple[float, float]:
+    def span(self, central_share: float = CENTRAL_SHARE) -> tuple[float, float]:
         """Ends of the range that responses cover.
 
         All of a bounded distribution; the central share of an unbounded one.
@@ -95,9 +98,9 @@ class InputTable:
         """Central values by name, in the inputs' units (the means, where a distribution is symmetric)."""
         return {row.name: float(row.distribution.quantile(0.5)) for row in self.rows}
 
-    def ranges(self, central_share: float) -> Array:
+    def ranges(self) -> Array:
         """Range that responses cover, shape (n, 2)."""
-        return np.array([row.distribution.span(central_share) for row in self.rows])
+        return np.array([row.distribution.span() for row in self.rows])
 
     def transform(self, unit_points: Array) -> Array:
         """Points of the unit cube (m, n) to values of the inputs with their correlation (Gaussian copula)."""

@@ -9,17 +9,17 @@ import numpy as np
 from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
-from mesoscale.settings import TABLE_1, InputRow, InputsSettings, UncertaintySettings
+from mesoscale.settings import TABLE_1, InputRow, InputsSettings
 from mesoscale.tables import foreign_table
 
-COLUMNS = ("parameter", "unit", "distribution", "a", "b", "low", "high", "correlation", "origin", "file")
+NUMBERS = ("a", "b", "low", "high")
+"""Of a distribution, in the order of `InputRow.values`; columns of inputs.csv."""
 
 
 def collect(
     settings: InputsSettings,
     stages: Mapping[str, Mapping[str, Any]],
     files: Mapping[str, str],
-    central_share: float,
 ) -> InputTable:
     """The inputs in use.
 
@@ -29,7 +29,6 @@ def collect(
     stages : content of the result file of each stage that a row wants: `inputs` (by name: distribution, a, b
         and perhaps low, high, correlation) and `gate` (`passed`, `reasons`).
     files : name of that file, for messages and the table.
-    central_share : see `UncertaintySettings.central_share`; ranges are checked over it.
 
     Raises
     ------
@@ -52,13 +51,13 @@ def collect(
                         pairs[name, other] = float(rank)
                 elif partner is not None:
                     pairs.setdefault((name, other), float(rank))
-        _check_range(name, given, where, central_share)
+        _check_range(name, given, where)
         rows.append(UncertainInput(name, BY_NAME[name].unit, given, row.origin, source))
     names = [row.name for row in rows]
     return InputTable(tuple(rows), correlation_matrix(names, pairs))
 
 
-def check_literature(settings: InputsSettings, central_share: float) -> dict[str, tuple[float, float]]:
+def check_literature(settings: InputsSettings) -> dict[str, tuple[float, float]]:
     """Check what needs no stage: the literature rows, priors among them, and the correlations that the settings give.
 
     Returns
@@ -72,12 +71,12 @@ def check_literature(settings: InputsSettings, central_share: float) -> dict[str
     rows, spans = settings.priors().rows(), {}
     for name, row in rows.items():
         if row.origin == "literature":
-            spans[name] = _check_range(name, _literature(name, row), f"inputs.{name}", central_share)
+            spans[name] = _check_range(name, _literature(name, row), f"inputs.{name}")
     correlation_matrix(list(rows), {(pair.first, pair.second): pair.rank for pair in settings.correlations})
     return spans
 
 
-def check_resolved(table: InputTable, nyquist_per_nm: float, central_share: float) -> None:
+def check_resolved(table: InputTable, nyquist_per_nm: float) -> None:
     """Check that a grid resolves the short-wave cut-off.
 
     Raises
@@ -85,20 +84,20 @@ def check_resolved(table: InputTable, nyquist_per_nm: float, central_share: floa
     InputError : the cut-off goes beyond the largest wave vector of the grid.
     """
     for row in table.rows:
-        _, high = row.distribution.span(central_share)
+        _, high = row.distribution.span()
         if row.name == "q1" and high > nyquist_per_nm * (1 + 1e-9):
             raise InputError(
                 f"{row.source}: q1 reaches {high:.4g} 1/nm, beyond what contact.pixels and contact.length_nm resolve "
-                f"({nyquist_per_nm:.4g} 1/nm); raise contact.pixels, or set inputs.q1.origin to literature with a and b"
+                f"({nyquist_per_nm:.4g} 1/nm); raise contact.pixels, or set inputs.q1.origin to literature with values"
             )
 
 
 PAPER_ROWS = {
-    "e_star": InputRow(distribution="normal", a=91, b=3.8, source=TABLE_1),
-    "h_prime": InputRow(a=1.95, b=14.8, source=TABLE_1),
-    "q0": InputRow(a=0.015, b=0.035, source=TABLE_1),
-    "hurst": InputRow(a=0.5, b=1.0, source=TABLE_1),
-    "rms": InputRow(a=2, b=15, source=TABLE_1),
+    "e_star": InputRow(distribution="normal", values=(91, 3.8), source=TABLE_1),
+    "h_prime": InputRow(values=(1.95, 14.8), source=TABLE_1),
+    "q0": InputRow(values=(0.015, 0.035), source=TABLE_1),
+    "hurst": InputRow(values=(0.5, 1.0), source=TABLE_1),
+    "rms": InputRow(values=(2, 15), source=TABLE_1),
 }
 """The paper's rows of the inputs that stages compute; the settings' defaults hold the others."""
 
@@ -110,7 +109,7 @@ def input_table(topography: Mapping[str, Any] | None = None, **rows: InputRow) -
     ----------
     topography : what `measure_roughness` found: gives q0, hurst and rms.
     rows : distributions by name of the input (`InputsSettings`), for instance
-        ``e_star=InputRow(distribution="normal", a=70, b=5)`` in GPa.
+        ``e_star=InputRow(distribution="normal", values=(70, 5))`` in GPa.
 
     Raises
     ------
@@ -119,21 +118,19 @@ def input_table(topography: Mapping[str, Any] | None = None, **rows: InputRow) -
     measured = {} if topography is None else {name: InputRow(origin="topography") for name in ("q0", "hurst", "rms")}
     settings = InputsSettings(**{**PAPER_ROWS, **measured, **rows})
     stages = {} if topography is None else {"topography": topography}
-    return collect(settings, stages, {"topography": "measured roughness"}, UncertaintySettings().central_share)
+    return collect(settings, stages, {"topography": "measured roughness"})
 
 
 def _literature(name: str, row: InputRow) -> Distribution:
-    if row.distribution == "samples":
-        return Distribution("samples", values=_read_samples(name, row.file or ""))
-    return _distribution(row.model_dump(), f"inputs.{name}")
+    if isinstance(row.values, tuple):
+        return Distribution(row.distribution, **dict(zip(NUMBERS, row.values, strict=False)))
+    return Distribution("samples", values=_read_samples(name, row.values or ""))
 
 
 def _distribution(entry: Mapping[str, Any], where: str) -> Distribution:
     if entry.get("distribution") == "samples":  # of the calibration
         return Distribution("samples", values=np.sort(np.asarray(entry["values"], float)))
-    numbers: dict[str, Any] = {
-        key: float(entry[key]) for key in ("a", "b", "low", "high") if entry.get(key) is not None
-    }
+    numbers: dict[str, Any] = {key: float(entry[key]) for key in NUMBERS if entry.get(key) is not None}
     if entry.get("distribution") not in ("uniform", "normal", "truncated_normal", "fixed") or "a" not in numbers:
         raise InputError(
             f"{where}: distribution {entry.get('distribution')} with {numbers} is not usable; "
@@ -148,27 +145,27 @@ def _from_stage(name: str, origin: str, content: Mapping[str, Any], source: str)
         reasons = "; ".join(gate.get("reasons", [])) or "no reason given"
         raise InputError(
             f"{source}: its gate failed ({reasons}), so {name} cannot be taken from {origin}; "
-            f"improve that stage's settings or set inputs.{name}.origin to literature with a and b"
+            f"improve that stage's settings or set inputs.{name}.origin to literature with values"
         )
     entry = content.get("inputs", {}).get(name)
     if entry is None:
-        raise InputError(f"{source}: holds no inputs.{name}; set inputs.{name}.origin to literature with a and b")
+        raise InputError(f"{source}: holds no inputs.{name}; set inputs.{name}.origin to literature with values")
     return entry
 
 
 def _read_samples(name: str, file: str) -> np.ndarray:
-    rows = foreign_table(file, f"inputs.{name}.file = {file}")[1]
+    rows = foreign_table(file, f"inputs.{name}.values = {file}")[1]
     try:
         values = np.array([float(row[name]) for row in rows])
     except (KeyError, TypeError, ValueError):
-        raise InputError(f"inputs.{name}.file = {file}: needs a column {name} with one number a row") from None
+        raise InputError(f"inputs.{name}.values = {file}: needs a column {name} with one number a row") from None
     if values.size < 2 or not np.isfinite(values).all():
-        raise InputError(f"inputs.{name}.file = {file}: {values.size} samples; at least 2, all finite, are needed")
+        raise InputError(f"inputs.{name}.values = {file}: {values.size} samples; at least 2, all finite, are needed")
     return np.sort(values)
 
 
-def _check_range(name: str, given: Distribution, where: str, central_share: float) -> tuple[float, float]:
-    low, high = given.span(central_share)
+def _check_range(name: str, given: Distribution, where: str) -> tuple[float, float]:
+    low, high = given.span()
     row = BY_NAME[name]
     if not (row.accepts(low) and row.accepts(high) and low <= high):
         raise InputError(
@@ -184,7 +181,7 @@ def to_rows(table: InputTable) -> list[dict[str, Any]]:
     for k, row in enumerate(table.rows):
         given = row.distribution
         partners = {table.names[j]: table.correlation[k, j] for j in range(k) if table.correlation[k, j]}
-        finite = {key: value for key in ("a", "b", "low", "high") if np.isfinite(value := getattr(given, key))}
+        finite = {key: value for key in NUMBERS if np.isfinite(value := getattr(given, key))}
         # samples travel inside the table, so that inputs.csv alone defines the inputs in use
         kind = given.kind if given.kind != "samples" else "samples " + json.dumps(given.values.tolist())
         rows.append(
@@ -206,7 +203,7 @@ def from_rows(rows: Iterable[Mapping[str, str]]) -> InputTable:
     inputs, pairs = [], {}
     for row in rows:
         kind, _, samples = row["distribution"].partition(" ")
-        numbers: dict[str, Any] = {key: float(row[key]) for key in ("a", "b", "low", "high") if row.get(key)}
+        numbers: dict[str, Any] = {key: float(row[key]) for key in NUMBERS if row.get(key)}
         values = np.array(json.loads(samples)) if samples else np.empty(0)
         inputs.append(
             UncertainInput(

@@ -3,10 +3,17 @@
 import math
 from typing import Any, Literal, cast
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, create_model, field_validator, model_validator
 
 from mesoscale.inputs.definitions import BY_NAME, INPUTS, InputDefinition
 from mesoscale.settings.base import Settings
+
+NUMBERS = {"uniform": 2, "normal": 2, "truncated_normal": 4, "fixed": 1}
+"""How many numbers state a distribution; `samples` has a file instead."""
+FORMS = (
+    "uniform [low, high], normal [mean, deviation], truncated_normal [mean, deviation, low, high], fixed [value], "
+    "samples file.csv"
+)
 
 
 class InputRow(Settings):
@@ -14,58 +21,54 @@ class InputRow(Settings):
 
     origin: Literal["literature", "hardness", "elastic", "topography", "calibration"] = Field(
         default="literature",
-        description="where the distribution comes from: this file, the result of that stage, or the calibration with "
-        "the scene's measurements",
-    )
-    prior: Literal["literature", "hardness", "elastic", "topography"] = Field(
-        default="literature", description="origin calibration: where its prior comes from: this file, or that stage"
+        description="where the distribution comes from: this file; the result of that stage; or the calibration with "
+        "the scene's measurements, whose prior is stated here or, without values, by the stage that computes the input",
     )
     distribution: Literal["uniform", "normal", "truncated_normal", "samples", "fixed"] = Field(
-        default="uniform",
-        description="form of a literature distribution: uniform a..b; normal with mean a and deviation b; "
-        "the same truncated to low..high; samples read from `file`; fixed at a",
+        default="uniform", description="form of the distribution that `values` state"
     )
-    a: float | None = Field(default=None, description="lower end, mean, or fixed value, in the input's unit")
-    b: float | None = Field(default=None, description="upper end or standard deviation, in the input's unit")
-    low: float | None = Field(default=None, description="lower truncation of truncated_normal")
-    high: float | None = Field(default=None, description="upper truncation of truncated_normal")
-    file: str | None = Field(default=None, description="CSV with one sample a row in a column named like the input")
-    source: str = Field(
-        default="", max_length=500, description="where the literature values come from, shown in the report"
+    values: tuple[float, ...] | str | None = Field(
+        default=None,
+        description=f"its numbers, in the input's unit: {FORMS} (one sample a row, in a column named like the input)",
     )
+    source: str = Field(default="", max_length=500, description="where the values come from, shown in the report")
 
-    @property
-    def prior_origin(self) -> str:
-        """Where the distribution comes from, before any calibration."""
-        return self.prior if self.origin == "calibration" else self.origin
+    @field_validator("values", mode="before")
+    @classmethod
+    def _numbers_or_path(cls, given: Any) -> Any:
+        if given is None or isinstance(given, str):
+            return given
+        numbers = given if isinstance(given, (list, tuple)) else [None]
+        if not all(isinstance(item, (int, float)) and not isinstance(item, bool) for item in numbers):
+            raise ValueError(f"accepted are {FORMS}")
+        return tuple(numbers)
 
     @model_validator(mode="after")
     def _complete(self) -> "InputRow":
-        given = {key for key in ("a", "b", "low", "high", "file") if getattr(self, key) is not None}
-        if self.prior != "literature" and self.origin != "calibration":
-            raise ValueError(f"prior {self.prior} with origin {self.origin}; only origin calibration has a prior")
-        if self.prior_origin != "literature":
-            if given:
-                raise ValueError(
-                    f"origin {self.prior_origin} takes no {', '.join(sorted(given))}; that stage gives them"
-                )
+        values, kind = self.values, self.distribution
+        if values is None:
+            if self.origin == "literature":
+                raise ValueError(f"origin literature needs values: {FORMS}")
             return self
-        wanted = {
-            "uniform": {"a", "b"},
-            "normal": {"a", "b"},
-            "truncated_normal": {"a", "b", "low", "high"},
-            "samples": {"file"},
-            "fixed": {"a"},
-        }[self.distribution]
-        if given != wanted:
-            raise ValueError(f"distribution {self.distribution} takes exactly {', '.join(sorted(wanted))}")
-        if self.distribution == "uniform" and not (self.a or 0.0) <= (self.b or 0.0):
-            raise ValueError(f"uniform from a = {self.a} to b = {self.b}: a must not exceed b")
-        if "normal" in self.distribution and not (self.b or 0.0) >= 0:
-            raise ValueError(f"deviation b = {self.b} must be >= 0")
-        if self.distribution == "truncated_normal" and not (self.low or 0.0) < (self.high or 0.0):
-            raise ValueError(f"truncation {self.low} .. {self.high}: low must lie below high")
+        if self.origin not in ("literature", "calibration"):
+            raise ValueError(f"origin {self.origin} takes no values; that stage gives them")
+        if kind == "samples" and isinstance(values, str):
+            return self
+        if kind == "samples" or isinstance(values, str) or len(values) != NUMBERS[kind]:
+            raise ValueError(f"values = {values!r:.60} are none of distribution {kind}; accepted are {FORMS}")
+        if kind == "uniform" and not values[0] <= values[1]:
+            raise ValueError(f"uniform values [{values[0]:g}, {values[1]:g}]: the first must not exceed the second")
+        if "normal" in kind and not values[1] >= 0:
+            raise ValueError(f"{kind} with deviation {values[1]:g}: it must be >= 0")
+        if kind == "truncated_normal" and not values[2] < values[3]:
+            raise ValueError(f"truncation {values[2]:g} .. {values[3]:g}: low must lie below high")
         return self
+
+    @property
+    def reaches(self) -> float | None:
+        """The largest number that it states as an end, or its mean; None of samples and of a stage's distribution."""
+        place = {"uniform": 1, "truncated_normal": 3}.get(self.distribution, 0)
+        return self.values[place] if isinstance(self.values, tuple) else None
 
 
 class Correlation(Settings):
@@ -114,8 +117,7 @@ def _key(row: InputDefinition) -> Any:
         return InputRow | None, Field(default=None, description=f"optional input: {about}")
     if row.literature is None:
         return InputRow, Field(default=InputRow(origin=cast(Any, row.stage)), description=about)
-    low, high = row.literature
-    return InputRow, Field(default=InputRow(a=low, b=high, source=TABLE_1), description=about)
+    return InputRow, Field(default=InputRow(values=row.literature, source=TABLE_1), description=about)
 
 
 class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.name: _key(row) for row in INPUTS})):
@@ -147,10 +149,11 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
                 raise ValueError(f"correlations: {pair.first} with itself; name two inputs")
         for name, row in self.rows().items():
             stage = BY_NAME[name].stage
-            if row.prior_origin not in ("literature", stage):
-                if stage == "literature":
-                    raise ValueError(f"{name}: no stage computes it; origin must be literature or calibration")
-                raise ValueError(f"{name}: origin {row.prior_origin}; accepted: literature, {stage}, calibration")
+            accepted = dict.fromkeys(("literature", stage, "calibration"))
+            if row.origin not in accepted:
+                raise ValueError(f"{name}: origin {row.origin}; accepted: {', '.join(accepted)}")
+            if row.origin == "calibration" and row.values is None and stage == "literature":
+                raise ValueError(f"{name}: no stage computes it, so that its prior must be stated: give its values")
         return self
 
     def rows(self) -> dict[str, InputRow]:
@@ -159,17 +162,27 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
         if self.adhesion:
             stated = {"hamaker": self.adhesion.hamaker, "gap_cutoff": self.adhesion.gap_cutoff_nm}
             for name, value in stated.items():
-                named[name] = InputRow(distribution="fixed", a=value, source="inputs.adhesion")
+                named[name] = InputRow(distribution="fixed", values=(value,), source="inputs.adhesion")
         return {name: row for name, row in named.items() if row is not None}
+
+    def prior_origins(self) -> dict[str, str]:
+        """Where the distribution of each input comes from, before any calibration."""
+        return {
+            name: row.origin
+            if row.origin != "calibration"
+            else BY_NAME[name].stage
+            if row.values is None
+            else "literature"
+            for name, row in self.rows().items()
+        }
 
     def origins(self) -> set[str]:
         """Where the inputs come from; cheap, so that a workflow can decide which stages to run."""
-        return {origin for row in self.rows().values() for origin in (row.origin, row.prior_origin)}
+        return {row.origin for row in self.rows().values()} | set(self.prior_origins().values())
 
     def priors(self) -> "InputsSettings":
         """The inputs before any calibration."""
-        rows = {
-            name: row.model_copy(update={"origin": row.prior_origin, "prior": "literature"})
-            for name, row in self.rows().items()
-        }
-        return self.model_copy(update=rows)
+        origins = self.prior_origins()
+        return self.model_copy(
+            update={name: row.model_copy(update={"origin": origins[name]}) for name, row in self.rows().items()}
+        )

@@ -46,25 +46,15 @@ class MeasurementsSettings(Settings):
     runs: int = Field(
         default=800, ge=50, le=10**6, description="contact cycles over the whole prior behind the responses"
     )
-    chunk_runs: int = Field(default=100, ge=1, le=100000, description="contact cycles per job and file")
     local_runs: int = Field(
         default=300, ge=20, le=10**6, description="contact cycles where the posterior lies, added at a time"
     )
     rounds: int = Field(
-        default=3, ge=0, le=20, description="how often they are added at most, until response_error is met"
+        default=3,
+        ge=0,
+        le=20,
+        description="how often they are added at most, until the responses are exact enough",
     )
-    response_error: float = Field(
-        default=0.5,
-        gt=0,
-        le=10,
-        description="error of the responses that is small enough, in standard deviations of the posterior prediction",
-    )
-    walkers: int = Field(default=32, ge=16, le=1000, description="walkers of each of four independent ensembles")
-    max_steps: int = Field(
-        default=4000, ge=200, le=10**6, description="steps of each ensemble after which sampling is given up"
-    )
-    samples: int = Field(default=4000, ge=200, le=10**6, description="samples of the posterior that are kept")
-    seed: int = Field(default=1, ge=0, le=2**31, description="seed of the sampling and of the surfaces of its cycles")
 
     @model_validator(mode="after")
     def _one_table_of_a_kind(self) -> "MeasurementsSettings":

@@ -2,6 +2,9 @@
 
 from mesoscale.settings import UncertaintySettings
 
+CHUNK_RUNS = 100
+"""Contact cycles per job and file: jobs of some seconds to minutes, of which an interruption loses one."""
+
 
 def collocation_level(settings: UncertaintySettings) -> int:
     """Level of the sparse grid."""
@@ -18,12 +21,12 @@ def collocation_run_count(inputs: int, settings: UncertaintySettings) -> int:
     return node_count(inputs, collocation_level(settings)) * settings.seeds
 
 
-def chunk_bounds(runs: int, chunk_runs: int) -> dict[str, tuple[int, int]]:
+def chunk_bounds(runs: int, chunk_runs: int = CHUNK_RUNS) -> dict[str, tuple[int, int]]:
     """First and last+1 run of every chunk, by its three-digit name."""
     starts = range(0, runs, chunk_runs)
     return {f"{k:03d}": (start, min(start + chunk_runs, runs)) for k, start in enumerate(starts)}
 
 
-def full_chunks(runs: int, chunk_runs: int) -> dict[str, tuple[int, int]]:
-    """As `chunk_bounds`, the last chunk filled up, so that more runs leave every chunk as it is."""
-    return chunk_bounds(-(-runs // chunk_runs) * chunk_runs, chunk_runs)
+def full_chunks(runs: int) -> dict[str, tuple[int, int]]:
+    """As `chunk_bounds`, the last of several chunks filled up, so that more runs leave every chunk as it is."""
+    return chunk_bounds(runs if runs <= CHUNK_RUNS else -(-runs // CHUNK_RUNS) * CHUNK_RUNS)

@@ -54,7 +54,6 @@ def table3(
     return values
 
 
-RATIO_COLUMNS = ("quantity", "from", "value", "seed_sd", "paper", "difference_in_seed_sd", "seeds_used")
 RATIOS = {"d_c": OUTPUTS.index("d_c_nm"), "rho_r": OUTPUTS.index("rho_r_nm")}
 
 
@@ -62,7 +61,6 @@ def ratio_rows(
     nodes: NodeOutputs,
     result: Propagation,
     table: InputTable,
-    central_share: float,
     paper2: Mapping[str, tuple[float, float]],
     paper3: Mapping[str, Mapping[str, float]],
 ) -> list[dict[str, Any]]:
@@ -73,7 +71,7 @@ def ratio_rows(
     if "rms" not in table.names:
         return []
     position, inputs = table.names.index("rms"), len(table.rows)
-    low, high = table.ranges(central_share)[position]
+    low, high = table.ranges()[position]
     if not high > low:
         return []
     y = nodes.paper_outputs[:, : 2 * inputs + 1]
@@ -88,12 +86,14 @@ def ratio_rows(
             value = float(known.mean()) if len(known) else np.nan
             scatter = float(known.std(ddof=1)) if len(known) > 1 else np.nan
             rows.append(
-                dict(
-                    zip(
-                        RATIO_COLUMNS,
-                        (f"{name}/RMS", source, value, scatter, reference, (value - reference) / scatter, len(known)),
-                        strict=True,
-                    )
-                )
+                {
+                    "quantity": f"{name}/RMS",
+                    "from": source,
+                    "value": value,
+                    "seed_sd": scatter,
+                    "paper": reference,
+                    "difference_in_seed_sd": (value - reference) / scatter,
+                    "seeds_used": len(known),
+                }
             )
     return rows

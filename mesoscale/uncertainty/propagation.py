@@ -13,6 +13,7 @@ from mesoscale.law.parameters import CLOSING, FITTED, LAW, LAW_OUTPUTS, OPENING,
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.chunks import collocation_level
 from mesoscale.uncertainty.collocation import elementary_effects, interpolating_response, level1_response
+from mesoscale.uncertainty.designs import SAMPLE_SEED
 from mesoscale.uncertainty.surrogate import (
     Below,
     Response,
@@ -92,7 +93,7 @@ def exported_responses(
     for k in range(len(FITTED)):
         transform = transform_of(k, settings)
         if settings.response == "regression":
-            responses.append(_regression(direct[0], direct[1][:, k], ranges, transform, settings))
+            responses.append(_regression(direct[0], direct[1][:, k], ranges, transform))
         else:
             responses.append(_through_nodes(nodes.values[:, :, k], ranges, transform, settings))
     above = responses[CLOSING_CONTACT]
@@ -102,7 +103,7 @@ def exported_responses(
             for y in (direct[1], nodes.values)
         ]
         if settings.response == "regression":
-            drop = _regression(direct[0], fell[0], ranges, "log", settings)
+            drop = _regression(direct[0], fell[0], ranges, "log")
         else:
             drop = _through_nodes(fell[1], ranges, "log", settings)
         responses[OPENING_CONTACT] = Below(FITTED[CLOSING_CONTACT], above, drop) if drop else None
@@ -142,23 +143,23 @@ def output_responses(
     """Responses of the outputs of Table 2, behind indices and elementary effects, from the exported ones.
 
     By regression a change on opening has a response of its own: as a small difference of two large numbers it would
-    inherit the errors of both (docs/uncertainty_reference.md).
+    inherit the errors of both (docs/uncertainty.md).
     """
     changes: list[Response | Change | None] = []
     outputs = to_paper_outputs(direct[1])
     for k, (closing, opening) in enumerate(zip(exported[CLOSING], exported[OPENING], strict=True), OPENING.start):
         if settings.response == "regression":
-            changes.append(_regression(direct[0], outputs[:, k], ranges, OUTPUT_TRANSFORMS[k], settings))
+            changes.append(_regression(direct[0], outputs[:, k], ranges, OUTPUT_TRANSFORMS[k]))
         else:
             changes.append(Change(closing, opening) if closing and opening else None)
     return [*exported[CLOSING], *changes]
 
 
-def _regression(x: Array, y: Array, ranges: Array, transform: str, settings: UncertaintySettings) -> Surrogate | None:
+def _regression(x: Array, y: Array, ranges: Array, transform: str) -> Surrogate | None:
     from mesoscale.uncertainty.regression import sparse_chaos
 
     try:
-        return sparse_chaos(x, y, ranges, settings.chaos_degree, transform)
+        return sparse_chaos(x, y, ranges, transform=transform)
     except ValueError:  # too few usable runs; the count of missing ones is in uq/validation.csv
         return None
 
@@ -204,8 +205,8 @@ def propagate(
 
     A seed with a missing node has no response for that output; nothing is filled in.
     """
-    ranges = table.ranges(settings.central_share)
-    samples = table.sample(settings.samples, settings.sample_seed)
+    ranges = table.ranges()
+    samples = table.sample(settings.samples, SAMPLE_SEED)
     seeds = len(nodes.seeds)
     total, total_squares = np.zeros((2, len(samples), len(OUTPUTS)))
     by_seed = np.full((seeds, 2, len(OUTPUTS)), np.nan)
@@ -225,7 +226,7 @@ def propagate(
     known = direct or (np.empty((0, len(ranges))), np.empty((0, len(FITTED))))
     responses = exported_responses(nodes, known, ranges, settings)
     outputs = evaluate(responses, samples)
-    cells = with_scatter(outputs, responses, known, settings.response == "regression", settings.sample_seed)
+    cells = with_scatter(outputs, responses, known, settings.response == "regression", SAMPLE_SEED)
     existing = [k for k, response in enumerate(responses) if response is not None]
     scatter = joint_scatter(
         [response for response in responses if response is not None],
@@ -335,7 +336,7 @@ def surrogate_json(
             "low": low,
             "high": high,
         }
-        for row, (low, high) in zip(table.rows, table.ranges(settings.central_share).tolist(), strict=True)
+        for row, (low, high) in zip(table.rows, table.ranges().tolist(), strict=True)
     ]
     outputs = []
     for k, name in enumerate(FITTED):

@@ -1,6 +1,5 @@
 """Runs of the contact model: which inputs and seed each has, computing them, and the law of each."""
 
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -15,7 +14,7 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.branches import NO_FIT, Outcome, fit_cycle
 from mesoscale.law.compact import Law
 from mesoscale.law.parameters import PARAMETERS
-from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
+from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
@@ -51,8 +50,7 @@ def compute_rows(
     law: LawSettings,
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[dict[str, float | int | str]]:
-    """Compute runs and fit the law to each: one row per run with inputs, seed, parameters and cost."""
-    before = time.process_time()
+    """Compute runs and fit the law to each: one row per run with inputs, seed and parameters."""
     for run, cycle in compute_all(runs, contact, progress):
         touch: float | str = ""
         if isinstance(cycle, str):
@@ -65,9 +63,7 @@ def compute_rows(
             for name, value in zip(PARAMETERS, fit.parameters.tolist(), strict=True):
                 row[f"{branch}_{name}"] = value if np.isfinite(value) else ""
             row[f"{branch}_status"] = fit.status
-        after = time.process_time()
-        yield {**row, "first_contact_nm": touch, "curve_status": outcome.status, "cpu_s": after - before}
-        before = after
+        yield {**row, "first_contact_nm": touch, "curve_status": outcome.status}
 
 
 @dataclass(frozen=True)
@@ -108,7 +104,7 @@ def monte_carlo(
     if isinstance(samples, bool) or not isinstance(samples, int) or samples < 1:
         raise InputError(f"samples = {samples!r}: accepted is a whole number >= 1")
     law = law or LawSettings()
-    runs = random_runs(table, UncertaintySettings(sample_seed=seed), 0, samples)
+    runs = random_runs(table, 0, samples, seed)
     kept, parameters, failed = [], [], []
     for run, cycle in compute_all(runs, contact, progress):
         outcome = Outcome(NO_FIT, NO_FIT, cycle) if isinstance(cycle, str) else fit_cycle(cycle, law)

@@ -12,6 +12,7 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.parameters import FITTED, LAW_OUTPUTS, OUTPUTS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import elementary_effects, to_values
+from mesoscale.uncertainty.designs import SAMPLE_SEED
 from mesoscale.uncertainty.morris import Effects, trajectory_effects, trajectory_points
 from mesoscale.uncertainty.propagation import (
     Change,
@@ -24,6 +25,13 @@ from mesoscale.uncertainty.regression import refit
 from mesoscale.uncertainty.surrogate import Response, Surrogate, evaluate
 
 Array = NDArray[np.float64]
+
+MORRIS_TRAJECTORIES = 24
+"""Trajectories of elementary effects through the response; they cost no cycle of the engine."""
+SOBOL_SAMPLES = 2048
+"""Size of each of the n + 2 samples behind the Sobol' indices."""
+SOBOL_RESAMPLES = 40
+"""Resamplings for the intervals of Sobol' indices; each refits the response."""
 
 
 def sobol_indices(y_a: Array, y_b: Array, y_ab: Array) -> tuple[Array, Array]:
@@ -88,12 +96,12 @@ def sensitivity_rows(
     the responses are fitted to these.
     """
     y = nodes.paper_outputs
-    ranges = table.ranges(settings.central_share)
+    ranges = table.ranges()
     inputs = len(table.rows)
     direct = direct or (np.empty((0, inputs)), np.empty((0, len(FITTED))))
     responses = output_responses(exported_responses(nodes, direct, ranges, settings), direct, ranges, settings)
     first, total = index_intervals(responses, nodes, direct, table, settings)
-    through_response = response_effects(responses, table, settings)
+    through_response = response_effects(responses, table)
     rows = []
     for k, output in enumerate(LAW_OUTPUTS):
         lines = y[:, : 2 * len(ranges) + 1, k]
@@ -132,15 +140,13 @@ def sensitivity_rows(
     return rows
 
 
-def response_effects(
-    responses: Sequence[Response | Change | None], table: InputTable, settings: UncertaintySettings
-) -> list[Effects]:
+def response_effects(responses: Sequence[Response | Change | None], table: InputTable) -> list[Effects]:
     """Morris' elementary effects of the outputs through their responses, over the inputs' ranges."""
     inputs = len(table.rows)
-    points = trajectory_points(inputs, settings.morris_trajectories, settings.sample_seed)
-    x = to_values(2 * points.reshape(-1, inputs) - 1, table.ranges(settings.central_share))
+    points = trajectory_points(inputs, MORRIS_TRAJECTORIES, SAMPLE_SEED)
+    x = to_values(2 * points.reshape(-1, inputs) - 1, table.ranges())
     y = evaluate(responses, x).reshape(*points.shape[:2], len(OUTPUTS))
-    return [trajectory_effects(points, y[:, :, k], settings.sample_seed) for k in range(len(OUTPUTS))]
+    return [trajectory_effects(points, y[:, :, k], SAMPLE_SEED) for k in range(len(OUTPUTS))]
 
 
 def index_intervals(
@@ -156,13 +162,13 @@ def index_intervals(
     ----------
     responses : of the outputs; what they come from, `nodes` or `direct`, is resampled for the ends.
     """
-    ranges = table.ranges(settings.central_share)
-    points = pick_freeze(table, settings.sobol_samples, settings.sample_seed)
-    rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB0]))
+    ranges = table.ranges()
+    points = pick_freeze(table, SOBOL_SAMPLES, SAMPLE_SEED)
+    rng = np.random.default_rng(np.random.SeedSequence([SAMPLE_SEED, 0xB0]))
     estimate = response_indices(points, responses)
     outputs = to_paper_outputs(direct[1])
     resampled = []
-    for _ in range(settings.sobol_bootstrap):
+    for _ in range(SOBOL_RESAMPLES):
         # other samples as well: heavy tails make the estimators themselves uncertain
         again = partial(response_indices, points[:, rng.integers(points.shape[1], size=points.shape[1])])
         if settings.response == "regression":

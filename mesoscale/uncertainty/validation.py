@@ -1,6 +1,7 @@
 """Responses against direct cycles: bias of mean and deviation, errors, Q²."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from itertools import islice
 from typing import Any
 
@@ -10,17 +11,26 @@ from numpy.typing import NDArray
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.parameters import FITTED, LAW_OUTPUTS
 from mesoscale.settings import UncertaintySettings
+from mesoscale.settings.uncertainty import RESAMPLES
+from mesoscale.uncertainty.designs import SAMPLE_SEED
 from mesoscale.uncertainty.propagation import (
     NodeOutputs,
     Propagation,
     exported_responses,
     to_paper_outputs,
 )
-from mesoscale.uncertainty.reference import STATISTICS
 from mesoscale.uncertainty.surrogate import Response, evaluate
 
 Array = NDArray[np.float64]
 Responses = Sequence[Response | None]
+
+STATISTICS: dict[str, Callable[..., Any]] = {
+    "mean": np.mean,
+    "dev": partial(np.std, ddof=1),
+    "q05": partial(np.quantile, q=0.05),
+    "q50": partial(np.quantile, q=0.5),
+    "q95": partial(np.quantile, q=0.95),
+}
 
 
 def direct_runs_of_rows(rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int) -> tuple[Array, Array]:
@@ -76,14 +86,14 @@ def validation_rows(
     between surfaces and cannot reach 1.
     """
     outputs = direct[1]
-    ranges = table.ranges(settings.central_share)
+    ranges = table.ranges()
     cells = np.where(np.isfinite(result.cells), result.cells, result.outputs)
     predicted = to_paper_outputs(held_out_predictions(direct, nodes, result.responses, ranges, settings))
     linear_settings = settings.model_copy(update={"response": "linear"})
     linear_responses = exported_responses(nodes, direct, ranges, linear_settings)
     linear = to_paper_outputs(held_out_predictions(direct, nodes, linear_responses, ranges, linear_settings))
     truth, samples = to_paper_outputs(outputs), to_paper_outputs(cells)
-    rng = np.random.default_rng(np.random.SeedSequence([settings.sample_seed, 0xB1]))
+    rng = np.random.default_rng(np.random.SeedSequence([SAMPLE_SEED, 0xB1]))
     rows = []
     for k, output in enumerate(LAW_OUTPUTS):
         usable = np.isfinite(truth[:, k])
@@ -98,7 +108,7 @@ def validation_rows(
         if len(y) < 3:
             continue
         row["mean_linear"], row["dev_linear"] = np.nanmean(result.by_seed[:, :, k], axis=0)
-        picks = rng.integers(len(y), size=(settings.bootstrap, len(y)))
+        picks = rng.integers(len(y), size=(RESAMPLES, len(y)))
         resampled = y[picks]
         for name, statistic in STATISTICS.items():
             row[f"{name}_direct"] = statistic(y, axis=0)
@@ -115,20 +125,3 @@ def validation_rows(
             low, high = np.quantile(1 - (errors[picks] ** 2).mean(axis=1) / spread, [0.05, 0.95])
             row["q2_low"], row["q2_high"] = low, high
     return rows
-
-
-VALIDATION_COLUMNS = (
-    "output",
-    "unit",
-    "runs",
-    "missing",
-    *(f"{name}_{kind}" for name in STATISTICS for kind in ("direct", "direct_low", "direct_high", "response")),
-    "mean_linear",
-    "dev_linear",
-    "rmse",
-    "bias",
-    "q2",
-    "q2_low",
-    "q2_high",
-    "q2_linear",
-)

@@ -453,7 +453,7 @@ def _model_form(root: Path) -> None:
     pairs = {"pairs": 100, "asperity_mean": 2.0, "asperity_dev": 1.0, "coupled_mean": 5.0, "coupled_dev": 1.0}
     found = {"shift": 3.0, "shift_low": 2.5, "shift_high": 3.5, "cost_ratio": 25.0}
     rows = [
-        {"quantity": "rho_r_nm", "unit": "nm", **pairs, **found, "correlation": 0.9, "saving": 2.5},
+        {"quantity": "rho_r_nm", "unit": "nm", **pairs, **found, "correlation": 0.9},
         {"quantity": "pull_off_nN", "unit": "nN", **pairs, **found, "ratio": 2.5, "ratio_low": 2, "ratio_high": 3},
     ]
     _write(root / "uq/model_form.csv", rows)

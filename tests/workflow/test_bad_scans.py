@@ -8,8 +8,8 @@ from mesoscale.topography.measurements.loading import write_gwy
 
 MATERIAL = """
 inputs:
-  e_star: {origin: literature, distribution: normal, a: 91, b: 3.8, source: test}
-  h_prime: {origin: literature, a: 2, b: 15, source: test}
+  e_star: {origin: literature, distribution: normal, values: [91, 3.8], source: test}
+  h_prime: {origin: literature, values: [2, 15], source: test}
 """
 
 

@@ -5,43 +5,43 @@ import tracemalloc
 import pytest
 
 from mesoscale.inputs.table import collect
-from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
+from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty.designs import random_runs
 from mesoscale.uncertainty.runs import compute_rows
 from workflow.scene import load_scene
 
 SCENE = """
 inputs:
-  e_star: {{origin: literature, distribution: normal, a: 91, b: 3.8}}
-  h_prime: {{origin: literature, a: 1.95, b: 14.8}}
-  q0: {{origin: literature, a: 0.015, b: 0.035}}
-  hurst: {{origin: literature, a: 0.5, b: 1.0}}
-  rms: {{origin: literature, a: 2, b: 15}}
+  e_star: {{origin: literature, distribution: normal, values: [91, 3.8]}}
+  h_prime: {{origin: literature, values: [1.95, 14.8]}}
+  q0: {{origin: literature, values: [0.015, 0.035]}}
+  hurst: {{origin: literature, values: [0.5, 1.0]}}
+  rms: {{origin: literature, values: [2, 15]}}
 contact: {{pixels: 64}}
-uncertainty: {{study_runs: {runs}, chunk_runs: 50}}
+uncertainty: {{direct_runs: {runs}}}
 """
 
 
 def test_more_runs_reuse_the_old_files(workflow_in):
     path = workflow_in.folder / "grown.yaml"
-    path.write_text(SCENE.format(runs=120))
-    done = workflow_in.run(str(path), "brute_force")
+    path.write_text(SCENE.format(runs=220))
+    done = workflow_in.run(str(path), *(f"results/grown/uq/direct/chunk_{k:03d}.csv" for k in range(3)))
     assert done.returncode == 0, done.stderr
     folder = workflow_in.folder / "results/grown/uq/direct"
     old = {file.name: file.read_bytes() for file in folder.iterdir()}
     assert {f"chunk_{k:03d}.csv" for k in range(3)} <= set(old)
 
-    path.write_text(SCENE.format(runs=220))
-    assert workflow_in.planned(str(path), "brute_force")["compute_direct_runs"] == 2
+    path.write_text(SCENE.format(runs=420))
+    assert workflow_in.planned(str(path), "uq")["compute_direct_runs"] == 2
     assert {file.name: file.read_bytes() for file in folder.iterdir()} == old
 
 
 @pytest.fixture(scope="module")
 def peak_of():
-    table = collect(load_scene("paper").inputs, {}, {}, 0.999)
+    table = collect(load_scene("paper").inputs, {}, {})
 
     def measure(count: int) -> int:
-        runs = random_runs(table, UncertaintySettings(), 0, count)
+        runs = random_runs(table, 0, count)
         tracemalloc.start()
         try:
             for _ in compute_rows(runs, ContactSettings(pixels=64), LawSettings()):

@@ -91,11 +91,11 @@ def test_the_checksum_is_in_the_format_of_sha256sum(result):
 
 SCENE = """
 inputs:
-  e_star: {origin: literature, distribution: normal, a: 91, b: 3.8}
-  h_prime: {origin: literature, a: 1.95, b: 14.8}
-  q0: {origin: literature, a: 0.015, b: 0.035}
-  hurst: {origin: literature, a: 0.5, b: 1.0}
-  rms: {origin: literature, distribution: samples, file: rms.csv}
+  e_star: {origin: literature, distribution: normal, values: [91, 3.8]}
+  h_prime: {origin: literature, values: [1.95, 14.8]}
+  q0: {origin: literature, values: [0.015, 0.035]}
+  hurst: {origin: literature, values: [0.5, 1.0]}
+  rms: {origin: literature, distribution: samples, values: rms.csv}
 """
 
 

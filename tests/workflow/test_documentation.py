@@ -19,8 +19,8 @@ PAGE = Path(__file__).parents[2] / "docs" / "uncertainty.md"
 
 
 def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):
-    table = collect(load_scene("paper").inputs, {}, {}, 0.999)
-    ranges = table.ranges(0.999)
+    table = collect(load_scene("paper").inputs, {}, {})
+    ranges = table.ranges()
     x = to_values(nodes(7, 1), ranges)
     given = NodeOutputs([0], np.repeat(np.exp(x @ (1 / ranges[:, 1]))[None, :, None], 8, axis=2))
     settings = UncertaintySettings(response="polynomial", samples=200)

@@ -111,11 +111,11 @@ def test_a_shipped_scene_is_known_by_name_wherever_the_project_lies(tmp_path):
 SCENE = """
 compute: [hardness]
 inputs:
-  e_star: {origin: literature, distribution: normal, a: 91, b: 3.8}
-  h_prime: {origin: literature, a: 1.95, b: 14.8}
-  q0: {origin: literature, a: 0.015, b: 0.035}
-  hurst: {origin: literature, a: 0.5, b: 1.0}
-  rms: {origin: literature, a: 2, b: 15}
+  e_star: {origin: literature, distribution: normal, values: [91, 3.8]}
+  h_prime: {origin: literature, values: [1.95, 14.8]}
+  q0: {origin: literature, values: [0.015, 0.035]}
+  hurst: {origin: literature, values: [0.5, 1.0]}
+  rms: {origin: literature, values: [2, 15]}
 hardness:
   seeds: [1]
   glass: {atoms: 600, melt_ps: 2, quench_rate_K_ps: 1000, rest_ps: 6}

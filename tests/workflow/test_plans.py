@@ -12,8 +12,8 @@ REPORT = {"rank_sensitivity", "solve_switch", "export_law", "render_report"}
 
 LITERATURE = """
 inputs:
-  e_star: {origin: literature, distribution: normal, a: 91, b: 3.8}
-  h_prime: {origin: literature, a: 1.95, b: 14.8}
+  e_star: {origin: literature, distribution: normal, values: [91, 3.8]}
+  h_prime: {origin: literature, values: [1.95, 14.8]}
 """
 
 
@@ -85,7 +85,7 @@ def test_studies_run_only_where_they_are_asked_for(plan):
 
 def test_studies_of_a_scene_leave_out_the_stages_it_does_not_use(plan):
     studied = plan("paper", "accuracy", "stability")
-    assert {"study_contact_accuracy", "study_contact_stability", "study_responses"} <= studied
+    assert {"study_contact_accuracy", "study_contact_stability", "measure_uncertainty_accuracy"} <= studied
     assert not (HARDNESS | ELASTIC | TOPOGRAPHY) & studied
     foreign = ("hardness", "elastic", "topography", "closing")
     assert not [rule for rule in studied if any(word in rule for word in foreign)]

@@ -23,10 +23,10 @@ def test_an_unknown_scene(workflow_in):
 
 def test_contradictions_are_told_all_at_once(workflow_in):
     scene = workflow_in.folder / "mine.yaml"
-    scene.write_text("{uncertainty: {audit_readings: [zzz], direct_runs: 1}, history: {cycles: 100000, seeds: 1000}}")
+    scene.write_text("{uncertainty: {direct_runs: 1}, history: {cycles: 100000, seeds: 1000}}")
     done = workflow_in.run(str(scene))
     assert done.returncode != 0
-    for line, words in zip(errors(done), ("needs at least 14", "'zzz' is no reading", "GB of memory"), strict=True):
+    for line, words in zip(errors(done), ("needs at least 14", "GB of memory"), strict=True):
         assert line.startswith(f"ERROR {scene}: ")
         assert words in line
 
@@ -48,16 +48,14 @@ def test_a_switch_that_never_closes_or_is_never_open(device, words):
 
 def test_a_run_of_weeks_is_planned_with_its_time_and_refused(workflow_in):
     scene = workflow_in.folder / "mine.yaml"
-    scene.write_text(
-        "{contact: {mechanics: coupled, pixels: 2048}, uncertainty: {direct_runs: 1000000, chunk_runs: 10000}}"
-    )
+    scene.write_text("{contact: {mechanics: coupled, pixels: 2048}, uncertainty: {direct_runs: 100000}}")
     said = workflow_in.plan(str(scene), "sensitivity")
-    assert "a run is refused: uncertainty.direct_runs = 1000000: takes " in said
+    assert "a run is refused: uncertainty.direct_runs = 100000: takes " in said
     assert said.splitlines()[-1].split(" jobs, about ")[1].split()[1] == "h"
     done = workflow_in.run(str(scene), "sensitivity")
     assert done.returncode != 0
     (line,) = errors(done)
-    assert line.startswith(f"ERROR {scene}: uncertainty.direct_runs = 1000000: takes ")
+    assert line.startswith(f"ERROR {scene}: uncertainty.direct_runs = 100000: takes ")
     assert not (workflow_in.folder / "results").exists()
 
 

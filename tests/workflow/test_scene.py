@@ -57,7 +57,7 @@ def test_an_exponent_without_a_point_is_a_number(tmp_path):
         ("name: ../../etc", ["name", "of the form"]),
         ("topography: {convention: profile}", ["topography.convention = profile", "make them equal"]),
         ("contact: {q1_per_nm: 5}", ["contact.q1_per_nm reaches 5 1/nm", "3.217 1/nm"]),
-        ("inputs: {q1: {a: 0.4, b: 5}}", ["inputs.q1 reaches 5 1/nm", "3.217 1/nm", "raise contact.pixels"]),
+        ("inputs: {q1: {values: [0.4, 5]}}", ["inputs.q1 reaches 5 1/nm", "3.217 1/nm", "raise contact.pixels"]),
         ("- a", ["a scene is a mapping"]),
         ("a: [", ["not valid YAML"]),
         ("contact: {pixels: 256, pixels: 512}", ["'pixels' stands twice"]),

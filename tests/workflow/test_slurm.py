@@ -47,7 +47,7 @@ def test_results_do_not_depend_on_where_a_job_ran(make_workflow, tmp_path):
 def test_jobs_of_one_rule_are_submitted_as_an_array(make_workflow, tmp_path):
     paper = (ROOT / "config/scenes/paper.yaml").read_text().replace("name: paper", "name: arrays")
     small = paper.replace("contact:", "contact:\n  pixels: 64", 1)
-    (tmp_path / "arrays.yaml").write_text(small + "\nuncertainty: {chunk_runs: 40}\n")
+    (tmp_path / "arrays.yaml").write_text(small)
     workflow = make_workflow(tmp_path, profile="slurm")
     target = "results/arrays/law/parameters.csv"
     done = workflow.run(str(tmp_path / "arrays.yaml"), target, options=(*SLURM, "--verbose"))

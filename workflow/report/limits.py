@@ -35,8 +35,7 @@ def limits(results: Results) -> list[str]:
         "Few asperities: "
         + ("at the paper's mean inputs four to forty of them" if paper else "only few of them")
         + " carry a square micrometre, and C_r and ρ_r differ much from one surface to the next. First contact is an "
-        "extreme value: a pad of many square micrometres begins to touch at a larger separation than one of them "
-        "(target extremes).",
+        "extreme value: a pad of many square micrometres begins to touch at a larger separation than one of them.",
         "Time: no creep, unless the scene asks for it (history). The results hold for contacts shorter than the time "
         "over which asperities creep.",
         "No liquid films, no charging of the dielectric, no sliding.",

@@ -5,7 +5,7 @@ MEASUREMENT_FILES = {
     table.kind: named_files(f"measurements.tables.{k}.file", table.file)[0]
     for k, table in enumerate(SCENE.measurements.tables)
 }
-MEASUREMENT_CHUNKS = chunk_bounds(SCENE.measurements.runs, SCENE.measurements.chunk_runs)
+MEASUREMENT_CHUNKS = chunk_bounds(SCENE.measurements.runs)
 PRIORS = SCENE.inputs.priors()
 if workflow.is_main_process and MEASUREMENT_FILES:  # a table that cannot be used is told before the first cycle
     from mesoscale.calibration.measurements import load_measurements
@@ -34,7 +34,6 @@ rule collect_priors:
         f"{RESULTS}/logs/collect_priors.log",
     params:
         settings=PRIORS.model_dump(mode="json"),
-        central_share=SCENE.uncertainty.central_share,
         nyquist_per_nm=SCENE.contact.nyquist_per_nm,
     message:
         "collect what is known of the inputs before the measurements"
@@ -56,7 +55,6 @@ rule observe_cycles:
     params:
         contact=settings("contact"),
         law=settings("law"),
-        seed=SCENE.measurements.seed,
         bounds=lambda wildcards: MEASUREMENT_CHUNKS[wildcards.chunk],
     message:
         f"compute what can be measured of contact cycles, chunk {{wildcards.chunk}} of {len(MEASUREMENT_CHUNKS)}"
@@ -111,7 +109,6 @@ rule rank_next_on_pad:
         f"{RESULTS}/logs/rank_next_on_pad.log",
     threads: 1
     params:
-        seed=SCENE.measurements.seed,
         contact=settings("contact"),
         law=settings("law"),
         pad=lambda wildcards: DRAW_SETTINGS,
@@ -120,30 +117,3 @@ rule rank_next_on_pad:
         "rank what to measure next for the switch on the pad"
     script:
         "../scripts/rank_next_on_pad.py"
-
-
-rule check_calibration_stability:
-    output:
-        f"{RESULTS}/stability/calibration.csv",
-    log:
-        f"{RESULTS}/logs/check_calibration_stability.log",
-    message:
-        "check the calibration on hard cases"
-    script:
-        "../scripts/check_calibration_stability.py"
-
-
-rule study_calibration_accuracy:
-    output:
-        f"{RESULTS}/accuracy/calibration.csv",
-    log:
-        f"{RESULTS}/logs/study_calibration_accuracy.log",
-    message:
-        "study the error of the calibration against its run time"
-    script:
-        "../scripts/study_calibration_accuracy.py"
-
-
-if SCENE.measurements.tables:
-    ACCURACY.append(f"{RESULTS}/accuracy/calibration.csv")
-    STABILITY.append(f"{RESULTS}/stability/calibration.csv")

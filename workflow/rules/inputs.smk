@@ -6,9 +6,9 @@ STAGE_RESULT = {
 }
 INPUT_STAGES = {stage: path for stage, path in STAGE_RESULT.items() if stage in SCENE.inputs.origins()}
 SAMPLES = {
-    f"samples_{name}": named_files(f"inputs.{name}.file", row.file)[0]
+    f"samples_{name}": named_files(f"inputs.{name}.values", row.values)[0]
     for name, row in SCENE.inputs.rows().items()
-    if row.prior_origin == "literature" and row.distribution == "samples"
+    if isinstance(row.values, str)
 }
 if workflow.is_main_process:
     from workflow.scene_checks import mistakes  # takes half a second: not in every job
@@ -33,7 +33,6 @@ rule collect_inputs:
         f"{RESULTS}/logs/collect_inputs.log",
     params:
         settings=settings("inputs"),
-        central_share=SCENE.uncertainty.central_share,
         nyquist_per_nm=SCENE.contact.nyquist_per_nm,
     message:
         "collect the uncertain inputs"

@@ -1,12 +1,6 @@
-from mesoscale.uncertainty.chunks import chunk_bounds, collocation_run_count
+from mesoscale.uncertainty.chunks import chunk_bounds, collocation_level, collocation_run_count
 
-RUN_CHUNKS = chunk_bounds(
-    collocation_run_count(len(SCENE.inputs.rows()), SCENE.uncertainty), SCENE.uncertainty.chunk_runs
-)
-# what a chunk of runs depends on: not on how many chunks there are, so that adding runs keeps the old ones
-RUN_SETTINGS = {
-    key: settings("uncertainty")[key] for key in ("surrogate", "first_seed", "central_share", "sample_seed")
-}
+RUN_CHUNKS = chunk_bounds(collocation_run_count(len(SCENE.inputs.rows()), SCENE.uncertainty))
 
 
 rule law:
@@ -30,7 +24,7 @@ rule compute_runs:
         mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
-        uncertainty=RUN_SETTINGS,
+        level=collocation_level(SCENE.uncertainty),  # nothing else: more seeds keep the old chunks
         bounds=lambda wildcards: RUN_CHUNKS[wildcards.chunk],
     message:
         f"compute contact cycles, chunk {{wildcards.chunk}} of {len(RUN_CHUNKS)}"

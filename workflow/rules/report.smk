@@ -49,11 +49,7 @@ def kept_files():
     """What jobs of the scene leave beside the files of the report."""
     parts = [rules.fit_law, rules.fit_nominal_law, rules.propagate_uncertainty, rules.solve_switch, rules.export_law]
     parts += [rules.assemble_pad]
-    files = expand(
-        rules.compute_direct_runs.output,
-        design="direct",
-        chunk=full_chunks(SCENE.uncertainty.direct_runs, SCENE.uncertainty.chunk_runs),
-    )
+    files = list(DIRECT)
     if needed("hardness"):
         parts += [rules.find_hardness, rules.fit_hardness]
         files += expand(rules.make_glass.output, glass=SCENE.hardness.seeds)

@@ -86,7 +86,7 @@ rule pool_spectra:
     params:
         settings=settings("topography"),
         cell_nm=SCENE.contact.length_nm,
-        cut_off="q1" in SCENE.inputs.rows() and SCENE.inputs.rows()["q1"].prior_origin == "topography",
+        cut_off=SCENE.inputs.prior_origins().get("q1") == "topography",
     message:
         "describe the surface behind the spectra"
     script:

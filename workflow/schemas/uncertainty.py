@@ -2,7 +2,7 @@
 
 from mesoscale.law.parameters import LAW, LAW_OUTPUTS
 from workflow.schemas.inputs_and_law import INPUT_VALUES, SEED
-from workflow.schemas.table import Column, Table, boolean, integer, number, text
+from workflow.schemas.table import Column, Table, integer, number, text
 
 _OUTPUT = text("output", "parameter of the law on closing, or its change on opening (delta_)")
 _UNIT = text("unit", "unit of the output")
@@ -134,7 +134,7 @@ _RATIOS = Table(
 )
 
 _DIRECT = Table(
-    ("uq/*/chunk_*.csv",),
+    ("uq/direct/chunk_*.csv",),
     "One direct run: cycle and law of its own inputs on its own surface.",
     (
         integer("run", "number of the run"),
@@ -143,174 +143,6 @@ _DIRECT = Table(
         *_fitted(empty=True, status=True),
         number("first_contact_nm", "nm", "separation of first contact", empty=True),
         text("curve_status", "ok, unconverged, or failed: why"),
-    ),
-)
-
-_TIMING = Table(
-    ("uq/*/timing_*.csv",),
-    "One job of direct runs.",
-    (
-        integer("cycles", "cycles computed"),
-        number("engine_cpu_s", "s", "processor time of the cycles"),
-        number("job_started_s", "s", "start of the job, system clock"),
-        number("job_ended_s", "s", "end of the job, system clock"),
-        number("peak_rss_MB", "MB", "largest memory"),
-    ),
-)
-
-_BIAS_SHARE = "in true deviations (mean) or relative (dev)"
-_BIAS = Table(
-    ("uq/bias.csv",),
-    "An output: both methods beside brute force.",
-    (
-        _OUTPUT,
-        _UNIT,
-        integer("runs", "direct runs"),
-        _MISSING,
-        integer("replicates", "runs with the same inputs on another surface"),
-        *_in_unit("mean_direct", "true mean", "90 % interval"),
-        *_in_unit("dev_direct", "true standard deviation", "90 % interval"),
-        *_in_unit("input_dev", "standard deviation that comes from the inputs", "90 % interval"),
-        *_in_unit("surface_dev", "standard deviation that comes from the random surface", "90 % interval"),
-        number("surface_share", "1", "share of the variance that comes from the random surface"),
-        integer("level1_seeds", "seeds behind the level-1 estimates"),
-        *(
-            column
-            for method, words in (("level1", "the paper's level 1"), ("response", "the default response"))
-            for name in ("mean", "dev")
-            for column in (
-                *_in_unit(f"{name}_{method}", f"{name} by {words}"),
-                *_with_ends(number(f"{name}_{method}_bias", "1", f"its bias, {_BIAS_SHARE}"), "90 % interval"),
-            )
-        ),
-    ),
-)
-
-_INDICES = Table(
-    ("uq/indices.csv",),
-    "An output with an input: Sobol' indices of the response beside brute force.",
-    (
-        _OUTPUT,
-        _INPUT,
-        *(
-            column
-            for kind, words in (("first", "first-order"), ("total", "total"))
-            for column in (
-                *_with_ends(number(f"{kind}_response", "1", f"{words} index of the response"), "90 % interval"),
-                *_with_ends(number(f"{kind}_direct", "1", f"{words} index by brute force"), "90 % interval"),
-                number(f"{kind}_difference", "1", "response minus brute force"),
-                boolean(f"{kind}_agrees", "whether both agree within 0.02 or the interval", empty=True),
-            )
-        ),
-    ),
-)
-
-_MORRIS = Table(
-    ("uq/morris.csv",),
-    "An output with an input: Morris' effects through the engine.",
-    (
-        _OUTPUT,
-        _INPUT,
-        _UNIT,
-        *_in_unit("morris_mu_star", "mean absolute effect", "90 % interval"),
-        *_in_unit("morris_sigma", "standard deviation of the effects"),
-        integer("trajectories", "trajectories without a missing run"),
-        *_in_unit("one_star_mu_star", "the paper's µ*, of one star, averaged over seeds"),
-        *_in_unit("paper_mu_star", "the paper's"),
-    ),
-)
-
-_PRECISION = Table(
-    ("uq/work_precision.csv",),
-    "A statistic of an output by one method at one cost.",
-    (
-        text("method", "way to propagate the uncertainty"),
-        integer("engine_calls", "cycles that it takes"),
-        number("engine_cpu_s", "s", "processor time of these cycles"),
-        number("fit_cpu_s", "s", "processor time of the fit"),
-        integer("repeats", "repeats with other runs"),
-        _OUTPUT,
-        _UNIT,
-        text("statistic", "mean, dev, q05, q50, q95, sobol_first or q2"),
-        number("value", "`unit`", "mean over repeats"),
-        number("truth", "`unit`", "by all direct runs"),
-        number("error", "1", "root mean square error over repeats (means and quantiles in deviations)"),
-        number("floor", "1", "error of the truth itself"),
-    ),
-)
-
-_EXTREMES = Table(
-    ("uq/extremes.csv",),
-    "A definition of d_c for pads of one area, by one method.",
-    (
-        text("quantity", "first contact, or share of force"),
-        integer("area_in_cells", "area in cells of 1 µm²"),
-        text("method", "cells pressed together, gumbel fitted to single cells, or direct"),
-        number("mean_nm", "nm", "mean separation"),
-        number("low_nm", "nm", "lower end of its 90 % interval"),
-        number("high_nm", "nm", "upper end of its 90 % interval"),
-        number("one_sd_nm", "nm", "standard deviation from one pad to the next"),
-        integer("samples", "cells or surfaces behind it"),
-        number("difference_nm", "nm", "direct minus cells", empty=True),
-    ),
-)
-
-_OVERHEAD = Table(
-    ("uq/overhead.csv",),
-    "All direct runs of the scene (one row).",
-    (
-        integer("cycles", "cycles computed"),
-        integer("jobs", "jobs"),
-        integer("cores", "cores in use"),
-        number("elapsed_s", "s", "from the first start to the last end, without pauses"),
-        number("engine_cpu_s", "s", "processor time of the cycles"),
-        number("engine_s_per_cycle", "s", "processor time of one cycle"),
-        number("overhead", "1", "share of the cores' time that is not the engine's"),
-        number("peak_rss_MB", "MB", "largest memory of a job"),
-    ),
-)
-
-_READING = (text("contact", "reading of the contact model"), text("law", "reading of the law's fit"))
-_AUDIT = Table(
-    ("audit/runs/*.csv",),
-    "One run under one reading of the paper.",
-    (
-        *_READING,
-        SEED,
-        integer("node", "number of the node of the design"),
-        boolean("converged", "whether the cycle converged"),
-        *(number(row.name, row.unit, row.meaning, empty=True) for row in LAW_OUTPUTS),
-    ),
-)
-
-_RANKING = Table(
-    ("audit/ranking.csv",),
-    "A reading of the paper, nearest to its tables first.",
-    (
-        *_READING,
-        *_with_ends(number("distance", "1", "distance to the paper's Tables 2 and 3"), "90 % interval"),
-        number("distance_one_seed_sd", "1", "standard deviation of the distance from one seed to the next"),
-        number("distance_table2", "1", "distance to Table 2"),
-        number("distance_table3", "1", "distance to Table 3"),
-        text("labels", "labels of the doubtful columns: as printed or exchanged"),
-        integer("seeds", "seeds computed"),
-        _MISSING,
-        integer("unconverged", "runs that did not converge"),
-        number("d_c_centre_nm", "nm", "d_c at the central inputs, averaged over seeds"),
-        *(
-            number(f"{kind}_{row.short}", row.unit, f"{words} of {row.short}")
-            for kind, words in {
-                "mean": "mean",
-                "dev": "standard deviation",
-                "mean_seed_sd": "scatter over seeds of the mean",
-                "dev_seed_sd": "scatter over seeds of the deviation",
-            }.items()
-            for row in LAW_OUTPUTS
-        ),
-        *(
-            number(f"mu_star_rms_{name}", "nm", f"µ* of the RMS roughness on {name}", optional=True)
-            for name in ("d_c", "rho_r")
-        ),
     ),
 )
 
@@ -364,8 +196,6 @@ _MODEL_FORM = Table(
         ),
         number("correlation", "1", "correlation of the two over the runs", empty=True),
         number("cost_ratio", "1", "processor time of a coupled cycle over that of one on its own"),
-        number("cheap_per_pair", "1", "cycles on their own per pair of the best control variate", empty=True),
-        number("saving", "1", "mean square error of plain sampling over that of the control variate", empty=True),
     ),
 )
 
@@ -397,15 +227,6 @@ TABLES = (
     _SAMPLES,
     _VALIDATION,
     _DIRECT,
-    _TIMING,
-    _BIAS,
-    _INDICES,
-    _MORRIS,
-    _PRECISION,
-    _EXTREMES,
-    _OVERHEAD,
-    _AUDIT,
-    _RANKING,
     _PAIRS,
     _MODEL_FORM,
 )

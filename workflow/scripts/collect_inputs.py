@@ -7,19 +7,19 @@ Out: inputs.csv.
 
 import copy
 
-from mesoscale.inputs.table import COLUMNS, check_resolved, collect, to_rows
+from mesoscale.inputs.table import check_resolved, collect, to_rows
 from mesoscale.settings import InputsSettings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import load_json, write_csv
 
 with job(snakemake) as run:
     given = copy.deepcopy(snakemake.params.settings)
     results = dict(snakemake.input.items())
     for name in [name for name in results if name.startswith("samples_")]:
-        given[name.removeprefix("samples_")]["file"] = results.pop(name)  # found beside the scene, perhaps
-    settings = InputsSettings(**given)
+        given[name.removeprefix("samples_")]["values"] = results.pop(name)  # found beside the scene, perhaps
+    settings = settings_from_job(InputsSettings, given)
     stages = {stage: load_json(path) for stage, path in results.items()}
     files = {stage: "/".join(path.split("/")[-2:]) for stage, path in results.items()}
-    table = collect(settings, stages, files, snakemake.params.central_share)
-    check_resolved(table, snakemake.params.nyquist_per_nm, snakemake.params.central_share)
-    write_csv(snakemake.output[0], to_rows(table), COLUMNS)
+    table = collect(settings, stages, files)
+    check_resolved(table, snakemake.params.nyquist_per_nm)
+    write_csv(snakemake.output[0], to_rows(table))

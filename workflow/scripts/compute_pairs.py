@@ -4,19 +4,14 @@ In: inputs.csv.  Out: uq/model_form/pairs_NNN.csv (inputs, seed; by mechanics th
 """
 
 from mesoscale.inputs.table import from_rows
-from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
+from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty.designs import random_runs
-from mesoscale.uncertainty.studies.model_form import pair_rows
-from workflow.job import job
+from mesoscale.uncertainty.model_form import pair_rows
+from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
-    runs = random_runs(
-        from_rows(load_csv(snakemake.input.inputs)),
-        UncertaintySettings(**snakemake.params.uncertainty),
-        *snakemake.params.bounds,
-    )
-    rows = pair_rows(
-        runs, ContactSettings(**snakemake.params.contact), LawSettings(**snakemake.params.law), run.progress
-    )
-    write_csv(snakemake.output[0], list(rows))
+    runs = random_runs(from_rows(load_csv(snakemake.input.inputs)), *snakemake.params.bounds)
+    contact = settings_from_job(ContactSettings, snakemake.params.contact)
+    law = settings_from_job(LawSettings, snakemake.params.law)
+    write_csv(snakemake.output[0], pair_rows(runs, contact, law, run.progress))

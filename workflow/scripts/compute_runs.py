@@ -7,7 +7,6 @@ from dataclasses import fields
 
 from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.inputs.table import from_rows
-from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.designs import collocation_runs
 from mesoscale.uncertainty.runs import compute_all
 from workflow.contact_settings import contact_settings
@@ -16,8 +15,8 @@ from workflow.results import Dataset, load_csv, write_h5
 
 with job(snakemake) as run:
     contact = contact_settings(snakemake.params.contact, snakemake)
-    uncertainty = UncertaintySettings(**snakemake.params.uncertainty)
-    runs = collocation_runs(from_rows(load_csv(snakemake.input.inputs)), uncertainty, *snakemake.params.bounds)
+    table = from_rows(load_csv(snakemake.input.inputs))
+    runs = collocation_runs(table, snakemake.params.level, *snakemake.params.bounds)
     groups, attributes = {}, {}
     for item, cycle in compute_all(runs, contact, run.progress):
         name = f"run_{item.index:04d}"

@@ -9,15 +9,15 @@ import numpy as np
 from mesoscale.inputs.table import from_rows
 from mesoscale.law.parameters import FITTED
 from mesoscale.settings import LawSettings, UncertaintySettings
-from mesoscale.uncertainty.paper_tables import RATIO_COLUMNS, ratio_rows, table2, table3
+from mesoscale.uncertainty.paper_tables import ratio_rows, table2, table3
 from mesoscale.uncertainty.propagation import nodes_of_rows, output_rows, propagate, surrogate_json
-from mesoscale.uncertainty.validation import VALIDATION_COLUMNS, direct_runs_of_rows, validation_rows
-from workflow.job import job
+from mesoscale.uncertainty.validation import direct_runs_of_rows, validation_rows
+from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_csv, write_json
 
 with job(snakemake) as run:
-    settings = UncertaintySettings(**snakemake.params.settings)
-    law = LawSettings(**snakemake.params.law)
+    settings = settings_from_job(UncertaintySettings, snakemake.params.settings)
+    law = settings_from_job(LawSettings, snakemake.params.law)
     table = from_rows(load_csv(snakemake.input.inputs))
     nodes = nodes_of_rows(load_csv(snakemake.input.parameters))
     paper_rows = load_csv(snakemake.input.table2)
@@ -29,8 +29,8 @@ with job(snakemake) as run:
 
     result = propagate(nodes, table, settings, direct)
     write_csv(snakemake.output.outputs, output_rows(nodes, result, paper, table2(paper_rows, exchanged=True)))
-    ratios = ratio_rows(nodes, result, table, settings.central_share, paper, table3(load_csv(snakemake.input.table3)))
-    write_csv(snakemake.output.ratios, ratios, RATIO_COLUMNS)
+    ratios = ratio_rows(nodes, result, table, paper, table3(load_csv(snakemake.input.table3)))
+    write_csv(snakemake.output.ratios, ratios)
     constants = {"rho_a_nm": law.rho_a_nm, "alpha_nm": law.shield_nm}
     write_json(
         snakemake.output.surrogate,
@@ -41,5 +41,4 @@ with job(snakemake) as run:
     values = np.hstack([result.samples, result.outputs]).tolist()
     write_csv(snakemake.output.samples, (dict(zip(columns, line, strict=True)) for line in values), columns)
 
-    rows = validation_rows(direct, nodes, table, result, settings)
-    write_csv(snakemake.output.validation, rows, VALIDATION_COLUMNS)
+    write_csv(snakemake.output.validation, validation_rows(direct, nodes, table, result, settings))

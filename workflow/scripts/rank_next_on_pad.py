@@ -10,14 +10,13 @@ from functools import partial
 from mesoscale.calibration.further import next_on_pad
 from mesoscale.calibration.likelihood import posterior_of
 from mesoscale.calibration.posterior import cycles_of_rows, expected_of, responses_of
-from mesoscale.calibration.summary import NEXT_COLUMNS
 from mesoscale.device.release import cutoff_range, released_on_pad
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import DeviceSettings, PadSettings
 from workflow.contact_settings import contact_settings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.pad_files import load_cells, load_draws
 from workflow.results import load_csv, write_csv
 
@@ -32,7 +31,7 @@ with job(snakemake) as run:
     cells = load_cells(snakemake.input.grid, snakemake.input.cells, contact.length_nm**2)
     draws = load_draws(snakemake.input.draws, inputs, contact, pad)
     cutoffs = cutoff_range(contact_of(inputs.medians(), contact)[1].gap_cutoff_nm, draws)
-    device = DeviceSettings(**snakemake.params.device)
+    device = settings_from_job(DeviceSettings, snakemake.params.device)
     responses, laws = responses_of(prior, cycles)
     given = partial(
         posterior_of,
@@ -49,6 +48,6 @@ with job(snakemake) as run:
     except InputError as error:
         print(error, file=run.log, flush=True)  # answer_status of device/pad_switch.json has it, too
     else:
-        ranked = next_on_pad(given, responses, x, volts, contact.max_force_nN, snakemake.params.seed)
+        ranked = next_on_pad(given, responses, x, volts, contact.max_force_nN)
         ranked = [{**row, "solved": len(volts), "refused": POINTS - len(volts)} for row in ranked]
-    write_csv(snakemake.output[0], ranked, [*NEXT_COLUMNS, "solved", "refused"])
+    write_csv(snakemake.output[0], ranked)

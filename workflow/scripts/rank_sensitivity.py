@@ -13,11 +13,11 @@ from mesoscale.uncertainty.paper_tables import table3
 from mesoscale.uncertainty.propagation import nodes_of_rows
 from mesoscale.uncertainty.sensitivity import sensitivity_rows
 from mesoscale.uncertainty.validation import direct_runs_of_rows
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
-    settings = UncertaintySettings(**snakemake.params.settings)
+    settings = settings_from_job(UncertaintySettings, snakemake.params.settings)
     table = from_rows(load_csv(snakemake.input.inputs))
     paper = load_csv(snakemake.input.table3)
     rows = sensitivity_rows(

@@ -9,48 +9,38 @@ local_cycles.csv (where the posterior lies).
 from mesoscale.calibration.further import next_measurements
 from mesoscale.calibration.learning import check_range, learned, outliers
 from mesoscale.calibration.measurements import load_measurements
-from mesoscale.calibration.observables import NAMES
 from mesoscale.calibration.posterior import calibrate, cycles_of_rows, response_remarks
-from mesoscale.calibration.summary import (
-    LEARNED_COLUMNS,
-    NEXT_COLUMNS,
-    PREDICTIVE_COLUMNS,
-    RESPONSE_COLUMNS,
-    SUMMARY_COLUMNS,
-    posterior_json,
-    predictive_rows,
-    sample_rows,
-    summary_rows,
-)
+from mesoscale.calibration.summary import posterior_json, predictive_rows, sample_rows, summary_rows
 from mesoscale.calibration.switches import SwitchModel
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import DeviceSettings, LawSettings, MeasurementsSettings
 from workflow.contact_settings import contact_settings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_csv, write_json
 
 with job(snakemake) as run:
-    settings = MeasurementsSettings(**snakemake.params.settings)
-    contact, law = contact_settings(snakemake.params.contact, snakemake), LawSettings(**snakemake.params.law)
+    settings = settings_from_job(MeasurementsSettings, snakemake.params.settings)
+    contact = contact_settings(snakemake.params.contact, snakemake)
+    law = settings_from_job(LawSettings, snakemake.params.law)
     tables = [load_measurements(table, snakemake.input[table.kind]) for table in settings.tables]
     prior = from_rows(load_csv(snakemake.input.priors))
     rows = [row for path in snakemake.input.cycles for row in load_csv(path)]
     cycles = cycles_of_rows(rows, prior.names)
-    device = DeviceSettings(**snakemake.params.device)
+    device = settings_from_job(DeviceSettings, snakemake.params.device)
     switch = SwitchModel.of(device, law, contact.length_nm**2)
     check_range(tables, prior, cycles, contact.max_force_nN, switch)
     result = calibrate(prior, tables, cycles, contact, law, device, settings, run.progress)
 
-    write_csv(snakemake.output.responses, result.checks, RESPONSE_COLUMNS)
-    write_csv(snakemake.output.local_cycles, result.added, ["run", "seed", *prior.names, *NAMES])
+    write_csv(snakemake.output.responses, result.checks)
+    write_csv(snakemake.output.local_cycles, result.added)
     converged = result.chain.converged
-    lessons = learned(result, tables, contact.max_force_nN, settings) if converged else []
-    write_csv(snakemake.output.learned, lessons, LEARNED_COLUMNS)
-    further = next_measurements(result, contact.max_force_nN, settings.seed) if converged else []
-    write_csv(snakemake.output.next, further, NEXT_COLUMNS)
-    write_csv(snakemake.output.predictive, predictive_rows(result, contact.max_force_nN), PREDICTIVE_COLUMNS)
-    write_csv(snakemake.output.summary, summary_rows(result), SUMMARY_COLUMNS)
-    write_csv(snakemake.output.samples, sample_rows(result), [*prior.names, "log_likelihood"])
-    remarks = [*outliers(result), *response_remarks(result, settings)] if converged else []
+    lessons = learned(result, tables, contact.max_force_nN) if converged else []
+    write_csv(snakemake.output.learned, lessons)
+    further = next_measurements(result, contact.max_force_nN) if converged else []
+    write_csv(snakemake.output.next, further)
+    write_csv(snakemake.output.predictive, predictive_rows(result, contact.max_force_nN))
+    write_csv(snakemake.output.summary, summary_rows(result))
+    write_csv(snakemake.output.samples, sample_rows(result))
+    remarks = [*outliers(result), *response_remarks(result)] if converged else []
     content = posterior_json(result, tables, lessons, remarks)
     write_json(snakemake.output.posterior, content, run.provenance)

@@ -7,7 +7,7 @@ from mesoscale.contact.studies.accuracy import accuracy_points
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.settings import LawSettings
-from mesoscale.uncertainty.studies.cutoff import scene_rows
+from mesoscale.uncertainty.cutoff import scene_rows
 from workflow.checks import accuracy_rows
 from workflow.contact_settings import contact_settings
 from workflow.job import job

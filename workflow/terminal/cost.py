@@ -21,7 +21,7 @@ from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, plan_rows
 from atomistic.hardness.glass import TIMESTEP_FS, total_ps
 from atomistic.materials import Material
 from mesoscale.settings import ContactSettings, HistorySettings
-from mesoscale.uncertainty.chunks import collocation_run_count
+from mesoscale.uncertainty.chunks import CHUNK_RUNS, collocation_run_count
 from workflow.scene import Scene
 
 TIMES = Path(".snakemake/asperity_seconds.json")
@@ -183,6 +183,10 @@ def _each(seconds: float, *rules: str) -> dict[str, Callable[[Costs, Any], float
     return dict.fromkeys(rules, lambda costs, wildcards: seconds)
 
 
+def _collocation_runs(costs: Costs) -> int:
+    return collocation_run_count(len(costs.scene.inputs.rows()), costs.scene.uncertainty)
+
+
 FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     **_each(0.0, "write_scene", "collect_inputs", "export_law", "combine_e_star", "make_crystal", "collect_priors"),
     **_each(0.0, "summarise_adhesion"),
@@ -215,11 +219,11 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     "judge_scans": lambda c, _: 3.0 + 3.0 * len(c.scene.topography.scans),
     "weigh_unseen_waves": lambda c, _: 24 * c.cycle_s,
     "compute_nominal": lambda c, _: 0.5 + c.cycles_s(len(c.scene.contact.nominal_loads_nN)),
-    "compute_runs": lambda c, _: c.cycles_s(c.scene.uncertainty.chunk_runs),
-    "compute_direct_runs": lambda c, _: c.cycles_s(c.scene.uncertainty.chunk_runs),
-    "fit_law": lambda c, _: 0.01 * collocation_run_count(len(c.scene.inputs.rows()), c.scene.uncertainty),
+    "compute_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, _collocation_runs(c))),
+    "compute_direct_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, c.scene.uncertainty.direct_runs)),
+    "fit_law": lambda c, _: 0.01 * _collocation_runs(c),
     "propagate_uncertainty": lambda c, _: 0.5 + 0.0082 * c.scene.uncertainty.direct_runs,
-    "observe_cycles": lambda c, _: c.cycles_s(c.scene.measurements.chunk_runs),
+    "observe_cycles": lambda c, _: c.cycles_s(min(CHUNK_RUNS, c.scene.measurements.runs)),
     # chains of all tables and of subsets of them, and the cycles where the posterior lies
     "sample_posterior": lambda c, _: (
         10.0 * (2 * len(c.scene.measurements.tables) + 1 + c.scene.measurements.rounds)

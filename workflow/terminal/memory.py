@@ -3,6 +3,7 @@
 import psutil
 
 from mesoscale.settings import ContactSettings, HistorySettings, UncertaintySettings
+from mesoscale.settings.uncertainty import RESAMPLES
 
 PROCESS_MB = 600.0  # a job is two processes with their packages
 SITE_MB = {"asperity": 62e-6, "coupled": 140e-6}  # 4096^2 sites take 1.1 GB, 1024^2 coupled ones 323 MB
@@ -24,7 +25,7 @@ def history_MB(history: HistorySettings, contact: ContactSettings) -> int:
 
 def propagation_MB(uncertainty: UncertaintySettings) -> int:
     """Memory of the process that fits the responses to all direct runs and resamples these, in MB."""
-    run_MB = RUN_MB + RESAMPLED_MB * uncertainty.bootstrap
+    run_MB = RUN_MB + RESAMPLED_MB * RESAMPLES
     return round(PROCESS_MB + run_MB * uncertainty.direct_runs)
 
 

@@ -13,8 +13,8 @@ def settings(**rows):
 
 
 CALIBRATED = {
-    "h_macro": InputRow(origin="calibration", a=0.7, b=3.2),
-    "h_prime": InputRow(origin="calibration", a=1.95, b=14.8),
+    "h_macro": InputRow(origin="calibration", values=(0.7, 3.2)),
+    "h_prime": InputRow(origin="calibration", values=(1.95, 14.8)),
 }
 RESULT = {
     "gate": {"passed": True, "reasons": []},
@@ -36,7 +36,7 @@ RESULT = {
 
 
 def test_posterior_and_its_correlations_are_the_inputs():
-    table = collect(settings(**CALIBRATED), {"calibration": RESULT}, {"calibration": "posterior.json"}, 0.999)
+    table = collect(settings(**CALIBRATED), {"calibration": RESULT}, {"calibration": "posterior.json"})
     samples = dict(zip(table.names, table.sample(4000, 1).T, strict=True))
     assert samples["h_macro"].min() >= 1.4
     assert samples["h_macro"].max() <= 1.6
@@ -48,12 +48,12 @@ def test_posterior_and_its_correlations_are_the_inputs():
 def test_priors_are_those_of_the_scene():
     chosen = settings(**CALIBRATED)
     assert chosen.origins() == {"literature", "calibration"}
-    table = collect(chosen.priors(), {}, {}, 0.999)
+    table = collect(chosen.priors(), {}, {})
     assert table.sample(4000, 1)[:, table.names.index("h_macro")].max() > 3
 
 
 def test_a_prior_may_come_from_a_stage():
-    chosen = settings(e_star=InputRow(origin="calibration", prior="elastic"))
+    chosen = settings(e_star=InputRow(origin="calibration"))
     assert chosen.origins() == {"literature", "calibration", "elastic"}
     assert chosen.priors().rows()["e_star"].origin == "elastic"
 
@@ -61,9 +61,9 @@ def test_a_prior_may_come_from_a_stage():
 @pytest.mark.parametrize(
     ("row", "words"),
     [
-        ({"origin": "calibration"}, "takes exactly a, b"),
-        ({"origin": "literature", "prior": "elastic", "a": 1, "b": 2}, "only origin calibration has a prior"),
-        ({"origin": "calibration", "prior": "elastic", "a": 1, "b": 2}, "that stage gives them"),
+        ({"origin": "calibration", "values": (1, 2, 3)}, "none of distribution uniform"),
+        ({"origin": "literature"}, "origin literature needs values"),
+        ({"origin": "elastic", "values": (1, 2)}, "that stage gives them"),
     ],
 )
 def test_rows_that_contradict_themselves_are_refused(row, words):
@@ -74,4 +74,4 @@ def test_rows_that_contradict_themselves_are_refused(row, words):
 def test_without_convergence_there_is_no_input():
     failed = {"gate": {"passed": False, "reasons": ["the chain has not converged: R-hat 1.2"]}, "inputs": {}}
     with pytest.raises(InputError, match="has not converged"):
-        collect(settings(**CALIBRATED), {"calibration": failed}, {"calibration": "posterior.json"}, 0.999)
+        collect(settings(**CALIBRATED), {"calibration": failed}, {"calibration": "posterior.json"})

@@ -24,10 +24,9 @@ from mesoscale.calibration.surfaces import check_points
 from mesoscale.calibration.switches import SwitchModel, law_values
 from mesoscale.device.switch import drive_switch
 from mesoscale.errors import InputError
-from mesoscale.settings import DeviceSettings, LawSettings, MeasurementsSettings
+from mesoscale.settings import DeviceSettings, LawSettings
 from tests.mesoscale.calibration.conftest import MAX_FORCE_NN, made_up_observables
 
-SETTINGS = MeasurementsSettings(max_steps=4000, samples=1500)
 AREAS_NM2 = np.array([40.0, 100.0, 400.0, 4000.0])  # one area alone leaves a ridge of H_macro and H', slow to sample
 TRUTH = np.array([[0.21, 91.0, 1.5, 8.0, 0.022, 0.8, 5.0]])
 
@@ -46,7 +45,7 @@ def given(prior, parts, *tables):
 
 def result_of(prior, parts, *tables):
     posterior = given(prior, parts, *tables)
-    chain = draw(posterior, SETTINGS)
+    chain = draw(posterior)
     responses, laws, switch, expected = parts
     return Calibration(posterior, chain, posterior.inputs(chain.z), responses, laws, expected, switch)
 
@@ -276,7 +275,7 @@ def test_bits_of_one_modulus_are_those_of_two_normal_distributions(prior, parts)
 def test_contradictions_and_outliers_are_named(prior, parts):
     rng = np.random.default_rng(5)
     data = [hardness([3.9, 4.0, 4.1]), modulus(130.0, 2.0)]
-    rows = learned(result_of(prior, parts, *data), data, MAX_FORCE_NN, SETTINGS)
+    rows = learned(result_of(prior, parts, *data), data, MAX_FORCE_NN)
     assert "agrees" in rows[0]["verdict"]
     assert "contradicts" in rows[1]["verdict"]
     assert rows[1]["probability"] < 0.01
@@ -330,7 +329,7 @@ def test_curves_outside_the_forces_of_the_responses_and_unknown_pull_offs_are_re
 def test_without_convergence_nothing_goes_on(prior, parts):
     """Neither samples nor inputs, and the reason in the gate."""
     posterior = given(prior, parts, hardness([4.0], error=1e-5))
-    chain = draw(posterior, SETTINGS.model_copy(update={"max_steps": 200}))
+    chain = draw(posterior, max_steps=200)
     responses, laws, switch, expected = parts
     result = Calibration(posterior, chain, posterior.inputs(chain.z), responses, laws, expected, switch)
     content = posterior_json(result, [hardness([4.0])], [], [])

@@ -43,7 +43,7 @@ def stages(passed=True):
 def test_scene_paper_is_table_1():
     with TABLE_1.open(newline="") as stream:
         expected = {row["parameter"]: row for row in csv.DictReader(stream)}
-    table = collect(PAPER, {}, {}, 0.999)
+    table = collect(PAPER, {}, {})
     assert table.names == list(expected)
     for row in table.rows:
         wanted = expected[row.name]
@@ -58,7 +58,7 @@ def test_scene_paper_wants_no_stage():
 
 
 def test_stage_rows_carry_their_file_and_correlation():
-    table = collect(InputsSettings(), stages(), FILES, 0.999)
+    table = collect(InputsSettings(), stages(), FILES)
     by_name = {row.name: row for row in table.rows}
     assert by_name["h_prime"].origin == "hardness"
     assert by_name["h_prime"].source == "hardness/fit.json"
@@ -67,7 +67,7 @@ def test_stage_rows_carry_their_file_and_correlation():
 
 
 def test_table_survives_writing_and_reading():
-    table = collect(InputsSettings(), stages(), FILES, 0.999)
+    table = collect(InputsSettings(), stages(), FILES)
     rows = [
         {
             key: "" if value is None else str(value)
@@ -82,59 +82,64 @@ def test_table_survives_writing_and_reading():
 
 def test_failed_gate_stops_with_its_reason():
     with pytest.raises(InputError, match=r"hardness/fit.json.*fewer than 3 sizes.*h_prime.*literature"):
-        collect(InputsSettings(), stages(passed=False), FILES, 0.999)
+        collect(InputsSettings(), stages(passed=False), FILES)
 
 
 def test_missing_entry_of_a_stage_is_named():
     content = stages()
     del content["topography"]["inputs"]["rms"]
     with pytest.raises(InputError, match=r"inputs\.rms"):
-        collect(InputsSettings(), content, FILES, 0.999)
+        collect(InputsSettings(), content, FILES)
 
 
 def test_range_across_a_physical_bound_is_refused():
-    settings = PAPER.model_copy(update={"rms": InputRow(distribution="normal", a=3, b=2)})
+    settings = PAPER.model_copy(update={"rms": InputRow(distribution="normal", values=(3, 2))})
     with pytest.raises(InputError, match=r"inputs.rms: spans -.*accepted is 0 or 1e-05"):
-        collect(settings, {}, {}, 0.999)
+        collect(settings, {}, {})
 
 
 def test_samples_from_a_file(tmp_path):
     file = tmp_path / "rms.csv"
     file.write_text("rms\n3\n5\n4\n")
-    settings = PAPER.model_copy(update={"rms": InputRow(distribution="samples", file=str(file))})
-    table = collect(settings, {}, {}, 0.999)
-    assert table.ranges(0.999)[-1].tolist() == [3, 5]
+    settings = PAPER.model_copy(update={"rms": InputRow(distribution="samples", values=str(file))})
+    table = collect(settings, {}, {})
+    assert table.ranges()[-1].tolist() == [3, 5]
     rows = [{key: str(value) for key, value in row.items()} for row in to_rows(table)]
     assert np.array_equal(from_rows(rows).sample(10, 1), table.sample(10, 1))
     file.write_text("height\n3\n")
     with pytest.raises(InputError, match="column rms"):
-        collect(settings, {}, {}, 0.999)
+        collect(settings, {}, {})
     file.unlink()
     with pytest.raises(InputError, match="cannot be read"):
-        collect(settings, {}, {}, 0.999)
+        collect(settings, {}, {})
 
 
 def test_a_measured_cutoff_beyond_the_grid_is_refused_with_what_to_do():
-    table = input_table(q1=InputRow(a=0.2, b=1.0))
-    check_resolved(table, 1.0, 0.999)
+    table = input_table(q1=InputRow(values=(0.2, 1.0)))
+    check_resolved(table, 1.0)
     with pytest.raises(InputError, match=r"q1 reaches 1 1/nm, beyond .* \(0\.8 1/nm\); raise contact\.pixels, or set"):
-        check_resolved(table, 0.8, 0.999)
+        check_resolved(table, 0.8)
 
 
 def test_eighth_input():
-    settings = PAPER.model_copy(update={"gap_cutoff": InputRow(a=0.165, b=0.3)})
-    assert collect(settings, {}, {}, 0.999).names[-1] == "gap_cutoff"
+    settings = PAPER.model_copy(update={"gap_cutoff": InputRow(values=(0.165, 0.3))})
+    assert collect(settings, {}, {}).names[-1] == "gap_cutoff"
 
 
 @pytest.mark.parametrize(
     ("row", "message"),
     [
-        ({"a": 3, "b": 2}, "must not exceed"),
-        ({"distribution": "normal", "a": 3}, "exactly a, b"),
-        ({"origin": "elastic", "a": 3}, "takes no a"),
-        ({"distribution": "normal", "a": 3, "b": -1}, "b = -1"),
-        ({"distribution": "truncated_normal", "a": 3, "b": 1, "low": 4, "high": 2}, "low must lie below"),
-        ({}, "exactly a, b"),
+        ({"values": (3, 2)}, "must not exceed"),
+        ({"distribution": "normal", "values": (3,)}, "none of distribution normal"),
+        ({"distribution": "samples", "values": (3,)}, "none of distribution samples"),
+        ({"distribution": "normal", "values": "samples.csv"}, "none of distribution normal"),
+        ({"values": (3, "high")}, "accepted are uniform"),
+        ({"values": 3}, "accepted are uniform"),
+        ({"values": (3, True)}, "accepted are uniform"),
+        ({"origin": "elastic", "values": (3, 4)}, "takes no values"),
+        ({"distribution": "normal", "values": (3, -1)}, "deviation -1"),
+        ({"distribution": "truncated_normal", "values": (3, 1, 4, 2)}, "low must lie below"),
+        ({}, "needs values"),
     ],
 )
 def test_mistakes_in_a_row(row, message):

@@ -179,5 +179,5 @@ def test_a_D0_that_is_an_input_is_not_drawn_twice():
     settings = PadSettings(draws=6)
     drawn = {draw.gap_cutoff_nm for draw in plan_draws(input_table(), CONTACT, settings)}
     assert len(drawn) == 6
-    fixed = input_table(gap_cutoff=InputRow(distribution="fixed", a=3.7))
+    fixed = input_table(gap_cutoff=InputRow(distribution="fixed", values=(3.7,)))
     assert {draw.gap_cutoff_nm for draw in plan_draws(fixed, CONTACT, settings)} == {3.7}

@@ -5,6 +5,7 @@ import pytest
 
 from mesoscale.inputs.table import collect
 from mesoscale.settings import ContactSettings, InputRow, LawSettings, UncertaintySettings
+from mesoscale.uncertainty import sensitivity
 from mesoscale.uncertainty.designs import collocation_runs, random_runs
 from mesoscale.uncertainty.propagation import NodeOutputs, propagate
 from mesoscale.uncertainty.runs import compute_rows
@@ -27,22 +28,22 @@ def test_the_correlation_of_the_hardness_fit_reaches_the_engines_inputs():
         "inputs": {"h_prime": {"distribution": "uniform", "a": 2.0, "b": 15.0, "correlation": {"h_macro": -0.7}}},
     }
     settings = PAPER.model_copy(update={"h_prime": InputRow(origin="hardness")})
-    table = collect(settings, {"hardness": fit}, {"hardness": "hardness/fit.json"}, 0.999)
-    runs = random_runs(table, UncertaintySettings(), 0, 2000)
+    table = collect(settings, {"hardness": fit}, {"hardness": "hardness/fit.json"})
+    runs = random_runs(table, 0, 2000)
     pairs = np.array([(run.values["h_macro"], run.values["h_prime"]) for run in runs])
     ranks = pairs.argsort(axis=0).argsort(axis=0)
     # standard error of a correlation of 2000 pairs: 0.02
     assert np.asarray(np.corrcoef(ranks.T))[0, 1] == pytest.approx(-0.7, abs=0.05)
 
 
-def test_d0_as_eighth_input_moves_the_attraction_alone():
-    table = collect(PAPER.model_copy(update={"gap_cutoff": InputRow(a=0.165, b=0.3)}), {}, {}, 0.999)
-    settings = UncertaintySettings(
-        samples=500, sobol_samples=128, sobol_bootstrap=3, morris_trajectories=4, direct_runs=150
-    )
-    _, y = law_of(collocation_runs(table, settings, 0, 34), table.names)
+def test_d0_as_eighth_input_moves_the_attraction_alone(monkeypatch):
+    for name, count in {"SOBOL_SAMPLES": 128, "SOBOL_RESAMPLES": 3, "MORRIS_TRAJECTORIES": 4}.items():
+        monkeypatch.setattr(sensitivity, name, count)
+    table = collect(PAPER.model_copy(update={"gap_cutoff": InputRow(values=(0.165, 0.3))}), {}, {})
+    settings = UncertaintySettings(samples=500, direct_runs=150)
+    _, y = law_of(collocation_runs(table, 1, 0, 34), table.names)
     nodes = NodeOutputs([0, 1], y.reshape(2, 17, 8))
-    direct = law_of(random_runs(table, settings, 0, 150), table.names)
+    direct = law_of(random_runs(table, 0, 150), table.names)
     result = propagate(nodes, table, settings, direct)
     rows = sensitivity_rows(nodes, table, settings, result.seed_share, {}, {}, direct)
     found = {(row["output"], row["input"]): row for row in rows}

@@ -7,15 +7,15 @@ from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import collect
 from mesoscale.law.branches import fit_cycle
 from mesoscale.law.parameters import FITTED
-from mesoscale.settings import ContactSettings, LawSettings, UncertaintySettings
+from mesoscale.settings import ContactSettings, LawSettings
 from mesoscale.uncertainty import runs as runs_module
 from mesoscale.uncertainty.designs import Run, collocation_runs, random_runs
 from mesoscale.uncertainty.runs import compute, compute_all, compute_rows
 from tests.mesoscale import paper
 
-PAPER = collect(paper.INPUTS, {}, {}, 0.999)
+PAPER = collect(paper.INPUTS, {}, {})
 CONTACT = ContactSettings(pixels=64)
-CENTRE = collocation_runs(PAPER, UncertaintySettings(), 0, 1)[0].values
+CENTRE = collocation_runs(PAPER, 1, 0, 1)[0].values
 
 
 def computed(values, seed):
@@ -24,15 +24,15 @@ def computed(values, seed):
     return cycle
 
 
-def test_runs_of_a_chunk_do_not_depend_on_the_number_of_seeds():
-    few, many = UncertaintySettings(seeds=2), UncertaintySettings(seeds=20)
-    assert collocation_runs(PAPER, few, 10, 30) == collocation_runs(PAPER, many, 10, 30)
-    assert [run.seed for run in collocation_runs(PAPER, few, 14, 16)] == [0, 1]
+def test_runs_of_a_chunk_go_through_the_nodes_of_one_surface_after_the_other():
+    runs = collocation_runs(PAPER, 1, 14, 16)
+    assert [run.seed for run in runs] == [0, 1]
+    assert [run.node for run in runs] == [14, 0]
 
 
 def test_random_runs_can_be_cut_anywhere():
-    whole = random_runs(PAPER, UncertaintySettings(), 0, 10)
-    assert random_runs(PAPER, UncertaintySettings(), 4, 10) == whole[4:]
+    whole = random_runs(PAPER, 0, 10)
+    assert random_runs(PAPER, 4, 10) == whole[4:]
     assert len({run.seed for run in whole}) == 10
     assert all(2 <= run.values["rms"] <= 15 for run in whole)
 

@@ -7,16 +7,18 @@ Every module offers `describe(results) -> Section | None`; None where the scene 
 from workflow.report.stages import (
     calibration,
     contact,
+    cutoff,
     device,
     elastic,
     hardness,
     inputs,
+    model_form,
     pad,
     sensitivity,
     topography,
     uncertainty,
 )
-from workflow.report.stages.studies import adhesion, coupling, cutoff, history, model_form
+from workflow.report.stages.studies import adhesion, coupling, history
 
 # in the order of the data's flow
 STAGES = (

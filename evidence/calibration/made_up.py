@@ -1,0 +1,74 @@
+"""What does the shipped example of a calibration (scene `made_up`) have at its known truth?
+
+Its tables in config/measurements/made_up were made by `tables(TRUTH, CONTACT, 20, EXAMPLE_SEED)`: the engine's surfaces
+with drawn errors. The row holds the release voltage of the default switch on the mean law of surfaces at this truth.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from mesoscale.calibration.observables import LAWS, force_levels_nN, observe, separations_at
+from mesoscale.calibration.switches import SwitchModel
+from mesoscale.contact import run_cycle
+from mesoscale.inputs.contact import contact_of
+from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings
+
+TRUTH = {"hamaker": 0.21, "e_star": 93.0, "h_macro": 1.5, "h_prime": 8.0, "q0": 0.022, "hurst": 0.8, "rms": 5.0}
+EXAMPLE_SEED = 77_000_000
+SEPARATION_ERROR_NM, PULL_OFF_ERROR, HARDNESS_ERROR, MODULUS_ERROR_GPA = 0.2, 0.1, 0.05, 3.0  # two of them as shares
+POINTS = 25  # of a curve
+INDENTS_NM2 = (40.0, 100.0, 400.0, 1000.0, 4000.0)
+CONTACT = ContactSettings(pixels=256)
+SURFACES, FIRST_SURFACE, RESAMPLES = 400, 78_000_000, 200
+
+
+def rows(given: Any) -> Iterator[dict[str, Any]]:
+    """The release voltage at the truth, with its standard error over surfaces."""
+    inputs, chosen = contact_of(TRUTH, CONTACT)
+    seen = [
+        observe(run_cycle(inputs, chosen, FIRST_SURFACE + k), LawSettings(), CONTACT.max_force_nN)
+        for k in range(SURFACES)
+    ]
+    laws = np.array([[row[law.name] for law in LAWS] for row in seen])
+    laws = laws[np.isfinite(laws).all(axis=1)]
+    picks = np.random.default_rng(1).integers(len(laws), size=(RESAMPLES, len(laws)))
+    means = np.vstack([laws.mean(axis=0), laws[picks].mean(axis=1)])
+    switch = SwitchModel.of(DeviceSettings(), LawSettings(), CONTACT.length_nm**2)
+    volts = switch.release_V(switch.laws(means, np.full(len(means), TRUTH["hamaker"]))[1])
+    yield {"surfaces": len(laws), "release_V": volts[0], "error_V": volts[1:].std()}
+
+
+def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """The release voltage with its error."""
+    return {"release": f"{float(rows[-1]['release_V']):.2f} ± {float(rows[-1]['error_V']):.2f} V"}
+
+
+def tables(
+    truth: Mapping[str, float], contact: ContactSettings, curves: int, seed: int
+) -> dict[str, list[dict[str, float | str]]]:
+    """Tables by kind: closing curves and pull-off forces of the same surfaces, hardness points, a modulus."""
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xDA]))
+    inputs, chosen = contact_of(truth, contact)
+    levels = force_levels_nN(contact.max_force_nN)
+    forces = np.geomspace(levels[0], levels[-1], POINTS)
+    made: dict[str, list[dict[str, float | str]]] = {"closing_curves": [], "pull_off": [], "hardness": []}
+    for k in range(curves):
+        cycle, specimen = run_cycle(inputs, chosen, seed + k), f"film {k + 1}"
+        separations = separations_at(cycle.closing, forces) + rng.uniform(-20.0, 20.0)  # the zero is not known
+        noisy = separations + SEPARATION_ERROR_NM * rng.standard_normal(POINTS)
+        made["closing_curves"] += [
+            {"specimen": specimen, "separation_nm": at, "force_nN": force, "separation_error_nm": SEPARATION_ERROR_NM}
+            for force, at in zip(forces.tolist(), noisy.tolist(), strict=True)
+            if np.isfinite(at)
+        ]
+        force = -cycle.opening.net_nN.min() * (1 + PULL_OFF_ERROR * rng.standard_normal())
+        made["pull_off"].append(
+            {"specimen": specimen, "pull_off_nN": force, "pull_off_error_nN": PULL_OFF_ERROR * force}
+        )
+    for area in INDENTS_NM2:
+        value = (inputs.h_macro + inputs.h_prime * area**-0.25) * (1 + HARDNESS_ERROR * rng.standard_normal())
+        made["hardness"].append({"area_nm2": area, "hardness_GPa": value, "hardness_error_GPa": HARDNESS_ERROR * value})
+    modulus = inputs.e_star + MODULUS_ERROR_GPA * rng.standard_normal()
+    return {**made, "modulus": [{"e_star_GPa": modulus, "e_star_error_GPa": MODULUS_ERROR_GPA}]}

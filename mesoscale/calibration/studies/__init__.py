@@ -1,1 +1,0 @@
-"""Studies of the calibration: simulation-based calibration, direct sampling on the engine, hard cases."""

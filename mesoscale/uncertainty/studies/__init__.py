@@ -1,1 +1,0 @@
-"""How far the propagation can be trusted: brute force, work and precision, readings, unusual cases."""
