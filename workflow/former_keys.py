@@ -21,20 +21,9 @@ FORMER_KEYS: dict[str, str] = {
     **{
         f"hardness.closing.{key}": "no longer a setting, delete it: all closings have the same (docs/hardness.md)"
         for key in (
-            "timestep_fs",
-            "temperature_K",
-            "anneal_temperature_K",
-            "counter_base_nm",
-            "base_over_contact",
-            "frozen_nm",
-            "thermostat_nm",
-            "wall_stiffness_eV_A3",
-            "approach_nm",
-            "force_step_MPa",
-            "max_stress_GPa",
-            "damping_ps",
-            "segment_force_steps",
-            "segment_nm",
+            *("timestep_fs", "temperature_K", "anneal_temperature_K", "wall_stiffness_eV_A3", "approach_nm"),
+            *("frozen_nm", "thermostat_nm", "counter_base_nm", "base_over_contact", "segment_nm"),
+            *("force_step_MPa", "max_stress_GPa", "damping_ps", "segment_force_steps"),
         )
     },
     "hardness.closing.sphere_radius_nm": "no longer a setting, delete it: counterfaces are flat, oxide or asperity",

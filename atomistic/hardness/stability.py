@@ -7,15 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from atomistic.constants import BOLTZMANN_EV_PER_K, COULOMB_EV_A, KE_EV
-from atomistic.hardness.asperity import cut_asperity
+from atomistic.constants import BOLTZMANN_EV_PER_K, KE_EV
 from atomistic.hardness.glass import MELT_K, TIMESTEP_FS, write_forcefield
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL
-from atomistic.lammps import Atoms, Workspace, load_averages, load_data, load_dump, run_lammps, write_data
+from atomistic.lammps import Atoms, Workspace, load_averages, load_data, run_lammps, write_data
 from atomistic.potentials import Potential
-
-MAX_COULOMB = 0.1  # of a bond's force
 
 
 def free_motion(
@@ -96,58 +93,7 @@ def _of_body(potential: Potential, glass: Atoms, energy_scales: Sequence[float],
             lambda: half_energy_identity(glass, potential, work),
         )
     )
-    checks += [
-        (
-            f"coulomb_{shape}_{name}",
-            f"forces on a {shape}: damped sum in the table against PPPM",
-            f"rms difference below {MAX_COULOMB:.0%} of a bond's Coulomb force; no net force on the sample",
-            lambda flat=shape == "slab": coulomb_difference(glass, potential, work, flat),
-        )
-        for shape in ("glass", "slab")
-    ]
     return checks
-
-
-def coulomb_difference(glass: Atoms, potential: Potential, work: Path, slab: bool) -> tuple[bool, str]:
-    """Forces of the table (damped, shifted-force Coulomb) against those of PPPM, in bulk or as a neutral slab.
-
-    A neutral cut still has a dipole, whose uniform field PPPM keeps and the damped sum leaves out, as charges
-    that compensate the surface would.  It is told apart from the rest.
-    """
-    atoms = cut_asperity(glass, 2, 0.0, 14.0, 1) if slab else glass
-    forces = []
-    for method in ("none", "pppm"):
-        workspace = Workspace(work / "forces", {"method": method}, "forces.in")
-        write_forcefield(workspace, potential, atoms.elements, 1.0, long_range=method == "pppm")
-        write_data(workspace / "start.data", atoms, {ion: potential.species[ion].mass_u for ion in atoms.elements})
-        charges = [f"set type {k} charge {potential.species[ion].charge_e}" for k, ion in enumerate(atoms.elements, 1)]
-        (workspace / "charges").write_text("\n".join(charges) + "\n", encoding="utf-8")
-        variables = {
-            "data": "start.data",
-            "pairs": "pairs",
-            "charges": "charges",
-            "kspace": method,
-            "slab": "yes" if slab else "no",
-        }
-        run_lammps("forces.in", workspace, variables)
-        [(_, table)] = load_dump(workspace / "forces.dump")
-        forces.append(table[:, 2:5])
-        workspace.remove()
-    difference = forces[0] - forces[1]
-    charge = np.array([potential.species[ion].charge_e for ion in atoms.elements])[atoms.types - 1]
-    field = float(np.sum(charge * difference[:, 2]) / np.sum(charge**2)) if slab else 0.0
-    difference[:, 2] -= charge * field
-    typical = _bond_force(potential)
-    rest = float(np.sqrt(np.mean(difference**2))) / typical
-    net = float(np.abs(forces[0].sum(axis=0)).max()) / len(atoms) / typical
-    detail = f"rms difference {rest:.1%} of a bond's force; net {net:.0e}"
-    return rest < MAX_COULOMB and net < 1e-6, detail + (f"; field of the cut's dipole {field:+.2f} V/A" * slab)
-
-
-def _bond_force(potential: Potential) -> float:
-    """The Coulomb force of two ions 2 Å apart, the scale that the forces in a glass balance on, eV/Å."""
-    charges = [abs(ion.charge_e) for ion in potential.species.values()]
-    return COULOMB_EV_A * max(charges) * min(charges) / 4
 
 
 def half_energy_identity(glass: Atoms, potential: Potential, work: Path) -> tuple[bool, str]:

@@ -60,7 +60,7 @@ def close(case: str, seed: int) -> dict:
     changed = CASES[case]
     silica, potential = silica_and(changed.get("potential", "pmmcs"))
     run = ClosingRun(
-        name=case, asperity=AsperitySettings(name=case, **changed["asperity"]), seed=seed, energy_scale=1.0
+        name=case, asperity=AsperitySettings(name="single", **changed["asperity"]), seed=seed, energy_scale=1.0
     )
     closing, protocol = (
         ClosingSettings(**changed.get("closing", {})),

@@ -1,6 +1,5 @@
 """Hardness of single asperities: figures 7 and 8."""
 
-from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -11,8 +10,6 @@ from workflow.report.numbers import column, number, show
 from workflow.report.page import Section, Table
 
 SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE, "s")}
-COLORS = (SKY, BLUE, GREEN, ORANGE, PURPLE)  # of asperities, the smallest first
-LEAST_SHARE = 0.25  # of the wavelength in contact: below, a contact is a few atoms
 SLICE_NM = 0.25  # half the thickness of a slice that is drawn
 PAPER_HARDNESS = ((3.0, 10.0), (15.0, 2.0))  # nm, GPa: "~10 GPa at 3 nm, ~2 GPa at 15 nm" in the paper's text
 
@@ -35,11 +32,6 @@ def describe(results: Results) -> Section | None:
         "Contact stress against contact length of every closing run. Circles: where plastic flow was first witnessed "
         "by exchanged bonds; diamonds: the hardness of runs that yielded.",
         "Figure 7",
-    )
-    section.add(
-        relative_stress(results),
-        "Contact stress over energy scale against contact length over wavelength. Asperities of one shape fall on one "
-        "curve unless size itself matters: what rises along the curve is the steepness of a growing contact.",
     )
     section.add(
         hardness_size(results),
@@ -126,30 +118,6 @@ def contact_stress(results: Results) -> str | None:
         axis.legend()
 
     return draw("fig7", "Contact stress against contact length of each closing run", plot)
-
-
-def relative_stress(results: Results) -> str | None:
-    """Contact stress against the share of the wavelength in contact, a colour for each asperity."""
-    runs = [row for row in results.csv("hardness/points.csv") if results.has(f"hardness/closing/{row['run']}.csv")]
-    wavelengths = {row["asperity"]: number(row["wavelength_nm"]) for row in runs}
-    if len(wavelengths) < 2:
-        return None
-    colors = dict(zip(sorted(wavelengths, key=lambda name: wavelengths[name]), cycle(COLORS), strict=False))
-
-    def plot(axis):
-        for row in runs:
-            closing = results.csv(f"hardness/closing/{row['run']}.csv")
-            share = column(closing, "contact_length_nm") / number(row["wavelength_nm"])
-            stress = column(closing, "contact_stress_GPa") / number(row["energy_scale"])
-            use = np.isfinite(stress) & (share > LEAST_SHARE)
-            axis.plot(share[use], stress[use], color=colors[row["asperity"]], linewidth=0.8, alpha=0.7)
-        for name, color in colors.items():
-            axis.plot([], [], color=color, label=f"{name}, λ {show(wavelengths[name])} nm")
-        axis.set(xlabel="contact length √A over wavelength λ", ylabel="contact stress over energy scale (GPa)")
-        axis.set(xlim=(LEAST_SHARE, None), ylim=(0, None))
-        axis.legend()
-
-    return draw("relative", "Contact stress of asperities of all sizes against the share in contact", plot)
 
 
 def hardness_size(results: Results) -> str | None:
