@@ -22,6 +22,7 @@ extensions = [
     "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
+    "sphinx-mathjax-offline",  # equations without network
 ]
 exclude_patterns = ["_build", "conf.py", "api/*/modules.rst"]
 html_theme = "furo"
