@@ -39,6 +39,20 @@ FORMER_KEYS: dict[str, str] = {
     # topography
     # contact
     # law
+    **{
+        f"law.{key}": f"no longer a setting, delete it: {value}"
+        for key, value in {
+            "shield_nm": "it is 2 nm",
+            "weights": "misfits are absolute",
+            "relative_floor": "misfits are absolute",
+            "points": "they are 200",
+            "min_points": "they are 4",
+            "min_depth_ratio": "it is 0.2",
+            "max_depth_ratio": "it is 200",
+            "max_relative_error": "it is 1",
+            "max_residual": "it is 0.15",
+        }.items()
+    },
     # pad and adhesion
     # uncertainty and calibration
     **{

@@ -46,7 +46,6 @@ COUPLED = "coupled"
 """Ends the name of a reading with all asperities on one half-space."""
 LAW_READINGS: dict[str, dict[str, Any]] = {
     "first_contact": {"contact_definition": "first_contact"},
-    "first_contact_relative": {"contact_definition": "first_contact", "weights": "relative"},
     "force_0.01": {"contact_definition": "force_fraction", "force_fraction": 0.01},
     "force_0.03": {"contact_definition": "force_fraction", "force_fraction": 0.03},
     "force_0.1": {"contact_definition": "force_fraction", "force_fraction": 0.1},

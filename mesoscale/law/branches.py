@@ -125,7 +125,7 @@ class StoredFit:
         """Columns of law/wells.csv."""
         known = np.isfinite(self.fit.parameters).all()
         law = law_of_fit(self.fit, self.hamaker, settings) if known else None
-        return {"branch": self.branch, **well_row(self.fit, law, self.curve)}
+        return {"branch": self.branch, **well_row(law, self.curve)}
 
 
 def fit_stored(

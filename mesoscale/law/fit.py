@@ -15,11 +15,21 @@ from numpy.typing import ArrayLike, NDArray
 from mesoscale.checks import checked_array
 from mesoscale.errors import InputError
 from mesoscale.law.compact import shielded_hamaker
-from mesoscale.law.intervals import NO_ESTIMATE, Estimate, estimates
 from mesoscale.law.parameters import PARAMETERS
 from mesoscale.settings import LawSettings
 
 Array = NDArray[np.float64]
+
+POINTS = 200
+"""Even points in separation that a branch is resampled to."""
+FEWEST_POINTS = 4
+"""Of the curve in contact: two parameters and an error."""
+SHALLOWEST, DEEPEST = 0.2, 200.0
+"""Window over rho_r: a shallower one shows a straight line, a deeper one a step."""
+LARGEST_ERROR = 1.0
+"""Relative error of C_r and rho_r from which on they are not identified."""
+LARGEST_RESIDUAL = 0.15
+"""Misfit over the largest repulsion from which on a fit is called poor."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +42,6 @@ class LawFit:
     residual : root mean square misfit of attraction and repulsion over the window, relative to the largest repulsive
         force (1).
     status : `ok`, or why numbers are missing or doubtful.
-    estimates : C_a_GPa_nm, C_r_GPa and rho_r_nm, d_c given, with errors whose intervals hold what they claim.
     """
 
     d_c_nm: float
@@ -42,7 +51,6 @@ class LawFit:
     covariance: Array = field(default_factory=lambda: np.full((3, 3), np.nan))
     residual: float = np.nan
     status: str = "ok"
-    estimates: tuple[Estimate, Estimate, Estimate] = (NO_ESTIMATE, NO_ESTIMATE, NO_ESTIMATE)
 
     @property
     def parameters(self) -> Array:
@@ -106,7 +114,7 @@ def fit_branch(
     cell_area_nm2 : area of the cell.
     hamaker : Hamaker constant (1e-18 J).
     d_c_nm : separation at contact; None takes it from the curve by `settings.contact_definition`.
-    settings : windows, weights and gates of the fit.
+    settings : what d_c is, and rho_a.
 
     Returns
     -------
@@ -135,29 +143,26 @@ def fit_branch(
     if not np.isfinite(d_c_nm) or repulsive.max(initial=0.0) <= 0:
         return LawFit(np.nan, np.nan, np.nan, np.nan, status="no_contact")
     inside = (h < d_c_nm) & (repulsive > 0)
-    if inside.sum() < settings.min_points:
+    if inside.sum() < FEWEST_POINTS:
         return LawFit(d_c_nm, np.nan, np.nan, np.nan, status="few_points")
     scale = repulsive.max()
 
     C_a, C_a_var, misfit_a = _fit_attraction(h, attractive, d_c_nm, hamaker, settings)
-    h_r, f_r, weights = _repulsion_window(h, repulsive, d_c_nm, settings)
-    depth = d_c_nm - h_r
-    rho, at_bound = _best_rho(depth, f_r, weights, settings)
-    C_r, misfit_r = _prefactor(depth, f_r, weights, np.array([rho]))
-    C_r, misfit_r = float(C_r[0]), float(misfit_r[0])
-    covariance = _covariance(depth, f_r, weights, C_r, rho, C_a_var, points=min(int(inside.sum()), len(h_r)))
+    h_r = np.linspace(h.min(), d_c_nm, POINTS, endpoint=False)
+    depth, f_r = d_c_nm - h_r, np.interp(h_r, h, repulsive)
+    rho, at_bound = _best_rho(depth, f_r)
+    C_r = float(_prefactor(depth, f_r, np.array([rho]))[0][0])
+    covariance = _covariance(depth, f_r, C_r, rho, C_a_var, points=min(int(inside.sum()), POINTS))
     residual = float(np.sqrt(np.mean((f_r - C_r * np.expm1(depth / rho)) ** 2) + misfit_a**2) / scale)
 
-    curve = (h, repulsive, attractive)
-    known = _estimates(curve, (h_r, weights), float(d_c_nm), (C_a, C_r, rho), hamaker, settings)
-    fit = LawFit(float(d_c_nm), C_a, C_r, rho, covariance, residual, estimates=known)
+    fit = LawFit(float(d_c_nm), C_a, C_r, rho, covariance, residual)
     if at_bound:
         why = "the curve is a straight line, only C_r/rho_r is determined" if at_bound > 0 else "a step at the end"
         return _without_repulsion(fit, f"not_identifiable: {why}")
     relative_error = np.sqrt(np.diag(covariance)[1:]) / np.array([C_r, rho])
-    if not np.all(relative_error < settings.max_relative_error):
+    if not np.all(relative_error < LARGEST_ERROR):
         return _without_repulsion(fit, "not_identifiable: relative error of C_r or rho_r above the gate")
-    if residual > settings.max_residual:
+    if residual > LARGEST_RESIDUAL:
         return replace(fit, status="poor_fit")
     return fit
 
@@ -174,62 +179,51 @@ def _fit_attraction(
     top = min(kink, h.max())
     if top <= h.min():
         return np.nan, np.nan, 0.0
-    grid = np.linspace(h.min(), top, settings.points)
+    grid = np.linspace(h.min(), top, POINTS)
     excess = shielded_hamaker(grid, hamaker, settings.shield_nm) - np.interp(grid, h, attractive)
     arm = np.maximum(kink - grid, 0.0)
     C_a = float(arm @ excess / (arm @ arm))
     misfit = excess - C_a * arm
-    points = max(2, min(settings.points, int((h <= top).sum())))
+    points = max(2, min(POINTS, int((h <= top).sum())))
     variance = float(np.mean(misfit**2) * len(grid) / (points - 1) / (arm @ arm))
     return C_a, variance, float(np.sqrt(np.mean(misfit**2)))
 
 
-def _repulsion_window(h: Array, repulsive: Array, d_c: float, settings: LawSettings) -> tuple[Array, Array, Array]:
-    """Separations, repulsion and weights on the even grid between the smallest separation and d_c."""
-    grid = np.linspace(h.min(), d_c, settings.points, endpoint=False)
-    values = np.interp(grid, h, repulsive)
-    if settings.weights == "uniform":
-        return grid, values, np.ones_like(grid)
-    # relative weights, with a floor where single asperities decide
-    return grid, values, repulsive.max() / (values + settings.relative_floor * repulsive.max())
-
-
-def _prefactor(depth: Array, f: Array, weights: Array, rho: Array) -> tuple[Array, Array]:
-    """Best C_r for each rho (shape (k,)) and the weighted sum of squares left."""
+def _prefactor(depth: Array, f: Array, rho: Array) -> tuple[Array, Array]:
+    """Best C_r for each rho (shape (k,)) and the sum of squares left."""
     # dividing by the largest value keeps exp finite for any rho
     basis = np.expm1(depth / rho[:, None])
     largest = basis.max(axis=1, keepdims=True)
-    basis = weights * (basis / largest)
-    target = weights * f
-    amplitude = np.maximum(basis @ target, 0.0) / np.einsum("ij,ij->i", basis, basis)
-    misfit = ((target - amplitude[:, None] * basis) ** 2).sum(axis=1)
+    basis /= largest
+    amplitude = np.maximum(basis @ f, 0.0) / np.einsum("ij,ij->i", basis, basis)
+    misfit = ((f - amplitude[:, None] * basis) ** 2).sum(axis=1)
     return amplitude / largest[:, 0], misfit
 
 
-def _best_rho(depth: Array, f: Array, weights: Array, settings: LawSettings) -> tuple[float, int]:
+def _best_rho(depth: Array, f: Array) -> tuple[float, int]:
     """rho_r of least misfit, and -1 or +1 if it lies at the lower or upper end of the accepted range."""
     span = depth.max()
-    low, high = np.log(span / settings.max_depth_ratio), np.log(span / settings.min_depth_ratio)
+    low, high = np.log(span / DEEPEST), np.log(span / SHALLOWEST)
     grid = np.linspace(low, high, 48)
-    misfit = _prefactor(depth, f, weights, np.exp(grid))[1]
+    misfit = _prefactor(depth, f, np.exp(grid))[1]
     best = int(np.argmin(misfit))
     if best in (0, len(grid) - 1):
         return float(np.exp(grid[best])), -1 if best == 0 else 1
     left, right = grid[best - 1], grid[best + 1]
     for _ in range(9):  # each round shrinks the bracket 5-fold: 2e6 in all
         trial = np.linspace(left, right, 11)
-        k = int(np.argmin(_prefactor(depth, f, weights, np.exp(trial))[1]))
+        k = int(np.argmin(_prefactor(depth, f, np.exp(trial))[1]))
         left, right = trial[max(k - 1, 0)], trial[min(k + 1, 10)]
     return float(np.exp((left + right) / 2)), 0
 
 
-def _covariance(depth: Array, f: Array, weights: Array, C_r: float, rho: float, C_a_var: float, points: int) -> Array:
+def _covariance(depth: Array, f: Array, C_r: float, rho: float, C_a_var: float, points: int) -> Array:
     """Covariance of (C_a, C_r, rho_r) from the misfit, as if `points` of the curve were independent."""
     covariance = np.zeros((3, 3))
     covariance[0, 0] = C_a_var
     growth = np.expm1(depth / rho)
-    jacobian = weights[:, None] * np.stack([growth, -C_r * (growth + 1) * depth / rho**2], axis=1)
-    misfit = weights * (f - C_r * growth)
+    jacobian = np.stack([growth, -C_r * (growth + 1) * depth / rho**2], axis=1)
+    misfit = f - C_r * growth
     variance = float(misfit @ misfit) / max(points - 2, 1)
     # scaled columns: C_r and rho differ by many orders of magnitude
     norms = np.linalg.norm(jacobian, axis=0)
@@ -240,50 +234,6 @@ def _covariance(depth: Array, f: Array, weights: Array, C_r: float, rho: float, 
     return covariance
 
 
-def _estimates(
-    curve: tuple[Array, Array, Array],
-    window: tuple[Array, Array],
-    d_c: float,
-    fitted: tuple[float, float, float],
-    hamaker: float,
-    settings: LawSettings,
-) -> tuple[Estimate, Estimate, Estimate]:
-    """C_a, C_r and rho_r with the errors that the scatter of the curve's points gives them.
-
-    Parameters
-    ----------
-    curve : separation, repulsion and attraction of the branch, rising in separation, shapes (n,).
-    window : separations and weights of the repulsion's grid, shapes (m,).
-    fitted : C_a, C_r and rho_r.
-    """
-    h, repulsive, attractive = curve
-    C_a, C_r, rho = fitted
-
-    def repulsion(x: Array) -> tuple[Array, Array]:
-        depth = np.maximum(d_c - x, 0.0) / rho
-        return C_r * np.expm1(depth), np.stack([np.expm1(depth), -C_r * np.exp(depth) * depth / rho], axis=1)
-
-    def attraction(x: Array) -> tuple[Array, Array]:
-        arm = np.maximum(d_c + settings.rho_a_nm - x, 0.0)
-        return shielded_hamaker(x, hamaker, settings.shield_nm) - C_a * arm, -arm[:, None]
-
-    # with the first point beyond the window: the last piece of the resampled curve ends there
-    grid, weights = window
-    near = slice(0, int((h < d_c).sum()) + 1)
-    C_r_known, rho_known = estimates(
-        h[near], repulsive[near], *repulsion(h[near]), grid, *repulsion(grid), weights, (C_r, rho), True
-    )
-    if not np.isfinite(C_a):
-        return NO_ESTIMATE, C_r_known, rho_known
-    top = min(d_c + settings.rho_a_nm, h.max())
-    grid = np.linspace(h.min(), top, settings.points)
-    near = slice(0, int((h < top).sum()) + 1)
-    (C_a_known,) = estimates(
-        h[near], attractive[near], *attraction(h[near]), grid, *attraction(grid), np.ones_like(grid), (C_a,), False
-    )
-    return C_a_known, C_r_known, rho_known
-
-
 def _free_contact_separation(
     h: Array, repulsive: Array, attractive: Array, hamaker: float, settings: LawSettings
 ) -> float:
@@ -292,19 +242,18 @@ def _free_contact_separation(
     The attraction's kink at d_c + rho_a is what breaks the degeneracy of the repulsion.
     """
     touching = h[repulsive > 0]
-    if touching.size < settings.min_points:
+    if touching.size < FEWEST_POINTS:
         return np.nan
     left, right = float(touching.min()) + 1e-3 * float(np.ptp(touching)), float(touching.max())
 
     def total_misfit(d_c: float) -> float:
         _, _, misfit_a = _fit_attraction(h, attractive, d_c, hamaker, settings)
         # the same window for every trial d_c, else the shortest window wins
-        grid = np.linspace(h.min(), touching.max(), settings.points)
+        grid = np.linspace(h.min(), touching.max(), POINTS)
         f = np.interp(grid, h, repulsive)
         depth = np.maximum(d_c - grid, 0.0)
-        weights = np.ones_like(grid)
-        rho, _ = _best_rho(depth, f, weights, settings)
-        misfit_r = _prefactor(depth, f, weights, np.array([rho]))[1][0] / len(grid)
+        rho, _ = _best_rho(depth, f)
+        misfit_r = _prefactor(depth, f, np.array([rho]))[1][0] / len(grid)
         return misfit_r + misfit_a**2
 
     trials = np.linspace(left, right, 25)

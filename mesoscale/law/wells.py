@@ -1,10 +1,9 @@
-"""The adhesion well by the law and by the curve it was fitted to, and what is known of the law's numbers.
+"""The adhesion well by the law and by the curve it was fitted to.
 
 `LawFit.residual` is relative to the largest repulsion, beside which a misfit of the attraction cannot show. Release and
 stiction hang on the well alone, so the attraction is judged here by itself.
 """
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,8 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.law.compact import Law, pressure
-from mesoscale.law.fit import LawFit
-from mesoscale.law.parameters import PARAMETERS
 
 Array = NDArray[np.float64]
 
@@ -22,28 +19,8 @@ MOST_MISSED = 0.25
 """Relative distance of the law's well depth from the curve's beyond which the law misses it."""
 POINTS = 2000
 """Separations at which the law's well is sought: 40 nm in steps of 0.02 nm, a hundredth of rho_a."""
-SHARES = (0.68, 0.90)
-"""Probabilities that the stated intervals hold the parameter."""
 MICRO = 1e6
 """GPa to kPa, and GPa nm, which is J/m^2, to uJ/m^2."""
-
-
-def interval_column(name: str, end: str, share: float) -> str:
-    """Column of the low or high end of a parameter's interval."""
-    return f"{name}_{end}{share * 100:.0f}"
-
-
-WELL_COLUMNS = (
-    "attraction_residual",
-    "attraction_status",
-    "well_law_kPa",
-    "well_curve_kPa",
-    "well_law_at_nm",
-    "well_curve_at_nm",
-    "energy_law_uJ_m2",
-    "energy_curve_uJ_m2",
-    *(interval_column(name, end, share) for name in PARAMETERS[1:] for share in SHARES for end in ("low", "high")),
-)
 
 
 @dataclass(frozen=True)
@@ -90,20 +67,19 @@ def attraction_status(by_law: Well, by_curve: Well) -> str:
     return f"misses_well: {ratio:.3g} times the curve's"
 
 
-def well_row(fit: LawFit, law: Law | None, curve: tuple[Array, Array, Array] | None) -> dict[str, Any]:
+def well_row(law: Law | None, curve: tuple[Array, Array, Array] | None) -> dict[str, Any]:
     """Row of law/wells.csv without run, seed and branch; empty where there is no curve or it gave no law.
 
     Parameters
     ----------
-    law : of the fit, None if it has no numbers.
+    law : fitted to the curve, None if that gave no numbers.
     curve : separation (nm, rising), repulsive and attractive pressure (GPa) of the branch, shapes (n,).
     """
-    row: dict[str, Any] = dict.fromkeys(WELL_COLUMNS) | {"attraction_status": "no_curve"}
     if curve is None:
-        return row
+        return {"attraction_status": "no_curve"}
     separation_nm, repulsive_GPa, attractive_GPa = curve
     by_curve = well_of(separation_nm, repulsive_GPa + attractive_GPa)
-    row |= {
+    row: dict[str, Any] = {
         "attraction_status": "no_law",
         "well_curve_kPa": by_curve.depth_GPa * MICRO,
         "well_curve_at_nm": by_curve.at_nm,
@@ -118,11 +94,6 @@ def well_row(fit: LawFit, law: Law | None, curve: tuple[Array, Array, Array] | N
             "well_law_at_nm": ours.at_nm,
             "energy_law_uJ_m2": ours.energy_GPa_nm * MICRO,
         }
-    for name, known in zip(PARAMETERS[1:], fit.estimates, strict=True):
-        for share in SHARES:
-            low, high = known.interval(share)
-            for end, value in (("low", low), ("high", high)):
-                row[interval_column(name, end, share)] = value if math.isfinite(value) else None
     return row
 
 

@@ -2,7 +2,6 @@
 
 from mesoscale.inputs.definitions import INPUTS
 from mesoscale.law.parameters import LAW
-from mesoscale.law.wells import SHARES, interval_column
 from workflow.schemas.table import Column, Table, boolean, integer, number, text
 
 INPUT_VALUES = tuple(number(row.name, row.unit, f"{row.label} of the run", optional=row.optional) for row in INPUTS)
@@ -53,7 +52,7 @@ TABLES = (
     ),
     Table(
         ("law/wells.csv",),
-        "The adhesion of one branch of one run by its law and by its curve, and what is known of the law's numbers.",
+        "The adhesion of one branch of one run by its law and by its curve.",
         (
             integer("run", "number of the run"),
             integer("node", "number of the node of the design; 0 is its centre"),
@@ -77,17 +76,6 @@ TABLES = (
             number("well_curve_at_nm", "nm", "separation of the curve's well", empty=True),
             number("energy_law_uJ_m2", "µJ/m²", "work from the balance of forces outward by the law", empty=True),
             number("energy_curve_uJ_m2", "µJ/m²", "the same by the curve", empty=True),
-            *(
-                number(
-                    interval_column(row.name, end, share),
-                    row.unit,
-                    f"{end} end of the {share:.0%} interval of {row.symbol}, d_c given",
-                    empty=True,
-                )
-                for row in LAW[1:]
-                for share in SHARES
-                for end in ("low", "high")
-            ),
         ),
     ),
     Table(

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from mesoscale.law.compact import Law, force, pressure
-from mesoscale.law.fit import fit_branch
 from mesoscale.law.wells import attraction_status, missed_wells, well_note, well_of, well_of_law, well_row
 
 AREA = 1e6
@@ -37,11 +36,10 @@ def rows_of(factor):
     """Rows of a curve whose attraction is the law's times a factor near contact only."""
     h = np.linspace(23.0, 60.0, 200)
     attractive, repulsive = force(h, LAW, AREA)
-    fit = fit_branch(h, repulsive, attractive, AREA, LAW.hamaker, 32.0)
     true = factor * attractive / AREA
     return {"branch": "opening", "node": "0"} | {
         key: value if isinstance(value, str) else repr(value)
-        for key, value in well_row(fit, LAW, (h, repulsive / AREA, true)).items()
+        for key, value in well_row(LAW, (h, repulsive / AREA, true)).items()
     }
 
 
@@ -56,5 +54,4 @@ def test_an_exact_law_is_ok_and_a_wrong_one_is_named_in_the_note():
 
 
 def test_a_missing_curve_leaves_the_row_empty():
-    fit = fit_branch(np.linspace(1, 2, 5), np.zeros(5), -np.ones(5), AREA, 0.2)
-    assert well_row(fit, None, None)["attraction_status"] == "no_curve"
+    assert well_row(None, None)["attraction_status"] == "no_curve"
