@@ -79,7 +79,7 @@ NONSENSE: dict[str, tuple[str, str]] = {
     "one pixel": ("contact: {pixels: 1}", "contact.pixels = 1"),
     "spectrum that falls back": ("contact: {surface: {spectrum: {q: [2, 1], psd: [1, 1]}}}", "not in rising order"),
     "regression with one run": (scene("uncertainty: {direct_runs: 1}"), "needs at least 14"),
-    "million jobs of a pad": (scene("pad: {cells: 1000000, chunk_cells: 1}"), "pad.chunk_cells = 1"),
+    "million jobs of a pad": (scene("pad: {cells: 1000000}"), "pad.cells = 1000000"),
     "history without end": (
         scene("history: {cycles: 100000, seeds: 30}", "contact: {mechanics: coupled}"),
         "one job of",

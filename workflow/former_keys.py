@@ -54,6 +54,19 @@ FORMER_KEYS: dict[str, str] = {
         }.items()
     },
     # pad and adhesion
+    **{f"pad.{key}": f"renamed, write pad.grid.{key}" for key in ("pilot_cells", "max_pressure_MPa", "depths")},
+    **{
+        key: f"no longer a setting, delete it: {value}"
+        for key, value in {
+            "pad.step_nm": "it is 0.1 nm",
+            "pad.first_seed": "it is 1000",
+            "pad.chunk_cells": "a job has 64 cells, or 32 coupled ones",
+            "pad.chunk_draws": "a job has 12",
+            "pad.gap_cutoff_high_nm": "it is 0.3 nm; for another range of D0 give inputs.gap_cutoff",
+            "adhesion.step_nm": "it is 0.1 nm",
+            "adhesion.first_seed": "it is 5000",
+        }.items()
+    },
     # uncertainty and calibration
     **{
         f"{section}.{key}": f"no longer a setting, delete it: {value}"

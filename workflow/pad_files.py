@@ -9,7 +9,7 @@ from mesoscale.pad.cells import grid_of_rows
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.draws import laws_of_rows, plan_draws
 from mesoscale.pad.response import SampledPad
-from mesoscale.settings import ContactSettings, PadSettings
+from mesoscale.settings import ContactSettings
 from workflow.results import load_csv, load_h5, load_numbers
 
 
@@ -26,12 +26,11 @@ def load_cells(grid: str, chunks: Sequence[str], cell_area_nm2: float) -> PadCel
 
 
 def load_draws(
-    files: Sequence[str], inputs: InputTable, contact: ContactSettings, pad: PadSettings
+    files: Sequence[str], inputs: InputTable, contact: ContactSettings, count: int, cells: int
 ) -> list[SampledPad]:
-    """The pads of pad/draws/ with their inputs."""
-    draws = plan_draws(inputs, contact, pad)
+    """The pads of pad/draws/ with their inputs; so many draws, each of so many cells."""
+    draws = plan_draws(inputs, contact, count, cells)
     curves = laws_of_rows((row for path in files for row in load_csv(path)), draws)
     return [
-        SampledPad(draw.values, draw.gap_cutoff_nm, pad.draw_cells, curve)
-        for draw, curve in zip(draws, curves, strict=True)
+        SampledPad(draw.values, draw.gap_cutoff_nm, cells, curve) for draw, curve in zip(draws, curves, strict=True)
     ]

@@ -14,11 +14,10 @@ from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.table import check_literature
 from workflow.scene import ROOT, Scene
-from workflow.terminal.cost import START_S, history_s
+from workflow.terminal.cost import history_s
 from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
 
 MATERIALS = ROOT / "config" / "materials"
-MOST_JOBS = 10_000  # of one design; Snakemake plans some 450 jobs a second
 LONGEST_JOB_D = 30.0  # of a job that starts again from nothing when it is interrupted
 DAY_S = 86400.0
 
@@ -111,20 +110,13 @@ def _unknown_bases(scene: Scene) -> Iterator[str]:
 
 
 def _machine(scene: Scene) -> Iterator[str]:
-    count, size = scene.pad.cells, scene.pad.chunk_cells
-    if (jobs := math.ceil(count / size)) > MOST_JOBS:
-        yield (
-            f"pad.chunk_cells = {size}: {count} of them need {jobs} jobs, whose start alone takes "
-            f"{jobs * START_S / 3600:.3g} hours of one core; accepted are {MOST_JOBS}: give at least "
-            f"{math.ceil(count / MOST_JOBS)}"
-        )
     pixels, needed, present = scene.contact.pixels, contact_MB(scene.contact), machine_MB()
     if needed > present:
         yield (
             f"contact.pixels = {pixels}: a contact needs {needed / 1000:.1f} GB of memory, this machine has "
             f"{present / 1000:.1f}; take fewer pixels"
         )
-    together = {"pad.pilot_cells": scene.pad.pilot_cells}
+    together = {"pad.grid.pilot_cells": scene.pad.grid.pilot_cells}
     if scene.adhesion.pads:
         together["adhesion.cells"] = scene.adhesion.cells
     for key, cells in together.items():

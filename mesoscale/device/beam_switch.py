@@ -184,7 +184,7 @@ class _Moving:
             raise NotComputed(
                 f"device.hold_voltage_V = {voltage:.4g}: the beam presses the pad below "
                 f"{law.separation_nm[0]:.4g} nm ({law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa), where its "
-                "curves end; raise pad.max_pressure_MPa, or lower the voltage"
+                "curves end; raise pad.grid.max_pressure_MPa, or lower the voltage"
             )
         if ended == UNSETTLED:
             raise InputError(f"device: the beam finds no balance at {voltage:.4g} V; this is a fault of the solver")

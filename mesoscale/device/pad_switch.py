@@ -21,7 +21,6 @@ from mesoscale.law.wells import attraction_status, well_of, well_of_law
 from mesoscale.pad.compact import fit_compact, tabulated
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import PadLaw, law_of
-from mesoscale.pad.tail import Tail
 from mesoscale.settings import DeviceSettings, LawSettings
 
 Array = NDArray[np.float64]
@@ -79,7 +78,8 @@ def solve_on_pad(switch: Switch, law: PadLaw, hold_voltage_V: float | None) -> P
     if holds.size == 0:
         raise NotComputed(
             f"device.hold_voltage_V: {np.sqrt(hold):.4g} V presses the pad harder than the computed "
-            f"{law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa; raise pad.max_pressure_MPa, or lower the voltage"
+            f"{law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa; raise "
+            "pad.grid.max_pressure_MPa, or lower the voltage"
         )
     inner = int(holds[-1])
     if inner + 1 == near.sum():
@@ -122,21 +122,17 @@ def resampled_states(
     return solved
 
 
-def switch_on_pad(
-    cells: PadCells, hamaker: float, settings: DeviceSettings, cell_area_nm2: float, tail: Tail
-) -> dict[str, Any]:
+def switch_on_pad(cells: PadCells, hamaker: float, settings: DeviceSettings, cell_area_nm2: float) -> dict[str, Any]:
     """Content of device/pad_switch.json: the switch on the mean pad, and what the number of cells leaves open.
 
     A switch whose held state was not computed gets no numbers; `gate` says why.
     """
     switch = switch_from_settings(settings)
-    pad_cells = switch.area_m2 * 1e18 / cell_area_nm2
     content: dict[str, Any] = {
         "cells_computed": cells.count,
-        "cells_of_pad": pad_cells,
+        "cells_of_pad": switch.area_m2 * 1e18 / cell_area_nm2,
         "unsettled_cells": int((~cells.settled).sum()),
         "spring_pressure_kPa": switch.spring_N_per_m * switch.gap_nm * NM / switch.area_m2 * 1e-3,
-        "first_contact_nm": float(tail.first_contact_nm(pad_cells)[0]),
     }
     try:
         mean = solve_on_pad(switch, law_of(cells, hamaker), settings.hold_voltage_V)

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from mesoscale.device.beam_switch import solve_beam
 from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.statistics import analytic_pull_in_V, describe, never_closes, probability
-from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, switch_from_settings
+from mesoscale.device.pressing import DEVIATIONS, held_V, pressure_to_compute
+from mesoscale.device.statistics import describe, never_closes, probability
+from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.curves import PadCells
@@ -37,13 +38,6 @@ RESAMPLES = 24
 """Resampled central pads: their standard deviation is known to 15 %."""
 ELEMENTS = 64
 """Of the beam: release is within 0.5 % of that of 1024 elements, but near sticking (docs/pad.md)."""
-CLAMPED = 1.25
-"""Square of a clamped beam's pull-in voltage over that of the plate of its mid-span stiffness (70.1 beside 56.9)."""
-EDGE = 2.5
-"""Local over electrostatic pressure to which pads are computed. The edge of what has landed bears the beam, too: by
-1.8 to 1.93, whatever the adhesion, bow or voltage. The rest is for the few pilot cells, whose mean is off by 15 %."""
-DEVIATIONS = 1.0
-"""Bow (of its deviations) for which draws are computed with that margin; without the margin they last for 2.7."""
 FAR_NM = 300.0
 LESS = (0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3)
 """Shares of the voltage that are tried where the held state was not computed."""
@@ -62,40 +56,6 @@ class Point:
     values: dict[str, float]
     gap_cutoff_nm: float
     device: DeviceSettings
-
-
-def held_V(settings: DeviceSettings) -> float:
-    """Voltage with which the switch is held closed: as set, or that of its pull-in without contact."""
-    switch = switch_from_settings(settings)
-    if settings.hold_voltage_V is not None:
-        return settings.hold_voltage_V
-    if settings.spring_N_per_m is not None:
-        return analytic_pull_in_V(switch)
-    return float(np.sqrt(CLAMPED * (1.0 + settings.bow_nm / switch.gap_nm) ** 3)) * analytic_pull_in_V(switch)
-
-
-def pressure_to_compute(
-    settings: DeviceSettings, deviations: float = 0.0, largest_MPa: float | None = None
-) -> Callable[[Array], Array]:
-    """Pressure (GPa) up to which a pad is computed at a separation (nm), so that the switch does not press harder.
-
-    Parameters
-    ----------
-    deviations : bow to allow for beyond the scene's, in its standard deviations.
-    largest_MPa : a pressure to take instead.
-    """
-    if largest_MPa is not None:
-        return lambda separation_nm: np.full_like(separation_nm, largest_MPa * 1e-3)
-    switch = switch_from_settings(settings)
-    bow = max(settings.bow_nm, 0.0) + deviations * settings.bow_deviation_nm
-    squared = held_V(settings.model_copy(update={"bow_nm": bow})) ** 2
-    closest = 0.5 * switch.dielectric_nm + 1.0
-
-    def wanted_GPa(separation_nm: Array) -> Array:
-        electric = np.maximum(separation_nm + switch.dielectric_nm, closest) * NM
-        return EDGE * VACUUM_PERMITTIVITY * squared / (2.0 * electric**2) / GPA
-
-    return wanted_GPa
 
 
 def solve_electrode(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:

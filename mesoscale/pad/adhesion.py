@@ -23,6 +23,10 @@ from mesoscale.settings import AdhesionSettings, ContactSettings
 
 Array = NDArray[np.float64]
 
+STEP_NM = 0.1
+"""Step of separation in and near contact."""
+FIRST_SEED = 5000
+"""Of the surface of the first pad's first cell."""
 SPHERE_STEP_RMS = 0.25
 """Distance of the depths of closing for the memory under a sphere, in units of the RMS height: some eight of them."""
 MOST_STEPS = 20_000
@@ -108,7 +112,7 @@ def open_from(separation_nm: Array, net_GPa: Array, beyond_J_m2: float) -> Opene
     return Opened(float(s[0]), -float(np.trapezoid(net, s)) + beyond_J_m2, -float(net.min()))
 
 
-def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range, step_nm: float) -> tuple[PadCells, list[int]]:
+def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range) -> tuple[PadCells, list[int]]:
     """Cells under one plane, closed side by side once, and opened where their mean repulsion reaches each load.
 
     Returns the cells, and the position among the depths for each load; between the loads and up to first contact they
@@ -119,13 +123,13 @@ def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range, step_nm
     InputError : the cells never carry the largest load.
     """
     film = SideBySide(case.inputs, case.contact, seeds)
-    top = film.top_nm(step_nm)
+    top = film.top_nm(STEP_NM)
     separations, openings = far_nm(top)[::-1].tolist(), []
     for separation in separations:
         film.close_to(separation)
     repelled, last_opened, loaded = 0.0, np.inf, {}
     for step in range(MOST_STEPS):
-        separation = top - step_nm * step
+        separation = top - STEP_NM * step
         separations.append(separation)
         repelled = film.close_to(separation)
         reached = [load for load in loads_GPa if load <= repelled and load not in loaded]
@@ -154,9 +158,9 @@ def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range, step_nm
 
 def pad_rows(case: Case, adhesion: AdhesionSettings, number: int) -> list[dict[str, Any]]:
     """One row for each load of one pad of a case: columns of adhesion/pads.csv."""
-    first = adhesion.first_seed + number * adhesion.cells
+    first = FIRST_SEED + number * adhesion.cells
     cells, loaded = close_to_loads(
-        case, [load * 1e-3 for load in adhesion.loads_MPa], range(first, first + adhesion.cells), adhesion.step_nm
+        case, [load * 1e-3 for load in adhesion.loads_MPa], range(first, first + adhesion.cells)
     )
     rate = retardation_rate(case.contact.retardation_nm)
     outwards = cells.grid.separation_nm[::-1]

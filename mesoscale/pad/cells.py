@@ -10,10 +10,14 @@ from mesoscale.contact.displacement import Closing, Displacement, close_by_separ
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.surfaces import FilmPieces
-from mesoscale.settings import ContactSettings, PadSettings
+from mesoscale.settings import ContactSettings, PadGridSettings
 
 Array = NDArray[np.float64]
 
+FIRST_SEED = 1000
+"""Of the surface of a pad's first cell."""
+STEP_NM = 0.1
+"""Step of separation in and near contact: twice as long moves the well of a single cell by 15 % (accuracy.py)."""
 DEVIATIONS_ABOVE = 6.0
 """First contacts of cells have a Gumbel tail: 1 of 4000 cells touches more than 6 deviations above the mean."""
 FAR_NM = 200.0
@@ -84,27 +88,31 @@ def grid_of_rows(rows: Sequence[Mapping[str, float]]) -> PadGrid:
 def plan_grid(
     inputs: ContactInputs,
     contact: ContactSettings,
-    pad: PadSettings,
+    settings: PadGridSettings,
     wanted_GPa: Callable[[Array], Array],
+    first_seed: int = FIRST_SEED,
+    step_nm: float = STEP_NM,
 ) -> PadGrid:
     """Separations for a pad, from a few pilot cells that are closed until their mean pressure is the largest asked for.
 
     Parameters
     ----------
     wanted_GPa : that pressure as a function of separation (nm).
+    first_seed : of the pilot cells' surfaces.
+    step_nm : of separation in and near contact.
 
     Raises
     ------
     InputError : the pilot cells never reach the pressure.
     """
-    pilots = SideBySide(inputs, contact, range(pad.first_seed, pad.first_seed + pad.pilot_cells))
-    lowest, light = _close_pilots(pilots, wanted_GPa, pad.step_nm * PILOT_STEP)
-    top, typical = pilots.top_nm(pad.step_nm), float(pilots.first_contact_nm.mean())
-    near = lowest + pad.step_nm * np.arange(np.ceil((top - lowest) / pad.step_nm) + 1)
+    pilots = SideBySide(inputs, contact, range(first_seed, first_seed + settings.pilot_cells))
+    lowest, light = _close_pilots(pilots, wanted_GPa, step_nm * PILOT_STEP)
+    top, typical = pilots.top_nm(step_nm), float(pilots.first_contact_nm.mean())
+    near = lowest + step_nm * np.arange(np.ceil((top - lowest) / step_nm) + 1)
     separation = np.concatenate([near, far_nm(float(near[-1]))])[::-1]
     # a few tall grains may carry the switch where most cells do not touch yet
     shallow = int(np.searchsorted(-separation, -max(typical, light)))
-    depths = np.unique(np.linspace(shallow, separation.size - 1, pad.depths).round().astype(int))
+    depths = np.unique(np.linspace(shallow, separation.size - 1, settings.depths).round().astype(int))
     return PadGrid(separation, depths)
 
 
@@ -126,7 +134,7 @@ def _close_pilots(pilots: SideBySide, wanted_GPa: Callable[[Array], Array], step
         if light is not None and repelled >= wanted:
             return separation, light
     raise InputError(
-        f"pad.max_pressure_MPa = {wanted * 1e3:g}: {len(pilots.cells)} cells closed by "
+        f"pad.grid.max_pressure_MPa = {wanted * 1e3:g}: {len(pilots.cells)} cells closed by "
         f"{start_nm - separation:g} nm carry {repelled * 1e3:.3g} MPa; lower it"
     )
 

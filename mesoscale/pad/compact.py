@@ -111,7 +111,7 @@ def fit_compact(law: PadLaw) -> tuple[CompactPad, Residuals]:
     if used.sum() < FEWEST or law.depth_nm.size < 3:
         raise InputError(
             f"pad: {int(used.sum())} separations in contact and {law.depth_nm.size} depths; accepted for a closed form "
-            f"are at least {FEWEST} and 3; lower pad.step_nm or raise pad.depths"
+            f"are at least {FEWEST} and 3; raise pad.cells or pad.grid.depths"
         )
     at = s[used]
     c, closing = _solve(np.stack([np.ones(at.size), at, at**2], axis=1), -np.log(repulsive[used]))

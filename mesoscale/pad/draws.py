@@ -14,19 +14,20 @@ from numpy.typing import NDArray
 
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.cells import close_cells, plan_grid
+from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
 from mesoscale.pad.curves import assemble
 from mesoscale.pad.memory import PadLaw, law_of
-from mesoscale.settings import ContactSettings, PadSettings
+from mesoscale.settings import ContactSettings, PadGridSettings
 
 Array = NDArray[np.float64]
 
-FIRST_DRAW_SEED = 1_000_000
+FIRST_DRAW_SEED = FIRST_SEED + 1_000_000
 """Surfaces of the draws differ from those of the central pad."""
+HIGHEST_GAP_CUTOFF_NM = 0.3
+"""Upper end of a D0 that is no input: a distance of atoms, above Israelachvili's 0.165 nm (docs/pad.md)."""
 STEP_RMS = 0.05
 """Step of separation in units of the RMS height: the closed form needs no wells of single cells."""
-DEPTHS = 4
-PILOT_CELLS = 2
+GRID = PadGridSettings(pilot_cells=2, depths=4)
 
 
 @dataclass(frozen=True)
@@ -46,24 +47,27 @@ class Draw:
     seeds: range
 
 
-def plan_draws(table: InputTable, contact: ContactSettings, pad: PadSettings) -> list[Draw]:
+def plan_draws(table: InputTable, contact: ContactSettings, count: int, cells: int) -> list[Draw]:
     """Draws that fill the inputs' distribution evenly: a Latin hypercube over the inputs and D0.
 
     Where D0 is an input, the draws vary it with the inputs, and `Draw.gap_cutoff_nm` stays at its median.
+
+    Parameters
+    ----------
+    count, cells : draws, and cells of each.
     """
     from scipy.stats import qmc  # slow to import
 
-    units = qmc.LatinHypercube(len(table.rows) + 1, rng=pad.first_seed).random(pad.draws)
+    units = qmc.LatinHypercube(len(table.rows) + 1, rng=FIRST_SEED).random(count)
     values = table.transform(units[:, :-1])
     low = contact_of(table.medians(), contact)[1].gap_cutoff_nm
-    high = low if "gap_cutoff" in table.names else max(low, pad.gap_cutoff_high_nm)
-    first = pad.first_seed + FIRST_DRAW_SEED
+    high = low if "gap_cutoff" in table.names else max(low, HIGHEST_GAP_CUTOFF_NM)
     return [
         Draw(
             k,
             dict(zip(table.names, row.tolist(), strict=True)),
             float(low + (high - low) * unit),
-            range(first + k * pad.draw_cells, first + (k + 1) * pad.draw_cells),
+            range(FIRST_DRAW_SEED + k * cells, FIRST_DRAW_SEED + (k + 1) * cells),
         )
         for k, (row, unit) in enumerate(zip(values, units[:, -1], strict=True))
     ]
@@ -72,7 +76,6 @@ def plan_draws(table: InputTable, contact: ContactSettings, pad: PadSettings) ->
 def close_draws(
     draws: Sequence[Draw],
     contact: ContactSettings,
-    pad: PadSettings,
     wanted_GPa: Callable[[Array], Array],
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[PadLaw]:
@@ -88,15 +91,7 @@ def close_draws(
     """
     for done, draw in enumerate(draws):
         inputs, settings = contact_of(draw.values, contact.model_copy(update={"gap_cutoff_nm": draw.gap_cutoff_nm}))
-        coarse = pad.model_copy(
-            update={
-                "step_nm": STEP_RMS * inputs.rms,
-                "depths": DEPTHS,
-                "pilot_cells": PILOT_CELLS,
-                "first_seed": draw.seeds.start,
-            }
-        )
-        grid = plan_grid(inputs, settings, coarse, wanted_GPa)
+        grid = plan_grid(inputs, settings, GRID, wanted_GPa, draw.seeds.start, STEP_RMS * inputs.rms)
         cells = assemble(grid, list(close_cells(inputs, settings, grid, draw.seeds)), settings.length_nm**2)
         yield law_of(cells, inputs.hamaker)
         if progress:

@@ -59,7 +59,7 @@ class PadLaw:
             raise NotComputed(
                 f"deepest closing {deepest_nm:.4g} nm: the pad was computed for {low:.4g} .. {high:.4g} nm "
                 f"({self.closing_GPa(high) * 1e3:.3g} .. {self.closing_GPa(low) * 1e3:.3g} MPa); raise "
-                "pad.max_pressure_MPa, or lower the hold voltage"
+                "pad.grid.max_pressure_MPa, or lower the hold voltage"
             )
         s = np.maximum(np.asarray(separation_nm, float), deepest_nm)
         upper = int(np.clip(np.searchsorted(self.depth_nm, deepest_nm), 1, self.depth_nm.size - 1))
@@ -80,7 +80,7 @@ class PadLaw:
         if (separation_nm < self.separation_nm[0]).any():
             raise NotComputed(
                 f"separation {separation_nm.min():.4g} nm: the pad was closed to {self.separation_nm[0]:.4g} nm "
-                f"({self.closing[:, 0].sum() * 1e3:.3g} MPa); raise pad.max_pressure_MPa"
+                f"({self.closing[:, 0].sum() * 1e3:.3g} MPa); raise pad.grid.max_pressure_MPa"
             )
 
     def _extended(self, separation_nm: Array, pressure: Array) -> Array:

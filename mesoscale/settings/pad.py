@@ -8,16 +8,15 @@ from mesoscale.settings.base import Settings
 from mesoscale.settings.inputs import WorkAndRangeSettings
 
 Length = Annotated[float, Field(gt=0, le=1e6)]
-Step = Annotated[
-    float,
-    Field(gt=0, le=10, description="step of separation in and near contact", json_schema_extra={"unit": "nm"}),
-]
+
+CELLS_PER_JOB = {"asperity": 64, "coupled": 32}
+"""Cells of a pad per job and file, by mechanics: coupled ones take seconds each."""
+DRAWS_PER_JOB = 12
 
 
-class PadSettings(Settings):
-    """Pad of many cells that share one separation (docs/pad.md)."""
+class PadGridSettings(Settings):
+    """Separations and depths that all cells of a pad share (docs/pad.md)."""
 
-    cells: int = Field(default=256, ge=8, le=1_000_000, description="cells that are computed; a pad has their mean")
     pilot_cells: int = Field(
         default=8, ge=2, le=1000, description="cells that are closed first, to find the range of separations"
     )
@@ -29,7 +28,6 @@ class PadSettings(Settings):
         "edge of what has landed included. A switch that presses harder is refused",
         json_schema_extra={"unit": "MPa"},
     )
-    step_nm: Step = 0.1
     depths: int = Field(
         default=8,
         ge=2,
@@ -37,6 +35,13 @@ class PadSettings(Settings):
         description="depths of closing from which the pad is opened, between first contact "
         "of a typical cell and the deepest closing",
     )
+
+
+class PadSettings(Settings):
+    """Pad of many cells that share one separation (docs/pad.md)."""
+
+    cells: int = Field(default=256, ge=8, le=100_000, description="cells that are computed; a pad has their mean")
+    grid: PadGridSettings = PadGridSettings()
     draws: int = Field(
         default=24,
         ge=0,
@@ -44,17 +49,6 @@ class PadSettings(Settings):
         description="sets of the uncertain inputs with a pad of their own: what the inputs do to the release; 0: none",
     )
     draw_cells: int = Field(default=4, ge=2, le=10_000, description="cells of each of these pads")
-    chunk_draws: int = Field(default=12, ge=1, le=100_000, description="such pads per job and file")
-    gap_cutoff_high_nm: float = Field(
-        default=0.3,
-        gt=0,
-        le=10,
-        description="upper end of the uncertain D0, whose lower end is contact.gap_cutoff_nm: a distance of atoms, "
-        "above Israelachvili's 0.165 nm",
-        json_schema_extra={"unit": "nm"},
-    )
-    chunk_cells: int = Field(default=64, ge=1, le=100000, description="cells per job and file")
-    first_seed: int = Field(default=1000, ge=0, le=2**31, description="seed of the first cell's surface")
 
 
 class AdhesionSettings(Settings):
@@ -87,7 +81,6 @@ class AdhesionSettings(Settings):
     works: tuple[WorkAndRangeSettings, ...] = Field(
         default=(), description="attractions by work and range beside that of the inputs"
     )
-    step_nm: Step = 0.1
     sphere_radius_um: float = Field(
         default=250.0,
         gt=0,
@@ -95,7 +88,6 @@ class AdhesionSettings(Settings):
         description="radius of the sphere whose pull-off is computed by Derjaguin's integral",
         json_schema_extra={"unit": "um"},
     )
-    first_seed: int = Field(default=5000, ge=0, le=2**31, description="seed of the first pad's first surface")
 
     @property
     def case_count(self) -> int:

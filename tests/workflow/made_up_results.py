@@ -217,7 +217,6 @@ def _pad(root: Path) -> None:
     from mesoscale.pad.cells import PadGrid
     from mesoscale.pad.compact import CompactPad
     from mesoscale.pad.curves import PadCells, adhesion_by_cells, curve_rows
-    from mesoscale.pad.tail import fit_tail, tail_summary
     from mesoscale.settings import DeviceSettings
 
     area, hamaker = 1e6, 0.215
@@ -234,9 +233,7 @@ def _pad(root: Path) -> None:
     cells = PadCells(grid, 40 - shifts, closing, opening, np.ones(24, bool))
     _write(root / "pad/curves.csv", curve_rows(cells))
     _write(root / "pad/adhesion.csv", adhesion_by_cells(cells, [1, 2, 4, 8, 16]))
-    tail = fit_tail(cells.first_contact_nm)
-    write_json(root / "pad/tail.json", tail_summary(tail, area), PROVENANCE)
-    switch = switch_on_pad(cells, hamaker, DeviceSettings(), area, tail)
+    switch = switch_on_pad(cells, hamaker, DeviceSettings(), area)
     write_json(root / "device/pad_switch.json", switch, PROVENANCE)
     for chunk, members in enumerate(np.split(np.arange(24), 2)):
         values = {

@@ -111,7 +111,7 @@ rule rank_next_on_pad:
     params:
         contact=settings("contact"),
         law=settings("law"),
-        pad=lambda wildcards: DRAW_SETTINGS,
+        design=lambda wildcards: DRAW_DESIGN,
         device=settings("device"),
     message:
         "rank what to measure next for the switch on the pad"

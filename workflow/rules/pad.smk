@@ -1,21 +1,12 @@
+from dataclasses import asdict
+
+from mesoscale.device.pressing import DEVIATIONS, pressure_to_compute
+from mesoscale.settings.pad import CELLS_PER_JOB, DRAWS_PER_JOB
 from mesoscale.uncertainty.chunks import chunk_bounds
 
-CELL_CHUNKS = chunk_bounds(SCENE.pad.cells, SCENE.pad.chunk_cells)
-# what a chunk of cells depends on: not on how many chunks there are, so that adding cells keeps the old ones
-GRID_SETTINGS = {
-    key: value
-    for key, value in settings("pad").items()
-    if key in ("pilot_cells", "max_pressure_MPa", "step_nm", "depths", "first_seed")
-}
-# which of the switch's settings say how hard it presses; none where the scene says it
-GRID_DEVICE = {
-    key: value
-    for key, value in settings("device").items()
-    if SCENE.pad.max_pressure_MPa is None
-    and key not in ("bow_deviation_nm", "tilt_nm", "tilt_deviation_nm", "adhesion_scale", "samples")
-}
-DRAW_CHUNKS = chunk_bounds(SCENE.pad.draws, SCENE.pad.chunk_draws)
-DRAW_SETTINGS = {key: settings("pad")[key] for key in ("draws", "draw_cells", "gap_cutoff_high_nm", "first_seed")}
+CELL_CHUNKS = chunk_bounds(SCENE.pad.cells, CELLS_PER_JOB[SCENE.contact.mechanics])
+DRAW_CHUNKS = chunk_bounds(SCENE.pad.draws, DRAWS_PER_JOB)
+DRAW_DESIGN = (SCENE.pad.draws, SCENE.pad.draw_cells)
 
 
 rule pad:
@@ -35,11 +26,11 @@ rule plan_pad:
     priority: 2  # first of all: the rest then fills the other cores while the pad is assembled
     threads: 1
     resources:
-        mem_mb=contact_MB(SCENE.contact, SCENE.pad.pilot_cells),
+        mem_mb=contact_MB(SCENE.contact, SCENE.pad.grid.pilot_cells),
     params:
         contact=settings("contact"),
-        pad=GRID_SETTINGS,
-        device=GRID_DEVICE,
+        grid=settings("pad")["grid"],
+        pressure=asdict(pressure_to_compute(SCENE.device, largest_MPa=SCENE.pad.grid.max_pressure_MPa)),
     message:
         "choose the separations that the cells of the pad share"
     script:
@@ -61,7 +52,7 @@ rule close_cells:
         mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
-        seeds=lambda wildcards: [SCENE.pad.first_seed + run for run in CELL_CHUNKS[wildcards.chunk]],
+        bounds=lambda wildcards: CELL_CHUNKS[wildcards.chunk],
     message:
         f"close and open the cells of the pad, chunk {{wildcards.chunk}} of {len(CELL_CHUNKS)}"
     script:
@@ -82,8 +73,8 @@ rule close_draws:
         mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
-        pad=DRAW_SETTINGS,
-        device=settings("device"),
+        design=DRAW_DESIGN,
+        pressure=asdict(pressure_to_compute(SCENE.device, DEVIATIONS)),
         bounds=lambda wildcards: DRAW_CHUNKS[wildcards.chunk],
     message:
         f"close and open pads at other inputs, chunk {{wildcards.chunk}} of {len(DRAW_CHUNKS)}"
@@ -102,7 +93,6 @@ rule assemble_pad:
         curves=f"{RESULTS}/pad/curves.h5",
         table=f"{RESULTS}/pad/curves.csv",
         adhesion=f"{RESULTS}/pad/adhesion.csv",
-        tail=f"{RESULTS}/pad/tail.json",
         compact=f"{RESULTS}/pad/compact.json",
         switch=f"{RESULTS}/device/pad_switch.json",
         verilog=f"{RESULTS}/device/rough_pad.va",
@@ -113,7 +103,7 @@ rule assemble_pad:
     threads: 1
     params:
         contact=settings("contact"),
-        pad=DRAW_SETTINGS,
+        design=DRAW_DESIGN,
         device=settings("device"),
     message:
         "assemble the pad and drive the switch with it"
@@ -127,7 +117,6 @@ rule measure_pad_accuracy:
         inputs=f"{RESULTS}/inputs.csv",
         grid=f"{RESULTS}/pad/grid.csv",
         chunks=[f"{RESULTS}/pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS],
-        draws=[f"{RESULTS}/pad/draws/chunk_{chunk}.csv" for chunk in DRAW_CHUNKS],
     output:
         f"{RESULTS}/accuracy/pad.csv",
     log:
@@ -137,9 +126,7 @@ rule measure_pad_accuracy:
         mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
-        pad=DRAW_SETTINGS,
         device=settings("device"),
-        cells=SCENE.pad.cells,
     message:
         "study the error of the release on the pad against run time"
     script:

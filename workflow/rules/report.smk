@@ -17,7 +17,7 @@ def report_inputs():
         for name in ("outputs.csv", "ratios.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")
     ]
     files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "path.csv", "law.csv")]
-    files += ["pad/curves.csv", "pad/adhesion.csv", "pad/tail.json", "device/pad_switch.json"]
+    files += ["pad/curves.csv", "pad/adhesion.csv", "device/pad_switch.json"]
     files += [f"pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS]
     if ADHESION.pads > 0:
         files += ["adhesion/summary.csv"]

@@ -1,7 +1,7 @@
 """Assemble the pad from its cells, and drive the switch with it.
 
 In: inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN), pad/draws/*.csv.
-Out: pad/curves.h5 and pad/curves.csv (MPa against nm), pad/adhesion.csv, pad/tail.json, pad/compact.json,
+Out: pad/curves.h5 and pad/curves.csv (MPa against nm), pad/adhesion.csv, pad/compact.json,
 device/pad_switch.json, device/rough_pad.va, device/rough_pad.sub.
 """
 
@@ -15,20 +15,18 @@ from mesoscale.inputs.table import from_rows
 from mesoscale.pad.compact import compact_summary
 from mesoscale.pad.curves import adhesion_by_cells, curve_rows
 from mesoscale.pad.memory import law_of
-from mesoscale.pad.tail import fit_tail, tail_summary
-from mesoscale.settings import DeviceSettings, PadSettings
+from mesoscale.settings import DeviceSettings
 from workflow.contact_settings import contact_settings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.pad_files import load_cells, load_draws
 from workflow.results import Dataset, load_csv, write_csv, write_h5, write_json, write_text
 
 with job(snakemake) as run:
     contact = contact_settings(snakemake.params.contact, snakemake)
-    pad = PadSettings(**snakemake.params.pad)
     area = contact.length_nm**2
     cells = load_cells(snakemake.input.grid, snakemake.input.chunks, area)
     grid = cells.grid
-    device = DeviceSettings(**snakemake.params.device)
+    device = settings_from_job(DeviceSettings, snakemake.params.device)
     inputs = from_rows(load_csv(snakemake.input.inputs))
     hamaker = inputs.medians()["hamaker"]
 
@@ -50,15 +48,13 @@ with job(snakemake) as run:
     }
     write_h5(snakemake.output.curves, {"pad": datasets}, {"cells": cells.count, "hamaker": hamaker}, run.provenance)
     write_csv(snakemake.output.adhesion, adhesion_by_cells(cells, [2**k for k in range(20)]))
-    tail = fit_tail(cells.first_contact_nm)
-    write_json(snakemake.output.tail, tail_summary(tail, area), run.provenance)
     law = law_of(cells, hamaker)
     write_json(snakemake.output.compact, compact_summary(law), run.provenance)
     write_text(snakemake.output.verilog, verilog_pad(law, cells.count))
     write_text(snakemake.output.spice, spice_pad(law, cells.count))
-    switch = switch_on_pad(cells, hamaker, device, area, tail)
-    if pad.draws:
-        pads = load_draws(snakemake.input.draws, inputs, contact, pad)
+    switch = switch_on_pad(cells, hamaker, device, area)
+    if snakemake.input.draws:
+        pads = load_draws(snakemake.input.draws, inputs, contact, *snakemake.params.design)
         _, central = contact_of(inputs.medians(), contact)
         switch |= try_answer(cells, pads, inputs, device, central.gap_cutoff_nm)
     write_json(snakemake.output.switch, switch, run.provenance)

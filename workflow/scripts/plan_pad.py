@@ -1,21 +1,20 @@
 """Choose the separations and depths that all cells of the pad share.  In: inputs.csv.  Out: pad/grid.csv (nm)."""
 
-from mesoscale.device.release import pressure_to_compute
+from mesoscale.device.pressing import LargestPressure
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.pad.cells import plan_grid
-from mesoscale.settings import DeviceSettings, PadSettings
+from mesoscale.settings import PadGridSettings
 from workflow.contact_settings import contact_settings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
     inputs, contact = contact_of(
         medians(load_csv(snakemake.input.inputs)), contact_settings(snakemake.params.contact, snakemake)
     )
-    pad = PadSettings(**snakemake.params.pad)
-    wanted = pressure_to_compute(DeviceSettings(**snakemake.params.device), largest_MPa=pad.max_pressure_MPa)
-    grid = plan_grid(inputs, contact, pad, wanted)
+    settings = settings_from_job(PadGridSettings, snakemake.params.grid)
+    grid = plan_grid(inputs, contact, settings, LargestPressure(**snakemake.params.pressure))
     depths = set(grid.depths.tolist())
     rows = [
         {"separation_nm": float(separation), "opened_from": int(place in depths)}

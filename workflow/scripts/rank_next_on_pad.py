@@ -14,7 +14,7 @@ from mesoscale.device.release import cutoff_range, released_on_pad
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import from_rows
-from mesoscale.settings import DeviceSettings, PadSettings
+from mesoscale.settings import DeviceSettings
 from workflow.contact_settings import contact_settings
 from workflow.job import job, settings_from_job
 from workflow.pad_files import load_cells, load_draws
@@ -24,12 +24,12 @@ POINTS = 128
 """Switches that are solved; made-up data leave a tenth to a half of them with weight."""
 
 with job(snakemake) as run:
-    contact, pad = contact_settings(snakemake.params.contact, snakemake), PadSettings(**snakemake.params.pad)
+    contact = contact_settings(snakemake.params.contact, snakemake)
     prior, inputs = from_rows(load_csv(snakemake.input.priors)), from_rows(load_csv(snakemake.input.inputs))
     rows = [row for path in (*snakemake.input.cycles, snakemake.input.local_cycles) for row in load_csv(path)]
     cycles = cycles_of_rows(rows, prior.names)
     cells = load_cells(snakemake.input.grid, snakemake.input.cells, contact.length_nm**2)
-    draws = load_draws(snakemake.input.draws, inputs, contact, pad)
+    draws = load_draws(snakemake.input.draws, inputs, contact, *snakemake.params.design)
     cutoffs = cutoff_range(contact_of(inputs.medians(), contact)[1].gap_cutoff_nm, draws)
     device = settings_from_job(DeviceSettings, snakemake.params.device)
     responses, laws = responses_of(prior, cycles)

@@ -21,6 +21,7 @@ from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, plan_rows
 from atomistic.hardness.glass import TIMESTEP_FS, total_ps
 from atomistic.materials import Material
 from mesoscale.settings import ContactSettings, HistorySettings
+from mesoscale.settings.pad import CELLS_PER_JOB, DRAWS_PER_JOB
 from mesoscale.uncertainty.chunks import CHUNK_RUNS, collocation_run_count
 from workflow.scene import Scene
 
@@ -49,7 +50,7 @@ GROWS_BY = {  # the key that makes a rule's jobs many or long
     "compute_nominal": "contact.nominal_loads_nN",
     "compute_runs": "uncertainty.seeds",
     "compute_direct_runs": "uncertainty.direct_runs",
-    "plan_pad": "pad.pilot_cells",
+    "plan_pad": "pad.grid.pilot_cells",
     "close_cells": "pad.cells",
     "close_draws": "pad.draws",
     "follow_history": "history.cycles",
@@ -229,11 +230,10 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
         10.0 * (2 * len(c.scene.measurements.tables) + 1 + c.scene.measurements.rounds)
         + c.cycles_s(c.scene.measurements.rounds * c.scene.measurements.local_runs)
     ),
-    "plan_pad": lambda c, _: c.cells_s(c.scene.pad.pilot_cells * PILOT[c.mechanics]),
-    "close_cells": lambda c, _: c.cells_s(min(c.scene.pad.chunk_cells, c.scene.pad.cells)),
+    "plan_pad": lambda c, _: c.cells_s(c.scene.pad.grid.pilot_cells * PILOT[c.mechanics]),
+    "close_cells": lambda c, _: c.cells_s(min(CELLS_PER_JOB[c.mechanics], c.scene.pad.cells)),
     "close_draws": lambda c, _: c.cells_s(
-        min(c.scene.pad.chunk_draws, c.scene.pad.draws)
-        * (c.scene.pad.draw_cells * DRAW[c.mechanics] + 2 * PILOT[c.mechanics])
+        min(DRAWS_PER_JOB, c.scene.pad.draws) * (c.scene.pad.draw_cells * DRAW[c.mechanics] + 2 * PILOT[c.mechanics])
     ),
     "assemble_pad": lambda c, _: 8.0 if c.scene.pad.draws else 2.0,
     "measure_pad_accuracy": lambda c, _: 60.0 + c.cells_s(4),

@@ -3,15 +3,13 @@
 import numpy as np
 import pytest
 
-from mesoscale.device.release import pressure_to_compute
-from mesoscale.device.studies.accuracy import accuracy_points
+from mesoscale.device.accuracy import accuracy_points
+from mesoscale.device.pressing import pressure_to_compute
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
-from mesoscale.pad.cells import close_cells, plan_grid
+from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
 from mesoscale.pad.curves import assemble
-from mesoscale.pad.draws import close_draws, plan_draws
-from mesoscale.pad.response import SampledPad
-from mesoscale.settings import ContactSettings, DeviceSettings, PadSettings
+from mesoscale.settings import ContactSettings, DeviceSettings, PadGridSettings
 
 FIXED = {"e_star": 91.0, "h_macro": 1.95, "h_prime": 8.375, "q0": 0.025, "hurst": 0.75}
 RANGES = {"hamaker": (0.2, 0.23), "rms": (7.5, 9.5)}
@@ -24,27 +22,22 @@ TABLE = InputTable(
 )
 CONTACT = ContactSettings(pixels=64)
 DEVICE = DeviceSettings()
-PAD = PadSettings(cells=16, pilot_cells=4, step_nm=0.2, depths=4, draws=8, draw_cells=2)
+GRID = PadGridSettings(pilot_cells=4, depths=4)
 
 
 @pytest.fixture(scope="module")
 def rows():
     inputs = ContactInputs(**TABLE.medians())
     wanted = pressure_to_compute(DEVICE)
-    grid = plan_grid(inputs, CONTACT, PAD, wanted)
-    seeds = range(PAD.first_seed, PAD.first_seed + PAD.cells)
+    grid = plan_grid(inputs, CONTACT, GRID, wanted, step_nm=0.2)
+    seeds = range(FIRST_SEED, FIRST_SEED + 16)
     cells = assemble(grid, list(close_cells(inputs, CONTACT, grid, seeds)), CONTACT.length_nm**2)
-    draws = plan_draws(TABLE, CONTACT, PAD)
-    laws = close_draws(draws, CONTACT, PAD, wanted)
-    pads = [
-        SampledPad(draw.values, draw.gap_cutoff_nm, PAD.draw_cells, law) for draw, law in zip(draws, laws, strict=True)
-    ]
-    return list(accuracy_points(cells, pads, TABLE, inputs, CONTACT, DEVICE, list(seeds)))
+    return list(accuracy_points(cells, inputs, CONTACT, DEVICE, list(seeds)))
 
 
 def test_every_choice_has_errors_and_times(rows):
     knobs = {row["knob"] for row in rows}
-    assert knobs == {"cells", "steps of pad.step_nm", "pad.depths", "elements of the beam", "draws"}
+    assert knobs == {"cells", "steps of separation", "pad.grid.depths", "elements of the beam"}
     assert all(np.isfinite(row["cpu_s"]) for row in rows)
 
 
@@ -54,8 +47,3 @@ def test_errors_fall_towards_the_finest(rows):
     assert elements[-1]["error"] < 0.2
     force = {row["value"]: row["error"] for row in rows if row["case"] == "force at the deepest closing"}
     assert force[2] < force[4]
-
-
-def test_ways_to_know_the_release_elsewhere_stand_side_by_side(rows):
-    ways = {row["case"] for row in rows if row["knob"] == "draws"}
-    assert ways == {"release by closed form", "release by line through the releases", "release by mean of the releases"}

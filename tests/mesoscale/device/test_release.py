@@ -7,11 +7,11 @@ import pytest
 from scipy.stats import qmc
 
 from mesoscale.device.beam_kernels import BANDS, solve_bands
+from mesoscale.device.pressing import pressure_to_compute
 from mesoscale.device.release import (
     _probability,
     first_order,
     plan_points,
-    pressure_to_compute,
     solve_or_bound,
     try_answer,
 )

@@ -24,7 +24,7 @@ from mesoscale.settings.inputs import WorkAndRangeSettings
 VALUES = {"hamaker": 0.215, "e_star": 91.0, "h_macro": 1.95, "h_prime": 8.375, "q0": 0.025, "hurst": 0.75, "rms": 4.4}
 INPUTS = ContactInputs(**VALUES)
 SMALL = ContactSettings(pixels=128, q1_per_nm=0.2)
-PADS = AdhesionSettings(pads=2, cells=2, loads_MPa=(0.5, 5.0), step_nm=0.2)
+PADS = AdhesionSettings(pads=2, cells=2, loads_MPa=(0.5, 5.0))
 
 
 def test_flats_that_touch_nowhere_have_hamakers_energy():
@@ -117,7 +117,7 @@ def test_every_mechanics_has_every_case():
 @pytest.mark.parametrize("mechanics", ["asperity", "coupled"])
 def test_pads_are_opened_from_their_loads(mechanics):
     case = Case("none", INPUTS, SMALL.model_copy(update={"mechanics": mechanics}))
-    cells, loaded = close_to_loads(case, [5e-4, 5e-3], range(7, 9), 0.1)
+    cells, loaded = close_to_loads(case, [5e-4, 5e-3], range(7, 9))
     pressed = cells.closing[:, 0].mean(axis=0)[cells.grid.depths[loaded]]
     # within a step of separation: 0.1 nm; where the first sites touch the load doubles within some 0.3 nm
     np.testing.assert_allclose(pressed, [5e-4, 5e-3], rtol=0.5)
@@ -142,4 +142,4 @@ def test_retardation_and_a_larger_D0_lower_the_energy():
 def test_a_load_out_of_reach_is_refused():
     soft = Case("none", ContactInputs(**{**VALUES, "e_star": 1e-6, "hamaker": 0.0}), ContactSettings(pixels=32))
     with pytest.raises(InputError, match="MPa; lower it"):
-        close_to_loads(soft, [1.0], range(2), 0.2)
+        close_to_loads(soft, [1.0], range(2))

@@ -1,24 +1,23 @@
-"""Cells under one plane: means, memory between depths, and the tail of first contacts."""
+"""Cells under one plane: means, and memory between depths."""
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from mesoscale.contact import ContactInputs
 from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import input_table
-from mesoscale.pad.cells import PadGrid, close_cells, plan_grid
+from mesoscale.pad.cells import FIRST_SEED, PadGrid, close_cells, plan_grid
 from mesoscale.pad.curves import adhesion_by_cells, assemble
 from mesoscale.pad.draws import plan_draws
 from mesoscale.pad.memory import PadLaw, law_of
 from mesoscale.pad.surfaces import FilmPieces
-from mesoscale.pad.tail import Tail, fit_tail
-from mesoscale.settings import ContactSettings, InputRow, PadSettings
+from mesoscale.settings import ContactSettings, InputRow, PadGridSettings
 
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
 CONTACT = ContactSettings(pixels=128)
-PAD = PadSettings(cells=16, pilot_cells=4, step_nm=0.2, depths=5)
+CELLS, STEP_NM = 16, 0.2
+GRID = PadGridSettings(pilot_cells=4, depths=5)
 WANTED_MPa = 5.0
 
 
@@ -28,8 +27,8 @@ def wanted_GPa(separation_nm):
 
 @pytest.fixture(scope="module")
 def pad():
-    grid = plan_grid(MIDDLE, CONTACT, PAD, wanted_GPa)
-    cells = list(close_cells(MIDDLE, CONTACT, grid, range(PAD.first_seed, PAD.first_seed + PAD.cells)))
+    grid = plan_grid(MIDDLE, CONTACT, GRID, wanted_GPa, step_nm=STEP_NM)
+    cells = list(close_cells(MIDDLE, CONTACT, grid, range(FIRST_SEED, FIRST_SEED + CELLS)))
     return assemble(grid, cells, CONTACT.length_nm**2)
 
 
@@ -64,13 +63,13 @@ def test_a_pad_that_one_tall_grain_carries_is_opened_from_light_loads(monkeypatc
 
     def with_a_grain(self, seed):
         heights = piece(self, seed)
-        if seed == PAD.first_seed:
+        if seed == FIRST_SEED:
             heights[:48, :48] -= 20.0
         return heights
 
     monkeypatch.setattr(FilmPieces, "surface", with_a_grain)
-    grid = plan_grid(MIDDLE, CONTACT, PAD, wanted_GPa)
-    cells = list(close_cells(MIDDLE, CONTACT, grid, range(PAD.first_seed, PAD.first_seed + PAD.pilot_cells)))
+    grid = plan_grid(MIDDLE, CONTACT, GRID, wanted_GPa, step_nm=STEP_NM)
+    cells = list(close_cells(MIDDLE, CONTACT, grid, range(FIRST_SEED, FIRST_SEED + GRID.pilot_cells)))
     pressure = assemble(grid, cells, CONTACT.length_nm**2).closing[:, 0].mean(axis=0)
     assert pressure[grid.depths[0]] < 0.3e-3 * WANTED_MPa
 
@@ -79,7 +78,7 @@ def test_a_pressure_out_of_reach_is_refused():
     rigid = ContactSettings(pixels=32, length_nm=1000.0)
     soft = ContactInputs(**{**vars(MIDDLE), "e_star": 1e-6, "hamaker": 0.0})
     with pytest.raises(InputError, match=r"max_pressure_MPa"):
-        plan_grid(soft, rigid, PAD, wanted_GPa)
+        plan_grid(soft, rigid, GRID, wanted_GPa)
 
 
 def test_openings_start_where_closing_ended_and_deeper_pads_hold_more(pad):
@@ -119,7 +118,7 @@ def test_adhesion_falls_with_the_number_of_cells(pad):
     deepest = [row for row in rows if row["depth_nm"] == rows[-1]["depth_nm"]]
     values = [row["net_adhesion_kPa"] for row in deepest if row["method"] == "groups"]
     assert values == sorted(values, reverse=True)
-    assert deepest[-1]["cells"] == PAD.cells
+    assert deepest[-1]["cells"] == CELLS
 
 
 def test_groups_of_equal_cells_pull_as_one_cell():
@@ -133,31 +132,6 @@ def test_groups_of_equal_cells_pull_as_one_cell():
     cells = PadCells(grid, np.full(16, 31.0), np.tile(one, (16, 1, 1)), np.tile(one, (16, 1, 1, 1)), np.ones(16, bool))
     for row in adhesion_by_cells(cells, (1, 2, 8)):
         assert row["net_adhesion_kPa"] == pytest.approx(-net.min() * 1e6)
-
-
-@pytest.mark.parametrize("shape", [-0.1, 0.01, 0.2])
-def test_the_tail_recovers_its_distribution_and_its_area_law(shape):
-    values = stats.genextreme.rvs(shape, 30.0, 2.5, size=400, random_state=5)
-    tail = fit_tail(values, resamples=60)
-    error = tail.resampled.std(axis=0)
-    assert [tail.shape, tail.location_nm, tail.scale_nm] == pytest.approx([shape, 30.0, 2.5], abs=4 * error.max())
-    assert tail.p_value > 0.01
-    # the largest of N numbers, by brute force
-    largest = stats.genextreme.rvs(shape, 30.0, 2.5, size=(4000, 64), random_state=6).max(axis=1)
-    mean = tail.first_contact_nm(64)[0]
-    assert mean == pytest.approx(largest.mean(), abs=4 * tail.standard_error_nm(64))
-    exact = Tail(shape, 30.0, 2.5, tail.resampled, 400, 1.0).first_contact_nm(64)
-    np.testing.assert_allclose(exact, [largest.mean(), largest.std()], rtol=0.05)
-
-
-def test_the_tail_notices_another_distribution():
-    values = np.concatenate([np.full(100, 30.0), np.full(100, 40.0)]) + np.linspace(0, 0.1, 200)
-    assert fit_tail(values, resamples=60).p_value < 0.05
-
-
-def test_too_few_cells_are_refused():
-    with pytest.raises(InputError, match="at least 8"):
-        fit_tail(np.arange(5.0))
 
 
 def test_cells_are_pieces_of_a_film():
@@ -176,8 +150,7 @@ def test_cells_are_pieces_of_a_film():
 
 
 def test_a_D0_that_is_an_input_is_not_drawn_twice():
-    settings = PadSettings(draws=6)
-    drawn = {draw.gap_cutoff_nm for draw in plan_draws(input_table(), CONTACT, settings)}
+    drawn = {draw.gap_cutoff_nm for draw in plan_draws(input_table(), CONTACT, 6, 4)}
     assert len(drawn) == 6
     fixed = input_table(gap_cutoff=InputRow(distribution="fixed", values=(3.7,)))
-    assert {draw.gap_cutoff_nm for draw in plan_draws(fixed, CONTACT, settings)} == {3.7}
+    assert {draw.gap_cutoff_nm for draw in plan_draws(fixed, CONTACT, 6, 4)} == {3.7}

@@ -11,10 +11,9 @@ from workflow.report.verdict import CAUSES, symbol
 
 def describe(results: Results) -> Section | None:
     """The pad's curves, its adhesion against the number of cells, and the switch on it."""
-    if not results.has("pad/curves.csv", "pad/adhesion.csv", "pad/tail.json", "device/pad_switch.json"):
+    if not results.has("pad/curves.csv", "pad/adhesion.csv", "device/pad_switch.json"):
         return None
     switch = results.json("device/pad_switch.json")
-    tail = results.json("pad/tail.json")
     section = Section(
         "pad",
         "From a cell to a pad",
@@ -48,24 +47,12 @@ def describe(results: Results) -> Section | None:
         section.blocks += _answer(switch["answer"])
     elif switch.get("answer_status"):
         section.notes.append(f"No interval of the release over the inputs: {switch['answer_status']}.")
-    test = f"a generalised extreme value distribution (test: p = {tail['p_value']:.2g})"
-    if tail["accepted"]:
-        one, many = tail["pads"][0], tail["pads"][4]
-        section.notes.append(
-            f"First contacts of the cells follow {test}: one cell touches at {show(one['first_contact_nm'])} nm on "
-            f"average, a pad of {many['cells']:,} at {show(many['first_contact_nm'])} ± "
-            f"{show(many['standard_error_nm'])} nm."
-        )
-    else:
-        section.notes.append(
-            f"First contacts of the cells do not follow {test}: where a large pad first touches is not known."
-        )
     section.notes.append(
         "Curves and causes are at the central inputs, with the scene's bow and tilt (device.bow_nm, device.tilt_nm); "
         "only the table of the release over all causes holds the uncertainty of the inputs. The deviations of bow and "
         "tilt in it (device.bow_deviation_nm, device.tilt_deviation_nm) are assumptions unless the scene measured them."
     )
-    section.files += ["pad/curves.csv", "pad/curves.h5", "pad/adhesion.csv", "pad/tail.json", "device/pad_switch.json"]
+    section.files += ["pad/curves.csv", "pad/curves.h5", "pad/adhesion.csv", "device/pad_switch.json"]
     gate = switch["gate"]
     section.gates.append(Gate("pad", gate["passed"], gate["reasons"]))
     return section
@@ -148,7 +135,6 @@ def _causes(results: Results, switch: dict) -> list[tuple[str, ...]]:
 def _lines(switch: dict) -> list[tuple[str, str]]:
     lines = [
         ("cells on the electrode", show(switch["cells_of_pad"])),
-        ("first contact of such a pad (nm)", show(switch["first_contact_nm"])),
         ("pull of the spring (kPa)", show(switch["spring_pressure_kPa"])),
     ]
     if switch["mean"] is None:

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from evidence.pad.large_surfaces import SIDE, comparison_rows
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.studies.large_surfaces import SIDE, comparison_rows, tail_rows
 
 SEPARATION = np.linspace(60.0, 20.0, 81)
 
@@ -27,12 +27,3 @@ def test_pads_are_set_beside_large_surfaces_in_their_standard_errors():
     assert (well["assembled_from"], well["direct_from"]) == (4, 6)
     assert well["ratio"] == deep["ratio"] == pytest.approx(10.0 / 8.0, rel=0.05)
     assert well["apart_in_errors"] > 3.0
-
-
-def test_the_tail_foretells_the_largest_of_many_gumbel_numbers():
-    """Mean of the largest of N of location 30 and scale 2: 30 + 2 (ln N + 0.5772)."""
-    rng = np.random.default_rng(3)
-    for row in tail_rows(rng.gumbel(30.0, 2.0, 256), rng.gumbel(30.0, 2.0, 2048)):
-        known = 30.0 + 2.0 * (np.log(row["at"]) + np.euler_gamma)
-        assert abs(row["assembled"] - known) < 3.0 * row["assembled_error"]
-        assert abs(row["direct"] - known) < 4.0 * row["direct_error"]

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from evidence.pad.number_of_cells import LOADS_MPa, adhesion_rows
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.studies.number_of_cells import LOADS_MPa, adhesion_rows, update_table
 
 SEPARATION = np.linspace(60.0, 20.0, 401)
 WELL_kPa = 10.0
@@ -39,13 +39,3 @@ def test_many_cells_come_to_the_well_that_they_share():
         assert rows[0]["net_adhesion_kPa"] > 3.0 * WELL_kPa
         held += rows[-1]["low_kPa"] <= WELL_kPa <= rows[-1]["high_kPa"]
     assert held >= 6
-
-
-def test_the_table_keeps_the_other_mechanics(tmp_path):
-    table = tmp_path / "number.csv"
-    rows = adhesion_rows("coupled", made_up_cells(64, 1.0, 1))
-    update_table(table, "coupled", rows)
-    update_table(table, "asperity", [{**row, "mechanics": "asperity"} for row in rows])
-    update_table(table, "coupled", rows)
-    lines = table.read_text().splitlines()
-    assert len(lines) == 1 + 2 * len(rows)

@@ -1,6 +1,6 @@
-"""Error of the release on a pad against run time, one choice at a time, and of ways to know it at other inputs.
+"""Error of the release on a pad against run time, one numerical choice at a time.
 
-Everything is done with the cells and draws that the scene has computed; some cells are closed again, to time them and
+Everything is done with the cells that the scene has computed; some cells are closed again, to time them and
 to see what their steps do.
 """
 
@@ -15,16 +15,13 @@ from numpy.typing import NDArray
 from mesoscale.contact.displacement import Displacement
 from mesoscale.device.beam_switch import solve_beam
 from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.release import FAR_NM, solve_or_bound
+from mesoscale.device.release import solve_or_bound
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.cells import PadGrid, close_cells
-from mesoscale.pad.compact import CompactPad
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import PadLaw, law_of
-from mesoscale.pad.response import SampledPad, fit_response, law_of_compact
 from mesoscale.settings import ContactSettings, DeviceSettings
 
 Array = NDArray[np.float64]
@@ -37,13 +34,10 @@ ELEMENTS = (16, 32, 64, 128, 256)
 FINEST_ELEMENTS = 512
 STEPS = (4, 2)
 """Coarser grids: every so many separations of the pad's own."""
-FEWER_DRAWS = (0.6, 0.8, 1.0)
 
 
 def accuracy_points(
     cells: PadCells,
-    draws: Sequence[SampledPad],
-    table: InputTable,
     inputs: ContactInputs,
     contact: ContactSettings,
     device: DeviceSettings,
@@ -55,7 +49,6 @@ def accuracy_points(
     Parameters
     ----------
     cells : of the pad at central inputs.
-    draws : pads at other inputs.
     seeds : of surfaces of the pad's cells.
     """
     law = law_of(cells, inputs.hamaker)
@@ -65,7 +58,6 @@ def accuracy_points(
         ("steps", _steps(again)),
         ("depths", _depths(law, device)),
         ("elements", _elements(law, device)),
-        ("emulators", _emulators(law, draws, table, cells.count, device)),
     ]
     for done, (name, rows) in enumerate(parts):
         yield from rows
@@ -145,7 +137,7 @@ def _steps(again: Sequence[tuple[list[Displacement], Array]]) -> Iterator[Row]:
         for case, of in (("force at the deepest closing", _force), ("well on opening from there", _well)):
             error = float(np.mean([abs(of(a) / of(b) - 1.0) for a, b in zip(closed, fine, strict=True)]))
             metric = "mean relative deviation over cells"
-            yield _row(case, "steps of pad.step_nm", every, error, metric, "the pad's own steps", cost)
+            yield _row(case, "steps of separation", every, error, metric, "the pad's own steps", cost)
 
 
 def _force(cell: Displacement) -> float:
@@ -163,7 +155,7 @@ def _depths(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
     for fewer in sorted({2, 3, (count + 1) // 2, count - 1} - {count}):
         kept = np.unique(np.linspace(0, count - 1, fewer).round().astype(int))
         release, cost = _release_V(replace(law, depth_nm=law.depth_nm[kept], opening=law.opening[kept]), device)
-        yield _row("release", "pad.depths", fewer, abs(release - wanted), "deviation, V", f"{count} depths", cost)
+        yield _row("release", "pad.grid.depths", fewer, abs(release - wanted), "deviation, V", f"{count} depths", cost)
 
 
 def _elements(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
@@ -175,54 +167,3 @@ def _elements(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
         release, cost = _release_V(law, device, elements)
         reference = f"{FINEST_ELEMENTS} elements"
         yield _row("release", "elements of the beam", elements, abs(release - wanted), "deviation, V", reference, cost)
-
-
-def _emulators(
-    law: PadLaw, draws: Sequence[SampledPad], table: InputTable, count: int, device: DeviceSettings
-) -> Iterator[Row]:
-    """Ways to know the release at inputs that no pad has: each draw is left out and foretold from others.
-
-    The truth is the release on the draw's own curves, with the scatter of its few cells.
-    """
-    central = SampledPad(table.medians(), min((draw.gap_cutoff_nm for draw in draws), default=np.nan), count, law)
-    truth = np.array([_release_V(draw.law, device)[0] for draw in draws])
-    known = np.flatnonzero(np.isfinite(truth))
-    names = [name for name in table.names if np.ptp([draw.values[name] for draw in draws]) > 0] if len(draws) else []
-    x = np.array([[*(draw.values[name] for name in names), draw.gap_cutoff_nm] for draw in draws])
-    for share in FEWER_DRAWS:
-        ways: dict[str, list[float]] = {"closed form": [], "line through the releases": [], "mean of the releases": []}
-        costs = {way: np.zeros(2) for way in ways}
-        size = int(share * (len(known) - 1))
-        if size < x.shape[-1] + 2:
-            continue
-        for left in known.tolist():
-            others = known[known != left]
-            used = np.random.default_rng(int(left)).permutation(others)[:size]
-            for way, errors in ways.items():
-                started = _clock()
-                if way == "closed form":
-                    foretold = _by_form([central, *(draws[k] for k in used)], draws[left], table, device)
-                elif way == "mean of the releases":
-                    foretold = float(truth[used].mean())
-                else:
-                    columns = np.column_stack([np.ones(size), x[used]])
-                    line = np.linalg.lstsq(columns, truth[used], rcond=None)[0]
-                    foretold = float(max(np.append(1.0, x[left]) @ line, 0.0))
-                errors.append(foretold - float(truth[left]))
-                costs[way] += _clock() - started
-        for way, errors in ways.items():
-            error = float(np.sqrt(np.nanmean(np.square(errors))))
-            metric, reference = "RMS deviation over draws left out, V", "the draw's own curves"
-            yield _row(f"release by {way}", "draws", size, error, metric, reference, costs[way] / len(errors))
-
-
-def _by_form(pads: Sequence[SampledPad], at: SampledPad, table: InputTable, device: DeviceSettings) -> float:
-    """Release on the closed form through some pads, at the inputs of another and to the pressure of its closing."""
-    try:
-        form: CompactPad = fit_response(pads, table).at(at.values, at.gap_cutoff_nm)
-        step = 0.01 * at.values["rms"]
-        near = np.arange(step, 8.0 * at.values["rms"], step)
-        s = np.concatenate([near, np.geomspace(near[-1], max(FAR_NM, 2.0 * near[-1]), 24)[1:]])
-        return _release_V(law_of_compact(form, np.full(s.size, at.law.closing[0].max()), s), device)[0]
-    except InputError:
-        return float("nan")

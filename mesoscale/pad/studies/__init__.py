@@ -1,1 +1,0 @@
-"""Studies of the pad: its number of cells, and large cells computed directly."""
