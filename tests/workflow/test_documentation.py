@@ -1,4 +1,4 @@
-"""The reader of surrogates in the documentation does what it says."""
+"""What the documentation shows works: its scenes load, and its reader of surrogates does what it says."""
 
 import json
 import re
@@ -15,7 +15,22 @@ from mesoscale.uncertainty.propagation import NodeOutputs, propagate, surrogate_
 from workflow.results import write_json
 from workflow.scene import load_scene
 
-PAGE = Path(__file__).parents[2] / "docs" / "uncertainty.md"
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "uncertainty.md"
+SCENES = [
+    pytest.param(block, id=f"{page.stem}-{number}")
+    for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
+    for number, block in enumerate(
+        re.findall(r"^```yaml\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    )
+]
+
+
+@pytest.mark.parametrize("block", SCENES)
+def test_a_scene_of_a_page_is_accepted(block, tmp_path):
+    path = tmp_path / "of_a_page.yaml"
+    path.write_text(block.replace("...", "a source"), encoding="utf-8")
+    assert load_scene(str(path)).name == "of_a_page"
 
 
 def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):
