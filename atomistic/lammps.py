@@ -12,6 +12,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -102,20 +103,24 @@ def load_data(path: str | Path, elements: tuple[str, ...]) -> Atoms:
 
 
 def load_dump(path: str | Path) -> list[tuple[int, np.ndarray]]:
-    """Frames of a LAMMPS text dump: (step, table of shape (atoms, columns)) in the order of the file."""
+    """Frames of a LAMMPS text dump: (step, table of shape (atoms, columns)) in the order of the file.
+
+    Raises
+    ------
+    InputError : cut off, or no dump.
+    """
     frames = []
-    with Path(path).open(encoding="utf-8") as stream:
-        while stream.readline().startswith("ITEM: TIMESTEP"):
-            step = int(stream.readline())
-            stream.readline()
-            count = int(stream.readline())
-            line = stream.readline()
-            while not line.startswith("ITEM: ATOMS"):
-                line = stream.readline()
-            columns = len(line.split()) - 2
-            rows = [stream.readline() for _ in range(count)]
-            table = np.array("".join(rows).split(), dtype=float).reshape(count, columns)
-            frames.append((step, table))
+    try:
+        with Path(path).open(encoding="utf-8") as stream:
+            while stream.readline().startswith("ITEM: TIMESTEP"):
+                step = int(stream.readline())
+                stream.readline()
+                count = int(stream.readline())
+                columns = len(next(line for line in stream if line.startswith("ITEM: ATOMS")).split()) - 2
+                table = np.array("".join(islice(stream, count)).split(), dtype=float)
+                frames.append((step, table.reshape(count, columns)))
+    except (ValueError, StopIteration):
+        raise InputError(f"{path}: not a whole LAMMPS dump; delete its folder and run again") from None
     return frames
 
 

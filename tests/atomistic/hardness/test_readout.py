@@ -1,7 +1,9 @@
 import numpy as np
 import pytest
 
+from atomistic.errors import InputError
 from atomistic.hardness.readout import Sample, energy_drift
+from atomistic.lammps import load_dump
 
 
 def samples(position, drive):
@@ -33,3 +35,23 @@ def test_work_by_samples_at_the_end_of_their_interval_gains_nothing():
     ends = {n: np.array([x, max(0, 9 - x) ** 2, 0.0]) for n, x in places.items()}
     drift = energy_drift(ends, 20, samples(positions, 2 * np.maximum(0, 9 - positions)))
     assert list(drift.values()) == pytest.approx([0] * 6, abs=1e-12)
+
+
+FRAME = "ITEM: TIMESTEP\n10\nITEM: NUMBER OF ATOMS\n{count}\nITEM: BOX BOUNDS pp pp ff\n0 1\n0 1\n0 1\n{atoms}"
+ATOMS = "ITEM: ATOMS id x\n1 0.5\n2 0.25\n"
+
+
+def test_a_dump_is_read_whole(tmp_path):
+    path = tmp_path / "dump"
+    path.write_text(2 * FRAME.format(count=2, atoms=ATOMS))
+    frames = load_dump(path)
+    assert [step for step, _ in frames] == [10, 10]
+    np.testing.assert_array_equal(frames[1][1], [[1, 0.5], [2, 0.25]])
+
+
+@pytest.mark.parametrize(("count", "atoms"), [(10**12, ATOMS), (3, ATOMS), (2, ""), ("two", ATOMS)])
+def test_a_dump_that_is_cut_off_is_refused_at_once(count, atoms, tmp_path):
+    path = tmp_path / "dump"
+    path.write_text(FRAME.format(count=count, atoms=atoms))
+    with pytest.raises(InputError, match="dump: not a whole LAMMPS dump"):
+        load_dump(path)
