@@ -2,6 +2,9 @@
 
 Single closing runs, each with one choice changed.  Their differences are the systematic errors that `size_effect.py`
 adds to every run alike.
+
+The rows `medium`, `blunt` and `steep` of 2026-11-23 were not made by this command: they were copied, rounded, from the
+page that the runs were first written up on.
 """
 
 import tempfile

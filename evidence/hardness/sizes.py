@@ -3,6 +3,12 @@
 The closing runs of a scene: `sizes` takes asperities of one shape to the end of their window, `reduced` stops them once
 their plateau is known, `oxide_on_oxide` presses them by controlled force against titania.  Runs of one shape are alike
 where the contact is 0.5 to 0.6 wavelengths wide, whatever their size: the columns `same_shape`.
+
+The rows of 2026-11-23 were not made by this command.  They were copied, rounded, from the page that the runs were first
+written up on; the runs' own files are lost.  Their `same_shape_length_nm` is the middle of the range, 0.55 wavelengths,
+not a measured length, so the exponents of these rows are approximate and have no interval.  With the measured lengths
+that page gave -0.30 [-0.41, -0.19] at full energies (nine runs, wavelengths up to 8.5 nm) and -0.19 [-0.29, -0.08] at
+halved ones (ten runs).  The two largest runs at full energies are of glasses made on another processor.
 """
 
 import os
