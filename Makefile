@@ -22,7 +22,7 @@ test: setup
 	$(RUN) pytest --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 
 bench: setup
-	$(RUN) python -m benchmarks
+	$(RUN) python -m evidence contact.speed
 
 lint: setup
 	$(RUN) ruff format --check .

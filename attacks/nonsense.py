@@ -71,8 +71,6 @@ NONSENSE: dict[str, tuple[str, str]] = {
     "electrode smaller than a cell": (scene("device: {electrode_um2: 0.5}"), "is smaller than one cell"),
     "cut-off beyond the grid": (scene("contact: {pixels: 64, q1_per_nm: 1}"), "beyond what contact.pixels = 64"),
     "gap cutoff twice": (scene("contact: {gap_cutoff_nm: 0.2}", gap_cutoff="{values: [0.15, 0.3]}"), "the same number"),
-    "negative load": ("contact: {nominal_loads_nN: [-1]}", "contact.nominal_loads_nN.0 = -1"),
-    "negative load of the comparison": ("coupling: {loads_nN: [-5]}", "coupling.loads_nN.0 = -5"),
     "negative force": ("contact: {max_force_nN: -7000}", "contact.max_force_nN = -7000"),
     "cell of nothing": ("contact: {length_nm: 1.0e-300}", "contact.length_nm = 1e-300"),
     "cell of a metre": ("contact: {length_nm: 1.0e+9}", "contact.length_nm = 1000000000.0"),
@@ -85,7 +83,7 @@ NONSENSE: dict[str, tuple[str, str]] = {
         "one job of",
     ),
     "history beyond the memory": (
-        scene("history: {cycles: 100000, seeds: 1000, creep: power, dwell_s: 1, dwell_steps: 1000}"),
+        scene("history: {cycles: 100000, seeds: 1000, creep: power, dwell_s: 1}"),
         "GB of memory",
     ),
     "history without flow": (scene("history: {cycles: 2}", "contact: {model: elastic}"), "only plastic contacts"),

@@ -11,7 +11,7 @@ from attacks.nonsense import scene
 from workflow.job import result_checksum
 
 CONTACT = scene(
-    "contact: {pixels: 64, nominal_loads_nN: [1000]}",
+    "contact: {pixels: 64}",
     "uncertainty: {seeds: 1, direct_runs: 200, response: polynomial}",
 )
 GLASS = scene(

@@ -3,6 +3,7 @@
 from typing import Any
 
 from mesoscale.settings import ContactSettings
+from workflow.job import settings_from_job
 from workflow.results import load_json
 
 
@@ -17,6 +18,7 @@ def contact_settings(given: dict[str, Any], snakemake: Any) -> ContactSettings:
     path = snakemake.input.get("topography")
     described = load_json(path).get("surface", {}) if path else {}
     stated = given["surface"]
-    if not described or stated["spectrum"] or stated["heights"] or (stated["skewness"], stated["kurtosis"]) != (0, 3):
-        return ContactSettings(**given)
+    settings = settings_from_job(ContactSettings, given)
+    if not described or any(stated[key] for key in ("spectrum", "heights", "moments")):
+        return settings
     return ContactSettings(**{**given, "surface": {**stated, **described}})

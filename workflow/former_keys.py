@@ -38,6 +38,38 @@ FORMER_KEYS: dict[str, str] = {
     # elastic
     # topography
     # contact
+    "contact.convention": "renamed, write contact.reading.convention",
+    "contact.prefactor": "renamed, write contact.reading.prefactor",
+    "contact.radius": "renamed, write contact.reading.radius",
+    "contact.area": "renamed, write contact.reading.area",
+    "contact.flow_pair": "renamed, write contact.reading.flow_pair",
+    "contact.touching_attracts": "renamed, write contact.reading.touching_attracts",
+    "contact.surface.skewness": "renamed, write contact.surface.moments.skewness",
+    "contact.surface.kurtosis": "renamed, write contact.surface.moments.kurtosis",
+    **{
+        f"contact.{key}": f"no longer a setting, delete it: {why}"
+        for key, why in {
+            "unloading_radius": "take mechanics: coupled where opening matters",
+            "merge": "take mechanics: coupled, whose repulsion does not fall where asperities merge",
+            "neighbours": "sites are connected through 8 neighbours",
+            "flow": "flow returns to the yield surface, the limit of small increments",
+            "flow_volume": "coupled flow leaves its volume out of the surface",
+            "flow_increment_nm": "flow has no increments",
+            "flow_width_nm": "it is 0.3 nm, the paper's",
+            "flow_floor_pixels": "it is 1 pixel",
+            "flow_tolerance": "it is 1e-3",
+            "max_sweeps": "it is 500",
+            "force_steps": "they are 40",
+            "gap_bins": "they are 4096",
+            "nominal_seed": "the nominal curves have seed 1",
+            "nominal_force_nN": "figure 4 is drawn to 1e4 nN",
+            "nominal_loads_nN": "figure 11 has the paper's loads",
+            "study_seeds": "the accuracy study takes 3 surfaces",
+            "study_draws": "see `python -m evidence contact.draws --help`",
+        }.items()
+    },
+    "coupling": "no longer a section, delete it: see target model_form, and `python -m evidence contact.half_space`",
+    "history.dwell_steps": "no longer a setting, delete it: a dwell is solved at 12 times",
     # law
     **{
         f"law.{key}": f"no longer a setting, delete it: {value}"

@@ -22,7 +22,6 @@ from atomistic.settings import ElasticSettings, HardnessSettings
 from mesoscale.settings import (
     AdhesionSettings,
     ContactSettings,
-    CouplingSettings,
     DeviceSettings,
     HistorySettings,
     InputsSettings,
@@ -84,7 +83,6 @@ class Scene(Settings):
     uncertainty: UncertaintySettings = UncertaintySettings()
     device: DeviceSettings = DeviceSettings()
     history: HistorySettings = HistorySettings()
-    coupling: CouplingSettings = CouplingSettings()
     measurements: MeasurementsSettings = MeasurementsSettings()
     report: ReportSettings = ReportSettings()
 
@@ -119,11 +117,11 @@ class Scene(Settings):
 
     @model_validator(mode="after")
     def _one_exponent_convention(self) -> "Scene":
-        if "topography" in self.inputs.origins() and self.topography.convention != self.contact.convention:
+        if "topography" in self.inputs.origins() and self.topography.convention != self.contact.reading.convention:
             raise ValueError(
-                f"topography.convention = {self.topography.convention}, contact.convention = "
-                f"{self.contact.convention}: a Hurst exponent measured by one convention must be used by the same; "
-                "make them equal"
+                f"topography.convention = {self.topography.convention}, contact.reading.convention = "
+                f"{self.contact.reading.convention}: a Hurst exponent measured by one convention must be used by the "
+                "same; make them equal"
             )
         return self
 

@@ -134,9 +134,8 @@ def _machine(scene: Scene) -> Iterator[str]:
     cycles = scene.history.cycles
     if cycles and (needed := history_MB(scene.history, scene.contact)) > present:
         yield (
-            f"history.cycles = {cycles}: with {scene.history.seeds} surfaces and {scene.history.dwell_steps} "
-            f"dwell_steps their tables need {needed / 1000:.0f} GB of memory, this machine has {present / 1000:.1f}; "
-            "take fewer of the three"
+            f"history.cycles = {cycles}: with {scene.history.seeds} surfaces their tables need {needed / 1000:.0f} GB "
+            f"of memory, this machine has {present / 1000:.1f}; take fewer of both"
         )
     elif (days := history_s(scene.history, scene.contact) / DAY_S) > LONGEST_JOB_D:
         yield (

@@ -41,7 +41,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "area": ("sites", "hertz"),
     "touching_attracts": ("true", "false"),
 }
-"""Ambiguities of the contact model, as keys of ContactSettings with the values tried."""
+"""Ambiguities of the contact model, as keys of `contact.reading` with the values tried."""
 COUPLED = "coupled"
 """Ends the name of a reading with all asperities on one half-space."""
 LAW_READINGS: dict[str, dict[str, Any]] = {
@@ -110,7 +110,7 @@ def with_reading(name: str, settings: ContactSettings) -> ContactSettings:
         settings, values = settings.model_copy(update={"mechanics": COUPLED}), values[:-1]
     chosen: dict[str, Any] = dict(zip(CHOICES, values, strict=True))
     chosen["touching_attracts"] = chosen["touching_attracts"] == "true"
-    return settings.model_copy(update=chosen)
+    return settings.model_copy(update={"reading": settings.reading.model_copy(update=chosen)})
 
 
 def outputs_of(reading: str, seed: int, pixels: int) -> dict[str, Array]:

@@ -9,17 +9,131 @@ doi:10.1016/0021-9797(81)90018-7; its integral by Derjaguin is Gregory's sphere 
 (1 + 3/2 c g) / (1 + c g)^2 / g^3, which is 1/g^3 - (c/2) (1/g^2 - 1/(g + 1/c)^2).
 """
 
+import math
+
 import numpy as np
 from numba import njit
+
+from mesoscale.contact.changes import Changes
+from mesoscale.contact.numerics import Numerics
+from mesoscale.settings import ContactSettings
 
 MOMENTS = 5
 NEAR_BINS = 100  # a site is near while its gap is below this many bin widths
 GREGORY = 5.32  # of c; see above
+# Sites that touch cover more than the contact does, by this part of a site for each edge between a touching site and
+# one that does not touch (Yastrebov, Anciaux and Molinari 2017, doi:10.1016/j.jmps.2017.07.016).
+EXCESS = (math.pi - 1.0 + math.log(2.0)) / 24.0
 
 
 def retardation_rate(wavelength_nm: float | None) -> float:
     """The c of retardation, 1/nm; 0 without it."""
     return GREGORY / wavelength_nm if wavelength_nm else 0.0
+
+
+class Attraction:
+    """Eq. 1 on one surface: its law, and the histogram of the sites that flow has not moved.
+
+    Attributes
+    ----------
+    cutoff : D0, nm.
+    touching : whether sites in contact attract.
+    near_nm : gap below which sites of an undeformed surface are summed one by one, nm.
+    """
+
+    def __init__(
+        self, heights: np.ndarray, site_area: float, hamaker: float, settings: ContactSettings, numerics: Numerics
+    ):
+        """Take all heights (N^2,) in nm and the area of a site in nm^2."""
+        self.cutoff = settings.gap_cutoff_nm
+        self.touching = settings.reading.touching_attracts
+        self.rate = retardation_rate(settings.retardation_nm)
+        self.strength = hamaker * site_area / (6.0 * np.pi)
+        self.lowest = float(heights.min())
+        self.bin_width = max(float(heights.max()) - self.lowest, 1e-6 * self.cutoff) / numerics.gap_bins
+        self.near_nm = max(NEAR_BINS * self.bin_width, 2.0 * self.cutoff)
+        self.moments = np.zeros((numerics.gap_bins, MOMENTS))
+        self.taken_out = 0  # of the changed sites
+        self.put_in(heights)
+
+    def put_in(self, heights: np.ndarray) -> None:
+        """Have the histogram hold further sites."""
+        bin_heights(heights, self.lowest, self.bin_width, self.moments)
+
+    def take_out(self, changes: Changes) -> None:
+        """Have the histogram hold the unchanged sites only."""
+        count = int(changes.used[0])
+        if count > self.taken_out:
+            take_out(changes.original, self.taken_out, count, self.lowest, self.bin_width, self.moments)
+            self.taken_out = count
+
+    def adopt(self, changes: Changes, heights: np.ndarray) -> None:
+        """Have the histogram hold the changed sites, too, at their present heights (nm)."""
+        self.take_out(changes)
+        self.put_in(heights)
+        self.taken_out = 0
+
+    def far_edge(self, near: float, separation: float) -> tuple[int, float]:
+        """First bin all of whose sites are at least a gap (nm) away, and the height (nm) at which it begins."""
+        far = first_far_bin(near, separation, self.lowest, self.bin_width, len(self.moments))
+        return far, self.lowest + far * self.bin_width
+
+    def deformed(self, gap: np.ndarray, weight: np.ndarray, separation: float = 0.0, far: int | None = None) -> float:
+        """Force (nN, negative) on sites with given gaps (nm) and weights, and on those in the bins from `far` on."""
+        total = inverse_cubes_of(gap, weight, self.cutoff, self.rate)
+        if far is not None:
+            total += far_inverse_cubes(separation, far, self.lowest, self.bin_width, self.moments, self.rate)
+        return -self.strength * total
+
+    def undeformed(
+        self,
+        heights: np.ndarray,
+        separation: float,
+        order: np.ndarray,
+        order_heights: np.ndarray,
+        changes: Changes,
+        changed: np.ndarray,
+    ) -> float:
+        """Force (nN, negative) on a surface that nothing deforms; see `inverse_cubes` for the order of its sites."""
+        return -self.strength * inverse_cubes(
+            heights,
+            separation,
+            self.cutoff,
+            self.touching,
+            order,
+            order_heights,
+            changed,
+            changes.sites,
+            changes.used[0],
+            self.lowest,
+            self.bin_width,
+            self.moments,
+            self.rate,
+        )
+
+
+@njit(cache=True)
+def attracting(sites, place, pressure, pixels, touching):
+    """How many sites' areas attract with the gap of each of some sites.
+
+    Without `touching` sites under pressure do not, but for the strip along their edges where there is no contact: it
+    counts with the gap of the site beyond the edge. `place` holds the position of each site of the cell in the list
+    that `pressure` belongs to, or -1.
+    """
+    weight = np.ones(sites.size)
+    if touching:
+        return weight
+    for k in range(sites.size):
+        here = place[sites[k]]
+        if here >= 0 and pressure[here] > 0.0:
+            weight[k] = 0.0
+            continue
+        row, col = sites[k] // pixels, sites[k] % pixels
+        for rows, cols in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+            other = place[(row + rows) % pixels * pixels + (col + cols) % pixels]
+            if other >= 0 and pressure[other] > 0.0:
+                weight[k] += EXCESS
+    return weight
 
 
 @njit(cache=True, inline="always")

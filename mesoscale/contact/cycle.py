@@ -2,19 +2,18 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mesoscale.checks import check_number, check_seed
+from mesoscale.contact.numerics import NUMERICS, Numerics
+from mesoscale.contact.path import trace
+from mesoscale.contact.pressed import Contact, Row
+from mesoscale.contact.surface import given_surface, random_surface
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
 SMALLEST_FORCE_NN, LARGEST_FORCE_NN = 1e-9, 1e12
-
-if TYPE_CHECKING:
-    from mesoscale.contact.asperity.engine import Contact
-    from mesoscale.contact.path import Row
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,6 @@ class Cycle:
     converged : every step converged and the requested force was reached within 1 %.
     length_nm : side of the surface.
     heights : (N, N) surface afterwards, nm (only if asked for).
-    flattened : (N, N) sites of asperities that have yielded (unloading_radius: flattened).
     """
 
     closing: Branch
@@ -76,7 +74,6 @@ class Cycle:
     inputs: ContactInputs
     length_nm: float
     heights: np.ndarray | None = None
-    flattened: np.ndarray | None = None
 
     @property
     def cell_area_nm2(self) -> float:
@@ -96,8 +93,8 @@ def run_cycle(
     heights: np.ndarray | None = None,
     length_nm: float | None = None,
     keep_surface: bool = False,
-    hold: "Callable[[Contact, Row], list[Row]] | None" = None,
-    flattened: np.ndarray | None = None,
+    hold: Callable[[Contact, Row], list[Row]] | None = None,
+    numerics: Numerics = NUMERICS,
 ) -> Cycle:
     """Close a rough surface onto a flat up to a force, and open it again.
 
@@ -121,8 +118,8 @@ def run_cycle(
     hold
         What happens between closing and opening (`mesoscale.contact.history`): takes the contact and its
         last row, returns the rows that follow at the end of the closing branch.
-    flattened
-        (N, N) `Cycle.flattened` of the cycle that left ``heights``; only `unloading_radius: flattened` asks for it.
+    numerics
+        How finely the contact is computed; the default is what every scene uses.
 
     Raises
     ------
@@ -130,9 +127,6 @@ def run_cycle(
         For heights that are not a square of real, finite numbers in nm on the stated side, a force that is not
         positive, or a seed that is no whole number.
     """
-    from mesoscale.contact.path import trace
-    from mesoscale.contact.surface import given_surface, random_surface
-
     plastic = settings.model == "plastic"
     check_seed(seed)
     force = settings.max_force_nN if max_force_nN is None else max_force_nN
@@ -142,11 +136,11 @@ def run_cycle(
         surface = random_surface(inputs, settings, seed)
     elif plastic:
         surface = surface.copy()
-    contact = contact_on(surface, inputs, settings, flattened)
+    contact = contact_on(surface, inputs, settings, numerics)
     capacity = contact.capacity
     first_contact = contact.touching_separation
     approach = _approach(contact)
-    closing = trace(contact, settings.force_steps, plastic, stop_force=min(force, capacity))
+    closing = trace(contact, numerics.force_steps, plastic, stop_force=min(force, capacity))
     reached = closing.reached and force <= capacity
     miss = abs(closing.rows[-1].force - force) / force
     if hold is not None:
@@ -156,7 +150,7 @@ def run_cycle(
     if changed > 0 and last.force > 0:
         contact.adopt_changes()
         departure = _approach(contact)
-        path = trace(contact, settings.force_steps, False, last.force, stop_separation=last.separation)
+        path = trace(contact, numerics.force_steps, False, last.force, stop_separation=last.separation)
         # the last row of the way down is the state in which closing ended
         opening = [last._replace(sweeps=0), *path.rows[-2::-1]]
     else:  # nothing flowed: the way back is the way there
@@ -183,21 +177,20 @@ def run_cycle(
         inputs=inputs,
         length_nm=settings.length_nm,
         heights=surface if keep_surface else None,
-        flattened=contact.flattened if keep_surface else None,
     )
 
 
 def contact_on(
-    surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, flattened: np.ndarray | None = None
-) -> "Contact":
+    surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
+) -> Contact:
     """Contact on (N, N) heights in nm by the engine of `settings.mechanics`; the other one is not even compiled."""
     if settings.mechanics == "coupled":
         from mesoscale.contact.coupled.engine import CoupledContact
 
-        return CoupledContact(surface, inputs, settings)
-    from mesoscale.contact.asperity.engine import Contact
+        return CoupledContact(surface, inputs, settings, numerics)
+    from mesoscale.contact.asperity.engine import AsperityContact
 
-    return Contact(surface, inputs, settings, flattened)
+    return AsperityContact(surface, inputs, settings, numerics)
 
 
 def _largest_drop(forces: list[float]) -> float:
@@ -206,22 +199,20 @@ def _largest_drop(forces: list[float]) -> float:
     return float((highest - forces).max() / highest[-1]) if highest[-1] > 0 else 0.0
 
 
-def _approach(contact: "Contact") -> "list[Row]":
+def _approach(contact: Contact) -> list[Row]:
     """Rows before first contact, from afar, where only the attraction acts."""
-    from mesoscale.contact.path import Row
-
     touch = contact.touching_separation
     gaps = np.geomspace(max(4.0 * contact.rms, 10.0), max(0.01 * contact.rms, 0.01), 20)
     return [Row(touch + gap, 0.0, contact.attraction(touch + gap), 0, 0, 0) for gap in gaps]
 
 
-def _branch(contact: "Contact", rows: "list[Row]") -> Branch:
+def _branch(contact: Contact, rows: list[Row]) -> Branch:
     separation, force, attraction, sites, asperities, sweeps = zip(*rows, strict=True)
     return Branch(
         np.array(separation) + contact.offset,
         np.array(force),
         np.array(attraction),
-        np.array(sites) * contact.mechanics.site_area,
+        np.array(sites) * contact.site_area,
         np.array(asperities),
         np.array(sweeps),
     )

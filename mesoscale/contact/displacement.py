@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.contact.asperity.engine import Contact
 from mesoscale.contact.cycle import contact_on
-from mesoscale.contact.path import State
+from mesoscale.contact.pressed import Contact, State
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings

@@ -11,12 +11,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mesoscale.contact.asperity.engine import Contact
 from mesoscale.contact.cycle import Cycle, run_cycle
-from mesoscale.contact.path import Row, State, solve_force
+from mesoscale.contact.path import solve_force
+from mesoscale.contact.pressed import Contact, Row, State
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings, HistorySettings
+from mesoscale.settings.history import DWELL_STEPS
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ def follow(
     InputError : no cycle is asked for, or cycles of a model without history.
     """
     check(contact, settings)
-    heights = flattened = None
+    heights = None
     for number in range(1, settings.cycles + 1):
         times = _times(settings, (number - 1) * settings.dwell_s)
         hold = Hold(settings, times)
@@ -73,9 +74,8 @@ def follow(
             heights=heights,
             keep_surface=True,
             hold=hold if settings.dwell_s > 0 else None,
-            flattened=flattened,
         )
-        heights, flattened = cycle.heights, cycle.flattened
+        heights = cycle.heights
         yield HeldCycle(number, cycle, times[: len(hold.rows)], hold.rows, hold.missed)
         if progress is not None:
             progress(number / settings.cycles, f"cycle {number}")
@@ -109,15 +109,14 @@ class Hold:
     def __call__(self, contact: Contact, last: Row) -> list[Row]:
         """Rows of the contact at all times but the first, which is `last` itself."""
         self.rows.append(_from_mean(contact, last))
-        fresh = contact.mechanics
         states = []
         row = last
         for factor in hardness_factor(self.times[1:], self.settings):
-            contact.mechanics = fresh._replace(h_macro=fresh.h_macro * factor, h_prime=fresh.h_prime * factor)
+            contact.soften(factor)
             row = self._sink(contact, row.separation, last.force)
             states.append(row)
             self.rows.append(_from_mean(contact, row))
-        contact.mechanics = fresh
+        contact.soften(1.0)
         return states
 
     def _sink(self, contact: Contact, separation: float, force: float) -> Row:
@@ -147,7 +146,7 @@ def _times(settings: HistorySettings, start_s: float) -> np.ndarray:
     """Times of one hold, evenly in ln(1 + t/t0), the start included."""
     end_s = start_s + settings.dwell_s
     ends = np.log1p(np.array([start_s, end_s]) / settings.creep_time_s)
-    inner = np.linspace(ends[0], ends[1], settings.dwell_steps + 1)[1:-1]
+    inner = np.linspace(ends[0], ends[1], DWELL_STEPS + 1)[1:-1]
     return np.array([start_s, *settings.creep_time_s * np.expm1(inner), end_s])
 
 

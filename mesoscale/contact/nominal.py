@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from mesoscale.contact.cycle import Cycle, run_cycle
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
+from mesoscale.settings.contact import NOMINAL_FORCE_NN, NOMINAL_LOADS_NN, NOMINAL_SEED
 
 MODELS = ("elastic", "nonlinear", "plastic")
 
@@ -16,12 +17,12 @@ def nominal_cycles(
 ) -> Iterator[tuple[str, ContactSettings, float, Cycle]]:
     """Yield name, settings, largest force (nN) and cycle of each nominal curve.
 
-    Named by model for figure 4 (`settings.nominal_force_nN`), and ``load_<F>`` for figure 11
-    (`settings.nominal_loads_nN`, with the model of the settings). One surface for all.
+    Named by model for figure 4 (`NOMINAL_FORCE_NN`), and ``load_<F>`` for figure 11
+    (`NOMINAL_LOADS_NN`, with the model of the settings). One surface for all.
     """
-    plan = [(model, settings.model_copy(update={"model": model}), settings.nominal_force_nN) for model in MODELS]
-    plan += [(f"load_{force:.12g}", settings, force) for force in settings.nominal_loads_nN]
+    plan = [(model, settings.model_copy(update={"model": model}), NOMINAL_FORCE_NN) for model in MODELS]
+    plan += [(f"load_{force:.12g}", settings, force) for force in NOMINAL_LOADS_NN]
     for done, (name, chosen, force) in enumerate(plan):
-        yield name, chosen, force, run_cycle(inputs, chosen, settings.nominal_seed, force)
+        yield name, chosen, force, run_cycle(inputs, chosen, NOMINAL_SEED, force)
         if progress is not None:
             progress((done + 1) / len(plan), name)

@@ -3,23 +3,10 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from mesoscale.contact.asperity.engine import Contact
-
-
-class Row(NamedTuple):
-    """The contact at one separation (nm from the plane the heights are measured from)."""
-
-    separation: float
-    force: float
-    attraction: float
-    sites: int
-    asperities: int
-    sweeps: int
+from mesoscale.contact.pressed import Contact, Row, State
 
 
 @dataclass
@@ -42,29 +29,8 @@ class Path:
     full: bool = False
 
 
-class State(NamedTuple):
-    """What a move led to.
-
-    Attributes
-    ----------
-    force : repulsive force, nN.
-    bounds : asperities whose radius is bounded.
-    load : largest force of an asperity over its yield force.
-    stuck : whether flow has no end: nowhere left to flow to, or (return mapping) the sweeps ran out.
-    """
-
-    force: float
-    sites: int
-    asperities: int
-    bounds: int
-    load: float
-    sweeps: int
-    settled: bool
-    stuck: bool
-
-
 def trace(
-    contact: "Contact",
+    contact: Contact,
     steps: int,
     with_flow: bool,
     stop_force: float = np.inf,
@@ -134,7 +100,7 @@ def trace(
 
 
 def solve_force(
-    contact: "Contact",
+    contact: Contact,
     start: float,
     beyond: float,
     start_force: float,

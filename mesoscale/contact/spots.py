@@ -8,6 +8,7 @@ from mesoscale.contact.cycle import Cycle
 from mesoscale.contact.surface import random_surface
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
+from mesoscale.settings.contact import NOMINAL_SEED
 
 STEPS = 12
 """Separations from first contact to the deepest closing."""
@@ -40,7 +41,7 @@ def spots_under(inputs: ContactInputs, settings: ContactSettings, cycle: Cycle) 
 
     The surface is cut as it was: flow and elastic displacement, which the force does hold, do not change the picture.
     """
-    surface = random_surface(inputs, settings, settings.nominal_seed)
+    surface = random_surface(inputs, settings, NOMINAL_SEED)
     height = surface.mean() - surface  # contact is at the minima of the heights
     closing = cycle.closing
     touching = np.flatnonzero(closing.repulsive_nN > 0)

@@ -29,14 +29,14 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
         rms, psd = math.hypot(inputs.rms, other.rms_nm if other else 0.0), surface_spectrum(inputs, settings)
         return -synthesize_heights(pixels, length, psd, wanted.heights, rms, seed, q1)
     if wanted.spectrum is None and other is None:
-        heights = synthesize(pixels, length, inputs.q0, inputs.hurst, inputs.rms, seed, settings.convention, q1)
+        heights = synthesize(pixels, length, inputs.q0, inputs.hurst, inputs.rms, seed, settings.reading.convention, q1)
     else:
         rms = math.hypot(inputs.rms, other.rms_nm if other else 0.0)
         heights = synthesize_spectrum(pixels, length, surface_spectrum(inputs, settings), rms, seed, q1)
-    if (wanted.skewness, wanted.kurtosis) != (0.0, 3.0):
+    if wanted.moments:
         from mesoscale.topography.synthesis import with_moments
 
-        heights = -with_moments(-heights, wanted.skewness, wanted.kurtosis)
+        heights = -with_moments(-heights, wanted.moments.skewness, wanted.moments.kurtosis)
     return heights
 
 
@@ -44,18 +44,18 @@ def surface_spectrum(inputs: ContactInputs, settings: ContactSettings) -> Callab
     """Two-dimensional spectrum, nm^4 of wave vectors in 1/nm, from which `random_surface` draws its surfaces."""
     from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable, slope_from_hurst
 
-    wanted, cutoff = settings.surface, shortest_wave(settings)
+    wanted, cutoff, convention = settings.surface, shortest_wave(settings), settings.reading.convention
 
     def rough(rms: float, q0: float, hurst: float) -> RoughSpectrum:
-        return RoughSpectrum.from_rms(rms, q0, slope_from_hurst(hurst, settings.convention), cutoff)
+        return RoughSpectrum.from_rms(rms, q0, slope_from_hurst(hurst, convention), cutoff)
 
     if wanted.spectrum is None:
         spectra = [rough(inputs.rms, inputs.q0, inputs.hurst).psd]
     else:
         table = SpectrumTable(wanted.spectrum.q, wanted.spectrum.psd)
         if wanted.spectrum.q0 is not None and wanted.spectrum.hurst is not None:
-            there = _form(table.q, wanted.spectrum.q0, slope_from_hurst(wanted.spectrum.hurst, settings.convention))
-            here = _form(table.q, inputs.q0, slope_from_hurst(inputs.hurst, settings.convention))
+            there = _form(table.q, wanted.spectrum.q0, slope_from_hurst(wanted.spectrum.hurst, convention))
+            here = _form(table.q, inputs.q0, slope_from_hurst(inputs.hurst, convention))
             table = SpectrumTable(table.q, table.values * here / there)
         spectra = [table.scaled(inputs.rms, cutoff).psd]
     if wanted.counterface is not None:

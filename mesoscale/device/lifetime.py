@@ -13,8 +13,7 @@ from mesoscale.law.branches import fit_cycle, law_of_fit
 from mesoscale.law.fit import LawFit
 from mesoscale.law.parameters import PARAMETERS
 from mesoscale.settings import ContactSettings, DeviceSettings, HistorySettings, LawSettings
-
-DWELL_COLUMNS = ("seed", "cycle", "held_s", "hardness_factor", "separation_nm", "contact_area_nm2", "asperities")
+from mesoscale.settings.contact import NOMINAL_SEED
 
 
 def follow_all(
@@ -25,7 +24,7 @@ def follow_all(
 ) -> Iterator[tuple[int, HeldCycle]]:
     """Seed and cycle of every surface in turn; the first is that of the nominal curves."""
     for done in range(settings.seeds):
-        seed = contact.nominal_seed + done
+        seed = NOMINAL_SEED + done
         for held in follow(inputs, contact, settings, seed):
             yield seed, held
             if progress is not None:
@@ -73,11 +72,18 @@ def dwell_rows(seed: int, held: HeldCycle, contact: ContactSettings, settings: H
     """Rows of history/dwell.csv: the contact at each time of the hold."""
     site = (contact.length_nm / contact.pixels) ** 2
     factors = hardness_factor(held.held_s, settings)
-    values = [
-        (seed, held.number, float(time), float(factor), row.separation, row.sites * site, row.asperities)
+    return [
+        {
+            "seed": seed,
+            "cycle": held.number,
+            "held_s": float(time),
+            "hardness_factor": float(factor),
+            "separation_nm": row.separation,
+            "contact_area_nm2": row.sites * site,
+            "asperities": row.asperities,
+        }
         for time, factor, row in zip(held.held_s, factors, held.hold, strict=True)
     ]
-    return [dict(zip(DWELL_COLUMNS, line, strict=True)) for line in values]
 
 
 def _release(

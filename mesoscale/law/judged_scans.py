@@ -10,6 +10,7 @@ import numpy as np
 from mesoscale.contact import run_cycle
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings, TopographySettings
+from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.topography.description.choice import carried_on
 from mesoscale.topography.description.heights import common_heights, height_quantiles
 from mesoscale.topography.description.one_spectrum import OneSpectrum, merge
@@ -127,7 +128,7 @@ def _judged(
     made: dict[str, list[float]] = {quantity: [] for quantity in truth}
     for number, psd in enumerate(described.spectra(TOUCHED)):
         height = _rms(psd, 2 * side, 2 * sites)
-        seed = contact.nominal_seed + number
+        seed = NOMINAL_SEED + number
         if described.heights:
             chart = described.heights[number % len(described.heights)]
             larger = synthesize_heights(2 * sites, 2 * side, psd, chart, height, seed)
@@ -166,7 +167,7 @@ def _press(
     """
     area = (contact.length_nm / cell_nm) ** 2
     values = {"rms": float(np.std(surface)), "first_contact": float(surface.mean() - surface.min())}
-    cycle = run_cycle(replace(inputs, rms=values["rms"]), contact, contact.nominal_seed, LOADS_NN[-1] * area, surface)
+    cycle = run_cycle(replace(inputs, rms=values["rms"]), contact, NOMINAL_SEED, LOADS_NN[-1] * area, surface)
     closing = cycle.closing
     force = np.maximum.accumulate(closing.repulsive_nN)
     share: dict[str, float] = {}

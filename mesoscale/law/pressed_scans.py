@@ -12,6 +12,7 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.branches import Outcome, fit_cycle
 from mesoscale.law.fit import row_of
 from mesoscale.settings import ContactSettings, LawSettings, TopographySettings
+from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description import likelihood
 from mesoscale.topography.description.parameters import MAX_MISFIT
@@ -76,6 +77,6 @@ def press_scan(
     scan = clean(raw, settings)
     for surface, heights, chosen, force in surfaces(scan, fitted, settings, contact):
         scan_inputs = replace(inputs, rms=float(np.std(heights)))
-        cycle = run_cycle(scan_inputs, chosen, contact.nominal_seed, force, heights)
+        cycle = run_cycle(scan_inputs, chosen, NOMINAL_SEED, force, heights)
         outcome = fit_cycle(cycle, law)
         yield PressedSurface(scan.name, surface, chosen.pixels, force, cycle, outcome)

@@ -13,6 +13,7 @@ from mesoscale.contact.surface import shortest_wave, surface_spectrum
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.branches import fit_cycle
 from mesoscale.settings import ContactSettings, LawSettings
+from mesoscale.settings.contact import NOMINAL_SEED
 
 SURFACES = 8
 SITES = 512  # a side at most: the share is a matter of the waves, not of the last site
@@ -41,7 +42,7 @@ def unseen_shares(
     def pressed(end: float) -> list[dict[str, float]]:
         rough = replace(inputs, rms=inputs.rms * math.sqrt(_mean_square(psd, contact, end) / known))
         chosen = contact.model_copy(update={"q1_per_nm": end})
-        return [_outputs(rough, chosen, law, contact.nominal_seed + k) for k in range(SURFACES)]
+        return [_outputs(rough, chosen, law, NOMINAL_SEED + k) for k in range(SURFACES)]
 
     cut = pressed(seen)
     for end in ends:

@@ -1,8 +1,7 @@
 """Settings of the mesoscale stages, a module each: every key with its default, unit and accepted range."""
 
 from mesoscale.settings.base import Settings
-from mesoscale.settings.contact import ContactSettings
-from mesoscale.settings.coupling import CouplingSettings
+from mesoscale.settings.contact import ContactSettings, ReadingSettings
 from mesoscale.settings.device import DeviceSettings
 from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import TABLE_1, Correlation, InputRow, InputsSettings
@@ -17,7 +16,6 @@ __all__ = [
     "AdhesionSettings",
     "ContactSettings",
     "Correlation",
-    "CouplingSettings",
     "DeviceSettings",
     "HistorySettings",
     "InputRow",
@@ -28,6 +26,7 @@ __all__ = [
     "MeasurementsSettings",
     "PadGridSettings",
     "PadSettings",
+    "ReadingSettings",
     "Settings",
     "SyntheticScanSettings",
     "TopographySettings",

@@ -6,6 +6,9 @@ from pydantic import Field, model_validator
 
 from mesoscale.settings.base import Settings
 
+DWELL_STEPS = 12
+"""Times within a dwell at which the contact is solved, evenly in ln(1 + t/t0)."""
+
 
 class HistorySettings(Settings):
     """Repeated closing of one surface, held closed under creep (docs/history.md); off by default."""
@@ -28,12 +31,6 @@ class HistorySettings(Settings):
         le=1e12,
         description="time that every cycle holds the largest force; needs a creep law",
         json_schema_extra={"unit": "s"},
-    )
-    dwell_steps: int = Field(
-        default=12,
-        ge=1,
-        le=1000,
-        description="times within a dwell at which the contact is solved, evenly in ln(1 + t/t0)",
     )
     creep_time_s: float = Field(
         default=1.0, gt=0, le=1e12, description="t0 of the creep laws", json_schema_extra={"unit": "s"}

@@ -13,7 +13,7 @@ class CounterfaceSettings(Settings):
     """A second rough surface: the flat meets the sum of both spectra, the effective roughness."""
 
     q0: float = Field(gt=0, le=10, description="its roll-off wave vector", json_schema_extra={"unit": "1/nm"})
-    hurst: float = Field(gt=0, le=2, description="its Hurst exponent, in contact.convention")
+    hurst: float = Field(gt=0, le=2, description="its Hurst exponent, in contact.reading.convention")
     rms_nm: float = Field(gt=0, le=1e4, description="its RMS height", json_schema_extra={"unit": "nm"})
 
 
@@ -36,7 +36,9 @@ class SpectrumSettings(Settings):
         "ratio of their eq. 9 to this one; null: they are unused",
         json_schema_extra={"unit": "1/nm"},
     )
-    hurst: float | None = Field(default=None, gt=0, le=2, description="its Hurst exponent, in contact.convention")
+    hurst: float | None = Field(
+        default=None, gt=0, le=2, description="its Hurst exponent, in contact.reading.convention"
+    )
 
     @model_validator(mode="after")
     def _a_function(self) -> "SpectrumSettings":
@@ -49,6 +51,13 @@ class SpectrumSettings(Settings):
         return self
 
 
+class MomentsSettings(Settings):
+    """Heights of given moments, peaks counted positive; a normal distribution has 0 and 3."""
+
+    skewness: float = Field(default=0.0, ge=-5, le=5, description="third standardised moment")
+    kurtosis: float = Field(default=3.0, ge=1, le=50, description="fourth standardised moment")
+
+
 class SurfaceSettings(Settings):
     """The contacting surface (docs/topography.md, Surfaces)."""
 
@@ -58,22 +67,18 @@ class SurfaceSettings(Settings):
     counterface: CounterfaceSettings | None = Field(
         default=None, description="second rough surface; null: the counterface is flat"
     )
-    skewness: float = Field(
-        default=0.0,
-        ge=-5,
-        le=5,
-        description="of the heights, peaks counted positive; 0 with kurtosis 3: normal distribution",
+    moments: MomentsSettings | None = Field(
+        default=None, description="skewness and kurtosis of the heights; null: a normal distribution, or `heights`"
     )
-    kurtosis: float = Field(default=3.0, ge=1, le=50, description="fourth standardised moment")
     heights: tuple[Annotated[float, Field(ge=-1000, le=1000)], ...] = Field(
         default=(),
         max_length=111,
         description="measured heights: their values in units of the RMS at the normal variables -5, -4.9, ... 6 (as "
-        "topography/parameters.json has them); empty: normal, or by skewness and kurtosis",
+        "topography/parameters.json has them); empty: normal, or `moments`",
     )
 
     @model_validator(mode="after")
     def _one_distribution(self) -> "SurfaceSettings":
-        if self.heights and (len(self.heights) != 111 or (self.skewness, self.kurtosis) != (0.0, 3.0)):
-            raise ValueError("heights: accepted are 111 values, with skewness 0 and kurtosis 3")
+        if self.heights and (len(self.heights) != 111 or self.moments):
+            raise ValueError("heights: accepted are 111 values, without moments")
         return self

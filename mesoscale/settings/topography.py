@@ -176,7 +176,7 @@ class TopographySettings(Settings):
     convention: Literal["profile", "areal"] = Field(
         default="areal",
         description="how H follows from the slope of the two-dimensional spectrum: profile 2H+1 (as the paper "
-        "prints it), areal 2H+2; contact.convention must be the same",
+        "prints it), areal 2H+2; contact.reading.convention must be the same",
     )
     description: Literal["auto", "power_law", "measured_spectrum", "measured_heights"] = Field(
         default="auto",

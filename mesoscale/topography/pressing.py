@@ -8,6 +8,7 @@ import scipy.fft
 
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings, TopographySettings
+from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.profiles import Profile
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
@@ -82,7 +83,7 @@ def surfaces(
     heights, side = contacting_heights(scan)
     chosen = contact.model_copy(update={"pixels": len(heights), "length_nm": side})
     force = contact.max_force_nN * (side / contact.length_nm) ** 2
-    rms, seed = float(np.std(heights)), contact.nominal_seed
+    rms, seed = float(np.std(heights)), NOMINAL_SEED
     yield "measured", heights, chosen, force
     spectrum = radial_spectrum(heights, (side, side), settings.sections, settings.section_fraction, flat=0.0)
     scan_psd = SpectrumTable(spectrum.q, spectrum.psd).psd

@@ -10,7 +10,7 @@ from evidence.record import load
 from evidence.uncertainty.audit import COUPLED, LAW_READINGS, MISPRINT, contact_readings, rank, with_reading
 from mesoscale.inputs.table import collect
 from mesoscale.law.parameters import LAW_OUTPUTS
-from mesoscale.settings import ContactSettings, LawSettings
+from mesoscale.settings import ContactSettings, LawSettings, ReadingSettings
 from mesoscale.uncertainty.collocation import nodes
 from mesoscale.uncertainty.paper_tables import table2, table3
 from tests.mesoscale import paper
@@ -71,8 +71,8 @@ def test_a_seed_with_a_missing_fit_is_counted_and_left_out():
 
 def test_readings_become_settings():
     settings = with_reading("areal.paper.hertz.truncation.sites.false", ContactSettings())
-    assert (settings.convention, settings.flow_pair, settings.prefactor) == ("areal", "paper", "hertz")
-    assert (settings.radius, settings.area, settings.touching_attracts) == ("truncation", "sites", False)
+    assert (settings.reading.convention, settings.reading.flow_pair, settings.reading.prefactor) == ("areal", "paper", "hertz")
+    assert (settings.reading.radius, settings.reading.area, settings.reading.touching_attracts) == ("truncation", "sites", False)
     assert len(contact_readings()) == 48
     assert set(LAW_READINGS) >= {"first_contact", "force_0.03", "free_fit"}
 
@@ -82,5 +82,5 @@ def test_the_nearest_reading_is_the_default_and_can_be_audited_with_coupled_aspe
     for contact, law in ((ContactSettings(), LawSettings()), (paper.CONTACT, paper.LAW)):
         assert with_reading(first["contact"], contact) == contact
         assert law.model_copy(update=LAW_READINGS[first["law"]]) == law
-    coupled = with_reading(f"{first['contact']}.{COUPLED}", ContactSettings(prefactor="paper"))
+    coupled = with_reading(f"{first['contact']}.{COUPLED}", ContactSettings(reading=ReadingSettings(prefactor="paper")))
     assert coupled == with_reading(first["contact"], ContactSettings(mechanics="coupled"))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from evidence.contact.cutoff import NAMES, grid_error, passes, show
-from mesoscale.contact.studies.stability import MIDDLE
+from evidence.contact.cutoff import NAMES, grid_error, passes, summary
+from evidence.contact.draws import MIDDLE
 
 
 def test_a_grid_passes_by_its_error_or_by_the_scatter_of_the_surfaces():
@@ -21,10 +21,13 @@ def test_the_error_of_a_grid_compares_the_surfaces_of_both():
     assert relative[NAMES.index("pull_off_nN")] == pytest.approx(0.2)
     assert relative[NAMES.index("d_c_nm")] == pytest.approx(0.2 / MIDDLE.rms)
     assert scatter[0] == pytest.approx(0.2 / np.std([1.1, 1.3, 9.0], ddof=1))
-    rows = [
+    cycles = [
         {"inputs": "middle", "mechanics": "coupled", "length_nm": "1000", "q1_per_nm": "0.4", "pixels": str(pixels)}
-        | {"seed": str(seed), "cpu_s": "0.1", **{name: str(value) for name, value in zip(NAMES, values, strict=True)}}
+        | {"seed": str(seed), **{name: str(value) for name, value in zip(NAMES, values, strict=True)}}
         for pixels, surfaces in ((64, coarse), (128, {1: ones, 2: ones}))
         for seed, values in surfaces.items()
     ]
-    assert any("64 to  128 (2)" in line and line.endswith("passes") for line in show(rows))
+    first, second = summary(cycles)
+    assert (first["pixels"], first["surfaces"], first["passes"]) == (64, 3, True)
+    assert first["change_pull_off_nN"] == pytest.approx(0.2)
+    assert second["passes"] == ""

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.law.parameters import LAW_OUTPUTS
 from workflow.results import Dataset, write_csv, write_h5, write_json, write_text
 from workflow.schemas import schema_of
 
@@ -38,11 +37,9 @@ def write_all(root: Path) -> list[Path]:
     _elastic(root)
     _topography(root)
     _history(root)
-    _coupling(root)
     _adhesion(root)
     _model_form(root)
     _calibration(root)
-    _cutoff(root)
     _studies(root)
     return sorted(path for path in root.rglob("*") if path.is_file())
 
@@ -83,7 +80,7 @@ def _curves(root: Path) -> None:
                 "attractive_nN": Dataset(-0.05 * force, "nN", "attraction", ("point",)),
                 "contact_area_nm2": Dataset(0.3 * force, "nm^2", "area of contacting sites", ("point",)),
             }
-    contact = {"length_nm": 1000.0, "pixels": 128, "convention": "areal", "touching_attracts": False}
+    contact = {"length_nm": 1000.0, "pixels": 128, "reading": {"convention": "areal", "touching_attracts": False}}
     write_h5(root / "curves/nominal.h5", groups, {"cell_area_nm2": 1e6, "contact": contact}, PROVENANCE, facts)
     fits = [
         {"branch": branch, **law, "residual": 0.2, "status": "ok"}
@@ -408,25 +405,6 @@ def _history(root: Path) -> None:
     write_h5(root / "history/curves.h5", groups, {"cell_area_nm2": 1e6}, PROVENANCE, facts)
 
 
-def _coupling(root: Path) -> None:
-    rows = [
-        {
-            "seed": seed,
-            "load_nN": load,
-            "prefactor": prefactor,
-            "separation_nm": 30 - np.log10(load),
-            "separation_coupled_nm": 29.5 - np.log10(load),
-            "contact_area_nm2": 2.0 * load,
-            "contact_area_coupled_nm2": load,
-            "force_ratio": 1.25,
-        }
-        for seed in (1, 2)
-        for load in (1e3, 1e4)
-        for prefactor in ("hertz", "paper")
-    ]
-    _write(root / "coupling/comparison.csv", rows)
-
-
 def _adhesion(root: Path) -> None:
     rows = [
         {
@@ -488,15 +466,6 @@ def _calibration(root: Path) -> None:
     content = {"gate": {"passed": True, "reasons": []}, "remarks": [f"hardness (hardness.csv) {far}"], "chain": chain}
     content |= {"information_bits": 8.6, "cycles": 1700, "response_error_share": 0.45, "points_left_out": 3}
     write_json(root / "calibration/posterior.json", {**content, "tables": tables}, PROVENANCE)
-
-
-def _cutoff(root: Path) -> None:
-    numbers = dict.fromkeys([row.name for row in LAW_OUTPUTS], 1.0) | {"pull_off_nN": 2400.0}
-    rows = [
-        {"q1_per_nm": q1, "pixels": pixels, "cycles": 3, "converged": 3, **numbers, "cpu_s": 0.1}
-        for q1, pixels in ((0.3, 512), (0.3, 1024), (0.6, 512))
-    ]
-    _write(root / "uq/cutoff.csv", rows)
 
 
 def _studies(root: Path) -> None:

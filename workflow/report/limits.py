@@ -28,7 +28,7 @@ def limits(results: Results) -> list[str]:
         "acts down to gaps of 0.165 nm beside every contact. Stiction and release voltage inherit this; "
         "device.adhesion_scale: 0.1 shows the other end.",
         *(_COUPLED if coupled else _ASPERITY),
-        *(_DROPPED if coupled and reading.get("flow_volume") != "piled_up" else ()),
+        *(_DROPPED if coupled else ()),
         f"Surface slope: the RMS slope is set by the shortest waves {shortest}."
         + " It is 0.91 at the paper's mean inputs, and would be 4.4, unphysical, with the profile convention (the "
         "paper's 2H+1 on a two-dimensional spectrum)." * paper,

@@ -39,8 +39,6 @@ def report_inputs():
         files += ["calibration/posterior.json", *(f"calibration/{table}.csv" for table in tables)]
         if SCENE.pad.draws:
             files += ["calibration/next_on_pad.csv"]
-    if SCENE.coupling.surfaces > 0:
-        files += ["coupling/comparison.csv"]
     studies = [*ACCURACY, *STABILITY] if SCENE.report.studies else []
     return [f"{RESULTS}/{name}" for name in files] + studies
 

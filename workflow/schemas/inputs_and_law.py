@@ -100,23 +100,6 @@ TABLES = (
         ),
     ),
     Table(
-        ("coupling/comparison.csv",),
-        "A load on one surface: single asperities beside an elastic half-space.",
-        (
-            SEED,
-            number("load_nN", "nN", "load on the cell"),
-            text("prefactor", "prefactor of eq. 3: hertz or paper"),
-            number("separation_nm", "nm", "separation with single asperities"),
-            number("separation_coupled_nm", "nm", "separation with the half-space"),
-            number("contact_area_nm2", "nm²", "contact area with single asperities"),
-            number("contact_area_coupled_nm2", "nm²", "contact area with the half-space"),
-            number("force_ratio", "1", "force of single asperities at the half-space's separation, over the load"),
-            number("solver_error", "1", "relative error of the half-space's solver"),
-            boolean("solved", "whether the solver met its tolerance"),
-            number("wall_s", "s", "run time of the half-space's solver"),
-        ),
-    ),
-    Table(
         ("history/cycles.csv",),
         "One cycle of one surface.",
         (

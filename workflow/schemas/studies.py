@@ -1,6 +1,5 @@
 """Tables that all stages share: accuracy, stability, and the draws behind the contact model's stability."""
 
-from workflow.schemas.inputs_and_law import INPUT_VALUES, SEED
 from workflow.schemas.table import Table, boolean, integer, number, text
 
 _HARDNESS = "; hardness alone"
@@ -25,25 +24,6 @@ TABLES = (
             number("hardness_hi", "GPa", "upper end of its 68 % interval" + _HARDNESS, empty=True, optional=True),
             text("status", "yield, no_yield, or rejected: why" + _HARDNESS, empty=True, optional=True),
             integer("atom_steps", "atoms times MD steps" + _HARDNESS, empty=True, optional=True),
-        ),
-    ),
-    Table(
-        ("stability/contact_draws.csv", "stability/contact_draws/chunk_*.csv"),
-        "One cycle with inputs drawn at random.",
-        (
-            integer("draw", "number of the draw"),
-            *INPUT_VALUES,
-            SEED,
-            integer("pixels", "grid points a side"),
-            boolean("passed", "whether every invariant held"),
-            text("broken", "invariants that did not hold", empty=True),
-            integer("steps", "force steps in contact"),
-            integer("most_sweeps", "most sweeps of one step"),
-            integer("sweeps", "sweeps of all steps"),
-            number("force_miss", "1", "by how much the force was missed, relative"),
-            integer("radius_bound_events", "times a radius met its bound"),
-            integer("repeated_steps", "steps that were repeated"),
-            number("wall_s", "s", "run time"),
         ),
     ),
     Table(

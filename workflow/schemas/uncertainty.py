@@ -199,20 +199,6 @@ _MODEL_FORM = Table(
     ),
 )
 
-_CUTOFF = Table(
-    ("uq/cutoff.csv",),
-    "Outputs at the medians of the inputs for other short-wave cut-offs and other grids: means over the same surfaces.",
-    (
-        number("q1_per_nm", "1/nm", "short-wave cut-off"),
-        integer("pixels", "grid points a side"),
-        integer("cycles", "surfaces"),
-        integer("converged", "cycles that converged"),
-        *(number(row.name, row.unit, f"mean of {row.meaning}", empty=True) for row in LAW_OUTPUTS),
-        *_SWITCH,
-        number("cpu_s", "s", "processor time of a cycle"),
-    ),
-)
-
 _SAMPLES = Table(
     ("uq/samples.csv",),
     "One sample of the inputs through the exported responses; nan where an output has none.",
@@ -221,7 +207,6 @@ _SAMPLES = Table(
 
 TABLES = (
     _OUTPUTS,
-    _CUTOFF,
     _RATIOS,
     _SENSITIVITY,
     _SAMPLES,

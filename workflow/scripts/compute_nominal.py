@@ -12,6 +12,7 @@ from mesoscale.contact.nominal import nominal_cycles
 from mesoscale.contact.spots import spots_under
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
+from mesoscale.settings.contact import NOMINAL_SEED
 from workflow.contact_settings import contact_settings
 from workflow.job import job
 from workflow.results import Dataset, load_csv, write_h5
@@ -25,7 +26,7 @@ with job(snakemake) as run:
         attributes[name] = {
             **asdict(inputs),
             "model": chosen.model,
-            "seed": settings.nominal_seed,
+            "seed": NOMINAL_SEED,
             "max_force_nN": force,
             "converged": cycle.converged,
             "first_contact_nm": cycle.first_contact_nm,

@@ -7,17 +7,19 @@ history/curves.h5 (groups cycle_NNNN/closing|opening; nm, nN, nm^2).
 from dataclasses import asdict
 
 from mesoscale.contact.cycle import BRANCH_COLUMNS
-from mesoscale.device.lifetime import DWELL_COLUMNS, cycle_row, dwell_rows, follow_all, shown_cycles
+from mesoscale.device.lifetime import cycle_row, dwell_rows, follow_all, shown_cycles
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.settings import DeviceSettings, HistorySettings, LawSettings
+from mesoscale.settings.contact import NOMINAL_SEED
 from workflow.contact_settings import contact_settings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import Dataset, load_csv, write_csv, write_h5
 
 with job(snakemake) as run:
-    settings = HistorySettings(**snakemake.params.settings)
-    law, device = LawSettings(**snakemake.params.law), DeviceSettings(**snakemake.params.device)
+    settings = settings_from_job(HistorySettings, snakemake.params.settings)
+    law = settings_from_job(LawSettings, snakemake.params.law)
+    device = settings_from_job(DeviceSettings, snakemake.params.device)
     contact = contact_settings(snakemake.params.contact, snakemake)
     inputs, contact = contact_of(medians(load_csv(snakemake.input.inputs)), contact)
     cycles, dwell, groups, attributes = [], [], {}, {}
@@ -25,7 +27,7 @@ with job(snakemake) as run:
     for seed, held in follow_all(inputs, contact, settings, run.progress):
         cycles.append(cycle_row(seed, held, inputs, contact, law, device))
         dwell += dwell_rows(seed, held, contact, settings)
-        if seed == contact.nominal_seed and held.number in shown:
+        if seed == NOMINAL_SEED and held.number in shown:
             name = f"cycle_{held.number:04d}"
             attributes[name] = {"cycle": held.number, "seed": seed, **asdict(inputs)}
             for branch in ("closing", "opening"):
@@ -34,5 +36,5 @@ with job(snakemake) as run:
                     for key, values in asdict(getattr(held.cycle, branch)).items()
                 }
     write_csv(snakemake.output.cycles, cycles)
-    write_csv(snakemake.output.dwell, dwell, DWELL_COLUMNS)
+    write_csv(snakemake.output.dwell, dwell)
     write_h5(snakemake.output.curves, groups, {"cell_area_nm2": contact.length_nm**2}, run.provenance, attributes)

@@ -21,6 +21,8 @@ from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, plan_rows
 from atomistic.hardness.glass import TIMESTEP_FS, total_ps
 from atomistic.materials import Material
 from mesoscale.settings import ContactSettings, HistorySettings
+from mesoscale.settings.contact import NOMINAL_LOADS_NN
+from mesoscale.settings.history import DWELL_STEPS
 from mesoscale.settings.pad import CELLS_PER_JOB, DRAWS_PER_JOB
 from mesoscale.uncertainty.chunks import CHUNK_RUNS, collocation_run_count
 from workflow.scene import Scene
@@ -47,7 +49,6 @@ GROWS_BY = {  # the key that makes a rule's jobs many or long
     **dict.fromkeys(("make_amorphous", "relax_amorphous", "scan_volumes"), "elastic.glass.structures"),
     "scan_relaxed_volumes": "elastic.relaxed_structures",
     "measure_tensor": "elastic.tensor.structures",
-    "compute_nominal": "contact.nominal_loads_nN",
     "compute_runs": "uncertainty.seeds",
     "compute_direct_runs": "uncertainty.direct_runs",
     "plan_pad": "pad.grid.pilot_cells",
@@ -67,7 +68,7 @@ def cycle_s(contact: ContactSettings) -> float:
 
 def history_s(history: HistorySettings, contact: ContactSettings) -> float:
     """Seconds of closing and opening again and again; all but the first cycle find their surface."""
-    cycle = 0.6 + (0.05 * history.dwell_steps if history.dwell_s > 0 else 0.0)
+    cycle = 0.6 + (0.05 * DWELL_STEPS if history.dwell_s > 0 else 0.0)
     return history.seeds * history.cycles * (cycle * cycle_s(contact) + 0.015)
 
 
@@ -219,7 +220,7 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     ),
     "judge_scans": lambda c, _: 3.0 + 3.0 * len(c.scene.topography.scans),
     "weigh_unseen_waves": lambda c, _: 24 * c.cycle_s,
-    "compute_nominal": lambda c, _: 0.5 + c.cycles_s(len(c.scene.contact.nominal_loads_nN)),
+    "compute_nominal": lambda c, _: 0.5 + c.cycles_s(len(NOMINAL_LOADS_NN)),
     "compute_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, _collocation_runs(c))),
     "compute_direct_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, c.scene.uncertainty.direct_runs)),
     "fit_law": lambda c, _: 0.01 * _collocation_runs(c),

@@ -3,6 +3,7 @@
 import psutil
 
 from mesoscale.settings import ContactSettings, HistorySettings, UncertaintySettings
+from mesoscale.settings.history import DWELL_STEPS
 from mesoscale.settings.uncertainty import RESAMPLES
 
 PROCESS_MB = 600.0  # a job is two processes with their packages
@@ -19,7 +20,7 @@ def contact_MB(contact: ContactSettings, surfaces: int = 1) -> int:
 
 def history_MB(history: HistorySettings, contact: ContactSettings) -> int:
     """Memory of the process that closes and opens again and again, in MB."""
-    held = history.dwell_steps + 1 if history.dwell_s > 0 else 0
+    held = DWELL_STEPS + 1 if history.dwell_s > 0 else 0
     return round(contact_MB(contact) + ROW_MB * history.seeds * history.cycles * (3 + held))  # a cycle's row is long
 
 

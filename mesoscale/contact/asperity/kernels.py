@@ -1,6 +1,6 @@
 """Compiled loops: which sites touch and belong together, asperities' forces, plastic flow (section 2.2).
 
-A site touches where h < level, with level = -separation. Connected touching sites (periodic, 4 or 8
+A site touches where h < level, with level = -separation. Connected touching sites (periodic, 8
 neighbours) form an asperity. The set is kept up to date locally: sites that come into contact start
 a flood fill that takes over every asperity it meets, and nothing else is looked at.
 
@@ -27,7 +27,7 @@ def site_curvature(height, north, south, west, east, spacing):
 
 
 @njit(cache=True)
-def grow(asperities, heights, n, level, spacing, eight, seed):
+def grow(asperities, heights, n, level, spacing, seed):
     """Make the asperity that contains the touching site ``seed``; returns its number."""
     label, arena = asperities.label, asperities.arena
     firsts, counts = asperities.first, asperities.sites
@@ -43,7 +43,6 @@ def grow(asperities, heights, n, level, spacing, eight, seed):
     lowest = heights[seed]
     curvature = 0.0
     around = np.empty(8, np.int64)
-    neighbours = 8 if eight else 4
     while here < end:
         site = np.int64(arena[here])
         here += 1
@@ -62,7 +61,7 @@ def grow(asperities, heights, n, level, spacing, eight, seed):
         curvature += site_curvature(
             height, heights[north], heights[south], heights[site + west], heights[site + east], spacing
         )
-        for k in range(neighbours):
+        for k in range(8):
             other = np.uint64(around[k])
             if heights[other] < level:
                 owner = label[other]
@@ -129,7 +128,7 @@ def clear(asperities):
 
 
 @njit(cache=True)
-def touch(asperities, heights, n, level, spacing, eight, order, start, stop, changed, changed_sites, changed_count):
+def touch(asperities, heights, n, level, spacing, order, start, stop, changed, changed_sites, changed_count):
     """Bring all sites below ``level`` into contact.
 
     Looks at ``order[start:stop]``, the sites whose original height lies between the last level and
@@ -140,27 +139,27 @@ def touch(asperities, heights, n, level, spacing, eight, order, start, stop, cha
     for place in range(start, stop):
         site = order[place]
         if changed[site] == 0 and asperities.label[site] == 0:
-            grow(asperities, heights, n, level, spacing, eight, site)
+            grow(asperities, heights, n, level, spacing, site)
     for place in range(changed_count):
         site = changed_sites[place]
         if heights[site] < level and asperities.label[site] == 0:
-            grow(asperities, heights, n, level, spacing, eight, site)
+            grow(asperities, heights, n, level, spacing, site)
 
 
-@njit(cache=True, inline="always")
-def radius_of(count, curvature, indentation, flattened, mechanics):
-    """Radius in nm, and whether its bound acts, of ``count`` sites whose curvatures sum to ``curvature``.
+@njit(cache=True)
+def shape(asperities, number, level, mechanics):
+    """Indentation, radius, area (nm, nm, nm^2) and whether the bound on R acts, of one asperity.
 
     The radius is bounded so that no asperity is stiffer than a rigid flat punch of its own area,
     R <= 9 A / (4 pi delta): sites of mean curvature <= 0 (flattened tops) have no radius of their own.
-    A ``flattened`` asperity has at least the radius of Hertz's contact of its area, R >= A / (pi delta): unloading, its
-    force is 4/3 E* sqrt(A / pi) delta.
     """
+    count = asperities.sites[number]
     area = count * mechanics.site_area
-    bound = 9.0 * area / (4.0 * np.pi * indentation)
+    indentation = level - asperities.lowest[number]
     bounded = False
     if mechanics.curvature_radius:
-        mean = curvature / count
+        bound = 9.0 * area / (4.0 * np.pi * indentation)
+        mean = asperities.curvature[number] / count
         if mean * bound > 1.0:
             radius = 1.0 / mean
         else:
@@ -168,102 +167,9 @@ def radius_of(count, curvature, indentation, flattened, mechanics):
             bounded = True
     else:
         radius = area / (2.0 * np.pi * indentation)
-    if flattened:
-        radius = max(radius, area / (np.pi * indentation))
-    return radius, bounded
-
-
-@njit(cache=True)
-def shape(asperities, number, level, mechanics, flattened):
-    """Indentation, radius, area (nm, nm, nm^2) and whether the bound on R acts, of one asperity."""
-    count = asperities.sites[number]
-    area = count * mechanics.site_area
-    indentation = level - asperities.lowest[number]
-    flat = mechanics.flattened_radius and flattened[asperities.peak[number]] != 0
-    radius, bounded = radius_of(count, asperities.curvature[number], indentation, flat, mechanics)
     if not mechanics.area_of_sites:
         area = np.pi * radius * indentation
     return indentation, radius, area, bounded
-
-
-@njit(cache=True)
-def _root(parent, place):
-    """The part that a site belongs to, by its place in the order of heights; shortens the way for the next call."""
-    while parent[place] != place:
-        parent[place] = parent[parent[place]]
-        place = parent[place]
-    return place
-
-
-@njit(cache=True)
-def force_of_parts(asperities, heights, n, spacing, number, mechanics, flattened, parts):
-    """Force (nN) that an asperity's parts carried when its last site joined them, 0 if it never had two sites.
-
-    On the way down the sites join one by one, the lowest first (among equals, that of the smaller number). At each
-    of these levels the site's new asperity carries at least what those carried that it joins (merge: not_less).
-    """
-    first = asperities.first[number]
-    count = asperities.sites[number]
-    if count == 1:
-        return 0.0
-    sites = np.sort(asperities.arena[first : first + count])
-    sites = sites[np.argsort(heights[sites], kind="mergesort")]  # keeps the order of the sites among equals
-    around = np.empty(8, np.int64)
-    roots = np.empty(8, np.int64)
-    neighbours = 8 if mechanics.eight else 4
-    parent, place = parts.parent, parts.place
-    for k in range(count):
-        site = np.int64(sites[k])
-        height = heights[site]
-        row = site // n
-        col = site - row * n
-        north = site - n if row > 0 else site + n * (n - 1)
-        south = site + n if row < n - 1 else site - n * (n - 1)
-        west = -1 if col > 0 else n - 1
-        east = 1 if col < n - 1 else 1 - n
-        around[0], around[1], around[2], around[3] = north, south, site + west, site + east
-        around[4], around[5], around[6], around[7] = north + west, north + east, south + west, south + east
-        met = 0
-        for m in range(neighbours):
-            other = place[around[m]]
-            if other > 0:
-                root = _root(parent, other - 1)
-                known = False
-                for j in range(met):
-                    known |= roots[j] == root
-                if not known:
-                    roots[met] = root
-                    met += 1
-        place[site] = k + 1
-        parent[k] = k
-        parts.peak[k] = site
-        parts.lowest[k] = height
-        parts.sites[k] = 1
-        parts.curvature[k] = site_curvature(
-            height, heights[north], heights[south], heights[site + west], heights[site + east], spacing
-        )
-        carried = 0.0
-        for j in range(met):
-            root = roots[j]
-            indentation = height - parts.lowest[root]
-            single = 0.0
-            if indentation > 0.0:
-                flat = mechanics.flattened_radius and flattened[parts.peak[root]] != 0
-                radius, _ = radius_of(parts.sites[root], parts.curvature[root], indentation, flat, mechanics)
-                single = mechanics.stiffness * np.sqrt(radius * indentation) * indentation
-            carried += max(single, parts.carried[root])
-            parent[root] = k
-            parts.sites[k] += parts.sites[root]
-            parts.curvature[k] += parts.curvature[root]
-            if parts.lowest[root] < parts.lowest[k] or (
-                parts.lowest[root] == parts.lowest[k] and parts.peak[root] < parts.peak[k]
-            ):
-                parts.lowest[k] = parts.lowest[root]
-                parts.peak[k] = parts.peak[root]
-        parts.carried[k] = carried
-    for k in range(count):
-        place[sites[k]] = 0
-    return parts.carried[count - 1]
 
 
 @njit(cache=True)
@@ -273,8 +179,8 @@ def hardness(area, mechanics):
 
 
 @njit(cache=True)
-def total_force(asperities, heights, n, spacing, level, mechanics, capped, flows, flattened, parts):
-    """Repulsive force; ``capped``: at most H A each (eq. 4); ``flows``: what parts carried is at most H A.
+def total_force(asperities, level, mechanics, capped):
+    """Repulsive force; ``capped``: at most H A each (eq. 4).
 
     Returns the force (nN), sites, asperities, bounds on R in use, and the largest F / (H A) before the cap.
     """
@@ -286,13 +192,10 @@ def total_force(asperities, heights, n, spacing, level, mechanics, capped, flows
     for number in range(asperities.used[0]):
         if asperities.sites[number] == 0:
             continue
-        indentation, radius, area, bounded = shape(asperities, number, level, mechanics, flattened)
+        indentation, radius, area, bounded = shape(asperities, number, level, mechanics)
         single = mechanics.stiffness * np.sqrt(radius * indentation) * indentation
         ceiling = hardness(area, mechanics) * area
         load = max(load, single / ceiling if ceiling > 0.0 else np.inf)
-        if mechanics.not_less:
-            carried = force_of_parts(asperities, heights, n, spacing, number, mechanics, flattened, parts)
-            single = max(single, min(carried, ceiling) if flows else carried)
         if capped:
             single = min(single, ceiling)
         force += single
@@ -300,17 +203,6 @@ def total_force(asperities, heights, n, spacing, level, mechanics, capped, flows
         alive += 1
         bounds += bounded
     return force, sites, alive, bounds, load
-
-
-@njit(cache=True)
-def undo(heights, changes):
-    """Take back the flow of this step."""
-    for k in range(changes.used[1]):
-        heights[changes.journal[k]] = changes.before[k]
-    for k in range(changes.used[3], changes.used[0]):
-        changes.changed[changes.sites[k]] = 0
-    changes.used[0] = changes.used[3]
-    changes.used[1] = 0
 
 
 @njit(cache=True)
@@ -436,7 +328,7 @@ def _release(heights, n, level, peak, reach, asperities, seeds, waiting):
 
 
 @njit(cache=True)
-def _find_yielding(heights, level, asperities, mechanics, rule, flattened, work, actives):
+def _find_yielding(heights, level, asperities, mechanics, rule, work, actives):
     """List the asperities above their hardness by the site of their peak; returns how many.
 
     None yields where every site touches: flow keeps the volume, and there is nowhere left to flow to.
@@ -446,7 +338,7 @@ def _find_yielding(heights, level, asperities, mechanics, rule, flattened, work,
         number = work.active[k]
         if asperities.sites[number] == 0 or asperities.sites[number] == heights.size:
             continue
-        indentation, radius, area, _ = shape(asperities, number, level, mechanics, flattened)
+        indentation, radius, area, _ = shape(asperities, number, level, mechanics)
         force = mechanics.stiffness * np.sqrt(radius * indentation) * indentation
         ceiling = hardness(area, mechanics) * area
         if force <= ceiling * (1.0 + rule.tolerance):
@@ -490,16 +382,6 @@ def _sites_to_raise(heights, asperities, number, goal, margin, work):
 
 
 @njit(cache=True)
-def _flatten(asperities, number, changes):
-    """Note that the sites of an asperity have been at its hardness."""
-    first = asperities.first[number]
-    for place in range(first, first + asperities.sites[number]):
-        site = asperities.arena[place]
-        if changes.flattened[site] == 0:
-            changes.flattened[site] = changes.used[2]
-
-
-@njit(cache=True)
 def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, work):
     """Let all yielding asperities flow, sweep after sweep, until none is above its hardness.
 
@@ -515,14 +397,11 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, wor
             work.active[actives] = number
             actives += 1
     for sweeps in range(rule.max_sweeps + 1):
-        yielding = _find_yielding(heights, level, asperities, mechanics, rule, changes.flattened, work, actives)
+        yielding = _find_yielding(heights, level, asperities, mechanics, rule, work, actives)
         if yielding == 0:
             return sweeps, True
         if sweeps == rule.max_sweeps:
             return sweeps, False
-        if mechanics.flattened_radius:
-            for k in range(yielding):
-                _flatten(asperities, work.yielding[k], changes)
         flows = 0
         for k in np.argsort(work.peak[:yielding]):
             goal, margin = work.goal[k], work.margin[k]
@@ -549,6 +428,6 @@ def settle(heights, n, spacing, level, asperities, mechanics, rule, changes, wor
         actives = np.int64(0)
         for k in range(waiting):
             if asperities.label[work.seeds[k]] == -1:
-                work.active[actives] = grow(asperities, heights, n, level, spacing, mechanics.eight, work.seeds[k])
+                work.active[actives] = grow(asperities, heights, n, level, spacing, work.seeds[k])
                 actives += 1
     return rule.max_sweeps, False

@@ -10,44 +10,42 @@ import math
 
 import numpy as np
 
-from mesoscale.contact import attraction
-from mesoscale.contact.asperity import kernels
-from mesoscale.contact.asperity.engine import Contact
+from mesoscale.contact.attraction import attracting
+from mesoscale.contact.changes import undo
 from mesoscale.contact.coupled import clusters, dense, grid, half_space, validity
-from mesoscale.contact.path import State
+from mesoscale.contact.numerics import NUMERICS, Numerics
+from mesoscale.contact.pressed import Contact, State
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
 
 class CoupledContact(Contact):
-    """A surface on an elastic half-space, and its pressures at the current separation.
-
-    Parameters
-    ----------
-    surface
-        (N, N) heights in nm; changed in place by flow.
-    """
+    """A surface on an elastic half-space, and its pressures at the current separation."""
 
     TOLERANCE = 1e-9  # aimed at, residual of the pressures over the largest one
     SETTLED = 1e-6  # demanded
-    # Sites that a dense matrix holds, per pixel of a side: beyond, transforms of the whole grid cost less (measured:
-    # docs/contact.md). The other bound keeps the matrix below 140 MB.
+    # Sites that a dense matrix holds, per pixel of a side: beyond, transforms of the whole grid cost less (elastic and
+    # plastic steps alike, on 64^2 to 256^2 sites). The other bound keeps the matrix below 140 MB.
     DENSE_PER_PIXEL = 16
     DENSE = 4096
-    NEAR_GAP = 2.0  # nm: sites this near count with their displacement in the attraction (error 0.2 %: docs)
+    # nm: sites this near count with their displacement in the attraction, the others without: errs by at most 0.2 %
+    # (512^2 and 1024^2, elastic and plastic, 90 nN to 25 uN)
+    NEAR_GAP = 2.0
     AIMS_AT_END = True
     ROUNDS = 40
     FALLING_ROUNDS = 10  # from here on hardness may only fall, so that the rounds come to an end
 
-    def __init__(self, surface: np.ndarray, inputs, settings: ContactSettings):
-        super().__init__(surface, inputs, settings)
+    def __init__(
+        self, surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
+    ):
+        super().__init__(surface, inputs, settings, numerics)
         self.e_star = float(inputs.e_star)
         self.hamaker, self.gap_cutoff = float(inputs.hamaker), settings.gap_cutoff_nm
-        self.piles = self.flows and settings.flow_volume == "piled_up"
         self.table = half_space.influence(self.n)
         self.scale = self.length / self.e_star
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
         # how far 1 nN raises the surface at most, anywhere: it does, because the mean of the displacement is 0
-        self.rise = -self.scale * float(self.table.min()) / self.mechanics.site_area
+        self.rise = -self.scale * float(self.table.min()) / self.site_area
         self.dense = min(self.DENSE, self.DENSE_PER_PIXEL * self.n, self.heights.size - 1)
         self.matrix = np.empty((0, 0))
         self.place = np.full(self.heights.size, -1, np.int32)
@@ -79,11 +77,10 @@ class CoupledContact(Contact):
         if not (self.flows or self.capped):
             return full
         area = self.length**2
-        return min(full, self.BEARING_SHARE * kernels.hardness(area, self.mechanics) * area)
+        return min(full, self.BEARING_SHARE * self.hardness.of(area) * area)
 
     def lift(self) -> None:
         """Leave contact; the surface stays as it is."""
-        super().lift()
         self._forget()
 
     def adopt_changes(self) -> None:
@@ -93,7 +90,7 @@ class CoupledContact(Contact):
 
     def back(self) -> None:
         """Undo the last move, its flow and its pressures."""
-        kernels.undo(self.heights, self.changes)
+        undo(self.heights, self.changes)
         self.separation, sites, pressure, limit = self.before
         places = self.place[sites]
         self.pressure[:] = 0.0
@@ -108,40 +105,29 @@ class CoupledContact(Contact):
     def move_to(self, separation: float, with_flow: bool) -> State:
         """Bring the flat down to a separation; it may be undone by `back` until the next move."""
         self.before = (self.separation, self.sites, self.pressure.copy(), self.limit.copy())
-        self.changes.used[1] = 0
-        self.changes.used[2] += 1
-        self.changes.used[3] = self.changes.used[0]
+        self._begin_step()
         self.separation = separation
         self.bounded = with_flow or self.capped
         if not self.bounded and separation + self.mean <= 0.0:  # no pressure parts the mean planes
             return State(math.inf, self.heights.size, 1, 0, math.inf, 0, False, False)
         rounds, settled = self._solve_rounds() if self.bounded else (0, self._solve())
         number, count = self._clusters()
-        stuck = with_flow and not self._flow(number, count)
+        if with_flow:
+            clusters.flatten(
+                self.heights, self.sites, separation, self.displacement, self.pressure, self.limit, self.changes
+            )
         touching = int(np.count_nonzero(number >= 0))
-        hardness = self._hardness(number)
+        hardness = self._hardness_of(number)
         load = float((self.pressure / hardness).max()) if touching and hardness.all() else 0.0
-        return State(self.force, touching, count, 0, load, rounds, settled, stuck)
-
-    def _flow(self, number: np.ndarray, count: int) -> bool:
-        """Flatten the sites at their hardness; False if what flows finds no room (`flow_volume: piled_up`)."""
-        flowed = np.zeros(count)
-        solution = self.separation, self.displacement, self.pressure
-        clusters.flatten(self.heights, self.sites, *solution, self.limit, self.changes, number, flowed)
-        if not self.piles:
-            return True
-        half_space = self.table, self.scale, self.mechanics.eight
-        return clusters.pile_up(
-            self.heights, self.sites, self.place, number, flowed, *solution, *half_space, self.changes
-        )
+        return State(self.force, touching, count, 0, load, rounds, settled, False)
 
     def remarks(self) -> dict[str, float]:
         """What says whether the model holds, for the flags of a cycle (`validity`); the contact as it is now."""
         number, count = self._clusters()
         touching = number >= 0
-        area = self.mechanics.site_area * max(int(touching.sum()) / max(count, 1), 1.0)
-        hardness = kernels.hardness(area, self.mechanics)
-        yielded = float(np.mean(self.pressure[touching] >= self._hardness(number)[touching])) if count else 0.0
+        area = self.site_area * max(int(touching.sum()) / max(count, 1), 1.0)
+        hardness = self.hardness.of(area)
+        yielded = float(np.mean(self.pressure[touching] >= self._hardness_of(number)[touching])) if count else 0.0
         return {
             "rms_slope": self.roughness.slope,
             "rms_curvature_per_nm": self.roughness.curvature,
@@ -153,7 +139,7 @@ class CoupledContact(Contact):
     @property
     def force(self) -> float:
         """Repulsive force of the pressures, nN."""
-        return float(self.pressure.sum()) * self.mechanics.site_area
+        return float(self.pressure.sum()) * self.site_area
 
     def _solve_rounds(self) -> tuple[int, bool]:
         """Solve with the hardness of each cluster until the clusters are those it belongs to.
@@ -164,11 +150,11 @@ class CoupledContact(Contact):
         settled = True
         for rounds in range(1, self.ROUNDS + 1):
             solved = self._solve()
-            wanted = self._hardness(self._clusters()[0])
+            wanted = self._hardness_of(self._clusters()[0])
             touching = self.pressure > 0.0
-            if self.mechanics.h_prime == 0.0 or np.array_equal(wanted[touching], self.limit[touching]):
+            if self.hardness.h_prime == 0.0 or np.array_equal(wanted[touching], self.limit[touching]):
                 return rounds, solved
-            settled = solved and bool(np.all(wanted[touching] <= self.limit[touching] * (1.0 + self.rule.tolerance)))
+            settled = solved and bool(np.all(wanted[touching] <= self.limit[touching] * (1.0 + self.tolerance)))
             if rounds >= self.FALLING_ROUNDS:
                 lower = np.minimum(wanted, self.limit)
                 if np.array_equal(lower[touching], self.limit[touching]):
@@ -180,13 +166,13 @@ class CoupledContact(Contact):
     def _clusters(self) -> tuple[np.ndarray, int]:
         """Number of the cluster of each known site, -1 where it is apart, and how many there are."""
         number = np.empty(self.sites.size, np.int32)
-        return number, clusters.label(self.sites, self.place, self.pressure, self.n, self.mechanics.eight, number)
+        return number, clusters.label(self.sites, self.place, self.pressure, self.n, number)
 
-    def _hardness(self, number: np.ndarray) -> np.ndarray:
+    def _hardness_of(self, number: np.ndarray) -> np.ndarray:
         """Hardness (GPa) of the clusters by eq. 4, for each known site; for one apart that of a single site."""
         sites = np.bincount(number[number >= 0], minlength=1)
-        area = self.mechanics.site_area * np.where(number >= 0, sites[number], 1)
-        return self.mechanics.h_macro + self.mechanics.h_prime * area**-0.25
+        area = self.site_area * np.where(number >= 0, sites[number], 1)
+        return self.hardness.h_macro + self.hardness.h_prime * area**-0.25
 
     def _solve(self) -> bool:
         """Find the pressures with the limits at hand; True if they settled."""
@@ -245,20 +231,8 @@ class CoupledContact(Contact):
             count = int(np.searchsorted(self.order_heights, self.known_height))
             new = self.order[self.sorted_known : count]
             self.sorted_known = count
-        if self.piles and self.grid is None:
-            piled = self._changed_unknown()
-            new = np.concatenate((self._unknown(new), piled[self.heights[piled] <= self.known_height]))
         if new.size:
             self._add(new)
-
-    def _unknown(self, sites: np.ndarray) -> np.ndarray:
-        """Those of some sites that are neither known nor changed."""
-        return sites[(self.place[sites] < 0) & (self.changed[sites] == 0)]
-
-    def _changed_unknown(self) -> np.ndarray:
-        """Sites that piles have raised and that are not known."""
-        sites = self.changes.sites[: self.changes.used[0]]
-        return sites[self.place[sites] < 0]
 
     def _add(self, new: np.ndarray) -> None:
         """Make further sites known."""
@@ -288,32 +262,26 @@ class CoupledContact(Contact):
     @property
     def _fresh_limit(self) -> float:
         """Limit of a site that has not touched."""
-        return kernels.hardness(self.mechanics.site_area, self.mechanics) if self.bounded else math.inf
+        return self.hardness.of(self.site_area) if self.bounded else math.inf
 
     def attraction(self, separation: float) -> float:
         """Attractive force in nN, negative (eq. 1), at the current separation or before contact.
 
         The gap is the deformed one at sites whose undeformed gap is small; the others count undeformed, through the
-        histogram (docs/contact.md states the error).
+        histogram (`NEAR_GAP` states the error).
         """
-        if not self.attracts:
+        law = self.adhesion
+        if law is None:
             return 0.0
         if self.grid is not None:
             gap = self.heights + separation + self.displacement
-            return -self.strength * attraction.inverse_cubes_of(gap, self._weight(self.sites), self.cutoff, self.rate)
+            return law.deformed(gap, self._weight(self.sites))
         known = self.sites.size
-        near = max(self.NEAR_GAP, 2.0 * self.cutoff, self.rise * self.force + 2.0 * self.bin_width)
-        if self.piles:  # sites that piles raise leave the histogram and count one by one, as all that are known
-            self._take_out_changed()
-            near = max(near, self.known_height + separation)
-        far = attraction.first_far_bin(near, separation, self.lowest, self.bin_width, len(self.moments))
-        edge = self.lowest + far * self.bin_width
-        self._sort_to(min(edge + self.bin_width, self.highest))
-        count = int(np.searchsorted(self.order_heights, edge)) if far < len(self.moments) else self.heights.size
+        near = max(self.NEAR_GAP, 2.0 * law.cutoff, self.rise * self.force + 2.0 * law.bin_width)
+        far, edge = law.far_edge(near, separation)
+        self._sort_to(min(edge + law.bin_width, self.highest))
+        count = int(np.searchsorted(self.order_heights, edge)) if far < len(law.moments) else self.heights.size
         sites = self.order[: max(count, known)]
-        if self.piles:
-            sites = np.concatenate((self.sites, self._unknown(self.order[:count]), self._changed_unknown()))
-            count = sites.size
         displacement = np.zeros(sites.size)
         if self.force > 0.0:
             displacement[:known] = self.displacement
@@ -321,9 +289,8 @@ class CoupledContact(Contact):
                 self.table, self.scale, self.n, self.sites, self.pressure, sites[known:], displacement[known:]
             )
         gap = self.heights[sites[:count]] + separation + displacement[:count]
-        total = attraction.inverse_cubes_of(gap, self._weight(sites[:count]), self.cutoff, self.rate)
-        total += attraction.far_inverse_cubes(separation, far, self.lowest, self.bin_width, self.moments, self.rate)
-        return -self.strength * total
+        return law.deformed(gap, self._weight(sites[:count]), separation, far)
 
     def _weight(self, sites: np.ndarray) -> np.ndarray:
-        return clusters.attracting(sites, self.place, self.pressure, self.n, self.touching)
+        touching = self.adhesion is not None and self.adhesion.touching
+        return attracting(sites, self.place, self.pressure, self.n, touching)

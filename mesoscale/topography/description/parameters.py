@@ -134,7 +134,7 @@ def _doubts(
     if not 0 < hurst < 1:
         other: Convention = "profile" if settings.convention == "areal" else "areal"
         inside = 0 < hurst_from_slope(fitted.slope, other) < 1
-        hint = f" (with topography.convention and contact.convention: {other} it is in)" if inside else ""
+        hint = f" (with topography.convention and contact.reading.convention: {other} it is in)" if inside else ""
         text = f"H = {hurst:.2f} is outside 0 ... 1 in convention {settings.convention}{hint}"
         doubts.append(Doubt("hurst_outside", text, "use the measured spectrum (topography.description)", "slope"))
     if settings.method == "lines" and line_fit is None:

@@ -2,8 +2,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from mesoscale.contact.asperity.engine import Contact
+from mesoscale.contact.asperity.engine import AsperityContact
 from mesoscale.contact.cycle import contact_on
+from mesoscale.contact.numerics import Numerics
+from mesoscale.contact.pressed import Contact
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.table import input_table
@@ -16,7 +18,7 @@ INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, 
 
 def test_plates_follow_hamaker():
     """A_H = 0.215e-18 J, gap 10 nm, 1 um^2: 11.41 nN."""
-    contact = Contact(np.zeros((32, 32)), INPUTS, ContactSettings(pixels=32, model="elastic"))
+    contact = AsperityContact(np.zeros((32, 32)), INPUTS, ContactSettings(pixels=32, model="elastic"))
     assert contact.attraction(10.0) == pytest.approx(-11.4061, rel=1e-5)
     assert contact.attraction(0.05) == contact.attraction(0.1)  # both below the cut-off gap
 
@@ -24,7 +26,7 @@ def test_plates_follow_hamaker():
 def test_gaussian_heights_far_away_follow_the_asymptotic_series():
     """<(d - h)^-3> = d^-3 (1 + 6 s + 45 s^2 + ...), s = (sigma/d)^2; a realisation's skewness allowed for."""
     heights = synthesize(256, 1000.0, 0.2, 0.75, 1.0, 5)
-    contact = Contact(heights, INPUTS, ContactSettings(pixels=256, model="elastic"))
+    contact = AsperityContact(heights, INPUTS, ContactSettings(pixels=256, model="elastic"))
     separation = 20.0
     s = (1.0 / separation) ** 2
     series = 1 + 6 * s + 45 * s**2 - 10 * np.mean(heights**3) / separation**3
@@ -36,8 +38,8 @@ def test_gaussian_heights_far_away_follow_the_asymptotic_series():
 @pytest.mark.parametrize("touching", [True, False])
 def test_the_histogram_agrees_with_the_sum_over_all_sites(bins, touching):
     heights = synthesize(128, 1000.0, 0.05, 0.75, 8.5, 5)
-    settings = ContactSettings(pixels=128, model="elastic", gap_bins=bins, touching_attracts=touching)
-    contact = Contact(heights, INPUTS, settings)
+    settings = ContactSettings(pixels=128, model="elastic", reading={"touching_attracts": touching})
+    contact = AsperityContact(heights, INPUTS, settings, Numerics(gap_bins=bins))
     for separation in (60.0, 35.0, 20.0, 0.0):
         gap = heights + separation
         gap = np.maximum(gap if touching else gap[gap >= 0], 0.165)

@@ -3,6 +3,7 @@ import pytest
 
 from mesoscale.contact import attraction, run_cycle
 from mesoscale.contact.asperity import engine
+from mesoscale.contact.numerics import Numerics
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
@@ -99,10 +100,10 @@ def test_cycles_on_the_changed_surface_shake_down():
 
 def test_a_larger_load_continues_a_smaller_one():
     """A closing interrupted by opening reaches the same end as one without, but for the path's steps."""
-    settings = settings_for(force_steps=100)
-    half = run_cycle(INPUTS, settings, 1, 250.0, keep_surface=True)
-    continued = run_cycle(INPUTS, settings, 1, 500.0, heights=half.heights).closing
-    direct = run_cycle(INPUTS, settings, 1, 500.0).closing
+    settings, fine = settings_for(), Numerics(force_steps=100)
+    half = run_cycle(INPUTS, settings, 1, 250.0, keep_surface=True, numerics=fine)
+    continued = run_cycle(INPUTS, settings, 1, 500.0, heights=half.heights, numerics=fine).closing
+    direct = run_cycle(INPUTS, settings, 1, 500.0, numerics=fine).closing
     assert continued.separation_nm[-1] == pytest.approx(direct.separation_nm[-1], abs=0.1)
 
 
@@ -136,13 +137,13 @@ def test_nothing_is_spent_on_an_attraction_that_is_absent(monkeypatch):
 def test_elastic_models_copy_no_surface_and_never_flow(monkeypatch):
     heights = synthesize(256, 250.0, 0.025, 0.75, 8.5, 1)
     held = []
-    start = engine.Contact.__init__
+    start = engine.AsperityContact.__init__
 
     def remember(self, surface, *rest):
         held.append(surface)
         start(self, surface, *rest)
 
-    monkeypatch.setattr(engine.Contact, "__init__", remember)
+    monkeypatch.setattr(engine.AsperityContact, "__init__", remember)
     monkeypatch.setattr(engine.kernels, "settle", lambda *a: pytest.fail("an elastic surface flowed"))
     for model in ("elastic", "nonlinear"):
         run_cycle(INPUTS, settings_for(model=model), 1, heights=heights)
@@ -248,3 +249,11 @@ def test_impossible_inputs_are_refused(change):
     with pytest.raises(InputError, match=f"^{next(iter(change))} = ") as refusal:
         ContactInputs(**{**vars(INPUTS), **change})
     assert "\n" not in str(refusal.value)
+
+
+def test_the_flag_is_the_largest_fall_below_an_earlier_value():
+    cycle = run_cycle(ContactInputs(**{**vars(INPUTS), "hamaker": 0.0}), ContactSettings(pixels=128), 2)
+    force = cycle.closing.repulsive_nN
+    worst = max(force[:k].max() - force[k] for k in range(1, len(force))) / force.max()
+    assert worst > 0.01  # this surface loses repulsion
+    assert cycle.flags["repulsion_drop"] == pytest.approx(worst)

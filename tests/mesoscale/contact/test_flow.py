@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 
-from benchmarks import plain_contact
+from evidence.contact import plain_contact
 from mesoscale.contact import run_cycle
-from mesoscale.contact.asperity.engine import Contact
+from mesoscale.contact.asperity.engine import AsperityContact
+from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
@@ -20,7 +21,7 @@ def surface(seed: int = 3) -> np.ndarray:
     return synthesize(128, 125.0, 0.05, 0.75, 4.0, seed, "profile")
 
 
-def walk_down(contact: Contact, lowest: float, depth: float, steps: int = 25) -> list:
+def walk_down(contact: AsperityContact, lowest: float, depth: float, steps: int = 25) -> list:
     return [contact.move_to(-lowest - x, True) for x in np.linspace(0.05, depth, steps)]
 
 
@@ -30,8 +31,8 @@ def walk_down(contact: Contact, lowest: float, depth: float, steps: int = 25) ->
 def test_flow_conserves_volume_on_the_grid(flow, pair, floor):
     heights = surface()
     before = heights.copy()
-    settings = settings_for(flow=flow, flow_pair=pair, flow_floor_pixels=floor, max_sweeps=50)
-    contact = Contact(heights, INPUTS, settings)
+    numerics = Numerics(flow=flow, flow_floor_pixels=floor, max_sweeps=50)
+    contact = AsperityContact(heights, INPUTS, settings_for(reading={"flow_pair": pair}), numerics)
     walk_down(contact, before.min(), 3.0)
     moved = np.abs(heights - before)
     assert moved.max() > 0.3
@@ -42,8 +43,8 @@ def test_flow_conserves_volume_on_the_grid(flow, pair, floor):
 
 def test_no_asperity_is_left_above_its_hardness():
     heights = surface()
-    settings = settings_for(max_sweeps=2000)
-    contact = Contact(heights, INPUTS, settings)
+    settings = settings_for()
+    contact = AsperityContact(heights, INPUTS, settings, Numerics(max_sweeps=2000))
     for x in np.linspace(0.05, 4.0, 30):
         separation = -surface().min() - x
         settled = contact.move_to(separation, True).settled
@@ -51,7 +52,7 @@ def test_no_asperity_is_left_above_its_hardness():
     left = plain_contact.asperities(contact.heights.reshape(128, 128), separation, INPUTS, settings)
     assert len(left) > 3
     for asperity in left:
-        assert asperity.elastic_force <= asperity.hardness * asperity.area * (1 + settings.flow_tolerance) * (1 + 1e-9)
+        assert asperity.elastic_force <= asperity.hardness * asperity.area * (1 + NUMERICS.flow_tolerance) * (1 + 1e-9)
 
 
 def test_the_return_mapping_is_the_limit_of_small_increments():
@@ -62,7 +63,7 @@ def test_the_return_mapping_is_the_limit_of_small_increments():
         for seed in (1, 2, 3):
             ends = []
             for changes in ({"flow": "return"}, {"flow": "increment", "flow_increment_nm": increment}):
-                contact = Contact(surface(seed), INPUTS, settings_for(max_sweeps=20000, **changes))
+                contact = AsperityContact(surface(seed), INPUTS, settings_for(), Numerics(max_sweeps=20000, **changes))
                 ends.append([row.force for row in walk_down(contact, surface(seed).min(), 4.0)])
             returned, stepped = np.array(ends)
             total += np.sum(np.abs(returned - stepped)) / np.sum(stepped) / 3
@@ -81,16 +82,15 @@ def test_a_width_below_the_grid_stalls_and_says_so(floor, settles, flow):
     """
     heights = np.zeros((64, 64))
     heights[20, 20] = -8.0
-    settings = ContactSettings(
-        pixels=64, length_nm=64.0, flow=flow, flow_pair="paper", flow_floor_pixels=floor, max_sweeps=300
-    )
-    settled = Contact(heights, INPUTS, settings).move_to(7.0, True).settled
+    settings = ContactSettings(pixels=64, length_nm=64.0, reading={"flow_pair": "paper"})
+    numerics = Numerics(flow=flow, flow_floor_pixels=floor, max_sweeps=300)
+    settled = AsperityContact(heights, INPUTS, settings, numerics).move_to(7.0, True).settled
     assert settled == (settles or flow == "return")
 
 
 def test_an_undone_move_leaves_no_trace():
     heights = surface()
-    contact = Contact(heights, INPUTS, settings_for())
+    contact = AsperityContact(heights, INPUTS, settings_for())
     walk_down(contact, surface().min(), 1.0)
     kept = heights.copy()
     there = contact.move_to(-surface().min() - 2.0, True)
@@ -107,7 +107,7 @@ def test_a_plateau_comes_down_in_a_few_sweeps():
     x = np.arange(64) - 32.0
     heights = np.maximum(x[:, None] ** 2 + x[None, :] ** 2, 80.0) / 40.0
     soft = ContactInputs(**{**vars(INPUTS), "h_macro": 1.0, "h_prime": 2.0})
-    contact = Contact(heights, soft, ContactSettings(pixels=64, length_nm=64.0, max_sweeps=5000))
+    contact = AsperityContact(heights, soft, ContactSettings(pixels=64, length_nm=64.0), Numerics(max_sweeps=5000))
     moved = contact.move_to(-2.6, True)
     assert moved.settled
     assert moved.sites > 100
@@ -136,7 +136,7 @@ def test_a_plateau_as_wide_as_the_cell_carries_up_to_its_hardness():
 
 def test_an_undone_flow_counts_no_site_as_changed():
     heights = surface()
-    contact = Contact(heights, INPUTS, settings_for())
+    contact = AsperityContact(heights, INPUTS, settings_for())
     contact.move_to(-surface().min() - 2.0, True)
     assert contact.changed_sites > 0
     contact.back()

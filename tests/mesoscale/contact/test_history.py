@@ -5,14 +5,15 @@ import itertools
 import numpy as np
 import pytest
 
+from evidence.contact.draws import MIDDLE
 from mesoscale.contact.history import follow, hardness_factor
-from mesoscale.contact.studies.stability import MIDDLE, violations
+from mesoscale.contact.stability import violations
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings, HistorySettings
 
 # smoother surfaces have fewer asperities, and the force jumps where they merge
-CONTACT = ContactSettings(pixels=128, convention="profile")
-CREEP = HistorySettings(cycles=3, creep="power", dwell_s=1e4, creep_exponent=20, dwell_steps=6)
+CONTACT = ContactSettings(pixels=128, reading={"convention": "profile"})
+CREEP = HistorySettings(cycles=3, creep="power", dwell_s=1e4, creep_exponent=20)
 
 
 @pytest.fixture(scope="module")

@@ -7,13 +7,14 @@ from mesoscale.contact.cycle import run_cycle
 from mesoscale.contact.spots import STEPS, spots_under
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
+from mesoscale.settings.contact import NOMINAL_SEED
 
 INPUTS = ContactInputs(hamaker=0.2, e_star=91.0, h_macro=2.0, h_prime=8.0, q0=0.025, hurst=0.75, rms=8.5)
 
 
 def _spots(pixels, model):
     settings = ContactSettings(pixels=pixels, model=model)
-    cycle = run_cycle(INPUTS, settings, settings.nominal_seed, 1e4)
+    cycle = run_cycle(INPUTS, settings, NOMINAL_SEED, 1e4)
     return spots_under(INPUTS, settings, cycle), cycle
 
 

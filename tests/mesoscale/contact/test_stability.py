@@ -1,21 +1,83 @@
+"""Stiff and extreme cases: those of a scene around the middle of Table 1, and more that no scene has."""
+
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
+from evidence.contact.draws import MIDDLE, RANGES, draw_inputs
 from mesoscale.contact import run_cycle
-from mesoscale.contact.studies.draws import COLUMNS, RANGES, draw_inputs, draw_rows
-from mesoscale.contact.studies.stability import draws_by_grid, extreme_cases, judge, study_grid, violations
+from mesoscale.contact.stability import Case, extreme_cases, judge, stability_checks, violations
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
+from mesoscale.topography.synthesis import synthesize
 from tests.mesoscale import paper
 
-SMALL = ContactSettings(pixels=64, length_nm=62.5, max_force_nN=200.0, study_draws=51)
+N = 48
+SETTINGS = {
+    mechanics: ContactSettings(mechanics=mechanics, pixels=N, length_nm=96.0) for mechanics in ("asperity", "coupled")
+}
+OWN = {mechanics: extreme_cases(MIDDLE, settings) for mechanics, settings in SETTINGS.items()}
 
 
-def test_draws_are_the_same_whatever_the_chunk():
-    """Draw 50 is the only one of chunk 1; its inputs and its grid follow from its number alone."""
-    rows = list(draw_rows(1, SMALL))
-    assert [(row["draw"], row["seed"], row["pixels"]) for row in rows] == [(50, seed, 32) for seed in (1, 2, 3)]
-    assert all(row["hurst"] == round(draw_inputs(50).hurst, 6) for row in rows)
-    assert set(rows[0]) == set(COLUMNS)
+def further_cases(mechanics: str) -> list[Case]:
+    coupled = mechanics == "coupled"  # then the separation of the mean planes says when contact is full
+    rough = synthesize(N, 96.0, 0.025, 0.75, 8.5, 1)
+    spike, pair = np.zeros((N, N)), np.zeros((N, N))
+    spike[N // 2, N // 2] = -5.0
+    pair[N // 2, N // 2 - 2 : N // 2 + 3] = -5.0 + 0.5 * np.array([0.0, 1.0, 2.0, 1.0, 0.0])
+    light = {"max_force_nN": 0.5}
+    cases = [
+        Case("profile, H 0.01", "slope -1.02", replace(MIDDLE, hurst=0.01), {"reading": {"convention": "profile"}}),
+        Case("nm x 1e-6", "heights of picometres and less", MIDDLE, heights=1e-6 * rough, too_much=coupled),
+        Case("nm x 1e6", "heights of millimetres on a grid of nanometres", MIDDLE, heights=1e6 * rough),
+        Case("nm x 100", "heights of micrometres on a grid of nanometres", MIDDLE, heights=100 * rough),
+        Case("single site", "one site above a plane", MIDDLE, light, heights=spike),
+        Case("merging pair", "two equal summits with a saddle between", MIDDLE, light, heights=pair),
+    ]
+    if not coupled:
+        return [
+            *cases,
+            Case("p = 2/3", "reading of eq. 3", MIDDLE, {"reading": {"prefactor": "paper"}}),
+            Case("narrow pair", "reading of flow", MIDDLE, {"reading": {"flow_pair": "paper"}}),
+        ]
+    full = {"model": "elastic", "max_force_nN": 1e12}
+    cases.append(Case("full elastic contact", "closing ends where all sites touch", MIDDLE, full, too_much=True))
+    for exponent in range(-3, 7):
+        inputs = replace(MIDDLE, e_star=10.0**exponent, h_macro=1.0, h_prime=0.0)
+        # softest: the load is beyond full contact
+        cases.append(Case(f"E*/H 1e{exponent}", "from never yielding to rigid", inputs, too_much=exponent == -3))
+    return cases
+
+
+ALL = [(mechanics, case) for mechanics in SETTINGS for case in OWN[mechanics] + further_cases(mechanics)]
+
+
+@pytest.mark.parametrize(("mechanics", "case"), ALL, ids=[f"{mechanics}: {case.name}" for mechanics, case in ALL])
+def test_extreme_cases_keep_all_invariants(mechanics, case):
+    settings = SETTINGS[mechanics]
+    changes = {**settings.model_dump(), **case.changes}
+    changes["reading"] = {**settings.reading.model_dump(), **dict(case.changes.get("reading", {}))}
+    chosen = ContactSettings(**changes)
+    fields = {key: getattr(chosen, key) for key in case.changes}
+    broken, _ = judge(replace(case, changes=fields), settings)
+    assert broken == []
+
+
+def test_a_scene_is_tried_at_its_own_inputs_and_settings():
+    inputs, settings = replace(MIDDLE, e_star=300.0), ContactSettings(pixels=64, length_nm=62.5, retardation_nm=100.0)
+    cases = {case.name: case for case in extreme_cases(inputs, settings)}
+    assert cases["A_H = 0"].inputs == replace(inputs, hamaker=0.0)
+    assert cases["E* x 1000"].inputs.e_star == 3e5
+    assert judge(cases["E* x 1000"], settings)[0] == []
+
+
+def test_a_check_says_what_broke(monkeypatch):
+    monkeypatch.setattr("mesoscale.contact.stability.violations", lambda *_: ["volume changed"])
+    (*_, check) = stability_checks(MIDDLE, SETTINGS["asperity"])[0]
+    passed, detail = check()
+    assert not passed
+    assert "cycle 1: volume changed" in detail
 
 
 def test_draws_are_from_table_1():
@@ -26,24 +88,6 @@ def test_draws_are_from_table_1():
     assert RANGES["e_star"] == pytest.approx((normal.a - 2.895 * normal.b, normal.a + 2.895 * normal.b), rel=1e-4)
 
 
-def test_no_extreme_load_or_height_is_left_out():
-    names = {case.name for case in extreme_cases(SMALL)}
-    assert {"1e+04 nN", "1e+05 nN", "1e+06 nN", "1e+07 nN", "nm x 1e-6", "nm x 1e6"} <= names
-
-
-def test_a_stiff_case_keeps_all_invariants():
-    cases = {case.name: case for case in extreme_cases(SMALL)}
-    assert judge(cases["E* x 1000"], SMALL)[0] == []
-
-
-@pytest.mark.parametrize("flow_volume", ["dropped", "piled_up"])
-def test_extreme_coupled_cases_keep_all_invariants_whatever_becomes_of_the_volume(flow_volume):
-    settings = ContactSettings(mechanics="coupled", pixels=48, length_nm=96.0, flow_volume=flow_volume)
-    cases = extreme_cases(settings)
-    assert len(cases) > 40
-    assert {case.name: broken for case in cases if (broken := judge(case, settings)[0])} == {}
-
-
 def test_a_gain_of_energy_over_few_points_is_judged_on_a_finer_path():
     """In this draw two asperities merge; 40 steps see the jump at another place on opening than on closing."""
     inputs, settings = draw_inputs(1160), ContactSettings(pixels=128)
@@ -52,17 +96,3 @@ def test_a_gain_of_energy_over_few_points_is_judged_on_a_finer_path():
     (words,) = violations(cycle, inputs, settings)
     assert words.startswith("energy gained")
     assert violations(cycle, inputs, settings, heights) == []
-
-
-def test_a_broken_draw_fails_its_row():
-    draw = {"draw": "7", "seed": "1", "pixels": "64", "steps": "50", "most_sweeps": "9", "wall_s": "0.1"}
-    draw |= {"radius_bound_events": "3", "repeated_steps": "0", "force_miss": "1e-9", "broken": "volume changed"}
-    ((*_, check),) = draws_by_grid([draw])
-    passed, detail = check()
-    assert not passed
-    assert "draw 7 seed 1: volume changed" in detail
-
-
-def test_extreme_cases_keep_the_spacing_on_a_smaller_grid():
-    chosen = study_grid(ContactSettings(pixels=1024, length_nm=1000.0))
-    assert (chosen.pixels, chosen.length_nm) == (256, 250.0)

@@ -7,7 +7,6 @@ Every module offers `describe(results) -> Section | None`; None where the scene 
 from workflow.report.stages import (
     calibration,
     contact,
-    cutoff,
     device,
     elastic,
     hardness,
@@ -18,7 +17,7 @@ from workflow.report.stages import (
     topography,
     uncertainty,
 )
-from workflow.report.stages.studies import adhesion, coupling, history
+from workflow.report.stages.studies import adhesion, history
 
 # in the order of the data's flow
 STAGES = (
@@ -31,10 +30,8 @@ STAGES = (
     uncertainty,
     sensitivity,
     model_form,
-    cutoff,
     pad,
     adhesion,
     device,
     history,
-    coupling,
 )

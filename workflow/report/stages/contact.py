@@ -69,10 +69,10 @@ def describe(results: Results) -> Section | None:
             "prefactor": "Hertz prefactor",
             "radius": "asperity radius",
             "area": "contact area",
-            "flow": "flow rule",
             "flow_pair": "pair of Gaussians",
         }
-    used = [(label, _in_words(value)) for key, label in words.items() if (value := reading.get(key)) is not None]
+    chosen = {**reading, **reading["reading"]}
+    used = [(label, _in_words(value)) for key, label in words.items() if (value := chosen.get(key)) is not None]
     if used:
         caption = "Readings of the paper in use" if results.beside_paper else "Choices of the contact model"
         section.blocks.append(Table(caption, ("choice", "value"), used))

@@ -1,4 +1,4 @@
-"""What a contact consists of: its asperities, its constants, and the record of its plastic changes."""
+"""What a contact of single asperities consists of: its asperities, its constants, and room for the loops."""
 
 from typing import NamedTuple
 
@@ -55,9 +55,6 @@ class Mechanics(NamedTuple):
     site_area : area of a site, nm^2.
     curvature_radius : radius from the mean curvature of an asperity's sites, else from its truncation.
     area_of_sites : area from the number of sites, else Hertz's.
-    eight : a site has 8 neighbours, else 4.
-    flattened_radius : whether an asperity that has yielded has R >= A / (pi delta).
-    not_less : whether an asperity carries at least what its parts carried before they merged.
     """
 
     stiffness: float
@@ -66,13 +63,10 @@ class Mechanics(NamedTuple):
     site_area: float
     curvature_radius: bool
     area_of_sites: bool
-    eight: bool
-    flattened_radius: bool
-    not_less: bool
 
 
 class FlowRule(NamedTuple):
-    """Shape and size of one flow, see ContactSettings.
+    """Shape and size of one flow, see `numerics.Numerics`.
 
     Attributes
     ----------
@@ -90,81 +84,6 @@ class FlowRule(NamedTuple):
     ratio: float
     tolerance: float
     max_sweeps: int
-
-
-class Changes(NamedTuple):
-    """What flow has done to a surface of N^2 sites, and what undoes the step under way.
-
-    Attributes
-    ----------
-    changed : (N^2,) uint8: 1 where the height is no longer the original.
-    sites : (N^2,) int32: the changed sites.
-    original : (N^2,) float64: their heights before the first change, nm.
-    journal : (N^2,) int32: sites changed in this step.
-    before : (N^2,) float64: their heights before it.
-    stamp : (N^2,) int32: last step in which a site changed.
-    flattened : (N^2,) int32: step in which the site's asperity first yielded; 0: never, -1: in an earlier cycle.
-    used : (4,) int64: changed sites, journal entries, number of this step, changed sites before it.
-    """
-
-    changed: np.ndarray
-    sites: np.ndarray
-    original: np.ndarray
-    journal: np.ndarray
-    before: np.ndarray
-    stamp: np.ndarray
-    flattened: np.ndarray
-    used: np.ndarray
-
-
-def no_changes(sites: int) -> Changes:
-    """An untouched surface; the memory is touched only as flow spreads."""
-    return Changes(
-        np.zeros(sites, np.uint8),
-        np.empty(sites, np.int32),
-        np.empty(sites),
-        np.empty(sites, np.int32),
-        np.empty(sites),
-        np.zeros(sites, np.int32),
-        np.zeros(sites, np.int32),
-        np.zeros(4, np.int64),
-    )
-
-
-class Parts(NamedTuple):
-    """Parts of one asperity as its sites join them, by place in the order of heights; see `kernels.force_of_parts`.
-
-    Attributes
-    ----------
-    place : (N^2,) int32: place + 1 of a site, 0 while it has none.
-    parent : (N^2,) int32: place of another site of the same part, the place itself at its root.
-    sites : (N^2,) int32: number of sites of a root.
-    peak : (N^2,) int32: lowest site of a root (the smaller number among equals).
-    lowest : (N^2,) float64: its height, nm.
-    curvature : (N^2,) float64: sum of the mean curvatures of a root's sites, 1/nm.
-    carried : (N^2,) float64: force that the root's sites carried as they joined, nN.
-    """
-
-    place: np.ndarray
-    parent: np.ndarray
-    sites: np.ndarray
-    peak: np.ndarray
-    lowest: np.ndarray
-    curvature: np.ndarray
-    carried: np.ndarray
-
-
-def no_parts(sites: int) -> Parts:
-    """Room for the parts of any asperity of N^2 sites; the memory is touched only as needed."""
-    return Parts(
-        np.zeros(sites, np.int32),
-        np.empty(sites, np.int32),
-        np.empty(sites, np.int32),
-        np.empty(sites, np.int32),
-        np.empty(sites),
-        np.empty(sites),
-        np.empty(sites),
-    )
 
 
 class Workspace(NamedTuple):

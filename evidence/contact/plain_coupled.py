@@ -4,9 +4,9 @@ For small grids, meant to be read beside docs/contact.md. Units nm, nN, GPa. It 
 """
 
 import numpy as np
-from scipy import linalg, ndimage, optimize
+from scipy import linalg, optimize
 
-from benchmarks.plain_contact import connected_sites
+from evidence.contact.plain_contact import connected_sites
 from mesoscale.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
@@ -39,26 +39,9 @@ def hardness(touching: np.ndarray, inputs: ContactInputs, settings: ContactSetti
     """H of the cluster of each site (eq. 4); of a cluster of one site where nothing touches."""
     site_area = (settings.length_nm / len(touching)) ** 2
     ceilings = np.full(touching.size, inputs.h_macro + inputs.h_prime * site_area**-0.25)
-    for sites in connected_sites(touching, settings.neighbours):
+    for sites in connected_sites(touching):
         ceilings[sites] = inputs.h_macro + inputs.h_prime * (len(sites) * site_area) ** -0.25
     return ceilings
-
-
-def pile_up(h, gap, touching, overlap, neighbours):
-    """Lay down the overlap (N, N) of each cluster on the rings around it, each filled at most to the flat."""
-    structure = ndimage.generate_binary_structure(2, 2 if neighbours == 8 else 1)
-    for sites in sorted(connected_sites(touching, neighbours), key=min):
-        left = overlap.ravel()[sites].sum()
-        inside = np.zeros(h.shape, bool)
-        inside.ravel()[sites] = True
-        while left > 0:
-            grown = ndimage.binary_dilation(np.pad(inside, 1, "wrap"), structure)[1:-1, 1:-1]
-            room = np.where(grown & ~inside & ~touching, gap, 0.0)
-            share = min(left / room.sum(), 1.0) if room.any() else 0.0
-            h -= share * room
-            gap -= share * room
-            left = left - room.sum() if share == 1.0 or not room.any() else 0.0
-            inside = grown
 
 
 def walk(h, separations, inputs: ContactInputs, settings: ContactSettings):
@@ -82,8 +65,5 @@ def walk(h, separations, inputs: ContactInputs, settings: ContactSettings):
             overlap = -(h.ravel() + separation + matrix @ p)
             yields = (p >= limit * (1 - 1e-12)) & (overlap > 0)  # the solver's own rounding lies below the limit
             h.ravel()[yields] += overlap[yields]
-            if settings.flow_volume == "piled_up":
-                gap, lost = np.maximum(-overlap, 0.0), np.where(yields, overlap, 0.0)
-                pile_up(h, gap.reshape(h.shape), (p > 0).reshape(h.shape), lost.reshape(h.shape), settings.neighbours)
         rows.append(p.reshape(h.shape))
     return np.array(rows), h
