@@ -70,9 +70,9 @@ def test_a_seed_with_a_missing_fit_is_counted_and_left_out():
 
 
 def test_readings_become_settings():
-    settings = with_reading("areal.paper.hertz.truncation.sites.false", ContactSettings())
-    assert (settings.reading.convention, settings.reading.flow_pair, settings.reading.prefactor) == ("areal", "paper", "hertz")
-    assert (settings.reading.radius, settings.reading.area, settings.reading.touching_attracts) == ("truncation", "sites", False)
+    reading = with_reading("areal.paper.hertz.truncation.sites.false", ContactSettings()).reading
+    assert (reading.convention, reading.flow_pair, reading.prefactor) == ("areal", "paper", "hertz")
+    assert (reading.radius, reading.area, reading.touching_attracts) == ("truncation", "sites", False)
     assert len(contact_readings()) == 48
     assert set(LAW_READINGS) >= {"first_contact", "force_0.03", "free_fit"}
 

@@ -105,7 +105,7 @@ def test_the_histogram_of_a_retarded_attraction_agrees_with_the_sum(mechanics):
 def test_work_and_range_give_the_flats_that_work_and_range(mechanics):
     wanted = WorkAndRangeSettings(work_mJ_m2=46.3, range_nm=5.6)
     rows = InputsSettings(adhesion=wanted).rows()
-    values = {**vars(INPUTS), "hamaker": rows["hamaker"].a, "gap_cutoff": rows["gap_cutoff"].a}
+    values = {**vars(INPUTS), "hamaker": rows["hamaker"].values[0], "gap_cutoff": rows["gap_cutoff"].values[0]}
     inputs, settings = contact_of(values, ContactSettings(mechanics=mechanics, pixels=32, model="elastic"))
     contact = contact_on(np.zeros((32, 32)), inputs, settings)
     touch = 1e-12
@@ -118,5 +118,5 @@ def test_two_ways_to_say_the_same_attraction_are_refused():
     given = input_table().rows[0].distribution
     with pytest.raises(InputError, match="adhesion and hamaker"):
         InputsSettings(
-            adhesion=WorkAndRangeSettings(work_mJ_m2=50.0, range_nm=0.5), hamaker={"a": given.a, "b": 2.0 * given.b}
+            adhesion=WorkAndRangeSettings(work_mJ_m2=50.0, range_nm=0.5), hamaker={"values": [given.a, 2.0 * given.b]}
         )

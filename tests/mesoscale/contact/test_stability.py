@@ -83,9 +83,10 @@ def test_a_check_says_what_broke(monkeypatch):
 def test_draws_are_from_table_1():
     rows = paper.INPUTS.rows()
     normal = rows.pop("e_star")
-    assert {name: RANGES[name] for name in rows} == {name: (row.a, row.b) for name, row in rows.items()}
+    assert {name: RANGES[name] for name in rows} == {name: row.values for name, row in rows.items()}
+    middle, deviation = normal.values
     # 2.895 deviations: the central 99.6 %
-    assert RANGES["e_star"] == pytest.approx((normal.a - 2.895 * normal.b, normal.a + 2.895 * normal.b), rel=1e-4)
+    assert RANGES["e_star"] == pytest.approx((middle - 2.895 * deviation, middle + 2.895 * deviation), rel=1e-4)
 
 
 def test_a_gain_of_energy_over_few_points_is_judged_on_a_finer_path():
