@@ -1,0 +1,138 @@
+"""How strongly a top made of atoms attracts a smooth body, as the cut-off D0 of the law of attraction.
+
+Every atom of the top attracts a smooth rigid half-space by a 9-3 potential (Steele 1973, doi:10.1016/0039-6028(73)90264-1)
+
+    u(d) = -C [1 / d^3 - r^6 / (3 d^9)],   C = A_H / (6 pi n),
+
+whose tail is that of a continuum with the Hamaker constant A_H; n is the number of atoms a volume. The contact distance r
+is the one that gives a flat stack of layers of the glass's density the work A_H / (12 pi D^2) with D = 0.165 nm, the
+distance at which dense solids touch (Israelachvili, Intermolecular and Surface Forces, 3rd ed., section 13.13).
+
+A real top is no stack of layers: its highest atoms keep the others away. The cut-off D0 of a top is the one with which the
+law A_H / (6 pi (g + D0)^3) pulls a flat of the same contact area with the same force, or separates it with the same work.
+A_H cancels. Only atoms below the contact count: what lies beside it attracts in the contact model, too.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from atomistic.errors import InputError
+
+DENSE_CUTOFF_A = 1.65
+"""D of flat dense solids, Å (Israelachvili, section 13.13)."""
+LAYERS = 400
+"""Of the flat stack; what lies deeper enters as a continuum."""
+STEP_A = 0.02
+"""Between the gaps at which force and energy are looked at; their extremes are then refined."""
+BULK_A = (6.0, 18.0)
+"""Heights above the frozen bottom's lowest atom between which the density is counted, Å: glass without a surface."""
+
+
+@dataclass(frozen=True)
+class TopAttraction:
+    """Attraction of one top, for a Hamaker constant of 1.
+
+    Attributes
+    ----------
+    area_A2 : contact area, Å².
+    force_per_A : largest attractive force, over A_H, 1/Å.
+    work : of separation from rest, over A_H.
+    """
+
+    area_A2: float
+    force_per_A: float
+    work: float
+
+
+def combined_cutoffs_nm(tops: Iterable[TopAttraction]) -> tuple[float, float]:
+    """Cut-offs D0 of several contacts that pull side by side, nm: by their forces, and by their works.
+
+    Forces, works and areas add up, so that each contact counts with its area.
+    """
+    tops = list(tops)
+    area = sum(top.area_A2 for top in tops)
+    force, work = sum(top.force_per_A for top in tops), sum(top.work for top in tops)
+    by_force = (area / (6 * np.pi * force)) ** (1 / 3)
+    by_work = (area / (12 * np.pi * work)) ** 0.5
+    return by_force / 10, by_work / 10
+
+
+def attract_top(heights_A: np.ndarray, shares: np.ndarray, area_A2: float, density_per_A3: float) -> TopAttraction:
+    """Largest force and work between the atoms of a rigid top and a smooth half-space above them.
+
+    Parameters
+    ----------
+    heights_A : of the atoms, shape (atoms,).
+    shares : of each atom, between 0 and 1: how much of it counts.
+    area_A2 : contact area.
+    density_per_A3 : atoms a volume of the glass.
+
+    Raises
+    ------
+    InputError : no atom counts, or there is no contact area.
+    """
+    if not shares.any() or area_A2 <= 0:
+        raise InputError("the top has no atoms below its contact: its attraction cannot be told")
+    counted = shares > 0
+    depths, shares = heights_A[counted].max() - heights_A[counted], shares[counted]
+    contact = contact_distance_A(density_per_A3)
+
+    def energy(gap: float) -> float:
+        return float(shares @ _energy(gap + depths, contact))
+
+    def pull(gap: float) -> float:
+        return float(shares @ _pull(gap + depths, contact))
+
+    gaps = np.arange(0.5 * contact, 3 * contact, STEP_A)
+    rest = _lowest(energy, gaps)
+    apart = np.arange(rest, 3 * contact, STEP_A)
+    strongest = _lowest(lambda gap: -pull(gap), apart)
+    of_hamaker = 1 / (6 * np.pi * density_per_A3)
+    return TopAttraction(area_A2, of_hamaker * pull(strongest), -of_hamaker * energy(rest))
+
+
+@lru_cache
+def contact_distance_A(density_per_A3: float) -> float:
+    """Distance r at which an atom rests above a half-space, Å; see the module's docstring."""
+    spacing = density_per_A3 ** (-1 / 3)
+    work = 0.5 / (DENSE_CUTOFF_A**2 * spacing)  # of one atom of the uppermost layer, in units of C
+
+    def excess(contact: float) -> float:
+        depths = spacing * np.arange(LAYERS)
+        deeper = 0.5 / (spacing * (spacing * (LAYERS - 0.5) + contact) ** 2)
+        gaps = np.arange(0.5 * contact, 1.5 * contact, STEP_A)
+
+        def energy(gap: float) -> float:
+            return float(_energy(gap + depths, contact).sum())
+
+        return deeper - energy(_lowest(energy, gaps)) - work
+
+    return float(brentq(excess, 0.5 * DENSE_CUTOFF_A, 4 * DENSE_CUTOFF_A))
+
+
+def bulk_density_per_A3(positions_A: np.ndarray, area_A2: float) -> float:
+    """Atoms a volume of the base, from positions of shape (atoms, 3) over a cell of the area `area_A2`."""
+    heights = positions_A[:, 2] - positions_A[:, 2].min()
+    low, high = BULK_A
+    return float(np.sum((heights >= low) & (heights < high)) / (area_A2 * (high - low)))
+
+
+def _energy(distances_A: np.ndarray, contact_A: float) -> np.ndarray:
+    """Energy of atoms above a half-space, in units of C."""
+    return contact_A**6 * distances_A**-9.0 / 3.0 - distances_A**-3.0
+
+
+def _pull(distances_A: np.ndarray, contact_A: float) -> np.ndarray:
+    """Attractive force on atoms above a half-space, in units of C."""
+    return 3.0 * (distances_A**-4.0 - contact_A**6 * distances_A**-10.0)
+
+
+def _lowest(function, places: np.ndarray) -> float:
+    """Place of the lowest value: that of the grid, refined between its neighbours."""
+    k = int(np.argmin([function(place) for place in places]))
+    between = places[max(k - 1, 0)], places[min(k + 1, len(places) - 1)]
+    return float(minimize_scalar(function, bounds=between, method="bounded", options={"xatol": 1e-8}).x)

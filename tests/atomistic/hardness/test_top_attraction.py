@@ -1,0 +1,78 @@
+"""The cut-off D0 of a top made of atoms, on bodies whose attraction is known."""
+
+import numpy as np
+import pytest
+
+from atomistic.errors import InputError
+from atomistic.hardness.top_attraction import (
+    attract_top,
+    bulk_density_per_A3,
+    combined_cutoffs_nm,
+    contact_distance_A,
+)
+
+DENSITY = 0.0668  # atoms per Å^3: silica of 2.22 g/cm3
+SPACING = DENSITY ** (-1 / 3)
+LAYER = 1 / SPACING**2  # atoms an area of one layer of the stack
+
+
+def test_the_contact_distance_is_that_of_the_literature_for_silica():
+    """0.2241 nm was found by an independent script for this density and D = 0.165 nm."""
+    assert contact_distance_A(DENSITY) == pytest.approx(2.241, abs=0.002)
+
+
+def test_a_flat_stack_of_layers_has_the_work_of_dense_solids():
+    depths = -SPACING * np.arange(40)
+    by_force, by_work = combined_cutoffs_nm([attract_top(depths, np.ones(40), 1 / LAYER, DENSITY)])
+    # a stack of 40 layers lacks the share (0.165 / 9.9)^2 of an infinite one
+    assert by_work == pytest.approx(0.165, rel=1e-3)
+    # its stress rises over a distance, so that it is lower than that of the law at touch: 1.26 instead of 2.54 GPa
+    assert 0.215 / (6 * np.pi * by_force**3) == pytest.approx(1.26, abs=0.01)
+
+
+@pytest.mark.parametrize("radius_A", [40.0, 160.0])
+def test_a_sphere_of_continuum_pulls_off_with_the_work_of_its_flat(radius_A):
+    """DMT: 2 pi R w, but for terms of the order of the gap (some 2 Å) over the radius.
+
+    A continuum of atoms has a work of its own between flats, by the same sum.
+    """
+    fine = 0.05
+    depths = np.arange(fine / 2, 2 * radius_A, fine)
+    sections = DENSITY * fine * np.pi * depths * (2 * radius_A - depths)  # atoms in each slice
+    scale = sections.max()
+    sphere = attract_top(-depths, sections / scale, 1.0, DENSITY)
+    flat = attract_top(-depths, np.full(depths.size, fine * DENSITY), 1.0, DENSITY)
+    assert sphere.force_per_A * scale == pytest.approx(2 * np.pi * radius_A * flat.work, rel=3.0 / radius_A)
+
+
+def test_the_highest_atom_keeps_the_others_away():
+    depths = -SPACING * np.arange(40)
+    flat = attract_top(np.repeat(depths, 100), np.ones(4000), 100 / LAYER, DENSITY)
+    rough = attract_top(np.append(np.repeat(depths, 100), 1.0), np.ones(4001), 100 / LAYER, DENSITY)
+    assert rough.force_per_A < 0.8 * flat.force_per_A
+    assert combined_cutoffs_nm([rough])[1] > combined_cutoffs_nm([flat])[1]
+
+
+def test_contacts_side_by_side_count_with_their_areas():
+    depths = -SPACING * np.arange(40)
+    one = attract_top(depths, np.ones(40), 1 / LAYER, DENSITY)
+    four = attract_top(np.repeat(depths, 4), np.ones(160), 4 / LAYER, DENSITY)
+    assert combined_cutoffs_nm([one, four]) == pytest.approx(combined_cutoffs_nm([one]))
+
+
+def test_atoms_that_do_not_count_do_not_matter():
+    depths = -SPACING * np.arange(40)
+    beside = np.concatenate([depths, [3.0]])
+    shares = np.append(np.ones(40), 0.0)
+    assert attract_top(beside, shares, 1 / LAYER, DENSITY) == attract_top(depths, np.ones(40), 1 / LAYER, DENSITY)
+
+
+def test_a_top_without_contact_is_refused():
+    with pytest.raises(InputError, match="no atoms below its contact"):
+        attract_top(np.zeros(3), np.zeros(3), 10.0, DENSITY)
+
+
+def test_the_density_is_counted_in_the_bulk():
+    rng = np.random.default_rng(1)
+    positions = np.array([20.0, 20.0, 30.0]) * rng.random((40_000, 3))
+    assert bulk_density_per_A3(positions, 400.0) == pytest.approx(40_000 / 12_000, rel=0.03)
