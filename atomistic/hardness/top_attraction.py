@@ -1,16 +1,17 @@
 """How strongly a top made of atoms attracts a smooth body, as the cut-off D0 of the law of attraction.
 
-Every atom of the top attracts a smooth rigid half-space by a 9-3 potential (Steele 1973, doi:10.1016/0039-6028(73)90264-1)
+Every atom of the top attracts a smooth rigid half-space by a 9-3 potential
+(Steele 1973, doi:10.1016/0039-6028(73)90264-1)
 
     u(d) = -C [1 / d^3 - r^6 / (3 d^9)],   C = A_H / (6 pi n),
 
-whose tail is that of a continuum with the Hamaker constant A_H; n is the number of atoms a volume. The contact distance r
-is the one that gives a flat stack of layers of the glass's density the work A_H / (12 pi D^2) with D = 0.165 nm, the
+whose tail is that of a continuum with the Hamaker constant A_H; n is the number of atoms a volume. The contact distance
+r is the one that gives a flat stack of layers of the glass's density the work A_H / (12 pi D^2) with D = 0.165 nm, the
 distance at which dense solids touch (Israelachvili, Intermolecular and Surface Forces, 3rd ed., section 13.13).
 
-A real top is no stack of layers: its highest atoms keep the others away. The cut-off D0 of a top is the one with which the
-law A_H / (6 pi (g + D0)^3) pulls a flat of the same contact area with the same force, or separates it with the same work.
-A_H cancels. Only atoms below the contact count: what lies beside it attracts in the contact model, too.
+A real top is no stack of layers: its highest atoms keep the others away. The cut-off D0 of a top is the one with which
+the law A_H / (6 pi (g + D0)^3) pulls a flat of the same contact area with the same force, or separates it with the same
+work. A_H cancels. Only atoms below the contact count: what lies beside it attracts in the contact model, too.
 """
 
 from collections.abc import Iterable
