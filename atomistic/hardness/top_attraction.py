@@ -14,9 +14,10 @@ the law A_H / (6 pi (g + D0)^3) pulls a flat of the same contact area with the s
 work. A_H cancels. Only atoms below the contact count: what lies beside it attracts in the contact model, too.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -112,7 +113,8 @@ def contact_distance_A(density_per_A3: float) -> float:
 
         return deeper - energy(_lowest(energy, gaps)) - work
 
-    return float(brentq(excess, 0.5 * DENSE_CUTOFF_A, 4 * DENSE_CUTOFF_A))
+    root: Any = brentq(excess, 0.5 * DENSE_CUTOFF_A, 4 * DENSE_CUTOFF_A)
+    return float(root)
 
 
 def bulk_density_per_A3(positions_A: np.ndarray, area_A2: float) -> float:
@@ -132,8 +134,9 @@ def _pull(distances_A: np.ndarray, contact_A: float) -> np.ndarray:
     return 3.0 * (distances_A**-4.0 - contact_A**6 * distances_A**-10.0)
 
 
-def _lowest(function, places: np.ndarray) -> float:
+def _lowest(function: Callable[[float], float], places: np.ndarray) -> float:
     """Place of the lowest value: that of the grid, refined between its neighbours."""
     k = int(np.argmin([function(place) for place in places]))
     between = places[max(k - 1, 0)], places[min(k + 1, len(places) - 1)]
-    return float(minimize_scalar(function, bounds=between, method="bounded", options={"xatol": 1e-8}).x)
+    minimum: Any = minimize_scalar(function, bounds=between, method="bounded", options={"xatol": 1e-8})
+    return float(minimum.x)
