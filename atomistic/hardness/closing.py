@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from atomistic.errors import InputError
-from atomistic.hardness.contact_area import calibrated
+from atomistic.hardness.contact_area import calibrated, contact_map, shares_in_contact
 from atomistic.hardness.glass import cations
 from atomistic.hardness.plateau import RULES, may_stop
 from atomistic.hardness.pressing import (
@@ -20,6 +20,7 @@ from atomistic.hardness.pressing import (
 )
 from atomistic.hardness.readout import Geometry, Readout, Rows, slice_rows, witness_rows
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
+from atomistic.hardness.top_attraction import attract_top, bulk_density_per_A3
 from atomistic.lammps import Atoms, Progress, Workspace, run_lammps
 from atomistic.materials import Material
 from atomistic.potentials import Potential
@@ -33,7 +34,8 @@ class Closing:
     """Result of a closing run.
 
     curve : one row per average (columns as in docs/hardness.md).
-    witness : one row per relaxed snapshot: bond exchanges and lasting lowering against the first.
+    witness : one row per relaxed snapshot: bond exchanges and lasting lowering against the first, and the attraction of
+        its top.
     snapshots : slices through the contact of the relaxed snapshots, for pictures.
     summary : atoms, steps and the side of the cell.
     """
@@ -128,7 +130,29 @@ def _read(readout: Readout, plan: Plan, held_A: float, geometry: Geometry) -> Cl
         "restart_steps": plan.segment_steps,
         "wavelength_nm": geometry.wavelength_A / 10,
     }
-    return Closing(curve, witness_rows(snapshots, displacement_nm, held_A), slice_rows(snapshots, geometry), summary)
+    attraction = [attraction_row(readout, n, geometry) for n in (0, *segments)]
+    witness = [
+        {**row, **attracted}
+        for row, attracted in zip(witness_rows(snapshots, displacement_nm, held_A), attraction, strict=True)
+    ]
+    return Closing(curve, witness, slice_rows(snapshots, geometry), summary)
+
+
+def attraction_row(readout: Readout, segment: int, geometry: Geometry) -> dict[str, float]:
+    """What `attract_top` says of the top after a segment, as columns of the witness; NaN while the contact is small."""
+    top = None
+    if segment and (sample := readout.last_sample(segment)).area_A2 >= (10 * RULES.min_length_nm) ** 2:
+        side, axis = (geometry.wavelength_A, geometry.wavelength_A), (geometry.axis_A, geometry.axis_A)
+        places = readout.relaxed(segment).frame[:, 1:4]
+        in_contact = contact_map(sample.touching_A, side, readout.area, axis)
+        shares = shares_in_contact(places[:, :2], in_contact, side, axis)
+        density = bulk_density_per_A3(readout.relaxed(0).frame[:, 1:4], side[0] * side[1])
+        top = attract_top(places[:, 2], shares, sample.area_A2, density)
+    return {
+        "top_area_nm2": top.area_A2 / 100 if top else np.nan,
+        "top_force_over_hamaker": 10 * top.force_per_A if top else np.nan,
+        "top_work_over_hamaker": top.work if top else np.nan,
+    }
 
 
 def commensurate(counter: Atoms, glass: Atoms) -> Atoms:

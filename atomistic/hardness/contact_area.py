@@ -77,6 +77,22 @@ def contact_map(
     return shares
 
 
+def shares_in_contact(
+    places_A: np.ndarray, shares: np.ndarray, cell_A: tuple[float, float], centre_A: tuple[float, float]
+) -> np.ndarray:
+    """Share of the contact map's cell at each place, shape (places,).
+
+    Parameters
+    ----------
+    places_A : positions in the plane, shape (places, 2).
+    shares : of `contact_map`, with the same cell and centre.
+    """
+    cell = np.asarray(cell_A, dtype=float)
+    inside = np.mod(places_A - np.asarray(centre_A) + cell / 2, cell) / cell
+    column, row = np.minimum((inside * shares.shape).astype(int), np.array(shares.shape) - 1).T
+    return shares[column, row]
+
+
 def _reach(places_A: np.ndarray, reach_A: float, spacing_A: float, cells: int) -> slice:
     """Cells within reach of the places and one more on either side, since a small contact need not cost a whole map.
 

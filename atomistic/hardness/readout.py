@@ -46,12 +46,12 @@ class Sample:
     ----------
     averages : position, force, temperature, driving force, as the script wrote them.
     area_A2 : contact area, Å².
-    touching : atoms in contact.
+    touching_A : places (x, y) of the atoms in contact, shape (atoms, 2).
     """
 
     averages: np.ndarray
     area_A2: float
-    touching: int
+    touching_A: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Readout:
         cutoff_A: float,
     ) -> None:
         self._workspace, self._segment_steps, self._timestep_ps = workspace, segment_steps, timestep_ps
-        self._per_average, self._area, self._geometry = per_average, area, geometry
+        self._per_average, self.area, self._geometry = per_average, area, geometry
         self._cation_types, self._cutoff_A = cation_types, cutoff_A
         self._samples: dict[int, dict[int, Sample]] = {}
         self._ends: dict[int, np.ndarray] = {}
@@ -95,7 +95,7 @@ class Readout:
         samples: dict[int, Sample] = {}
         for n in segments:  # the last step of a segment may stand in the next one again: the first one counts
             if n not in self._samples:
-                self._samples[n] = load_samples(self._workspace, n, self._area, self._geometry)
+                self._samples[n] = load_samples(self._workspace, n, self.area, self._geometry)
             samples = self._samples[n] | samples
         ends = {n: self._end(n) for n in (segments[0] - 1, *segments)}
         drift = energy_drift(ends, self._segment_steps, samples)
@@ -106,6 +106,11 @@ class Readout:
         if segment not in self._ends:
             self._ends[segment] = load_averages(self._workspace / f"energy.{segment}")[0]
         return self._ends[segment]
+
+    def last_sample(self, segment: int) -> Sample:
+        """The sample at the end of a segment, whose relaxed snapshot follows it."""
+        samples = self._samples[segment]
+        return samples[max(samples)]
 
     def relaxed(self, segment: int) -> Relaxed:
         """The relaxed snapshot after a segment; 0: before the first."""
@@ -125,7 +130,7 @@ def load_samples(workspace: Workspace, segment: int, area: Area, geometry: Geome
     for step, *averages in load_averages(workspace / f"averages.{segment}"):
         places, beyond = beyond_counterface(near[int(step)], geometry, area.touch_A)
         touching = places[beyond > -area.depth_A]
-        samples[int(step)] = Sample(np.array(averages), contact_area(touching, cell, area, axis), len(touching))
+        samples[int(step)] = Sample(np.array(averages), contact_area(touching, cell, area, axis), touching)
     return samples
 
 
@@ -179,7 +184,7 @@ def curve_rows(
                 "contact_stress_GPa": push / contact * EV_PER_A3_IN_GPA if contact > 0 else float("nan"),
                 "temperature_K": float(np.mean(temperature[part])),
                 "energy_drift_meV_per_atom": 1000 * float(np.mean(gained[part])) / geometry.atoms,
-                "contact_atoms": float(np.mean([sample.touching for sample in averaged])),
+                "contact_atoms": float(np.mean([len(sample.touching_A) for sample in averaged])),
                 "atoms": geometry.atoms,
             }
         )

@@ -14,7 +14,7 @@ the law A_H / (6 pi (g + D0)^3) pulls a flat of the same contact area with the s
 work. A_H cancels. Only atoms below the contact count: what lies beside it attracts in the contact model, too.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -30,6 +30,8 @@ LAYERS = 400
 """Of the flat stack; what lies deeper enters as a continuum."""
 STEP_A = 0.02
 """Between the gaps at which force and energy are looked at; their extremes are then refined."""
+FREE_ATOMS = 0.95
+"""D0 of a top whose atoms follow the pull, over that of the rigid top (study `hardness.tops`)."""
 BULK_A = (6.0, 18.0)
 """Heights above the frozen bottom's lowest atom between which the density is counted, Å: glass without a surface."""
 
@@ -48,6 +50,47 @@ class TopAttraction:
     area_A2: float
     force_per_A: float
     work: float
+
+
+def gap_cutoff(witnesses: Mapping[str, Sequence[Mapping[str, float]]]) -> dict[str, Any] | None:
+    """The cut-off D0 of all tops of some runs: its distribution, and what each run says.
+
+    Force and work ask for two values, because no law of one length follows the pull of a real top at all distances. The
+    distribution is uniform between them, the lower end less, and the upper end more, by the error of a mean over runs.
+    The lower end also counts that atoms follow the pull: `FREE_ATOMS`.
+
+    Parameters
+    ----------
+    witnesses : rows of `Closing.witness`, by run.
+
+    Returns
+    -------
+    `distribution`, `a`, `b`, `unit` as an input has them, and `runs`; None where fewer than two runs have a top.
+    """
+    runs = {
+        run: [
+            TopAttraction(100 * row["top_area_nm2"], row["top_force_over_hamaker"] / 10, row["top_work_over_hamaker"])
+            for row in rows
+            if row["top_area_nm2"] > 0
+        ]
+        for run, rows in witnesses.items()
+    }
+    runs = {run: tops for run, tops in runs.items() if tops}
+    if len(runs) < 2:
+        return None
+    by_run = np.array([combined_cutoffs_nm(tops) for tops in runs.values()])
+    by_force, by_work = combined_cutoffs_nm(top for tops in runs.values() for top in tops)
+    error_force, error_work = by_run.std(axis=0, ddof=1) / np.sqrt(len(runs))
+    return {
+        "distribution": "uniform",
+        "a": float(FREE_ATOMS * by_work - error_work),
+        "b": float(by_force + error_force),
+        "unit": "nm",
+        "runs": [
+            {"run": run, "snapshots": len(tops), "by_force_nm": force, "by_work_nm": work}
+            for (run, tops), (force, work) in zip(runs.items(), by_run.tolist(), strict=True)
+        ],
+    }
 
 
 def combined_cutoffs_nm(tops: Iterable[TopAttraction]) -> tuple[float, float]:

@@ -147,6 +147,7 @@ rule find_hardness:
 rule fit_hardness:
     input:
         points=f"{RESULTS}/hardness/points.csv",
+        witnesses=of_run("witness/{run}.csv"),
         potential=POTENTIAL,
         counter_potentials=[COUNTER_POTENTIAL] if COUNTER_GLASS else [],
         glasses=[

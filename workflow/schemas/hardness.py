@@ -70,6 +70,9 @@ TABLES = (
             integer("exchanged_bonds", "bonds broken or formed since the first snapshot"),
             integer("new_exchanges", "bonds broken or formed since the last snapshot"),
             number("lowering_nm", "nm", "how much lower the top is than in the first snapshot"),
+            number("top_area_nm2", "nm^2", "contact area under load, nan while the contact is small"),
+            number("top_force_over_hamaker", "1/nm", "pull-off force of the rigid top over the Hamaker constant"),
+            number("top_work_over_hamaker", "1", "work of its separation over the Hamaker constant"),
         ),
     ),
     Table(

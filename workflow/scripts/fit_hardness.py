@@ -1,16 +1,19 @@
-"""Fit H(A) to the MD points.
+"""Fit H(A) to the MD points, and the cut-off of the attraction to the tops.
 
-In:  points.csv (GPa, nm), glass/*.json, potential (YAML), counter_potentials: one where the counterface is of another
-     oxide or potential.
-Out: fit.json (H_macro in GPa, H' in GPa nm^0.5, gate).
+In:  points.csv (GPa, nm), witnesses of the runs, glass/*.json, potential (YAML), counter_potentials: one where the
+     counterface is of another oxide or potential.
+Out: fit.json (H_macro in GPa, H' in GPa nm^0.5, cut-off D0 of the attraction in nm, gate).
 """
+
+from pathlib import Path
 
 from atomistic.hardness.contact_area import calibrated
 from atomistic.hardness.size_effect import fit_size_effect
+from atomistic.hardness.top_attraction import gap_cutoff
 from atomistic.potentials import load_potential
 from atomistic.settings import FitSettings
 from workflow.job import job, settings_from_job
-from workflow.results import load_csv, load_json, write_json
+from workflow.results import load_csv, load_json, load_numbers, write_json
 
 with job(snakemake) as run:
     settings = settings_from_job(FitSettings, snakemake.params.fit)
@@ -19,4 +22,8 @@ with job(snakemake) as run:
     _, area_error = calibrated(load_potential(snakemake.input.potential), *counter)
     points = load_csv(snakemake.input.points)
     fit = fit_size_effect(points, glasses, settings, snakemake.params.energy_scales, area_error)
+    witnesses = {Path(path).stem: load_numbers(path) for path in snakemake.input.witnesses}
+    if cutoff := gap_cutoff({point["run"]: witnesses[point["run"]] for point in points if point["status"] == "yield"}):
+        fit["tops"] = cutoff.pop("runs")
+        fit["inputs"]["gap_cutoff"] = cutoff
     write_json(snakemake.output.fit, fit, run.provenance)

@@ -9,6 +9,7 @@ from atomistic.hardness.top_attraction import (
     bulk_density_per_A3,
     combined_cutoffs_nm,
     contact_distance_A,
+    gap_cutoff,
 )
 
 DENSITY = 0.0668  # atoms per Å^3: silica of 2.22 g/cm3
@@ -76,3 +77,27 @@ def test_the_density_is_counted_in_the_bulk():
     rng = np.random.default_rng(1)
     positions = np.array([20.0, 20.0, 30.0]) * rng.random((40_000, 3))
     assert bulk_density_per_A3(positions, 400.0) == pytest.approx(40_000 / 12_000, rel=0.03)
+
+
+def rows(*tops):
+    return [
+        {"top_area_nm2": t.area_A2 / 100, "top_force_over_hamaker": 10 * t.force_per_A, "top_work_over_hamaker": t.work}
+        for t in tops
+    ]
+
+
+def test_the_distribution_spans_work_and_force_of_all_runs():
+    depths = -SPACING * np.arange(40)
+    smooth = attract_top(depths, np.ones(40), 1 / LAYER, DENSITY)
+    small = {"top_area_nm2": np.nan, "top_force_over_hamaker": np.nan, "top_work_over_hamaker": np.nan}
+    found = gap_cutoff({"first": [small, *rows(smooth)], "second": rows(smooth, smooth), "third": [small]})
+    assert found is not None
+    by_force, by_work = combined_cutoffs_nm([smooth])
+    # runs of one kind of top do not scatter
+    assert (found["a"], found["b"]) == pytest.approx((0.95 * by_work, by_force))
+    assert [(run["run"], run["snapshots"]) for run in found["runs"]] == [("first", 1), ("second", 2)]
+
+
+def test_one_run_gives_no_distribution():
+    depths = -SPACING * np.arange(40)
+    assert gap_cutoff({"only": rows(attract_top(depths, np.ones(40), 1 / LAYER, DENSITY))}) is None
