@@ -1,8 +1,8 @@
 """What does it change that atoms of a top follow the pull of the other body?
 
-The hardness stage takes the cut-off D0 of the attraction from rigid tops (`atomistic.hardness.top_attraction`). Here the
-smooth half-space is taken away from the relaxed tops of closing runs in small steps, and all atoms come to rest after each.
-The same tops are also judged rigid, with all their atoms and with those below the contact alone.
+The hardness stage takes the cut-off D0 of the attraction from rigid tops (`atomistic.hardness.top_attraction`). Here
+the smooth half-space is taken away from the relaxed tops of closing runs in small steps, and all atoms come to rest
+after each. The same tops are also judged rigid, with all their atoms and with those below the contact alone.
 """
 
 import tempfile
