@@ -253,6 +253,12 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
         ]
         word = "" if free.get("identifiable") else ": the points alone do not identify both"
         notes.append(f"Free fit of both constants to all points: {', '.join(pairs)}{word}.")
+    if cutoff := fit.get("inputs", {}).get("gap_cutoff"):
+        low, high = show(cutoff["a"]), show(cutoff["b"])
+        notes.append(
+            f"The tops of {len(fit['tops'])} runs attract a smooth body like a flat with the cut-off D₀ of {low} nm "
+            f"(by work) to {high} nm (by force)."
+        )
     if budget := fit.get("budget"):
         notes += [_budget_note(budget, kind) for kind in ("statistical", "systematic")]
     for scale, change in fit.get("size_effect_at_one_shape", {}).items():
