@@ -2,6 +2,7 @@
 
 import ast
 import importlib
+import re
 from pathlib import Path
 
 from evidence.__main__ import studies
@@ -41,7 +42,7 @@ def write_pages(folder: Path) -> None:
         "",
         "| study | question |",
         "| --- | --- |",
-        *(f"| [{stem}]({stem}.md) | {question} |" for stem, question in listed),
+        *(f"| [{stem}]({stem}.md) | {_escaped(question)} |" for stem, question in listed),
         "",
         "```{toctree}",
         ":hidden:",
@@ -58,19 +59,20 @@ def _page(name: str, rows: list[dict[str, str]]) -> str:
     table = table_of(name).relative_to(ROOT)
     columns = [column for column in rows[0] if column not in PROVENANCE]
     made = sorted({(row["date"], row["commit"], row["processor"] or "not recorded") for row in rows})
-    numbers = [f"| {key} | {value} |" for key, value in _figures(name).items()]
+    numbers = [f"| {key} | {_cell(value)} |" for key, value in _figures(name).items()]
     return "\n".join(
         [
-            f"# {question.rstrip('.')}",
+            f"# {_escaped(question.rstrip('.'))}",
             "",
-            more.strip(),
+            _escaped(more.strip()),
             "",
             f"Command: `{rows[-1]['command']}`",
             "",
             *(f"- {date}, commit {commit}, processor {processor}" for date, commit, processor in made),
             "",
             *(["| number | value |", "| --- | --- |", *numbers, ""] if numbers else []),
-            f"{len(rows)} rows in `{table}`" + (f", of which the first {MOST_ROWS}:" if len(rows) > MOST_ROWS else ":"),
+            f"{len(rows)} row{'s' * (len(rows) != 1)} in `{table}`"
+            + (f", of which the first {MOST_ROWS}:" if len(rows) > MOST_ROWS else ":"),
             "",
             "| " + " | ".join(columns) + " |",
             "| " + " | ".join("---" for _ in columns) + " |",
@@ -81,7 +83,12 @@ def _page(name: str, rows: list[dict[str, str]]) -> str:
 
 
 def _cell(text: str | None) -> str:
-    return " ".join((text or "").replace("|", r"\|").split())
+    return " ".join(_escaped(text or "").replace("|", r"\|").split())
+
+
+def _escaped(text: str) -> str:
+    """Text whose signs mean nothing to Markdown, but for what stands between backticks."""
+    return re.sub(r"(`[^`]*`)|([*$<])", lambda match: match[1] or "\\" + match[2], text)
 
 
 def _figures(name: str) -> dict[str, str]:
