@@ -5,11 +5,13 @@ Every module offers `describe(results) -> Section | None`; None where the scene 
 """
 
 from workflow.report.stages import (
+    adhesion,
     calibration,
     contact,
     device,
     elastic,
     hardness,
+    history,
     inputs,
     model_form,
     pad,
@@ -17,7 +19,6 @@ from workflow.report.stages import (
     topography,
     uncertainty,
 )
-from workflow.report.stages.studies import adhesion, history
 
 # in the order of the data's flow
 STAGES = (

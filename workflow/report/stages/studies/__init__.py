@@ -1,1 +1,0 @@
-"""What the page says about optional studies that no report waits for."""
