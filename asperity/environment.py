@@ -43,14 +43,14 @@ def secure() -> None:
         os.environ.setdefault(variable, str(EMPTY))
     os.environ.setdefault("NUMBA_CACHE_DIR", "")  # beside the code, as without this variable
     if not _writable(Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")):
-        own = _own_cache()
-        os.environ["XDG_CACHE_HOME"] = own
-        os.environ.setdefault("MPLCONFIGDIR", own)
-        os.environ["NUMBA_CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] or own
+        cache = _own_cache()
+        os.environ["XDG_CACHE_HOME"] = cache
+        os.environ.setdefault("MPLCONFIGDIR", cache)
+        os.environ["NUMBA_CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] or cache
     for name, why in READ.items():
-        found = [*Path().glob(name)] if "*" in name else [Path(name)]
-        if found and os.path.lexists(found[0]):
-            raise UnsafeFolder(f"{found[0]}: {why}; move it away, or work in another folder")
+        there = [*Path().glob(name)] if "*" in name else [Path(name)]
+        if there and os.path.lexists(there[0]):
+            raise UnsafeFolder(f"{there[0]}: {why}; move it away, or work in another folder")
 
 
 def _writable(folder: Path) -> bool:

@@ -19,7 +19,7 @@ PAGES = [
     for path in sorted((ROOT / folder).rglob("*"))
     if path.suffix in SUFFIXES and not any(path.is_relative_to(built) for built in BUILT)
 ]
-CODE = [path for path in PAGES if path.suffix == ".py"]
+CODE = [path for path in PAGES if path.suffix == ".py" and not path.is_relative_to(ROOT / "evidence")]
 
 OTHER_MEANINGS = {
     "surface is roughness; a fitted function is a response": r"(response|linear|regression|polynomial) surface",

@@ -33,17 +33,17 @@ def compare(
 
     The scatter of a single run (`hardness_lo`, `hardness_hi`) limits what a difference means.
     """
-    found = {
+    hardnesses = {
         name: find_hardness(curves[name], witnesses[name], run["wavelength_nm"] ** 2) for name, run in runs.items()
     }
-    for name, hardness in found.items():
+    for name, hardness in hardnesses.items():
         key, run = VARIATIONS[name][0], runs[name]
         settings, protocol = varied(name, closing)
         yield {
             "case": name,
             "knob": key,
             "value": getattr(settings if key == "speed_m_s" else protocol, key),
-            "error": hardness.hardness_GPa / found[DEFAULT].hardness_GPa - 1,
+            "error": hardness.hardness_GPa / hardnesses[DEFAULT].hardness_GPa - 1,
             "error_metric": "relative difference of the plateau stress",
             "reference": DEFAULT,
             "hardness_GPa": hardness.hardness_GPa,

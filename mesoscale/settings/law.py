@@ -28,5 +28,5 @@ class LawSettings(Settings):
         description="attraction length rho_a (the paper fixes 2 nm)",
         json_schema_extra={"unit": "nm"},
     )
+    # alpha of eq. 12, which the paper does not give: as long as rho_a. It acts where the attraction is C_a's
     shield_nm: ClassVar[float] = 2.0
-    """alpha of eq. 12, which the paper does not give: as long as rho_a. It acts where the attraction is C_a's."""

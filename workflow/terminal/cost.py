@@ -185,7 +185,7 @@ def _each(seconds: float, *rules: str) -> dict[str, Callable[[Costs, Any], float
     return dict.fromkeys(rules, lambda costs, wildcards: seconds)
 
 
-def _collocation_runs(costs: Costs) -> int:
+def _design_runs(costs: Costs) -> int:
     return collocation_run_count(len(costs.scene.inputs.rows()), costs.scene.uncertainty)
 
 
@@ -221,9 +221,9 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     "judge_scans": lambda c, _: 3.0 + 3.0 * len(c.scene.topography.scans),
     "weigh_unseen_waves": lambda c, _: 24 * c.cycle_s,
     "compute_nominal": lambda c, _: 0.5 + c.cycles_s(len(NOMINAL_LOADS_NN)),
-    "compute_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, _collocation_runs(c))),
+    "compute_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, _design_runs(c))),
     "compute_direct_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, c.scene.uncertainty.direct_runs)),
-    "fit_law": lambda c, _: 0.01 * _collocation_runs(c),
+    "fit_law": lambda c, _: 0.01 * _design_runs(c),
     "propagate_uncertainty": lambda c, _: 0.5 + 0.0082 * c.scene.uncertainty.direct_runs,
     "observe_cycles": lambda c, _: c.cycles_s(min(CHUNK_RUNS, c.scene.measurements.runs)),
     # chains of all tables and of subsets of them, and the cycles where the posterior lies
