@@ -14,7 +14,6 @@ from mesoscale.law.compact import Law
 from mesoscale.law.parameters import BRANCHES, PARAMETERS
 
 QUANTILE_COLUMNS = {"pressure_q05_GPa": 0.05, "pressure_q50_GPa": 0.5, "pressure_q95_GPa": 0.95}
-TABLE_COLUMNS = ("branch", "gap_nm", "pressure_GPa", "derivative_GPa_nm", *QUANTILE_COLUMNS)
 MAX_EXPONENT = 300.0  # keeps a simulator's wild Newton steps within the range of doubles
 
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from mesoscale.device.behaviour import samples_json, samples_of_rows
 from mesoscale.device.export import (
-    TABLE_COLUMNS,
     law_table,
     spice_subcircuit,
     spice_testbench,
@@ -28,7 +27,7 @@ with job(snakemake) as run:
     samples = samples_of_rows(rows, fitted, settings, law.rho_a_nm, law.shield_nm)
     note = well_note(load_csv(snakemake.input.wells))
     area_nm2 = snakemake.params.length_nm**2
-    write_csv(snakemake.output.table, law_table(samples.nominal, samples.laws), TABLE_COLUMNS)
+    write_csv(snakemake.output.table, law_table(samples.nominal, samples.laws))
     write_json(snakemake.output.samples, samples_json(samples, settings) | {"adhesion_well": note}, run.provenance)
     write_text(snakemake.output.spice, spice_subcircuit(samples.nominal, area_nm2, note))
     write_text(snakemake.output.verilog, verilog_module(samples.nominal, area_nm2, note))

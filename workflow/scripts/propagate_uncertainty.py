@@ -37,8 +37,8 @@ with job(snakemake) as run:
         surrogate_json(result, nodes, table, settings, constants, paper),
         run.provenance,
     )
-    columns = [*table.names, *FITTED]
+    names = [*table.names, *FITTED]
     values = np.hstack([result.samples, result.outputs]).tolist()
-    write_csv(snakemake.output.samples, (dict(zip(columns, line, strict=True)) for line in values), columns)
+    write_csv(snakemake.output.samples, (dict(zip(names, line, strict=True)) for line in values))
 
     write_csv(snakemake.output.validation, validation_rows(direct, nodes, table, result, settings))
