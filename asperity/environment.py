@@ -11,10 +11,11 @@ from pathlib import Path
 from asperity.bundle import ROOT
 
 EMPTY = Path(__file__).with_name("empty_settings")
-"""In place of the settings of the working folder: PySCF would run its `.pyscf_conf.py`."""
+"""In place of `.pyscf_conf.py`, which PySCF would run."""
 READ = {
     ".numba_config.yaml": "numba would take settings from it",
     "ucx.conf": "MPI's network layer would take settings, and libraries to load, from it",
+    "matplotlibrc": "Matplotlib would take settings, among them programs to start, from it",
     ".snakemake/pip-deployments": "Snakemake would run modules of it",
     # PySCF prefers a file of a basis set's name to its own, and evaluates what stands in it
     "gth-*": "PySCF would take it for a basis set and run what stands in it",
@@ -39,14 +40,20 @@ def secure() -> None:
     given = os.environ.get("PYTHONPATH", "").split(os.pathsep)
     paths = [str(ROOT), *(path for path in given if os.path.isabs(path))]
     os.environ["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(paths))
-    for variable in ("PYSCF_CONFIG_FILE", "MATPLOTLIBRC"):
-        os.environ.setdefault(variable, str(EMPTY))
+    os.environ.setdefault("PYSCF_CONFIG_FILE", str(EMPTY))
     os.environ.setdefault("NUMBA_CACHE_DIR", "")  # beside the code, as without this variable
     if not _writable(Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")):
         cache = _own_cache()
         os.environ["XDG_CACHE_HOME"] = cache
         os.environ.setdefault("MPLCONFIGDIR", cache)
         os.environ["NUMBA_CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] or cache
+    state = Path(".snakemake")
+    if os.path.lexists(state) and not state.is_dir():
+        raise UnsafeFolder(f"{state}: a file, or a link to nowhere, where a folder belongs; move it away")
+    below = (Path(folder, name) for folder, folders, files in os.walk(state) for name in (*folders, *files))
+    for path in (state, *below):
+        if path.is_symlink():
+            raise UnsafeFolder(f"{path}: a link to {os.readlink(path)}, to which Snakemake would write; remove it")
     for name, why in READ.items():
         there = [*Path().glob(name)] if "*" in name else [Path(name)]
         if there and os.path.lexists(there[0]):
@@ -54,8 +61,11 @@ def secure() -> None:
 
 
 def _writable(folder: Path) -> bool:
-    existing = next((path for path in (folder, *folder.parents) if path.exists()), folder)
-    return folder.is_absolute() and existing.is_dir() and os.access(existing, os.W_OK | os.X_OK)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return folder.is_absolute() and os.access(folder, os.W_OK | os.X_OK)
 
 
 def _own_cache() -> str:

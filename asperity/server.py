@@ -238,7 +238,10 @@ def application(workers: Workers, host: str = LOCAL) -> "web.Application":
 
 def _is_ours(named: str, host: str) -> bool:
     """Does a Host header name the host that is served, this machine, or an address?"""
-    name = urlsplit(f"//{named}").hostname or ""
+    try:
+        name = urlsplit(f"//{named}").hostname or ""
+    except ValueError:
+        return False
     try:
         ipaddress.ip_address(name)
     except ValueError:

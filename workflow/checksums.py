@@ -7,9 +7,11 @@ without a checksum is none of ours, and one that differs from it was damaged aft
 
 import hashlib
 import os
+import re
 import time
 from pathlib import Path
 
+UNFINISHED = re.compile(r"\.[^/]+\.[a-z0-9_]{8}(\.[a-z0-9]+)?|\..+\.sha256\.[0-9]+")  # of atomic_path, of record
 CLOCK_S = 5.0  # by which clocks of machines that share a disk may differ
 
 
@@ -51,6 +53,13 @@ def redate(folder: str | Path) -> list[Path]:
     for path in late:
         os.utime(path, (now, now))
     return late
+
+
+def remove_unfinished(folder: str | Path) -> None:
+    """Delete what killed writers left below a folder: results and records under their temporary names."""
+    for path in Path(folder).rglob(".*"):
+        if UNFINISHED.fullmatch(path.name) and path.is_file():
+            path.unlink()
 
 
 def remove_damaged(folder: str | Path) -> list[Path]:

@@ -6,6 +6,8 @@ import importlib.metadata
 import json
 import os
 import re
+import shutil
+import subprocess
 import sys
 import time
 import traceback
@@ -101,6 +103,15 @@ def _missing(given: Mapping[str, Any], complete: Mapping[str, Any], place: str =
         if isinstance(value, dict) and isinstance(given.get(key), Mapping):
             missing += _missing(given[key], value, f"{place}{key}.")
     return missing
+
+
+def own_commit(root: Path) -> str:
+    """Commit of a checkout, with -dirty where files differ; empty in a wheel, which may lie in another repository."""
+    if not (root / ".git").exists() or not shutil.which("git"):
+        return ""
+    command = ["git", "-C", str(root), "-c", "core.fsmonitor=false", "-c", "core.hooksPath=/dev/null"]
+    command += ["describe", "--always", "--dirty", "--abbrev=40"]
+    return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
 
 
 def package_versions() -> dict[str, str]:

@@ -1,5 +1,6 @@
 from atomistic.hardness.accuracy import VARIATIONS, varied
 from atomistic.hardness.runs import PROTOCOL, needs_counter_glass, planned_runs, smallest_run
+from atomistic.potentials import load_potential
 
 HARDNESS = settings("hardness")
 
@@ -7,7 +8,15 @@ HARDNESS = settings("hardness")
 def potential_path(key, name):
     """The file of a potential that `hardness` gives by name or by path."""
     if name.endswith((".yaml", ".yml")):
-        return named_files(f"hardness.{key}", name)[0] if needed("hardness") else name
+        if not needed("hardness"):
+            return name
+        path = named_files(f"hardness.{key}", name)[0]
+        if workflow.is_main_process:
+            try:
+                load_potential(path)  # a plan says what the first job would
+            except InputError as error:
+                refuse(error)
+        return path
     path = CONFIG / "potentials" / f"{name}.yaml"
     if needed("hardness") and not os.path.isfile(path):
         known = ", ".join(sorted(file.stem for file in path.parent.glob("*.yaml")))

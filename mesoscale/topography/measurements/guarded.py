@@ -17,10 +17,10 @@ from typing import Any, NoReturn
 
 from mesoscale.errors import InputError
 
-CPU_S, CPU_S_PER_MB = 10.0, 2.0
-"""The slowest good file at hand, text of 60 MB, takes a tenth of it."""
+CPU_S, CPU_S_PER_MB, MOST_CPU_S = 10.0, 1.0, 50.0
+MOST_FILE_MB = 4000.0
 PATIENCE = 4.0  # seconds by the clock for one of the processor: the machine may be busy
-MEMORY_MB, MEMORY_MB_PER_MB = 2000, 20.0
+MEMORY_MB, MEMORY_MB_PER_MB, MOST_MEMORY_MB = 2000.0, 20.0, 16000.0
 OUTPUT_BYTES = 600 * 2**20  # of one file: a container is unpacked while it is read
 
 
@@ -34,7 +34,10 @@ def guarded(path: Path, read: Callable[[], Any]) -> Any:
     if sys.platform != "linux":
         return read()
     size_MB = path.stat().st_size / 2**20
-    cpu_s, memory_MB = CPU_S + CPU_S_PER_MB * size_MB, MEMORY_MB + MEMORY_MB_PER_MB * size_MB
+    if size_MB > MOST_FILE_MB:
+        raise InputError(f"{path}: {size_MB:.0f} MB; at most {MOST_FILE_MB:.0f} MB are accepted: crop the scan")
+    cpu_s = min(CPU_S + CPU_S_PER_MB * size_MB, MOST_CPU_S)
+    memory_MB = min(MEMORY_MB + MEMORY_MB_PER_MB * size_MB, MOST_MEMORY_MB)
     with tempfile.TemporaryDirectory(prefix="asperity-") as folder:  # ours: the process may be killed
         here, there = multiprocessing.Pipe(duplex=False)
         child = os.fork()  # not multiprocessing.Process, which a worker of a pool may not start
@@ -86,6 +89,7 @@ def _limit(folder: str, cpu_s: float, memory_MB: float) -> None:
     nothing = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):
         os.dup2(nothing, stream)
+    sys.stdout = sys.stderr = os.fdopen(nothing, "w")  # a notebook's go elsewhere
     tempfile.tempdir = folder
     used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
     for limit, value in (

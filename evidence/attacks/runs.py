@@ -1,14 +1,83 @@
-"""Small scenes that many runs can afford, the command that runs them, and what their results say."""
+"""What attacks share: small scenes, the command that runs them, what results say, and a table of outcomes."""
 
 import os
+import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from asperity.bundle import ROOT
-from attacks.nonsense import scene
+from evidence.attacks.nonsense import scene
 from workflow.job import result_checksum
+
+HANG_S = 60.0
+
+
+@dataclass(frozen=True)
+class Attack:
+    """One attack: its kind, what came of it (refused, used or fault), how long that took, and in what words."""
+
+    kind: str
+    outcome: str
+    seconds: float
+    words: str = ""
+
+
+def table(attacks: Iterable[Attack]) -> Iterator[dict[str, Any]]:
+    """A row for each kind of attack."""
+    kinds: dict[str, list[Attack]] = {}
+    for attack in attacks:
+        kinds.setdefault(attack.kind, []).append(attack)
+        if attack.outcome == "fault":
+            print(f"fault: {attack.kind}: {attack.words}", flush=True)
+    for kind, made in kinds.items():
+        faults = [attack.words for attack in made if attack.outcome == "fault"]
+        yield {
+            "kind": kind,
+            "attacks": len(made),
+            "refused": sum(attack.outcome == "refused" for attack in made),
+            "used": sum(attack.outcome == "used" for attack in made),
+            "faults": len(faults),
+            "slowest_s": max(attack.seconds for attack in made),
+            "words": (faults or [made[-1].words])[0][:160],
+        }
+
+
+def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """Numbers of the last campaign: attacks, faults, and the slowest."""
+    last = [row for row in rows if (row["command"], row["commit"]) == (rows[-1]["command"], rows[-1]["commit"])]
+    return {
+        "attacks": str(sum(int(row["attacks"]) for row in last)),
+        "faults": str(sum(int(row["faults"]) for row in last)),
+        "slowest": f"{max(float(row['slowest_s']) for row in last):.0f} s",
+    }
+
+
+def commanded(folder: Path, *arguments: str) -> tuple[int, str, float]:
+    """Exit status, words and seconds of the command `asperity` in a folder; ended where it hangs."""
+    started = time.monotonic()
+    process = subprocess.Popen(
+        [str(Path(sys.executable).with_name("asperity")), *arguments],
+        cwd=folder,
+        env={**os.environ, "XDG_CACHE_HOME": str(folder.with_name("cache"))},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    )
+    try:
+        said = process.communicate(timeout=4 * HANG_S)[0]
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        said = "hangs"
+    return process.wait(), said, time.monotonic() - started
+
 
 CONTACT = scene(
     "contact: {pixels: 64}",

@@ -1,27 +1,28 @@
-"""Damaged scans: files of instruments, cut, flipped, blown up or misnamed, each read in a process of its own.
+"""Is a damaged scan refused in one line, or does it give a surface?
 
+Files of instruments are cut, flipped, blown up or misnamed.
 A file is refused in one line, or what it gives is a surface: finite heights and spectra, of a plausible size.
-Anything else is a fault: another exception, a crash, more than `SECONDS` or `MEMORY_MB`, numbers that are no surface.
+Anything else is a fault: another exception, a crash, numbers that are no surface.
 """
 
-import multiprocessing
 import random
-import resource
-import signal
+import tempfile
+import time
 import zlib
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from evidence.attacks.runs import Attack, figures, table
 from mesoscale.errors import InputError
 from mesoscale.settings import InstrumentSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import FILE_NM, load_measurements, write_gwy
 from mesoscale.topography.records import record
 
-SECONDS, MEMORY_MB = 30, 4000
+__all__ = ["campaign", "figures", "judge", "rows"]
 ANALYSED = 300_000  # bytes of a file whose spectra are computed, too
 HEAD = 2048  # bytes in which a format describes itself
 CHANNELS = {"di-3.di": "ZSensor", "nid-1.nid": "Scan forward (Z-Axis)"}
@@ -107,7 +108,7 @@ def made_files(folder: Path) -> list[Path]:
 
 
 def judge(path: Path, settings: TopographySettings) -> tuple[str, str]:
-    """Outcome (refused, a surface, or fault) and its words; for a process of its own."""
+    """Outcome (refused, used or fault) and its words."""
     try:
         for measured in load_measurements(path, settings=settings):
             arrays = record(measured, settings)[0] if path.stat().st_size < ANALYSED else {}
@@ -121,62 +122,36 @@ def judge(path: Path, settings: TopographySettings) -> tuple[str, str]:
         text = str(error)
         named = path.name in text or path.stem in text
         return ("refused", text) if named and "\n" not in text else ("fault", f"refusal without its file: {text}")
-    except MemoryError:
-        return "fault", f"more than {MEMORY_MB} MB"
     except Exception as error:  # a campaign counts whatever comes
         return "fault", f"{type(error).__name__}: {error}"
-    return "a surface", ""
+    return "used", "a surface"
 
 
-def _in_child(path: Path, settings: TopographySettings, pipe: Any) -> None:
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY_MB * 2**20, MEMORY_MB * 2**20))
-    signal.setitimer(signal.ITIMER_PROF, SECONDS)  # of the processor, whatever else the machine does
-    pipe.send(judge(path, settings))
+def arguments(parser: Any) -> None:
+    """Options of the study."""
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument(
+        "--files", nargs="*", default=(), help="folders of files of instruments, beside those made here"
+    )
 
 
-def judged_apart(path: Path) -> tuple[str, str]:
-    """As `judge`, in a process that ends with its mistake."""
-    name = path.name.removeprefix("damaged_")
-    instruments = (InstrumentSettings(files="*", unit="um"),) if name in WITHOUT_UNIT else ()
-    settings = TopographySettings(sections=4, channel=CHANNELS.get(name), instruments=instruments)
-    here, there = multiprocessing.Pipe(duplex=False)
-    child = multiprocessing.get_context("fork").Process(target=_in_child, args=(path, settings, there))
-    child.start()
-    there.close()
-    try:
-        outcome = here.recv()
-    except EOFError:
-        outcome = None
-    child.join()
-    if outcome is None:
-        slow = child.exitcode == -signal.SIGPROF
-        return (
-            "fault",
-            f"more than {SECONDS} s of the processor" if slow else f"the process ended with {child.exitcode}",
-        )
-    return outcome
+def rows(given: Any) -> Iterator[dict[str, Any]]:
+    """A row for each kind of damage."""
+    with tempfile.TemporaryDirectory() as folder:
+        yield from table(campaign(Path(folder), [Path(name) for name in given.files], given.seed))
 
 
-def campaign(
-    folder: Path, places: list[Path], seed: int, count: int, done: Collection[tuple[str, ...]] = ()
-) -> Iterator[dict[str, Any]]:
-    """Rows of the first `count` kinds of damage to each file of some folders, and to files made here.
-
-    Parameters
-    ----------
-    done : file, damage and seed of attacks that are left out.
-    """
-    import SurfaceTopography.IO  # noqa: F401 (once, not in each child)
-
+def campaign(folder: Path, places: list[Path], seed: int) -> Iterator[Attack]:
+    """Every kind of damage to each file of some folders, and to files made here."""
     given = [path for place in places for path in sorted(place.iterdir()) if path.is_file()]
     for path in [*given, *made_files(folder / "made")]:
         content = path.read_bytes()
-        for kind, damage in list(DAMAGES.items())[:count]:
-            if (path.name, kind, str(seed)) in done:
-                continue
+        instruments = (InstrumentSettings(files="*", unit="um"),) if path.name in WITHOUT_UNIT else ()
+        settings = TopographySettings(sections=4, channel=CHANNELS.get(path.name), instruments=instruments)
+        for kind, damage in DAMAGES.items():
             rng = random.Random(zlib.crc32(f"{seed} {path.name} {kind}".encode()))
             target = folder / f"damaged_{path.name}"
             target.write_bytes(damage(rng, content))
-            outcome, words = judged_apart(target)
-            words = words.replace(f"{folder}/", "")[:120]
-            yield {"file": path.name, "damage": kind, "seed": seed, "outcome": outcome, "words": words}
+            started = time.monotonic()
+            outcome, words = judge(target, settings)
+            yield Attack(kind, outcome, time.monotonic() - started, words.replace(f"{folder}/", ""))

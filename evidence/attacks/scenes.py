@@ -1,4 +1,6 @@
-"""Mutated scenes, each judged in this process by what a run does before its first job, a sample planned for real.
+"""Is a mutated scene refused in lines, or used as it stands?
+
+Each is judged in this process by what a run does before its first job.
 
 A scene is refused in single lines that begin with its file, or accepted as it stands: every value that an independent
 reader (text only, no types) finds in the file is the value that the run would use, and the published JSON Schema
@@ -7,8 +9,7 @@ agrees.  Anything else is a fault: another exception, a refusal of several lines
 
 import json
 import re
-import subprocess
-import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from functools import cache
@@ -17,21 +18,22 @@ from typing import Any
 
 import jsonschema
 import yaml
-from workflow.scene_yaml import load_mapping
 
-from attacks.runs import environment
-from attacks.scene_mutations import mutated
+from asperity.foreign_yaml import load_mapping
+from evidence.attacks.runs import Attack, figures, table
+from evidence.attacks.scene_mutations import mutated
 from workflow.scene import Scene, SceneError, files_of, load_scene, locate
 from workflow.scene_checks import mistakes
 from workflow.scene_schema import SCHEMA
 
+__all__ = ["campaign", "figures", "judge", "rows"]
 LONGEST_LINE = 1500  # an unknown key lists the known ones
 PLAIN = re.compile(r"[-+]?(0|[1-9][0-9]*)?(\.[0-9]*)?([eE][-+]?[0-9]+)?")
 TRUTH = {True: {"true", "yes", "on"}, False: {"false", "no", "off"}, None: {"", "~", "null"}}
 
 
 def judge(text: str, path: Path) -> tuple[str, str]:
-    """Outcome (refused, accepted or fault) and its words, for a scene written to `path`."""
+    """Outcome (refused, used or fault) and its words, for a scene written to `path`."""
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
     try:
         scene = load_scene(str(path))
@@ -48,7 +50,7 @@ def judge(text: str, path: Path) -> tuple[str, str]:
         return "refused", " | ".join(line.removeprefix(f"{path}: ") for line in lines)
     if different := _misread(scene, path):
         return "fault", different
-    return "accepted", ""
+    return "used", ""
 
 
 def _beyond_keys(scene: Scene, path: Path) -> list[str]:
@@ -59,8 +61,8 @@ def _beyond_keys(scene: Scene, path: Path) -> list[str]:
             samples[name] = locate(str(path), f"inputs.{name}.values", [row.values])[0]
     if "topography" in scene.stages():
         locate(str(path), "topography.scans", files_of(str(path), scene.topography.scans))
-    for table in scene.measurements.tables if "calibration" in scene.inputs.origins() else ():
-        locate(str(path), "measurements.tables.file", [table.file])
+    for measured in scene.measurements.tables if "calibration" in scene.inputs.origins() else ():
+        locate(str(path), "measurements.tables.file", [measured.file])
     return mistakes(scene, samples)
 
 
@@ -72,7 +74,7 @@ def _schema() -> Any:
 
 def _misread(scene: Scene, path: Path) -> str:
     """What the scene holds otherwise than its file; empty: nothing."""
-    error = jsonschema.exceptions.best_match(_schema().iter_errors(load_mapping(path)))
+    error = jsonschema.exceptions.best_match(_schema().iter_errors(load_mapping(path, "scene")))
     if error is not None:
         return f"the schema refuses {'.'.join(map(str, error.absolute_path))}: {error.message}"
     given = yaml.load(path.read_bytes(), yaml.BaseLoader)
@@ -101,25 +103,21 @@ def _same(used: Any, word: str) -> bool:
     return isinstance(used, (int, float)) and bool(PLAIN.fullmatch(word)) and float(word) == used
 
 
-def campaign(folder: Path, first: int, count: int) -> Iterator[dict[str, Any]]:
-    """Rows of scenes `first` to `first + count`."""
+def arguments(parser: Any) -> None:
+    """Options of the study."""
+    parser.add_argument("--seed", type=int, default=0, help="of the first scene")
+    parser.add_argument("--count", type=int, default=1500)
+
+
+def rows(given: Any) -> Iterator[dict[str, Any]]:
+    """A row for all scenes of each number of mistakes in text or content."""
+    with tempfile.TemporaryDirectory() as folder:
+        yield from table(campaign(Path(folder), given.seed, given.count))
+
+
+def campaign(folder: Path, first: int, count: int) -> Iterator[Attack]:
+    """Scenes `first` to `first + count`."""
     for seed in range(first, first + count):
         started = time.process_time()
         outcome, words = judge(mutated(seed), folder / "mutated.yaml")
-        yield {"seed": seed, "outcome": outcome, "seconds": time.process_time() - started, "words": words[:60]}
-
-
-def planned(folder: Path, seed: int) -> dict[str, Any]:
-    """Row of a scene that Snakemake plans for real; its outcome must be that of `judge`."""
-    path = folder / f"planned_{seed}.yaml"
-    expected, _ = judge(mutated(seed), path)
-    started = time.monotonic()
-    command = [sys.executable, "-m", "asperity", "plan", "--scene", str(path), "--cores", "1"]
-    done = subprocess.run(command, cwd=folder, env=environment(folder), capture_output=True, text=True, check=False)
-    said = done.stdout + done.stderr
-    errors = [line for line in said.splitlines() if line.startswith("ERROR ")]
-    outcome = "refused" if errors and done.returncode == 1 else "accepted" if done.returncode == 0 else "fault"
-    if "Traceback" in said or outcome != expected:
-        outcome = "fault"
-    words = errors[0].replace(f"{path}: ", "") if errors else said.strip().rpartition("\n")[2]
-    return {"seed": seed, "outcome": outcome, "seconds": time.monotonic() - started, "words": words[:200]}
+        yield Attack("mutated scene", outcome, time.process_time() - started, f"{seed}: {words}")

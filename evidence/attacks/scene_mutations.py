@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from pydantic import BaseModel
-from workflow.scene_yaml import load_mapping
 
+from asperity.foreign_yaml import load_mapping
 from workflow.scene import SCENES, Scene
 
 VALUES: tuple[Any, ...] = (
@@ -25,7 +25,7 @@ WORDS = (
 
 def base_scenes() -> dict[str, dict[str, Any]]:
     """The shipped scenes, by name, each as if it were a user's."""
-    found = {path.stem: load_mapping(path) for path in sorted(SCENES.glob("*.yaml"))}
+    found = {path.stem: load_mapping(path, "scene") for path in sorted(SCENES.glob("*.yaml"))}
     return {name: {**content, "name": f"my_{name}"} for name, content in found.items()}
 
 

@@ -45,7 +45,11 @@ NONSENSE: dict[str, tuple[str, str]] = {
     "infinite gap": ("device: {gap_um: .inf}", "accepted is a number"),
     "not a number": ("device: {gap_um: .nan}", "accepted is a number"),
     "key twice": ("contact: {pixels: 256, pixels: 512}", "stands twice"),
-    "object of Python": ("x: !!python/object/apply:os.system ['true']", "not valid YAML"),
+    "object of Python": ("x: !!python/object/apply:os.system ['true']", "plain values only"),
+    "tag of an integer": ('contact: {pixels: !!int ""}', "plain values only"),
+    "tag of a truth": ("contact: {pixels: !!bool x}", "plain values only"),
+    "tag of nothing": ("contact: {pixels: ! 5}", "plain values only"),
+    "fifty thousand values": ("x: [" + 60_000 * "1," + "]", "more than 50000 values"),
     "program as a key": ("hardness: {closing: {launcher: rm}}", "unknown key"),
     "folder of an engine": (
         "elastic: {dft: {engine: espresso, parameters: {directory: /etc}}}",

@@ -1,16 +1,20 @@
-"""Damaged results: every file of a finished scene emptied, cut, changed or exchanged, then the scene run again.
+"""Is a damaged result named and made again?
 
+Files of a finished scene are emptied, cut or changed, then the scene is run again.
 The run must name each damaged file, make it again, and end with the results of a scene that nothing happened to.
 """
 
 import random
 import shutil
+import tempfile
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from attacks.runs import CONTACT, contents, last_words, run, undisturbed
+from evidence.attacks.runs import CONTACT, Attack, contents, figures, last_words, run, table, undisturbed
 
+__all__ = ["campaign", "figures", "rows"]
 # a run leaves damaged files alone that it is not asked for: the spots come with the nominal curves, for the report
 TARGETS = ("law", "results/contact/curves/spots.h5")
 DAMAGES: dict[str, Callable[[random.Random, bytes], bytes]] = {
@@ -29,8 +33,20 @@ def _one_bit(rng: random.Random, content: bytes) -> bytes:
     return bytes(changed)
 
 
-def campaign(folder: Path, seed: int, count: int) -> Iterator[dict[str, Any]]:
-    """Rows of `count` rounds; a round damages every file of a copy, or its checksum, in one way each."""
+def arguments(parser: Any) -> None:
+    """Options of the study."""
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--count", type=int, default=3, help="rounds")
+
+
+def rows(given: Any) -> Iterator[dict[str, Any]]:
+    """A row for each kind of damage."""
+    with tempfile.TemporaryDirectory() as folder:
+        yield from table(campaign(Path(folder), given.seed, given.count))
+
+
+def campaign(folder: Path, seed: int, count: int) -> Iterator[Attack]:
+    """The attacks of `count` rounds; a round damages half of the files of a copy in one way each."""
     scene = folder / "contact.yaml"
     scene.write_text(CONTACT, encoding="utf-8")
     whole = folder / "whole"
@@ -46,17 +62,13 @@ def campaign(folder: Path, seed: int, count: int) -> Iterator[dict[str, Any]]:
                 damaged[name] = rng.choice(list(DAMAGES))
                 path = results / name
                 path.write_bytes(DAMAGES[damaged[name]](rng, path.read_bytes()))
+        started = time.monotonic()
         done = run(copy, scene, *TARGETS)
         said = done.stdout + done.stderr
         equal = done.returncode == 0 and contents(results) == expected
         for name, kind in damaged.items():
             named = f"results/contact/{name}: damaged" in said
-            yield {
-                "seed": number,
-                "file": name,
-                "damage": kind,
-                "named": named,
-                "equal": equal,
-                "words": "" if equal else last_words(said)[:120],
-            }
+            outcome = "refused" if named and equal else "fault"
+            words = name if equal else last_words(said)
+            yield Attack(kind, outcome, time.monotonic() - started, words)
         shutil.rmtree(copy)

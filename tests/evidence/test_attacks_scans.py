@@ -5,7 +5,7 @@ import random
 import numpy as np
 import pytest
 
-from attacks.scans import DAMAGES, judge, made_files
+from evidence.attacks.scans import DAMAGES, judge, made_files
 from mesoscale.settings import TopographySettings
 
 SETTINGS = TopographySettings(sections=1)
@@ -34,8 +34,8 @@ def test_the_judge_sees_an_exception_and_numbers_that_are_not_finite(files, monk
     def broken(path, settings):
         raise KeyError("Miscellaneous")
 
-    monkeypatch.setattr("attacks.scans.load_measurements", broken)
+    monkeypatch.setattr("evidence.attacks.scans.load_measurements", broken)
     assert judge(files[".gwy"], SETTINGS)[0] == "fault"
     monkeypatch.undo()
-    monkeypatch.setattr("attacks.scans.record", lambda *given: ({"c2": np.array([np.nan])}, {}))
+    monkeypatch.setattr("evidence.attacks.scans.record", lambda *given: ({"c2": np.array([np.nan])}, {}))
     assert judge(files[".gwy"], SETTINGS) == ("fault", "numbers that are not finite")

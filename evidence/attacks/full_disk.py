@@ -1,17 +1,20 @@
-"""Full disks: runs on a small file system of memory, which is then enlarged. Needs the right to mount one (root).
+"""Does a run on a full disk end in one line, and the next one with the right results?
 
+The disk is a small file system of memory, which is then enlarged. Needs the right to mount one (root).
 A run on a full disk ends in one ERROR line; with more room the next one ends with the results of a large disk.
 """
 
 import random
 import subprocess
+import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from attacks.runs import CONTACT, contents, last_words, run, undisturbed
+from evidence.attacks.runs import CONTACT, Attack, contents, figures, last_words, run, table, undisturbed
 
+__all__ = ["campaign", "figures", "rows"]
 TARGET = "law"
 ROOM = "64m"
 
@@ -20,8 +23,20 @@ def _mount(place: Path, size: str, *options: str) -> None:
     subprocess.run(["mount", "-t", "tmpfs", "-o", ",".join([*options, f"size={size}"]), "tmpfs", place], check=True)
 
 
-def campaign(folder: Path, seed: int, count: int) -> Iterator[dict[str, Any]]:
-    """A row for each size of the disk, from nothing but a few blocks to all that the scene needs."""
+def arguments(parser: Any) -> None:
+    """Options of the study."""
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--count", type=int, default=4, help="disks")
+
+
+def rows(given: Any) -> Iterator[dict[str, Any]]:
+    """A row for all disks."""
+    with tempfile.TemporaryDirectory() as folder:
+        yield from table(campaign(Path(folder), given.seed, given.count))
+
+
+def campaign(folder: Path, seed: int, count: int) -> Iterator[Attack]:
+    """Disks of each size, from nothing but a few blocks to all that the scene needs."""
     scene = folder / "contact.yaml"
     scene.write_text(CONTACT, encoding="utf-8")
     whole = folder / "whole"
@@ -37,19 +52,11 @@ def campaign(folder: Path, seed: int, count: int) -> Iterator[dict[str, Any]]:
             started = time.monotonic()
             full = run(place, scene, TARGET)
             seconds = time.monotonic() - started
-            kept = set(contents(place / "results/contact"))
             _mount(place, ROOM, "remount")
             again = run(place, scene, TARGET)
-            yield {
-                "seed": seed,
-                "size_kB": size,
-                "seconds": seconds,
-                "said": last_words(full.stdout + full.stderr).replace(str(folder), "")[:160],
-                "kept": len(kept),
-                "next": last_words(again.stdout + again.stderr)[:120] if again.returncode else "finished",
-                "equal": full.returncode != 0
-                and again.returncode == 0
-                and contents(place / "results/contact") == expected,
-            }
+            equal = again.returncode == 0 and contents(place / "results/contact") == expected
+            said = last_words(full.stdout + full.stderr).replace(str(folder), "")
+            good = full.returncode != 0 and said.startswith("ERROR ") and equal
+            yield Attack("full disk", "refused" if good else "fault", seconds, f"{size} kB: {said}")
         finally:
             subprocess.run(["umount", place], check=True)
