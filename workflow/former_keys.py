@@ -5,6 +5,7 @@ from mesoscale.settings.inputs import FORMS
 
 FORMER_KEYS: dict[str, str] = {
     # device
+    "device.samples": "no longer a setting, delete it: they are 4000",
     "device.landed_fraction": "no longer a setting, delete it: gap_um, bow_nm and tilt_nm say what is in contact",
     # inputs
     **{

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from mesoscale.contact.displacement import Displacement
 from mesoscale.device.beam_switch import solve_beam
+from mesoscale.device.electrode import solve_or_bound
 from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.release import solve_or_bound
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs

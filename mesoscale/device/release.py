@@ -14,15 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.pressing import DEVIATIONS, held_V, pressure_to_compute
-from mesoscale.device.statistics import describe, never_closes, probability
-from mesoscale.device.switch import switch_from_settings
-from mesoscale.errors import InputError, NotComputed
+from mesoscale.device.electrode import releases_by_cells, solve_or_bound
+from mesoscale.device.pressing import DEVIATIONS, pressure_to_compute
+from mesoscale.device.statistics import describe, probability
+from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.pad.memory import law_of
 from mesoscale.pad.response import PadResponse, SampledPad, fit_response, law_of_compact
 from mesoscale.settings import DeviceSettings
 
@@ -34,13 +32,7 @@ SOLVED = 0.8
 """Share of the points that must be solved, since those that cannot be are no random part of them."""
 SOLVED_TO_RANK = 0.5
 """The same where causes are only compared with each other."""
-RESAMPLES = 24
-"""Resampled central pads: their standard deviation is known to 15 %."""
-ELEMENTS = 64
-"""Of the beam: release is within 0.5 % of that of 1024 elements, but near sticking (docs/pad.md)."""
 FAR_NM = 300.0
-LESS = (0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3)
-"""Shares of the voltage that are tried where the held state was not computed."""
 
 
 @dataclass(frozen=True)
@@ -56,65 +48,6 @@ class Point:
     values: dict[str, float]
     gap_cutoff_nm: float
     device: DeviceSettings
-
-
-def solve_electrode(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
-    """What the switch does on a pad: its bending electrode, or a flat plate where its spring is given.
-
-    Raises
-    ------
-    InputError : see `solve_beam` and `solve_on_pad`.
-    """
-    if settings.spring_N_per_m is None:
-        beam = solve_beam(settings, law, ELEMENTS)
-        return {
-            "pull_in_V": beam.pull_in_V,
-            "release_V": beam.release_V,
-            "capacitance_fF": beam.capacitance_fF,
-            "landed_share": beam.landed_share,
-        }
-    switch = switch_from_settings(settings)
-    plate = solve_on_pad(switch, law, settings.hold_voltage_V)
-    capacitance = float(switch.capacitance_F(np.array(plate.hold_nm))) * 1e15
-    return {
-        "pull_in_V": plate.pull_in_V,
-        "release_V": plate.release_V,
-        "capacitance_fF": capacitance,
-        "landed_share": 1.0,
-    }
-
-
-def solve_or_bound(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
-    """As `solve_electrode`; where the held state was not computed, a proof that the switch sticks, if there is one.
-
-    The switch is held by less, so that every place is closed less deeply. The well on opening deepens with the closing,
-    so what sticks then sticks when it is held by its own voltage, too. What the bound does not give is NaN.
-
-    Raises
-    ------
-    InputError : see `solve_electrode`; the hold voltage never closes the switch; the held state was not computed, and
-        the bound does not decide.
-    """
-    state = _held_or_bounded(settings, law)
-    if line := never_closes(settings, state["pull_in_V"]):
-        raise InputError(line)
-    return state
-
-
-def _held_or_bounded(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
-    try:
-        return {**solve_electrode(settings, law), "bounded": 0.0}
-    except NotComputed as error:
-        for share in LESS:
-            less = settings.model_copy(update={"hold_voltage_V": share * held_V(settings)})
-            try:
-                state = solve_electrode(less, law)
-            except NotComputed:
-                continue
-            if state["release_V"] == 0.0:
-                return {**state, "capacitance_fF": np.nan, "landed_share": np.nan, "bounded": 1.0}
-            break
-        raise error
 
 
 def plan_points(
@@ -200,7 +133,7 @@ def answer(
 
     Parameters
     ----------
-    cells : of the pad at central inputs and the smaller D0.
+    cells : of the pad at central inputs and the first D0.
     draws : pads at other inputs.
     cutoffs_nm : range of D0.
 
@@ -216,6 +149,8 @@ def answer(
     by_curves = solve_or_bound(settings, central)
     by_form = _on_response(Point(middle, cutoffs_nm[0], settings), response, wanted)
     shift = by_curves["release_V"] - by_form["release_V"]
+    middle_nm = float(np.mean(cutoffs_nm))
+    in_the_middle = _on_response(Point(middle, middle_nm, settings), response, wanted)
     names, causes, units, points = plan_points(table, settings, *cutoffs_nm)
     solved, refused = [], []
     for place, point in enumerate(points):
@@ -230,8 +165,7 @@ def answer(
     stuck = solved_values["release_V"] == 0.0
     # the closed form is a little too adhesive; by how much is known at central inputs
     release = np.where(stuck, 0.0, np.maximum(solved_values["release_V"] + shift, 0.0))
-    resampled = _resampled(cells, hamaker, settings)
-    cells_V = float(resampled.std(ddof=1))
+    cells_V = float(releases_by_cells(settings, cells, hamaker).std(ddof=1))
     first, error = first_order(units[places], release)
     rng = np.random.default_rng(np.random.SeedSequence([0, 0xA15]))
     noisy = np.where(stuck, 0.0, np.maximum(release + cells_V * rng.normal(size=release.size), 0.0))
@@ -266,7 +200,8 @@ def answer(
             ),
             key=lambda row: -row["share_of_variance"],
         ),
-        "central": {"by_curves": by_curves, "by_closed_form": by_form},
+        "central": {"gap_cutoff_nm": middle_nm, "by_closed_form": in_the_middle},
+        "at_curves": {"gap_cutoff_nm": cutoffs_nm[0], "by_curves": by_curves, "by_closed_form": by_form},
         "design": {
             "draws": len(draws),
             "cells_per_draw": draws[0].cells,
@@ -316,20 +251,6 @@ def _on_response(point: Point, response: PadResponse, wanted_GPa: Callable[[Arra
     near = np.arange(step, 8.0 * point.values["rms"], step)
     s = np.concatenate([near, np.geomspace(near[-1], max(FAR_NM, 2.0 * near[-1]), 24)[1:]])
     return solve_or_bound(point.device, law_of_compact(compact, wanted_GPa(s), s))
-
-
-def _resampled(cells: PadCells, hamaker: float, settings: DeviceSettings) -> Array:
-    """Release voltages on central pads of resampled cells, shape (resamples,)."""
-    rng = np.random.default_rng(np.random.SeedSequence([0, 0xCE1]))
-    share = np.full(cells.count, 1.0 / cells.count)
-    return np.array(
-        [
-            solve_or_bound(settings, law_of(cells, hamaker, rng.multinomial(cells.count, share) / cells.count))[
-                "release_V"
-            ]
-            for _ in range(RESAMPLES)
-        ]
-    )
 
 
 def first_order(units: Array, values: Array) -> tuple[Array, float]:

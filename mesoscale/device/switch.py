@@ -175,12 +175,6 @@ def drive_switch(settings: DeviceSettings, closing: Law, opening: Law) -> Switch
     return solve_switch(switch_from_settings(settings, opening.rho_a_nm), closing, opening, settings.hold_voltage_V)
 
 
-def sweep(switch: Switch, law: Law, share: float, points: int = 600) -> tuple[np.ndarray, np.ndarray]:
-    """Separations (nm) and W(s) (V^2) of one law on a share of the area, from deep contact to rest, for a picture."""
-    grid = _separations(switch, flat(law, 1), inner=points // 2, outer=points - points // 2)[0]
-    return grid, switch.voltage_squared(grid, law, share)
-
-
 def _separations(switch: Switch, law: Law, inner: int = 160, outer: int = 120) -> np.ndarray:
     """Sorted separations (samples, points) from deep contact to rest, both kinks of the law among them."""
     contact = np.asarray(law.d_c_nm)[:, None]

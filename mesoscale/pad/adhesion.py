@@ -2,6 +2,11 @@
 
 The energy is the work of opening from the first separation at which the net force is zero, on the way out from the
 largest load, to infinity. Pads differ in their surfaces; each is closed until its own cells carry the load.
+
+A sphere on the film is Derjaguin's integral. At the distance r from its lowest point a sphere of radius R is r^2 / 2R
+higher, so rings of equal steps of separation have equal areas 2 pi R ds. The force is 2 pi R times the integral of the
+pressure over separation, each ring with a deepest closing of its own. The sphere keeps its shape: Hertz's flattening is
+left out.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -17,8 +22,7 @@ from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.pad.cells import PadGrid, SideBySide, far_nm
 from mesoscale.pad.curves import PadCells, assemble
-from mesoscale.pad.memory import law_of
-from mesoscale.pad.sphere import press_sphere
+from mesoscale.pad.memory import PadLaw, law_of
 from mesoscale.settings import AdhesionSettings, ContactSettings
 
 Array = NDArray[np.float64]
@@ -29,6 +33,10 @@ FIRST_SEED = 5000
 """Of the surface of the first pad's first cell."""
 SPHERE_STEP_RMS = 0.25
 """Distance of the depths of closing for the memory under a sphere, in units of the RMS height: some eight of them."""
+RING_NM = 0.05
+"""Step of the rings of a sphere."""
+HIGHEST_RISE_NM = 60.0
+"""The sphere is lifted this far in search of its largest pull."""
 MOST_STEPS = 20_000
 
 
@@ -204,6 +212,58 @@ def rows_of_case(
         yield from pad_rows(case, adhesion, number)
         if progress:
             progress((number + 1) / adhesion.pads, f"{number + 1} of {adhesion.pads} pads")
+
+
+@dataclass(frozen=True)
+class PressedSphere:
+    """A sphere that was pressed on a film and pulled off.
+
+    Attributes
+    ----------
+    load_nN : largest repulsion less attraction while it was pressed.
+    pull_off_nN : largest net attraction on the way out.
+    work_J_m2 : pull-off over 2 pi R, the work of adhesion that Derjaguin, Muller and Toporov would read from it.
+    """
+
+    load_nN: float
+    pull_off_nN: float
+    work_J_m2: float
+
+
+def press_sphere(law: PadLaw, deepest_nm: float, radius_nm: float, beyond_J_m2: float) -> PressedSphere:
+    """Press a sphere until its lowest point is at a separation of the film, and pull it off.
+
+    Rings farther out than the shallowest computed depth have not touched, and open as they closed.
+
+    Parameters
+    ----------
+    deepest_nm : that separation, of those from which the pad was opened or between them.
+    beyond_J_m2 : energy per area of the attraction from the last separation of the law to infinity.
+
+    Raises
+    ------
+    InputError : a separation that was not computed.
+    """
+    ends = float(law.separation_nm[-1])
+    rings = np.arange(deepest_nm, ends, RING_NM)
+    load = float(np.trapezoid(law.closing_GPa(rings), rings)) - beyond_J_m2
+    rises = np.arange(0.0, min(HIGHEST_RISE_NM, ends - deepest_nm), RING_NM)
+    touched = rings[rings <= law.depth_nm[-1]]
+    held = np.array([law.opening_GPa(ring + rises, ring) for ring in touched])
+    inner = np.trapezoid(held, touched, axis=0) if touched.size > 1 else np.zeros(rises.size)
+    outer = _integral_to_end(law, touched[-1] + rises)
+    per_area = inner + outer - beyond_J_m2
+    pull = max(-float(per_area.min()), 0.0)
+    return PressedSphere(2 * np.pi * radius_nm * load, 2 * np.pi * radius_nm * pull, pull)
+
+
+def _integral_to_end(law: PadLaw, starts_nm: Array) -> Array:
+    """Integral of the closing pressure (nN/nm) from each start to the last separation of the law."""
+    at = np.arange(starts_nm.min(), law.separation_nm[-1] + RING_NM, RING_NM).clip(max=law.separation_nm[-1])
+    pressure = law.closing_GPa(at)
+    pieces = 0.5 * (pressure[1:] + pressure[:-1]) * np.diff(at)
+    remaining = np.append(np.cumsum(pieces[::-1])[::-1], 0.0)
+    return np.interp(starts_nm, at, remaining)
 
 
 MEASURED = ("zero_force_nm", "energy_uJ_m2", "flats_uJ_m2", "pull_off_kPa")

@@ -190,13 +190,3 @@ def well_status(wells: Sequence[Mapping[str, float]]) -> str:
         f"misses_well: {min(missed):.2g} to {max(missed):.2g} times the curves' at {len(missed)} of {len(ratios)} "
         "depths; for release and sticking use the curves (pad/curves.h5)"
     )
-
-
-def tabulated(compact: CompactPad, law: PadLaw) -> PadLaw:
-    """The closed form at the separations and depths of a pad's curves, for what is driven by such curves."""
-    s = law.separation_nm
-    opening = np.full(law.opening.shape, np.nan)
-    for k, depth in enumerate(law.depth_nm):
-        above = s >= depth - 1e-9
-        opening[k][:, above] = compact.opening_GPa(s[above], depth)
-    return PadLaw(s, np.stack(compact.closing_GPa(s)), law.depth_nm, opening, compact.hamaker)

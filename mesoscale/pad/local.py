@@ -44,7 +44,7 @@ class LocalPad:
 def pad_pressure(separation_nm, deepest_nm, pressure, slope, at_nm, closing, depth_nm, rise_nm, opening, hamaker):
     """Set net pressure (GPa) and slope (GPa/nm) of a pad at places with a deepest closing of their own; all (e, p)."""
     last = at_nm.size - 1
-    depth_step, rise_step = depth_nm[1] - depth_nm[0], rise_nm[1] - rise_nm[0]
+    depth_step, rise_step = max(depth_nm[1] - depth_nm[0], 1e-9), rise_nm[1] - rise_nm[0]  # 1e-9: a pad of one depth
     for e in range(separation_nm.shape[0]):
         for g in range(separation_nm.shape[1]):
             s, deep = separation_nm[e, g], deepest_nm[e, g]

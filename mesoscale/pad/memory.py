@@ -62,9 +62,10 @@ class PadLaw:
                 "pad.grid.max_pressure_MPa, or lower the hold voltage"
             )
         s = np.maximum(np.asarray(separation_nm, float), deepest_nm)
-        upper = int(np.clip(np.searchsorted(self.depth_nm, deepest_nm), 1, self.depth_nm.size - 1))
-        lower = upper - 1
-        share = (deepest_nm - self.depth_nm[lower]) / (self.depth_nm[upper] - self.depth_nm[lower])
+        upper = int(np.clip(np.searchsorted(self.depth_nm, deepest_nm), min(1, self.depth_nm.size - 1), None))
+        lower = max(upper - 1, 0)
+        apart = self.depth_nm[upper] - self.depth_nm[lower]
+        share = (deepest_nm - self.depth_nm[lower]) / apart if apart > 0 else 0.0  # 0: a pad of one depth
         risen = s - deepest_nm
         shallow = self._logarithms(upper, self.depth_nm[upper] + risen)
         deep = self._logarithms(lower, self.depth_nm[lower] + risen)

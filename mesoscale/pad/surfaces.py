@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact.surface import random_surface, shortest_wave, surface_spectrum
+from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
@@ -39,10 +40,16 @@ class FilmPieces:
         if contact.pixels % 2 == 0:
             twice[-1] = 1.0
         other = contact.surface.counterface
+        self.known = inside & (power > 0)
+        self.known[0, 0] = False
+        if not self.known.any():
+            raise InputError(
+                f"contact.pixels = {contact.pixels}, contact.length_nm = {contact.length_nm:g}: the spectrum has no "
+                f"wave from {step:.3g} to {shortest_wave(contact):.3g} 1/nm, which is all that a cell has; "
+                "give one that reaches there, or another grid"
+            )
         variance = inputs.rms**2 + (other.rms_nm**2 if other else 0.0)
         self.power = power * (variance / float((power * twice).sum()))
-        self.known = inside & (self.power > 0)
-        self.known[0, 0] = False
 
     @property
     def plane_deviation_nm(self) -> float:

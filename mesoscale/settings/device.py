@@ -109,12 +109,6 @@ class DeviceSettings(Settings):
         description="voltage of the closed switch; null is its own pull-in voltage",
         json_schema_extra={"unit": "V"},
     )
-    samples: int = Field(
-        default=4000,
-        ge=10,
-        le=1_000_000,
-        description="samples of the law taken from the propagation of uncertainty",
-    )
 
     def shape_at_rest_nm(self, share: ArrayLike) -> NDArray[np.float64]:
         """Height of the bending electrode at rest over its flat place (nm), at shares of its length from one end."""

@@ -193,7 +193,7 @@ def _response(branch: str, name: str, value: float) -> dict[str, Any]:
 
 
 def _device(root: Path) -> None:
-    from mesoscale.device.behaviour import drive_switch, samples_of_rows, state_rows, stiction_rows, switch_path
+    from mesoscale.device.behaviour import drive_switch, samples_of_rows, state_rows, stiction_rows
     from mesoscale.device.export import law_table
     from mesoscale.settings import DeviceSettings
     from workflow.results import load_csv
@@ -205,12 +205,11 @@ def _device(root: Path) -> None:
     write_json(root / "device/switch.json", results, PROVENANCE)
     _write(root / "device/release.csv", state_rows(states))
     _write(root / "device/stiction.csv", stiction_rows(states))
-    _write(root / "device/path.csv", switch_path(samples, settings))
     _write(root / "device/law.csv", law_table(samples.nominal, samples.laws))
 
 
 def _pad(root: Path) -> None:
-    from mesoscale.device.pad_switch import switch_on_pad
+    from mesoscale.device.pad_results import switch_on_pad
     from mesoscale.pad.cells import PadGrid
     from mesoscale.pad.compact import CompactPad
     from mesoscale.pad.curves import PadCells, adhesion_by_cells, curve_rows

@@ -8,7 +8,7 @@ HARDNESS = {"make_glass", "run_closing", "find_hardness", "fit_hardness"}
 ELASTIC = {"make_amorphous", "relax_amorphous", "scan_volumes", "fit_bulk_moduli", "combine_e_star"}
 TOPOGRAPHY = {"write_synthetic_scans", "analyse_scans", "pool_spectra"}
 MESOSCALE = {"collect_inputs", "compute_nominal", "compute_runs", "fit_law", "propagate_uncertainty"}
-REPORT = {"rank_sensitivity", "solve_switch", "export_law", "render_report"}
+REPORT = {"rank_sensitivity", "solve_switch", "render_report"}
 
 LITERATURE = """
 inputs:

@@ -25,7 +25,7 @@ from workflow.report.available import Results
 from workflow.report.drawing import draw
 from workflow.report.numbers import show
 from workflow.report.render import render
-from workflow.report.stages import STAGES
+from workflow.report.stages import STAGES, device
 from workflow.report.stages.inputs import _distribution
 from workflow.report.studies import recommended
 
@@ -354,3 +354,15 @@ def test_an_input_that_is_fixed_says_so():
 def test_an_input_given_by_samples_shows_their_quantiles():
     row = {"distribution": f"samples {json.dumps([k / 100 for k in range(101)])}", "a": "", "b": ""}
     assert _distribution(row) == "samples, median 0.500, 5 to 95 %: 0.0500 to 0.950"
+
+
+def test_a_switch_without_pull_in_has_a_section_that_says_so(files, tmp_path):
+    root = tmp_path / "no_pull_in"
+    shutil.copytree(files[0] / "device", root / "device")
+    switch = json.loads((root / "device/switch.json").read_text())
+    for case in ("with_adhesion", "without_adhesion"):
+        switch[case]["pull_in_V"] = {"samples": 0, "mean": None, "std": None, "quantiles": {}}
+    (root / "device/switch.json").write_text(json.dumps(switch))
+    section = device.describe(Results(root, list(root.glob("device/*")), "no_pull_in"))
+    used = switch["samples"]["used"]
+    assert any(f"{used} of {used} samples have no pull-in voltage" in note for note in section.notes)

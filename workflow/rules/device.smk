@@ -8,42 +8,24 @@ rule solve_switch:
     input:
         samples=f"{RESULTS}/uq/samples.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
+        wells=f"{RESULTS}/law/wells.csv",
     output:
         switch=report(f"{RESULTS}/device/switch.json", caption="../captions/switch.rst", category="Device"),
         release=f"{RESULTS}/device/release.csv",
         stiction=f"{RESULTS}/device/stiction.csv",
-        path=f"{RESULTS}/device/path.csv",
-    log:
-        f"{RESULTS}/logs/solve_switch.log",
-    params:
-        settings=settings("device"),
-        law=settings("law"),
-        max_force_nN=SCENE.contact.max_force_nN,
-        length_nm=SCENE.contact.length_nm,
-    message:
-        "solve the switch"
-    script:
-        "../scripts/solve_switch.py"
-
-
-rule export_law:
-    input:
-        samples=f"{RESULTS}/uq/samples.csv",
-        parameters=f"{RESULTS}/law/parameters.csv",
-        wells=f"{RESULTS}/law/wells.csv",
-    output:
         table=report(f"{RESULTS}/device/law.csv", caption="../captions/device_law.rst", category="Device"),
         samples=f"{RESULTS}/device/law.json",
         spice=f"{RESULTS}/device/asperity_contact.sub",
         testbench=f"{RESULTS}/device/asperity_contact.cir",
         verilog=f"{RESULTS}/device/asperity_contact.va",
     log:
-        f"{RESULTS}/logs/export_law.log",
+        f"{RESULTS}/logs/solve_switch.log",
     params:
-        settings=settings("device"),
+        device=settings("device"),
         law=settings("law"),
+        max_force_nN=SCENE.contact.max_force_nN,
         length_nm=SCENE.contact.length_nm,
     message:
-        "export the law for device and circuit simulators"
+        "solve the switch, and export the law for device and circuit simulators"
     script:
-        "../scripts/export_law.py"
+        "../scripts/solve_switch.py"

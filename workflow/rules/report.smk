@@ -16,7 +16,7 @@ def report_inputs():
         f"uq/{name}"
         for name in ("outputs.csv", "ratios.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")
     ]
-    files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "path.csv", "law.csv")]
+    files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "law.csv")]
     files += ["pad/curves.csv", "pad/adhesion.csv", "device/pad_switch.json"]
     files += [f"pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS]
     if ADHESION.pads > 0:
@@ -45,7 +45,7 @@ def report_inputs():
 
 def kept_files():
     """What jobs of the scene leave beside the files of the report."""
-    parts = [rules.fit_law, rules.fit_nominal_law, rules.propagate_uncertainty, rules.solve_switch, rules.export_law]
+    parts = [rules.fit_law, rules.fit_nominal_law, rules.propagate_uncertainty, rules.solve_switch]
     parts += [rules.assemble_pad]
     files = list(DIRECT)
     if needed("hardness"):

@@ -128,17 +128,6 @@ TABLES = (
         ),
     ),
     Table(
-        ("device/path.csv",),
-        "One point of the switch's path with the nominal law.",
-        (
-            _CASE,
-            BRANCH,
-            number("separation_nm", "nm", "separation"),
-            number("voltage_squared_V2", "V²", "square of the voltage in equilibrium; negative: none holds it there"),
-            integer("stable", "1 where the equilibrium is stable, else 0"),
-        ),
-    ),
-    Table(
         ("device/law.csv",),
         "One gap of one branch.",
         (

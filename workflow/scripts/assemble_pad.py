@@ -8,7 +8,7 @@ device/pad_switch.json, device/rough_pad.va, device/rough_pad.sub.
 import numpy as np
 
 from mesoscale.device.pad_export import spice_pad, verilog_pad
-from mesoscale.device.pad_switch import switch_on_pad
+from mesoscale.device.pad_results import switch_on_pad
 from mesoscale.device.release import try_answer
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import from_rows

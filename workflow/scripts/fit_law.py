@@ -7,11 +7,11 @@ per run and branch.
 from mesoscale.inputs.table import from_rows
 from mesoscale.law.branches import fit_stored
 from mesoscale.settings import LawSettings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import load_csv, load_h5, write_csv
 
 with job(snakemake) as run:
-    settings = LawSettings(**snakemake.params.settings)
+    settings = settings_from_job(LawSettings, snakemake.params.settings)
     names = from_rows(load_csv(snakemake.input.inputs)).names
     rows, wells = [], []
     for done, path in enumerate(snakemake.input.chunks):

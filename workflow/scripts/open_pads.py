@@ -8,11 +8,11 @@ from mesoscale.inputs.table import medians
 from mesoscale.pad.adhesion import plan_cases, rows_of_case
 from mesoscale.settings import AdhesionSettings
 from workflow.contact_settings import contact_settings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
-    adhesion = AdhesionSettings(**snakemake.params.adhesion)
+    adhesion = settings_from_job(AdhesionSettings, snakemake.params.adhesion)
     if adhesion.pads == 0:
         raise InputError("adhesion.pads = 0: no pad to open; give at least 2, or take scene adhesion")
     contact = contact_settings(snakemake.params.contact, snakemake)

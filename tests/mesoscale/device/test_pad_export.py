@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from mesoscale.device.pad_export import START_NM, spice_pad, verilog_pad
-from mesoscale.pad.compact import CompactPad, fit_compact, tabulated
+from mesoscale.pad.compact import CompactPad, fit_compact
 from mesoscale.pad.memory import PadLaw
+from tests.mesoscale.closed_form import tabulated
 
 AREA = 1e12
 HISTORY_NM = (60.0, 30.0, 26.0, 28.0, 33.0, 60.0, 30.0, 27.0, 23.0, 25.0, 30.0, 60.0)

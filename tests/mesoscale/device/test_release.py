@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
+from mesoscale.device import electrode, pad_results
 from mesoscale.device.beam_kernels import BANDS, solve_bands
+from mesoscale.device.beam_switch import BeamStates
+from mesoscale.device.electrode import solve_or_bound
+from mesoscale.device.pad_switch import PadStates
 from mesoscale.device.pressing import pressure_to_compute
 from mesoscale.device.release import (
     _probability,
     first_order,
     plan_points,
-    solve_or_bound,
     try_answer,
 )
 from mesoscale.errors import InputError, NotComputed
@@ -133,6 +136,36 @@ def test_a_switch_that_the_bound_does_not_decide_stays_refused():
         solve_or_bound(DeviceSettings(), law_of_compact(smooth, np.full(s.size, 0.005), s))
 
 
+def test_held_by_too_little_the_reason_stays_that_of_the_switch_itself(monkeypatch):
+    """Nothing computed at the switch's own voltage, and no landing at less: the first reason is the user's."""
+
+    def solve(settings, law):
+        if settings.hold_voltage_V is None:
+            raise NotComputed("pressed too hard")
+        raise InputError("does not land")
+
+    monkeypatch.setattr(electrode, "solve_electrode", solve)
+    with pytest.raises(NotComputed, match="pressed too hard"):
+        solve_or_bound(DeviceSettings(), sampled(MIDDLE, 0.165).law)
+
+
+@pytest.mark.parametrize(("settings", "stuck", "passed"), [(DeviceSettings(), 0, True), (DeviceSettings(), 12, False)])
+def test_the_gate_judges_the_electrode_that_the_answer_has(monkeypatch, settings, stuck, passed):
+    """A flat plate that sticks on half of the resampled pads says nothing of an electrode that bends."""
+    state = BeamStates(60.0, 60.0, 7.0, False, 0.5, 0.02, 5.0, 100.0)
+    flat = [PadStates(60.0, 20.0, 5.0, float(k % 2), k % 2 == 0, 9.0) for k in range(pad_results.RESAMPLES)]
+    monkeypatch.setattr(pad_results, "solve_beam", lambda *_: state)
+    monkeypatch.setattr(pad_results, "solve_on_pad", lambda *_: flat[1])
+    monkeypatch.setattr(pad_results, "resampled_states", lambda *_: flat)
+    monkeypatch.setattr(pad_results, "releases_by_cells", lambda *_: np.repeat([0.0, 7.0], [stuck, 24 - stuck]))
+    grid = PadGrid(np.array([30.0, 20.0]), np.array([1]))
+    forces = np.zeros((8, 2, 2))
+    cells = PadCells(grid, np.full(8, 30.0), forces, forces[:, None], np.ones(8, bool))
+    gate = pad_results.switch_on_pad(cells, 0.2, settings, 1e6)["gate"]
+    assert gate["passed"] is passed
+    assert passed or "12 of 24 resampled pads; raise pad.cells" in gate["reasons"][0]
+
+
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
 def test_a_hold_voltage_that_never_closes_the_switch_is_refused_in_one_line(settings):
     s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
@@ -168,6 +201,9 @@ def test_the_answer_keeps_its_causes_apart(pads):
     assert shares["cells"] < 1e-9
     assert shares["inputs"] + shares["gap_cutoff"] > 0.8
     assert state["answer"]["sensitivity"][0]["share_of_variance"] > 0.3
+    assert state["answer"]["at_curves"]["gap_cutoff_nm"] == 0.165
+    middle = 0.5 * (0.165 + max(pad.gap_cutoff_nm for pad in pads))
+    assert state["answer"]["central"]["gap_cutoff_nm"] == pytest.approx(middle)
 
 
 def test_banded_systems_are_solved_with_row_exchanges():

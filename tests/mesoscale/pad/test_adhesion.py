@@ -14,10 +14,10 @@ from mesoscale.pad.adhesion import (
     open_from,
     pad_rows,
     plan_cases,
+    press_sphere,
     summary_rows,
 )
 from mesoscale.pad.memory import PadLaw
-from mesoscale.pad.sphere import press_sphere
 from mesoscale.settings import AdhesionSettings, ContactSettings
 from mesoscale.settings.inputs import WorkAndRangeSettings
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from mesoscale.errors import InputError
-from mesoscale.pad.compact import CompactPad, fit_compact, tabulated, well_status
+from mesoscale.pad.compact import CompactPad, fit_compact, well_status
 from mesoscale.pad.memory import PadLaw
+from tests.mesoscale.closed_form import tabulated
 
 TRUE = CompactPad(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 0.0, 0.215)
 FLATTENED = replace(TRUE, lifted=6.0)
@@ -52,7 +53,7 @@ def test_the_well_without_far_attraction_is_a_quarter_of_the_square_of_the_attra
 
 
 def test_too_few_depths_are_refused():
-    with pytest.raises(InputError, match=r"pad\.depths"):
+    with pytest.raises(InputError, match=r"pad\.grid\.depths"):
         fit_compact(curves(depths=(20.0, 24.0)))
 
 

@@ -10,6 +10,7 @@ from mesoscale.inputs.table import input_table
 from mesoscale.pad.cells import FIRST_SEED, PadGrid, close_cells, plan_grid
 from mesoscale.pad.curves import adhesion_by_cells, assemble
 from mesoscale.pad.draws import plan_draws
+from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import PadLaw, law_of
 from mesoscale.pad.surfaces import FilmPieces
 from mesoscale.settings import ContactSettings, InputRow, PadGridSettings
@@ -154,3 +155,21 @@ def test_a_D0_that_is_an_input_is_not_drawn_twice():
     assert len(drawn) == 6
     fixed = input_table(gap_cutoff=InputRow(distribution="fixed", values=(3.7,)))
     assert {draw.gap_cutoff_nm for draw in plan_draws(fixed, CONTACT, 6, 4)} == {3.7}
+
+
+def test_a_pad_of_one_depth_opens_from_it_without_a_warning():
+    law, exact = exponential_law([23.0])
+    at = np.linspace(23.0, 40.0, 50)
+    with np.errstate(all="raise"):
+        ours = law.opening_GPa(at, 23.0)
+    # linear between separations 0.1 nm apart: (0.1 / 1.5)^2 / 8 of an exponential of 1.5 nm
+    np.testing.assert_allclose(ours, np.sum(exact(at, 23.0), axis=0), rtol=2e-3, atol=1e-7)
+    pressure, slope = LocalPad(law)(at[None], np.full((1, at.size), 23.0))
+    np.testing.assert_allclose(pressure[0], ours, rtol=2e-2, atol=1e-6)
+    assert np.isfinite(slope).all()
+
+
+def test_a_spectrum_beside_the_waves_of_a_cell_is_refused_in_one_line():
+    longer = ContactSettings.model_validate({"pixels": 32, "surface": {"spectrum": {"q": [1e-5, 1e-4], "psd": [1, 1]}}})
+    with pytest.raises(InputError, match=r"the spectrum has no wave from 0\.00628"):
+        FilmPieces(MIDDLE, longer)

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from workflow.report.available import Results, Row
+from workflow.report.available import Results
 from workflow.report.drawing import BLUE, ORANGE, PURPLE, RED, SOFT, draw
 from workflow.report.numbers import column, number, show
 from workflow.report.page import COMPUTED, Gate, Section, Table
@@ -12,7 +12,7 @@ from workflow.report.page import COMPUTED, Gate, Section, Table
 
 def describe(results: Results) -> Section | None:
     """The switch, its release and its stiction."""
-    if not results.has("device/switch.json", "device/release.csv", "device/path.csv", "device/stiction.csv"):
+    if not results.has("device/switch.json", "device/release.csv", "device/stiction.csv"):
         return None
     switches = results.json("device/switch.json")
     switch = switches["switch"]
@@ -29,14 +29,15 @@ def describe(results: Results) -> Section | None:
         "Left: release voltage over the samples of the law. Right: probability that the switch stays closed at 0 V.",
         wide=True,
     )
-    section.add(
-        switch_path(results),
-        "Voltage at which the switch is in balance, from the law at central inputs.",
-        wide=True,
-    )
     section.blocks.append(
         Table("The switch", ("quantity", "with adhesion", "without adhesion"), _switch_lines(switches))
     )
+    without = switches["samples"]["used"] - switches["with_adhesion"]["pull_in_V"]["samples"]
+    if without:
+        section.notes.append(
+            f"{without} of {switches['samples']['used']} samples have no pull-in voltage: the switch closes without "
+            "snapping, as contact begins before the fold."
+        )
     section.notes += [
         f"{switches['samples']['dropped']} of {switches['samples']['dropped'] + switches['samples']['used']} "
         "samples of the law were left out because their repulsion or adhesion had the wrong sign (a "
@@ -81,45 +82,6 @@ def _switch_lines(switches: dict[str, Any]) -> list[tuple[str, ...]]:
         ("capacitance closed, rough (fF)", down["down_rough"], "–"),
         ("capacitance closed, flat plate (fF)", down["down_plate"], "–"),
     ]
-
-
-def switch_path(results: Results) -> str:
-    """Voltage against separation: folds of the switch with and without adhesion."""
-    rows = results.csv("device/path.csv")
-    gap_nm = number(results.json("device/switch.json")["switch"]["gap_nm"])
-    release_nm, release_V = _release_fold(rows, gap_nm)
-
-    def plot(axis, zoom):
-        for case, color, label in (
-            ("with_adhesion", BLUE, "with adhesion"),
-            ("without_adhesion", ORANGE, "without adhesion"),
-        ):
-            for branch, style in (("closing", "-"), ("opening", "--")):
-                part = [row for row in rows if row["case"] == case and row["branch"] == branch]
-                s, w = column(part, "separation_nm"), column(part, "voltage_squared_V2")
-                volts = np.where(w >= 0, np.sqrt(np.maximum(w, 0)), np.nan)
-                if branch == "closing" and case == "with_adhesion":
-                    axis.plot(s / 1e3, volts, color=color)
-                zoom.plot(s, volts, style, color=color, label=f"{label}, {branch}")
-        down = [row for row in rows if (row["case"], row["branch"]) == ("with_adhesion", "closing")]
-        far = column(down, "separation_nm") > gap_nm / 3  # pull-in of a plate on a spring is at two thirds
-        pull_in_V = np.sqrt(np.nanmax(column(down, "voltage_squared_V2")[far]))
-        axis.set(ylim=(0, 1.15 * pull_in_V), title="way down: the fold is pull-in")
-        axis.set(xlabel="separation (µm)", ylabel="voltage at balance (V)")
-        zoom.set(xlim=(0, 3 * release_nm), ylim=(0, 3 * release_V), title="way up: the lowest point is release")
-        zoom.set(xlabel="separation (nm)")
-        zoom.legend()
-
-    return draw("path", "Voltage at balance against separation of the switch", plot, (9.4, 3.8), columns=2)
-
-
-def _release_fold(rows: list[Row], gap_nm: float) -> tuple[float, float]:
-    """Separation (nm) and voltage of release without adhesion, the lowest balance near contact."""
-    part = [row for row in rows if (row["case"], row["branch"]) == ("without_adhesion", "opening")]
-    s, squared = column(part, "separation_nm"), column(part, "voltage_squared_V2")
-    near = (s < gap_nm / 3) & (squared > 0)
-    k = np.flatnonzero(near)[np.argmin(squared[near])]
-    return float(s[k]), float(np.sqrt(squared[k]))
 
 
 def release_distribution(results: Results) -> str:

@@ -36,13 +36,6 @@ def describe(results: Results) -> Section | None:
     section.blocks.append(
         Table("The switch, its whole electrode flat on the pad", ("quantity", "value"), _lines(switch))
     )
-    section.blocks.append(
-        Table(
-            "Release voltage, cause by cause, at central inputs",
-            ("model", "release (V)", "cause", "change (V)", "note"),
-            _causes(results, switch),
-        )
-    )
     if switch.get("answer"):
         section.blocks += _answer(switch["answer"])
     elif switch.get("answer_status"):
@@ -95,43 +88,6 @@ def _answer(answer: dict) -> list[Table]:
     return tables
 
 
-def _causes(results: Results, switch: dict) -> list[tuple[str, ...]]:
-    """The number of one cell's law beside that of the pad, step by step: what each step changes, and its cause."""
-    steps: list[tuple[str, str, float | None, str]] = []
-    if results.has("device/switch.json"):
-        old = results.json("device/switch.json")
-        stuck = old["with_adhesion"]["stiction_probability"]["value"]
-        middle = old["with_adhesion"]["release_V"]["quantiles"].get("0.5")
-        model = f"law of one cell, on the {old['switch']['last_share']:.2%} that come off last"
-        steps.append(("–", model, middle, f"{stuck:.0%} of the samples stick; median of the others"))
-    if by_law := switch.get("by_law"):
-        wells = f"its well: {show(by_law['well_law_kPa'])} kPa, the pad's {show(by_law['well_curve_kPa'])} kPa"
-        bare = by_law["release_without_memory_V"]
-        steps.append(("pad", "the same form of law fitted to the pad's closing, opened the same way, flat", bare, ""))
-        steps.append(("memory", "with the law of the opening from the held state, flat", by_law["release_V"], wells))
-    if compact := switch.get("by_compact"):
-        well = compact["deepest_net_kPa"]
-        note = "" if well is None else f"its well: {show(well)} kPa; pad/compact.json"
-        steps.append(("law", "closed form with memory, flat", compact["release_V"], note))
-    if switch["mean"] is not None:
-        low, middle, high = (switch["estimate"]["release_V"]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
-        note = f"resampled cells: {show(low)} to {show(high)} V, 0 where it sticks"
-        steps.append(("law", "curves of the pad, flat", middle, note))
-    if beam := switch.get("beam"):
-        note = (
-            f"{beam['landed_share']:.0%} of it has landed at {show(beam['hold_V'])} V, {beam['landed_at_release']:.1%} "
-            "before it lets go"
-        )
-        steps.append(("geometry", "curves of the pad, electrode bends", beam["release_V"], note))
-    lines, before = [], None
-    for cause, model, release, note in steps:
-        change = "–" if before is None or release is None else f"{release - before:+.2f}".replace("-", "−")
-        volts = "–" if release is None else "sticks" if release == 0 else show(release)
-        lines.append((model, volts, cause, change, note))
-        before = release
-    return lines
-
-
 def _lines(switch: dict) -> list[tuple[str, str]]:
     lines = [
         ("cells on the electrode", show(switch["cells_of_pad"])),
@@ -154,6 +110,18 @@ def _lines(switch: dict) -> list[tuple[str, str]]:
         ("largest net adhesion on opening (kPa), median and 5 to 95 %", spread("deepest_net_kPa")),
         ("release (V), 0 where it sticks, median and 5 to 95 %", spread("release_V")),
         ("share of resampled pads that stick", f"{stuck['value']:.2f} [{stuck['low']:.2f}, {stuck['high']:.2f}]"),
+        *_bending(switch["beam"]),
+    ]
+
+
+def _bending(beam: dict | None) -> list[tuple[str, str]]:
+    """The electrode that bends, at central inputs."""
+    if beam is None:
+        return []
+    shares = f"{beam['landed_share']:.0%}; {beam['landed_at_release']:.1%}"
+    return [
+        ("release of the electrode that bends (V)", "sticks" if beam["stuck"] else show(beam["release_V"])),
+        ("share of it that has landed: while held; before it lets go", shares),
     ]
 
 
