@@ -8,10 +8,10 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import input_table
 from mesoscale.law.branches import laws_of
 from mesoscale.law.compact import Law, force, pressure
+from mesoscale.scan_checks.pressing import contacting_heights
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, LawSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.measurements.loading import load_scan
-from mesoscale.topography.pressing import contacting_heights
 from mesoscale.topography.summary import measure_roughness
 from mesoscale.uncertainty.runs import MonteCarlo, monte_carlo
 

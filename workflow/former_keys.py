@@ -38,6 +38,20 @@ FORMER_KEYS: dict[str, str] = {
     },
     # elastic
     # topography
+    **{
+        f"topography.{key}": "no longer a setting, delete it: synthetic scans always have this surface and instrument"
+        for key in (
+            *("synthetic.seed", "synthetic.small_length_nm", "synthetic.q0", "synthetic.q1", "synthetic.slope"),
+            *("synthetic.rms_nm", "synthetic.rms_variation", "synthetic.tip_radius_nm", "synthetic.noise_nm"),
+            *("synthetic.line_noise_nm", "synthetic.tilt_deg", "synthetic.drift_nm", "synthetic.step_nm"),
+        )
+    },
+    **{
+        f"topography.{key}": "no longer a setting, delete it: a fixed number of the analysis (docs/topography.md)"
+        for key in ("spike_threshold", "sections", "section_fraction", "window_flat", "confidence", "scans_per_job")
+    },
+    "topography.study_repeats": "no longer a setting, delete it: the accuracy study takes three surfaces",
+    "topography.study_sets": "no longer a setting, delete it: python -m evidence topography.recovery",
     # contact
     "contact.convention": "renamed, write contact.reading.convention",
     "contact.prefactor": "renamed, write contact.reading.prefactor",

@@ -147,7 +147,7 @@ def campaign(folder: Path, places: list[Path], seed: int) -> Iterator[Attack]:
     for path in [*given, *made_files(folder / "made")]:
         content = path.read_bytes()
         instruments = (InstrumentSettings(files="*", unit="um"),) if path.name in WITHOUT_UNIT else ()
-        settings = TopographySettings(sections=4, channel=CHANNELS.get(path.name), instruments=instruments)
+        settings = TopographySettings(channel=CHANNELS.get(path.name), instruments=instruments)
         for kind, damage in DAMAGES.items():
             rng = random.Random(zlib.crc32(f"{seed} {path.name} {kind}".encode()))
             target = folder / f"damaged_{path.name}"

@@ -10,9 +10,17 @@ from mesoscale.topography.description.trusted_range import TrustedSpectrum, trus
 from mesoscale.topography.measurements.cleaning import Scan, clean, form_share
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile, clean_profile
-from mesoscale.topography.spectrum import Spectrum, autocorrelation, profile_spectrum, radial_spectrum
+from mesoscale.topography.spectrum import (
+    FLAT_SHARE,
+    HANN_SECTIONS,
+    SECTION_SIDE,
+    SECTIONS,
+    Spectrum,
+    autocorrelation,
+    profile_spectrum,
+    radial_spectrum,
+)
 
-HANN_SECTIONS = 25  # Hann-windowed sections overlap more than flat ones; more than this adds nothing
 THUMBNAIL = 256  # pixels per side of the picture of a scan
 
 
@@ -45,12 +53,16 @@ def analyse_scan(scan: Scan, settings: TopographySettings) -> ScanAnalysis:
     """Clean a scan and compute its spectra."""
     cleaned = clean(scan, settings)
     heights, lengths = cleaned.heights_nm, cleaned.lengths_nm
-    sections, fraction = settings.sections, settings.section_fraction
-    spectrum = radial_spectrum(heights, lengths, min(sections, HANN_SECTIONS), fraction, flat=0.0, skip_lines=True)
-    flat = radial_spectrum(heights, lengths, sections, fraction, settings.window_flat)
+    spectrum = hann_spectrum(cleaned)
+    flat = radial_spectrum(heights, lengths, SECTIONS, SECTION_SIDE, FLAT_SHARE)
     profile_q, profile_psd = profile_spectrum(heights, lengths)
     lag, correlation = autocorrelation(heights, lengths)
     return ScanAnalysis(cleaned, scan.rms_nm, spectrum, flat, profile_q, profile_psd, lag, correlation)
+
+
+def hann_spectrum(cleaned: Scan, sections: int = HANN_SECTIONS, flat: float = 0.0) -> Spectrum:
+    """The spectrum of a cleaned scan that the fits use, without what line offsets disturb."""
+    return radial_spectrum(cleaned.heights_nm, cleaned.lengths_nm, sections, SECTION_SIDE, flat, skip_lines=True)
 
 
 def trusted(name: str, spectrum: Spectrum, rms_nm: float, settings: TopographySettings) -> TrustedSpectrum:

@@ -78,7 +78,7 @@ def pool(
         for name, data in arrays.items()
         if not is_profile(attributes[name]) and np.ptp(data["heights"]) > 0
     ]
-    pairs = overlaps(images, settings.confidence)
+    pairs = overlaps(images)
     if settings.scans:
         refuse_different_films(pairs)
     quantiles = {name: data["quantiles"] for name, data in arrays.items() if "quantiles" in data}
@@ -116,7 +116,7 @@ def parameters_of(
     if error > 0:
         topography = analyse(spectra, settings)
     topography = with_radius_error(topography, spectra, settings)
-    return with_lift_error(topography, error, settings), spectra, error
+    return with_lift_error(topography, error), spectra, error
 
 
 def _disagreements(pairs: Sequence[Overlap], one: OneSpectrum | None) -> list[str]:
@@ -150,7 +150,7 @@ def result_curves(
         groups["pooled_flat"] = pooled_curve(flat)
     groups["fits"] = dict(fit_curves(pooled.topography, lowest, typical))
     if pooled.one is not None and settings.scans:
-        low, high = pooled.one.band(settings.confidence)
+        low, high = pooled.one.band()
         curves = {"q": pooled.one.q, "psd": pooled.one.psd, "band_low": low, "band_high": high}
         curves["measurements"] = pooled.one.count
         measured = pooled.one.q >= pooled.one.first

@@ -11,6 +11,9 @@ import numpy as np
 import scipy.fft
 
 FLOOR = 1e-300  # keeps logarithms of empty spectra finite
+# overlapping sections of a scan, their side over that of the scan, flat share of their window: the paper's, section 4.2
+SECTIONS, SECTION_SIDE, FLAT_SHARE = 100, 0.75, 0.99
+HANN_SECTIONS = 25  # Hann-windowed sections overlap more than flat ones; more than this adds nothing
 
 
 @dataclass(frozen=True)
@@ -93,7 +96,7 @@ def radial_spectrum(
     xs, ys = section_starts(nx, mx, per_side), section_starts(ny, my, per_side)
     wx, wy = flat_window(mx, flat), flat_window(my, flat)
     window = np.outer(wx, wy).astype(np.float32)
-    data = np.ascontiguousarray(heights, dtype=np.float32)  # 7 digits; spectra span fewer (docs/topography.md)
+    data = np.ascontiguousarray(heights, dtype=np.float32)  # 7 digits; spectra span fewer
     total = np.zeros((mx, my // 2 + 1))
     for x in xs:
         for y in ys:

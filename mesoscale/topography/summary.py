@@ -9,6 +9,7 @@ from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description.choice import DESCRIPTIONS
+from mesoscale.topography.description.confidence import CONFIDENCE
 from mesoscale.topography.description.end import cutoff_row, trusted_end
 from mesoscale.topography.description.parameters import Topography, analyse, inputs
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
@@ -97,7 +98,7 @@ def parameters(
         "evidence": list(pooled.choice.evidence),
     }
     content["trusted_end"] = trusted_end(pooled.spectra)
-    content["one_spectrum"] = _one(pooled, settings)
+    content["one_spectrum"] = _one(pooled)
     content["surface"] = pooled.surface
     content["inputs"] = pooled.rows if passed else {}
     content["gate"] = {"passed": passed, "reasons": [doubt.text for doubt in stopping]}
@@ -105,7 +106,7 @@ def parameters(
     return content
 
 
-def _one(pooled: Pooled, settings: TopographySettings) -> dict[str, Any] | None:
+def _one(pooled: Pooled) -> dict[str, Any] | None:
     one = pooled.one
     if one is None:
         return None
@@ -114,7 +115,7 @@ def _one(pooled: Pooled, settings: TopographySettings) -> dict[str, Any] | None:
         "to_q": float(one.q[-1]),
         "place_sd": one.place_sd,
         "measurements": list(one.names),
-        **one.statistics(settings.confidence),
+        **one.statistics(),
         "overlaps": [
             {
                 "first": pair.first,
@@ -148,7 +149,7 @@ def eq9_parameters(
         "convention": settings.convention,
         "method": settings.method,
         "ranges": settings.ranges,
-        "confidence": settings.confidence,
+        "confidence": CONFIDENCE,
         "tip_radius_nm": settings.tip_radius_nm,
         "estimates": {
             name: {**estimate.plain(), "unit": UNITS[name]} for name, estimate in topography.estimates.items()

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.fft
+from pydantic import Field
 
 from mesoscale.settings import SyntheticScanSettings
 from mesoscale.topography.measurements.cleaning import Scan
@@ -16,6 +17,24 @@ ALIASES = 12  # images of the spectrum folded back by coarse pixels
 TIP_STEP_NM = 5.0  # the tip meets the surface on pixels this fine, or twice as fine as the scan's
 
 
+class ScanSet(SyntheticScanSettings):
+    """A set of synthetic scans: what a scene says of them, and what is fixed, the surface and the artefacts."""
+
+    seed: int = 1
+    small_length_nm: float = 1000.0
+    q0: float = Field(default=0.025, description="1/nm, the middle of the paper's range")
+    q1: float = Field(default=3.2, description="1/nm, end of the power law")
+    slope: float = Field(default=2.84, description="C ~ q^-slope, the paper's H of 0.92 as 2H+1")
+    rms_nm: float = Field(default=6.0, description="of a typical place")
+    rms_variation: float = Field(default=0.4, description="standard deviation of ln RMS; the paper has 1.8 to 14 nm")
+    tip_radius_nm: float = Field(default=5.0, description="of a paraboloid")
+    noise_nm: float = Field(default=0.03, description="white, of each pixel")
+    line_noise_nm: float = Field(default=0.3, description="random offset of each scan line")
+    tilt_deg: float = Field(default=0.5, description="largest, of sample to scanner")
+    drift_nm: float = Field(default=5.0, description="slow and vertical, over a scan")
+    step_nm: float = Field(default=0.01, description="height of one digital step")
+
+
 @dataclass(frozen=True)
 class SyntheticScan:
     """A synthetic scan and the truth behind it."""
@@ -24,7 +43,7 @@ class SyntheticScan:
     truth: RoughSpectrum
 
 
-def synthetic_scans(settings: SyntheticScanSettings) -> Iterator[SyntheticScan]:
+def synthetic_scans(settings: ScanSet) -> Iterator[SyntheticScan]:
     """The scans of a set, small ones first; scan k is the same whatever the number of scans."""
     for size, count, length in (
         ("small", settings.small_scans, settings.small_length_nm),
@@ -77,7 +96,7 @@ def _folded_psd(truth: RoughSpectrum, qx: np.ndarray, qy: np.ndarray, sampling: 
 def measure(
     surface: np.ndarray,
     length_nm: float,
-    settings: SyntheticScanSettings,
+    settings: ScanSet,
     rng: np.random.Generator,
     name: str,
 ) -> Scan:

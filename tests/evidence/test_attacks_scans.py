@@ -8,7 +8,7 @@ import pytest
 from evidence.attacks.scans import DAMAGES, judge, made_files
 from mesoscale.settings import TopographySettings
 
-SETTINGS = TopographySettings(sections=1)
+SETTINGS = TopographySettings()
 
 
 @pytest.fixture(scope="module")

@@ -372,10 +372,6 @@ def _topography(root: Path) -> None:
     }
     scan = {"name": "small_01", "rms_heights_nm": 2.9, "rms_spectrum_nm": 3.1, "true_rms_nm": 3.0}
     content = {"synthetic": True, "convention": "areal", "estimates": estimates, "truth": truth, "scans": [scan]}
-    row = {"set": 0, "method": "likelihood"}
-    for name, v in (("q0", 0.02), ("slope", 2.9), ("rms", 3.0)):
-        row.update({f"{name}_true": v, name: 1.01 * v, f"{name}_low": 0.9 * v, f"{name}_high": 1.1 * v})
-    _write(root / "topography/recovery.csv", [row])
     write_json(root / "topography/parameters.json", {**content, "gate": {"passed": True, "reasons": []}}, PROVENANCE)
 
 

@@ -6,6 +6,7 @@ import pytest
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import write_gwy
 
+PER_JOB = 6  # scans that one job analyses
 MATERIAL = """
 inputs:
   e_star: {origin: literature, distribution: normal, values: [91, 3.8], source: test}
@@ -16,7 +17,7 @@ inputs:
 def scene(folder, *scans, **topography):
     """A scene whose roughness comes from these scans."""
     path = folder / "mine.yaml"
-    keys = {"scans": f"[{', '.join(scans)}]", "scans_per_job": 1, **topography}
+    keys = {"scans": f"[{', '.join(scans)}]", **topography}
     path.write_text("topography: {" + ", ".join(f"{key}: {value}" for key, value in keys.items()) + "}" + MATERIAL)
     return str(path)
 
@@ -35,12 +36,14 @@ def rough(seed=0, pixels=64):
 
 @pytest.fixture(scope="module")
 def refused(make_workflow, tmp_path_factory):
-    """One run over one good scan and one of each bad kind, each in a job of its own."""
+    """One run over good scans and one of each bad kind, each of these in a job of its own."""
     from gwyfile.objects import GwyContainer, GwyDataField
 
     folder = tmp_path_factory.mktemp("bad_scans")
-    good = folder / "good.gwy"
-    write_gwy(good, Scan(rough(), (1000.0, 1000.0), "good"))
+    fillers = [folder / f"good_{k}.gwy" for k in range(PER_JOB)]
+    for path in fillers:
+        write_gwy(path, Scan(rough(), (1000.0, 1000.0), "good"))
+    good = fillers[0]
     (folder / "unreadable.gwy").write_bytes(good.read_bytes()[:3000])
     np.savetxt(folder / "sizeless.txt", rough())
     both = GwyContainer()
@@ -48,7 +51,11 @@ def refused(make_workflow, tmp_path_factory):
         both[f"/{number}/data/title"] = title
         both[f"/{number}/data"] = GwyDataField(rough() * 1e-9, xreal=1e-6, yreal=1e-6, si_unit_xy="m", si_unit_z="m")
     both.tofile(str(folder / "channels.gwy"))
-    names = ("good.gwy", "unreadable.gwy", "sizeless.txt", "channels.gwy")
+    names = [path.name for path in fillers]
+    for bad in ("unreadable.gwy", "sizeless.txt", "channels.gwy"):
+        names += [bad, *(f"{bad}_{k}.gwy" for k in range(1, PER_JOB))]
+        for name in names[1 - PER_JOB :]:
+            (folder / name).write_bytes(good.read_bytes())
     workflow = make_workflow(folder)
     done = workflow.run(scene(folder, *names), "topography", options=("--keep-going",))
     return done, folder

@@ -15,9 +15,8 @@ def scan_files():
 
 
 SCAN_FILES = scan_files() if needed("topography") or not TOPOGRAPHY.scans else list(TOPOGRAPHY.scans)
-SCAN_CHUNKS = [
-    SCAN_FILES[k : k + TOPOGRAPHY.scans_per_job] for k in range(0, len(SCAN_FILES), TOPOGRAPHY.scans_per_job)
-]
+SCANS_PER_JOB = 6  # a start takes as long as the analysis of two
+SCAN_CHUNKS = [SCAN_FILES[k : k + SCANS_PER_JOB] for k in range(0, len(SCAN_FILES), SCANS_PER_JOB)]
 
 # what jobs that make random surfaces need where the surface is measured: its description
 SURFACE = {"topography": f"{RESULTS}/topography/parameters.json"} if "topography" in SCENE.inputs.origins() else {}
@@ -62,7 +61,7 @@ rule analyse_scans:
         f"{RESULTS}/logs/analyse_scans_{{chunk}}.log",
     params:
         settings=settings("topography"),
-        first=lambda wildcards: int(wildcards.chunk) * TOPOGRAPHY.scans_per_job,
+        first=lambda wildcards: int(wildcards.chunk) * SCANS_PER_JOB,
     message:
         "read AFM scans and compute their spectra (part {wildcards.chunk})"
     script:
@@ -164,8 +163,7 @@ rule press_scans:
 
 
 if needed("topography"):
-    ACCURACY += [f"{RESULTS}/accuracy/topography.csv", f"{RESULTS}/topography/recovery.csv"]
-    STABILITY.append(f"{RESULTS}/stability/topography.csv")
+    ACCURACY.append(f"{RESULTS}/accuracy/topography.csv")
 
 
 rule measure_topography_accuracy:
@@ -179,48 +177,3 @@ rule measure_topography_accuracy:
         "measure error against run time of the scan analysis"
     script:
         "../scripts/measure_topography_accuracy.py"
-
-
-SETS_PER_JOB = 5  # an interrupted study loses no more than these
-
-
-rule recover_topography:
-    output:
-        temp(f"{RESULTS}/topography/recovery/sets_{{part}}.csv"),
-    log:
-        f"{RESULTS}/logs/recover_topography_{{part}}.log",
-    params:
-        settings=settings("topography"),
-        first=lambda wildcards: int(wildcards.part) * SETS_PER_JOB,
-        sets=SETS_PER_JOB,
-    message:
-        "recover known truth from synthetic scans with artefacts (part {wildcards.part})"
-    script:
-        "../scripts/recover_topography.py"
-
-
-rule collect_topography_recovery:
-    input:
-        expand(
-            f"{RESULTS}/topography/recovery/sets_{{part}}.csv",
-            part=[f"{k:03d}" for k in range(-(-TOPOGRAPHY.study_sets // SETS_PER_JOB))],
-        ),
-    output:
-        f"{RESULTS}/topography/recovery.csv",
-    log:
-        f"{RESULTS}/logs/collect_topography_recovery.log",
-    message:
-        "summarise how well known truth is recovered"
-    script:
-        "../scripts/collect_topography_recovery.py"
-
-
-rule check_topography_stability:
-    output:
-        f"{RESULTS}/stability/topography.csv",
-    log:
-        f"{RESULTS}/logs/check_topography_stability.log",
-    message:
-        "check the scan analysis on hard cases"
-    script:
-        "../scripts/check_topography_stability.py"

@@ -1,19 +1,6 @@
-"""Tables of the topography stage's study."""
+"""Tables of the topography stage."""
 
-from workflow.schemas.table import Column, Table, boolean, integer, number, text
-
-
-def _recovered(name: str, unit: str, error: str) -> tuple[Column, ...]:
-    return (
-        number(f"{name}_true", unit, f"{name} that the scans were made with"),
-        number(name, unit, f"estimate of {name}", empty=True),
-        number(f"{name}_low", unit, "lower end of its interval", empty=True),
-        number(f"{name}_high", unit, "upper end of its interval", empty=True),
-        number(f"{name}_error", unit if error == "absolute" else "1", f"{error} error of the estimate", empty=True),
-        boolean(f"{name}_within", "whether the error is within its tolerance", empty=True),
-        boolean(f"{name}_covered", "whether the interval holds the truth", empty=True),
-    )
-
+from workflow.schemas.table import Table, boolean, number, text
 
 TABLES = (
     Table(
@@ -45,20 +32,6 @@ TABLES = (
             number("all", "its unit", "mean of surfaces that end at end_q, of the same noise", empty=True),
             number("shift", "1", "relative change by the unseen waves", empty=True),
             number("share", "1", "share of the variance, beside that between surfaces", empty=True),
-        ),
-    ),
-    Table(
-        ("topography/recovery.csv", "topography/recovery/sets_*.csv"),
-        "One set of synthetic scans, analysed by one method.",
-        (
-            integer("set", "number of the set"),
-            text("method", "likelihood or lines"),
-            number("tip_radius_nm", "nm", "radius of the tip that scanned"),
-            number("told_tip_radius_nm", "nm", "radius that the analysis was told"),
-            text("gate", "why the result fails its gate", empty=True),
-            *_recovered("q0", "1/nm", "relative"),
-            *_recovered("slope", "1", "absolute"),
-            *_recovered("rms", "nm", "relative"),
         ),
     ),
 )

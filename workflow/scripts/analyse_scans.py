@@ -10,11 +10,11 @@ from mesoscale.settings import TopographySettings
 from mesoscale.topography.measurements.loading import load_measurements
 from mesoscale.topography.records import DATASETS, record
 from workflow.checksums import file_checksum
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import Dataset, write_h5
 
 with job(snakemake) as run:
-    settings = TopographySettings(**snakemake.params.settings)
+    settings = settings_from_job(TopographySettings, snakemake.params.settings)
     groups, attributes = {}, {}
     files = list(snakemake.input.scans)
     for number, path in enumerate(files):

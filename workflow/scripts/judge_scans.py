@@ -8,16 +8,16 @@ from pathlib import Path
 
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
-from mesoscale.law.judged_scans import COLUMNS, judge
+from mesoscale.scan_checks.judged import judge
+from mesoscale.scan_checks.pressing import has_square_pixels
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.measurements.loading import load_measurements
-from mesoscale.topography.pressing import has_square_pixels
 from mesoscale.topography.records import trusted_record
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import load_csv, load_h5, load_json, write_csv
 
 with job(snakemake) as run:
-    settings = TopographySettings(**snakemake.params.settings)
+    settings = settings_from_job(TopographySettings, snakemake.params.settings)
     spectra = []
     for path in snakemake.input.chunks:
         groups, _, attributes = load_h5(path)
@@ -28,9 +28,9 @@ with job(snakemake) as run:
         scans += [item.data for item in measured if has_square_pixels(item.data)]
     name = load_json(snakemake.input.parameters)["description"]["name"]
     values = medians(load_csv(snakemake.input.inputs))
-    inputs, contact = contact_of(values, ContactSettings(**snakemake.params.contact))
+    inputs, contact = contact_of(values, settings_from_job(ContactSettings, snakemake.params.contact))
     rows = []
     for row in judge(scans, spectra, name, inputs, settings, contact):
         rows.append(row)
         run.progress(len(rows) / (5 * len(scans)), row["scan"])
-    write_csv(snakemake.output[0], rows, COLUMNS)
+    write_csv(snakemake.output[0], rows)

@@ -4,12 +4,11 @@ In: nothing (synthetic scans with known truth).  Out: accuracy/topography.csv.
 """
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.studies.accuracy import accuracy_points
+from mesoscale.topography.accuracy import accuracy_points
 from workflow.checks import accuracy_rows
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import write_csv
 
 with job(snakemake) as run:
-    settings = TopographySettings(**snakemake.params.settings)
-    points = accuracy_points(settings.synthetic, settings, settings.study_repeats, run.progress)
-    write_csv(snakemake.output[0], accuracy_rows("topography", points))
+    settings = settings_from_job(TopographySettings, snakemake.params.settings)
+    write_csv(snakemake.output[0], accuracy_rows("topography", accuracy_points(settings, run.progress)))

@@ -10,11 +10,11 @@ from mesoscale.topography.pooling import pool, result_curves
 from mesoscale.topography.records import DATASETS, KEPT
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.summary import parameters, scan_rows
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import Dataset, load_h5, load_json, write_h5, write_json
 
 with job(snakemake) as run:
-    settings = TopographySettings(**snakemake.params.settings)
+    settings = settings_from_job(TopographySettings, snakemake.params.settings)
     arrays, attributes = {}, {}
     for path in snakemake.input.chunks:
         groups, _, group_attributes = load_h5(path)

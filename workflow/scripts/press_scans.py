@@ -12,17 +12,17 @@ from pathlib import Path
 from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
-from mesoscale.law.pressed_scans import press_scan
+from mesoscale.scan_checks.pressing import press_scan
 from mesoscale.settings import LawSettings, TopographySettings
 from mesoscale.topography.measurements.loading import load_scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from workflow.contact_settings import contact_settings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import Dataset, load_csv, load_json, write_csv, write_h5
 
 with job(snakemake) as run:
-    settings = TopographySettings(**snakemake.params.settings)
-    law = LawSettings(**snakemake.params.law)
+    settings = settings_from_job(TopographySettings, snakemake.params.settings)
+    law = settings_from_job(LawSettings, snakemake.params.law)
     fitted = load_json(snakemake.input.parameters)["likelihood"]
     spectrum = RoughSpectrum(fitted["plateau_nm4"], fitted["q0"], fitted["slope"], math.inf)
     central = medians(load_csv(snakemake.input.inputs))

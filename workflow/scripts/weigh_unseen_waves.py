@@ -6,10 +6,10 @@ Out: topography/unseen.csv (nm, nm^2, GPa, nN).
 
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import from_rows
-from mesoscale.law.unseen_waves import COLUMNS, unseen_shares
+from mesoscale.scan_checks.unseen import unseen_shares
 from mesoscale.settings import LawSettings
 from workflow.contact_settings import contact_settings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import load_csv, load_json, write_csv
 
 with job(snakemake) as run:
@@ -20,5 +20,5 @@ with job(snakemake) as run:
             values["q1"] = float(row.distribution.quantile(0.99))
     inputs, contact = contact_of(values, contact_settings(snakemake.params.contact, snakemake))
     seen = float(load_json(snakemake.input.topography)["trusted_end"]["interval"][0])
-    rows = list(unseen_shares(inputs, contact, LawSettings(**snakemake.params.law), seen))
-    write_csv(snakemake.output[0], rows, COLUMNS)
+    rows = list(unseen_shares(inputs, contact, settings_from_job(LawSettings, snakemake.params.law), seen))
+    write_csv(snakemake.output[0], rows)

@@ -7,12 +7,12 @@ from pathlib import Path
 
 from mesoscale.settings import SyntheticScanSettings
 from mesoscale.topography.measurements.loading import write_gwy
-from mesoscale.topography.synthetic_scans import synthetic_scans
-from workflow.job import job
+from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
+from workflow.job import job, settings_from_job
 from workflow.results import atomic_path, write_json
 
 with job(snakemake) as run:
-    settings = SyntheticScanSettings(**snakemake.params.settings)
+    settings = ScanSet(**settings_from_job(SyntheticScanSettings, snakemake.params.settings).model_dump())
     truths = {}
     for number, (path, item) in enumerate(zip(snakemake.output.scans, synthetic_scans(settings), strict=True)):
         with atomic_path(path) as temporary:

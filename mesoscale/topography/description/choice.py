@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.settings import TopographySettings
+from mesoscale.topography.description.confidence import QUANTILES, REACH
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.heights import HeightTest, common_heights, not_gaussian
 from mesoscale.topography.description.one_spectrum import OneSpectrum
@@ -100,11 +101,10 @@ def surface_of(
         return {}, inputs(topography, settings)
     low = 2 * np.pi / cell_nm
     drawn = one.draws(places=settings.ranges == "scatter")
-    ends = [(1 - settings.confidence) / 2, (1 + settings.confidence) / 2]
     q, psd = _table(one, low)
     rms = np.sqrt(one.moment(0, low=low, psd=drawn) + _tail(one, low))
     pivot_q0, pivot_hurst = _nearest(topography, one, settings)
-    bend_q0, bend_hurst = _bends(one, pivot_q0, drawn, settings)
+    bend_q0, bend_hurst = _bends(one, pivot_q0, drawn)
     hurst = np.clip([pivot_hurst - bend_hurst, pivot_hurst + bend_hurst], *HURST_ENDS)
     surface: dict[str, Any] = {
         "spectrum": {"q": q.tolist(), "psd": psd.tolist(), "q0": pivot_q0, "hurst": pivot_hurst},
@@ -115,7 +115,7 @@ def surface_of(
     ranges = {
         "q0": [pivot_q0 * np.exp(-bend_q0), pivot_q0 * np.exp(bend_q0)],
         "hurst": hurst,
-        "rms": np.quantile(rms, ends),
+        "rms": np.quantile(rms, QUANTILES),
     }
     rows = {name: {"distribution": "uniform", "a": float(a), "b": float(b)} for name, (a, b) in ranges.items()}
     return surface, rows
@@ -162,19 +162,16 @@ def _nearest(topography: Topography, one: OneSpectrum, settings: TopographySetti
     return float(np.clip(fitted.q0, one.q[0], one.q[-1])), hurst
 
 
-def _bends(one: OneSpectrum, q0: float, drawn: np.ndarray, settings: TopographySettings) -> tuple[float, float]:
-    """How far ln q0 and the Hurst exponent may be from the pivot, at the settings' confidence."""
-    from scipy.special import ndtri
-
-    reach = float(ndtri(0.5 + settings.confidence / 2))
+def _bends(one: OneSpectrum, q0: float, drawn: np.ndarray) -> tuple[float, float]:
+    """How far ln q0 and the Hurst exponent may be from the pivot, at the intervals' level."""
     logs, log_q = np.log(drawn), np.log(one.q)
     long, short = one.q <= q0, one.q >= q0
     slopes = np.polyfit(log_q[short], logs[:, short].T, 1)[0] if short.sum() > 2 else np.array([-3.0, -3.4])
-    bend_hurst = max(reach * float(np.std(slopes)) / 2, 0.02)
+    bend_hurst = max(REACH * float(np.std(slopes)) / 2, 0.02)
     fall = max(abs(float(np.mean(slopes))), 1.0)
     if long.sum() > 1 and short.sum() > 2:
         step = logs[:, short].mean(axis=1) - logs[:, long].mean(axis=1)
-        bend_q0 = reach * float(np.std(step)) / fall
+        bend_q0 = REACH * float(np.std(step)) / fall
     else:
         bend_q0 = 0.1
     return float(np.clip(bend_q0, SLOWEST_BEND, FASTEST_BEND)), bend_hurst

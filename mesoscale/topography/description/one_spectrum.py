@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
+from mesoscale.topography.description.confidence import QUANTILES, REACH
 from mesoscale.topography.description.likelihood import DISCREPANCY
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, with_ends
 
@@ -96,9 +97,9 @@ class OneSpectrum:
         """Smallest wave vector that is measured, 1/nm."""
         return float(self.q[self.count > 0][0])
 
-    def band(self, confidence: float) -> tuple[np.ndarray, np.ndarray]:
+    def band(self) -> tuple[np.ndarray, np.ndarray]:
         """(m,) lower and upper end of C of the typical place, nm^4."""
-        reach = _quantile(confidence) * self.log_sd
+        reach = REACH * self.log_sd
         return np.exp(self.log_psd - reach), np.exp(self.log_psd + reach)
 
     def draws(self, places: bool, count: int = DRAWS) -> np.ndarray:
@@ -150,17 +151,16 @@ class OneSpectrum:
         below = 2 * np.pi * psd[..., 0] * fine[0] ** (power + 2) / (power + 2) if low == 0 else 0.0
         return np.asarray(np.trapezoid(2 * np.pi * fine ** (power + 1) * values, fine, axis=-1) + below)
 
-    def statistics(self, confidence: float) -> dict[str, dict[str, Any]]:
+    def statistics(self) -> dict[str, dict[str, Any]]:
         """RMS height, slope and curvature of all waves that are measured, with intervals of the typical place.
 
         Curvature is half the RMS Laplacian, the mean of both principal ones.
         """
-        ends = [(1 - confidence) / 2, (1 + confidence) / 2]
         drawn, first = self.draws(places=False), self.first
         result = {}
         for name, power, factor, unit in (("rms", 0, 1.0, "nm"), ("slope", 2, 1.0, "1"), ("curvature", 4, 0.5, "1/nm")):
             value = factor * float(np.sqrt(self.moment(power, first)))
-            low, high = np.quantile(factor * np.sqrt(self.moment(power, first, psd=drawn)), ends)
+            low, high = np.quantile(factor * np.sqrt(self.moment(power, first, psd=drawn)), QUANTILES)
             result[f"rms_{name}" if name != "rms" else "rms_height"] = {
                 "value": value,
                 "interval": [float(low), float(high)],
@@ -253,7 +253,7 @@ def _on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     return numbers, level + slope * (wanted - centre), 1 / worth + DISCREPANCY**2 + tip**2
 
 
-def overlaps(spectra: Sequence[TrustedSpectrum], confidence: float = 0.9) -> list[Overlap]:
+def overlaps(spectra: Sequence[TrustedSpectrum]) -> list[Overlap]:
     """Every pair of measurements of different size or kind that sees common bands, the largest shared range first."""
     bands = [(item, *_on_bands(item)) for item in spectra]
     pairs = []
@@ -267,7 +267,7 @@ def overlaps(spectra: Sequence[TrustedSpectrum], confidence: float = 0.9) -> lis
             # errors of neighbouring bands go together: no more certain than a typical band
             spread = float(np.sqrt(1 / weight.mean()))
             edges = 10 ** (np.array([common[0], common[-1] + 1]) / BANDS_PER_DECADE)
-            expected = float(np.exp(_quantile(confidence) * spread))
+            expected = float(np.exp(REACH * spread))
             pairs.append(Overlap(first.name, second.name, edges[0], edges[1], float(np.exp(difference)), expected))
     return sorted(pairs, key=lambda item: item.low / item.high)
 
@@ -286,9 +286,3 @@ def refuse_different_films(pairs: Sequence[Overlap]) -> None:
             f"{worst.high:.2g} /nm their spectra differ by a factor of {max(worst.ratio, 1 / worst.ratio):.3g}; "
             f"accepted is {DIFFERENT_FILMS:g}; give the files of one film, or correct a unit or a height scale"
         )
-
-
-def _quantile(confidence: float) -> float:
-    from scipy.special import ndtri
-
-    return float(ndtri(0.5 + confidence / 2))

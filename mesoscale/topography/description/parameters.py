@@ -8,6 +8,7 @@ import numpy as np
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description import likelihood, line_fits
+from mesoscale.topography.description.confidence import REACH, student_reach
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.likelihood import LikelihoodFit
 from mesoscale.topography.description.line_fits import LineFit
@@ -148,7 +149,7 @@ def _likelihood_estimates(
 ) -> dict[str, Estimate]:
     centre = np.array([np.log(fitted.plateau), np.log(fitted.q0), fitted.slope])
     error = np.minimum(np.sqrt(np.diag(fitted.covariance)), 10.0)  # unidentified: a factor of e^10 is wide enough
-    reach = _normal_quantile(settings.confidence)
+    reach = REACH
     q0_interval = likelihood.q0_interval(spectra, fitted, reach)
     slope_interval = tuple(centre[2] + reach * error[2] * np.array([-1, 1]))
 
@@ -160,7 +161,7 @@ def _likelihood_estimates(
     rms_error = min(float(np.sqrt(gradient @ fitted.covariance @ gradient)), 10.0)
     rms = float(np.exp(log_rms(centre)))
     if fitted.amplitude_sd > 0:  # the typical place is then the mean of few: Student's distribution
-        reach = _student_quantile(settings.confidence, max(len(fitted.amplitudes) - 1, 1))
+        reach = student_reach(max(len(fitted.amplitudes) - 1, 1))
     rms_interval = tuple(rms * np.exp(reach * rms_error * np.array([-1, 1])))
     own_q0, own_slope = likelihood.single_scans(spectra, fitted)
     own_rms = fitted.scan_rms(cutoff)
@@ -187,7 +188,7 @@ def _separate_estimates(
 
     def estimate(values: np.ndarray, errors: np.ndarray, log: bool) -> Estimate:
         middle = float(np.exp(np.mean(np.log(values)))) if log else float(np.mean(values))
-        reach = _normal_quantile(settings.confidence) * errors
+        reach = REACH * errors
         low, high = (values * np.exp(-reach), values * np.exp(reach)) if log else (values - reach, values + reach)
         around = (float(low.min()), float(high.max()))
         return Estimate(middle, around, around)
@@ -219,7 +220,7 @@ def _line_estimates(
     reach = np.zeros(3)  # one scan says nothing about scatter between scans
     if n >= 2:
         freedom = _decisive(np.array(left_out))
-        reach = np.array([_student_quantile(settings.confidence, k) for k in freedom]) * error
+        reach = np.array([student_reach(k) for k in freedom]) * error
     low, high = values - reach, values + reach
     level = np.sqrt(np.array([fitted.plateau_low, fitted.plateau_high]) / fitted.plateau) * fitted.rms(cutoff)
     intervals = [
@@ -273,15 +274,3 @@ def _union(interval: Sequence[float], values: Sequence[float] | np.ndarray) -> t
 
 def _pair(values: Sequence[float]) -> tuple[float, float]:
     return float(values[0]), float(values[1])
-
-
-def _normal_quantile(confidence: float) -> float:
-    from scipy.special import ndtri
-
-    return float(ndtri(0.5 + confidence / 2))
-
-
-def _student_quantile(confidence: float, freedom: float) -> float:
-    from scipy.special import stdtrit
-
-    return float(stdtrit(freedom, 0.5 + confidence / 2))

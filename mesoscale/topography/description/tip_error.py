@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mesoscale.settings import TopographySettings
+from mesoscale.topography.description.confidence import REACH
 from mesoscale.topography.description.parameters import Estimate, Topography, analyse
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, trusted_range
 
@@ -30,7 +31,7 @@ def with_radius_error(
     estimates = {}
     for name, estimate in topography.estimates.items():
         values = [entry[name].value for entry in other if name in entry]
-        estimates[name] = _widened(name, estimate, values, settings.confidence) if len(values) == 2 else estimate
+        estimates[name] = _widened(name, estimate, values) if len(values) == 2 else estimate
     return replace(topography, estimates=estimates)
 
 
@@ -41,12 +42,10 @@ def _with_radius(item: TrustedSpectrum, factor: float) -> TrustedSpectrum:
     return replace(item, tip_radius_nm=radius, high=max(high, 2 * item.low))
 
 
-def _widened(name: str, estimate: Estimate, values: Sequence[float], confidence: float) -> Estimate:
-    from scipy.special import ndtri
-
+def _widened(name: str, estimate: Estimate, values: Sequence[float]) -> Estimate:
     log = name in ("q0", "rms")
     centre, ends, shifted = (np.log(v) if log else np.asarray(v) for v in (estimate.value, estimate.interval, values))
-    error = float(ndtri(0.5 + confidence / 2)) * abs(float(shifted[1] - shifted[0])) / 2 / WIDTH_OF_UNIFORM
+    error = REACH * abs(float(shifted[1] - shifted[0])) / 2 / WIDTH_OF_UNIFORM
     low = centre - np.hypot(centre - ends[0], error)
     high = centre + np.hypot(ends[1] - centre, error)
     interval = (float(np.exp(low)), float(np.exp(high))) if log else (float(low), float(high))

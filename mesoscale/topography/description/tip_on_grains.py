@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mesoscale.settings import TopographySettings
+from mesoscale.topography.description.confidence import REACH
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.likelihood import LikelihoodFit
 from mesoscale.topography.description.parameters import MAX_MISFIT, Estimate, Topography
@@ -36,7 +36,7 @@ LEAST_LIFT_NM = 1e-6
 ROUNDS = 4
 # share of the lift that is found from images, which lose skewness, and what that leaves uncertain (see above)
 FOUND, THEORY_ERROR = 0.85, 0.2
-SLOPE_COVERED = 0.78  # of 23 sets (docs/topography.md, Coverage by kind of measurement)
+SLOPE_COVERED = 0.78  # of 23 sets (python -m evidence topography.coverage)
 CLEAR_LIFT = 0.05  # of ln C; less is not worth a word
 WEIGHT = np.exp(-(Z**2) / 2) / np.sum(np.exp(-(Z**2) / 2))
 SHAPES = np.stack([np.ones_like(Z), Z, Z**2 - 1, Z**3 - 3 * Z])  # Hermite polynomials: tables of few grains are rough
@@ -139,14 +139,12 @@ def _lowered(item: TrustedSpectrum, gain: float) -> TrustedSpectrum:
     return replace(item, spectrum=spectrum, rms_nm=item.rms_nm * float(np.exp(-gain / 2)))
 
 
-def with_lift_error(topography: Topography, error: float, settings: TopographySettings) -> Topography:
+def with_lift_error(topography: Topography, error: float) -> Topography:
     """The same estimates; the interval of the RMS height holds an error of ln C common to all waves."""
-    from scipy.special import ndtri
-
     rms = topography.estimates.get("rms")
     if rms is None or error == 0:
         return topography
-    reach = float(ndtri(0.5 + settings.confidence / 2)) * error / 2
+    reach = REACH * error / 2
     low, high = (np.log(rms.value / rms.interval[0]), np.log(rms.interval[1] / rms.value))
     interval = (rms.value * float(np.exp(-np.hypot(low, reach))), rms.value * float(np.exp(np.hypot(high, reach))))
     scatter = min(interval[0], rms.scatter[0]), max(interval[1], rms.scatter[1])

@@ -10,7 +10,7 @@ import numpy as np
 from mesoscale.topography.spectrum import Spectrum
 
 # dilation lowers C by exp(-a k^b), k = R sqrt(2 pi q^6 C) the tip's radius times the curvature per octave;
-# measured on slopes 2.3-3.8, RMS 3 and 8 nm, tips of 2-10 nm: one curve to 3 % (docs/topography.md)
+# measured on slopes 2.3-3.8, RMS 3 and 8 nm, tips of 2-10 nm: one curve to 3 %
 TIP_BIAS = (0.5, 1.3)
 # beyond k = 0.5 the same comparison (slopes 2.4-4.2, tips of 5-20 nm) gives 0.45 k, to 0.15 at 1.5 and 0.2 at 2.5
 BLUNT_BIAS = 0.45

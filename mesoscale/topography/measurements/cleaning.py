@@ -9,6 +9,7 @@ from mesoscale.checks import MAX_LENGTH_NM, MIN_LENGTH_NM, check_number, checked
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
 
+SPIKE = 12.0  # robust standard deviations from the median of the neighbours, beyond which a pixel is no height
 MAX_CUT_OFF = 0.01  # share of pixels at one end of the heights above which they are no measurement
 
 
@@ -89,10 +90,9 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
     if share > 0:
         heights = fill_missing(heights)
         steps.append(f"filled {int(missing.sum())} missing pixels from their neighbours")
-    if settings.spike_threshold > 0:
-        heights, spikes = without_spikes(heights, settings.spike_threshold)
-        if spikes:
-            steps.append(f"replaced {spikes} spikes by the median of their neighbours")
+    heights, spikes = without_spikes(heights)
+    if spikes:
+        steps.append(f"replaced {spikes} spikes by the median of their neighbours")
     heights -= heights.mean()
     return replace(scan, heights_nm=heights, steps=tuple(steps))
 
@@ -163,7 +163,7 @@ def fill_missing(heights: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(filled), filled, np.nanmean(filled))
 
 
-def without_spikes(heights: np.ndarray, threshold: float) -> tuple[np.ndarray, int]:
+def without_spikes(heights: np.ndarray) -> tuple[np.ndarray, int]:
     """Replace pixels far from the median of their 3 x 3 neighbourhood; returns heights and their number."""
     from scipy.ndimage import median_filter
 
@@ -174,5 +174,5 @@ def without_spikes(heights: np.ndarray, threshold: float) -> tuple[np.ndarray, i
     scale = float(np.quantile(away[::2, ::2], 0.99)) / 2.576
     if scale == 0:
         return heights, 0
-    spikes = away > threshold * scale
+    spikes = away > SPIKE * scale
     return np.where(spikes, local, heights), int(spikes.sum())

@@ -5,15 +5,13 @@ from dataclasses import replace
 import pytest
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.studies.file_cases import FILE_CASES, check_files
-from mesoscale.topography.studies.stability import CASES, TRUTH, check
+from tests.mesoscale.topography.hard_files import FILE_CASES, check_files
+from tests.mesoscale.topography.hard_scans import CASES, TRUTH, check
 
-SLOW = {"4096"}  # a minute; part of `snakemake stability`
 BY_NAME = {case.name: case for case in CASES}
-QUICK = [case for case in CASES if case.name not in SLOW]
 
 
-@pytest.mark.parametrize("case", QUICK, ids=lambda case: case.name)
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_hard_case(case):
     passed, detail = check(case, TopographySettings())
     assert passed, detail

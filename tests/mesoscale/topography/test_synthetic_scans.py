@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from mesoscale.settings import SyntheticScanSettings
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
-from mesoscale.topography.synthetic_scans import dilate, surface_patch, synthetic_scans
+from mesoscale.topography.synthetic_scans import ScanSet, dilate, surface_patch, synthetic_scans
 
-SMALL = SyntheticScanSettings(small_scans=1, large_scans=1, pixels=64)
+SMALL = ScanSet(small_scans=1, large_scans=1, pixels=64)
 
 
 def test_model_spectrum_integrates_to_its_rms():

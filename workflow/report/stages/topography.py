@@ -47,12 +47,6 @@ def describe(results: Results) -> Section | None:
         "What the analysis returns of the synthetic scans' known truth. The interval of the typical RMS holds the "
         "scatter from place to place: it is as wide as so few places make it. Heights miss what levelling took.",
     )
-    section.add(
-        recovered_sets(results),
-        f"Truth and {float(parameters.get('confidence', 0.9)):.0%} intervals of many sets of synthetic scans with "
-        "random truth and artefacts.",
-        wide=True,
-    )
     paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20) by 2H + 1", "rms": "1.82 to 14.17", "slope": "2.84"}
     truth = parameters.get("truth") or {}
     lines = []
@@ -246,28 +240,6 @@ def pressed(results: Results) -> str | None:
             axis.legend()
 
     return draw("pressed", "Closing on the measured scans", plot, (4.2 * len(scans), 3.4), len(scans))
-
-
-def recovered_sets(results: Results) -> str | None:
-    """Truth and estimates of many sets of synthetic scans with random truth and artefacts."""
-    if not results.has("topography/recovery.csv"):
-        return None
-    rows = [row for row in results.csv("topography/recovery.csv") if row["method"] == "likelihood"]
-
-    def plot(*axes):
-        for axis, (name, label) in zip(
-            axes, (("q0", "q₀ (1/nm)"), ("slope", "slope"), ("rms", "RMS (nm)")), strict=True
-        ):
-            have = [row for row in rows if row[name]]
-            true, value, low, high = (
-                np.array([float(row[name + end]) for row in have]) for end in ("_true", "", "_low", "_high")
-            )
-            axis.errorbar(true, value, [value - low, high - value], fmt="o", markersize=2.5, linewidth=0.8, color=BLUE)
-            ends = [true.min(), true.max()]
-            axis.plot(ends, ends, "--", color=INK, linewidth=0.8)
-            axis.set(xlabel=f"true {label}", ylabel=f"found {label}")
-
-    return draw("recovered_sets", "Truth recovered from many sets of scans", plot, (9.0, 3.2), 3)
 
 
 def _thin(heights: np.ndarray, most: int = 128) -> np.ndarray:

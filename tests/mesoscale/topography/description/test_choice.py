@@ -5,7 +5,7 @@ import pytest
 
 from mesoscale.contact.surface import random_surface
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.settings import ContactSettings, SyntheticScanSettings, TopographySettings
+from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.description.heights import slope_ratio
 from mesoscale.topography.height_synthesis import synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan
@@ -15,7 +15,7 @@ from mesoscale.topography.records import record
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.summary import parameters, scan_rows
 from mesoscale.topography.synthesis import synthesize_spectrum
-from mesoscale.topography.synthetic_scans import surface_patch, synthetic_scans
+from mesoscale.topography.synthetic_scans import ScanSet, surface_patch, synthetic_scans
 from tests.mesoscale.topography.test_height_synthesis import SKEWED
 
 SETTINGS = TopographySettings(scans=("a",), line_alignment="none", tip_radius_nm=0)
@@ -48,7 +48,7 @@ def grainy(count=3):
 
 
 def test_a_fractal_gaussian_surface_is_described_by_the_power_law():
-    truth = SyntheticScanSettings(pixels=256, small_scans=3, large_scans=3, large_length_nm=4000.0, rms_variation=0.0)
+    truth = ScanSet(pixels=256, small_scans=3, large_scans=3, large_length_nm=4000.0, rms_variation=0.0)
     settings = SETTINGS.model_copy(update={"tip_radius_nm": 5.0, "line_alignment": "median"})
     pooled, content = described([item.scan for item in synthetic_scans(truth)], settings)
     assert pooled.choice.name == "power_law"

@@ -37,7 +37,7 @@ def test_ranges_that_overlap_give_the_spectrum_over_all_scales():
 def test_moments_are_those_of_the_spectrum():
     one = merge([measured("all", 1e-3, 5.0, modes=1e4)])
     end = RoughSpectrum(TRUTH.plateau, TRUTH.q0, TRUTH.slope, float(one.q[-1]))
-    statistics = one.statistics(0.9)
+    statistics = one.statistics()
     assert statistics["rms_slope"]["value"] == pytest.approx(end.rms_slope, rel=0.05)
     for entry in statistics.values():
         assert entry["interval"][0] < entry["value"] < entry["interval"][1]
@@ -61,7 +61,7 @@ def test_bands_cover_the_truth_as_often_as_they_say():
         rng = np.random.default_rng(seed)
         places = [measured(str(k), 0.01, 0.5, np.exp(0.4 * rng.standard_normal()), rng) for k in range(10)]
         one = merge(places)
-        low, high = one.band(0.9)
+        low, high = one.band()
         inside.append(np.mean((low < TRUTH.psd(one.q)) & (TRUTH.psd(one.q) < high)))
     assert 0.8 < np.mean(inside) <= 1.0
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.special import beta, betainc
 
-from mesoscale.settings import SyntheticScanSettings, TopographySettings
+from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description import likelihood
 from mesoscale.topography.description.parameters import MAX_MISFIT, analyse, inputs
@@ -15,9 +15,9 @@ from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, slope_from_hurst
 from mesoscale.topography.spectrum import Spectrum
-from mesoscale.topography.synthetic_scans import synthetic_scans
+from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
 
-TRUTH = SyntheticScanSettings(pixels=512, small_scans=4, large_scans=2, rms_variation=0.0)
+TRUTH = ScanSet(pixels=512, small_scans=4, large_scans=2, rms_variation=0.0)
 
 
 @cache

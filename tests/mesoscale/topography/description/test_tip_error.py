@@ -1,15 +1,15 @@
 """An error of the tip's radius is part of the intervals."""
 
-from mesoscale.settings import SyntheticScanSettings, TopographySettings
+from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.description.tip_error import with_radius_error
-from mesoscale.topography.synthetic_scans import synthetic_scans
+from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
 
 
 def test_a_radius_told_too_large_leaves_the_truth_inside():
     """A tip of 5 nm told as 6: the slope alone is biased, its interval holds the error of the radius."""
-    truth = SyntheticScanSettings(pixels=512, small_scans=4, large_scans=2, rms_variation=0.0)
+    truth = ScanSet(pixels=512, small_scans=4, large_scans=2, rms_variation=0.0)
     settings = TopographySettings(tip_radius_nm=6.0)
     spectra = [trusted_scan(item.scan, settings) for item in synthetic_scans(truth)]
     plain = analyse(spectra, settings)
@@ -24,7 +24,7 @@ def test_a_radius_told_too_large_leaves_the_truth_inside():
 
 def test_without_a_tip_nothing_changes():
     settings = TopographySettings(tip_radius_nm=0.0)
-    truth = SyntheticScanSettings(pixels=128, small_scans=1, large_scans=1, tip_radius_nm=0.0)
+    truth = ScanSet(pixels=128, small_scans=1, large_scans=1, tip_radius_nm=0.0)
     spectra = [trusted_scan(item.scan, settings) for item in synthetic_scans(truth)]
     plain = analyse(spectra, settings)
     assert with_radius_error(plain, spectra, settings) is plain

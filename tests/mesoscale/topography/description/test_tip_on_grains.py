@@ -71,7 +71,7 @@ def test_taking_the_lift_off_lowers_maps_and_widens_the_rms():
     # waves that the tip takes anyway are lifted less
     trusted = spectra[0].trusted
     assert np.all(np.diff(ratio[trusted][::20]) > 0)
-    wider = with_lift_error(topography, error, SETTINGS).estimates["rms"].interval
+    wider = with_lift_error(topography, error).estimates["rms"].interval
     plain = topography.estimates["rms"].interval
     assert wider[0] < plain[0]
     assert wider[1] > plain[1]

@@ -1,20 +1,25 @@
-"""How often the stated intervals hold the truth: sets of maps, of grainy maps, of line profiles, of both together.
+"""How often do 90 % intervals hold the truth: for maps, grainy maps, line profiles, and maps with lines?
 
-python -m mesoscale.topography.studies.coverage KIND FIRST LAST TABLE adds the rows of sets FIRST .. LAST - 1 of one
-kind to a table (about 5 s a set); without KIND it prints the shares of the table.
+Sets of maps of 256 x 256 pixels, 1 and 5 um; of eight lines of 2 and 8 um; of four maps of 1 um with four lines of
+8 um. Grainy maps, of 1 and 3 um, have log-normal heights. The tip's radius is told wrong by up to 20 %.
+
+The slope of grainy maps is held less often than is stated, and the doubt `tip_on_grains` says so. It is not the
+surface: without a tip, slopes of grainy maps differ by 0.01 from those of Gaussian ones. Two cures did not help: a tip
+that is blunter for steep short waves, and twice that loss with a lift that does not fade.
 """
 
-import sys
+import argparse
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-from pathlib import Path
+from itertools import repeat
 from typing import Any
 
 import numpy as np
 
+from evidence.topography.recovery import errors_of, random_truth
 from mesoscale.errors import InputError
-from mesoscale.settings import SyntheticScanSettings, TopographySettings
-from mesoscale.tables import grow_table, load_table
+from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import trusted_measurement
 from mesoscale.topography.description.heights import common_heights, compare_heights, height_quantiles, not_gaussian
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
@@ -25,26 +30,32 @@ from mesoscale.topography.measurements.profiles import Profile
 from mesoscale.topography.pooling import parameters_of
 from mesoscale.topography.profile_conversion import projected
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
-from mesoscale.topography.studies.recovery import TOLERANCE, random_truth
-from mesoscale.topography.synthetic_scans import dilate, measure, synthetic_scans
+from mesoscale.topography.synthetic_scans import ScanSet, dilate, measure, synthetic_scans
 
 # the tip meets the surface on 1 nm or 5 nm; of what it traces every fourth pixel is kept, for speed
-BASE = SyntheticScanSettings(
-    pixels=1024, small_scans=4, large_scans=3, large_length_nm=5000.0, rms_variation=0.0, seed=17
-)
+BASE = ScanSet(pixels=1024, small_scans=4, large_scans=3, large_length_nm=5000.0, rms_variation=0.0, seed=17)
 THINNED = 4
 # of grainy maps: one step for both sizes, because finer roughness under a tip changes all waves of its image
 GRAINY_MAPS = ((1000.0, 512), (3000.0, 1536))
 LINES = ((8000.0, 4), (2000.0, 4))  # length in nm and number of the profiles of a set
 LINE_POINTS, FINER = 2048, 4
 SHAPES = 0.1, 0.3  # log-normal heights: skewness 0.3 to 0.95; for more the spectrum can no longer be kept
-COLUMNS = (
-    *("kind", "set", "measurements", "refused", "doubts"),
-    *(name + suffix for name in TOLERANCE for suffix in ("_true", "", "_low", "_high", "_covered")),
-)
 
 
-def maps(truth: SyntheticScanSettings, stated_nm: float) -> Iterator[Measurement]:
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Kinds and sets."""
+    parser.add_argument("--kinds", nargs="*", default=list(KINDS), choices=list(KINDS))
+    parser.add_argument("--sets", type=int, default=20, help="of each kind, 5 s each on one core")
+
+
+def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """One row for each set of measurements."""
+    with ProcessPoolExecutor() as pool:
+        for kind in given.kinds:
+            yield from pool.map(set_row, repeat(kind), range(given.sets))
+
+
+def maps(truth: ScanSet, stated_nm: float) -> Iterator[Measurement]:
     """Scans of a Gaussian surface, seen with a tip whose radius is stated as `stated_nm`."""
     for item in synthetic_scans(truth):
         yield Measurement(_thinned(item.scan, THINNED), stated_nm, True)
@@ -54,7 +65,7 @@ def _thinned(scan: Scan, stride: int) -> Scan:
     return replace(scan, heights_nm=np.ascontiguousarray(scan.heights_nm[::stride, ::stride]))
 
 
-def grainy_maps(truth: SyntheticScanSettings, stated_nm: float) -> Iterator[Measurement]:
+def grainy_maps(truth: ScanSet, stated_nm: float) -> Iterator[Measurement]:
     """Scans of a surface of the same spectrum whose heights are distributed log-normally: tall grains."""
     rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(2,)))
     heights = common_heights([np.exp(rng.uniform(*SHAPES) * Z)])
@@ -76,7 +87,7 @@ def _random_rms(spectrum: RoughSpectrum, length: float, sites: int, rng: np.rand
     return float(np.sqrt(square * max(1 + np.sqrt(2 * fourth) / square * rng.standard_normal(), 0.1)))
 
 
-def lines(truth: SyntheticScanSettings, _stated_nm: float = 0.0) -> Iterator[Measurement]:
+def lines(truth: ScanSet, _stated_nm: float = 0.0) -> Iterator[Measurement]:
     """Profiles of two lengths across a Gaussian surface, by an instrument without tip, tilted and noisy."""
     rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(3,)))
     spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
@@ -99,13 +110,13 @@ def _line(q: np.ndarray, psd: np.ndarray, length: float, rng: np.random.Generato
     return np.fft.irfft(np.concatenate([[0.0], waves]), n)[: n // 2 : FINER]
 
 
-def mixed(truth: SyntheticScanSettings, stated_nm: float) -> Iterator[Measurement]:
+def mixed(truth: ScanSet, stated_nm: float) -> Iterator[Measurement]:
     """Maps of 1 um, too small for the plateau, and the long profiles, which see it."""
     yield from maps(truth.model_copy(update={"large_scans": 0}), stated_nm)
     yield from (item for item in lines(truth) if item.data.name.startswith(f"line_{LINES[0][0]:g}"))
 
 
-KINDS: dict[str, Callable[[SyntheticScanSettings, float], Iterator[Measurement]]] = {
+KINDS: dict[str, Callable[[ScanSet, float], Iterator[Measurement]]] = {
     "areal": maps,
     "grainy": grainy_maps,
     "lines": lines,
@@ -113,25 +124,23 @@ KINDS: dict[str, Callable[[SyntheticScanSettings, float], Iterator[Measurement]]
 }
 
 
-def coverage_rows(kind: str, numbers: range) -> Iterator[dict[str, Any]]:
-    """One row per set: truth, estimate, interval, and whether it covers."""
-    for number in numbers:
-        truth, stated = random_truth(number, BASE)
-        settings = TopographySettings(scans=("set",), tip_radius_nm=stated)
-        spectra, quantiles, refused = _trusted(KINDS[kind](truth, stated), settings)
-        result, _, _ = parameters_of(spectra, quantiles, settings)
-        cutoff = min(result.cutoff, truth.q1)
-        spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
-        rms = float(np.sqrt(mean_square(spectrum.plateau, truth.q0, truth.slope, cutoff)))
-        row: dict[str, Any] = {"kind": kind, "set": number, "measurements": len(spectra), "refused": refused}
-        row["doubts"] = " ".join(doubt.code for doubt in result.doubts)
-        for name, value in (("q0", truth.q0), ("slope", truth.slope), ("rms", rms)):
-            row[f"{name}_true"] = value
-            if name in result.estimates:
-                low, high = result.estimates[name].interval
-                row |= {name: result.estimates[name].value, f"{name}_low": low, f"{name}_high": high}
-                row[f"{name}_covered"] = low <= value <= high
-        yield row
+def set_row(kind: str, number: int) -> dict[str, Any]:
+    """The row of one set: truth, estimate, interval."""
+    truth, told = random_truth(number, BASE)
+    settings = TopographySettings(scans=("set",), tip_radius_nm=told)
+    spectra, quantiles, refused = _trusted(KINDS[kind](truth, told), settings)
+    result, _, _ = parameters_of(spectra, quantiles, settings)
+    spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
+    cutoff = min(result.cutoff, truth.q1)
+    rms = float(np.sqrt(mean_square(spectrum.plateau, truth.q0, truth.slope, cutoff)))
+    row: dict[str, Any] = {"kind": kind, "set": number, "measurements": len(spectra), "refused": refused}
+    row["doubts"] = " ".join(doubt.code for doubt in result.doubts)
+    for name, value in (("q0", truth.q0), ("slope", truth.slope), ("rms", rms)):
+        estimate = result.estimates.get(name)
+        low, high = estimate.interval if estimate else ("", "")
+        row |= {f"{name}_true": value, name: estimate.value if estimate else "", f"{name}_low": low}
+        row[f"{name}_high"] = high
+    return row
 
 
 def _trusted(
@@ -152,34 +161,17 @@ def _trusted(
     return spectra, quantiles if not_gaussian(tests) else {}, refused
 
 
-def shares(rows: Sequence[Mapping[str, Any]], kind: str) -> dict[str, float]:
-    """Sets of a kind; of each parameter the share covered, and mean, RMS and largest error.
-
-    Errors are relative, that of the slope absolute.
-    """
-    mine = [row for row in rows if row["kind"] == kind and row.get("q0")]
-    result: dict[str, float] = {"sets": len(mine)}
-    for name in TOLERANCE:
-        true, value = (np.array([float(row[key]) for row in mine]) for key in (f"{name}_true", name))
-        error = value - true if name == "slope" else value / true - 1
-        result[f"{name}_covered"] = float(np.mean([str(row[f"{name}_covered"]) == "True" for row in mine]))
-        result[f"{name}_bias"], result[f"{name}_error"] = float(error.mean()), float(np.sqrt(np.mean(error**2)))
-        result[f"{name}_worst"] = float(np.abs(error).max())
-    return result
-
-
-def main(arguments: Sequence[str]) -> None:
-    """Add rows to a table as they are made, or print its shares."""
-    path = Path(arguments[-1])
-    if len(arguments) == 1:
-        rows = load_table(path)
-        for kind in KINDS:
-            if any(row["kind"] == kind for row in rows):
-                print(kind, *(f"{key} {value:.3g}" for key, value in shares(rows, kind).items()), sep="  ")
-        return
-    kind, first, last = arguments[0], int(arguments[1]), int(arguments[2])
-    grow_table(path, coverage_rows(kind, range(first, last)), 6, COLUMNS)
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])
+def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """Of each kind its sets, and of each parameter the share held and the RMS error (relative, but of the slope)."""
+    found = {}
+    for kind in KINDS:
+        mine = [row for row in rows if row["kind"] == kind and row["q0"]]
+        if not mine:
+            continue
+        found[f"{kind}_sets"] = str(len(mine))
+        for name in ("q0", "slope", "rms"):
+            error, held = errors_of(mine, name)
+            root = float(np.sqrt(np.mean(error**2)))
+            found[f"{kind}_{name}_held"] = f"{np.mean(held):.0%}"
+            found[f"{kind}_{name}_error"] = f"{root:.2f}" if name == "slope" else f"{root:.1%}"
+    return found

@@ -17,7 +17,6 @@ from mesoscale.settings.contact import NOMINAL_SEED
 
 SURFACES = 8
 SITES = 512  # a side at most: the share is a matter of the waves, not of the last site
-COLUMNS = ("quantity", "unit", "seen_q", "end_q", "seen", "all", "shift", "share")
 UNITS = {"first_contact": "nm", "area": "nm^2", "C_r": "GPa", "pull_off": "nN"}
 
 

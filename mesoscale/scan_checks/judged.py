@@ -9,16 +9,17 @@ import numpy as np
 
 from mesoscale.contact import run_cycle
 from mesoscale.inputs.contact import ContactInputs
+from mesoscale.scan_checks.pressing import contacting_heights
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.topography.description.choice import carried_on
+from mesoscale.topography.description.confidence import CONFIDENCE
 from mesoscale.topography.description.heights import common_heights, height_quantiles
 from mesoscale.topography.description.one_spectrum import OneSpectrum, merge
 from mesoscale.topography.description.parameters import Topography, analyse
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.height_synthesis import synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan, clean
-from mesoscale.topography.pressing import contacting_heights
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
 from mesoscale.topography.synthesis import synthesize_spectrum
 
@@ -27,12 +28,7 @@ SITES = 256  # a scan is thinned to at most so many sites a side, and so are the
 MAPS, BLOCKS = 10, 4  # maps of heights drawn, and blocks a side of a scan that they are drawn from
 TOUCHED, PRESSED = 40, 20  # surfaces that are brought to first contact, and of these the ones that are pressed
 MOST_CONTACT = 0.5  # share of the cell; beyond, contacts have merged and asperities one by one say nothing
-CONFIDENCE = 0.9
 LOADS_NN = (1000.0, 7000.0)  # per cell of the contact settings: 1 and 7 uN
-COLUMNS = (
-    *("scan", "description", "left_out", "quantity", "unit", "in_contact"),
-    *("pressed", "median", "low", "high", "inside"),
-)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""A description of a surface, judged by pressing the measured scans themselves."""

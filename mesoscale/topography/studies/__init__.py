@@ -1,1 +1,0 @@
-"""How far the scan analysis can be trusted: error against run time, recovery of known truth, hard cases."""
