@@ -10,20 +10,15 @@ import scipy.fft
 
 from mesoscale.contact import Cycle, run_cycle
 from mesoscale.errors import InputError
-<<<<<<< HEAD:mesoscale/topography/pressing.py
-from mesoscale.settings import ContactSettings, TopographySettings
-from mesoscale.settings.contact import NOMINAL_SEED
-from mesoscale.topography.measurements.cleaning import Scan
-=======
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.branches import Outcome, fit_cycle
 from mesoscale.law.fit import row_of
 from mesoscale.settings import ContactSettings, LawSettings, TopographySettings
+from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description import likelihood
 from mesoscale.topography.description.parameters import MAX_MISFIT
 from mesoscale.topography.measurements.cleaning import Scan, clean
->>>>>>> ffd8696 (Topography: what was shown once is evidence, hard cases are tests, checks of a description have a room of their own, fewer keys):mesoscale/scan_checks/pressing.py
 from mesoscale.topography.measurements.profiles import Profile
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
 from mesoscale.topography.spectrum import SECTION_SIDE, SECTIONS, radial_spectrum
@@ -162,6 +157,6 @@ def press_scan(
     scan = clean(raw, settings)
     for surface, heights, chosen, force in surfaces(scan, fitted, settings, contact):
         scan_inputs = replace(inputs, rms=float(np.std(heights)))
-        cycle = run_cycle(scan_inputs, chosen, contact.nominal_seed, force, heights)
+        cycle = run_cycle(scan_inputs, chosen, NOMINAL_SEED, force, heights)
         outcome = fit_cycle(cycle, law)
         yield PressedSurface(scan.name, surface, chosen.pixels, force, cycle, outcome)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.analysis import hann_spectrum, trusted, trusted_scan
+from mesoscale.topography.analysis import hann_spectrum, trusted
 from mesoscale.topography.description.likelihood import fit, skip_blurred_shells
 from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.measurements.cleaning import Scan, clean
@@ -82,12 +82,9 @@ def _case(knob: str, value: Any, truth: ScanSet, settings: TopographySettings) -
 
 def _estimates(scans: list[Scan], settings: TopographySettings, knob: str, value: Any) -> dict[str, float]:
     """Estimates of one set; a knob of the spectrum or of the likelihood takes its value."""
-    changes = {"sections": {"sections": value}, "flat share of window": {"flat": value}}.get(knob)
-    if changes is None:
-        spectra = [trusted_scan(scan, settings) for scan in scans]
-    else:
-        cleaned = [clean(scan, settings) for scan in scans]
-        spectra = [trusted(item.name, hann_spectrum(item, **changes), item.rms_nm, settings) for item in cleaned]
+    changes = {"sections": {"sections": value}, "flat share of window": {"flat": value}}.get(knob, {})
+    cleaned = [clean(scan, settings) for scan in scans]
+    spectra = [trusted(item.name, hann_spectrum(item, **changes), item.rms_nm, settings) for item in cleaned]
     result = analyse(spectra, settings)
     if knob == "bins per decade" and result.likelihood is not None:
         knee = result.likelihood.q0

@@ -74,8 +74,8 @@ def trusted_measurement(measured: Measurement, settings: TopographySettings) -> 
     """Spectrum and trusted range of a scan or a line profile by the limits of its instrument."""
     if isinstance(measured.data, Profile):
         return trusted_profile(clean_profile(measured.data, settings), measured)
-    result = analyse_scan(measured.data, settings)
-    return limited_spectrum(measured.data.name, result.spectrum, result.cleaned, measured)
+    cleaned = clean(measured.data, settings)
+    return limited_spectrum(cleaned.name, hann_spectrum(cleaned), cleaned, measured)
 
 
 def limited_spectrum(name: str, spectrum: Spectrum, cleaned: Scan, measured: Measurement) -> TrustedSpectrum:
@@ -88,8 +88,8 @@ def limited_spectrum(name: str, spectrum: Spectrum, cleaned: Scan, measured: Mea
 
 def trusted_scan(scan: Scan, settings: TopographySettings) -> TrustedSpectrum:
     """Spectrum and trusted range of a raw scan."""
-    result = analyse_scan(scan, settings)
-    return trusted(scan.name, result.spectrum, result.cleaned.rms_nm, settings)
+    cleaned = clean(scan, settings)
+    return trusted(scan.name, hann_spectrum(cleaned), cleaned.rms_nm, settings)
 
 
 def thumbnail(heights: np.ndarray) -> np.ndarray:

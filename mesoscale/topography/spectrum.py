@@ -39,13 +39,6 @@ class Spectrum:
     sharp: bool = False
 
 
-def power_spectrum(heights: np.ndarray, lengths_nm: tuple[float, float]) -> np.ndarray:
-    """Equation 8 without window: C(qx, qy) in nm^4 of heights (nx, ny) in nm, in FFT order."""
-    nx, ny = heights.shape
-    amplitude = lengths_nm[0] * lengths_nm[1] / (2 * np.pi * nx * ny) * np.asarray(scipy.fft.fft2(heights))  # eq. 7
-    return np.abs(amplitude) ** 2 / (lengths_nm[0] * lengths_nm[1])
-
-
 def flat_window(n: int, flat: float) -> np.ndarray:
     """Window of n points, one over the central share `flat`, falling to zero as a half cosine at the ends.
 

@@ -215,7 +215,8 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     "measure_tensor": lambda c, _: c.scf_s(
         12.0 * (c.scene.elastic.tensor.max_steps / 3 + 14 + 6 * c.scene.elastic.tensor.rounds)
     ),
-    "analyse_scans": lambda c, _: 0.8 * 6 * c.scene.topography.synthetic.pixels**2 / GRID,
+    # six scans, after the import of their readers
+    "analyse_scans": lambda c, _: 4.0 + 4.8 * c.scene.topography.synthetic.pixels**2 / GRID,
     "judge_scans": lambda c, _: 3.0 + 3.0 * len(c.scene.topography.scans),
     "weigh_unseen_waves": lambda c, _: 24 * c.cycle_s,
     "compute_nominal": lambda c, _: 0.5 + c.cycles_s(len(NOMINAL_LOADS_NN)),

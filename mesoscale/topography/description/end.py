@@ -6,10 +6,9 @@ from typing import Any
 import numpy as np
 
 from mesoscale.topography.description.parameters import Topography
+from mesoscale.topography.description.tip_error import RADIUS_ERROR
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.roughness_spectrum import SpectrumTable, mean_square
-
-TIP_RADIUS_ERROR = 0.2  # relative, of a stated radius; it moves the wave vector at which the tip ends the range
 
 
 def trusted_end(spectra: Sequence[TrustedSpectrum]) -> dict[str, Any]:
@@ -25,7 +24,7 @@ def trusted_end(spectra: Sequence[TrustedSpectrum]) -> dict[str, Any]:
         q, psd = finest.spectrum.q, finest.spectrum.psd
         near = (q > 0.6 * finest.high) & (q < 1.2 * finest.high)
         slope = np.polyfit(np.log(q[near]), np.log(psd[near]), 1)[0] if near.sum() > 3 else -3.0
-        shift = (1 + TIP_RADIUS_ERROR) ** (1 / max(3 + slope / 2, 0.5))  # R q^3 sqrt(C) is held
+        shift = (1 + RADIUS_ERROR) ** (1 / max(3 + slope / 2, 0.5))  # R q^3 sqrt(C) is held
     return {
         "value": finest.high,
         "unit": "1/nm",

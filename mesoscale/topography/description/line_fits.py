@@ -47,7 +47,6 @@ class LineFit:
     q1 : end of the constant slope, 1/nm; `q1_limited` when that is merely the end of the trusted range.
     slope_low, slope_high : slopes of the lines through the knee that bound the scans' points.
     plateau_low, plateau_high : lowest and highest level of a scan, nm^4.
-    running_q, running_slope, running_error : the slope of [q0, q] against q, from which q1 is read.
     """
 
     plateau: float
@@ -60,9 +59,6 @@ class LineFit:
     slope_high: float
     plateau_low: float
     plateau_high: float
-    running_q: np.ndarray
-    running_slope: np.ndarray
-    running_error: np.ndarray
 
     def rms(self, q1: float) -> float:
         """RMS height in nm from the plateau's level, integrated to q1."""
@@ -168,9 +164,6 @@ def _fit_points(data: Points) -> LineFit | None:
         slope_high=high,
         plateau_low=float(np.exp(levels.min())),
         plateau_high=float(np.exp(levels.max())),
-        running_q=running_q,
-        running_slope=-running,
-        running_error=errors,
     )
 
 

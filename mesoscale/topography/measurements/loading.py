@@ -20,7 +20,6 @@ from mesoscale.settings import InstrumentSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.containers import is_container, stated_radius, unpacked
 from mesoscale.topography.measurements.guarded import guarded
-from mesoscale.topography.measurements.light_readers import light_reader
 from mesoscale.topography.measurements.profiles import Profile, profile_of
 from mesoscale.topography.measurements.text_units import column_units
 
@@ -68,16 +67,8 @@ def load_measurements(
     """
     path, settings = Path(path), settings or TopographySettings()
     _check_present(path)
-    _import_readers(path)
+    _import_readers()
     return guarded(path, lambda: _measurements(path, name, settings))
-
-
-def _import_readers(path: Path) -> None:
-    """Import what reads a file in this process, of which the one with limits is a fork."""
-    with light_reader(path) as light:
-        if light is None:
-            with needs("scans"):
-                import SurfaceTopography.IO  # noqa: F401
 
 
 def _measurements(path: Path, name: str | None, settings: TopographySettings) -> list[Measurement]:
@@ -135,10 +126,16 @@ def load_scan(path: str | Path, name: str | None = None, channel: str | None = N
     """
     path = Path(path)
     _check_present(path)
-    _import_readers(path)
+    _import_readers()
     data = guarded(path, lambda: _load(path, name or path.stem, channel, None))
     assert isinstance(data, Scan)  # profiles are refused
     return data
+
+
+def _import_readers() -> None:
+    """Import the readers here, so that the process that reads, a fork of this one, has them."""
+    with needs("scans"):
+        import SurfaceTopography.IO  # noqa: F401  4 s, because it loads all of that library
 
 
 def _check_present(path: Path) -> bytes:
@@ -160,9 +157,9 @@ def _load(
     profiles: bool = False,
     sizes: tuple[float, ...] | None = None,
 ) -> Scan | Profile:
-    start = _check_present(path)
-
-    def read(reader: Any) -> Scan | Profile:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # readers warn of metadata that nothing here uses
+        reader = _open(path, _check_present(path))
         try:
             channels = _heights(path, lambda: list(reader.channels))
             info, note = _height_channel(path, channels, channel)
@@ -173,22 +170,6 @@ def _load(
             close = getattr(reader, "close", None)
             if close:
                 close()
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # readers warn of metadata that nothing here uses
-        with light_reader(path) as light:
-            reader = _opened(light, path)
-            if reader is not None:
-                return read(reader)
-        return read(_open(path, start))
-
-
-def _opened(reader: type[Any] | None, path: Path) -> Any:
-    """The file in a reader; None where it is of another format than its suffix says."""
-    try:
-        return reader(str(path)) if reader else None
-    except Exception:  # readers of foreign formats fail in many ways
-        return None
 
 
 def _open(path: Path, start: bytes) -> Any:

@@ -12,7 +12,7 @@ from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable, slope_from_hurst
-from mesoscale.topography.spectrum import power_spectrum
+from tests.mesoscale.topography.plain_spectrum import power_spectrum
 
 INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.05, hurst=0.75, rms=4.0)
 LENGTH, PIXELS = 500.0, 256

@@ -7,12 +7,12 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import (
     autocorrelation,
     flat_window,
-    power_spectrum,
     profile_spectrum,
     radial_spectrum,
     section_pixels,
 )
 from mesoscale.topography.synthetic_scans import surface_patch
+from tests.mesoscale.topography.plain_spectrum import power_spectrum
 
 
 def test_parseval_holds_to_round_off():

@@ -6,8 +6,8 @@ import pytest
 from mesoscale.errors import InputError
 from mesoscale.topography import synthesis
 from mesoscale.topography.roughness_spectrum import slope_from_hurst
-from mesoscale.topography.spectrum import power_spectrum
 from mesoscale.topography.synthesis import synthesize
+from tests.mesoscale.topography.plain_spectrum import power_spectrum
 
 
 def test_every_realisation_has_the_wanted_rms_and_mean_zero():

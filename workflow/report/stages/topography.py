@@ -1,4 +1,4 @@
-"""Surface topography: figures 9 and 10, recovery of known truth, contact of the scans themselves."""
+"""Surface topography: figures 9 and 10, the parameters, contact of the scans themselves."""
 
 from dataclasses import replace
 from typing import Any
@@ -41,11 +41,6 @@ def describe(results: Results) -> Section | None:
         "Power spectra of all scans, pooled, with the fits behind q₀, Hurst exponent and RMS. The fits use the trusted "
         "part; grey is what levelling, tip, noise or pixels disturb.",
         "Figure 10",
-    )
-    section.add(
-        recovery(results),
-        "What the analysis returns of the synthetic scans' known truth. The interval of the typical RMS holds the "
-        "scatter from place to place: it is as wide as so few places make it. Heights miss what levelling took.",
     )
     paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20) by 2H + 1", "rms": "1.82 to 14.17", "slope": "2.84"}
     truth = parameters.get("truth") or {}
@@ -186,37 +181,6 @@ def spectra(results: Results) -> str | None:
         axis.legend()
 
     return draw("fig10", "Power spectra of the scans with fits", plot, (5.0, 4.2))
-
-
-def recovery(results: Results) -> str | None:
-    """Truth of the synthetic scans beside what the analysis found, with its intervals."""
-    parameters = results.json("topography/parameters.json")
-    truth, estimates = parameters.get("truth") or {}, parameters.get("estimates", {})
-    scans = [row for row in parameters.get("scans", []) if row.get("true_rms_nm") and row.get("rms_spectrum_nm")]
-    if not truth or not estimates or not scans:
-        return None
-    level = f"{float(parameters.get('confidence', 0.9)):.0%}"
-
-    def plot(common, places):
-        for place, name in enumerate(("q0", "slope", "rms")):
-            known = float(truth.get(name, truth.get(f"{name}_nm", np.nan)))
-            value, interval = (np.asarray(estimates[name][key], dtype=float) / known for key in ("value", "interval"))
-            error = np.abs(interval - value)[:, None]
-            common.errorbar([place], [value], error, fmt="o", color=BLUE, capsize=4)
-        common.axhline(1, color=INK, linewidth=0.8, linestyle="--")
-        common.set_xticks(range(3), ["q₀", "slope", "RMS of the\ntypical place"])
-        common.set(xlim=(-0.6, 2.6), ylabel=f"found / truth, {level} interval")
-        true, heights, spectrum = (
-            np.array([float(row[key]) for row in scans]) for key in ("true_rms_nm", "rms_heights_nm", "rms_spectrum_nm")
-        )
-        ends = [0.9 * true.min(), 1.1 * true.max()]
-        places.plot(ends, ends, "--", color=INK, linewidth=0.8)
-        places.plot(true, spectrum, "o", color=BLUE, label="from the spectrum")
-        places.plot(true, heights, "o", color=ORANGE, markerfacecolor="none", label="from the heights")
-        places.set(xlabel="true RMS of a place (nm)", ylabel="found (nm)")
-        places.legend()
-
-    return draw("recovery", "Truth recovered from the synthetic scans", plot, (8.0, 3.6), 2)
 
 
 def pressed(results: Results) -> str | None:

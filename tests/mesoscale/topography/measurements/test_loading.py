@@ -40,6 +40,21 @@ def test_missing_and_foreign_files_are_named(tmp_path):
         load_scan(text)
 
 
+def test_a_suffix_that_lies_does_not_matter(tmp_path):
+    heights = np.random.default_rng(0).standard_normal((64, 48))
+    path = gwy(tmp_path / "a.gwy", heights).rename(tmp_path / "a.ibw")
+    assert load_scan(path).heights_nm == pytest.approx(heights, rel=1e-12)
+
+
+@pytest.mark.parametrize("suffix", ["gwy", "ibw", "di", "spm", "000", "jpk", "mi", "mdt", "ezd", "nid", "tiff", "tif"])
+def test_an_empty_file_of_any_suffix_is_refused_in_one_line(tmp_path, suffix):
+    path = tmp_path / f"empty.{suffix}"
+    path.write_bytes(b"")
+    with pytest.raises(InputError, match="empty") as caught:
+        load_scan(path)
+    assert "\n" not in str(caught.value)
+
+
 def test_the_page_lists_every_format_that_is_read():
     from SurfaceTopography.IO import readers
 
@@ -200,6 +215,8 @@ def test_text_that_ends_in_rubbish_is_not_read_hundreds_of_times(tmp_path, monke
     read_csv = XYZ.read_csv
     monkeypatch.setattr(XYZ, "read_csv", counted)
     monkeypatch.setattr(text_reader, "read_csv", counted)
+    # in this process, where the readings are counted
+    monkeypatch.setattr("mesoscale.topography.measurements.loading.guarded", lambda _, read: read())
     path = tmp_path / "film.csv"
     numbers = "".join(f"{k * 2.0},{k % 7}\n" for k in range(300))
     path.write_text(head + numbers, encoding="utf-8")
