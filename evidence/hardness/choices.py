@@ -3,8 +3,8 @@
 Single closing runs, each with one choice changed.  Their differences are the systematic errors that `size_effect.py`
 adds to every run alike.
 
-The rows `medium`, `blunt` and `steep` of 2026-11-23 were not made by this command: they were copied, rounded, from the
-page that the runs were first written up on.
+The rows of 2026-11-23 were not made by this command: they were copied, rounded, from the page that the runs were first
+written up on.
 """
 
 import tempfile
@@ -14,8 +14,6 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict
 from functools import cache
 from pathlib import Path
-
-import numpy as np
 
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.glass import make_glass
@@ -101,8 +99,10 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         ("steep", "medium", "same_shape_GPa"),
     ):
         one, other = (
-            np.mean([float(row[column]) for row in rows if row["case"] == name and row[column]] or [np.nan])
+            {row["seed"]: float(row[column]) for row in rows if row["case"] == name and row[column]}
             for name in (case, reference)
         )
-        found[case] = f"{one / other:.2f}"
+        both = one.keys() & other.keys()  # the glasses that have been pressed both ways
+        if both:
+            found[case] = f"{sum(one[seed] for seed in both) / sum(other[seed] for seed in both):.2f}"
     return found
