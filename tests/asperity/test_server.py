@@ -10,6 +10,7 @@ import time
 import urllib.error
 import urllib.request
 from concurrent.futures import ThreadPoolExecutor
+from http.client import HTTPConnection
 
 import numpy as np
 import pytest
@@ -88,6 +89,14 @@ def test_client_gets_the_librarys_digits(server, name, values, config):
         ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"sed": 1}}, "unknown key"),
         ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"seed": -1}}, "seed = -1"),
         ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": 5}, "mapping"),
+        ("Evaluate", {"name": []}, "no such model"),
+        ("Evaluate", {"name": {"a": 1}}, "no such model"),
+        ("ModelInfo", {"name": None}, "no such model"),
+        ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"cls": 1}}}, "cls = 1"),
+        ("Evaluate", {"name": "contact_cycle", "input": [[*CENTRE[:-1], 10**400]]}, "too large"),
+        ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"pixels": 16384}}}, "points"),
+        ("Evaluate", {"name": "pad", "input": [CENTRE], "config": {"cells": 100_000}}, "grid points"),
+        ("Evaluate", {"name": "pad", "input": [CENTRE], "config": {"separations_nm": [40.0] * 5000}}, "1 .. 1000"),
         ("InputSizes", {"name": "none"}, "no such model"),
         ("OutputSizes", {"name": "pad", "config": {"separations_nm": "x"}}, "falling separations"),
     ],
@@ -98,6 +107,36 @@ def test_a_malformed_request_gets_one_line(server, path, body, words):
     assert words in answer["error"]["message"]
     assert "\n" not in answer["error"]["message"]
     assert server[1].poll() is None
+
+
+@pytest.mark.parametrize("headers", [
+    {"Host": "evil.example"}, {"Host": "evil.example:4242"}, {"Host": "[::1"}, {"Content-Type": "text/plain"},
+    {"Content-Type": "application/x-www-form-urlencoded"}, {"Content-Type": "application/json; charset=nobody"},
+])  # fmt: skip
+def test_a_web_page_cannot_use_the_server(server, headers):
+    """A page of a stranger may send forms anywhere, and may let a name of its own lead here; JSON it may not send."""
+    client = HTTPConnection(server[0].removeprefix("http://"), timeout=60)
+    body = json.dumps({"name": "switch", "input": [[*CLOSING, *OPENING, 0.215]]})
+    client.request("POST", "/Evaluate", body, {"Content-Type": "application/json", **headers})
+    answer = client.getresponse()
+    assert answer.status == 400
+    assert "\n" not in json.load(answer)["error"]["message"]
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="needs /proc")
+def test_a_request_that_nobody_waits_for_is_ended(server):
+    """Large requests keep both workers; their clients go away, and a small request is answered at once."""
+    url = server[0].removeprefix("http://")
+    body = json.dumps({"name": "contact_cycle", "input": [CENTRE], "config": {"contact": {"pixels": 8192}}})
+    clients = [HTTPConnection(url) for _ in range(4)]
+    for client in clients:
+        client.request("POST", "/Evaluate", body, {"Content-Type": "application/json"})
+    time.sleep(1)
+    for client in clients:
+        client.close()
+    started = time.monotonic()
+    assert umbridge.HTTPModel(server[0], "switch")([[*CLOSING, *OPENING, 0.215]])[0][0] > 0
+    assert time.monotonic() - started < 60  # of a busy machine: new workers import the library
 
 
 def children(pid):
