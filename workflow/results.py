@@ -9,7 +9,7 @@ import io
 import json
 import os
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -75,28 +75,25 @@ def write_text(path: str | Path, content: str) -> None:
     write_bytes(path, content.encode())
 
 
-def write_csv(path: str | Path, rows: Iterable[Mapping[str, Any]], columns: Sequence[str] | None = None) -> None:
+def write_csv(path: str | Path, rows: Iterable[Mapping[str, Any]]) -> None:
     """Write rows as CSV; floats keep every digit, so that reading gives back the same number.
 
     Parameters
     ----------
-    rows : mappings from column name (with its unit as suffix) to value; a missing value is an empty cell.
-    columns : their order; by default that of the table's schema, of a file outside results/ that of the first row.
+    rows : mappings from column name (with its unit as suffix) to value; a missing value is an empty cell. The order
+        of the columns is that of the table's schema, of a file outside results/ that of the first row.
 
     Raises
     ------
-    ValueError : a row has a column that is not in `columns`, there is neither row nor column, or the table does not
-        fit its schema (`workflow.schemas`), which every file under results/ has.
+    ValueError : the table does not fit its schema (`workflow.schemas`), which every file under results/ has; or,
+        elsewhere, a row has a column that the first has not.
     """
     path = Path(path)
     rows = [{key: _cell(value) for key, value in row.items()} for row in rows]
     schema = schema_of(path)
-    if columns is None:
-        if not rows and schema is None:
-            raise ValueError(f"{path}: no rows and no columns given")
-        columns = schema.header(rows) if schema is not None else list(rows[0])
     if schema is None and "results" in path.parts:
         raise ValueError(f"{path}: no table of workflow/schemas/ is for this file")
+    columns = schema.header(rows) if schema is not None else list(rows[0])
     if schema is not None and (misfit := schema.misfit(columns, [dict.fromkeys(columns, "") | row for row in rows])):
         raise ValueError(f"{path}: {misfit}; see workflow/schemas/")
     with atomic_path(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
