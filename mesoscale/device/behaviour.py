@@ -12,7 +12,6 @@ from mesoscale.device.statistics import (
     analytic_release_V,
     describe,
     describe_states,
-    stiction_curve,
 )
 from mesoscale.device.switch import (
     Switch,
@@ -185,11 +184,6 @@ def state_rows(states: dict[str, SwitchStates]) -> list[dict[str, Any]]:
         for case, state in states.items()
         for i in range(len(state.stuck))
     ]
-
-
-def stiction_rows(states: dict[str, SwitchStates]) -> list[dict[str, float]]:
-    """Rows of device/stiction.csv: probability of stiction against the share in contact."""
-    return stiction_curve(states["with_adhesion"].critical_fraction)
 
 
 def _median(law: Law) -> Law:

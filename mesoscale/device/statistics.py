@@ -54,8 +54,8 @@ def describe_states(states: SwitchStates) -> dict[str, Any]:
     }
 
 
-def stiction_curve(critical_fraction: np.ndarray, points: int = 61) -> list[dict[str, float]]:
-    """Probability of stiction against the share in contact (it sticks above its critical share)."""
+def stiction_rows(critical_fraction: np.ndarray, points: int = 61) -> list[dict[str, float]]:
+    """Rows of device/stiction.csv: probability of stiction against the share in contact (above its critical share)."""
     rows = []
     for fraction in np.logspace(-4, 0, points):
         share = probability(int((critical_fraction < fraction).sum()), len(critical_fraction))

@@ -3,9 +3,13 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
+from pydantic.config import JsonDict
 
 from mesoscale.settings.base import Settings
 
+UM: JsonDict = {"unit": "um"}
+NM: JsonDict = {"unit": "nm"}
+GPA: JsonDict = {"unit": "GPa"}
 PLACES_AT_REST = 1000
 """Parts of the beam among whose ends the lowest place at rest is sought."""
 
@@ -17,23 +21,21 @@ class DeviceSettings(Settings):
     """
 
     length_um: float = Field(
-        default=510.0, ge=0.01, le=1e5, description="length of the fixed-fixed beam", json_schema_extra={"unit": "um"}
+        default=510.0, ge=0.01, le=1e5, description="length of the fixed-fixed beam", json_schema_extra=UM
     )
-    width_um: float = Field(
-        default=123.0, ge=0.01, le=1e5, description="width of the beam", json_schema_extra={"unit": "um"}
-    )
+    width_um: float = Field(default=123.0, ge=0.01, le=1e5, description="width of the beam", json_schema_extra=UM)
     thickness_um: float = Field(
-        default=4.0, ge=0.001, le=1e3, description="thickness of the beam", json_schema_extra={"unit": "um"}
+        default=4.0, ge=0.001, le=1e3, description="thickness of the beam", json_schema_extra=UM
     )
     gap_um: float = Field(
         default=3.49,
         gt=0.01,
         le=1e3,
         description="distance from the beam at rest to the mean plane of the dielectric",
-        json_schema_extra={"unit": "um"},
+        json_schema_extra=UM,
     )
     youngs_modulus_GPa: float = Field(
-        default=89.3, ge=1e-3, le=2000, description="Young's modulus of the beam", json_schema_extra={"unit": "GPa"}
+        default=89.3, ge=1e-3, le=2000, description="Young's modulus of the beam", json_schema_extra=GPA
     )
     poisson_ratio: float = Field(default=0.3, ge=0, lt=0.5, description="Poisson's ratio of the beam")
     residual_stress_MPa: float = Field(
@@ -62,14 +64,14 @@ class DeviceSettings(Settings):
         ge=-1e5,
         le=1e5,
         description="how much farther from the dielectric the beam is in its middle than at its ends, at rest",
-        json_schema_extra={"unit": "nm"},
+        json_schema_extra=NM,
     )
     tilt_nm: float = Field(
         default=0.0,
         ge=0,
         le=1e5,
         description="how much farther from the dielectric one end of the beam is than the other",
-        json_schema_extra={"unit": "nm"},
+        json_schema_extra=NM,
     )
     bow_deviation_nm: float = Field(
         default=200.0,
@@ -77,7 +79,7 @@ class DeviceSettings(Settings):
         le=1e5,
         description="standard deviation of the bow; the default is an assumption without a source, an uncertain "
         "input of the answer",
-        json_schema_extra={"unit": "nm"},
+        json_schema_extra=NM,
     )
     tilt_deviation_nm: float = Field(
         default=200.0,
@@ -85,17 +87,12 @@ class DeviceSettings(Settings):
         le=1e5,
         description="standard deviation of the tilt; the default is an assumption without a source, an uncertain "
         "input of the answer",
-        json_schema_extra={"unit": "nm"},
+        json_schema_extra=NM,
     )
     dielectric_nm: float = Field(
-        default=200.0, ge=0, le=1e5, description="thickness of the dielectric", json_schema_extra={"unit": "nm"}
+        default=200.0, ge=0, le=1e5, description="thickness of the dielectric", json_schema_extra=NM
     )
-    permittivity: float = Field(
-        default=7.9,
-        ge=1,
-        le=1e5,
-        description="relative permittivity of the dielectric",
-    )
+    permittivity: float = Field(default=7.9, ge=1, le=1e5, description="relative permittivity of the dielectric")
     adhesion_scale: float = Field(
         default=1.0,
         ge=0,

@@ -193,8 +193,9 @@ def _response(branch: str, name: str, value: float) -> dict[str, Any]:
 
 
 def _device(root: Path) -> None:
-    from mesoscale.device.behaviour import drive_switch, samples_of_rows, state_rows, stiction_rows
+    from mesoscale.device.behaviour import drive_switch, samples_of_rows, state_rows
     from mesoscale.device.export import law_table
+    from mesoscale.device.statistics import stiction_rows
     from mesoscale.settings import DeviceSettings
     from workflow.results import load_csv
 
@@ -204,7 +205,7 @@ def _device(root: Path) -> None:
     results, states = drive_switch(samples, settings, 7.0)
     write_json(root / "device/switch.json", results, PROVENANCE)
     _write(root / "device/release.csv", state_rows(states))
-    _write(root / "device/stiction.csv", stiction_rows(states))
+    _write(root / "device/stiction.csv", stiction_rows(states["with_adhesion"].critical_fraction))
     _write(root / "device/law.csv", law_table(samples.nominal, samples.laws))
 
 

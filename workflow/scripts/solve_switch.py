@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from mesoscale.device.behaviour import drive_switch, samples_json, samples_of_rows, state_rows, stiction_rows
+from mesoscale.device.behaviour import drive_switch, samples_json, samples_of_rows, state_rows
 from mesoscale.device.export import law_table, spice_subcircuit, spice_testbench, verilog_module
+from mesoscale.device.statistics import stiction_rows
 from mesoscale.law.wells import well_note
 from mesoscale.settings import DeviceSettings, LawSettings
 from workflow.job import job, settings_from_job
@@ -26,7 +27,7 @@ with job(snakemake) as run:
     results, states = drive_switch(samples, device, law_pressure_MPa)
     write_json(snakemake.output.switch, results, run.provenance)
     write_csv(snakemake.output.release, state_rows(states))
-    write_csv(snakemake.output.stiction, stiction_rows(states))
+    write_csv(snakemake.output.stiction, stiction_rows(states["with_adhesion"].critical_fraction))
 
     note = well_note(load_csv(snakemake.input.wells))
     write_csv(snakemake.output.table, law_table(samples.nominal, samples.laws))

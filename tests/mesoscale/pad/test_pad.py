@@ -7,12 +7,11 @@ from mesoscale.contact import ContactInputs
 from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import input_table
-from mesoscale.pad.cells import FIRST_SEED, PadGrid, close_cells, plan_grid
+from mesoscale.pad.cells import FIRST_SEED, FilmPieces, PadGrid, close_cells, plan_grid
 from mesoscale.pad.curves import adhesion_by_cells, assemble
 from mesoscale.pad.draws import plan_draws
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import PadLaw, law_of
-from mesoscale.pad.surfaces import FilmPieces
 from mesoscale.settings import ContactSettings, InputRow, PadGridSettings
 
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
