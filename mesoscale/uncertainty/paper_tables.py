@@ -1,4 +1,4 @@
-"""The paper's Tables 2 and 3 in base units, under both readings of the doubtful column labels, and their ratios.
+"""The paper's Tables 2 and 3 in base units, under both readings of the doubtful column labels.
 
 In Table 3 the closing columns "C_a" and "C_r" fit Table 2 only when their labels are exchanged
 (dev = sqrt(sum mu*^2 / 12) holds to 1 % for the other outputs); both are then in 1e-5 GPa. For the changes
@@ -6,14 +6,6 @@ delta_C_a and delta_C_r neither reading is certain, in Table 2 as in Table 3: bo
 """
 
 from collections.abc import Iterable, Mapping
-from typing import Any
-
-import numpy as np
-
-from mesoscale.inputs.distributions import InputTable
-from mesoscale.law.parameters import OUTPUTS
-from mesoscale.uncertainty.collocation import elementary_effects
-from mesoscale.uncertainty.propagation import NodeOutputs, Propagation
 
 SCALE_TABLE_2 = {"C_a": 1e-5, "C_r": 1e-4, "delta_C_a": 1e-5, "delta_C_r": 1e-4}
 SCALE_TABLE_3 = {"C_a": 1e-5, "C_r": 1e-5, "delta_C_a": 1e-5, "delta_C_r": 1e-4}
@@ -52,48 +44,3 @@ def table3(
                 output = EXCHANGED.get(column, column)
             values.setdefault(output, {})[row["parameter"]] = float(text) * SCALE_TABLE_3.get(column, 1.0)
     return values
-
-
-RATIOS = {"d_c": OUTPUTS.index("d_c_nm"), "rho_r": OUTPUTS.index("rho_r_nm")}
-
-
-def ratio_rows(
-    nodes: NodeOutputs,
-    result: Propagation,
-    table: InputTable,
-    paper2: Mapping[str, tuple[float, float]],
-    paper3: Mapping[str, Mapping[str, float]],
-) -> list[dict[str, Any]]:
-    """Rows of uq/ratios.csv: mean output over mean RMS (Table 2), mu* over the width of RMS (Table 3).
-
-    Every seed's own ratio, as mean and standard deviation over seeds; empty unless RMS varies.
-    """
-    if "rms" not in table.names:
-        return []
-    position, inputs = table.names.index("rms"), len(table.rows)
-    low, high = table.ranges()[position]
-    if not high > low:
-        return []
-    y = nodes.paper_outputs[:, : 2 * inputs + 1]
-    rows = []
-    for name, k in RATIOS.items():
-        effects = np.array([elementary_effects(line, inputs)[position] for line in y[:, :, k]])
-        for source, by_seed, reference in (
-            ("mean (Table 2)", 2 * result.by_seed[:, 0, k] / (low + high), 2 * paper2[name][0] / (low + high)),
-            ("mu* (Table 3)", effects / (high - low), paper3[name]["rms"] / (high - low)),
-        ):
-            known = by_seed[np.isfinite(by_seed)]
-            value = float(known.mean()) if len(known) else np.nan
-            scatter = float(known.std(ddof=1)) if len(known) > 1 else np.nan
-            rows.append(
-                {
-                    "quantity": f"{name}/RMS",
-                    "from": source,
-                    "value": value,
-                    "seed_sd": scatter,
-                    "paper": reference,
-                    "difference_in_seed_sd": (value - reference) / scatter,
-                    "seeds_used": len(known),
-                }
-            )
-    return rows

@@ -12,7 +12,7 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.parameters import CLOSING, FITTED, LAW, LAW_OUTPUTS, OPENING, OUTPUTS, PARAMETERS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.chunks import collocation_level
-from mesoscale.uncertainty.collocation import elementary_effects, interpolating_response, level1_response
+from mesoscale.uncertainty.collocation import interpolating_response, level1_response
 from mesoscale.uncertainty.designs import SAMPLE_SEED
 from mesoscale.uncertainty.surrogate import (
     Below,
@@ -256,15 +256,12 @@ def output_rows(
     surfaces; cell_* those of single cells.
     """
     y = nodes.paper_outputs
-    inputs = result.samples.shape[1]
     propagated, cells = to_paper_outputs(result.outputs), to_paper_outputs(result.cells)
     rows = []
     for k, output in enumerate(LAW_OUTPUTS):
-        first_level = y[:, : 2 * inputs + 1]
         complete = np.isfinite(result.by_seed[:, 0, k])
         mean, dev = (_center_and_scatter(result.by_seed[complete, j, k]) for j in (0, 1))
         centre = _center_and_scatter(y[complete, 0, k])
-        effects = [np.sqrt((elementary_effects(line, inputs) ** 2).sum() / 12) for line in first_level[complete, :, k]]
         quantiles = np.quantile(propagated[:, k], [0.05, 0.5, 0.95])
         cell_quantiles = np.quantile(cells[:, k], [0.05, 0.5, 0.95])
         reference = paper.get(output.short, (np.nan, np.nan))
@@ -296,10 +293,7 @@ def output_rows(
                 "cell_q05": cell_quantiles[0],
                 "cell_q50": cell_quantiles[1],
                 "cell_q95": cell_quantiles[2],
-                "dev_from_mu_star": float(np.mean(effects)) if effects else np.nan,
                 "seed_share": result.seed_share[k],
-                "variance_of_mean": result.variances[0, k],
-                "mean_of_variance": result.variances[1, k],
                 "seeds_used": int(complete.sum()),
                 "seeds": len(nodes.seeds),
                 "runs": y.shape[0] * y.shape[1],

@@ -137,8 +137,6 @@ def _uncertainty(root: Path) -> None:
             for i, name in enumerate(INPUTS)
         ],
     )
-    ratio = {"quantity": "d_c/RMS", "from": "mean (Table 2)", "value": 3.9, "seed_sd": 0.2, "paper": 3.74}
-    _write(root / "uq/ratios.csv", [ratio])
     _write(
         root / "uq/validation.csv",
         [{"output": name, "runs": 50, "missing": 0, "q2": 0.9, "q2_low": 0.8, "q2_high": 0.95} for name in outputs],

@@ -46,10 +46,8 @@ rule propagate_uncertainty:
         parameters=f"{RESULTS}/law/parameters.csv",
         direct=DIRECT,
         table2=str(CONFIG / "paper" / "table2.csv"),
-        table3=str(CONFIG / "paper" / "table3.csv"),
     output:
         outputs=report(f"{RESULTS}/uq/outputs.csv", caption="../captions/outputs.rst", category="Uncertainty"),
-        ratios=f"{RESULTS}/uq/ratios.csv",
         surrogate=f"{RESULTS}/uq/surrogate.json",
         samples=f"{RESULTS}/uq/samples.csv",
         validation=f"{RESULTS}/uq/validation.csv",

@@ -61,10 +61,7 @@ _OUTPUTS = Table(
         ),
         *_in_unit("cell_dev", "standard deviation of single cells"),
         *(number(f"cell_{name}", "`unit`", f"{words} of single cells") for name, words in _QUANTILES.items()),
-        *_in_unit("dev_from_mu_star", "deviation that µ* implies, sqrt(sum µ*² / 12)"),
         number("seed_share", "1", "share of the variance that comes from the random surface"),
-        number("variance_of_mean", "`unit`²", "variance that comes from the inputs"),
-        number("mean_of_variance", "`unit`²", "variance that comes from the random surface"),
         integer("seeds_used", "seeds with all nodes"),
         integer("seeds", "seeds computed"),
         integer("runs", "runs of the design"),
@@ -116,20 +113,6 @@ _SENSITIVITY = Table(
         *_with_ends(number("sobol_total", "1", "total Sobol' index of the response"), "90 % interval"),
         number("seed_share", "1", "share of the variance that comes from the random surface"),
         integer("seeds_used", "seeds with all nodes of level 1"),
-    ),
-)
-
-_RATIOS = Table(
-    ("uq/ratios.csv",),
-    "A length of the law over the RMS roughness. No row where the roughness is fixed.",
-    (
-        text("quantity", "d_c/RMS or rho_r/RMS"),
-        text("from", "means (Table 2) or µ* (Table 3)"),
-        number("value", "1", "ratio, averaged over seeds"),
-        number("seed_sd", "1", "its standard deviation over seeds"),
-        number("paper", "1", "the paper's ratio"),
-        number("difference_in_seed_sd", "1", "value minus the paper's, over seed_sd"),
-        integer("seeds_used", "seeds with all nodes"),
     ),
 )
 
@@ -207,7 +190,6 @@ _SAMPLES = Table(
 
 TABLES = (
     _OUTPUTS,
-    _RATIOS,
     _SENSITIVITY,
     _SAMPLES,
     _VALIDATION,

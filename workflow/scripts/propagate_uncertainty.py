@@ -1,7 +1,7 @@
 """Propagate the inputs' uncertainty through the responses and validate these.
 
-In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, the paper's Tables 2 and 3.
-Out: uq/outputs.csv (Table 2), uq/ratios.csv, uq/surrogate.json, uq/samples.csv, uq/validation.csv (nm, GPa/nm, GPa).
+In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, the paper's Table 2.
+Out: uq/outputs.csv (Table 2), uq/surrogate.json, uq/samples.csv, uq/validation.csv (nm, GPa/nm, GPa).
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from mesoscale.inputs.table import from_rows
 from mesoscale.law.parameters import FITTED
 from mesoscale.settings import LawSettings, UncertaintySettings
-from mesoscale.uncertainty.paper_tables import ratio_rows, table2, table3
+from mesoscale.uncertainty.paper_tables import table2
 from mesoscale.uncertainty.propagation import nodes_of_rows, output_rows, propagate, surrogate_json
 from mesoscale.uncertainty.validation import direct_runs_of_rows, validation_rows
 from workflow.job import job, settings_from_job
@@ -29,8 +29,6 @@ with job(snakemake) as run:
 
     result = propagate(nodes, table, settings, direct)
     write_csv(snakemake.output.outputs, output_rows(nodes, result, paper, table2(paper_rows, exchanged=True)))
-    ratios = ratio_rows(nodes, result, table, paper, table3(load_csv(snakemake.input.table3)))
-    write_csv(snakemake.output.ratios, ratios)
     constants = {"rho_a_nm": law.rho_a_nm, "alpha_nm": law.shield_nm}
     write_json(
         snakemake.output.surrogate,
