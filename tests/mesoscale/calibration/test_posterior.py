@@ -364,7 +364,7 @@ def test_release_is_that_of_the_device_stage(prior, parts):
 def test_a_release_voltage_teaches_most_of_the_release_voltage(prior, parts):
     """What the made-up release depends on is not the modulus, so measuring that again is worth nothing."""
     result = result_of(prior, parts, modulus(91.0, 3.0))
-    rows = {row["kind"]: row for row in next_measurements(result, MAX_FORCE_NN, 1)}
+    rows = {row["kind"]: row for row in next_measurements(result, MAX_FORCE_NN)}
     assert rows["release"]["reduction"] > 0.2
     assert abs(rows["modulus"]["reduction"]) < 0.1
 
@@ -376,7 +376,7 @@ def test_next_on_pad_finds_what_its_release_depends_on(prior, parts):
     responses = parts[0]
     rows = {
         row["kind"]: row
-        for row in next_on_pad(lambda tables: given(prior, parts, *tables), responses, x, volts, MAX_FORCE_NN, 1)
+        for row in next_on_pad(lambda tables: given(prior, parts, *tables), responses, x, volts, MAX_FORCE_NN)
     }
     assert set(rows) == {
         "closing_curves",
@@ -394,5 +394,5 @@ def test_next_on_pad_finds_what_its_release_depends_on(prior, parts):
 
 def test_next_on_pad_has_nothing_to_narrow_where_all_stick(prior, parts):
     x = prior.sample(40, 5)
-    rows = next_on_pad(lambda tables: given(prior, parts, *tables), parts[0], x, np.zeros(40), MAX_FORCE_NN, 1)
+    rows = next_on_pad(lambda tables: given(prior, parts, *tables), parts[0], x, np.zeros(40), MAX_FORCE_NN)
     assert all(row["reduction"] == 0 and row["width_now_V"] == 0 for row in rows)
