@@ -9,7 +9,7 @@ from mesoscale.uncertainty.surrogate import Surrogate, basis_matrix
 Array = NDArray[np.float64]
 
 DEGREE = 3
-"""Best of 1 to 4 with 800 runs (evidence uncertainty.work_precision)."""
+"""Highest total degree: with 800 runs its deviations come nearest (evidence uncertainty.work_precision)."""
 HYPERBOLIC = 0.7
 """Norm that thins terms of many inputs."""
 
