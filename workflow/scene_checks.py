@@ -33,7 +33,7 @@ def mistakes(scene: Scene, samples: Mapping[str, str]) -> list[str]:
 
 
 def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
-    rows = scene.inputs.rows()
+    rows = scene.inputs.rows(scene.contact.attraction)
     for name in rows:
         if BY_NAME[name].setting in scene.contact.model_fields_set:
             yield f"contact.{BY_NAME[name].setting} and inputs.{name} give the same number; leave one out"

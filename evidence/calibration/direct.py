@@ -30,7 +30,7 @@ from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
 
-CONTACT = ContactSettings(pixels=128)
+CONTACT = ContactSettings(pixels=128, attraction="clamped")
 FREE = ("hamaker", "rms")
 MIDDLE = {"e_star": 91.0, "h_macro": 1.95, "h_prime": 8.4, "q0": 0.025, "hurst": 0.75}
 TRUTH = {**MIDDLE, "hamaker": 0.21, "rms": 6.0}

@@ -108,7 +108,8 @@ def attraction(h, separation, inputs: ContactInputs, settings: ContactSettings) 
     gap = h + separation
     if not settings.reading.touching_attracts:
         gap = gap[gap >= 0]
-    gap = np.maximum(gap, settings.gap_cutoff_nm)
+    cutoff = settings.gap_cutoff_nm
+    gap = np.maximum(gap, 0.0) + cutoff if settings.attraction == "offset" else np.maximum(gap, cutoff)
     area = (settings.length_nm / len(h)) ** 2
     return -inputs.hamaker * area / (6 * np.pi) * np.sum(gap**-3)
 

@@ -120,7 +120,7 @@ def outputs_of(reading: str, seed: int, pixels: int) -> dict[str, Array]:
     nodes = 2 * len(table.rows) + 1
     runs = collocation_runs(table, 1, seed * nodes, (seed + 1) * nodes)
     found = {name: np.full((nodes, len(OUTPUTS)), np.nan) for name in laws}
-    for run, cycle in compute_all(runs, with_reading(reading, ContactSettings(pixels=pixels))):
+    for run, cycle in compute_all(runs, with_reading(reading, ContactSettings(pixels=pixels, attraction="clamped"))):
         for name, law in laws.items():
             if not isinstance(cycle, str):
                 found[name][run.node] = fit_cycle(cycle, law).outputs

@@ -1,12 +1,12 @@
 """Van der Waals attraction of a rough surface and a plane (section 2.1, eq. 1).
 
-Sum over the sites of 1/g^3, with the gap g = h + separation cut off at D0. Sites far from contact are
-summed through a histogram of their heights that keeps the first five moments of each bin; sites near
-contact, and all sites that plastic flow has moved, are summed one by one.
+Sum over the sites of 1/s^3. The distance s of the walls is g + D0 (offset) or max(g, D0) (clamped, the paper's),
+with the gap g = h + separation. Sites far from contact are summed through a histogram of their heights that keeps the
+first five moments of each bin; sites near contact, and all sites that plastic flow has moved, are summed one by one.
 
-Retardation: flats lose the energy A_H / (12 pi g^2) / (1 + c g), with c = 5.32 over the wavelength (Gregory 1981,
-doi:10.1016/0021-9797(81)90018-7; its integral by Derjaguin is Gregory's sphere and plate). So 1/g^3 becomes
-(1 + 3/2 c g) / (1 + c g)^2 / g^3, which is 1/g^3 - (c/2) (1/g^2 - 1/(g + 1/c)^2).
+Retardation: flats lose the energy A_H / (12 pi s^2) / (1 + c s), with c = 5.32 over the wavelength (Gregory 1981,
+doi:10.1016/0021-9797(81)90018-7; its integral by Derjaguin is Gregory's sphere and plate). So 1/s^3 becomes
+(1 + 3/2 c s) / (1 + c s)^2 / s^3, which is 1/s^3 - (c/2) (1/s^2 - 1/(s + 1/c)^2).
 """
 
 import math
@@ -31,12 +31,18 @@ def retardation_rate(wavelength_nm: float | None) -> float:
     return GREGORY / wavelength_nm if wavelength_nm else 0.0
 
 
+def wall_offset_nm(settings: ContactSettings) -> float:
+    """Distance of the walls less the gap, nm, where the gap is wide."""
+    return settings.gap_cutoff_nm if settings.attraction == "offset" else 0.0
+
+
 class Attraction:
     """Eq. 1 on one surface: its law, and the histogram of the sites that flow has not moved.
 
     Attributes
     ----------
     cutoff : D0, nm.
+    offset, least : the walls are max(gap, least) + offset apart, nm.
     touching : whether sites in contact attract.
     near_nm : gap below which sites of an undeformed surface are summed one by one, nm.
     """
@@ -46,6 +52,8 @@ class Attraction:
     ):
         """Take all heights (N^2,) in nm and the area of a site in nm^2."""
         self.cutoff = settings.gap_cutoff_nm
+        self.offset = wall_offset_nm(settings)
+        self.least = self.cutoff - self.offset
         self.touching = settings.reading.touching_attracts
         self.rate = retardation_rate(settings.retardation_nm)
         self.strength = hamaker * site_area / (6.0 * np.pi)
@@ -80,9 +88,11 @@ class Attraction:
 
     def deformed(self, gap: np.ndarray, weight: np.ndarray, separation: float = 0.0, far: int | None = None) -> float:
         """Force (nN, negative) on sites with given gaps (nm) and weights, and on those in the bins from `far` on."""
-        total = inverse_cubes_of(gap, weight, self.cutoff, self.rate)
+        total = inverse_cubes_of(gap, weight, self.least, self.offset, self.rate)
         if far is not None:
-            total += far_inverse_cubes(separation, far, self.lowest, self.bin_width, self.moments, self.rate)
+            total += far_inverse_cubes(
+                separation + self.offset, far, self.lowest, self.bin_width, self.moments, self.rate
+            )
         return -self.strength * total
 
     def undeformed(
@@ -98,7 +108,8 @@ class Attraction:
         return -self.strength * inverse_cubes(
             heights,
             separation,
-            self.cutoff,
+            self.least,
+            self.offset,
             self.touching,
             order,
             order_heights,
@@ -184,7 +195,7 @@ def first_far_bin(gap, separation, lowest, width, bins):
 
 @njit(cache=True)
 def far_inverse_cubes(separation, far, lowest, width, moments, rate):
-    """Sum over the sites of 1/g^3 in the bins from `far` on: (g + t)^-3 expanded in t / g."""
+    """Sum over the sites of 1/s^3 in the bins from `far` on: (s + t)^-3 expanded in t / s."""
     rest = 0.0
     for b in range(far, moments.shape[0]):
         gap = lowest + (b + 0.5) * width + separation
@@ -217,12 +228,12 @@ def _inverse_squares(u, moments):
 
 
 @njit(cache=True)
-def inverse_cubes_of(gap, weight, cutoff, rate):
-    """Sum of 1/max(g, cutoff)^3 over given gaps, each with its weight."""
+def inverse_cubes_of(gap, weight, least, offset, rate):
+    """Sum of 1/s^3, s = max(g, least) + offset, over given gaps, each with its weight."""
     total = 0.0
     for k in range(gap.size):
         if weight[k] > 0.0:
-            total += weight[k] * inverse_cube(max(gap[k], cutoff), rate)
+            total += weight[k] * inverse_cube(max(gap[k], least) + offset, rate)
     return total
 
 
@@ -230,7 +241,8 @@ def inverse_cubes_of(gap, weight, cutoff, rate):
 def inverse_cubes(
     heights,
     separation,
-    cutoff,
+    least,
+    offset,
     touching,
     order,
     order_heights,
@@ -242,12 +254,12 @@ def inverse_cubes(
     moments,
     rate,
 ):
-    """Sum over the sites of 1/max(g, cutoff)^3; ``touching``: whether sites with g < 0 count.
+    """Sum over the sites of 1/s^3, s = max(g, least) + offset; ``touching``: whether sites with g < 0 count.
 
     ``order`` holds at least all sites of the near bins, by rising original height.
     """
     bins = moments.shape[0]
-    far = first_far_bin(max(NEAR_BINS * width, 2.0 * cutoff), separation, lowest, width, bins)
+    far = first_far_bin(max(NEAR_BINS * width, 2.0 * (least + offset)), separation, lowest, width, bins)
     near = 0.0
     for place in range(order.size):
         if min(int((order_heights[place] - lowest) / width), bins - 1) >= far:
@@ -255,10 +267,10 @@ def inverse_cubes(
         if changed[order[place]] == 0:
             gap = order_heights[place] + separation
             if gap >= 0.0 or touching:
-                near += inverse_cube(max(gap, cutoff), rate)
+                near += inverse_cube(max(gap, least) + offset, rate)
     moved = 0.0
     for place in range(changed_count):
         gap = heights[changed_sites[place]] + separation
         if gap >= 0.0 or touching:
-            moved += inverse_cube(max(gap, cutoff), rate)
-    return near + moved + far_inverse_cubes(separation, far, lowest, width, moments, rate)
+            moved += inverse_cube(max(gap, least) + offset, rate)
+    return near + moved + far_inverse_cubes(separation + offset, far, lowest, width, moments, rate)

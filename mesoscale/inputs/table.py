@@ -10,6 +10,7 @@ from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
 from mesoscale.settings import TABLE_1, InputRow, InputsSettings
+from mesoscale.settings.contact import AttractionLaw
 from mesoscale.tables import foreign_table
 
 NUMBERS = ("a", "b", "low", "high")
@@ -20,6 +21,7 @@ def collect(
     settings: InputsSettings,
     stages: Mapping[str, Mapping[str, Any]],
     files: Mapping[str, str],
+    law: AttractionLaw = "offset",
 ) -> InputTable:
     """The inputs in use.
 
@@ -29,13 +31,14 @@ def collect(
     stages : content of the result file of each stage that a row wants: `inputs` (by name: distribution, a, b
         and perhaps low, high, correlation) and `gate` (`passed`, `reasons`).
     files : name of that file, for messages and the table.
+    law : `contact.attraction`, by which a stated work and range become A_H and D0.
 
     Raises
     ------
     InputError : a stage's gate failed, a stage lacks an input, or a range crosses a physical bound.
     """
     rows, pairs = [], {(pair.first, pair.second): pair.rank for pair in settings.correlations}
-    for name, row in settings.rows().items():
+    for name, row in settings.rows(law).items():
         if row.origin == "literature":
             given, source, where = _literature(name, row), row.source or "scene", f"inputs.{name}"
         else:
@@ -44,7 +47,7 @@ def collect(
             where = f"{source}: inputs.{name}"
             given = _distribution(entry, where)
             for other, rank in entry.get("correlation", {}).items():
-                partner = settings.rows().get(other)
+                partner = settings.rows(law).get(other)
                 if row.origin == "calibration":  # a posterior has its own correlations, among its own inputs
                     if partner is not None and partner.origin == "calibration":
                         pairs.pop((other, name), None)

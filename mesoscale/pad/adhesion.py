@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.contact.attraction import retardation_rate
+from mesoscale.contact.attraction import retardation_rate, wall_offset_nm
 from mesoscale.contact.displacement import Displacement
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
@@ -74,8 +74,8 @@ def plan_cases(values: Mapping[str, float], contact: ContactSettings, adhesion: 
         cases += [
             Case(
                 "work",
-                replace(inputs, hamaker=work.hamaker),
-                settings.model_copy(update={"gap_cutoff_nm": work.gap_cutoff_nm}),
+                replace(inputs, hamaker=work.hamaker(contact.attraction)),
+                settings.model_copy(update={"gap_cutoff_nm": work.gap_cutoff_nm(contact.attraction)}),
             )
             for work in adhesion.works
         ]
@@ -83,7 +83,7 @@ def plan_cases(values: Mapping[str, float], contact: ContactSettings, adhesion: 
 
 
 def flats_energy(hamaker: float, separation_nm: Array | float, rate: float) -> Any:
-    """Energy per area (nN/nm = J/m^2) of two flats, retarded at `rate` (1/nm)."""
+    """Energy per area (nN/nm = J/m^2) of two flats whose walls are so far apart, retarded at `rate` (1/nm)."""
     s = np.asarray(separation_nm, float)
     return hamaker / (12.0 * np.pi * s**2) / (1.0 + rate * s)
 
@@ -170,9 +170,9 @@ def pad_rows(case: Case, adhesion: AdhesionSettings, number: int) -> list[dict[s
     cells, loaded = close_to_loads(
         case, [load * 1e-3 for load in adhesion.loads_MPa], range(first, first + adhesion.cells)
     )
-    rate = retardation_rate(case.contact.retardation_nm)
+    rate, offset = retardation_rate(case.contact.retardation_nm), wall_offset_nm(case.contact)
     outwards = cells.grid.separation_nm[::-1]
-    beyond = float(flats_energy(case.inputs.hamaker, outwards[-1], rate))
+    beyond = float(flats_energy(case.inputs.hamaker, outwards[-1] + offset, rate))
     law = law_of(cells, case.inputs.hamaker)
     rows = []
     for load, place in zip(adhesion.loads_MPa, loaded, strict=True):
@@ -194,7 +194,7 @@ def pad_rows(case: Case, adhesion: AdhesionSettings, number: int) -> list[dict[s
                 "depth_nm": float(cells.grid.depth_nm[place]),
                 "zero_force_nm": opened.zero_nm,
                 "energy_uJ_m2": opened.energy_J_m2 * 1e6,
-                "flats_uJ_m2": float(flats_energy(case.inputs.hamaker, opened.zero_nm, rate)) * 1e6,
+                "flats_uJ_m2": float(flats_energy(case.inputs.hamaker, opened.zero_nm + offset, rate)) * 1e6,
                 "pull_off_kPa": opened.pull_off_GPa * 1e6,
                 "sphere_load_uN": sphere.load_nN * 1e-3,
                 "sphere_pull_off_uN": sphere.pull_off_nN * 1e-3,

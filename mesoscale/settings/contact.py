@@ -8,6 +8,11 @@ from pydantic import Field
 from mesoscale.settings.base import Settings
 from mesoscale.settings.surface import SurfaceSettings
 
+AttractionLaw = Literal["clamped", "offset"]
+WORK_FACTOR: dict[AttractionLaw, float] = {"clamped": 4.0, "offset": 12.0}
+"""Work that separates two flats from touch: w = A_H / (this pi D0^2)."""
+RANGE_IN_D0: dict[AttractionLaw, float] = {"clamped": 1.5, "offset": 0.5}
+"""That work over the largest attraction A_H / (6 pi D0^3), in units of D0."""
 NOMINAL_SEED = 1
 """Seed of the surface of the nominal curves (figures 4 and 11)."""
 NOMINAL_FORCE_NN = 1e4
@@ -78,11 +83,16 @@ class ContactSettings(Settings):
         json_schema_extra={"unit": "1/nm"},
     )
     surface: SurfaceSettings = SurfaceSettings()
+    attraction: AttractionLaw = Field(
+        default="offset",
+        description="law of eq. 1: A_H/(6 pi (g + D0)^3), the walls D0 apart at touch; or A_H/(6 pi max(g, D0)^3), the "
+        "paper's, which spends twice its work within D0 again",
+    )
     gap_cutoff_nm: float = Field(
         default=0.165,
         gt=0,
-        le=10,
-        description="D0 of eq. 1: smaller gaps attract as if they were D0",
+        le=30,
+        description="D0 of the attraction: the distance of the walls at touch (offset), or the least gap (clamped)",
         json_schema_extra={"unit": "nm"},
     )
     retardation_nm: float | None = Field(

@@ -7,6 +7,7 @@ from pydantic import Field, create_model, field_validator, model_validator
 
 from mesoscale.inputs.definitions import BY_NAME, INPUTS, InputDefinition
 from mesoscale.settings.base import Settings
+from mesoscale.settings.contact import RANGE_IN_D0, WORK_FACTOR, AttractionLaw
 
 NUMBERS = {"uniform": 2, "normal": 2, "truncated_normal": 4, "fixed": 1}
 """How many numbers state a distribution; `samples` has a file instead."""
@@ -88,25 +89,23 @@ class WorkAndRangeSettings(Settings):
     work_mJ_m2: float = Field(
         gt=0,
         le=1e5,
-        description="work that separates two flats from touch, A_H / (4 pi D0^2); a third of it is beyond D0",
+        description="work that separates two flats from touch",
         json_schema_extra={"unit": "mJ/m^2"},
     )
     range_nm: float = Field(
         ge=1e-3,
         le=15,
-        description="that work over the largest attraction, 3/2 D0",
+        description="that work over the largest attraction: D0/2 by contact.attraction offset, 3/2 D0 by clamped",
         json_schema_extra={"unit": "nm"},
     )
 
-    @property
-    def gap_cutoff_nm(self) -> float:
+    def gap_cutoff_nm(self, law: AttractionLaw) -> float:
         """D0."""
-        return self.range_nm / 1.5
+        return self.range_nm / RANGE_IN_D0[law]
 
-    @property
-    def hamaker(self) -> float:
+    def hamaker(self, law: AttractionLaw) -> float:
         """A_H in 1e-18 J; 1 mJ/m^2 is 1e-3 nN/nm."""
-        return 4.0 * math.pi * self.gap_cutoff_nm**2 * self.work_mJ_m2 * 1e-3
+        return WORK_FACTOR[law] * math.pi * self.gap_cutoff_nm(law) ** 2 * self.work_mJ_m2 * 1e-3
 
 
 def _key(row: InputDefinition) -> Any:
@@ -156,11 +155,11 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
                 raise ValueError(f"{name}: no stage computes it, so that its prior must be stated: give its values")
         return self
 
-    def rows(self) -> dict[str, InputRow]:
-        """The inputs in use, by name."""
+    def rows(self, law: AttractionLaw = "offset") -> dict[str, InputRow]:
+        """The inputs in use, by name; `law` of the attraction that `adhesion` states."""
         named = {name: getattr(self, name) for name in BY_NAME}
         if self.adhesion:
-            stated = {"hamaker": self.adhesion.hamaker, "gap_cutoff": self.adhesion.gap_cutoff_nm}
+            stated = {"hamaker": self.adhesion.hamaker(law), "gap_cutoff": self.adhesion.gap_cutoff_nm(law)}
             for name, value in stated.items():
                 named[name] = InputRow(distribution="fixed", values=(value,), source="inputs.adhesion")
         return {name: row for name, row in named.items() if row is not None}

@@ -20,6 +20,6 @@ with job(snakemake) as run:
     settings = settings_from_job(InputsSettings, given)
     stages = {stage: load_json(path) for stage, path in results.items()}
     files = {stage: "/".join(path.split("/")[-2:]) for stage, path in results.items()}
-    table = collect(settings, stages, files)
+    table = collect(settings, stages, files, snakemake.params.attraction)
     check_resolved(table, snakemake.params.nyquist_per_nm)
     write_csv(snakemake.output[0], to_rows(table))

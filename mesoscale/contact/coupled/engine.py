@@ -40,7 +40,7 @@ class CoupledContact(Contact):
     ):
         super().__init__(surface, inputs, settings, numerics)
         self.e_star = float(inputs.e_star)
-        self.hamaker, self.gap_cutoff = float(inputs.hamaker), settings.gap_cutoff_nm
+        self.hamaker, self.settings = float(inputs.hamaker), settings
         self.table = half_space.influence(self.n)
         self.scale = self.length / self.e_star
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
@@ -133,7 +133,7 @@ class CoupledContact(Contact):
             "rms_curvature_per_nm": self.roughness.curvature,
             "plasticity_index": self.e_star * self.roughness.slope / hardness if hardness > 0.0 else math.inf,
             "yielded_share": yielded,
-            **validity.adhesion_numbers(self.hamaker, self.gap_cutoff, self.e_star, self.roughness),
+            **validity.adhesion_numbers(self.hamaker, self.settings, self.e_star, self.roughness),
         }
 
     @property

@@ -15,6 +15,8 @@ import numpy as np
 from scipy import fft
 
 from mesoscale.contact.coupled import half_space
+from mesoscale.settings import ContactSettings
+from mesoscale.settings.contact import RANGE_IN_D0, WORK_FACTOR
 
 KAPPA = 2.0  # area of an elastic contact over force / (E* h'), as Pastewka and Robbins take it
 
@@ -48,13 +50,14 @@ def roughness(heights: np.ndarray, length: float) -> Roughness:
     return Roughness(slope, curvature, max(-float(pressure.min()), 0.0))
 
 
-def adhesion_numbers(hamaker: float, cutoff: float, e_star: float, surface: Roughness) -> dict[str, float]:
+def adhesion_numbers(hamaker: float, settings: ContactSettings, e_star: float, surface: Roughness) -> dict[str, float]:
     """Tabor's parameter and the number of Pastewka and Robbins (above 1: sticky).
 
-    The law of attraction is eq. 1 with the cut-off D0: pressure at contact s = A_H / (6 pi D0^3), work of adhesion
-    w = A_H / (4 pi D0^2), range w / s = 1.5 D0; the radius of a summit is 2 / h''.
+    The law of attraction gives the pressure at contact s = A_H / (6 pi D0^3), the work of adhesion w, which is
+    A_H / (12 pi D0^2) offset and A_H / (4 pi D0^2) clamped, and the range w / s; the radius of a summit is 2 / h''.
     """
-    work, reach = hamaker / (4.0 * math.pi * cutoff**2), 1.5 * cutoff
+    law, cutoff = settings.attraction, settings.gap_cutoff_nm
+    work, reach = hamaker / (WORK_FACTOR[law] * math.pi * cutoff**2), RANGE_IN_D0[law] * cutoff
     if surface.curvature == 0.0:
         return {"tabor": math.inf, "stickiness": math.inf} if hamaker else {"tabor": 0.0, "stickiness": 0.0}
     tabor = (2.0 / surface.curvature * work**2 / (e_star**2 * reach**3)) ** (1.0 / 3.0)

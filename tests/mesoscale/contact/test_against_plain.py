@@ -16,7 +16,12 @@ CASES: dict[str, tuple[dict, dict, dict]] = {  # settings, reading, numerics
     "paper": ({}, {"flow_pair": "paper"}, {"flow": "increment", "flow_floor_pixels": 0, "max_sweeps": 50}),
     "wide increments": ({}, {}, {"flow": "increment"}),
     "truncation": ({"gap_cutoff_nm": 0.3}, {"radius": "truncation", "area": "hertz"}, {"max_sweeps": 60}),
-    "as printed": ({}, {"convention": "profile", "prefactor": "paper", "touching_attracts": True}, {}),
+    "clamped": ({"attraction": "clamped"}, {}, {}),
+    "as printed": (
+        {"attraction": "clamped"},
+        {"convention": "profile", "prefactor": "paper", "touching_attracts": True},
+        {},
+    ),
 }
 
 

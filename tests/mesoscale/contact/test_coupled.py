@@ -73,12 +73,13 @@ def test_a_sphere_is_hertzs():
     assert (np.log2(errors[0] / errors[-1]) / 2 > 0.8).all()  # first order, as the edge of the contact is resolved
 
 
-def hertz_attraction(contact_radius: float, radius: float, hamaker: float, cutoff: float) -> float:
+def hertz_attraction(contact_radius: float, radius: float, hamaker: float, cutoff: float, law: str) -> float:
     """Attraction (nN) of a sphere outside its contact, over the gap of Hertz's solution (Johnson 1985, eq. 3.42a)."""
 
     def over_the_rim(x):
         gap = contact_radius**2 / (np.pi * radius) * (np.sqrt(x * x - 1) + (x * x - 2) * np.arccos(1 / x))
-        return 2 * np.pi * x * contact_radius**2 / max(gap, cutoff) ** 3
+        walls = gap + cutoff if law == "offset" else max(gap, cutoff)
+        return 2 * np.pi * x * contact_radius**2 / walls**3
 
     ends = [1, 1.05, 1.1, 1.2, 1.4, 1.8, 2.5, 4, 8, 20]
     parts = [quad(over_the_rim, *pair, epsrel=1e-6)[0] for pair in pairwise(ends)]
@@ -86,12 +87,14 @@ def hertz_attraction(contact_radius: float, radius: float, hamaker: float, cutof
 
 
 @pytest.mark.parametrize("radius", [13.0, 40.0])
-def test_a_sphere_attracts_over_the_rim_of_its_contact_as_hertzs_gap_does(radius):
-    # sites that touch cover 6 % more than the contact, 4 sites wide: without the strip at its edge the attraction
-    # falls short by 9 to 12 % (R = 13 nm) and 4 to 5 % (40 nm); one position on the grid scatters by 4 and 1 %
-    sites, contact_radius, pixels = 4, 4.0, 80
+@pytest.mark.parametrize(("law", "sites"), [("clamped", 4), ("offset", 8)])
+def test_a_sphere_attracts_over_the_rim_of_its_contact_as_hertzs_gap_does(radius, law, sites):
+    # sites that touch cover 6 % more than the contact, 4 sites wide: without the strip at its edge the clamped law's
+    # attraction falls short by 9 to 12 % (R = 13 nm) and 4 to 5 % (40 nm); one position on the grid scatters by 4 and
+    # 1 %. The offset law is steeper at the edge: on 4 sites to the radius it falls short by 14 and 3 %
+    contact_radius, pixels = 4.0, 20 * sites
     spacing = contact_radius / sites
-    settings = coupled(pixels, pixels * spacing, model="elastic")
+    settings = coupled(pixels, pixels * spacing, model="elastic", attraction=law)
     force = exact.hertz_force(contact_radius**2 / radius, radius, INPUTS.e_star)
     separation = -(contact_radius**2) / radius + LATTICE * force / (np.pi * INPUTS.e_star * settings.length_nm)
     found = []
@@ -100,7 +103,7 @@ def test_a_sphere_attracts_over_the_rim_of_its_contact_as_hertzs_gap_does(radius
         contact = CoupledContact((x[:, None] ** 2 + y[None, :] ** 2) / (2 * radius), INPUTS, settings)
         contact.move_to(separation, False)
         found.append(-contact.attraction(separation))
-    wanted = hertz_attraction(contact_radius, radius, INPUTS.hamaker, settings.gap_cutoff_nm)
+    wanted = hertz_attraction(contact_radius, radius, INPUTS.hamaker, settings.gap_cutoff_nm, law)
     assert np.mean(found) == pytest.approx(wanted, rel=0.03)
 
 
@@ -274,7 +277,7 @@ def test_attraction_is_that_of_the_deformed_gap():
         edges = sum(np.roll(touching, shift, axis) for shift in (-1, 1) for axis in (0, 1))
         # sites touch that the contact covers in part only: 0.118 of a site for each edge (attraction.EXCESS)
         weight = np.where(touching, 0.0, 1.0 + (np.pi - 1 + np.log(2)) / 24 * edges)
-        cubes = np.maximum(gap, settings.gap_cutoff_nm) ** -3.0
+        cubes = (np.maximum(gap, 0.0) + settings.gap_cutoff_nm) ** -3.0
         exact_sum = -INPUTS.hamaker * (125 / 128) ** 2 / (6 * np.pi) * weight.ravel() @ cubes
         assert contact.attraction(separation) == pytest.approx(exact_sum, rel=3e-3)
 
@@ -313,7 +316,9 @@ def test_flags_say_where_the_model_holds():
 def test_stickiness_is_pastewka_and_robbins_criterion_worked_by_hand():
     # their eq. 10 in its printed form: h' = 0.1, h'' = 0.05 /nm, dr = 0.3 nm, w = 0.4277 J/m2, E* = 91 GPa, so that
     # l_a = 4.700 pm, d = 8 nm and (h' dr / (2 l_a)) (h' d / 4 dr)^(2/3) = 3.191 * 0.7631 = 2.435: not sticky
-    numbers = validity.adhesion_numbers(0.215, 0.2, 91.0, validity.Roughness(0.1, 0.05, 0.0))
+    numbers = validity.adhesion_numbers(
+        0.215, coupled(32, 32.0, gap_cutoff_nm=0.2, attraction="clamped"), 91.0, validity.Roughness(0.1, 0.05, 0.0)
+    )
     assert 1.0292 / numbers["stickiness"] == pytest.approx(2.435, rel=1e-3)
 
 

@@ -62,7 +62,8 @@ def describe(results: Results) -> Section | None:
         "convention": "slope convention",
         "q1_per_nm": "short-wave cut-off (1/nm)",
         "touching_attracts": "sites in contact attract",
-        "gap_cutoff_nm": "smallest gap of the attraction (nm)",
+        "attraction": "law of the attraction",
+        "gap_cutoff_nm": "D₀ of the attraction (nm)",
     }
     if not coupled:  # asperities that feel each other have neither a radius nor a shape of flow
         words |= {
