@@ -48,9 +48,9 @@ def test_opening_counts_from_the_first_separation_without_force():
 def test_single_cells_of_512_have_the_energies_that_a_prototype_had(rms, load_nN, stated):
     """One surface of an independent code (uJ/m^2) lies among those of ten surfaces."""
     inputs = ContactInputs(**{**VALUES, "rms": rms})
-    energies = []
+    energies, settings = [], ContactSettings(pixels=512, attraction="clamped")
     for seed in range(10):
-        opening = run_cycle(inputs, ContactSettings(pixels=512, attraction="clamped"), seed, max_force_nN=load_nN).opening
+        opening = run_cycle(inputs, settings, seed, max_force_nN=load_nN).opening
         beyond = flats_energy(INPUTS.hamaker, opening.separation_nm[-1], 0.0)
         energies.append(open_from(opening.separation_nm, opening.net_nN / 1e6, float(beyond)).energy_J_m2 * 1e6)
     assert abs(stated - np.mean(energies)) < 2.0 * np.std(energies, ddof=1)
