@@ -16,12 +16,12 @@ import numpy as np
 from ase import Atoms
 from ase.calculators.calculator import Calculator
 from ase.io import read
+from atomistic.elastic.joint_moduli import measure_constants
+from atomistic.elastic.studies.constants import beside_published
 
 from atomistic.elastic.energy_scans import scan_volumes
 from atomistic.elastic.equation_of_state import fit_equation_of_state
-from atomistic.elastic.joint_moduli import measure_constants
 from atomistic.elastic.networks import crystal
-from atomistic.elastic.studies.constants import beside_published
 from atomistic.materials import load_material
 from atomistic.settings import TensorSettings
 

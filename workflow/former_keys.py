@@ -37,6 +37,25 @@ FORMER_KEYS: dict[str, str] = {
         for key in ("min_points", "min_share", "bootstrap", "systematic")
     },
     # elastic
+    "elastic.ions": "no longer a setting, delete it: ions are clamped in E(V), and follow where poisson is computed",
+    "elastic.lda_centre": "no longer a setting, delete it",
+    "elastic.min_structures": "no longer a setting, delete it: four are needed",
+    "elastic.relaxed_structures": "no longer a setting, delete it: poisson 'computed' lets ions follow the strain",
+    "elastic.relaxed_force_eV_A": "no longer a setting, delete it: poisson 'computed' lets ions follow the strain",
+    "elastic.size_error": "no longer a setting, delete it",
+    "elastic.relaxation": "no longer a section: max_steps is dft.relaxation_steps, basis and cut-off are those of dft",
+    "elastic.tensor": "no longer a section: structures is elastic.tensor_structures, the others are fixed",
+    "elastic.glass.structures": "renamed, write elastic.structures",
+    "elastic.glass.seed": "renamed, write elastic.seed",
+    **dict.fromkeys(
+        (f"elastic.glass.{key}" for key in ("melt_temperature_K", "melt_ps", "final_temperature_K", "timestep_fs")),
+        "no longer a setting, delete it: quench_rate_K_ps and formula_units remain",
+    ),
+    "elastic.glass.attempts": "no longer a setting, delete it",
+    **dict.fromkeys(
+        (f"elastic.dft.{key}" for key in ("numerics", "tolerance_Ha", "max_cycles")),
+        "no longer a setting, delete it: basis and cutoff_Ha remain",
+    ),
     # topography
     **{
         f"topography.{key}": "no longer a setting, delete it: synthetic scans always have this surface and instrument"

@@ -90,23 +90,21 @@ def _stages(scene: Scene) -> Iterator[str]:
 
 
 def _unknown_bases(scene: Scene) -> Iterator[str]:
-    """Basis sets that PySCF does not have for an element of the material; the default one is known."""
+    """A basis set that PySCF does not have for an element of the material; the default one is known."""
     elastic, material = scene.elastic, MATERIALS / f"{scene.elastic.material}.yaml"
-    given = {"elastic.dft.basis": elastic.dft.basis, "elastic.relaxation.basis": elastic.relaxation.basis}
-    unusual = {key: name for key, name in given.items() if name != DftSettings.model_fields["basis"].default}
-    if not (unusual and material.is_file()):
+    name = elastic.dft.basis
+    if name == DftSettings.model_fields["basis"].default or not material.is_file():
         return
     from pyscf.lib.exceptions import BasisNotFoundError  # takes two seconds
     from pyscf.pbc.gto import basis
 
-    for key, name in unusual.items():
-        for element in load_material(material).formula:
-            try:
-                with warnings.catch_warnings(action="ignore"):
-                    basis.load(name, element)
-            except BasisNotFoundError:
-                yield f"{key} = {name}: PySCF has no such basis set for {element}; give one of its GTH sets"
-                break
+    for element in load_material(material).formula:
+        try:
+            with warnings.catch_warnings(action="ignore"):
+                basis.load(name, element)
+        except BasisNotFoundError:
+            yield f"elastic.dft.basis = {name}: PySCF has no such basis set for {element}; give one of its GTH sets"
+            return
 
 
 def _machine(scene: Scene) -> Iterator[str]:

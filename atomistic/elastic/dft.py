@@ -15,17 +15,21 @@ from ase.calculators.calculator import CalculationFailed, Calculator, all_change
 from ase.stress import full_3x3_to_voigt_6_stress
 from ase.units import Bohr, Hartree
 
+from atomistic.errors import InputError
+from atomistic.settings import DftSettings
+
 FUNCTIONALS = {
     # name: (PySCF functional, GTH pseudopotential generated with it)
     "GGA": ("pbe", "gth-pbe"),
     "LDA": ("lda_xc_teter93", "gth-pade"),
 }
-NUMERICS = ("cached-grid", "multigrid", "fftdf")
 
 Store = MutableMapping[str, dict[str, np.ndarray]]
 """Finished calculations by key; the caller decides whether it lives in memory or on disk."""
 
-
+ENERGY_TOLERANCE_HA = 1e-6  # of the SCF, per cell; B of β-Si3N4 is then within 0.01 % of its value at 1e-8
+FORCES_TOLERANCE_HA = 1e-7  # the same where forces or stress are computed
+MAX_CYCLES = 50  # of an SCF; a glass with a gap takes 8 to 14
 COARSE = 0.6  # mesh on which an SCF without a former one starts, over the mesh itself: a fifth of the points
 COARSE_TOLERANCE_HA = 1e-3
 SINGLE_PRECISION_HA = 1e-7  # SCF tolerance from which orbitals on the grid need no double precision
@@ -93,9 +97,9 @@ class PyscfGamma(Calculator):
     mesh : grid points along each lattice vector; None takes it from `cutoff_Ha` and the cell at hand
     tolerance_Ha : SCF convergence of the energy per cell, hartree
     max_cycles : SCF cycles before giving up
-    numerics : "cached-grid" (atomistic.elastic.gamma_scf), PySCF's own "multigrid" or "fftdf"
     store : finished calculations; one found there is not repeated
 
+    The potential is that of `atomistic.elastic.gamma_scf`.
     Each calculation starts from the occupied orbitals of the last ones, extrapolated to the new geometry
     (`extrapolated_orbitals`), which saves more than half of the cycles.  They are part of the key in `store`, so a
     series that is interrupted and replayed gives the same numbers to the last bit.
@@ -111,13 +115,10 @@ class PyscfGamma(Calculator):
         "mesh": None,
         "tolerance_Ha": 1e-7,
         "max_cycles": 60,
-        "numerics": "cached-grid",
     }
 
     def __init__(self, store: Store | None = None, **parameters):
         super().__init__(**parameters)
-        if self.parameters.numerics not in NUMERICS:
-            raise ValueError(f"numerics {self.parameters.numerics!r}; accepted: {', '.join(NUMERICS)}")
         self.store: Store = {} if store is None else store
         self.history: list[Solution] = []  # the last ones that converged, oldest first
         self.scf_runs = 0  # calculations really done, not taken from the store
@@ -164,34 +165,24 @@ class PyscfGamma(Calculator):
         """PySCF's calculation of the structure at hand on a mesh."""
         from pyscf.pbc import dft
 
+        from atomistic.elastic.gamma_scf import CachedGrid
+
         p = self.parameters
         assert self.atoms is not None
         cell = build_cell(self.atoms, p.xc, p.basis, mesh)
         mf: Any = dft.RKS(cell)
         mf.xc = FUNCTIONALS[p.xc][0]
         mf.verbose = 0
-        single = p.numerics == "cached-grid" and p.tolerance_Ha >= SINGLE_PRECISION_HA
+        single = p.tolerance_Ha >= SINGLE_PRECISION_HA
         # the gradient feels no rounding and decides: its square is about the error of the energy
         mf.conv_tol = max(p.tolerance_Ha, ROUNDING_HA * cell.natm) if single else p.tolerance_Ha
         mf.conv_tol_grad = np.sqrt(p.tolerance_Ha) * (1 if single else 10)
         mf.max_cycle = p.max_cycles
         mf.conv_check = False  # the extra cycle after convergence would change the energy by less than the tolerance
-        if p.numerics == "cached-grid":
-            from atomistic.elastic.gamma_scf import CachedGrid
-
-            mf._numint = CachedGrid(cell, np.float32 if single else np.float64)
-        elif p.numerics == "multigrid":
-            mf = mf.multigrid_numint()
-        else:
-            # PySCF would build all four-index integrals if they fitted into memory (minutes): keep to FFTs
-            fft = mf.with_df.get_jk
-            mf.get_jk = lambda cell=None, dm=None, hermi=1, kpt=None, kpts_band=None, with_j=True, with_k=False, **_: (
-                fft(dm, hermi, kpt, kpts_band, with_j, False)
-            )
+        mf._numint = CachedGrid(cell, np.float32 if single else np.float64)
         return mf
 
     def _solve(self, mesh, wanted: str) -> dict[str, np.ndarray]:
-        p = self.parameters
         mf = self._mean_field(mesh)
         overlap = np.asarray(mf.cell.pbc_intor("int1e_ovlp", hermi=1))  # half the time of PySCF's own call
         self._keep_overlap(mf, overlap)
@@ -210,14 +201,9 @@ class PyscfGamma(Calculator):
         }
         if wanted == "energy" or not converged:
             return solved
-        if p.numerics == "cached-grid":
-            solved["forces"], stress = mf._numint.forces_and_stress(mf, with_stress=wanted == "stress")
-            if stress is not None:
-                solved["stress"] = stress
-        elif p.numerics == "multigrid" and wanted == "forces":
-            solved["forces"] = -mf.nuc_grad_method().kernel()
-        else:
-            raise NotImplementedError(f"{wanted} with numerics {p.numerics!r}; use 'cached-grid'")
+        solved["forces"], stress = mf._numint.forces_and_stress(mf, with_stress=wanted == "stress")
+        if stress is not None:
+            solved["stress"] = stress
         return solved
 
     @staticmethod
@@ -233,13 +219,48 @@ class PyscfGamma(Calculator):
         c = extrapolated_orbitals([old for old in self.history if old.orbitals.shape == shape], overlap)
         if c is not None:
             return lib.tag_array(2 * c @ c.T, mo_coeff=c, mo_occ=np.full(c.shape[1], 2.0))
-        if self.parameters.numerics != "cached-grid":
-            return None
         coarse = self._mean_field(tuple(int(np.ceil(COARSE * n)) for n in cell.mesh))
         self._keep_overlap(coarse, overlap)
         coarse.conv_tol, coarse.conv_tol_grad = COARSE_TOLERANCE_HA, 10 * np.sqrt(COARSE_TOLERANCE_HA)
         coarse.kernel()  # where it does not converge the fine mesh goes on from where it ended
         return coarse.make_rdm1()
+
+
+def make_calculator(
+    dft: DftSettings,
+    xc: str,
+    largest_cell: np.ndarray,
+    store: Store | None = None,
+    cutoff_Ha: float | None = None,
+    forces: bool = False,
+) -> Calculator:
+    """The DFT engine of the settings.
+
+    Parameters
+    ----------
+    xc : "GGA" or "LDA"
+    largest_cell : (3, 3) Å; the mesh is fixed to what this cell needs, so that it does not jump along a scan
+    store, cutoff_Ha : finished calculations, and a cut-off in place of that of the settings (PySCF only)
+    forces : whether forces are wanted, not only energies
+    """
+    if dft.engine == "pyscf":
+        cutoff_Ha = cutoff_Ha or (dft.forces_cutoff_Ha if forces else dft.cutoff_Ha)
+        return PyscfGamma(
+            store=store,
+            xc=xc,
+            basis=dft.basis,
+            cutoff_Ha=cutoff_Ha,
+            mesh=commensurate_mesh(largest_cell, cutoff_Ha),
+            tolerance_Ha=FORCES_TOLERANCE_HA if forces else ENERGY_TOLERANCE_HA,
+            max_cycles=MAX_CYCLES,
+        )
+    from ase.calculators.calculator import get_calculator_class
+
+    try:
+        parameters: dict[str, Any] = dict(dft.parameters)
+        return get_calculator_class(dft.engine)(**parameters)
+    except Exception as error:
+        raise InputError(f"elastic.dft.engine: ASE cannot set up {dft.engine}: {error}") from error
 
 
 class ShiftedMesh(Calculator):
@@ -272,7 +293,7 @@ class TwoMeshes(Calculator):
 
     On a mesh the energy ripples as an atom moves through it, most where the pseudopotential is hard.  Half a step along
     every lattice vector turns the sign of the ripple's first harmonic, so the mean does not have it; a mesh so fine
-    that the ripple vanishes would cost more than two coarse ones (docs/elastic.md).
+    that the ripple vanishes would cost more than two coarse ones.
 
     Attributes
     ----------

@@ -21,6 +21,9 @@ from atomistic.materials import SEARCHED_A, Core, Material, NetworkGlass, Superc
 from atomistic.settings import NitrideGlassSettings
 
 START_DISTANCE_A = 1.4  # random start: nothing closer than this
+MELT_K, MELT_PS, FINAL_K = 5000.0, 3.0, 300.0
+TIMESTEP_FS = 1.0
+ATTEMPTS = 1000  # quenches until one passes the gates; of 28 atoms about one in sixty does
 FREE_BELOW_K = 2500.0  # a melt has no shape to keep; below this its network can still change and settles as a glass
 
 
@@ -135,7 +138,7 @@ def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
 def same_network(atoms: Atoms, others: Mapping[str, Atoms]) -> str | None:
     """Name of the first of `others` that is this cell again: turned, mirrored, shifted or described by other edges.
 
-    A small cell has few good networks, so that independent quenches end in the same one (docs/elastic.md).
+    A small cell has few good networks, so that independent quenches end in the same one.
     """
     from ase.utils.structure_comparator import SymmetryEquivalenceCheck
 
@@ -235,9 +238,9 @@ def make_glass(
     """
     attempts: list[dict[str, Any]] = []
     atoms, network = Atoms(), material.part("network_glass")
-    for attempt in range(settings.attempts):
+    for attempt in range(ATTEMPTS):
         if progress:
-            progress(attempt / settings.attempts, f"melt and quench, attempt {attempt + 1}")
+            progress(attempt / ATTEMPTS, f"melt and quench, attempt {attempt + 1}")
         quench_seed = int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
         atoms = quench(material, settings, quench_seed, work)
         verdict = examine(atoms, network, settings.max_defects)
@@ -297,8 +300,7 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
         LammpsAtoms(elements, types, start.positions, np.diag(start.cell.array)),
         network.masses_u,
     )
-    steps_per_ps = 1000 / settings.timestep_fs
-    free_K = min(FREE_BELOW_K, settings.melt_temperature_K)
+    steps_per_ps = 1000 / TIMESTEP_FS
     steps_per_K = steps_per_ps / settings.quench_rate_K_ps
     run_lammps(
         "nitride.in",
@@ -306,13 +308,13 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
         {
             "elements": " ".join(elements),
             "seed": seed,
-            "timestep": settings.timestep_fs / 1000,
-            "melt": settings.melt_temperature_K,
-            "free": free_K,
-            "final": settings.final_temperature_K,
-            "melt_steps": round(settings.melt_ps * steps_per_ps),
-            "quench_steps": round((settings.melt_temperature_K - free_K) * steps_per_K),
-            "free_steps": round((free_K - settings.final_temperature_K) * steps_per_K),
+            "timestep": TIMESTEP_FS / 1000,
+            "melt": MELT_K,
+            "free": FREE_BELOW_K,
+            "final": FINAL_K,
+            "melt_steps": round(MELT_PS * steps_per_ps),
+            "quench_steps": round((MELT_K - FREE_BELOW_K) * steps_per_K),
+            "free_steps": round((FREE_BELOW_K - FINAL_K) * steps_per_K),
         },
     )
     numbers = {kind: atomic_numbers[element] for kind, element in enumerate(elements, 1)}

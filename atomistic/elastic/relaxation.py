@@ -1,16 +1,11 @@
-"""Relaxation of the ions of a glass cell by density functional theory; eV and Å."""
+"""Relaxation of the ions of a cell, or of ions and cell together, from springs on its bonds; eV and Å."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from ase import Atoms
-from ase.calculators.calculator import CalculationFailed, Calculator
+from ase.calculators.calculator import Calculator
 
-from atomistic.settings import RelaxationSettings
-
-Progress = Callable[[float, str], None]
 BOND_A, EDGE_A = 2.3, 3.2  # longest Si-N bond, longest edge of a tetrahedron of N
 # of springs along bonds, across them, along edges and under every coordinate, after the forces that a glass met on its
 # way to rest; only the speed depends on them
@@ -71,27 +66,22 @@ class Rest(NamedTuple):
     steps : ionic steps
     force_left_eV_A, converged : largest force left, and whether it is below the goal
     hessian_eV_A2 : as the optimiser has it in the end, (3n, 3n), or (3n + 9, 3n + 9) where the cell relaxes
-    depth_eV : how far the minimum lies below, by that Hessian and the forces left
     """
 
     steps: int
     force_left_eV_A: float
     converged: bool
     hessian_eV_A2: np.ndarray
-    depth_eV: float
 
 
-def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndarray | None = None) -> Rest:
+def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> Rest:
     """Quasi-Newton relaxation of the ions (BFGS), cell fixed.
 
-    Parameters
-    ----------
-    hessian : to start from, (3n, 3n), eV/Å²; None takes springs.  With ASE's own start, a multiple of the unit
-        matrix, a cell takes about three times as many steps
+    It starts from the Hessian of the springs: from ASE's own start, a multiple of the unit matrix, a cell takes about
+    three times as many steps.
     """
     n = 3 * len(atoms)
-    start = spring_hessian(atoms)[:n, :n] if hessian is None else hessian
-    return _minimise(atoms, atoms, force_eV_A, max_steps, start)
+    return _minimise(atoms, atoms, force_eV_A, max_steps, spring_hessian(atoms)[:n, :n])
 
 
 def relax_cell(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndarray | None = None) -> Rest:
@@ -130,76 +120,10 @@ def _minimise(target: Any, atoms: Atoms, force_eV_A: float, max_steps: int, hess
         if optimizer.state is not None:
             optimizer.update(target.get_positions().ravel(), forces.ravel(), optimizer.pos0, optimizer.forces0)
             final = np.asarray(optimizer.H)
-        depth = 0.5 * float(forces.ravel() @ np.linalg.solve(final, forces.ravel()))
         left = float(np.linalg.norm(atoms.get_forces(), axis=1).max())
-        return Rest(int(optimizer.nsteps), left, converged, final, depth)
-
-
-def extrapolated_ions(rested: Mapping[float, Atoms], strain: float) -> Atoms:
-    """Start of a relaxation at `strain`: along the line through the two nearest strains where ions came to rest."""
-    first, *others = sorted(rested, key=lambda known: abs(known - strain))
-    start = strained(rested[first], (1 + strain) / (1 + first) - 1)
-    if others:
-        moved = rested[first].get_scaled_positions(wrap=False) - rested[others[0]].get_scaled_positions(wrap=False)
-        start.set_scaled_positions(
-            start.get_scaled_positions(wrap=False) + moved * (strain - first) / (first - others[0])
-        )
-    return start
-
-
-@dataclass(frozen=True)
-class Relaxation:
-    """What the relaxation of a glass did.
-
-    Attributes
-    ----------
-    steps : ionic steps
-    force_left_eV_A, converged : largest force left, and whether that met the goal
-    energy_gained_eV : below the quenched cell
-    gap_eV : between the highest occupied and the lowest empty level at the end; NaN if the engine does not tell
-    failure : why a calculation failed; the ions are then those of the quenched glass
-    """
-
-    steps: int
-    force_left_eV_A: float
-    converged: bool
-    energy_gained_eV: float
-    gap_eV: float
-    failure: str = ""
-
-
-UNTOUCHED = Relaxation(0, float("nan"), False, 0.0, float("nan"))
+        return Rest(int(optimizer.nsteps), left, converged, final)
 
 
 def last_gap_eV(calculator: Calculator) -> float:
     """Gap between occupied and empty levels that a calculator found last; NaN if its engine does not tell."""
     return float(getattr(calculator, "gap_eV", np.nan))
-
-
-def relax_glass(
-    atoms: Atoms, calculator: Calculator, settings: RelaxationSettings, progress: Progress | None = None
-) -> tuple[Atoms, Relaxation]:
-    """Relax the ions of a glass in its cell, for as many steps as the settings afford.
-
-    The cell keeps shape and size: its volume is found by the E(V) scan, stress anisotropy is left in it.
-
-    Returns
-    -------
-    the relaxed cell, and how it came to rest
-    """
-    current = strained(atoms, 0.0)
-    if settings.max_steps == 0:
-        return current, UNTOUCHED
-    current.calc = calculator
-    if progress:
-        progress(0.0, f"relaxing ions, at most {settings.max_steps} steps")
-    try:
-        current.get_forces()  # asked for first, so that the energy comes from the same calculation
-        before = current.get_potential_energy()
-        rest = relax_ions(current, settings.force_eV_A, settings.max_steps)
-        gained = float(before - current.get_potential_energy())
-    except CalculationFailed as error:
-        # the E(V) scan of this structure will meet the same trouble and name the strains; the others go on
-        return strained(atoms, 0.0), replace(UNTOUCHED, failure=f"relaxation: {error}")
-    done = Relaxation(rest.steps, rest.force_left_eV_A, rest.converged, gained, last_gap_eV(calculator))
-    return strained(current, 0.0), done

@@ -28,6 +28,10 @@ from atomistic.elastic.tensor import Stiffness, deformation, fit_stiffness, gree
 from atomistic.errors import InputError
 
 Progress = Callable[[float, str], None]
+STRAIN = 0.005  # of the six strains, taken with both signs; 0.02 instead of 0.002 moves G of β-Si3N4 by 0.1 %
+DISPLACEMENT_A = 0.01  # largest of an atom where the Hessian is measured; 0.1 moves G by 1.5 %
+ROUNDS = 4  # times six directions; two are enough for most glasses, not for a soft one
+TOLERANCE_GPA = 5.0  # of a constant's softening that may be estimated: a third of it is wrong, 1 % of G
 NEGLIGIBLE = 0.01  # part of a direction that earlier ones leave: less is noise and not measured again
 
 
@@ -72,10 +76,10 @@ def elastic_response(
     atoms: Atoms,
     sides: tuple[Calculator, Calculator],
     hessian: np.ndarray,
-    strain: float,
-    displacement_A: float,
-    rounds: int,
-    tolerance_GPa: float,
+    strain: float = STRAIN,
+    displacement_A: float = DISPLACEMENT_A,
+    rounds: int = ROUNDS,
+    tolerance_GPa: float = TOLERANCE_GPA,
     progress: Progress | None = None,
 ) -> Response:
     """Elastic constants of a structure at rest, with clamped and with relaxed ions.
@@ -101,7 +105,7 @@ def elastic_response(
     if "stress" not in sides[0].implemented_properties:
         raise InputError(
             f"elastic constants: {type(sides[0]).__name__} gives no stress; choose an engine that does "
-            "(elastic.dft.numerics: cached-grid)"
+            "(elastic.dft.engine)"
         )
     rest = [strained_state(atoms, side, np.zeros(6)) for side in dict.fromkeys(sides)]
     at_rest = [rest[0], rest[-1]]

@@ -5,13 +5,36 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from ase import Atoms
-from ase.calculators.calculator import Calculator
+from ase.calculators.calculator import CalculationFailed, Calculator
 
 from atomistic.elastic.moduli import Modulus
 from atomistic.elastic.networks import Gate, examine, no_insulator
-from atomistic.elastic.relaxation import UNTOUCHED, Progress, Relaxation, relax_glass
+from atomistic.elastic.relaxation import last_gap_eV, relax_ions, strained
 from atomistic.materials import NetworkGlass
-from atomistic.settings import RelaxationSettings
+
+Progress = Callable[[float, str], None]
+FORCE_EV_A = 0.3  # largest force left on an atom before the E(V) scan
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """What the relaxation of a glass did; by default nothing.
+
+    Attributes
+    ----------
+    steps : ionic steps
+    force_left_eV_A, converged : largest force left, and whether that met the goal
+    energy_gained_eV : below the quenched cell
+    gap_eV : between the highest occupied and the lowest empty level at the end; NaN if the engine does not tell
+    failure : why a calculation failed; the ions are then those of the quenched glass
+    """
+
+    steps: int = 0
+    force_left_eV_A: float = float("nan")
+    converged: bool = False
+    energy_gained_eV: float = 0.0
+    gap_eV: float = float("nan")
+    failure: str = ""
 
 
 @dataclass(frozen=True)
@@ -50,11 +73,13 @@ def relaxed_structure(
     quenched: Atoms,
     criteria: NetworkGlass,
     make_calculator: Callable[[], Calculator],
-    settings: RelaxationSettings,
+    max_steps: int,
     refused: str = "",
     progress: Progress | None = None,
 ) -> Structure:
-    """Relax a quenched cell and judge the result; a cell that no quench made right is not relaxed at all.
+    """Relax the ions of a quenched cell and judge the result; a cell that no quench made right is not relaxed at all.
+
+    The cell keeps shape and size: its volume is found by the E(V) scan, stress anisotropy is left in it.
 
     Parameters
     ----------
@@ -63,12 +88,28 @@ def relaxed_structure(
     refused : why the quenched cell was rejected; empty if it was accepted
     """
     if refused:
-        return Structure(quenched, None, examine(quenched, criteria), UNTOUCHED, (refused,))
-    calculator = make_calculator()
-    atoms, done = relax_glass(quenched, calculator, settings, progress)
+        return Structure(quenched, None, examine(quenched, criteria), Relaxation(), (refused,))
+    calculator, atoms = make_calculator(), strained(quenched, 0.0)
+    done = _relax(atoms, calculator, max_steps, progress) if max_steps else Relaxation()
+    atoms = strained(quenched if done.failure else atoms, 0.0)
     verdict = examine(atoms, criteria)
     reasons = [*verdict.reasons, *filter(None, [done.failure]), *no_insulator(done.gap_eV, criteria)]
     return Structure(atoms, calculator, verdict, done, tuple(reasons))
+
+
+def _relax(atoms: Atoms, calculator: Calculator, max_steps: int, progress: Progress | None) -> Relaxation:
+    """Move the ions to rest, in as many steps as there may be."""
+    atoms.calc = calculator
+    if progress:
+        progress(0.0, f"relaxing ions, at most {max_steps} steps")
+    try:
+        atoms.get_forces()  # asked for first, so that the energy comes from the same calculation
+        before = atoms.get_potential_energy()
+        rest = relax_ions(atoms, FORCE_EV_A, max_steps)
+        gained = float(before - atoms.get_potential_energy())
+    except CalculationFailed as error:
+        return Relaxation(failure=f"relaxation: {error}")
+    return Relaxation(rest.steps, rest.force_left_eV_A, rest.converged, gained, last_gap_eV(calculator))
 
 
 def trusted_moduli(fits: Sequence[Mapping[str, str]], reports: Sequence[Mapping[str, Any]]) -> list[Modulus]:
@@ -86,7 +127,7 @@ def trusted_moduli(fits: Sequence[Mapping[str, str]], reports: Sequence[Mapping[
             reasons = [*filter(None, [row["flags"]]), *gates[row["structure"]]["reasons"]]
             B = float(row["B_GPa"] or "nan")
             error = float(row["B_error_GPa"] or "nan")
-            moduli.append(Modulus(row["structure"], row["xc"], row["ions"], B, not reasons, "; ".join(reasons), error))
+            moduli.append(Modulus(row["structure"], row["xc"], B, not reasons, "; ".join(reasons), error))
     return moduli
 
 

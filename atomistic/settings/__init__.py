@@ -1,13 +1,7 @@
 """Settings of the atomistic stages, a module each: every key with its default, unit and accepted range."""
 
 from atomistic.settings.base import Settings
-from atomistic.settings.elastic import (
-    DftSettings,
-    ElasticSettings,
-    NitrideGlassSettings,
-    RelaxationSettings,
-    TensorSettings,
-)
+from atomistic.settings.elastic import DftSettings, ElasticSettings, NitrideGlassSettings
 from atomistic.settings.hardness import (
     AsperitySettings,
     ClosingSettings,
@@ -25,7 +19,5 @@ __all__ = [
     "GlassSettings",
     "HardnessSettings",
     "NitrideGlassSettings",
-    "RelaxationSettings",
     "Settings",
-    "TensorSettings",
 ]

@@ -1,5 +1,5 @@
 ELASTIC = settings("elastic")
-GLASSES = [f"a{k:02d}" for k in range(1, ELASTIC["glass"]["structures"] + 1)]
+GLASSES = [f"a{k:02d}" for k in range(1, ELASTIC["structures"] + 1)]
 CRYSTALS = {}  # name → file that holds it
 if needed("elastic"):
     for key, part in (("material", "network_glass"), ("counter_body", "polycrystal")):
@@ -13,17 +13,12 @@ for material in MATERIALS.values():
 for crystal in ELASTIC["crystals"]:
     if crystal not in CRYSTALS:
         refuse(f"{SCENE_GIVEN}: elastic.crystals: no crystal {crystal!r:.60}; known: {', '.join(CRYSTALS)}")
-VOLUME_SCANS = [f"{name}_{xc}_clamped" for name in ELASTIC["crystals"] for xc in ("GGA", "LDA")]
-VOLUME_SCANS += [f"{name}_GGA_clamped" for name in GLASSES]
-VOLUME_SCANS += [f"{name}_LDA_clamped" for name in GLASSES[: ELASTIC["lda_structures"]]]
-VOLUME_SCANS += [f"{name}_GGA_relaxed" for name in GLASSES[: ELASTIC["relaxed_structures"]]]
+LDA_GLASSES = GLASSES[: ELASTIC["lda_structures"]]
+TENSORS = GLASSES[: ELASTIC["tensor_structures"]] if ELASTIC["poisson"] == "computed" else []
+VOLUME_SCANS = [f"{name}_{xc}" for name in ELASTIC["crystals"] for xc in ("GGA", "LDA")]
+VOLUME_SCANS += [f"{name}_GGA" for name in GLASSES] + [f"{name}_LDA" for name in LDA_GLASSES]
 MATERIAL = str(CONFIG / "materials" / f"{ELASTIC['material']}.yaml")
 COUNTER_BODY = str(CONFIG / "materials" / f"{ELASTIC['counter_body']}.yaml")
-
-
-def elastic_settings(*keys):
-    """Only the settings a rule depends on, so that the others do not re-run it."""
-    return {key: ELASTIC[key] for key in keys}
 
 
 wildcard_constraints:
@@ -31,7 +26,6 @@ wildcard_constraints:
     crystal="|".join(CRYSTALS),
     structure="|".join(["a\\d+", *CRYSTALS]),
     xc="GGA|LDA",
-    ions="clamped|relaxed",
 
 
 rule elastic:
@@ -68,7 +62,8 @@ rule make_amorphous:
         f"{RESULTS}/logs/make_amorphous_{{amorphous}}.log",
     priority: 90
     params:
-        settings=elastic_settings("material", "glass"),
+        glass=ELASTIC["glass"],
+        seed=ELASTIC["seed"],
         work=f"{RESULTS}/work/{{amorphous}}",
     message:
         "melt and quench amorphous cell {wildcards.amorphous}"
@@ -89,7 +84,7 @@ rule relax_amorphous:
         f"{RESULTS}/logs/relax_amorphous_{{amorphous}}.log",
     priority: 90
     params:
-        settings=elastic_settings("material", "dft", "relaxation"),
+        dft=ELASTIC["dft"],
         store=f"{RESULTS}/work/scf/relax_{{amorphous}}",
     message:
         "relax amorphous cell {wildcards.amorphous}"
@@ -109,28 +104,19 @@ rule scan_volumes:
     input:
         unpack(relaxed_glass),
         structure=f"{RESULTS}/elastic/structures/{{structure}}.xyz",
-        material=MATERIAL,
     output:
-        points=f"{RESULTS}/elastic/scans/{{structure}}_{{xc}}_{{ions}}.csv",
+        points=f"{RESULTS}/elastic/scans/{{structure}}_{{xc}}.csv",
     log:
-        f"{RESULTS}/logs/scan_volumes_{{structure}}_{{xc}}_{{ions}}.log",
+        f"{RESULTS}/logs/scan_volumes_{{structure}}_{{xc}}.log",
     priority: 80
     params:
-        settings=elastic_settings("strains", "lda_centre", "relaxed_force_eV_A", "relaxation", "dft"),
-        store=f"{RESULTS}/work/scf/{{structure}}_{{xc}}_{{ions}}",
+        strains=ELASTIC["strains"],
+        dft=ELASTIC["dft"],
+        store=f"{RESULTS}/work/scf/{{structure}}_{{xc}}",
     message:
-        "E(V) of {wildcards.structure}, {wildcards.xc}, ions {wildcards.ions}"
+        "E(V) of {wildcards.structure}, {wildcards.xc}"
     script:
         "../scripts/scan_volumes.py"
-
-
-use rule scan_volumes as scan_relaxed_volumes with:  # the longest jobs first
-    output:
-        points=f"{RESULTS}/elastic/scans/{{structure}}_{{xc}}_{{ions,relaxed}}.csv",
-    priority: 95
-
-
-ruleorder: scan_relaxed_volumes > scan_volumes
 
 
 rule fit_bulk_moduli:
@@ -147,30 +133,23 @@ rule fit_bulk_moduli:
         "../scripts/fit_bulk_moduli.py"
 
 
-TENSORS = GLASSES[: ELASTIC["tensor"]["structures"]] if ELASTIC["poisson"] == "computed" else []
-
-
-def glass_to_strain(wildcards):
-    """A glass with its verdict and orbitals; a crystal comes from its material in a cell of its own."""
-    glass = relaxed_glass(wildcards)
-    return glass and {**glass, "structure": f"{RESULTS}/elastic/structures/{wildcards.structure}.xyz"}
-
-
 rule measure_tensor:
     input:
-        unpack(glass_to_strain),
-        material=lambda wildcards: CRYSTALS.get(wildcards.structure, MATERIAL),
+        material=MATERIAL,
+        structure=f"{RESULTS}/elastic/structures/{{amorphous}}.xyz",
+        report=f"{RESULTS}/elastic/structures/{{amorphous}}.json",
+        start=f"{RESULTS}/elastic/structures/{{amorphous}}.h5",
     output:
-        tensor=f"{RESULTS}/elastic/tensors/{{structure}}.json",
-        at_rest=f"{RESULTS}/elastic/tensors/{{structure}}.xyz",
+        tensor=f"{RESULTS}/elastic/tensors/{{amorphous}}.json",
+        at_rest=f"{RESULTS}/elastic/tensors/{{amorphous}}.xyz",
     log:
-        f"{RESULTS}/logs/measure_tensor_{{structure}}.log",
+        f"{RESULTS}/logs/measure_tensor_{{amorphous}}.log",
     priority: 94
     params:
-        settings=elastic_settings("tensor", "relaxation", "dft"),
-        store=f"{RESULTS}/work/scf/tensor_{{structure}}",
+        dft=ELASTIC["dft"],
+        store=f"{RESULTS}/work/scf/tensor_{{amorphous}}",
     message:
-        "elastic constants of {wildcards.structure}"
+        "elastic constants of {wildcards.amorphous}"
     script:
         "../scripts/measure_tensor.py"
 
@@ -219,97 +198,33 @@ if needed("elastic"):
     STABILITY.append(f"{RESULTS}/stability/elastic.csv")
 
 
-def ensemble(wildcards):
-    """The glasses' moduli, where this scene computes them: for the error against their number."""
-    if not needed("elastic"):
-        return {}
-    return {"moduli": f"{RESULTS}/elastic/bulk_moduli.csv", "points": f"{RESULTS}/elastic/points.csv"}
-
-
 rule measure_elastic_accuracy:
     input:
-        unpack(ensemble),
-        material=material_path(MATERIALS["silicon_nitride"]),
+        material=MATERIAL,
+        moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
+        points=f"{RESULTS}/elastic/points.csv",
     output:
         table=f"{RESULTS}/accuracy/elastic.csv",
     log:
         f"{RESULTS}/logs/measure_elastic_accuracy.log",
+    params:
+        settings=ELASTIC,
     message:
-        "measure the error of the bulk modulus against run time"
+        "measure the error of bulk and shear modulus against run time"
     script:
         "../scripts/measure_elastic_accuracy.py"
 
 
 rule check_elastic_stability:
     input:
-        material=material_path(MATERIALS["silicon_nitride"]),
+        material=MATERIAL,
     output:
         table=f"{RESULTS}/stability/elastic.csv",
     log:
         f"{RESULTS}/logs/check_elastic_stability.log",
+    params:
+        dft=ELASTIC["dft"],
     message:
         "check the elastic stage in hard cases"
     script:
         "../scripts/check_elastic_stability.py"
-
-
-# Crystals with known moduli: accuracy/elastic_anchors.csv, ten minutes of one core; the committed copy is in docs/data
-
-ANCHORS = [f"{crystal}_{xc}" for crystal in ("beta", "silicon", "stishovite") for xc in ("GGA", "LDA")]
-
-
-rule anchors:
-    input:
-        f"{RESULTS}/accuracy/elastic_anchors.csv",
-
-
-rule compute_anchor:
-    input:
-        material=lambda wildcards: CRYSTALS[wildcards.crystal],
-    output:
-        points=f"{RESULTS}/accuracy/anchors/{{crystal}}_{{xc}}.csv",
-    log:
-        f"{RESULTS}/logs/compute_anchor_{{crystal}}_{{xc}}.log",
-    params:
-        settings=elastic_settings("strains", "dft"),
-        store=f"{RESULTS}/work/scf/anchor_{{crystal}}_{{xc}}",
-    message:
-        "E(V) of {wildcards.crystal} as an anchor, {wildcards.xc}"
-    script:
-        "../scripts/compute_anchor.py"
-
-
-rule compare_anchors:
-    input:
-        points=[f"{RESULTS}/accuracy/anchors/{anchor}.csv" for anchor in ANCHORS],
-        materials=sorted(set(CRYSTALS.values())),
-    output:
-        table=f"{RESULTS}/accuracy/elastic_anchors.csv",
-    log:
-        f"{RESULTS}/logs/compare_anchors.log",
-    message:
-        "compare the anchors with published values"
-    script:
-        "../scripts/compare_anchors.py"
-
-
-# Elastic constants of crystals beside published ones: an hour of one core
-
-
-rule constants:
-    input:
-        f"{RESULTS}/accuracy/elastic_constants.csv",
-
-
-rule compare_constants:
-    input:
-        tensors=[f"{RESULTS}/elastic/tensors/{crystal}.json" for crystal in ("beta", "silicon")],
-        materials=sorted({CRYSTALS[crystal] for crystal in ("beta", "silicon")}),
-    output:
-        table=f"{RESULTS}/accuracy/elastic_constants.csv",
-    log:
-        f"{RESULTS}/logs/compare_constants.log",
-    message:
-        "compare elastic constants of crystals with published ones"
-    script:
-        "../scripts/compare_constants.py"

@@ -1,11 +1,11 @@
-"""Tables of the elastic stage and of its anchors."""
+"""Tables of the elastic stage."""
 
 from workflow.schemas.table import Column, Table, boolean, integer, number, text
 
 _SCAN: tuple[Column, ...] = (
     text("structure", "name of the structure"),
     text("xc", "exchange and correlation: GGA or LDA"),
-    text("ions", "clamped or relaxed"),
+    text("ions", "clamped: every bond scales with the cell"),
     integer("atoms", "atoms in the cell"),
 )
 _NETWORK: tuple[Column, ...] = (
@@ -19,7 +19,7 @@ _ORDER: tuple[Column, ...] = (
 
 TABLES = (
     Table(
-        ("elastic/points.csv", "elastic/scans/*.csv", "accuracy/anchors/*.csv"),
+        ("elastic/points.csv", "elastic/scans/*.csv"),
         "One volume of an E(V) scan.",
         (
             *_SCAN,
@@ -28,7 +28,7 @@ TABLES = (
             number("energy_eV", "eV", "energy of the cell; nan where the calculation failed"),
             boolean("converged", "whether the calculation converged"),
             number("wall_s", "s", "run time"),
-            text("detail", "why it failed, or how relaxed ions came to rest", empty=True),
+            text("detail", "why it failed", empty=True),
         ),
     ),
     Table(
@@ -95,43 +95,6 @@ TABLES = (
             text("failure", "why the calculation failed", empty=True),
             integer("quenches", "attempts to quench it"),
             text("status", "accepted, or rejected: why"),
-        ),
-    ),
-    Table(
-        ("accuracy/elastic_constants.csv",),
-        "An elastic constant or isotropic modulus of a crystal beside a published value; GPa, but for Poisson's ratio.",
-        (
-            text("structure", "name of the crystal"),
-            integer("atoms", "atoms in the cell"),
-            text("quantity", "C11 and so on; B, G, E and nu of the isotropic polycrystal"),
-            number("relaxed", "GPa or 1", "value with relaxed ions"),
-            number("clamped", "GPa or 1", "value with clamped ions"),
-            number("breach", "GPa", "how far apart constants are that symmetry makes equal", empty=True),
-            number("asymmetry_GPa", "GPa", "largest half difference of C_ij and C_ji"),
-            text("published", "GGA or experiment"),
-            number("published_value", "GPa or 1", "published value, moduli from published constants"),
-            number("deviation", "1", "of the value with relaxed ions from the published one"),
-            text("published_source", "where it was published"),
-        ),
-    ),
-    Table(
-        ("accuracy/elastic_anchors.csv",),
-        "A crystal computed by the same means as the glasses, beside published values.",
-        (
-            text("structure", "name of the crystal"),
-            text("xc", "exchange and correlation: GGA or LDA"),
-            integer("atoms", "atoms in the cell"),
-            number("B_GPa", "GPa", "bulk modulus", empty=True),
-            number("B_prime", "1", "its derivative by pressure", empty=True),
-            number("residual_meV", "meV", "root mean square deviation of the energies from the fit", empty=True),
-            text("flags", "why the fit is not trusted", empty=True),
-            number("V0_A3", "Å³", "equilibrium volume of V0_atoms atoms", empty=True),
-            integer("V0_atoms", "atoms that the volumes belong to"),
-            text("published", "GGA, LDA or experiment"),
-            number("published_B_GPa", "GPa", "published bulk modulus"),
-            number("published_V0_A3", "Å³", "published equilibrium volume", empty=True),
-            text("published_source", "where it was published"),
-            number("wall_s", "s", "run time of the scan"),
         ),
     ),
 )

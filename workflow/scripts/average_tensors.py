@@ -1,6 +1,6 @@
 """Isotropic moduli.  In: elastic/tensors/*.{json,xyz}.  Out: elastic/isotropic_moduli.csv (GPa)."""
 
-from atomistic.elastic.joint_moduli import isotropic_table
+from atomistic.elastic.constants import isotropic_table
 from workflow.job import job
 from workflow.results import load_json, write_csv
 from workflow.structure_files import load_structure

@@ -1,13 +1,16 @@
 """Elastic stage in hard cases.  In: material.  Out: stability/elastic.csv."""
 
 from atomistic.elastic.networks import crystal
-from atomistic.elastic.studies.stability import stability_checks
+from atomistic.elastic.stability import stability_checks
 from atomistic.materials import load_material
+from atomistic.settings import DftSettings
 from workflow.checks import stability_rows
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import write_csv
 
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)
-    checks = stability_checks(crystal(material, "beta", (1, 1, 1)), material.part("network_glass"))
+    dft = settings_from_job(DftSettings, snakemake.params.dft)
+    cell = crystal(material, next(iter(material.crystals), ""), (1, 1, 1))
+    checks = stability_checks(cell, material.part("network_glass"), dft)
     write_csv(snakemake.output.table, stability_rows("elastic", checks, run.progress))

@@ -1,15 +1,14 @@
 """Combine E*.  In: elastic/bulk_moduli.csv (GPa), counter body.  Out: e_star.json, e_star.h5, structures.csv."""
 
-from atomistic.elastic.joint_moduli import with_computed_poisson
-from atomistic.elastic.moduli import SAMPLE_COLUMNS, effective_modulus
+from atomistic.elastic.moduli import SAMPLE_COLUMNS, effective_modulus, with_computed_poisson
 from atomistic.elastic.structures import structure_rows, trusted_moduli
 from atomistic.materials import load_material
 from atomistic.settings import ElasticSettings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import Dataset, load_csv, load_json, write_csv, write_h5, write_json
 
 with job(snakemake) as run:
-    settings = ElasticSettings(**snakemake.params.settings)
+    settings = settings_from_job(ElasticSettings, snakemake.params.settings)
     counter_body = load_material(snakemake.input.counter_body)
     reports = [load_json(path) for path in snakemake.input.structures]
     quenches = [len(load_csv(path)) for path in snakemake.input.attempts]

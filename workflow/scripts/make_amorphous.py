@@ -7,15 +7,15 @@ import numpy as np
 from atomistic.elastic.networks import make_glass
 from atomistic.materials import load_material
 from atomistic.settings import NitrideGlassSettings
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import write_csv, write_text
 from workflow.structure_files import load_structure, structure_text
 
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)
-    settings = NitrideGlassSettings(**snakemake.params.settings["glass"])
+    settings = settings_from_job(NitrideGlassSettings, snakemake.params.glass)
     number = int(snakemake.wildcards.amorphous[1:])
-    seed = int(np.random.SeedSequence([settings.seed, number]).generate_state(1)[0])
+    seed = int(np.random.SeedSequence([snakemake.params.seed, number]).generate_state(1)[0])
     others = {Path(path).stem: load_structure(path) for path in snakemake.input.others}
     atoms, attempts = make_glass(material, settings, seed, Path(snakemake.params.work), run.progress, others)
     write_csv(snakemake.output.attempts, [{"structure": snakemake.wildcards.amorphous, **row} for row in attempts])

@@ -1,27 +1,25 @@
-"""Error of B and G against run time.  In: material, bulk moduli and points if any.  Out: accuracy/elastic.csv."""
+"""Error of B and G against run time.  In: material, bulk moduli, points.  Out: accuracy/elastic.csv."""
 
+from atomistic.elastic.accuracy import ensemble_points, shear_points, volume_points
 from atomistic.elastic.networks import crystal
-from atomistic.elastic.studies.accuracy import accuracy_points, constants_points, ensemble_points, shear_points
 from atomistic.materials import load_material
+from atomistic.settings import ElasticSettings
 from workflow.checks import accuracy_rows
-from workflow.job import job
+from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)
-    small = crystal(material, "beta", (1, 1, 1))
-    doubled = crystal(material, "beta")
-    rows = list(accuracy_rows("elastic", accuracy_points(small, doubled, run.progress)))
-    rows += accuracy_rows("elastic", shear_points(doubled, run.progress))
-    rows += accuracy_rows("elastic", constants_points(small, material.part("network_glass")))
-    if snakemake.input.get("moduli"):
-        clamped = [
-            row
-            for row in load_csv(snakemake.input.moduli)
-            if row["structure"] not in material.crystals
-            and (row["xc"], row["ions"], row["flags"]) == ("GGA", "clamped", "")
-        ]
-        names = {row["structure"] for row in clamped}
-        cost = sum(float(p["wall_s"]) for p in load_csv(snakemake.input.points) if p["structure"] in names)
-        rows += accuracy_rows("elastic", ensemble_points([float(row["B_GPa"]) for row in clamped], cost))
+    settings = settings_from_job(ElasticSettings, snakemake.params.settings)
+    glasses = [row for row in load_csv(snakemake.input.moduli) if row["structure"] not in material.crystals]
+    clamped = [row for row in glasses if row["xc"] == "GGA" and not row["flags"]]
+    names = {row["structure"] for row in clamped}
+    cost = sum(float(p["wall_s"]) for p in load_csv(snakemake.input.points) if p["structure"] in names)
+    rows = list(accuracy_rows("elastic", ensemble_points([float(row["B_GPa"]) for row in clamped], cost)))
+    if settings.dft.engine == "pyscf":  # the parameters of other engines are the user's
+        name = next(iter(material.crystals), "")
+        small, larger = crystal(material, name, (1, 1, 1)), crystal(material, name)
+        rows += accuracy_rows("elastic", volume_points(small, larger, settings, run.progress))
+        if settings.poisson == "computed":
+            rows += accuracy_rows("elastic", shear_points(larger, settings, run.progress))
     write_csv(snakemake.output.table, rows)

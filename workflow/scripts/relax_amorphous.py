@@ -2,18 +2,17 @@
 
 from pathlib import Path
 
-from atomistic.elastic.energy_scans import make_calculator
+from atomistic.elastic.dft import make_calculator
 from atomistic.elastic.structures import relaxed_structure
 from atomistic.materials import load_material
-from atomistic.settings import DftSettings, RelaxationSettings
-from workflow.job import job
+from atomistic.settings import DftSettings
+from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_json, write_text
 from workflow.structure_files import ScfStore, load_structure, structure_text, write_start
 
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)
-    relaxation = RelaxationSettings(**snakemake.params.settings["relaxation"])
-    dft = relaxation.applied_to(DftSettings(**snakemake.params.settings["dft"]))
+    dft = settings_from_job(DftSettings, snakemake.params.dft)
     store = ScfStore(Path(snakemake.params.store))
     quenched = load_structure(snakemake.input.structure)
     status = load_csv(snakemake.input.attempts)[-1]["status"]
@@ -21,8 +20,8 @@ with job(snakemake) as run:
     relaxed = relaxed_structure(
         quenched,
         material.part("network_glass"),
-        lambda: make_calculator(dft, "GGA", largest_cell, store),
-        relaxation,
+        lambda: make_calculator(dft, "GGA", largest_cell, store, forces=True),
+        dft.relaxation_steps,
         "" if status == "accepted" else status.removeprefix("rejected: "),
         run.progress,
     )

@@ -46,9 +46,8 @@ TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
 
 GROWS_BY = {  # the key that makes a rule's jobs many or long
     **dict.fromkeys(("make_glass", "run_closing"), "hardness.seeds"),
-    **dict.fromkeys(("make_amorphous", "relax_amorphous", "scan_volumes"), "elastic.glass.structures"),
-    "scan_relaxed_volumes": "elastic.relaxed_structures",
-    "measure_tensor": "elastic.tensor.structures",
+    **dict.fromkeys(("make_amorphous", "relax_amorphous", "scan_volumes"), "elastic.structures"),
+    "measure_tensor": "elastic.tensor_structures",
     "compute_runs": "uncertainty.seeds",
     "compute_direct_runs": "uncertainty.direct_runs",
     "plan_pad": "pad.grid.pilot_cells",
@@ -153,7 +152,7 @@ class Costs:
     def scf_s(self, seconds: float, tight: bool = True) -> float:
         """Seconds of DFT on a glass from those of 28 atoms at 100 hartree; the power was measured to 112 atoms."""
         elastic = self.scene.elastic
-        cutoff_Ha = elastic.relaxation.cutoff_Ha if tight else elastic.dft.cutoff_Ha
+        cutoff_Ha = elastic.dft.forces_cutoff_Ha if tight else elastic.dft.cutoff_Ha
         return seconds * (elastic.glass.formula_units / 4) ** 2.4 * cutoff_Ha / 100
 
 
@@ -203,18 +202,10 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     ),
     "run_closing": lambda c, job: c.atom_steps[job["run"]] / ATOM_STEPS_PER_CORE_SECOND,
     "make_amorphous": lambda c, _: 1.3 * _quenches(c.scene.elastic.glass) * c.scene.elastic.glass.formula_units / 4,
-    "relax_amorphous": lambda c, _: c.scf_s(8.0 * (1 + c.scene.elastic.relaxation.max_steps)),
-    # relaxed ions need some eight times the clamped ones
-    **dict.fromkeys(
-        ("scan_volumes", "scan_relaxed_volumes"),
-        lambda c, job: c.scf_s(
-            9.0 * len(c.scene.elastic.strains) * (8 if job["ions"] == "relaxed" else 1), tight=False
-        ),
-    ),
-    # ions and cell come to rest in a sixth of the steps allowed, a twelfth on two meshes; then strained states
-    "measure_tensor": lambda c, _: c.scf_s(
-        12.0 * (c.scene.elastic.tensor.max_steps / 3 + 14 + 6 * c.scene.elastic.tensor.rounds)
-    ),
+    "relax_amorphous": lambda c, _: c.scf_s(8.0 * (1 + c.scene.elastic.dft.relaxation_steps)),
+    "scan_volumes": lambda c, _: c.scf_s(9.0 * len(c.scene.elastic.strains), tight=False),
+    # ions and cell come to rest in some 27 states, then 14 at rest and strained, and 24 displaced ones
+    "measure_tensor": lambda c, _: c.scf_s(12.0 * 65),
     # six scans, after the import of their readers
     "analyse_scans": lambda c, _: 4.0 + 4.8 * c.scene.topography.synthetic.pixels**2 / GRID,
     "judge_scans": lambda c, _: 3.0 + 3.0 * len(c.scene.topography.scans),

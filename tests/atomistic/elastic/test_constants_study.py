@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from atomistic.elastic.studies.constants import beside_published, full_matrix
 
 from atomistic.elastic.dft import commensurate_mesh
 from atomistic.elastic.networks import crystal
-from atomistic.elastic.studies.constants import beside_published, full_matrix
 from atomistic.elastic.tensor import isotropic
 from atomistic.materials import load_material
 

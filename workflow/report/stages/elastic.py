@@ -1,12 +1,11 @@
 """Effective elastic modulus: figure 5."""
 
 from collections.abc import Mapping
-from itertools import cycle
 from typing import Any
 
 import numpy as np
 
-from workflow.report.available import Results, Row
+from workflow.report.available import Results
 from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, draw
 from workflow.report.numbers import column, number, show
 from workflow.report.page import Section, Table
@@ -48,16 +47,15 @@ def describe(results: Results) -> Section | None:
         (
             row["structure"],
             row["xc"],
-            row.get("ions", ""),
             show(row.get("B_GPa"), 4),
             show(row.get("B_prime")),
             show(row.get("V0_A3"), 4),
-            row.get("flags", "") or "–",
+            row.get("flags") or "–",
         )
         for row in results.csv("elastic/bulk_moduli.csv")
     ]
-    header = ("structure", "functional", "ions", "B (GPa)", "B′", "V₀ (Å³)", "flags")
-    section.blocks.append(Table("Equation of state of every structure", header, lines))
+    header = ("structure", "functional", "B (GPa)", "B′", "V₀ (Å³)", "flags")
+    section.blocks.append(Table("Equation of state of every structure, ions clamped", header, lines))
     if summary.get("shares"):
         section.blocks.append(shares_table(summary))
     if results.has("elastic/isotropic_moduli.csv"):
@@ -107,7 +105,6 @@ def elastic_distribution(results: Results) -> str | None:
     """Figure 5: bulk moduli of the ensemble and the resulting E*."""
     rows = results.csv("elastic/bulk_moduli.csv")
     summary = results.json("elastic/e_star.json")
-    names = sorted({(row["xc"], row.get("ions", "")) for row in rows})
     constants = results.csv("elastic/isotropic_moduli.csv") if results.has("elastic/isotropic_moduli.csv") else []
     samples = results.h5("elastic/e_star.h5")[0] if results.has("elastic/e_star.h5") else {}
     flat = {name: values for group in samples.values() for name, values in group.items()}
@@ -119,12 +116,11 @@ def elastic_distribution(results: Results) -> str | None:
     def plot(axis, other):
         every = column([*trusted, *relaxed], "B_GPa")
         bins = np.linspace(every.min() - 5, every.max() + 5, 12) if every.size else np.linspace(0, 1, 2)
-        for (xc, ions), color in zip(names, cycle(SERIES), strict=False):
-            kind = [row for row in trusted if (row["xc"], row.get("ions", "")) == (xc, ions)]
-            label = f"{xc.upper()}, {ions} ions" if ions else xc.upper()
+        for xc, color in zip(sorted({row["xc"] for row in rows}), SERIES, strict=False):
+            kind = [row for row in trusted if row["xc"] == xc]
             part = column([row for row in kind if row["structure"] in glasses], "B_GPa")
             if part.size:
-                axis.hist(part, bins=bins, color=color, alpha=0.5, label=label, linewidth=0)
+                axis.hist(part, bins=bins, color=color, alpha=0.5, label=f"{xc.upper()}, clamped ions", linewidth=0)
             for row in kind:
                 if row["structure"] not in glasses:
                     crystal = f"{row['structure']} crystal, {xc.upper()}"
@@ -153,28 +149,17 @@ def elastic_distribution(results: Results) -> str | None:
 
 def energy_volume(results: Results) -> str | None:
     """E(V) of every structure, the data behind figure 5."""
-    rows = [row for row in results.csv("elastic/points.csv") if row.get("converged") in ("True", "true", "1")]
-    curves: dict[tuple[str, str, str], list[Row]] = {}
-    for row in rows:
-        curves.setdefault((row["structure"], row["xc"], row.get("ions", "")), []).append(row)
-    if not curves:
+    rows = [row for row in results.csv("elastic/points.csv") if row.get("converged") == "True"]
+    if not rows:
         return None
 
     def plot(axis):
-        colors = {xc: SERIES[i % len(SERIES)] for i, xc in enumerate(sorted({key[1] for key in curves}))}
-        for (_, xc, _), part in curves.items():
-            strain, energy = column(part, "strain"), column(part, "energy_eV")
-            order = np.argsort(strain)
-            axis.plot(
-                100 * strain[order],
-                energy[order] - energy.min(),
-                "o-",
-                color=colors[xc],
-                markersize=3,
-                linewidth=1,
-            )
-        for xc, color in colors.items():
+        for xc, color in zip(sorted({row["xc"] for row in rows}), SERIES, strict=False):
             axis.plot([], [], "o-", color=color, label=xc.upper())
+            for name in {row["structure"]: None for row in rows if row["xc"] == xc}:
+                part = [row for row in rows if (row["structure"], row["xc"]) == (name, xc)]
+                strain, energy = column(part, "strain"), column(part, "energy_eV")
+                axis.plot(100 * strain, energy - energy.min(), "o-", color=color, markersize=3, linewidth=1)
         axis.set(xlabel="strain (%)", ylabel="energy above lowest point (eV per cell)")
         axis.legend()
 

@@ -6,23 +6,29 @@ import numpy as np
 import pytest
 from ase.calculators.calculator import CalculationFailed, Calculator
 
-from atomistic.elastic.joint_moduli import (
-    Measured,
-    isotropic_rows,
-    isotropic_table,
-    measure_constants,
+from atomistic.elastic import moduli
+from atomistic.elastic.constants import Measured, isotropic_rows, isotropic_table, measure_constants
+from atomistic.elastic.moduli import (
+    Modulus,
+    effective_modulus,
+    grid_shares,
+    plane_strain_modulus,
     with_computed_poisson,
 )
-from atomistic.elastic.moduli import Modulus, effective_modulus, grid_shares, plane_strain_modulus
 from atomistic.elastic.networks import crystal, tersoff_calculator
 from atomistic.elastic.tensor import poisson, young
 from atomistic.materials import load_material
-from atomistic.settings import ElasticSettings, TensorSettings
+from atomistic.settings import ElasticSettings
 
 MATERIALS = Path(__file__).parents[3] / "config" / "materials"
 NITRIDE = load_material(MATERIALS / "silicon_nitride.yaml")
 TITANIUM = load_material(MATERIALS / "titanium.yaml")
-SETTINGS = ElasticSettings(poisson="computed", min_structures=2, samples=50_000)
+SETTINGS = ElasticSettings(poisson="computed", samples=50_000)
+
+
+@pytest.fixture(autouse=True)
+def _two_structures_are_enough(monkeypatch):
+    monkeypatch.setattr(moduli, "MIN_STRUCTURES", 2)
 
 
 def row(name, B, G, ions="relaxed", error=0.0, flags="", doubts=""):
@@ -32,9 +38,9 @@ def row(name, B, G, ions="relaxed", error=0.0, flags="", doubts=""):
 
 
 def literature(shift=20.0):
-    moduli = [Modulus(f"a{k}", "GGA", "clamped", 230.0 + k, True) for k in range(4)]
-    moduli += [Modulus(f"a{k}", "LDA", "clamped", 230.0 + k + shift, True) for k in range(4)]
-    return effective_modulus(moduli, TITANIUM, SETTINGS)[0]
+    known = [Modulus(f"a{k}", "GGA", 230.0 + k, True) for k in range(4)]
+    known += [Modulus(f"a{k}", "LDA", 230.0 + k + shift, True) for k in range(4)]
+    return effective_modulus(known, TITANIUM, SETTINGS)[0]
 
 
 def test_e_star_is_that_of_eq_5_with_the_structures_own_poisson_ratio():
@@ -61,12 +67,12 @@ def test_shares_add_to_one_and_mean_and_scatter_are_those_of_the_samples():
     assert summary["std_GPa"] == pytest.approx(e_star.std(), rel=0.02)
 
 
-def test_the_size_of_the_cell_scales_bulk_and_shear_modulus_together():
+def test_the_size_of_the_cell_scales_bulk_and_shear_modulus_together(monkeypatch):
     rows = [row("a0", 150, 90), row("a1", 150, 90)]
     stds, shares = [], []
     for error in (0.0, 0.02):
-        settings = SETTINGS.model_copy(update={"size_error": error})
-        summary, samples = with_computed_poisson(literature(), rows, TITANIUM, settings)
+        monkeypatch.setattr(moduli, "SIZE_ERROR", error)
+        summary, samples = with_computed_poisson(literature(), rows, TITANIUM, SETTINGS)
         assert samples["nu"] == pytest.approx(poisson(150, 90))
         stds.append(summary["std_GPa"])
         shares.append(summary["shares"]["size"]["total"])
@@ -102,7 +108,7 @@ def test_shares_of_a_product_are_exact():
 def measured():
     atoms = crystal(NITRIDE, "beta", (1, 1, 1))
     calculator = tersoff_calculator(NITRIDE.part("network_glass").tersoff)
-    return measure_constants(atoms, calculator, TensorSettings(force_eV_A=0.01, max_steps=60))
+    return measure_constants(atoms, calculator, force_eV_A=0.01, max_steps=60)
 
 
 def test_constants_of_a_crystal_under_the_cheap_potential(measured):
@@ -128,13 +134,14 @@ def test_whatever_fails_is_named_and_costs_its_structure_only(measured):
         (Fails(), "SCF not converged"),
         (Blind(tersoff_calculator(NITRIDE.part("network_glass").tersoff).parameters), "stress"),
     ):
-        failed = measure_constants(atoms, calculator, TensorSettings())
+        failed = measure_constants(atoms, calculator)
         rows = isotropic_rows(failed.report("a01"))
         assert all(said in line["flags"] and line["B_GPa"] is None for line in rows)
     hurried = measure_constants(
         atoms,
         tersoff_calculator(NITRIDE.part("network_glass").tersoff),
-        TensorSettings(force_eV_A=1e-6, max_steps=1),
+        force_eV_A=1e-6,
+        max_steps=1,
     )
     assert "not at rest after 1 steps" in hurried.failure
     assert measured.response is not None
@@ -158,7 +165,7 @@ def test_a_cell_that_is_no_insulating_glass_at_rest_is_doubted():
     network = NITRIDE.part("network_glass")
     metal = tersoff_calculator(network.tersoff)
     metal.gap_eV = 0.1
-    judged = measure_constants(atoms, metal, TensorSettings(force_eV_A=0.01, max_steps=60), criteria=network)
+    judged = measure_constants(atoms, metal, force_eV_A=0.01, max_steps=60, criteria=network)
     assert judged.failure == ""
     lines = isotropic_rows(judged.report("a01"))
     assert all("crystalline" in line["doubts"] and "gap 0.10 eV: no insulator" in line["doubts"] for line in lines)
@@ -192,8 +199,3 @@ def test_a_rejected_glass_keeps_its_reasons():
     atoms = crystal(NITRIDE, "beta", (1, 1, 1))
     rows = isotropic_rows(Measured(atoms, None, None, "3 atoms without their valence").report("a01"))
     assert [line["flags"] for line in rows] == ["3 atoms without their valence"] * 2
-
-
-def test_numerics_without_stress_are_refused_in_the_settings():
-    with pytest.raises(ValueError, match="needs the stress"):
-        ElasticSettings(poisson="computed", dft={"numerics": "multigrid"})

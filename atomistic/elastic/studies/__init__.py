@@ -1,1 +1,0 @@
-"""How far E* can be trusted: error against run time and hard cases."""
