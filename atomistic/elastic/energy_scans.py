@@ -74,13 +74,7 @@ def fit_scan(scan: Sequence[Mapping[str, str]]) -> dict[str, Any]:
     empty = ("B_GPa", "B_prime", "V0_A3", "B_vinet_GPa", "B_error_GPa", "residual_meV")
     if len(good) < MIN_POINTS:
         flags = [f"{len(good)} of {len(scan)} strains converged, {MIN_POINTS} are needed", *failed]
-        return {
-            **result,
-            **dict.fromkeys(empty),
-            "points": len(good),
-            "flags": "; ".join(flags),
-            "failed": "",
-        }
+        return {**result, **dict.fromkeys(empty), "points": len(good), "flags": "; ".join(flags), "failed": ""}
     fit = fit_equation_of_state([float(r["volume_A3"]) for r in good], [float(r["energy_eV"]) for r in good])
     return {
         **result,

@@ -67,7 +67,7 @@ class CachedGrid(MultiGridNumInt2):
         self.wave_vectors = _wave_vectors(cell, self.mesh)
         g2 = np.einsum("xijk,xijk->ijk", self.wave_vectors[1], self.wave_vectors[1])
         self.coulomb = np.divide(4 * np.pi, g2, out=np.zeros_like(g2), where=g2 > 0)
-        self.local_form = {s: local_pseudopotential(cell._pseudo[s], g2) for s in cell._pseudo}
+        self.local_form = {s: local_pseudopotential(cell._pseudo[s], g2)[0] for s in cell._pseudo}
         local = np.zeros(g2.shape, dtype=complex)
         for atom in range(cell.natm):
             local += self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
@@ -160,19 +160,7 @@ class CachedGrid(MultiGridNumInt2):
         return self.local + hartree + vxc, electrostatic, exc
 
     # -- what PySCF's RKS calls
-    def nr_rks(
-        self,
-        cell,
-        grids,
-        xc_code,
-        dm_kpts,
-        relativity=0,
-        hermi=1,
-        kpts=None,
-        kpts_band=None,
-        max_memory=2000,
-        verbose=None,
-    ):
+    def nr_rks(self, cell, grids, xc_code, dm_kpts, relativity=0, hermi=1, kpts=None, *_, **__):
         if kpts is not None and not is_gamma_point(kpts):
             raise NotImplementedError("CachedGrid is for the Γ point only: use a supercell")
         rho = self.density(dm_kpts)
@@ -206,27 +194,15 @@ class CachedGrid(MultiGridNumInt2):
             total += self.orbitals[:, here] @ (self.waves[:, here] * weighted[here]).T
         return total
 
-    def get_pp(self, kpts=None, return_full=False):
-        vpp = np.asarray(pp_int.get_pp_nl(self.cell)).real
-        return vpp + self.matrix(self.local) if return_full else vpp
-
-    def get_rho(self, cell, dm, grids=None, kpts=None, max_memory=2000):
-        return self.density(dm)
+    def get_pp(self, kpts=None):
+        return np.asarray(pp_int.get_pp_nl(self.cell)).real
 
     # -- forces and stress
-    def forces(self, mf: Any, remove_net: bool = True) -> np.ndarray:
-        """Forces of a converged calculation, shape (atoms, 3), hartree/bohr.
+    def forces_and_stress(self, mf: Any, with_stress: bool = True) -> tuple[np.ndarray, np.ndarray | None]:
+        """Forces (atoms, 3), hartree/bohr, and the stress dE/dε / V, (3, 3), hartree/bohr³, tension positive.
 
-        Exact derivative of the discrete energy.  The grid breaks translation symmetry a little ("egg box"), so
-        they sum to ~1e-3; `remove_net` subtracts the mean.
-        """
-        return self.forces_and_stress(mf, remove_net, with_stress=False)[0]
-
-    def forces_and_stress(
-        self, mf: Any, remove_net: bool = True, with_stress: bool = True
-    ) -> tuple[np.ndarray, np.ndarray | None]:
-        """Forces as `forces` gives them, and the stress dE/dε / V, shape (3, 3), hartree/bohr³, tension positive.
-
+        Both are exact derivatives of the discrete energy.  The grid breaks translation symmetry a little ("egg box"),
+        so forces sum to ~1e-3: their mean is subtracted.
         The strain moves grid, ions and orbitals together at fixed fractional coordinates, as a scan on a fixed mesh
         does, so the stress is the exact slope of such a scan.
         """
@@ -264,7 +240,7 @@ class CachedGrid(MultiGridNumInt2):
             form = self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
             product = np.imag(form * spectrum.conj()) * twice
             gradient[atom] += np.einsum("xijk,ijk->x", self.wave_vectors[1], product) / self.points
-        forces = -(gradient - gradient.mean(axis=0)) if remove_net else -gradient
+        forces = -(gradient - gradient.mean(axis=0))
         if not with_stress:
             return forces, None
         strained += self._strain_slope_of_pairs(kinetic, dm) - self._strain_slope_of_pairs(overlap, energy_weighted)
@@ -298,7 +274,7 @@ class CachedGrid(MultiGridNumInt2):
         # energies per G² as (d/dG²) times -2 G_a G_b
         coulomb = self.coulomb * abs(spectrum) ** 2 * twice * (self.weight / self.points)
         by_g2 = -0.5 * np.divide(coulomb, g2, out=np.zeros_like(g2), where=g2 > 0)
-        slope = {s: local_pseudopotential_slope(self.cell._pseudo[s], g2) for s in self.cell._pseudo}
+        slope = {s: local_pseudopotential(self.cell._pseudo[s], g2)[1] for s in self.cell._pseudo}
         for atom in range(self.cell.natm):
             form = slope[self.cell.atom_symbol(atom)] * self._phase(self.cell.atom_coords()[atom])
             by_g2 += np.real(form * spectrum.conj()) * twice / self.points
@@ -373,28 +349,17 @@ def orbital_atoms(cell: Any) -> np.ndarray:
     return np.repeat(np.arange(cell.natm), np.diff(cell.aoslice_by_atom()[:, 2:]).ravel())
 
 
-def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
-    """Fourier transform of the local GTH pseudopotential (Goedecker et al., PRB 54, 1703 (1996), eq. 5).
+def local_pseudopotential(pseudo: list, g2: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Fourier transform of the local GTH pseudopotential, and its derivative by the squared length of G.
+
+    Goedecker et al., PRB 54, 1703 (1996), eq. 5.
 
     Parameters
     ----------
     pseudo : PySCF's parsed GTH entry
-    g2 : squared length of G, 1/bohr²; at G = 0 the divergence is left out (it cancels against Hartree and Ewald terms)
+    g2 : squared length of G, 1/bohr²; at G = 0 the divergence is left out (it cancels against Hartree and Ewald terms),
+        and the derivative is zero
     """
-    charge = sum(pseudo[0])
-    radius, n, c = pseudo[1:4]
-    c = list(c[:n]) + [0.0] * (4 - n)
-    x2 = g2 * radius**2
-    polynomial = c[0] + c[1] * (3 - x2) + c[2] * (15 - 10 * x2 + x2**2) + c[3] * (105 - 105 * x2 + 21 * x2**2 - x2**3)
-    gauss = np.exp(-0.5 * x2)
-    coulomb = np.divide(
-        -4 * np.pi * charge * gauss, g2, out=np.full_like(g2, 2 * np.pi * charge * radius**2), where=g2 > 0
-    )
-    return coulomb + (2 * np.pi) ** 1.5 * radius**3 * gauss * polynomial
-
-
-def local_pseudopotential_slope(pseudo: list, g2: np.ndarray) -> np.ndarray:
-    """Derivative of `local_pseudopotential` by the squared length of G; zero at G = 0."""
     charge = sum(pseudo[0])
     radius, n, c = pseudo[1:4]
     c = list(c[:n]) + [0.0] * (4 - n)
@@ -402,9 +367,15 @@ def local_pseudopotential_slope(pseudo: list, g2: np.ndarray) -> np.ndarray:
     polynomial = c[0] + c[1] * (3 - x2) + c[2] * (15 - 10 * x2 + x2**2) + c[3] * (105 - 105 * x2 + 21 * x2**2 - x2**3)
     slope = -c[1] + c[2] * (2 * x2 - 10) + c[3] * (42 * x2 - 105 - 3 * x2**2)
     gauss = np.exp(-0.5 * x2)
+    coulomb = np.divide(
+        -4 * np.pi * charge * gauss, g2, out=np.full_like(g2, 2 * np.pi * charge * radius**2), where=g2 > 0
+    )
     inverse = np.divide(1.0, g2, out=np.zeros_like(g2), where=g2 > 0)
-    coulomb = 4 * np.pi * charge * gauss * inverse * (0.5 * radius**2 + inverse)
-    return coulomb + (2 * np.pi) ** 1.5 * radius**5 * gauss * (slope - 0.5 * polynomial)
+    coulomb_slope = 4 * np.pi * charge * gauss * inverse * (0.5 * radius**2 + inverse)
+    return (
+        coulomb + (2 * np.pi) ** 1.5 * radius**3 * gauss * polynomial,
+        coulomb_slope + (2 * np.pi) ** 1.5 * radius**5 * gauss * (slope - 0.5 * polynomial),
+    )
 
 
 def _wave_vectors(cell: "Cell", mesh: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ follow a two-term recurrence (exp of a quadratic), which is why this is an order
 evaluating each point by itself.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numba
@@ -118,14 +118,7 @@ def pulay_terms(
     ----------
     potential_density : (orbitals of this atom in PySCF's order, grid points), w v(r) Σ_ν D_µν φ_ν(r)
     """
-    relative = AtomOrbitals(
-        atom.centre,
-        atom.exponents,
-        atom.angular,
-        atom.contraction,
-        atom.first - atom.first.min(),
-        atom.radius,
-    )
+    relative = replace(atom, first=atom.first - atom.first.min())
     return _contract_gradient(potential_density, lattice, np.array(mesh), *_arguments(relative, lattice, mesh))
 
 
@@ -136,16 +129,7 @@ def _arguments(atom: AtomOrbitals, lattice: np.ndarray, mesh: tuple[int, int, in
     reach = atom.radius * np.linalg.norm(inverse, axis=0)
     low = np.ceil((fraction - reach) * np.array(mesh)).astype(np.int64)
     high = np.floor((fraction + reach) * np.array(mesh)).astype(np.int64)
-    return (
-        atom.centre,
-        atom.exponents,
-        atom.angular,
-        atom.contraction,
-        atom.first,
-        atom.radius,
-        low,
-        high,
-    )
+    return atom.centre, atom.exponents, atom.angular, atom.contraction, atom.first, atom.radius, low, high
 
 
 @numba.njit(cache=True, error_model="numpy")

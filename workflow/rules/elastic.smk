@@ -23,7 +23,6 @@ COUNTER_BODY = str(CONFIG / "materials" / f"{ELASTIC['counter_body']}.yaml")
 
 wildcard_constraints:
     amorphous="a\\d+",
-    crystal="|".join(CRYSTALS),
     structure="|".join(["a\\d+", *CRYSTALS]),
     xc="GGA|LDA",
 
@@ -31,19 +30,6 @@ wildcard_constraints:
 rule elastic:
     input:
         f"{RESULTS}/elastic/e_star.json",
-
-
-rule make_crystal:
-    input:
-        material=lambda wildcards: CRYSTALS[wildcards.crystal],
-    output:
-        structure=f"{RESULTS}/elastic/structures/{{crystal}}.xyz",
-    log:
-        f"{RESULTS}/logs/make_crystal_{{crystal}}.log",
-    message:
-        "set up crystal {wildcards.crystal}"
-    script:
-        "../scripts/make_crystal.py"
 
 
 def quenched_before(wildcards):
@@ -92,18 +78,17 @@ rule relax_amorphous:
         "../scripts/relax_amorphous.py"
 
 
-def relaxed_glass(wildcards):
-    """Verdict on a glass, and its orbitals to start from; a crystal has neither."""
+def to_scan(wildcards):
+    """A relaxed glass with its verdict and the orbitals to start from, or the material of a crystal."""
     if wildcards.structure in CRYSTALS:
-        return {}
+        return {"material": CRYSTALS[wildcards.structure]}
     stem = f"{RESULTS}/elastic/structures/{wildcards.structure}"
-    return {"report": f"{stem}.json", "start": f"{stem}.h5"}
+    return {"structure": f"{stem}.xyz", "report": f"{stem}.json", "start": f"{stem}.h5"}
 
 
 rule scan_volumes:
     input:
-        unpack(relaxed_glass),
-        structure=f"{RESULTS}/elastic/structures/{{structure}}.xyz",
+        unpack(to_scan),
     output:
         points=f"{RESULTS}/elastic/scans/{{structure}}_{{xc}}.csv",
     log:

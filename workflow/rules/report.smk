@@ -57,7 +57,7 @@ def kept_files():
     if needed("elastic"):
         parts += [rules.fit_bulk_moduli, rules.combine_e_star]
         files += expand([*rules.make_amorphous.output, *rules.relax_amorphous.output], amorphous=GLASSES)
-        files += expand(rules.make_crystal.output, crystal=ELASTIC["crystals"])
+        parts += [rules.average_tensors] if TENSORS else []
     if needed("topography"):
         parts += [rules.pool_spectra] if TOPOGRAPHY.scans else [rules.write_synthetic_scans, rules.pool_spectra]
     files += [file for part in parts for file in (*part.input, *part.output)]

@@ -106,8 +106,7 @@ def elastic_distribution(results: Results) -> str | None:
     rows = results.csv("elastic/bulk_moduli.csv")
     summary = results.json("elastic/e_star.json")
     constants = results.csv("elastic/isotropic_moduli.csv") if results.has("elastic/isotropic_moduli.csv") else []
-    samples = results.h5("elastic/e_star.h5")[0] if results.has("elastic/e_star.h5") else {}
-    flat = {name: values for group in samples.values() for name, values in group.items()}
+    samples = results.h5("elastic/e_star.h5")[0].get("samples", {}) if results.has("elastic/e_star.h5") else {}
     by_volume = summary.get("by_literature_poisson", summary)  # elastic constants leave out more than E(V) does
     glasses = {*by_volume.get("structures_used", []), *(kept["structure"] for kept in summary.get("kept_out", []))}
     trusted = [row for row in rows if not row.get("flags") and np.isfinite(number(row.get("B_GPa")))]
@@ -133,14 +132,12 @@ def elastic_distribution(results: Results) -> str | None:
         axis.yaxis.get_major_locator().set_params(integer=True)
         axis.legend()
         mean, std = number(summary.get("mean_GPa")), number(summary.get("std_GPa"))
-        e_star = next((values for name, values in flat.items() if "e_star" in name.lower()), None)
-        grid = np.linspace(min(75, mean - 4 * std), max(107, mean + 4 * std), 300)
-        if e_star is not None and np.size(e_star) > 50:
-            other.hist(np.ravel(e_star), bins=50, density=True, color=BLUE, alpha=0.5, label="here", linewidth=0)
-        else:
-            other.plot(grid, _normal(grid, mean, std), color=BLUE, label=f"here, {mean:.1f} ± {std:.1f} GPa")
+        if "e_star_GPa" in samples:
+            other.hist(samples["e_star_GPa"], bins=50, density=True, color=BLUE, alpha=0.5, label="here", linewidth=0)
         if results.beside_paper:
-            other.plot(grid, _normal(grid, 91.0, 3.8), "--", color=ORANGE, label="paper, 91 ± 3.8 GPa")
+            grid = np.linspace(min(75, mean - 4 * std), max(107, mean + 4 * std), 300)
+            normal = np.exp(-(((grid - 91.0) / 3.8) ** 2) / 2) / (3.8 * np.sqrt(2 * np.pi))
+            other.plot(grid, normal, "--", color=ORANGE, label="paper, 91 ± 3.8 GPa")
         other.set(xlabel="E* (GPa)", ylabel="density (1/GPa)", ylim=(0, None))
         other.legend()
 
@@ -164,7 +161,3 @@ def energy_volume(results: Results) -> str | None:
         axis.legend()
 
     return draw("energy", "Energy against strain of every structure", plot, (5.0, 3.4))
-
-
-def _normal(x: np.ndarray, mean: float, std: float) -> np.ndarray:
-    return np.exp(-(((x - mean) / std) ** 2) / 2) / (std * np.sqrt(2 * np.pi))
