@@ -194,7 +194,7 @@ class CachedGrid(MultiGridNumInt2):
             total += self.orbitals[:, here] @ (self.waves[:, here] * weighted[here]).T
         return total
 
-    def get_pp(self, kpts=None):
+    def get_pp(self, kpts=None, return_full=False):
         return np.asarray(pp_int.get_pp_nl(self.cell)).real
 
     # -- forces and stress
