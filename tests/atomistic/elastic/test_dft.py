@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 from ase.build import bulk
+from ase.calculators.calculator import CalculationFailed
 from ase.units import Hartree
 
 from atomistic.constants import EV_PER_A3_IN_GPA
@@ -169,6 +170,26 @@ def test_unconverged_scf_is_an_error_not_an_energy():
     atoms.calc = PyscfGamma(basis="gth-szv", mesh=MESH, tolerance_Ha=1e-11, max_cycles=1)
     with pytest.raises(ScfNotConverged, match="not converged in 1 cycles"):
         atoms.get_potential_energy()
+
+
+def test_an_odd_number_of_electrons_is_refused_in_one_line():
+    atoms = silicon()
+    atoms.symbols[0] = "N"
+    atoms.calc = PyscfGamma(basis="gth-szv-molopt-sr", mesh=MESH)
+    with pytest.raises(CalculationFailed, match="NSi has an odd number of electrons"):
+        atoms.get_potential_energy()
+
+
+def test_a_nearly_dependent_basis_gives_the_energy_of_a_bound_solid():
+    """GTH-DZVP is not optimised for solids: its functions overlap so much that the condition is large."""
+    overlap = build_cell(silicon(), "GGA", "gth-dzvp", MESH).pbc_intor("int1e_ovlp")
+    assert np.linalg.cond(overlap) > 1e3
+    energies = []
+    for basis in ("gth-dzvp", "gth-dzvp-molopt-sr"):
+        atoms = silicon()
+        atoms.calc = PyscfGamma(basis=basis, mesh=MESH, tolerance_Ha=1e-6)
+        energies.append(atoms.get_potential_energy() / len(atoms))
+    assert energies[0] == pytest.approx(energies[1], abs=1.0)
 
 
 def test_orbitals_along_a_line_are_extrapolated_as_a_polynomial():

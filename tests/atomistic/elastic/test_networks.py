@@ -80,6 +80,15 @@ def test_a_missing_bond_fails_the_gate_of_a_quenched_cell_only():
     assert any("valence" in reason for reason in examine(beta, GLASS, max_defects=0).reasons)
 
 
+def test_a_shear_that_breaks_bonds_leaves_atoms_without_their_valence():
+    beta = crystal(NITRIDE, "beta", (1, 1, 1))
+    sheared = beta.copy()
+    sheared.set_cell(beta.cell.array @ np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1.0]]), scale_atoms=True)
+    verdict = examine(sheared, GLASS, max_defects=0)
+    assert verdict.defects > 0
+    assert any("valence" in reason for reason in verdict.reasons)
+
+
 def test_cores_leave_beta_untouched():
     """They mend the glass; a crystal with no like atoms that near must not feel them (but for 0.1 Å)."""
     beta = crystal(NITRIDE, "beta")

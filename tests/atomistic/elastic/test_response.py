@@ -128,6 +128,19 @@ def test_two_meshes_that_err_to_opposite_sides_give_the_constants_of_neither_err
     assert both.calculations == either.calculations + 1
 
 
+def test_isotropic_moduli_do_not_depend_on_how_a_crystal_is_turned():
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+    turn *= np.linalg.det(turn)
+    straight, turned = diamond(), diamond()
+    turned.set_cell(turned.cell.array @ turn, scale_atoms=True)
+    means = [
+        isotropic(elastic_response(atoms, (atoms.calc, atoms.calc), 10 * np.eye(24), 2e-3, 0.01, 8, 0.01).relaxed)
+        for atoms in (straight, turned)
+    ]
+    assert pytest.approx(means[0].G, rel=1e-3) == means[1].G
+    assert pytest.approx(means[0].B, rel=1e-3) == means[1].B
+
+
 def test_keating_constants_do_not_depend_on_the_size_of_the_strain():
     """Keating's energy is quadratic in the Green–Lagrange strain, so finite strains must leave no error at all."""
     atoms = diamond()
@@ -187,6 +200,15 @@ def test_a_saddle_is_refused():
     slope[:, 0] = [1, 2, 3, -1, -2, -3]
     with pytest.raises(InputError, match="saddle"):
         internal_strain(slope, lambda w: K @ w - 4 * w, 10 * np.eye(6), 3, 1e-6)
+
+
+def test_bonds_stretched_beyond_their_inflection_are_a_saddle():
+    cell = crystal(NITRIDE, "beta", (1, 1, 1))
+    stretched = cell.copy()
+    stretched.set_cell(cell.cell.array * 1.2, scale_atoms=True)
+    calculator = tersoff_calculator(NITRIDE.part("network_glass").tersoff)
+    with pytest.raises(InputError, match="saddle"):
+        elastic_response(stretched, (calculator, calculator), spring_hessian(cell), 2e-3, 0.01, 3, 0.01)
 
 
 def test_a_calculator_without_stress_is_refused_before_anything_is_computed():
