@@ -17,9 +17,9 @@ from typing import Any, NoReturn
 
 from mesoscale.errors import InputError
 
-CPU_S, CPU_S_PER_MB, MOST_CPU_S = 10.0, 1.0, 50.0
+CPU_S, CPU_S_PER_MB, MOST_CPU_S = 8.0, 1.0, 50.0
 MOST_FILE_MB = 4000.0
-PATIENCE = 4.0  # seconds by the clock for one of the processor: the machine may be busy
+PATIENCE = 3.0  # seconds by the clock for one of the processor: the machine may be busy
 MEMORY_MB, MEMORY_MB_PER_MB, MOST_MEMORY_MB = 2000.0, 20.0, 16000.0
 OUTPUT_BYTES = 600 * 2**20  # of one file: a container is unpacked while it is read
 
