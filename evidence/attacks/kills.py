@@ -80,6 +80,7 @@ def campaign(folder: Path, scene: str, ends: int, seed: int) -> Iterator[Attack]
 def _ended(rng: random.Random, place: Path, path: Path, target: str, longest: float, way: str) -> Attack:
     """Start the command, end it at a random moment, and look what is left."""
     moment = rng.uniform(0.02, 0.7) * longest
+    (place / target).unlink(missing_ok=True)  # so that there is work to interrupt
     asperity = [str(Path(sys.executable).with_name("asperity")), "run", "--scene", str(path), "--cores", "2", target]
     environment = {**os.environ, "XDG_CACHE_HOME": str(place.with_name("cache")), "ASPERITY_ATTACK": str(place)}
     controller, terminal = pty.openpty() if way == "terminal closed" else os.pipe()
@@ -92,6 +93,8 @@ def _ended(rng: random.Random, place: Path, path: Path, target: str, longest: fl
         )  # fmt: skip
     os.close(terminal)
     time.sleep(min(moment, longest))
+    if process.poll() is not None:
+        way = "came too late"  # counts as no end
     ended = time.monotonic()
     _end(process, way, controller, rng)
     left = _wait_for_end(process, place, way)
