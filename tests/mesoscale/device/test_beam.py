@@ -90,7 +90,7 @@ def test_a_bow_away_from_the_dielectric_raises_pull_in_and_release(landed):
     ("change", "words"),
     [
         ({"hold_voltage_V": 1.0}, "hold_voltage_V = 1: the beam does not land"),
-        ({"hold_voltage_V": 80.0}, "where its curves end; raise pad.max_pressure_MPa"),
+        ({"hold_voltage_V": 80.0}, "where its curves end; raise pad.grid.max_pressure_MPa"),
         ({"bow_nm": -3400.0}, "touches the dielectric before it pulls in"),
         ({"bow_nm": -3500.0}, "at rest the electrode is -.* nm above the dielectric"),
         ({"tilt_nm": 8000.0}, "lower bow_nm or tilt_nm, or raise gap_um"),
