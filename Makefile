@@ -23,6 +23,7 @@ test: setup
 
 bench: setup
 	$(RUN) python -m evidence contact.speed
+	$(RUN) python -m evidence elastic.engine
 
 lint: setup
 	$(RUN) ruff format --check .

@@ -33,6 +33,8 @@ MAX_STRAIN = 0.01  # of a counterface whose cell differs from the asperity's
 class Closing:
     """Result of a closing run.
 
+    Attributes
+    ----------
     curve : one row per average (columns as in docs/hardness.md).
     witness : one row per relaxed snapshot: bond exchanges and lasting lowering against the first, and the attraction of
         its top.

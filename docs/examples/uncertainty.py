@@ -11,7 +11,7 @@ import asperity as asp
 
 measured = "our AFM"
 table = asp.input_table(  # rows that are not named here are those of the paper's Table 1
-    e_star=asp.InputRow(distribution="normal", a=91, b=3.8, source="Kim et al. (2013), Table 1"),
+    e_star=asp.InputRow(distribution="normal", values=(91.0, 3.8), source="Kim et al. (2013), Table 1"),
     q0=asp.InputRow(values=(0.02, 0.03), source=measured),
     hurst=asp.InputRow(values=(0.7, 0.9), source=measured),
     rms=asp.InputRow(values=(4.0, 5.0), source=measured),

@@ -1,1 +1,0 @@
-"""Run times and memory of the contact model, beside a plain implementation, other codes and a floor."""
