@@ -51,7 +51,7 @@ def _cases(base: ScanSet) -> Iterator[tuple[str, Any, ScanSet, float | None]]:
     yield from (("flat share of window", flat, steep, 1.0) for flat in FLAT_SHARES)
     yield from (("tip radius nm", tip, few(tip_radius_nm=tip), tip) for tip in TIPS_NM)
     yield from (("bins per decade", bins, few(), None) for bins in BINS)
-    yield from (("told over true tip radius", told, few(), told * truth.tip_radius_nm) for told in TOLD_TIPS)
+    yield from (("told over true tip radius", factor, few(), factor * truth.tip_radius_nm) for factor in TOLD_TIPS)
 
 
 def _case(knob: str, value: Any, truth: ScanSet, settings: TopographySettings) -> Iterator[dict[str, Any]]:
