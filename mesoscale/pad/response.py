@@ -16,6 +16,7 @@ neither curves nor held states.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -161,12 +162,12 @@ def _attraction(columns: Array, wanted: Array, weights: Array, lifted: float) ->
 
 def _lifted(columns: Array, wanted: Array, weights: Array) -> float:
     """The `lifted` of least misfit."""
-    best = minimize_scalar(
+    minimum: Any = minimize_scalar(
         lambda lifted: _attraction(columns, wanted, weights, lifted)[1],
         bounds=(0.0, MOST_LIFTED),
         options={"xatol": 1e-7},
     )
-    return float(best.x)
+    return float(minimum.x)
 
 
 def _varies(table: InputTable, name: str) -> bool:
