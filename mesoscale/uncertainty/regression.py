@@ -9,7 +9,7 @@ from mesoscale.uncertainty.surrogate import Surrogate, basis_matrix
 Array = NDArray[np.float64]
 
 DEGREE = 3
-"""Highest total degree: with 800 runs its deviations come nearest (evidence uncertainty.work_precision)."""
+"""Highest total degree; degrees 1 to 3 differ by less than the study can tell (evidence uncertainty.work_precision)."""
 HYPERBOLIC = 0.7
 """Norm that thins terms of many inputs."""
 
