@@ -112,8 +112,9 @@ def run_closing(
         run, bodies, potential, closing, protocol, plan, place, workspace, complete, progress, counter_potential
     )
     result = read(geometry, reached)
+    tops = [attraction_row(readout(geometry), n, geometry) for n in range(reached.segments + 1)]
     shutil.rmtree(work)
-    return result
+    return replace(result, witness=[{**row, **top} for row, top in zip(result.witness, tops, strict=True)])
 
 
 def _read(readout: Readout, plan: Plan, held_A: float, geometry: Geometry) -> Closing:
@@ -132,12 +133,7 @@ def _read(readout: Readout, plan: Plan, held_A: float, geometry: Geometry) -> Cl
         "restart_steps": plan.segment_steps,
         "wavelength_nm": geometry.wavelength_A / 10,
     }
-    attraction = [attraction_row(readout, n, geometry) for n in (0, *segments)]
-    witness = [
-        {**row, **attracted}
-        for row, attracted in zip(witness_rows(snapshots, displacement_nm, held_A), attraction, strict=True)
-    ]
-    return Closing(curve, witness, slice_rows(snapshots, geometry), summary)
+    return Closing(curve, witness_rows(snapshots, displacement_nm, held_A), slice_rows(snapshots, geometry), summary)
 
 
 def attraction_row(readout: Readout, segment: int, geometry: Geometry) -> dict[str, float]:
