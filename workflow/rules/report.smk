@@ -13,8 +13,7 @@ def report_inputs():
         "law/nominal.csv",
     ]
     files += [
-        f"uq/{name}"
-        for name in ("outputs.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")
+        f"uq/{name}" for name in ("outputs.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")
     ]
     files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "law.csv")]
     files += ["pad/curves.csv", "pad/adhesion.csv", "device/pad_switch.json"]
