@@ -25,6 +25,10 @@ READ = {
 """What packages read of the working folder and cannot be told to leave: a folder that holds one is refused."""
 
 
+PACKAGES = {"conda", "conda-archive", "singularity", "apptainer"}
+"""Folders of `.snakemake` with packages of other workflows, which are full of links; no rule here uses them."""
+
+
 class UnsafeFolder(Exception):
     """The working folder holds settings that a package would read; the message is one line."""
 
@@ -50,14 +54,24 @@ def secure() -> None:
     state = Path(".snakemake")
     if os.path.lexists(state) and not state.is_dir():
         raise UnsafeFolder(f"{state}: a file, or a link to nowhere, where a folder belongs; move it away")
-    below = (Path(folder, name) for folder, folders, files in os.walk(state) for name in (*folders, *files))
-    for path in (state, *below):
-        if path.is_symlink():
-            raise UnsafeFolder(f"{path}: a link to {os.readlink(path)}, to which Snakemake would write; remove it")
+    if state.is_dir():
+        _check_state(state)
     for name, why in READ.items():
         there = [*Path().glob(name)] if "*" in name else [Path(name)]
         if there and os.path.lexists(there[0]):
             raise UnsafeFolder(f"{there[0]}: {why}; move it away, or work in another folder")
+
+
+def _check_state(path: Path) -> None:
+    """See that what Snakemake keeps is no link, and may be read and written."""
+    if path.is_symlink():
+        raise UnsafeFolder(f"{path}: a link to {os.readlink(path)}, to which Snakemake would write; remove it")
+    is_folder = path.is_dir()
+    if not os.access(path, os.R_OK | os.W_OK | (os.X_OK if is_folder else 0)):
+        raise UnsafeFolder(f"{path}: may not be read and written; change its permissions, or remove it")
+    if is_folder and path.name not in PACKAGES:
+        for entry in path.iterdir():
+            _check_state(entry)
 
 
 def _writable(folder: Path) -> bool:

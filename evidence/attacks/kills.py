@@ -7,6 +7,7 @@ live on, and a folder that was ended several times and is then finished must hol
 import os
 import pty
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -80,7 +81,8 @@ def campaign(folder: Path, scene: str, ends: int, seed: int) -> Iterator[Attack]
 def _ended(rng: random.Random, place: Path, path: Path, target: str, longest: float, way: str) -> Attack:
     """Start the command, end it at a random moment, and look what is left."""
     moment = rng.uniform(0.02, 0.7) * longest
-    (place / target).unlink(missing_ok=True)  # so that there is work to interrupt
+    if (place / target).exists():
+        shutil.rmtree(place / "results")  # so that there is work to interrupt
     asperity = [str(Path(sys.executable).with_name("asperity")), "run", "--scene", str(path), "--cores", "2", target]
     environment = {**os.environ, "XDG_CACHE_HOME": str(place.with_name("cache")), "ASPERITY_ATTACK": str(place)}
     controller, terminal = pty.openpty() if way == "terminal closed" else os.pipe()
@@ -92,9 +94,10 @@ def _ended(rng: random.Random, place: Path, path: Path, target: str, longest: fl
             preexec_fn=_take_terminal if way == "terminal closed" else None,
         )  # fmt: skip
     os.close(terminal)
-    time.sleep(min(moment, longest))
-    if process.poll() is not None:
-        way = "came too late"  # counts as no end
+    time.sleep(moment)
+    if process.poll() is not None:  # too late: no end
+        os.close(controller)
+        return _ended(rng, place, path, target, longest / 2, way)
     ended = time.monotonic()
     _end(process, way, controller, rng)
     left = _wait_for_end(process, place, way)
@@ -118,8 +121,6 @@ def _end(process: "subprocess.Popen[bytes]", way: str, controller: int, rng: ran
         os.close(controller)
         return
     os.close(controller)
-    if process.poll() is not None:
-        return
     if way.endswith("to the command"):
         process.send_signal(getattr(signal, way.split()[0]))
     elif way.endswith("to its group"):

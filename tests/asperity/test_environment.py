@@ -69,6 +69,22 @@ def test_snakemake_writes_through_no_link(tmp_path, monkeypatch, name):
         secure()
 
 
+def test_what_snakemake_may_not_read_is_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("os.access", lambda path, mode: Path(path).name != "metadata")  # root may read everything
+    (tmp_path / ".snakemake/metadata").mkdir(parents=True)
+    with pytest.raises(UnsafeFolder, match=r"^\.snakemake/metadata: may not be read and written; change its permi"):
+        secure()
+
+
+def test_packages_of_other_workflows_may_hold_links(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    library = tmp_path / ".snakemake/conda/1234_/lib/libz.so"
+    library.parent.mkdir(parents=True)
+    library.symlink_to("libz.so.1")
+    secure()
+
+
 @pytest.mark.parametrize("command", [["plan"], ["compare", "a", "b"], ["serve"]])
 def test_the_command_refuses_such_a_folder_in_one_line(tmp_path, monkeypatch, capsys, command):
     monkeypatch.chdir(tmp_path)

@@ -69,6 +69,17 @@ def test_a_table_of_measurements_that_cannot_be_used(workflow_in):
     assert "forces.csv: column pull_off has no unit" in line
 
 
+def test_a_broken_potential_is_told_by_the_plan(workflow_in):
+    scene = workflow_in.folder / "mine.yaml"
+    (workflow_in.folder / "mine.pot.yaml").write_text("species: {Si: {mass_u: !!int x}}\n")
+    scene.write_text("{compute: [hardness], hardness: {potential: mine.pot.yaml}}")
+    done = workflow_in.run(str(scene), "hardness", options=("--dry-run",))
+    assert done.returncode != 0
+    (line,) = errors(done)
+    assert "mine.pot.yaml" in line
+    assert "tag" in line
+
+
 def test_no_permission_to_write(workflow_in):
     # a file where the folder of results should be stops everybody, the superuser of a CI machine included
     (workflow_in.folder / "results").write_text("")

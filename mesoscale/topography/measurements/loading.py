@@ -5,6 +5,7 @@ inside NumPy files) are never tried.
 """
 
 import re
+import struct
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -181,6 +182,7 @@ def _open(path: Path, start: bytes) -> Any:
 
         from mesoscale.topography.measurements.text_reader import QuickXYZReader
 
+    _check_pages(path, start)
     reasons = []
     for reader in readers:
         match = reader.can_read(start)
@@ -203,6 +205,24 @@ def _open(path: Path, start: bytes) -> Any:
         f"{path}: no reader understands this file{detail}; accepted are the formats of SurfaceTopography "
         "(gwy, ibw, di, jpk, mi, nid, ps tiff, ...; all 40: docs/topography.md, Formats) except NumPy files"
     )
+
+
+def _check_pages(path: Path, start: bytes) -> None:
+    """Refuse a TIFF file whose list of pages leads back to itself: the reader would follow it without end."""
+    order = {b"II*\0": "<", b"MM\0*": ">"}.get(start[:4])
+    if order is None or len(start) < 8:
+        return
+    (page,), seen = struct.unpack_from(f"{order}I", start, 4), set[int]()
+    with path.open("rb") as stream:
+        while page:
+            if page in seen:
+                raise InputError(f"{path}: its list of pages leads back to itself; save the file again (.gwy)")
+            seen.add(page)
+            stream.seek(page)
+            count = int.from_bytes(stream.read(2), "little" if order == "<" else "big")
+            stream.seek(12 * count, 1)  # tags of 12 bytes
+            following = stream.read(4)
+            page = struct.unpack(f"{order}I", following)[0] if len(following) == 4 else 0
 
 
 def _first_line(error: Exception) -> str:

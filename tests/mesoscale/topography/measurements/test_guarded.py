@@ -83,9 +83,15 @@ def test_a_refusal_passes_as_it_is(file):
         guarded(file, read)
 
 
-def test_pages_that_lead_to_themselves_end(file):
-    file.write_bytes(b"II" + struct.pack("<HIHI", 42, 8, 0, 8))
-    with pytest.raises(InputError, match=r"scan\.tiff"):
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize("pages", [1, 3])
+def test_pages_of_a_tiff_that_lead_back_are_refused_at_once(file, order, pages):
+    content = (b"II" if order == "<" else b"MM") + struct.pack(f"{order}HI", 42, 8)
+    for page in range(1, pages + 1):
+        tag = struct.pack(f"{order}HHII", 256, 4, 1, 64)
+        content += struct.pack(f"{order}H", 1) + tag + struct.pack(f"{order}I", 8 if page == pages else 8 + 18 * page)
+    file.write_bytes(content)
+    with pytest.raises(InputError, match="leads back to itself"):
         load_measurements(file)
 
 
