@@ -197,10 +197,6 @@ def test_model_form_says_what_shifts_and_what_the_cheap_engine_saves(page):
     assert "costs 25 times as much" in page
 
 
-def test_contact_area_stands_beside_perssons_theory(page):
-    assert "Share of area in contact against nominal pressure" in page
-
-
 def test_hardness_tells_what_size_does_with_the_sign_of_a_slope(page):
     assert "(2.40 to 4.40 nm), hardness goes as length to the power 0.300 [0.100, 0.500] (6 runs)" in page
 

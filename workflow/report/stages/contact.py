@@ -1,13 +1,7 @@
 """Contact curves at central inputs: figures 4 and 11."""
 
-import math
-from dataclasses import fields
-
 import numpy as np
 
-from mesoscale.contact import ContactInputs, persson
-from mesoscale.contact.surface import shortest_wave, surface_spectrum
-from mesoscale.settings import ContactSettings
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, SOFT, draw
 from workflow.report.live.spots import spots_picture
@@ -50,12 +44,6 @@ def describe(results: Results) -> Section | None:
         "Closing (solid) and opening (dashed) up to several largest loads; thin lines: the fitted law.",
         "Figure 11",
         wide=True,
-    )
-    section.add(
-        area_against_load(results),
-        "Contact area on closing beside Persson's theory, which knows the spectrum only. Band: yielded contact carries "
-        "the hardness of the finest waves (lower end), or keeps the area and the hardness at which it yielded (upper "
-        "end). The elastic theory falls short by 25 to 40 % at small loads.",
     )
     words = {
         "mechanics": "mechanics",
@@ -146,43 +134,6 @@ def nominal_loads(results: Results) -> str | None:
         axis.legend(title="largest load")
 
     return draw("fig11", "Closing and opening curves up to several largest loads", plot, (9.4, 4.0), columns=2)
-
-
-def area_against_load(results: Results) -> str | None:
-    """Share of area in contact against nominal pressure, and Persson's theory of the same spectrum."""
-    groups, attributes, curve_attributes = results.h5("curves/nominal.h5")
-    present = [model for model in MODELS if "contact_area_nm2" in groups.get(f"{model}/closing", {})]
-    if not present:
-        return None
-    area = float(attributes["cell_area_nm2"])
-    settings = ContactSettings(**results.contact)
-    inputs = ContactInputs(
-        **{field.name: float(curve_attributes[present[0]][field.name]) for field in fields(ContactInputs)}
-    )
-    if not (inputs.rms > 0.0 and inputs.h_macro + inputs.h_prime > 0.0):
-        return None  # a flat, or nothing that carries
-    waves = surface_spectrum(inputs, settings), 2.0 * math.pi / settings.length_nm, shortest_wave(settings)
-    largest = max(float(groups[f"{model}/closing"]["repulsive_nN"].max()) for model in present) / area
-    pressures = np.geomspace(1e-3 * largest, largest, 40)  # GPa
-    elastic = persson.elastic_area(pressures, inputs.e_star, persson.rms_gradient(*waves))
-    yielding = persson.contact_with_hardness(
-        pressures, inputs.e_star, *waves, lambda q: persson.hardness_at(q, inputs.h_macro, inputs.h_prime)
-    )
-
-    def plot(axis):
-        axis.fill_between(1e3 * pressures, yielding.area, yielding.kept, color=SOFT, alpha=0.4, linewidth=0)
-        axis.plot([], [], color=SOFT, alpha=0.4, linewidth=8, label="Persson, H(q)")
-        axis.plot(1e3 * pressures, elastic, color=INK, linewidth=0.8, label="Persson, elastic")
-        for model, color in zip(present, SERIES, strict=False):
-            label, style = MODELS[model]
-            curve = groups[f"{model}/closing"]
-            touching = curve["repulsive_nN"] > 1e-3 * largest * area
-            pressure = 1e3 * curve["repulsive_nN"][touching] / area
-            axis.plot(pressure, curve["contact_area_nm2"][touching] / area, style, color=color, label=label)
-        axis.set(xscale="log", yscale="log", xlabel="nominal pressure (MPa)", ylabel="share of area in contact")
-        axis.legend()
-
-    return draw("area", "Share of area in contact against nominal pressure, beside Persson's theory", plot)
 
 
 def _in_words(choice: object) -> str:
