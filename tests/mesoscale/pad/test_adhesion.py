@@ -139,7 +139,8 @@ def test_retardation_and_a_larger_D0_lower_the_energy():
     assert energy() > energy(retardation_nm=100.0) > energy(retardation_nm=10.0)
 
 
-def test_a_load_out_of_reach_is_refused():
+def test_a_load_out_of_reach_is_refused(monkeypatch):
+    monkeypatch.setattr("mesoscale.pad.adhesion.MOST_STEPS", 1000)
     soft = Case("none", ContactInputs(**{**VALUES, "e_star": 1e-6, "hamaker": 0.0}), ContactSettings(pixels=32))
     with pytest.raises(InputError, match="MPa; lower it"):
         close_to_loads(soft, [1.0], range(2))

@@ -29,22 +29,21 @@ def judged(scans, name):
     return list(judge(scans, spectra, name, INPUTS, SETTINGS, ContactSettings()))
 
 
-def test_scans_agree_with_the_description_that_the_others_make():
-    rows = judged(list(grainy(4)), "measured_heights")
-    assert all(row["left_out"] for row in rows)
-    assert np.mean([row["inside"] for row in rows]) >= 0.85
+@pytest.fixture(scope="module")
+def by_heights():
+    """Four grainy scans, each judged by the description that the other three make."""
+    return judged(list(grainy(4)), "measured_heights")
 
 
-def test_a_gaussian_description_of_tall_grains_is_found_out():
+def test_scans_agree_with_the_description_that_the_others_make(by_heights):
+    assert all(row["left_out"] for row in by_heights)
+    assert np.mean([row["inside"] for row in by_heights]) >= 0.85
+
+
+def test_a_gaussian_description_of_tall_grains_is_found_out(by_heights):
     grains, plain = (
-        np.median(
-            [
-                row["pressed"] / row["median"]
-                for row in judged(list(grainy(4)), name)
-                if row["quantity"] == "first_contact"
-            ]
-        )
-        for name in ("measured_heights", "measured_spectrum")
+        np.median([row["pressed"] / row["median"] for row in rows if row["quantity"] == "first_contact"])
+        for rows in (by_heights, judged(list(grainy(4)), "measured_spectrum"))
     )
     assert abs(grains - 1) < 0.15
     assert plain > 1.1 * grains
