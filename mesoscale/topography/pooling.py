@@ -8,7 +8,13 @@ import numpy as np
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.curves import fit_curves, pooled_curve
-from mesoscale.topography.description.choice import Choice, choose, description_doubts, surface_of
+from mesoscale.topography.description.choice import (
+    Choice,
+    choose,
+    description_doubts,
+    refuse_coarse_measurements,
+    surface_of,
+)
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.end import cutoff_row, rms_before
 from mesoscale.topography.description.heights import HeightTest, compare_heights, not_gaussian
@@ -66,7 +72,7 @@ def pool(
 
     Raises
     ------
-    InputError : measured files that cannot be of one surface.
+    InputError : measured files that cannot be of one surface, or that see no wave of a cell.
     """
     images = [trusted_record(name, data, attributes[name], settings) for name, data in arrays.items()]
     tests = [
@@ -83,6 +89,7 @@ def pool(
         refuse_different_films(pairs)
     quantiles = {name: data["quantiles"] for name, data in arrays.items() if "quantiles" in data}
     topography, spectra, lifted = parameters_of(images, quantiles if not_gaussian(tests) else {}, settings)
+    refuse_coarse_measurements(spectra, cell_nm)
     one = merge(spectra, lifted)
     choice = choose(topography, one, tests, settings)
     surface, rows = surface_of(choice, topography, one, list(quantiles.values()), settings, cell_nm)
@@ -91,7 +98,9 @@ def pool(
         if cut_off:
             rows["rms"] = rms_before(rows["q1"], rows["rms"], topography, surface)
     apart = _disagreements(pairs, one) if settings.scans else []
-    doubts = description_doubts(topography, choice, one, attributes, apart, tests) if settings.scans else []
+    doubts = []
+    if settings.scans:
+        doubts = description_doubts(topography, choice, one, attributes, apart, cell_nm, tests)
     doubts += lift_doubt(images, spectra, lifted)
     if choice.name == "power_law":
         doubts = [*topography.doubts, *doubts]

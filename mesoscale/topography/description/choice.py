@@ -6,13 +6,15 @@ from typing import Any
 
 import numpy as np
 
+from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.confidence import QUANTILES, REACH
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.heights import HeightTest, common_heights, not_gaussian
 from mesoscale.topography.description.one_spectrum import OneSpectrum
 from mesoscale.topography.description.parameters import Topography, inputs
-from mesoscale.topography.roughness_spectrum import hurst_from_slope
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
+from mesoscale.topography.roughness_spectrum import hurst_from_slope, mean_square
 
 DESCRIPTIONS = {
     "power_law": "plateau and power law of eq. 9, normal heights",
@@ -94,15 +96,19 @@ def surface_of(
 ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
     """What random surfaces are made from: entries of `contact.surface`, and distributions of q0, hurst and rms.
 
-    With a measured spectrum the RMS height is that of the waves that fit on a cell of side `cell_nm`, and q0 and hurst
-    are coordinates that bend the spectrum about the eq. 9 nearest to it, as far as its band allows.
+    The RMS height is that of the waves of a cell of side `cell_nm`, and of a film whose spectrum is flat beyond, as the
+    pad makes it (`pad.cells`). With a measured spectrum q0 and hurst are coordinates that bend the spectrum about
+    the eq. 9 nearest to it, as far as its band allows.
     """
     if choice.name == "power_law" or one is None:
-        return {}, inputs(topography, settings)
-    low = 2 * np.pi / cell_nm
+        rows = inputs(topography, settings)
+        if "rms" in rows:
+            share = np.sqrt(_share_on_cells(topography, cell_nm))
+            rows["rms"] |= {key: float(rows["rms"][key] * share) for key in ("a", "b")}
+        return {}, rows
     drawn = one.draws(places=settings.ranges == "scatter")
-    q, psd = _table(one, low)
-    rms = np.sqrt(one.moment(0, low=low, psd=drawn) + _tail(one, low))
+    q, psd = _table(one, 2 * np.pi / cell_nm)
+    rms = np.sqrt(_cell_mean_square(one, drawn, cell_nm))
     pivot_q0, pivot_hurst = _nearest(topography, one, settings)
     bend_q0, bend_hurst = _bends(one, pivot_q0, drawn)
     hurst = np.clip([pivot_hurst - bend_hurst, pivot_hurst + bend_hurst], *HURST_ENDS)
@@ -119,6 +125,43 @@ def surface_of(
     }
     rows = {name: {"distribution": "uniform", "a": float(a), "b": float(b)} for name, (a, b) in ranges.items()}
     return surface, rows
+
+
+def cell_waves(cell_nm: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Wave vectors (1/nm) of a periodic cell, the area (1/nm^2) that each stands for, and where an integral takes over.
+
+    The mean plane counts as one more wave of the longest: the spectrum of the film is flat there.
+    """
+    step = 2.0 * np.pi / cell_nm
+    numbers = np.arange(-SUMMED, SUMMED + 1)
+    squared, count = np.unique(numbers[:, None] ** 2 + numbers**2, return_counts=True)
+    inside = squared <= SUMMED**2
+    return step * np.sqrt(np.maximum(squared[inside], 1)), step**2 * count[inside], SUMMED * step
+
+
+def _share_on_cells(topography: Topography, cell_nm: float) -> float:
+    """Share of the mean square height of eq. 9 that is left where it is flat beyond the longest wave of a cell."""
+    fitted = topography.likelihood or topography.line_fit
+    if fitted is None or fitted.q0 >= 2.0 * np.pi / cell_nm:
+        return 1.0
+    waves, areas, end = cell_waves(cell_nm)
+    whole, summed = (mean_square(1.0, fitted.q0, fitted.slope, high) for high in (topography.cutoff, end))
+    return float(((waves / fitted.q0) ** -fitted.slope @ areas + max(whole - summed, 0.0)) / whole)
+
+
+def _cell_mean_square(one: OneSpectrum, psd: np.ndarray, cell_nm: float) -> np.ndarray:
+    """Mean square height (nm^2) of cells by spectra (..., m) on the bands of `one`."""
+    waves, areas, end = cell_waves(cell_nm)
+    logs, known = np.log(psd).reshape(-1, len(one.q)), waves <= one.q[-1]
+    summed = [np.exp(np.interp(np.log(waves[known]), np.log(one.q), row)) @ areas[known] for row in logs]
+    return np.reshape(summed, psd.shape[:-1]) + one.moment(0, low=end, psd=psd) + _tail(one, min(end, one.q[-1]))
+
+
+def share_on_cells(topography: Topography, one: OneSpectrum | None, choice: Choice, cell_nm: float) -> float:
+    """Share of the mean square height that cells have, by the description in use."""
+    if choice.name == "power_law" or one is None:
+        return _share_on_cells(topography, cell_nm)
+    return float(_cell_mean_square(one, one.psd, cell_nm) / (one.moment(0, psd=one.psd) + _tail(one, one.q[-1])))
 
 
 def _table(one: OneSpectrum, low: float) -> tuple[np.ndarray, np.ndarray]:
@@ -177,16 +220,42 @@ def _bends(one: OneSpectrum, q0: float, drawn: np.ndarray) -> tuple[float, float
     return float(np.clip(bend_q0, SLOWEST_BEND, FASTEST_BEND)), bend_hurst
 
 
+def refuse_coarse_measurements(spectra: Sequence[TrustedSpectrum], cell_nm: float) -> None:
+    """Refuse measurements that see next to no wave of a cell, before surfaces are made of what nobody saw.
+
+    Raises
+    ------
+    InputError : naming the finest measurement, its scale, and what would help.
+    """
+    finest = max(spectra, key=lambda item: item.high, default=None)
+    if finest is not None and finest.high < FINEST_WAVES * 2.0 * np.pi / cell_nm:
+        seen = 2.0 * np.pi / finest.high
+        raise InputError(
+            f"topography: the shortest wave that {finest.name} shows is {seen:.3g} nm long, so that a cell of "
+            f"contact.length_nm = {cell_nm:g} holds next to none that was measured; measure on a finer scale, or set "
+            f"contact.length_nm to {8.0 * seen:.2g} or more for the contact of the scales that were measured"
+        )
+
+
 def description_doubts(
     topography: Topography,
     choice: Choice,
     one: OneSpectrum | None,
     attributes: Mapping[str, Mapping[str, Any]],
     disagreements: Sequence[str],
+    cell_nm: float,
     tests: Sequence[HeightTest] = (),
 ) -> list[Doubt]:
     """Doubts of the measurements besides those of eq. 9, which only count where eq. 9 is used."""
     doubts = []
+    share = share_on_cells(topography, one, choice, cell_nm)
+    if share < LEAST_ON_CELLS:
+        text = (
+            f"a cell of {cell_nm:g} nm has {np.sqrt(share):.0%} of the RMS height; the rest is in longer waves, which "
+            "no stage has"
+        )
+        remedy = "a larger contact.length_nm holds more of them; on a wide electrode they lift and tilt whole cells"
+        doubts.append(Doubt("waves_beyond_cell", text, remedy, "rms"))
     for name, values in attributes.items():
         share, skewness = (float(values.get(f"alignment_{key}", 0.0)) for key in ("share", "skewness"))
         if share > MOST_ALIGNED or abs(skewness) > MOST_SKEWED:
@@ -221,6 +290,9 @@ def description_doubts(
     return doubts
 
 
+SUMMED = 16  # longest waves that are summed one by one; beyond, sum and integral differ by less than a per cent
+FINEST_WAVES = 2.0  # the shortest measured wave goes at least so often into a cell
+LEAST_ON_CELLS = 0.5  # share of the mean square height that cells have without a word
 MOST_ANISOTROPIC = 2.0  # ratio of slopes; isotropic surfaces C ~ q^-2.5 to q^-4 without a plateau reach 1.4
 MOST_SKEWED = 0.3  # skewness that aligning lines may add without a word
 MOST_ALIGNED = 0.1  # share of the RMS height that aligning lines may take without a word

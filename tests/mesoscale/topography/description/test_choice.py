@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from mesoscale.contact.surface import random_surface
+from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.description.heights import slope_ratio
@@ -53,8 +54,41 @@ def test_a_fractal_gaussian_surface_is_described_by_the_power_law():
     pooled, content = described([item.scan for item in synthetic_scans(truth)], settings)
     assert pooled.choice.name == "power_law"
     assert pooled.surface == {}
+    assert pooled.rows["rms"]["a"] == pooled.topography.estimates["rms"].scatter[0]  # the roll-off fits on a cell
     assert content["inputs"]["q0"]["a"] < 0.025 < content["inputs"]["q0"]["b"]
     assert content["gate"]["passed"]
+
+
+@pytest.mark.parametrize("description", ["power_law", "measured_spectrum"])
+def test_a_cell_gets_the_roughness_of_its_own_waves_where_the_roll_off_is_longer(description):
+    """By a sum over the waves of a cell, and between squares cut from the surface with and without their tilts."""
+    truth = RoughSpectrum.from_rms(20.0, 2 * np.pi / 4000, 3.6, 0.2)
+    scans = [
+        Scan(surface_patch(truth, 512, 16000.0, np.random.default_rng(seed)), (16000.0, 16000.0), f"w{seed}")
+        for seed in range(3)
+    ]
+    across = np.arange(32) - 15.5
+    plane = np.stack([np.ones((32, 32)), *np.meshgrid(across, across)]).reshape(3, -1).T
+    squares = np.concatenate([scan.heights_nm.reshape(16, 32, 16, 32).swapaxes(1, 2) for scan in scans]).reshape(
+        -1, 1024
+    )
+    left = squares.T - plane @ np.linalg.lstsq(plane, squares.T, rcond=None)[0]
+    settings = SETTINGS.model_copy(update={"description": description, "on_doubt": "warn"})
+    pooled, content = described(scans, settings)
+    found = 0.5 * (pooled.rows["rms"]["a"] + pooled.rows["rms"]["b"])
+    step = 2 * np.pi / 1000
+    waves = step * np.hypot(*np.meshgrid(np.arange(-64, 64), np.arange(-64, 64)))
+    assert found == pytest.approx(step * np.sqrt(truth.psd(np.maximum(waves, step)).sum()), rel=0.1)  # of three scans
+    assert np.std(left) < found < np.std(squares - squares.mean(axis=1, keepdims=True))
+    assert "waves_beyond_cell" in [doubt["code"] for doubt in content["doubts"]]
+
+
+def test_scans_that_see_no_wave_of_a_cell_are_refused_with_the_way_out():
+    heights = surface_patch(RoughSpectrum.from_rms(20.0, 1e-4, 3.6, 0.2), 256, 400_000.0, np.random.default_rng(1))
+    coarse = Scan(heights, (400_000.0, 400_000.0), "coarse")
+    with pytest.raises(InputError, match=r"coarse shows is .* nm long.*set contact.length_nm to \S+ or more"):
+        described([coarse])
+    described([coarse], cell_nm=60_000.0)
 
 
 def test_a_slope_beyond_the_power_law_is_no_dead_end():
