@@ -1,10 +1,10 @@
 """What are the moduli of amorphous Si3N4, and what do broken bonds and larger cells change?
 
-Scene `reduced` has perfect networks of 28 atoms, and had seven glasses when its rows were computed; `broken_bonds` lets three of 28 atoms lack or exceed their valence, as
-many as large melt-quenched models have; `double_glass` has 56 atoms, of which five may.  PBE at 80 Ha, ions and cell at
-rest.  E* of a scene stands in each of its rows, with Poisson's ratio computed and from the literature.  One to three
-hours of two cores a scene.  The first rows were copied from a page of their commit, to the digits that it gave; the
-third glass of 56 atoms was quenched in the box of its melt.
+Scene `reduced` has perfect networks of 28 atoms, and had seven glasses when its rows were computed; `broken_bonds`
+lets three of 28 atoms lack or exceed their valence, as many as large melt-quenched models have; `double_glass` has 56
+atoms, of which five may.  PBE at 80 Ha, ions and cell at rest. E* of a scene stands in each of its rows, with
+Poisson's ratio computed and from the literature. One to three hours of two cores a scene. The first rows were copied
+from a page, to the digits that it gave; the third glass of 56 atoms was quenched in the box of its melt.
 
 A universal potential (7net) was tried in place of DFT: B of the glasses agreed, G of the crystals was too soft, of
 silicon by a fifth.  E(V) with relaxed ions was tried in place of elastic constants: at strains of 3 % bonds rearrange.
