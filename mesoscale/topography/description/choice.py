@@ -154,14 +154,14 @@ def _cell_mean_square(one: OneSpectrum, psd: np.ndarray, cell_nm: float) -> np.n
     waves, areas, end = cell_waves(cell_nm)
     logs, known = np.log(psd).reshape(-1, len(one.q)), waves <= one.q[-1]
     summed = [np.exp(np.interp(np.log(waves[known]), np.log(one.q), row)) @ areas[known] for row in logs]
-    return np.reshape(summed, psd.shape[:-1]) + one.moment(0, low=end, psd=psd) + _tail(one, min(end, one.q[-1]))
+    return np.reshape(summed, psd.shape[:-1]) + one.moment(0, low=end, psd=psd) + _tail(one, psd)
 
 
 def share_on_cells(topography: Topography, one: OneSpectrum | None, choice: Choice, cell_nm: float) -> float:
     """Share of the mean square height that cells have, by the description in use."""
     if choice.name == "power_law" or one is None:
         return _share_on_cells(topography, cell_nm)
-    return float(_cell_mean_square(one, one.psd, cell_nm) / (one.moment(0, psd=one.psd) + _tail(one, one.q[-1])))
+    return float(_cell_mean_square(one, one.psd, cell_nm) / (one.moment(0, psd=one.psd) + _tail(one, one.psd)))
 
 
 def _table(one: OneSpectrum, low: float) -> tuple[np.ndarray, np.ndarray]:
@@ -181,19 +181,17 @@ def carried_on(one: OneSpectrum, psd: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return np.concatenate([one.q, beyond]), np.concatenate([psd, psd[-1] * (beyond / end) ** slope])
 
 
-def _end_slope(one: OneSpectrum, psd: np.ndarray) -> float:
-    """Logarithmic slope of the end of a spectrum; at least as steep as keeps the RMS height finite."""
+def _end_slope(one: OneSpectrum, psd: np.ndarray) -> np.ndarray:
+    """Logarithmic slopes of the ends of spectra (..., m); at least as steep as keeps the RMS height finite."""
     end = one.q > one.q[-1] * 10 ** -(END_DECADES + 0.01)
-    return min(float(np.polyfit(np.log(one.q[end]), np.log(psd[end]), 1)[0]), -2.1)
+    logs = np.log(psd[..., end]).reshape(-1, np.count_nonzero(end))
+    return np.minimum(np.polyfit(np.log(one.q[end]), logs.T, 1)[0], -2.1).reshape(psd.shape[:-1])
 
 
-def _tail(one: OneSpectrum, low: float) -> float:
-    """Mean square height of the continuation, nm^2."""
-    slope, q, end = _end_slope(one, one.psd), max(float(one.q[-1]), low), float(one.q[-1]) * 10**EXTENSION_DECADES
-    if end <= q:
-        return 0.0
-    scale = float(one.psd[-1]) * float(one.q[-1]) ** -slope
-    return 2 * np.pi * scale * (q ** (slope + 2) - end ** (slope + 2)) / -(slope + 2)
+def _tail(one: OneSpectrum, psd: np.ndarray) -> np.ndarray:
+    """Mean square heights of the continuations of spectra (..., m), nm^2."""
+    power = _end_slope(one, psd) + 2.0
+    return 2.0 * np.pi * psd[..., -1] * one.q[-1] ** 2 * (10.0 ** (EXTENSION_DECADES * power) - 1.0) / power
 
 
 def _nearest(topography: Topography, one: OneSpectrum, settings: TopographySettings) -> tuple[float, float]:
