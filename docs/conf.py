@@ -1,6 +1,7 @@
 """The documentation site. `make docs` writes it to docs/_build/html, without network; every warning is an error."""
 
 import importlib.metadata
+import sys
 from pathlib import Path
 
 import SurfaceTopography  # noqa: F401  (autodoc imports with TYPE_CHECKING set, which its pydantic models do not bear)
@@ -8,8 +9,12 @@ import SurfaceTopography  # noqa: F401  (autodoc imports with TYPE_CHECKING set,
 from evidence.pages import figures, write_pages
 
 ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "docs"))
+
+from settings_tables import write_tables  # noqa: E402
 
 write_pages(ROOT / "docs" / "evidence")
+write_tables(ROOT / "docs" / "_build" / "settings_tables.md")
 
 project = "Asperity"
 author = copyright = "The Asperity developers"
@@ -24,7 +29,7 @@ extensions = [
     "sphinx.ext.viewcode",
     "sphinx-mathjax-offline",  # equations without network
 ]
-exclude_patterns = ["_build", "conf.py", "api/*/modules.rst"]
+exclude_patterns = ["_build", "*.py", "api/*/modules.rst"]
 html_theme = "furo"
 html_title = "Asperity"
 default_role = "code"
