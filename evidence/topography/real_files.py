@@ -1,9 +1,9 @@
 """Does what pressing a real scan gives lie inside the 90 % interval that its description gives?
 
 Every file below a folder: the test data of SurfaceTopography, and the diamond film of `config/measurements`. Each map
-with square pixels judges the description made from itself, on cells that hold eight of its shortest waves. Loads that press more than half of a scan into contact are
-counted apart: a scene does not ask for them. Outside are an interferometer map of 1.8 mm with dust, and the area of a
-ridged map (doubt `anisotropic`).
+with square pixels judges the description made from itself, on cells that hold eight of its shortest waves. Loads that
+press more than half of a scan into contact are counted apart: a scene does not ask for them. Outside are an
+interferometer map of 1.8 mm with dust, and the area of a ridged map (doubt `anisotropic`).
 """
 
 import argparse
