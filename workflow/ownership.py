@@ -24,6 +24,7 @@ from typing import NoReturn
 from asperity.environment import READ
 
 RUN = "ASPERITY_RUN"  # environment variable with the process id of the run that a job belongs to
+FILES = {".cir", ".csv", ".data", ".h5", ".html", ".json", ".log", ".png", ".sub", ".va", ".xyz", ".yaml"}  # results
 PATIENCE_S = 60.0  # for jobs of a killed run to end
 
 
@@ -37,8 +38,8 @@ def inspect(*folders: Path) -> None:
 
     Raises
     ------
-    Refused : a link that leads out of its folder, a pipe or device, a file or folder that cannot be read, or a lock or
-        log of another kind.
+    Refused : a link that leads out of its folder, a pipe or device, a file or folder that cannot be read, or a lock, log
+        or result of another kind.
     """
     for folder in folders:
         if not folder.is_dir():
@@ -58,6 +59,8 @@ def inspect(*folders: Path) -> None:
                     raise Refused(f"{path}: a link to {os.readlink(path)}, out of its folder; remove it")
             elif entry.name in READ:
                 raise Refused(f"{path}: {READ[entry.name]}; move it away")
+            elif entry.is_dir() and path.suffix in FILES:
+                raise Refused(f"{path}: a folder where a result belongs; move it away")
             elif not entry.is_dir() and not entry.is_file():
                 raise Refused(f"{path}: a pipe or device; move it away")
             elif not os.access(path, os.R_OK | (os.X_OK if entry.is_dir() else 0)):

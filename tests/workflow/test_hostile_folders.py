@@ -40,6 +40,7 @@ def test_an_ordinary_folder_passes(results):
     [
         (lambda folder: (folder / ".lock").mkdir(), "a folder where a file"),
         (lambda folder: (folder / ".scene").mkdir(), "a folder where a file"),
+        (lambda folder: (folder / "law/parameters.csv").mkdir(parents=True), "a folder where a result"),
         (lambda folder: (folder / ".scene").symlink_to("/etc/hostname"), "out of its folder"),
         (lambda folder: (folder / ".lock").symlink_to("../outside"), "out of its folder"),
         (lambda folder: (folder / "law").symlink_to("/tmp"), "out of its folder"),
