@@ -38,8 +38,8 @@ def inspect(*folders: Path) -> None:
 
     Raises
     ------
-    Refused : a link that leads out of its folder, a pipe or device, a file or folder that cannot be read, or a lock, log
-        or result of another kind.
+    Refused : a link that leads out of its folder, a pipe or device, a file or folder that cannot be read, or a lock,
+        log or result of another kind.
     """
     for folder in folders:
         if not folder.is_dir():
