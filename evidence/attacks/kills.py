@@ -35,7 +35,7 @@ WAYS = (
     "LAMMPS killed",
 )
 LAMMPS = "lmp"  # the name of its process
-ENDS_PER_FOLDER = 6
+ENDS_PER_FOLDER = 10  # each run goes on where the last one was ended, so that ends meet all jobs
 GONE_S = 20.0  # by which all processes must have ended
 SCENES = {
     "contact": (CONTACT, "results/contact/law/parameters.csv"),
@@ -80,7 +80,7 @@ def campaign(folder: Path, scene: str, ends: int, seed: int) -> Iterator[Attack]
 
 def _ended(rng: random.Random, place: Path, path: Path, target: str, longest: float, way: str) -> Attack:
     """Start the command, end it at a random moment, and look what is left."""
-    moment = rng.uniform(0.02, 0.7) * longest
+    moment = rng.uniform(0.02, 0.4) * longest
     if (place / target).exists():
         shutil.rmtree(place / "results")  # so that there is work to interrupt
     asperity = [str(Path(sys.executable).with_name("asperity")), "run", "--scene", str(path), "--cores", "2", target]

@@ -1,6 +1,7 @@
 """Propagation, sensitivity and validation on functions whose answers are known."""
 
 import csv
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
@@ -178,6 +179,20 @@ def test_validation_without_runs_reports_none():
     rows = validation_rows((np.empty((0, 3)), np.empty((0, 8))), given, table, result, SETTINGS)
     assert [row["runs"] for row in rows] == [0] * 8
     assert set(rows[0]) == {"output", "unit", "runs", "missing"}
+
+
+@pytest.mark.filterwarnings("error")
+def test_an_output_that_no_node_has_is_validated_without_a_warning():
+    table = uniform_table()
+    given = linear_nodes(table, [1, 2, 3])
+    values = given.values.copy()
+    values[..., 0] = np.nan
+    given = replace(given, values=values)
+    x = table.sample(400, 9)
+    direct = np.stack([10 + x @ [1, 2, 3]] * 4 + [20 + x @ [2, 4, 6]] * 4, axis=1)
+    row = validation_rows((x, direct), given, table, propagate(given, table, SETTINGS), SETTINGS)[0]
+    assert np.isnan(row["mean_linear"])
+    assert row["runs"] == 400
 
 
 def test_nodes_are_read_by_seed_and_branch():
