@@ -152,19 +152,24 @@ def test_the_scene_reaches_snakemake_as_it_is_called(monkeypatch):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="needs /proc")
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
-def test_a_signal_to_the_command_reaches_the_workflow(tmp_path, number):
-    """No process of it lives on; the command and Snakemake are one."""
-    environment = {**os.environ, "ASPERITY_TEST": str(tmp_path)}
-    command = [ASPERITY, "run", "--scene", "paper", "--cores", "1"]
-    process = subprocess.Popen(
-        command, cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
-    deadline = time.monotonic() + 60
-    while not (tmp_path / "results/paper/.lock").exists() and time.monotonic() < deadline:
-        time.sleep(0.1)
-    process.send_signal(number)
-    process.wait(30)
+def test_signals_to_the_command_reach_the_workflow(tmp_path):
+    """No process of it lives on; the command and Snakemake are one. Both runs work at once."""
+    command = [ASPERITY, "run", "--scene", "paper", "--cores", "1", "curves"]
+    runs = {}
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        folder = tmp_path / number.name
+        folder.mkdir()
+        environment = {**os.environ, "ASPERITY_TEST": str(tmp_path), "XDG_CACHE_HOME": str(folder / "cache")}
+        said = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        runs[number] = subprocess.Popen(command, cwd=folder, env=environment, **said)
+    deadline = time.monotonic() + 120
+    for number, process in runs.items():
+        while not (tmp_path / number.name / "results/paper/.lock").exists() and time.monotonic() < deadline:
+            time.sleep(0.1)
+        assert process.poll() is None
+        process.send_signal(number)
+    for process in runs.values():
+        process.wait(30)
 
     def left():
         mark = f"ASPERITY_TEST={tmp_path}".encode()

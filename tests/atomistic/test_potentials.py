@@ -117,7 +117,10 @@ def test_a_bad_file_gets_one_line_that_names_it(tmp_path, change, words):
     assert all(word in message for word in [str(path), *words]), message
 
 
-@pytest.mark.parametrize("content", ["", "[1, 2", "!!python/object/apply:os.system ['true']"])
+@pytest.mark.parametrize(
+    "content",
+    ["", "[1, 2", "!!python/object/apply:os.system ['true']", "a: &a [x]\nb: [*a, *a]", 'cutoff_A: !!int ""'],
+)
 def test_unreadable_files(tmp_path, content):
     path = tmp_path / "mine.yaml"
     path.write_text(content)

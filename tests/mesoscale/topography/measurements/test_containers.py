@@ -91,6 +91,8 @@ def test_a_bomb_is_not_unpacked(tmp_path):
         ("surfaces: 3\n", "lists no surfaces"),
         ("surfaces:\n- topographies: []\n", "empty"),
         ("a: [" * 3000, "plain values|cannot"),
+        (f"{META}a: &a [x, x]\nb: [*a, *a]\n", "alias"),
+        (f'{META}a: !!int ""\n', "tag"),
         ("{" + "x" * 5 * 2**20, "unpacks to more than"),
     ],
 )
