@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 from mesoscale.checks import check_number
-from mesoscale.inputs.definitions import BY_NAME, definition
+from mesoscale.inputs.definitions import BY_NAME, RMS_SCATTER, definition
 from mesoscale.settings import ContactSettings
 
 
@@ -37,6 +37,18 @@ class ContactInputs:
             check_number(row.name, getattr(self, row.name), row.low, row.high, row.unit, row.zero)
 
 
+@dataclass(frozen=True)
+class FilmInputs(ContactInputs):
+    """Inputs of a film whose places differ: `rms` is that of the median place.
+
+    Attributes
+    ----------
+    rms_scatter : standard deviation of ln RMS between places.
+    """
+
+    rms_scatter: float
+
+
 def contact_of(values: Mapping[str, float], settings: ContactSettings) -> tuple[ContactInputs, ContactSettings]:
     """Contact inputs from values by name, and the settings with those inputs put in that replace one of them.
 
@@ -45,5 +57,6 @@ def contact_of(values: Mapping[str, float], settings: ContactSettings) -> tuple[
     InputError : a value that the input or the setting does not accept.
     """
     replaced = {row.setting: value for name, value in values.items() if (row := definition(name)).setting}
-    inputs = ContactInputs(**{name: value for name, value in values.items() if not definition(name).setting})
+    kind = FilmInputs if RMS_SCATTER.name in values else ContactInputs
+    inputs = kind(**{name: value for name, value in values.items() if not definition(name).setting})
     return inputs, ContactSettings(**(dict(settings) | replaced)) if replaced else settings

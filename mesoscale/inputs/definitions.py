@@ -66,7 +66,12 @@ INPUTS = (
 Their bounds are wide, from the softest gels to beyond diamond, yet narrow enough to refuse metres, pascals and joules.
 """
 
-BY_NAME = {row.name: row for row in INPUTS}
+RMS_SCATTER = InputDefinition(
+    "rms_scatter", "scatter of ln RMS between places", "s_RMS", "1", 1e-6, 2.0, zero=True, stage="topography"
+)
+"""Input of pads alone: a single cell has the RMS height of its place."""
+
+BY_NAME = {row.name: row for row in (*INPUTS, RMS_SCATTER)}
 
 
 def definition(name: str) -> InputDefinition:

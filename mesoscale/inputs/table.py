@@ -1,13 +1,14 @@
 """The table of uncertain inputs in use (the paper's Table 1): each row from literature or from a stage."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from mesoscale.errors import InputError
-from mesoscale.inputs.definitions import BY_NAME
+from mesoscale.inputs.definitions import BY_NAME, RMS_SCATTER
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
 from mesoscale.settings import TABLE_1, InputRow, InputsSettings
 from mesoscale.settings.contact import AttractionLaw
@@ -58,6 +59,39 @@ def collect(
         rows.append(UncertainInput(name, BY_NAME[name].unit, given, row.origin, source))
     names = [row.name for row in rows]
     return InputTable(tuple(rows), correlation_matrix(names, pairs))
+
+
+def film_table(table: InputTable, film: Mapping[str, Any], scatter: Sequence[float] | None) -> InputTable:
+    """The inputs of a pad, which holds all places of a film, from those of a cell anywhere.
+
+    Parameters
+    ----------
+    film : what topography found of the film as a whole, by name: distributions of its typical place, and of the
+        standard deviation of ln RMS between places.
+    scatter : range of that deviation; None: topography's, where the RMS height comes from there.
+
+    Raises
+    ------
+    InputError : a range crosses a physical bound.
+    """
+    rows = [
+        replace(row, distribution=_distribution(film[row.name], f"{row.source}: film.{row.name}"))
+        if row.origin == "topography" and row.name in film
+        else row
+        for row in table.rows
+    ]
+    rms, name = rows[table.names.index("rms")], RMS_SCATTER.name
+    if scatter is not None:
+        stated = Distribution("uniform", a=scatter[0], b=scatter[1])
+        rows.append(UncertainInput(name, "1", stated, "literature", "pad.rms_scatter"))
+    elif rms.origin == "topography":
+        given = _distribution(film[name], f"{rms.source}: film.{name}")
+        rows.append(UncertainInput(name, "1", given, rms.origin, rms.source))
+    for row in rows:
+        _check_range(row.name, row.distribution, f"{row.source}: film.{row.name}")
+    correlation = np.eye(len(rows))
+    correlation[: len(table.rows), : len(table.rows)] = table.correlation
+    return InputTable(tuple(rows), correlation)
 
 
 def check_literature(settings: InputsSettings) -> dict[str, tuple[float, float]]:

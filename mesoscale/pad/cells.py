@@ -4,10 +4,12 @@ A cell of a periodic surface has no waves longer than its side, and `random_surf
 RMS height. Pieces of a large film differ in both: their mean planes scatter by the waves that are longer than a cell,
 and their RMS heights by the few long waves that a cell holds. The highest pieces carry most of the load: without these
 differences a pad has some 15 % too little pressure (docs/pad.md).
+
+Places of a film differ, too: each cell is a place of its own, with an RMS height from the film's distribution.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +17,14 @@ from numpy.typing import NDArray
 from mesoscale.contact.displacement import Closing, Displacement, close_by_separation
 from mesoscale.contact.surface import random_surface, shortest_wave, surface_spectrum
 from mesoscale.errors import InputError
-from mesoscale.inputs.contact import ContactInputs
+from mesoscale.inputs.contact import ContactInputs, FilmInputs
 from mesoscale.settings import ContactSettings, PadGridSettings
 
 Array = NDArray[np.float64]
 
 FIRST_SEED = 1000
 """Of the surface of a pad's first cell."""
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 STEP_NM = 0.1
 """Step of separation in and near contact: twice as long moves the well of a single cell by 15 % (accuracy.py)."""
 DEVIATIONS_ABOVE = 6.0
@@ -104,6 +107,26 @@ class FilmPieces:
         return heights / np.sqrt(ratio) + self.plane_deviation_nm * rng.normal()
 
 
+def place_of(inputs: ContactInputs, seed: int) -> ContactInputs:
+    """The inputs with the RMS height of one place of the film.
+
+    RMS heights of places are lognormal. Probabilities of successive seeds are multiples of the golden ratio (modulo 1),
+    which are spread evenly: 64 cells have a mean of ln RMS with a third of the error of independent places.
+    """
+    if not isinstance(inputs, FilmInputs):
+        return inputs
+    from scipy.special import ndtri
+
+    normal = float(ndtri((seed - FIRST_SEED + 0.5) * GOLDEN % 1.0))
+    place = {field.name: getattr(inputs, field.name) for field in fields(ContactInputs)}
+    return ContactInputs(**{**place, "rms": inputs.rms * float(np.exp(inputs.rms_scatter * normal))})
+
+
+def _surface(inputs: ContactInputs, contact: ContactSettings, seed: int) -> Array:
+    """Heights (pixels, pixels) in nm of the cell of a seed, from the mean plane of the film."""
+    return FilmPieces(place_of(inputs, seed), contact).surface(seed)
+
+
 class SideBySide:
     """Cells under one plane that are brought to one separation after another, all of them together.
 
@@ -114,8 +137,7 @@ class SideBySide:
     """
 
     def __init__(self, inputs: ContactInputs, contact: ContactSettings, seeds: Sequence[int]) -> None:
-        pieces = FilmPieces(inputs, contact)
-        surfaces = [pieces.surface(seed) for seed in seeds]
+        surfaces = [_surface(inputs, contact, seed) for seed in seeds]
         self.first_contact_nm = np.array([-float(heights.min()) for heights in surfaces])
         self._planes = [float(heights.mean()) for heights in surfaces]
         self._area_nm2 = len(surfaces) * contact.length_nm**2
@@ -209,8 +231,7 @@ def close_cells(
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[Displacement]:
     """Forces of each cell at the separations of the pad, while closing and while opening from each depth."""
-    pieces = FilmPieces(inputs, contact)
     for done, seed in enumerate(seeds):
-        yield _close(inputs, contact, pieces.surface(seed), grid)
+        yield _close(inputs, contact, _surface(inputs, contact, seed), grid)
         if progress:
             progress((done + 1) / len(seeds), f"{done + 1} of {len(seeds)} cells")

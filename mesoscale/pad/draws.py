@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.contact import FilmInputs, contact_of
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
 from mesoscale.pad.curves import assemble
@@ -28,6 +28,7 @@ HIGHEST_GAP_CUTOFF_NM = 0.3
 STEP_RMS = 0.05
 """Step of separation in units of the RMS height: the closed form needs no wells of single cells."""
 GRID = PadGridSettings(pilot_cells=2, depths=4)
+"""Where places differ, all cells of a draw are pilots: two do not stand for the others."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,9 @@ def close_draws(
     """
     for done, draw in enumerate(draws):
         inputs, settings = contact_of(draw.values, contact.model_copy(update={"gap_cutoff_nm": draw.gap_cutoff_nm}))
-        grid = plan_grid(inputs, settings, GRID, wanted_GPa, draw.seeds.start, STEP_RMS * inputs.rms)
+        pilots = len(draw.seeds) if isinstance(inputs, FilmInputs) else GRID.pilot_cells
+        planned = GRID.model_copy(update={"pilot_cells": pilots})
+        grid = plan_grid(inputs, settings, planned, wanted_GPa, draw.seeds.start, STEP_RMS * inputs.rms)
         cells = assemble(grid, list(close_cells(inputs, settings, grid, draw.seeds)), settings.length_nm**2)
         yield law_of(cells, inputs.hamaker)
         if progress:

@@ -157,7 +157,7 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
 
     def rows(self, law: AttractionLaw = "offset") -> dict[str, InputRow]:
         """The inputs in use, by name; `law` of the attraction that `adhesion` states."""
-        named = {name: getattr(self, name) for name in BY_NAME}
+        named = {row.name: getattr(self, row.name) for row in INPUTS}
         if self.adhesion:
             stated = {"hamaker": self.adhesion.hamaker(law), "gap_cutoff": self.adhesion.gap_cutoff_nm(law)}
             for name, value in stated.items():

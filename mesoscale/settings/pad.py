@@ -2,12 +2,14 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from mesoscale.settings.base import Settings
 from mesoscale.settings.inputs import WorkAndRangeSettings
 
 Length = Annotated[float, Field(gt=0, le=1e6)]
+
+Scatter = Annotated[float, Field(ge=0, le=2)]
 
 CELLS_PER_JOB = {"asperity": 64, "coupled": 32}
 """Cells of a pad per job and file, by mechanics: coupled ones take seconds each."""
@@ -48,7 +50,19 @@ class PadSettings(Settings):
         le=100_000,
         description="sets of the uncertain inputs with a pad of their own: what the inputs do to the release; 0: none",
     )
+    rms_scatter: tuple[Scatter, Scatter] | None = Field(
+        default=None,
+        description="range of the standard deviation of ln RMS between places of a film, of which a pad holds all; "
+        "`inputs.rms` is then that of the median place. null: by topography where RMS comes from there, else none",
+    )
     draw_cells: int = Field(default=4, ge=2, le=10_000, description="cells of each of these pads")
+
+    @field_validator("rms_scatter")
+    @classmethod
+    def _a_range(cls, given: tuple[float, float] | None) -> tuple[float, float] | None:
+        if given and given[0] > given[1]:
+            raise ValueError(f"[{given[0]:g}, {given[1]:g}]: the first must not exceed the second")
+        return given
 
 
 class AdhesionSettings(Settings):

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from mesoscale.inputs.definitions import RMS_SCATTER
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.curves import fit_curves, pooled_curve
 from mesoscale.topography.description.choice import (
@@ -20,6 +21,7 @@ from mesoscale.topography.description.end import cutoff_row, rms_before
 from mesoscale.topography.description.heights import HeightTest, compare_heights, not_gaussian
 from mesoscale.topography.description.one_spectrum import OneSpectrum, Overlap, merge, overlaps, refuse_different_films
 from mesoscale.topography.description.parameters import Topography, analyse
+from mesoscale.topography.description.places import rms_scatter_row
 from mesoscale.topography.description.tip_error import with_radius_error
 from mesoscale.topography.description.tip_on_grains import lift_doubt, with_lift_error, without_lift
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
@@ -41,6 +43,7 @@ class Pooled:
     tests : of the heights of each scan.
     pairs : measurements that see common bands.
     surface, rows : entries of `contact.surface`, distributions of q0, hurst, rms and q1.
+    film : distributions of q0, hurst and rms of the typical place, and of the scatter of ln RMS between places.
     doubts : those that touch what is used.
     """
 
@@ -52,6 +55,7 @@ class Pooled:
     choice: Choice
     surface: dict[str, Any]
     rows: dict[str, dict[str, Any]]
+    film: dict[str, dict[str, Any]]
     doubts: list[Doubt]
 
 
@@ -92,11 +96,17 @@ def pool(
     refuse_coarse_measurements(spectra, cell_nm)
     one = merge(spectra, lifted)
     choice = choose(topography, one, tests, settings)
-    surface, rows = surface_of(choice, topography, one, list(quantiles.values()), settings, cell_nm)
+    typical = settings.model_copy(update={"ranges": "interval"})
+    (surface, rows), (_, film) = (
+        surface_of(choice, topography, one, list(quantiles.values()), each, cell_nm) for each in (settings, typical)
+    )
     if rows:
         rows["q1"] = cutoff_row(topography, spectra)
+        film[RMS_SCATTER.name] = rms_scatter_row(topography, one if surface else None)
         if cut_off:
-            rows["rms"] = rms_before(rows["q1"], rows["rms"], topography, surface)
+            rows["rms"], film["rms"] = (
+                rms_before(rows["q1"], each["rms"], topography, surface) for each in (rows, film)
+            )
     apart = _disagreements(pairs, one) if settings.scans else []
     doubts = []
     if settings.scans:
@@ -106,7 +116,7 @@ def pool(
         doubts = [*topography.doubts, *doubts]
     else:
         doubts = [*(doubt for doubt in topography.doubts if doubt.fatal), *doubts]
-    return Pooled(spectra, topography, one, tests, pairs, choice, surface, rows, doubts)
+    return Pooled(spectra, topography, one, tests, pairs, choice, surface, rows, film, doubts)
 
 
 def parameters_of(

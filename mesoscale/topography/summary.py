@@ -101,6 +101,7 @@ def parameters(
     content["one_spectrum"] = _one(pooled)
     content["surface"] = pooled.surface
     content["inputs"] = pooled.rows if passed else {}
+    content["film"] = pooled.film if passed else {}
     content["gate"] = {"passed": passed, "reasons": [doubt.text for doubt in stopping]}
     content["doubts"] = [doubt.plain() for doubt in doubts]
     return content

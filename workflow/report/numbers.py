@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.inputs.definitions import INPUTS
+from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.law.parameters import LAW_OUTPUTS, LawParameter
 from workflow.report.available import Row
 
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-SYMBOLS = {row.name: row.symbol for row in INPUTS}
+SYMBOLS = {name: row.symbol for name, row in BY_NAME.items()}
 
 
 def _shown(row: LawParameter) -> tuple[str, str, float]:

@@ -11,7 +11,7 @@ rule adhesion:
 rule open_pads:
     input:
         **SURFACE,
-        inputs=f"{RESULTS}/inputs.csv",
+        inputs=f"{RESULTS}/pad/inputs.csv",
     output:
         f"{RESULTS}/adhesion/pads/case_{{adhesion_case}}.csv",
     log:

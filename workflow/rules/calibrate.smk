@@ -98,7 +98,7 @@ rule rank_next_on_pad:
     input:
         **SURFACE,
         priors=f"{RESULTS}/calibration/priors.csv",
-        inputs=f"{RESULTS}/inputs.csv",
+        inputs=f"{RESULTS}/pad/inputs.csv",
         cycles=[f"{RESULTS}/calibration/cycles/chunk_{chunk}.csv" for chunk in MEASUREMENT_CHUNKS],
         local_cycles=f"{RESULTS}/calibration/local_cycles.csv",
         grid=f"{RESULTS}/pad/grid.csv",

@@ -15,10 +15,27 @@ rule pad:
         f"{RESULTS}/device/pad_switch.json",
 
 
-rule plan_pad:
+rule collect_pad_inputs:
     input:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
+    output:
+        f"{RESULTS}/pad/inputs.csv",
+    log:
+        f"{RESULTS}/logs/collect_pad_inputs.log",
+    priority: 2
+    params:
+        rms_scatter=settings("pad")["rms_scatter"],
+    message:
+        "collect the uncertain inputs of the pad, which holds all places of the film"
+    script:
+        "../scripts/collect_pad_inputs.py"
+
+
+rule plan_pad:
+    input:
+        **SURFACE,
+        inputs=f"{RESULTS}/pad/inputs.csv",
     output:
         f"{RESULTS}/pad/grid.csv",
     log:
@@ -40,7 +57,7 @@ rule plan_pad:
 rule close_cells:
     input:
         **SURFACE,
-        inputs=f"{RESULTS}/inputs.csv",
+        inputs=f"{RESULTS}/pad/inputs.csv",
         grid=f"{RESULTS}/pad/grid.csv",
     output:
         f"{RESULTS}/pad/cells/chunk_{{chunk}}.h5",
@@ -62,7 +79,7 @@ rule close_cells:
 rule close_draws:
     input:
         **SURFACE,
-        inputs=f"{RESULTS}/inputs.csv",
+        inputs=f"{RESULTS}/pad/inputs.csv",
     output:
         f"{RESULTS}/pad/draws/chunk_{{chunk}}.csv",
     log:
@@ -85,7 +102,7 @@ rule close_draws:
 rule assemble_pad:
     input:
         **SURFACE,
-        inputs=f"{RESULTS}/inputs.csv",
+        inputs=f"{RESULTS}/pad/inputs.csv",
         grid=f"{RESULTS}/pad/grid.csv",
         chunks=[f"{RESULTS}/pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS],
         draws=[f"{RESULTS}/pad/draws/chunk_{chunk}.csv" for chunk in DRAW_CHUNKS],
@@ -114,7 +131,7 @@ rule assemble_pad:
 rule measure_pad_accuracy:
     input:
         **SURFACE,
-        inputs=f"{RESULTS}/inputs.csv",
+        inputs=f"{RESULTS}/pad/inputs.csv",
         grid=f"{RESULTS}/pad/grid.csv",
         chunks=[f"{RESULTS}/pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS],
     output:

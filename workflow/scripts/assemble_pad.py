@@ -1,6 +1,6 @@
 """Assemble the pad from its cells, and drive the switch with it.
 
-In: inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN), pad/draws/*.csv.
+In: pad/inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN), pad/draws/*.csv.
 Out: pad/curves.h5 and pad/curves.csv (MPa against nm), pad/adhesion.csv, pad/compact.json,
 device/pad_switch.json, device/rough_pad.va, device/rough_pad.sub.
 """

@@ -1,6 +1,6 @@
 """Close and open some cells of the pad.
 
-In: inputs.csv, pad/grid.csv.  Out: pad/cells/chunk_NNN.h5 (nN at the separations of the grid).
+In: pad/inputs.csv, pad/grid.csv.  Out: pad/cells/chunk_NNN.h5 (nN at the separations of the grid).
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
 """Close and open the pads of a chunk of draws of the inputs.
 
-In: inputs.csv.  Out: pad/draws/chunk_NNN.csv (MPa against nm).
+In: pad/inputs.csv.  Out: pad/draws/chunk_NNN.csv (MPa against nm).
 """
 
 from mesoscale.device.pressing import LargestPressure

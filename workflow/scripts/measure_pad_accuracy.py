@@ -1,6 +1,6 @@
 """Error of the release on the pad against run time, one numerical choice at a time.
 
-In: inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN).  Out: accuracy/pad.csv (V, s).
+In: pad/inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN).  Out: accuracy/pad.csv (V, s).
 """
 
 from mesoscale.device.accuracy import accuracy_points

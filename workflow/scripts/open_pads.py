@@ -1,6 +1,6 @@
 """Close the pads of one case to several loads and open them.
 
-In: inputs.csv.  Out: adhesion/pads/case_NNN.csv (uJ/m^2, kPa, nm; uN and mJ/m^2 of a sphere).
+In: pad/inputs.csv.  Out: adhesion/pads/case_NNN.csv (uJ/m^2, kPa, nm; uN and mJ/m^2 of a sphere).
 """
 
 from mesoscale.errors import InputError

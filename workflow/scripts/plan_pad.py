@@ -1,4 +1,4 @@
-"""Choose the separations and depths that all cells of the pad share.  In: inputs.csv.  Out: pad/grid.csv (nm)."""
+"""Choose the separations and depths that all cells of the pad share.  In: pad/inputs.csv.  Out: pad/grid.csv (nm)."""
 
 from mesoscale.device.pressing import LargestPressure
 from mesoscale.inputs.contact import contact_of

@@ -1,7 +1,7 @@
 """Rank what to measure next for the switch on the pad.
 
-In: calibration/priors.csv, inputs.csv, calibration/cycles/chunk_NNN.csv, calibration/local_cycles.csv, pad/grid.csv,
-pad/cells/*.h5 (nN), pad/draws/*.csv.
+In: calibration/priors.csv, pad/inputs.csv, calibration/cycles/chunk_NNN.csv, calibration/local_cycles.csv,
+pad/grid.csv, pad/cells/*.h5 (nN), pad/draws/*.csv.
 Out: calibration/next_on_pad.csv (V), without rows where the draws do not give switches on the pad.
 """
 
@@ -48,6 +48,7 @@ with job(snakemake) as run:
     except InputError as error:
         print(error, file=run.log, flush=True)  # answer_status of device/pad_switch.json has it, too
     else:
+        x = x[:, [inputs.names.index(name) for name in prior.names]]  # how places differ is no input of a cell
         ranked = next_on_pad(given, responses, x, volts, contact.max_force_nN)
         ranked = [{**row, "solved": len(volts), "refused": POINTS - len(volts)} for row in ranked]
     write_csv(snakemake.output[0], ranked)

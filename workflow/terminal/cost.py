@@ -189,7 +189,7 @@ def _design_runs(costs: Costs) -> int:
 
 
 FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
-    **_each(0.0, "write_scene", "collect_inputs", "combine_e_star", "collect_priors"),
+    **_each(0.0, "write_scene", "collect_inputs", "collect_pad_inputs", "combine_e_star", "collect_priors"),
     **_each(0.0, "summarise_adhesion"),
     **_each(0.5, "find_hardness", "fit_hardness", "fit_bulk_moduli", "fit_nominal_law", "average_tensors"),
     **_each(2.0, "draw_surface", "solve_switch", "pool_spectra"),

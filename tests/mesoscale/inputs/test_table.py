@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from mesoscale.errors import InputError
+from mesoscale.inputs.contact import FilmInputs, contact_of
 from mesoscale.inputs.definitions import BY_NAME
-from mesoscale.inputs.table import check_resolved, collect, from_rows, input_table, to_rows
-from mesoscale.settings import ContactSettings, Correlation, InputRow, InputsSettings
+from mesoscale.inputs.table import check_resolved, collect, film_table, from_rows, input_table, to_rows
+from mesoscale.settings import ContactSettings, Correlation, InputRow, InputsSettings, PadSettings
 from tests.mesoscale import paper
 
 PAPER = paper.INPUTS
@@ -64,6 +65,42 @@ def test_stage_rows_carry_their_file_and_correlation():
     assert by_name["h_prime"].source == "hardness/fit.json"
     i, j = table.names.index("h_prime"), table.names.index("h_macro")
     assert table.correlation[i, j] == -0.4
+
+
+FILM = {
+    "rms": {"distribution": "uniform", "a": 5, "b": 6.5},
+    "hurst": {"distribution": "uniform", "a": 0.7, "b": 0.8},
+    "rms_scatter": {"distribution": "uniform", "a": 0.2, "b": 0.4},
+}
+
+
+def test_a_pad_has_the_typical_place_of_its_film_and_how_much_places_differ():
+    cells = collect(InputsSettings(), stages(), FILES)
+    pad = film_table(cells, FILM, None)
+    assert pad.names == [*cells.names, "rms_scatter"]
+    middle = pad.medians()
+    assert [middle[name] for name in ("rms", "hurst", "rms_scatter")] == pytest.approx([5.75, 0.75, 0.3])
+    others = ("hamaker", "e_star", "h_macro", "h_prime", "q0")
+    assert [middle[name] for name in others] == [cells.medians()[name] for name in others]
+    assert (pad.correlation[:-1, :-1] == cells.correlation).all()
+    assert contact_of(middle, ContactSettings())[0] == FilmInputs(**middle)
+
+
+def test_a_range_of_the_literature_is_split_only_where_the_scene_says_how():
+    table = collect(PAPER, {}, {})
+    assert film_table(table, FILM, None).rows == table.rows
+    stated = film_table(table, {}, (0.1, 0.3))
+    assert stated.rows[:-1] == table.rows
+    assert stated.rows[-1].distribution.span() == (0.1, 0.3)
+    assert stated.rows[-1].source == "pad.rms_scatter"
+
+
+@pytest.mark.parametrize(
+    ("given", "message"), [((0.4, 0.2), "must not exceed"), ((-0.1, 0.2), "greater than"), ((0.1, 3), "less than")]
+)
+def test_a_scatter_of_places_that_is_no_range_is_refused_in_one_line(given, message):
+    with pytest.raises(InputError, match=message):
+        PadSettings(rms_scatter=given)
 
 
 def test_table_survives_writing_and_reading():

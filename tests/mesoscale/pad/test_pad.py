@@ -1,13 +1,17 @@
 """Cells under one plane: means, and memory between depths."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.special import ndtri
 
 from mesoscale.contact import ContactInputs
 from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
+from mesoscale.inputs.contact import FilmInputs
 from mesoscale.inputs.table import input_table
-from mesoscale.pad.cells import FIRST_SEED, FilmPieces, PadGrid, close_cells, plan_grid
+from mesoscale.pad.cells import FIRST_SEED, FilmPieces, PadGrid, close_cells, place_of, plan_grid
 from mesoscale.pad.curves import adhesion_by_cells, assemble
 from mesoscale.pad.draws import plan_draws
 from mesoscale.pad.local import LocalPad
@@ -147,6 +151,50 @@ def test_cells_are_pieces_of_a_film():
         assert of_surface(ours).std() == pytest.approx(of_surface(cut).std(), rel=0.35)
     assert np.mean(ours**2) == pytest.approx(MIDDLE.rms**2, rel=0.02)
     assert np.mean(cut**2) == pytest.approx(MIDDLE.rms**2, rel=0.02)
+
+
+def film(scatter):
+    return FilmInputs(**vars(MIDDLE), rms_scatter=scatter)
+
+
+def test_places_of_successive_seeds_are_spread_evenly():
+    """Windows of 64 cells: independent places would miss the mean of ln RMS by 0.3 / 8."""
+    logs = np.log([place_of(film(0.3), FIRST_SEED + number).rms / MIDDLE.rms for number in range(6400)])
+    windows = logs.reshape(100, 64)
+    assert windows.mean(axis=1).std() < 0.4 * 0.3 / 8
+    assert windows.std(axis=1) == pytest.approx(0.3, rel=0.1)
+    assert np.sort(logs) == pytest.approx(0.3 * ndtri((np.arange(6400) + 0.5) / 6400), abs=0.05)
+
+
+def test_a_film_whose_places_are_alike_is_one_without_places():
+    grid = PadGrid(np.array([60.0, 30.0, 27.0]), np.array([2]))
+    alike, plain = (
+        assemble(grid, list(close_cells(inputs, CONTACT, grid, range(4))), 1.0) for inputs in (film(0.0), MIDDLE)
+    )
+    assert (alike.closing == plain.closing).all()
+    assert np.array_equal(alike.opening, plain.opening, equal_nan=True)
+
+
+def test_mean_planes_and_heights_of_a_place_grow_together():
+    """As in a film whose amplitude varies slowly from place to place."""
+    seed = FIRST_SEED + 3
+    times = place_of(film(0.5), seed).rms / MIDDLE.rms
+    here = FilmPieces(place_of(film(0.5), seed), CONTACT).surface(seed)
+    assert here == pytest.approx(times * FilmPieces(MIDDLE, CONTACT).surface(seed), abs=1e-9)
+
+
+def test_a_film_of_two_kinds_of_places_carries_what_both_kinds_carry(monkeypatch):
+    """Half of the places smooth, half rough: cells are independent, so the pad is the mean of both pads."""
+    smooth, rough = (replace(MIDDLE, rms=rms) for rms in (2.0, 8.0))
+    grid = PadGrid(np.concatenate([np.arange(60.0, 40.0, -2.0), np.arange(40.0, 23.0, -0.5)]), np.array([40]))
+    of_kind = [assemble(grid, list(close_cells(kind, CONTACT, grid, range(0, 32, 2))), 1.0) for kind in (smooth, rough)]
+    monkeypatch.setattr("mesoscale.pad.cells.place_of", lambda inputs, seed: (smooth, rough)[seed % 2])
+    mixed = assemble(grid, list(close_cells(film(0.7), CONTACT, grid, range(32))), 1.0)
+    expected = 0.5 * (of_kind[0].closing + of_kind[1].closing).mean(axis=0)
+    error = mixed.closing.std(axis=0) / 32**0.5 * 2**0.5
+    assert np.abs(mixed.closing.mean(axis=0) - expected)[0, -1] < 3 * error[0, -1]
+    # rough places alone carry it: the mean of heights would put the load at the middle RMS
+    assert of_kind[0].closing[:, 0].max() == 0.0 < expected[0, -1]
 
 
 def test_a_D0_that_is_an_input_is_not_drawn_twice():

@@ -91,6 +91,16 @@ def test_scans_that_see_no_wave_of_a_cell_are_refused_with_the_way_out():
     described([coarse], cell_nm=60_000.0)
 
 
+def test_what_pads_take_is_the_typical_place_and_the_scatter_of_places():
+    truth = ScanSet(pixels=256, small_scans=8, large_scans=1, large_length_nm=4000.0, rms_variation=0.4)
+    settings = SETTINGS.model_copy(update={"tip_radius_nm": 5.0, "line_alignment": "median"})
+    _, content = described([item.scan for item in synthetic_scans(truth)], settings)
+    film, anywhere = content["film"], content["inputs"]
+    assert (film["rms"]["a"], film["rms"]["b"]) == pytest.approx(content["estimates"]["rms"]["interval"])
+    assert anywhere["rms"]["a"] < film["rms"]["a"] < film["rms"]["b"] < anywhere["rms"]["b"]
+    assert film["rms_scatter"]["a"] < 0.5 * content["likelihood"]["amplitude_sd"] < film["rms_scatter"]["b"]
+
+
 def test_a_slope_beyond_the_power_law_is_no_dead_end():
     pooled, content = described(patches(8.0, 0.05))
     assert pooled.choice.name == "measured_spectrum"

@@ -11,6 +11,7 @@ from mesoscale.settings import TopographySettings
 from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description import likelihood
 from mesoscale.topography.description.parameters import MAX_MISFIT, analyse, inputs
+from mesoscale.topography.description.places import rms_scatter_row
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, slope_from_hurst
@@ -79,6 +80,23 @@ def test_the_interval_of_the_typical_rms_covers_it_though_places_differ():
     assert not all(high / low > 2 for low, high in (estimate.interval for estimate in estimates))
     errors = [np.log(estimate.value / 6.0) for estimate in estimates]
     assert np.std(errors) == pytest.approx(0.4 / np.sqrt(11), rel=0.4)  # the scatter of the mean of eleven places
+
+
+def test_the_range_of_the_scatter_between_places_covers_it():
+    rng = np.random.default_rng(6)
+    rows = [rms_scatter_row(analyse(drawn_set(rng, 0.4), TopographySettings()), None) for _ in range(20)]
+    assert sum(row["a"] <= 0.4 <= row["b"] for row in rows) >= 15  # fewer of 20 happen once in 400 times at 90 %
+    assert max(row["b"] / row["a"] for row in rows) < 2.2  # eleven places know their scatter to a factor of 1.5
+
+
+def test_one_scan_says_nothing_of_other_places():
+    alone = analyse(drawn_set(np.random.default_rng(7), 0.4)[-1:], TopographySettings())
+    assert rms_scatter_row(alone, None) == {"distribution": "fixed", "a": 0.0}
+
+
+def test_two_places_leave_their_scatter_open_up_to_where_measurements_share_no_level():
+    row = rms_scatter_row(analyse(drawn_set(np.random.default_rng(8), 0.4)[:2], TopographySettings()), None)
+    assert 0 < row["a"] < row["b"] == 0.75
 
 
 def test_instruments_without_a_common_level_are_no_power_law():
