@@ -1,9 +1,10 @@
 """Does a pad of unequal places press and pull as a surface whose places differ, and how many cells does that take?
 
-`direct`: pads of sixteen cells beside surfaces of 4 µm × 4 µm, of which each µm² is a place with an RMS height of its
-own (independent, lognormal). `cells`: pads of so many successive cells beside pads of independent places. `kinds`: all
-cells beside a film of two kinds of places, half of each, with the same mean and scatter of ln RMS. `alike`: all cells
-beside a film whose places all have the median RMS height. `spread` is the standard deviation of pads.
+`direct`: surfaces of 4 µm × 4 µm, of which each µm² is a place with an RMS height of its own (independent, lognormal),
+beside pads of sixteen cells with the same RMS heights. `cells`: pads of so many successive cells beside pads of
+independent places. `kinds`: all cells beside a film of two kinds of places, half of each, with the same mean and
+scatter of ln RMS. `alike`: all cells beside a film whose places all have the median RMS height. `spread` is the
+standard deviation of pads.
 """
 
 from argparse import ArgumentParser, Namespace
@@ -31,7 +32,7 @@ SCATTER = 0.3
 FILM = FilmInputs(**vars(MEDIAN), rms_scatter=SCATTER)
 LARGEST_GPa = 6.6e-3
 SIZES = (4, 8, 16, 32, 64, 128)
-INDEPENDENT_PADS = 400
+INDEPENDENT_PADS, FEWEST_PADS = 400, 8
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -50,74 +51,63 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         PadGridSettings(pilot_cells=32, depths=2),
         lambda separation: np.full_like(separation, LARGEST_GPa),
     )
-    cells = _closed(FILM, contact, grid, range(FIRST_SEED, FIRST_SEED + given.cells))
+    seeds = range(FIRST_SEED, FIRST_SEED + given.cells)
+    pads = {"film": closed(FILM, contact, grid, seeds), "alike": closed(MEDIAN, contact, grid, seeds)}
+    for kind, sign in (("smooth", -1), ("rough", 1)):
+        pads[kind] = closed(at_rms(float(np.exp(sign * SCATTER))), contact, grid, seeds[: len(seeds) // 2])
     wide = contact.model_copy(update={"pixels": SIDE * PIXELS, "length_nm": SIDE * contact.length_nm})
-    large = assemble(
-        grid,
-        [
-            close_by_separation(MEDIAN, wide, unequal_places(wide, seed), grid.separation_nm, grid.depths)
-            for seed in range(FIRST_LARGE_SEED, FIRST_LARGE_SEED + given.large)
-        ],
-        wide.length_nm**2,
-    )
-    half = FIRST_SEED + given.cells // 2
-    kinds = [
-        _closed(replace(MEDIAN, rms=MEDIAN.rms * float(np.exp(sign * SCATTER))), contact, grid, range(FIRST_SEED, half))
-        for sign in (-1, 1)
-    ]
-    alike = _closed(MEDIAN, contact, grid, range(FIRST_SEED, FIRST_SEED + given.cells))
-    for k, load in enumerate(grid.depths.tolist()):
-        for quantity, of_cells in (
-            ("closing pressure, MPa", lambda pad, k=k: pad.closing[:, 0, grid.depths[k]] * 1e3),
-            ("net pressure on opening, kPa", lambda pad, k=k: pad.opening[:, k].sum(axis=1) * 1e6),
-        ):
-            yield from _comparisons(
-                {"mechanics": given.mechanics, "quantity": quantity, "from_nm": float(grid.separation_nm[load])},
-                *(of_cells(pad) for pad in (cells, large, *kinds, alike)),
-            )
+    large, assembled = [], []
+    for seed in range(FIRST_LARGE_SEED, FIRST_LARGE_SEED + given.large):
+        factors = np.exp(SCATTER * np.random.default_rng([seed, 0x91ACE]).normal(size=(SIDE, SIDE)))
+        heights = FilmPieces(MEDIAN, wide).surface(seed) * np.kron(factors, np.ones((PIXELS, PIXELS)))
+        from_plane = grid.separation_nm + float(heights.mean())
+        large.append(close_by_separation(MEDIAN, wide, heights, from_plane, grid.depths))
+        for k, factor in enumerate(factors.ravel().tolist()):
+            assembled += close_cells(at_rms(factor), contact, grid, [FIRST_LARGE_SEED + SIDE**2 * seed + k])
+    pads["direct"] = assemble(grid, large, wide.length_nm**2)
+    pads["assembled"] = assemble(grid, assembled, contact.length_nm**2)
+    for k, place in enumerate(grid.depths.tolist()):
+        about = {"mechanics": given.mechanics, "from_nm": float(grid.separation_nm[place])}
+        closing = {name: pad.closing[:, 0, place] * 1e3 for name, pad in pads.items()}
+        yield from comparisons(about | {"quantity": "closing pressure, MPa"}, closing)
+        net = {name: pad.opening[:, k].sum(axis=1)[:, : place + 1] * 1e6 for name, pad in pads.items()}
+        yield from comparisons(about | {"quantity": "net pressure on opening, kPa"}, net)
 
 
-def unequal_places(wide: ContactSettings, seed: int) -> Array:
-    """Heights (nm) of one large surface, from the mean plane of the film: every place times a factor of its own."""
-    factors = np.exp(SCATTER * np.random.default_rng([seed, 0x91ACE]).normal(size=(SIDE, SIDE)))
-    heights = FilmPieces(MEDIAN, wide).surface(seed) * np.kron(factors, np.ones((PIXELS, PIXELS)))
-    return heights
+def at_rms(factor: float) -> ContactInputs:
+    """Inputs of a place whose RMS height is so many times the median one."""
+    return replace(MEDIAN, rms=MEDIAN.rms * factor)
 
 
-def _closed(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, seeds: range) -> PadCells:
+def closed(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, seeds: Sequence[int]) -> PadCells:
+    """The cells of a pad."""
     return assemble(grid, list(close_cells(inputs, contact, grid, seeds)), contact.length_nm**2)
 
 
-def _comparisons(
-    about: Mapping[str, Any], cells: Array, large: Array, smooth: Array, rough: Array, alike: Array
-) -> Iterator[dict[str, Any]]:
-    """Rows of one quantity from its values, or its curves over separation, of all cells and surfaces."""
-    rng = np.random.default_rng(0)
-
-    def independent(size: int) -> Array:
-        return np.array([_of_pad(cells[rng.integers(len(cells), size=size)]) for _ in range(INDEPENDENT_PADS)])
-
-    def successive(values: Array, size: int) -> Array:
-        return np.array([_of_pad(part) for part in np.split(values[: len(values) // size * size], len(values) // size)])
-
-    whole = successive(cells, len(cells) // 8)
-    yield _row("direct", SIDE**2, about, independent(SIDE**2), np.array([_of_pad(one[None]) for one in large]))
+def comparisons(about: Mapping[str, Any], of: Mapping[str, Array]) -> Iterator[dict[str, Any]]:
+    """Rows of one quantity from its values, or its curves over separation, of the cells and surfaces of each pad."""
+    cells, rng = of["film"], np.random.default_rng(0)
+    yield _row("direct", SIDE**2, about, pads_of(of["assembled"], SIDE**2), pads_of(of["direct"], 1))
     for size in SIZES:
-        if len(cells) // size >= 8:
-            yield _row("cells", size, about, successive(cells, size), independent(size))
-    mixed = np.stack([smooth, rough], axis=1).reshape(-1, *smooth.shape[1:])
-    yield _row("kinds", len(cells) // 8, about, whole, successive(mixed, len(cells) // 8))
-    yield _row("alike", len(cells) // 8, about, whole, successive(alike, len(cells) // 8))
+        if len(cells) // size >= FEWEST_PADS:
+            chosen = rng.integers(len(cells), size=INDEPENDENT_PADS * size)
+            yield _row("cells", size, about, pads_of(cells, size), pads_of(cells[chosen], size))
+    kinds = np.stack([of["smooth"], of["rough"]], axis=1).reshape(-1, *cells.shape[1:])
+    size = len(cells) // FEWEST_PADS
+    for question, other in (("kinds", kinds), ("alike", of["alike"])):
+        yield _row(question, size, about, pads_of(cells, size), pads_of(other, size))
 
 
-def _of_pad(values: Array) -> float:
-    """A pad's pressure from its cells', or its deepest net pressure from their curves."""
-    if values.ndim == 1:
-        return float(values.mean())
-    return deepest_kPa(values[:, np.isfinite(values).all(axis=0)] * 1e-6)
+def pads_of(cells: Array, size: int) -> Array:
+    """Pressures of pads of `size` successive cells: the mean, or the deepest net pressure of the mean curve."""
+    groups = [cells[start : start + size] for start in range(0, len(cells) - size + 1, size)]
+    return np.array([float(group.mean()) if cells.ndim == 1 else deepest_kPa(group * 1e-6) for group in groups])
 
 
 def _row(question: str, size: int, about: Mapping[str, Any], pads: Array, beside: Array) -> dict[str, Any]:
+    error = float(np.hypot(pads.std(ddof=1) / len(pads) ** 0.5, beside.std(ddof=1) / len(beside) ** 0.5))
+    if question == "direct":  # pair by pair the same RMS heights
+        error = float((pads - beside).std(ddof=1) / len(pads) ** 0.5)
     return {
         "question": question,
         **about,
@@ -128,20 +118,22 @@ def _row(question: str, size: int, about: Mapping[str, Any], pads: Array, beside
         "beside_pads": len(beside),
         "beside_mean": float(beside.mean()),
         "beside_spread": float(beside.std(ddof=1)),
-        "ratio": float(pads.mean() / beside.mean()) if beside.mean() else None,
+        "apart_in_errors": float(pads.mean() - beside.mean()) / error,
     }
 
 
 def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """What mixing places does to the pressure of a pad, and how near the assembled pads are to the direct ones."""
-    closing = [row for row in table if row["quantity"].startswith("closing")]
-    direct = [float(row["ratio"]) - 1.0 for row in closing if row["question"] == "direct"]
-    alike = [float(row["ratio"]) for row in closing if row["question"] == "alike"]
-    kinds = [float(row["ratio"]) for row in closing if row["question"] == "kinds"]
-    spread = {row["cells"]: float(row["spread"]) / float(row["mean"]) for row in closing if row["question"] == "cells"}
+    """How near assembled pads are to direct ones, what mixing does, and the spread of pads of so many cells."""
+    deep = min(float(row["from_nm"]) for row in table)
+    part = [row for row in table if float(row["from_nm"]) == deep and row["quantity"].startswith("closing")]
+    ratio = {row["question"]: float(row["mean"]) / float(row["beside_mean"]) for row in part}
+    apart = [abs(float(row["apart_in_errors"])) for row in table if row["question"] == "direct"]
     return {
-        "direct": f"{max(direct, key=abs):+.0%}",
-        "alike": f"{min(alike):.2g} to {max(alike):.2g}",
-        "kinds": f"{min(kinds):.2g} to {max(kinds):.2g}",
-        **{f"spread_{size}": f"{value:.0%}" for size, value in spread.items()},
+        "direct_errors": f"{max(apart):.1f}",
+        **{question: f"{ratio[question]:.2g}" for question in ("direct", "alike", "kinds")},
+        **{
+            f"spread_{row['cells']}": f"{float(row['spread']) / float(row['mean']):.0%}"
+            for row in part
+            if row["question"] == "cells"
+        },
     }

@@ -57,7 +57,8 @@ def test_scene_paper_runs_no_atomistic_and_no_afm_job(plan):
 
 def test_adhesion_is_computed_where_a_scene_asks_for_it(plan):
     assert "open_pads" not in plan("paper")
-    assert plan("adhesion", "adhesion") == {"collect_inputs", "open_pads", "summarise_adhesion"}
+    wanted = {"collect_inputs", "collect_pad_inputs", "open_pads", "summarise_adhesion"}
+    assert plan("adhesion", "adhesion") == wanted
 
 
 def test_an_input_from_literature_schedules_no_job_that_would_compute_it(plan):

@@ -16,7 +16,7 @@ def report_inputs():
         f"uq/{name}" for name in ("outputs.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")
     ]
     files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "law.csv")]
-    files += ["pad/curves.csv", "pad/adhesion.csv", "device/pad_switch.json"]
+    files += ["pad/inputs.csv", "pad/curves.csv", "pad/adhesion.csv", "device/pad_switch.json"]
     files += [f"pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS]
     if ADHESION.pads > 0:
         files += ["adhesion/summary.csv"]

@@ -19,6 +19,17 @@ def describe(results: Results) -> Section | None:
         "Inputs",
         "What the contact model is fed with: each input with its distribution and where it comes from.",
     )
+    title = "Inputs in use (the paper's Table 1)" if results.beside_paper else "Inputs in use"
+    section.blocks.append(_table(title, rows))
+    section.files.append("inputs.csv")
+    of_pad = results.csv("pad/inputs.csv") if results.has("pad/inputs.csv") else []
+    if other := [row for row in of_pad if row not in rows]:
+        section.blocks.append(_table("Of a pad, which holds all places of the film", other))
+        section.files.append("pad/inputs.csv")
+    return section
+
+
+def _table(title: str, rows: list[Row]) -> Table:
     lines = [
         (
             SYMBOLS.get(row["parameter"], row["parameter"]),
@@ -29,15 +40,7 @@ def describe(results: Results) -> Section | None:
         )
         for row in rows
     ]
-    section.blocks.append(
-        Table(
-            "Inputs in use (the paper's Table 1)" if results.beside_paper else "Inputs in use",
-            ("input", "unit", "distribution", "origin", "source"),
-            lines,
-        )
-    )
-    section.files.append("inputs.csv")
-    return section
+    return Table(title, ("input", "unit", "distribution", "origin", "source"), lines)
 
 
 def _distribution(row: Row) -> str:
