@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.inputs.definitions import RMS_SCATTER
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.curves import fit_curves, pooled_curve
 from mesoscale.topography.description.choice import (
@@ -102,7 +101,7 @@ def pool(
     )
     if rows:
         rows["q1"] = cutoff_row(topography, spectra)
-        film[RMS_SCATTER.name] = rms_scatter_row(topography, one if surface else None)
+        film["rms_scatter"] = rms_scatter_row(topography, one if surface else None)
         if cut_off:
             rows["rms"], film["rms"] = (
                 rms_before(rows["q1"], each["rms"], topography, surface) for each in (rows, film)
