@@ -27,6 +27,8 @@ FIRST_SEED = 1000
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 STEP_NM = 0.1
 """Step of separation in and near contact: twice as long moves the well of a single cell by 15 % (accuracy.py)."""
+GROWN = 2.0
+"""Steps where only rough places touch, in units of their RMS height: release is that of half of it to 1e-6 V."""
 DEVIATIONS_ABOVE = 6.0
 """First contacts of cells have a Gumbel tail: 1 of 4000 cells touches more than 6 deviations above the mean."""
 FAR_NM = 200.0
@@ -186,6 +188,12 @@ def plan_grid(
     lowest, light = _close_pilots(pilots, wanted_GPa, step_nm * PILOT_STEP)
     top, typical = pilots.top_nm(step_nm), float(pilots.first_contact_nm.mean())
     near = lowest + step_nm * np.arange(np.ceil((top - lowest) / step_nm) + 1)
+    if isinstance(inputs, FilmInputs):
+        # rougher places touch farther out, and their lengths grow in proportion
+        close = near[near < max(typical, lowest + step_nm)]
+        ratio = top / close[-1]
+        growth = np.geomspace(close[-1], top, int(np.ceil(np.log(ratio) * close[-1] / (GROWN * step_nm))) + 1)
+        near = np.concatenate([close, growth[1:]])
     separation = np.concatenate([near, far_nm(float(near[-1]))])[::-1]
     # a few tall grains may carry the switch where most cells do not touch yet
     shallow = int(np.searchsorted(-separation, -max(typical, light)))

@@ -175,6 +175,24 @@ def test_a_film_whose_places_are_alike_is_one_without_places():
     assert np.array_equal(alike.opening, plain.opening, equal_nan=True)
 
 
+def test_steps_grow_with_the_roughness_of_the_places_that_touch():
+    unequal, alike = (plan_grid(film(scatter), CONTACT, GRID, wanted_GPa, step_nm=STEP_NM) for scatter in (0.15, 0.0))
+    steps = -np.diff(unequal.separation_nm)
+    assert steps[-5:] == pytest.approx(STEP_NM)
+    assert steps.max() < 0.2 * unequal.separation_nm[0]
+    assert (np.diff(steps) < 1e-9).all()  # from far to near
+    assert unequal.separation_nm.size < 1.5 * alike.separation_nm.size  # though rough places touch much farther out
+
+
+def test_where_rough_places_alone_carry_the_pad_the_grid_ends_above_the_typical_first_contact():
+    grid = plan_grid(film(0.4), CONTACT, GRID, wanted_GPa, step_nm=STEP_NM)
+    assert (np.diff(grid.separation_nm) < 0).all()
+    pad = assemble(
+        grid, list(close_cells(film(0.4), CONTACT, grid, range(FIRST_SEED, FIRST_SEED + 4))), CONTACT.length_nm**2
+    )
+    assert pad.closing[:, 0, -1].mean() * 1e3 == pytest.approx(WANTED_MPa, rel=0.5)
+
+
 def test_mean_planes_and_heights_of_a_place_grow_together():
     """As in a film whose amplitude varies slowly from place to place."""
     seed = FIRST_SEED + 3
