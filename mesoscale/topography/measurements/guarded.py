@@ -17,6 +17,7 @@ from typing import Any, NoReturn
 
 from mesoscale.errors import InputError
 
+# measured: 6 s and 2.6 GB for a map of 8192² pixels (512 MB), 9 s and 0.8 GB for one of 4096² as text (147 MB)
 CPU_S, CPU_S_PER_MB, MOST_CPU_S = 8.0, 1.0, 50.0
 MOST_FILE_MB = 4000.0
 PATIENCE = 3.0  # seconds by the clock for one of the processor: the machine may be busy
