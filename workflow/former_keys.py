@@ -120,11 +120,13 @@ FORMER_KEYS: dict[str, str] = {
         }.items()
     },
     # pad and adhesion
-    **{f"pad.{key}": f"renamed, write pad.grid.{key}" for key in ("pilot_cells", "max_pressure_MPa", "depths")},
+    **{f"pad.{key}": f"renamed, write pad.grid.{key}" for key in ("pilot_cells", "depths")},
     **{
         key: f"no longer a setting, delete it: {value}"
         for key, value in {
             "pad.step_nm": "it is 0.1 nm",
+            "pad.max_pressure_MPa": "it follows from the switch",
+            "pad.grid.max_pressure_MPa": "it follows from the switch",
             "pad.first_seed": "it is 1000",
             "pad.chunk_cells": "a job has 64 cells, or 32 coupled ones",
             "pad.chunk_draws": "a job has 12",

@@ -30,7 +30,7 @@ def load_draws(
 ) -> list[SampledPad]:
     """The pads of pad/draws/ with their inputs; so many draws, each of so many cells."""
     draws = plan_draws(inputs, contact, count, cells)
-    curves = laws_of_rows((row for path in files for row in load_csv(path)), draws)
+    curves = laws_of_rows((row for path in files for row in load_csv(path)), draws, contact)
     return [
         SampledPad(draw.values, draw.gap_cutoff_nm, cells, curve) for draw, curve in zip(draws, curves, strict=True)
     ]

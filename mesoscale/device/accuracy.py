@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 
 from mesoscale.contact.displacement import Displacement
 from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.electrode import solve_or_bound
+from mesoscale.device.electrode import solve_deepened
 from mesoscale.device.pad_switch import solve_on_pad
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.cells import PadGrid, close_cells
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.pad.memory import Flats, PadLaw, flats_of, law_of
 from mesoscale.settings import ContactSettings, DeviceSettings
 
 Array = NDArray[np.float64]
@@ -51,10 +51,11 @@ def accuracy_points(
     cells : of the pad at central inputs.
     seeds : of surfaces of the pad's cells.
     """
-    law = law_of(cells, inputs.hamaker)
+    flats = flats_of(inputs, contact)
+    law = law_of(cells, flats)
     again = list(_closed_again(inputs, contact, cells.grid, seeds[:TIMED_CELLS]))
     parts: list[tuple[str, Iterator[Row]]] = [
-        ("cells", _cells(cells, inputs.hamaker, device, again[0][1])),
+        ("cells", _cells(cells, flats, device, again[0][1])),
         ("steps", _steps(again)),
         ("depths", _depths(law, device)),
         ("elements", _elements(law, device)),
@@ -91,7 +92,7 @@ def _release_V(law: PadLaw, device: DeviceSettings, elements: int | None = None)
         if device.spring_N_per_m is not None:
             release = solve_on_pad(switch_from_settings(device), law, device.hold_voltage_V).release_V
         elif elements is None:
-            release = solve_or_bound(device, law)["release_V"]
+            release = solve_deepened(device, law)["release_V"]
         else:
             release = solve_beam(device, law, elements).release_V
     except InputError:
@@ -99,9 +100,9 @@ def _release_V(law: PadLaw, device: DeviceSettings, elements: int | None = None)
     return release, _clock() - started
 
 
-def _cells(cells: PadCells, hamaker: float, device: DeviceSettings, cost: Array) -> Iterator[Row]:
+def _cells(cells: PadCells, flats: Flats, device: DeviceSettings, cost: Array) -> Iterator[Row]:
     """Fewer cells: disjoint groups of them, and the time to compute a group."""
-    wanted, _ = _release_V(law_of(cells, hamaker), device)
+    wanted, _ = _release_V(law_of(cells, flats), device)
     size = 8
     while size <= cells.count // 2:
         groups = [np.arange(k * size, (k + 1) * size) for k in range(min(cells.count // size, GROUPS))]
@@ -109,7 +110,7 @@ def _cells(cells: PadCells, hamaker: float, device: DeviceSettings, cost: Array)
         for group in groups:
             weights = np.zeros(cells.count)
             weights[group] = 1.0 / size
-            deviations.append(_release_V(law_of(cells, hamaker, weights), device)[0] - wanted)
+            deviations.append(_release_V(law_of(cells, flats, weights), device)[0] - wanted)
         error = float(np.sqrt(np.nanmean(np.square(deviations))))
         metric = f"RMS deviation over {len(groups)} groups, V"
         yield _row("release", "cells", size, error, metric, f"{cells.count} cells", size * cost)

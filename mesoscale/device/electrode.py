@@ -1,22 +1,21 @@
 """What a switch does on a pad, whichever electrode it has: one that bends, or a plate on a spring."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.beam_switch import solve_beam
+from mesoscale.device.beam_switch import press_GPa, solve_beam
 from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.pressing import held_V
 from mesoscale.device.statistics import never_closes
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.pad.memory import Flats, PadLaw, deepened, law_of
 from mesoscale.settings import DeviceSettings
 
-ELEMENTS = 64
-"""Of the beam: release is within 0.5 % of that of 1024 elements, but near sticking."""
-LESS = (0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3)
-"""Shares of the voltage that are tried where the held state was not computed."""
+DEEPENED_BY = 2
+"""How often the pressure to which a pad was computed is doubled by continuing its curves."""
 RESAMPLES = 24
 """Resampled pads: their standard deviation is known to 15 %."""
 
@@ -29,7 +28,7 @@ def solve_electrode(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
     InputError : see `solve_beam` and `solve_on_pad`.
     """
     if settings.spring_N_per_m is None:
-        beam = solve_beam(settings, law, ELEMENTS)
+        beam = solve_beam(settings, law)
         return {
             "pull_in_V": beam.pull_in_V,
             "release_V": beam.release_V,
@@ -47,49 +46,60 @@ def solve_electrode(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
     }
 
 
-def solve_or_bound(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
-    """As `solve_electrode`; where the held state was not computed, a proof that the switch sticks, if there is one.
-
-    The switch is held by less, so that every place is closed less deeply. The well on opening deepens with the closing,
-    so what sticks then sticks when it is held by its own voltage, too. What the bound does not give is NaN.
+def solve_deepened(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
+    """As `solve_electrode`; a pad that the switch presses harder than it was computed is continued (`deepened` is 1).
 
     Raises
     ------
-    InputError : see `solve_electrode`; the hold voltage never closes the switch; the held state was not computed, and
-        the bound does not decide.
+    InputError : see `solve_electrode`; the hold voltage never closes the switch.
+    NotComputed : it presses more than `2 ** DEEPENED_BY` times as hard as the pad was computed.
     """
-    state = _held_or_bounded(settings, law)
+    times = 0
+    while True:
+        try:
+            state = {**solve_electrode(settings, law), "deepened": float(times > 0)}
+            break
+        except NotComputed:
+            times += 1
+            if times > DEEPENED_BY:
+                raise
+            law = deepened(law)
     if line := never_closes(settings, state["pull_in_V"]):
         raise InputError(line)
     return state
 
 
-def _held_or_bounded(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
-    try:
-        return {**solve_electrode(settings, law), "bounded": 0.0}
-    except NotComputed as error:
-        for share in LESS:
-            less = settings.model_copy(update={"hold_voltage_V": share * held_V(settings)})
-            try:
-                state = solve_electrode(less, law)
-            except NotComputed:
-                continue
-            except InputError:
-                break  # held by less it does not even land
-            if state["release_V"] == 0.0:
-                return {**state, "capacitance_fF": np.nan, "landed_share": np.nan, "bounded": 1.0}
-            break
-        raise error
+def presser(settings: DeviceSettings) -> Callable[[NDArray[np.float64], NDArray[np.float64]], float]:
+    """Largest net pressure (GPa) of the switch on a pad, from the closing curve of the pad.
+
+    The function takes separations (nm), from near to far, and net pressures (GPa), of shape (n,).
+    """
+
+    def pressed_GPa(separation_nm: NDArray[np.float64], net_GPa: NDArray[np.float64]) -> float:
+        if settings.spring_N_per_m is not None:
+            return 0.0  # a plate presses with less than its voltage alone
+        closing = np.stack([np.maximum(net_GPa, 0.0), np.minimum(net_GPa, 0.0)])
+        law = PadLaw(separation_nm, closing, separation_nm[:1], closing[None], Flats(0.0, 0.0))
+        for _ in range(DEEPENED_BY):
+            law = deepened(law)
+        try:
+            return press_GPa(settings, law)
+        except NotComputed:
+            return float(law.closing_GPa(law.separation_nm[0]))
+        except InputError:
+            return 0.0  # a switch that does not pull in presses nothing; its answer has the reason
+
+    return pressed_GPa
 
 
-def releases_by_cells(settings: DeviceSettings, cells: PadCells, hamaker: float) -> NDArray[np.float64]:
+def releases_by_cells(settings: DeviceSettings, cells: PadCells, flats: Flats) -> NDArray[np.float64]:
     """Release voltages (V) on pads of resampled cells, shape (resamples,): what their finite number leaves open.
 
     Raises
     ------
-    InputError : see `solve_or_bound`.
+    InputError : see `solve_deepened`.
     """
     rng = np.random.default_rng(np.random.SeedSequence([0, 0xCE1]))
     share = np.full(cells.count, 1.0 / cells.count)
     weights = [rng.multinomial(cells.count, share) / cells.count for _ in range(RESAMPLES)]
-    return np.array([solve_or_bound(settings, law_of(cells, hamaker, drawn))["release_V"] for drawn in weights])
+    return np.array([solve_deepened(settings, law_of(cells, flats, drawn))["release_V"] for drawn in weights])

@@ -52,7 +52,7 @@ module rough_pad(s, ref);
         risen = separation - deepest;
         load = exp(-c0 - c1_per_nm * deepest - c2_per_nm2 * deepest * deepest);
         decay = (b0_per_nm + b1_per_nm2 * deepest) * risen + b2_per_nm2 * risen * risen;
-        far = hamaker / (6.0 * `M_PI * pow(max(separation, 1.0), 3.0));
+        far = hamaker / (6.0 * `M_PI * pow(max(separation, 1.0) + offset_nm, 3.0));
         lift = 1.0 + lifted * pow(max(1.0 - exp(-decay), 0.0), 3.0);
         near = beta * 1.0e-3 * exp(m * ln(load / 1.0e-3) - n * decay) * lift;
 
@@ -86,7 +86,8 @@ Brisen risen 0 V = V(s) - V(deepest)
 Bload load 0 V = {load}
 Bdecay decay 0 V = ({{b0_per_nm}} + {{b1_per_nm2}}*V(deepest))*V(risen) + {{b2_per_nm2}}*V(risen)*V(risen)
 Bgone gone 0 V = max(1 - exp(-V(decay)), 0)
-Bfar far 0 V = {{hamaker/(6*3.14159265358979324)}} / (max(V(s), 1)*max(V(s), 1)*max(V(s), 1))
+Bwalls walls 0 V = max(V(s), 1) + {{offset_nm}}
+Bfar far 0 V = {{hamaker/(6*3.14159265358979324)}} / (V(walls)*V(walls)*V(walls))
 Bforce force 0 V = {{area}} * (V(load)*exp(-V(decay)) - V(far)
 +   - {{beta*1e-3}} * exp({{m}}*ln(V(load)/1e-3) - {{n}}*V(decay)) * (1 + {{lifted}}*V(gone)*V(gone)*V(gone)))
 .ends rough_pad

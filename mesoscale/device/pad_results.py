@@ -12,14 +12,14 @@ from mesoscale.device.statistics import describe, never_closes, probability
 from mesoscale.device.switch import NM, Switch, switch_from_settings
 from mesoscale.errors import InputError
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import law_of
+from mesoscale.pad.memory import Flats, law_of
 from mesoscale.settings import DeviceSettings
 
 RESAMPLES = 200
 """Pads of resampled cells behind the intervals of a plate: a 5 % quantile is known to 1.5 %."""
 
 
-def switch_on_pad(cells: PadCells, hamaker: float, settings: DeviceSettings, cell_area_nm2: float) -> dict[str, Any]:
+def switch_on_pad(cells: PadCells, flats: Flats, settings: DeviceSettings, cell_area_nm2: float) -> dict[str, Any]:
     """Content of device/pad_switch.json: the switch on the mean pad, and what the number of cells leaves open.
 
     A switch whose held state was not computed gets no numbers; `gate` says why.
@@ -32,8 +32,8 @@ def switch_on_pad(cells: PadCells, hamaker: float, settings: DeviceSettings, cel
         "spring_pressure_kPa": switch.spring_N_per_m * switch.gap_nm * NM / switch.area_m2 * 1e-3,
     }
     try:
-        mean = solve_on_pad(switch, law_of(cells, hamaker), settings.hold_voltage_V)
-        resampled = resampled_states(switch, cells, hamaker, settings.hold_voltage_V, RESAMPLES, 0)
+        mean = solve_on_pad(switch, law_of(cells, flats), settings.hold_voltage_V)
+        resampled = resampled_states(switch, cells, flats, settings.hold_voltage_V, RESAMPLES, 0)
     except InputError as error:
         return {**content, "mean": None, "gate": {"passed": False, "reasons": [str(error)]}}
     spread = {
@@ -46,8 +46,8 @@ def switch_on_pad(cells: PadCells, hamaker: float, settings: DeviceSettings, cel
         reasons.append(f"{content['unsettled_cells']} cells in which flow did not come to rest")
     try:
         if settings.spring_N_per_m is None:
-            bending = asdict(solve_beam(settings, law_of(cells, hamaker)))
-            released = releases_by_cells(settings, cells, hamaker)
+            bending = asdict(solve_beam(settings, law_of(cells, flats)))
+            released = releases_by_cells(settings, cells, flats)
             reasons += _undecided(cells.count, int((released == 0).sum()), len(released), "")
         else:
             low, high = (spread["deepest_net_kPa"]["quantiles"][key] for key in ("0.05", "0.95"))
@@ -70,7 +70,7 @@ def switch_on_pad(cells: PadCells, hamaker: float, settings: DeviceSettings, cel
 
 
 def resampled_states(
-    switch: Switch, cells: PadCells, hamaker: float, hold_voltage_V: float | None, resamples: int, seed: int
+    switch: Switch, cells: PadCells, flats: Flats, hold_voltage_V: float | None, resamples: int, seed: int
 ) -> list[PadStates]:
     """The switch on pads made of cells drawn with replacement: what the finite number of computed cells leaves open.
 
@@ -82,7 +82,7 @@ def resampled_states(
     solved = []
     for _ in range(resamples):
         weights = rng.multinomial(cells.count, np.full(cells.count, 1.0 / cells.count)) / cells.count
-        solved.append(solve_on_pad(switch, law_of(cells, hamaker, weights), hold_voltage_V))
+        solved.append(solve_on_pad(switch, law_of(cells, flats, weights), hold_voltage_V))
     return solved
 
 

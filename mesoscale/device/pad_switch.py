@@ -67,8 +67,7 @@ def solve_on_pad(switch: Switch, law: PadLaw, hold_voltage_V: float | None) -> P
     if holds.size == 0:
         raise NotComputed(
             f"device.hold_voltage_V: {np.sqrt(hold):.4g} V presses the pad harder than the computed "
-            f"{law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa; raise "
-            "pad.grid.max_pressure_MPa, or lower the voltage"
+            f"{law.closing_GPa(law.separation_nm[0]) * 1e3:.3g} MPa"
         )
     inner = int(holds[-1])
     if inner + 1 == near.sum():

@@ -1,26 +1,26 @@
 """The answer: release voltage and probability of sticking, with what cells, inputs, D0 and geometry leave open.
 
 The switch is solved at points that fill the joint distribution of the inputs, D0, bow and tilt, each on the pad that
-the response of `mesoscale.pad.response` gives there. A held state that was not computed is not extrapolated: where the
-switch sticks already when it is held by less, it sticks; else the point is open, and the probability's interval has
-it. The finite number of computed cells is a separate cause: it is no property of the switch, and resampling the cells
-of the central pad tells its part.
+`mesoscale.pad.carried` gives there. A point that cannot be solved has its reason, and the probability's interval counts
+it both ways. The finite number of computed cells is a separate cause: it is no property of the switch, and resampling
+the cells of the central pad tells its part.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.electrode import releases_by_cells, solve_or_bound
-from mesoscale.device.pressing import DEVIATIONS, pressure_to_compute
+from mesoscale.device.electrode import releases_by_cells, solve_deepened
+from mesoscale.device.pressing import pressure_to_compute
 from mesoscale.device.statistics import describe, probability
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.carried import CarriedPad, Factors, factors_of
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import law_of
+from mesoscale.pad.memory import Flats, law_of
 from mesoscale.pad.response import PadResponse, SampledPad, fit_response, law_of_compact
 from mesoscale.settings import DeviceSettings
 
@@ -33,6 +33,8 @@ SOLVED = 0.8
 SOLVED_TO_RANK = 0.5
 """The same where causes are only compared with each other."""
 FAR_NM = 300.0
+Model = tuple[PadResponse, Factors | None]
+"""The closed form of a pad at any inputs, and the factors of the central curves on it."""
 
 
 @dataclass(frozen=True)
@@ -91,6 +93,7 @@ def released_on_pad(
     cells: PadCells,
     draws: Sequence[SampledPad],
     table: InputTable,
+    flats: Flats,
     settings: DeviceSettings,
     cutoffs_nm: tuple[float, float],
     count: int,
@@ -106,12 +109,11 @@ def released_on_pad(
     ------
     InputError : too few draws, or half of the points cannot be solved.
     """
-    response = _response(cells, draws, table, cutoffs_nm[0])
-    wanted = pressure_to_compute(settings, DEVIATIONS)
+    model = _model(cells, draws, table, flats, cutoffs_nm[0])
     solved, reason = [], ""
     for point in plan_points(table, settings, *cutoffs_nm, count)[3]:
         try:
-            released = _on_response(point, response, wanted)["release_V"]
+            released = _solve(point, model)["release_V"]
         except InputError as error:
             reason = str(error)
         else:
@@ -126,6 +128,7 @@ def answer(
     cells: PadCells,
     draws: Sequence[SampledPad],
     table: InputTable,
+    flats: Flats,
     settings: DeviceSettings,
     cutoffs_nm: tuple[float, float],
 ) -> dict[str, Any]:
@@ -142,30 +145,25 @@ def answer(
     InputError : too few draws, or the switch cannot be solved at central inputs.
     """
     middle = table.medians()
-    hamaker = middle["hamaker"]
-    central = law_of(cells, hamaker)
-    response = _response(cells, draws, table, cutoffs_nm[0])
-    wanted = pressure_to_compute(settings, DEVIATIONS)
-    by_curves = solve_or_bound(settings, central)
-    by_form = _on_response(Point(middle, cutoffs_nm[0], settings), response, wanted)
-    shift = by_curves["release_V"] - by_form["release_V"]
+    model = _model(cells, draws, table, flats, cutoffs_nm[0])
+    by_curves = solve_deepened(settings, law_of(cells, flats))
+    at_curves = Point(middle, cutoffs_nm[0], settings)
     middle_nm = float(np.mean(cutoffs_nm))
-    in_the_middle = _on_response(Point(middle, middle_nm, settings), response, wanted)
+    in_the_middle = _solve(Point(middle, middle_nm, settings), model)
     names, causes, units, points = plan_points(table, settings, *cutoffs_nm)
     solved, refused = [], []
     for place, point in enumerate(points):
         try:
-            solved.append((place, _on_response(point, response, wanted)))
+            solved.append((place, _solve(point, model)))
         except InputError as error:
             refused.append(str(error))
     if len(solved) < SOLVED * len(points):
         raise InputError(f"device: {len(refused)} of {len(points)} switches cannot be solved, the first: {refused[0]}")
     places = [place for place, _ in solved]
-    solved_values = {key: np.array([state[key] for _, state in solved]) for key in by_form}
-    stuck = solved_values["release_V"] == 0.0
-    # the closed form is a little too adhesive; by how much is known at central inputs
-    release = np.where(stuck, 0.0, np.maximum(solved_values["release_V"] + shift, 0.0))
-    cells_V = float(releases_by_cells(settings, cells, hamaker).std(ddof=1))
+    solved_values = {key: np.array([state[key] for _, state in solved]) for key in by_curves}
+    release = solved_values["release_V"]
+    stuck = release == 0.0
+    cells_V = float(releases_by_cells(settings, cells, flats).std(ddof=1))
     first, error = first_order(units[places], release)
     rng = np.random.default_rng(np.random.SeedSequence([0, 0xA15]))
     noisy = np.where(stuck, 0.0, np.maximum(release + cells_V * rng.normal(size=release.size), 0.0))
@@ -200,13 +198,18 @@ def answer(
             ),
             key=lambda row: -row["share_of_variance"],
         ),
-        "central": {"gap_cutoff_nm": middle_nm, "by_closed_form": in_the_middle},
-        "at_curves": {"gap_cutoff_nm": cutoffs_nm[0], "by_curves": by_curves, "by_closed_form": by_form},
+        "central": {"gap_cutoff_nm": middle_nm, **in_the_middle},
+        "at_curves": {
+            "gap_cutoff_nm": cutoffs_nm[0],
+            "by_curves": by_curves,
+            "by_carried_curves": _solve(at_curves, model),
+            "by_closed_form": _solve(at_curves, (model[0], None)),
+        },
         "design": {
             "draws": len(draws),
             "cells_per_draw": draws[0].cells,
             "points": len(solved),
-            "bounded": int(solved_values["bounded"].sum()),
+            "deepened": int(solved_values["deepened"].sum()),
             "refused": refused,
             "response_error_V": error,
             "cells_error_V": cells_V,
@@ -218,13 +221,14 @@ def try_answer(
     cells: PadCells,
     draws: Sequence[SampledPad],
     table: InputTable,
+    flats: Flats,
     settings: DeviceSettings,
     gap_cutoff_nm: float,
 ) -> dict[str, Any]:
     """`answer` for device/pad_switch.json, or None with `answer_status` that says why there is none."""
     try:
         return {
-            "answer": answer(cells, draws, table, settings, cutoff_range(gap_cutoff_nm, draws)),
+            "answer": answer(cells, draws, table, flats, settings, cutoff_range(gap_cutoff_nm, draws)),
             "answer_status": "ok",
         }
     except InputError as error:
@@ -238,19 +242,24 @@ def _probability(stuck: int, solved: int, refused: int) -> dict[str, float | int
     return {**probability(stuck, solved), "low": least["low"], "high": most["high"]}
 
 
-def _response(cells: PadCells, draws: Sequence[SampledPad], table: InputTable, gap_cutoff_nm: float) -> PadResponse:
-    """The closed form through the central pad and the draws."""
-    middle = table.medians()
-    central = SampledPad(middle, gap_cutoff_nm, cells.count, law_of(cells, middle["hamaker"]))
-    return fit_response([central, *draws], table)
+def _model(
+    cells: PadCells, draws: Sequence[SampledPad], table: InputTable, flats: Flats, gap_cutoff_nm: float
+) -> Model:
+    """The closed form through the central pad and the draws, and the factors of the central curves on it."""
+    central = SampledPad(table.medians(), gap_cutoff_nm, cells.count, law_of(cells, flats))
+    response = fit_response([central, *draws], table)
+    return response, factors_of(central.law, response.at(central.values, gap_cutoff_nm))
 
 
-def _on_response(point: Point, response: PadResponse, wanted_GPa: Callable[[Array], Array]) -> dict[str, float]:
+def _solve(point: Point, model: Model) -> dict[str, float]:
+    """The switch of a point, on the curves carried there."""
+    response, factors = model
     compact = response.at(point.values, point.gap_cutoff_nm)
     step = 0.01 * point.values["rms"]
     near = np.arange(step, 8.0 * point.values["rms"], step)
     s = np.concatenate([near, np.geomspace(near[-1], max(FAR_NM, 2.0 * near[-1]), 24)[1:]])
-    return solve_or_bound(point.device, law_of_compact(compact, wanted_GPa(s), s))
+    wanted = pressure_to_compute(point.device)(s)
+    return solve_deepened(point.device, law_of_compact(CarriedPad(compact, factors) if factors else compact, wanted, s))
 
 
 def first_order(units: Array, values: Array) -> tuple[Array, float]:

@@ -22,7 +22,7 @@ from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.pad.cells import PadGrid, SideBySide, far_nm
 from mesoscale.pad.curves import PadCells, assemble
-from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.pad.memory import PadLaw, flats_of, law_of
 from mesoscale.settings import AdhesionSettings, ContactSettings
 
 Array = NDArray[np.float64]
@@ -173,7 +173,7 @@ def pad_rows(case: Case, adhesion: AdhesionSettings, number: int) -> list[dict[s
     rate, offset = retardation_rate(case.contact.retardation_nm), wall_offset_nm(case.contact)
     outwards = cells.grid.separation_nm[::-1]
     beyond = float(flats_energy(case.inputs.hamaker, outwards[-1] + offset, rate))
-    law = law_of(cells, case.inputs.hamaker)
+    law = law_of(cells, flats_of(case.inputs, case.contact))
     rows = []
     for load, place in zip(adhesion.loads_MPa, loaded, strict=True):
         net = cells.opening[:, place].sum(axis=1).mean(axis=0)[::-1]

@@ -37,6 +37,8 @@ FAR_POINTS = 24
 LIGHT = 0.1
 """Part of the largest pressure from which the pad is opened at least; a flat electrode presses with 0.4 of it."""
 MAX_PILOT_STEPS = 4000
+MARGIN = 1.25
+"""Over what the switch presses with: the mean of the few pilot cells is off by 15 %."""
 PILOT_STEP = 5.0
 """Pilot cells are closed in coarser steps than the pad: where the grid ends need not be known to better than that."""
 
@@ -150,6 +152,11 @@ class SideBySide:
         deviation = float(self.first_contact_nm.std(ddof=1))
         return float(self.first_contact_nm.mean()) + DEVIATIONS_ABOVE * max(deviation, step_nm)
 
+    @property
+    def net_GPa(self) -> Array:
+        """Their mean net pressure at all separations so far, shape (n,)."""
+        return np.sum([cell.closing.sum(axis=0) for cell in self.cells], axis=0) / self._area_nm2
+
     def close_to(self, separation_nm: float, attraction: bool = True) -> float:
         """Bring all to a separation from the film's mean plane; their mean repulsion (GPa)."""
         return sum(
@@ -171,12 +178,15 @@ def plan_grid(
     wanted_GPa: Callable[[Array], Array],
     first_seed: int = FIRST_SEED,
     step_nm: float = STEP_NM,
+    pressed_GPa: Callable[[Array, Array], float] | None = None,
 ) -> PadGrid:
-    """Separations for a pad, from a few pilot cells that are closed until their mean pressure is the largest asked for.
+    """Separations for a pad, from a few pilot cells that are closed until they carry all that is asked for.
 
     Parameters
     ----------
-    wanted_GPa : that pressure as a function of separation (nm).
+    wanted_GPa : mean repulsion that they carry at least, as a function of separation (nm).
+    pressed_GPa : largest net pressure of a switch on a pad, from the closing curve of the pad: separations (nm), from
+        near to far, and net pressures. The pilots are closed until they carry that, and `MARGIN` more.
     first_seed : of the pilot cells' surfaces.
     step_nm : of separation in and near contact.
 
@@ -185,7 +195,7 @@ def plan_grid(
     InputError : the pilot cells never reach the pressure.
     """
     pilots = SideBySide(inputs, contact, range(first_seed, first_seed + settings.pilot_cells))
-    lowest, light = _close_pilots(pilots, wanted_GPa, step_nm * PILOT_STEP)
+    lowest, light = _close_pilots(pilots, wanted_GPa, pressed_GPa, step_nm * PILOT_STEP)
     top, typical = pilots.top_nm(step_nm), float(pilots.first_contact_nm.mean())
     near = lowest + step_nm * np.arange(np.ceil((top - lowest) / step_nm) + 1)
     if isinstance(inputs, FilmInputs):
@@ -206,21 +216,31 @@ def far_nm(top_nm: float) -> Array:
     return np.geomspace(top_nm, max(FAR_NM, 2.0 * top_nm), FAR_POINTS)[1:]
 
 
-def _close_pilots(pilots: SideBySide, wanted_GPa: Callable[[Array], Array], step_nm: float) -> tuple[float, float]:
-    """Separations at which the mean repulsion of the pilots is the wanted one, and LIGHT of it."""
+def _close_pilots(
+    pilots: SideBySide,
+    wanted_GPa: Callable[[Array], Array],
+    pressed_GPa: Callable[[Array, Array], float] | None,
+    step_nm: float,
+) -> tuple[float, float]:
+    """Separations at which the pilots carry what is asked for, and LIGHT of what is wanted."""
     start_nm = float(pilots.first_contact_nm.max())
     separation, repelled, wanted, light = start_nm, 0.0, 0.0, None
     for step in range(MAX_PILOT_STEPS):
         separation = start_nm - step_nm * step
-        repelled = pilots.close_to(separation, attraction=False)
+        repelled = pilots.close_to(separation, attraction=pressed_GPa is not None)
         wanted = float(wanted_GPa(np.array([separation]))[0])
         if light is None and repelled >= LIGHT * wanted:
             light = separation
         if light is not None and repelled >= wanted:
-            return separation, light
+            if pressed_GPa is None:
+                return separation, light
+            net = pilots.net_GPa[::-1]
+            wanted = MARGIN * pressed_GPa(np.linspace(separation, start_nm, net.size), net)
+            if net[0] >= wanted:
+                return separation, light
     raise InputError(
-        f"pad.grid.max_pressure_MPa = {wanted * 1e3:g}: {len(pilots.cells)} cells closed by "
-        f"{start_nm - separation:g} nm carry {repelled * 1e3:.3g} MPa; lower it"
+        f"device: {len(pilots.cells)} cells closed by {start_nm - separation:g} nm carry {repelled * 1e3:.3g} of the "
+        f"{wanted * 1e3:.3g} MPa that the switch presses with; lower hold_voltage_V"
     )
 
 

@@ -4,7 +4,7 @@ With s the separation, D the deepest closing so far, r = s - D and p_0 = 1 MPa,
 
     closing     p_c(s) = exp(-c0 - c1 s - c2 s^2)                      heights with a Gaussian tail
     opening     p_c(D) g,   g = exp(-(b0 + b1 D) r - b2 r^2)           elastic rebound, stiffer the less was pressed
-    attraction  -A_H / (6 pi s^3) - beta p_0 (p_c(D) / p_0)^m g^n (1 + lifted (1 - g)^3)
+    attraction  -A_H / (6 pi (s + offset)^3) - beta p_0 (p_c(D) / p_0)^m g^n (1 + lifted (1 - g)^3)
 
 (while closing, D = s and g = 1). The near attraction of a rough contact is in proportion to its load, so m is near 1.
 On opening it falls as the rim of what still touches, n near 1/2. Coupled asperities lift off together, and places that
@@ -23,7 +23,7 @@ from scipy.optimize import least_squares
 
 from mesoscale.errors import InputError
 from mesoscale.law.wells import MOST_MISSED
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.memory import Flats, PadLaw
 
 Array = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class CompactPad:
     c0, c1_per_nm, c2_per_nm2 : closing, p_c in GPa.
     b0_per_nm, b1_per_nm2, b2_per_nm2 : opening.
     beta, m, n, lifted : attraction.
-    hamaker : Hamaker constant (1e-18 J).
+    hamaker, offset_nm : far attraction, of `Flats`.
     """
 
     c0: float
@@ -59,6 +59,23 @@ class CompactPad:
     n: float
     lifted: float
     hamaker: float
+    offset_nm: float
+
+    @property
+    def flats(self) -> Flats:
+        """What the pad is from far away."""
+        return Flats(self.hamaker, self.offset_nm)
+
+    def log_load(self, separation_nm: ArrayLike) -> Array:
+        """Logarithm of the repulsion while closing (GPa)."""
+        s = np.asarray(separation_nm, float)
+        return -self.c0 - self.c1_per_nm * s - self.c2_per_nm2 * s**2
+
+    def decay(self, separation_nm: ArrayLike, deepest_nm: ArrayLike) -> Array:
+        """Logarithm of what the repulsion has fallen by since the deepest closing."""
+        deep = np.asarray(deepest_nm, float)
+        risen = np.asarray(separation_nm, float) - deep
+        return (self.b0_per_nm + self.b1_per_nm2 * deep) * risen + self.b2_per_nm2 * risen**2
 
     def closing_GPa(self, separation_nm: ArrayLike) -> tuple[Array, Array]:
         """Repulsion and attraction (negative) while closing."""
@@ -68,13 +85,10 @@ class CompactPad:
     def opening_GPa(self, separation_nm: ArrayLike, deepest_nm: ArrayLike) -> tuple[Array, Array]:
         """Repulsion and attraction (negative) at separations not below the deepest closing."""
         s, deep = np.asarray(separation_nm, float), np.asarray(deepest_nm, float)
-        load = np.exp(-self.c0 - self.c1_per_nm * deep - self.c2_per_nm2 * deep**2)
-        risen = s - deep
-        decay = (self.b0_per_nm + self.b1_per_nm2 * deep) * risen + self.b2_per_nm2 * risen**2
-        far = self.hamaker / (6.0 * np.pi * np.maximum(s, 1.0) ** 3)
+        load, decay = np.exp(self.log_load(deep)), self.decay(s, deep)
         rim = self.beta * UNIT_GPa * (load / UNIT_GPa) ** self.m * np.exp(-self.n * decay)
         left = np.exp(-decay)
-        return load * left, -far - rim * lift(left, self.lifted)
+        return load * left, -self.flats.pull_GPa(s) - rim * lift(left, self.lifted)
 
     def well_kPa(self, deepest_nm: float) -> float:
         """Largest net attraction on opening from a depth (kPa)."""
@@ -105,7 +119,7 @@ def fit_compact(law: PadLaw) -> tuple[CompactPad, Residuals]:
     InputError : too few separations or depths in contact.
     """
     s, repulsive = law.separation_nm, law.closing[0]
-    far = law.hamaker / (6.0 * np.pi * s**3)
+    far = law.flats.pull_GPa(s)
     near = -law.closing[1] - far
     used = (repulsive > CLOSING_FLOOR * repulsive.max()) & (near > 0)
     if used.sum() < FEWEST or law.depth_nm.size < 3:
@@ -139,7 +153,8 @@ def fit_compact(law: PadLaw) -> tuple[CompactPad, Residuals]:
     (n, lifted), attraction_opening = opened.x, float(np.sqrt(np.mean(opened.fun**2)))
     c0, c1, c2 = (float(value) for value in c)
     b0, b1, b2 = (float(value) for value in b)
-    fitted = CompactPad(c0, c1, c2, b0, b1, b2, float(np.exp(log_beta)), float(m), float(n), float(lifted), law.hamaker)
+    attracts = float(np.exp(log_beta)), float(m), float(n), float(lifted)
+    fitted = CompactPad(c0, c1, c2, b0, b1, b2, *attracts, law.flats.hamaker, law.flats.offset_nm)
     return fitted, Residuals(closing, opening, attraction, attraction_opening)
 
 

@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.inputs.contact import FilmInputs, contact_of
+from mesoscale.inputs.contact import ContactInputs, FilmInputs, contact_of
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
 from mesoscale.pad.curves import assemble
-from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.pad.memory import PadLaw, flats_of, law_of
 from mesoscale.settings import ContactSettings, PadGridSettings
 
 Array = NDArray[np.float64]
@@ -46,6 +46,10 @@ class Draw:
     values: dict[str, float]
     gap_cutoff_nm: float
     seeds: range
+
+    def contact_of(self, contact: ContactSettings) -> tuple[ContactInputs, ContactSettings]:
+        """Its inputs of a contact, and the settings of the contact with them put in."""
+        return contact_of(self.values, contact.model_copy(update={"gap_cutoff_nm": self.gap_cutoff_nm}))
 
 
 def plan_draws(table: InputTable, contact: ContactSettings, count: int, cells: int) -> list[Draw]:
@@ -78,25 +82,26 @@ def close_draws(
     draws: Sequence[Draw],
     contact: ContactSettings,
     wanted_GPa: Callable[[Array], Array],
+    pressed_GPa: Callable[[Array, Array], float],
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[PadLaw]:
     """The mean curves of each draw's cells.
 
     Parameters
     ----------
-    wanted_GPa : mean pressure to which a pad is closed at a separation (nm).
+    wanted_GPa, pressed_GPa : what `plan_grid` takes of the switch.
 
     Raises
     ------
     InputError : inputs that the contact does not accept, or cells that never reach the pressure.
     """
     for done, draw in enumerate(draws):
-        inputs, settings = contact_of(draw.values, contact.model_copy(update={"gap_cutoff_nm": draw.gap_cutoff_nm}))
+        inputs, settings = draw.contact_of(contact)
         pilots = len(draw.seeds) if isinstance(inputs, FilmInputs) else GRID.pilot_cells
-        planned = GRID.model_copy(update={"pilot_cells": pilots})
-        grid = plan_grid(inputs, settings, planned, wanted_GPa, draw.seeds.start, STEP_RMS * inputs.rms)
+        planned, step = GRID.model_copy(update={"pilot_cells": pilots}), STEP_RMS * inputs.rms
+        grid = plan_grid(inputs, settings, planned, wanted_GPa, draw.seeds.start, step, pressed_GPa)
         cells = assemble(grid, list(close_cells(inputs, settings, grid, draw.seeds)), settings.length_nm**2)
-        yield law_of(cells, inputs.hamaker)
+        yield law_of(cells, flats_of(inputs, settings))
         if progress:
             progress((done + 1) / len(draws), f"{done + 1} of {len(draws)} draws of the inputs")
 
@@ -116,7 +121,7 @@ def draw_rows(draw: Draw, law: PadLaw) -> Iterator[dict[str, Any]]:
                 }
 
 
-def laws_of_rows(rows: Iterable[Mapping[str, str]], draws: Sequence[Draw]) -> list[PadLaw]:
+def laws_of_rows(rows: Iterable[Mapping[str, str]], draws: Sequence[Draw], contact: ContactSettings) -> list[PadLaw]:
     """The curves of the draws from the rows of ``pad/draws/``."""
     curves: dict[tuple[int, str], list[tuple[float, float, float]]] = {}
     for row in rows:
@@ -131,5 +136,7 @@ def laws_of_rows(rows: Iterable[Mapping[str, str]], draws: Sequence[Draw]) -> li
         for k, depth in enumerate(depths):
             branch = np.array(curves[draw.number, names[depth]])
             opening[k][:, len(closing) - len(branch) :] = branch[:, 1:].T
-        laws.append(PadLaw(closing[:, 0], closing[:, 1:].T, np.array(depths), opening, draw.values["hamaker"]))
+        laws.append(
+            PadLaw(closing[:, 0], closing[:, 1:].T, np.array(depths), opening, flats_of(*draw.contact_of(contact)))
+        )
     return laws

@@ -29,9 +29,10 @@ class LocalPad:
         self.opening = np.array([law.opening_GPa(depth + self.rise_nm, depth) for depth in self.depth_nm])
 
     @property
-    def tables(self) -> tuple[Array, Array, Array, Array, Array, float]:
+    def tables(self) -> tuple[Array, Array, Array, Array, Array, float, float]:
         """What `pad_pressure` takes of the pad."""
-        return self.at_nm, self.closing, self.depth_nm, self.rise_nm, self.opening, self.law.hamaker
+        flats = self.law.flats
+        return self.at_nm, self.closing, self.depth_nm, self.rise_nm, self.opening, flats.hamaker, flats.offset_nm
 
     def __call__(self, separation_nm: Array, deepest_nm: Array) -> tuple[Array, Array]:
         """Pressure and slope, of the shape (e, p) of both; continued in a line below the computed closing."""
@@ -41,7 +42,9 @@ class LocalPad:
 
 
 @njit(cache=True)
-def pad_pressure(separation_nm, deepest_nm, pressure, slope, at_nm, closing, depth_nm, rise_nm, opening, hamaker):
+def pad_pressure(
+    separation_nm, deepest_nm, pressure, slope, at_nm, closing, depth_nm, rise_nm, opening, hamaker, offset_nm
+):
     """Set net pressure (GPa) and slope (GPa/nm) of a pad at places with a deepest closing of their own; all (e, p)."""
     last = at_nm.size - 1
     depth_step, rise_step = max(depth_nm[1] - depth_nm[0], 1e-9), rise_nm[1] - rise_nm[0]  # 1e-9: a pad of one depth
@@ -65,8 +68,8 @@ def pad_pressure(separation_nm, deepest_nm, pressure, slope, at_nm, closing, dep
                 pressure[e, g] = scale * (low + part * (high - low))
                 slope[e, g] = scale * (high - low) / rise_step
             elif s > at_nm[last]:
-                pressure[e, g] = -hamaker / (6.0 * np.pi * s**3)
-                slope[e, g] = -3.0 * pressure[e, g] / s
+                pressure[e, g] = -hamaker / (6.0 * np.pi * (s + offset_nm) ** 3)
+                slope[e, g] = -3.0 * pressure[e, g] / (s + offset_nm)
             else:
                 place = min(max(np.searchsorted(at_nm, s) - 1, 0), last - 1)
                 slope[e, g] = (closing[place + 1] - closing[place]) / (at_nm[place + 1] - at_nm[place])

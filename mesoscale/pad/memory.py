@@ -5,13 +5,42 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mesoscale.contact.attraction import wall_offset_nm
 from mesoscale.errors import NotComputed
+from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.curves import PadCells
+from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
 
 FLOOR_GPa = 1e-13
-"""Repulsion of 0.1 Pa counts as none; it keeps the logarithm finite beyond the last contact."""
+"""Repulsion of 0.1 mPa counts as none; it keeps the logarithm finite beyond the last contact."""
+DEEPENED = 20
+"""Separations below the deepest closing of a pad that is continued."""
+
+
+@dataclass(frozen=True)
+class Flats:
+    """What a pad is from far away: two flats.
+
+    Attributes
+    ----------
+    hamaker : Hamaker constant (1e-18 J).
+    offset_nm : distance of the walls less the separation: D0 of the law `offset`, else 0.
+    """
+
+    hamaker: float
+    offset_nm: float
+
+    def pull_GPa(self, separation_nm: ArrayLike) -> Array:
+        """Attraction (positive), A_H / (6 pi s^3) with s the distance of the walls; any shape."""
+        walls = np.maximum(np.asarray(separation_nm, float), 1.0) + self.offset_nm
+        return self.hamaker / (6.0 * np.pi * walls**3)
+
+
+def flats_of(inputs: ContactInputs, contact: ContactSettings) -> Flats:
+    """The flats of a contact."""
+    return Flats(inputs.hamaker, wall_offset_nm(contact))
 
 
 @dataclass(frozen=True)
@@ -27,14 +56,14 @@ class PadLaw:
     closing : repulsive and attractive pressure (GPa, attraction negative), shape (2, n).
     depth_nm : separations from which the pad was opened, rising, shape (k,).
     opening : as `closing`, from each depth, shape (k, 2, n); NaN below the depth.
-    hamaker : Hamaker constant (1e-18 J), for separations beyond the table.
+    flats : for separations beyond the table.
     """
 
     separation_nm: Array
     closing: Array
     depth_nm: Array
     opening: Array
-    hamaker: float
+    flats: Flats
 
     def closing_GPa(self, separation_nm: ArrayLike) -> Array:
         """Net pressure while closing (GPa, positive: pushed apart), any shape.
@@ -58,8 +87,7 @@ class PadLaw:
         if not low <= deepest_nm <= high:
             raise NotComputed(
                 f"deepest closing {deepest_nm:.4g} nm: the pad was computed for {low:.4g} .. {high:.4g} nm "
-                f"({self.closing_GPa(high) * 1e3:.3g} .. {self.closing_GPa(low) * 1e3:.3g} MPa); raise "
-                "pad.grid.max_pressure_MPa, or lower the hold voltage"
+                f"({self.closing_GPa(high) * 1e3:.3g} .. {self.closing_GPa(low) * 1e3:.3g} MPa)"
             )
         s = np.maximum(np.asarray(separation_nm, float), deepest_nm)
         upper = int(np.clip(np.searchsorted(self.depth_nm, deepest_nm), min(1, self.depth_nm.size - 1), None))
@@ -81,14 +109,39 @@ class PadLaw:
         if (separation_nm < self.separation_nm[0]).any():
             raise NotComputed(
                 f"separation {separation_nm.min():.4g} nm: the pad was closed to {self.separation_nm[0]:.4g} nm "
-                f"({self.closing[:, 0].sum() * 1e3:.3g} MPa); raise pad.grid.max_pressure_MPa"
+                f"({self.closing[:, 0].sum() * 1e3:.3g} MPa)"
             )
 
     def _extended(self, separation_nm: Array, pressure: Array) -> Array:
         """Beyond the table, two flats."""
         far = separation_nm > self.separation_nm[-1]
-        flats = -self.hamaker / (6.0 * np.pi * np.maximum(separation_nm, 1.0) ** 3)
-        return np.where(far, flats, pressure)
+        return np.where(far, -self.flats.pull_GPa(separation_nm), pressure)
+
+
+def deepened(law: PadLaw, times: float = 2.0) -> PadLaw:
+    """The pad continued below its deepest closing, until the repulsion has grown so many times.
+
+    Closing goes on as the exponential of its last e-fold, repulsion and attraction apart. An opening from there is that
+    from the deepest depth, in proportion to where it starts.
+    """
+    s, ends = law.separation_nm, law.closing[:, 0]
+    last = int(np.argmax(law.closing[0] < ends[0] / np.e)) or s.size - 1
+    slopes = [np.log(max(row[0] / row[last], 1.0)) / (s[last] - s[0]) if row[last] else 0.0 for row in law.closing]
+    if slopes[0] <= 0.0:
+        raise NotComputed(f"separation {s[0]:.4g} nm: the repulsion of the pad does not grow there")
+    reach = np.log(times) / slopes[0]
+    if reach >= s[0]:
+        raise NotComputed(f"separation {s[0]:.4g} nm: the pad is closed to its mean plane before its repulsion doubles")
+    deeper = np.linspace(s[0] - reach, s[0], DEEPENED + 1)[:-1]
+    growth = np.exp(np.outer(slopes, s[0] - deeper))
+    start = int(np.flatnonzero(np.isfinite(law.opening[0, 0]))[0])
+    opening = np.full((len(law.opening) + 1, 2, DEEPENED + s.size), np.nan)
+    opening[1:, :, DEEPENED:] = law.opening
+    at = np.concatenate([deeper, s])
+    risen = np.minimum(at - at[0] + s[start], s[-1])
+    opening[0] = _at(s[start:], law.opening[0][:, start:], risen) * growth[:, :1]
+    closing = np.hstack([ends[:, None] * growth, law.closing])
+    return PadLaw(at, closing, np.concatenate([at[:1], law.depth_nm]), opening, law.flats)
 
 
 def _at(separation_nm: Array, curves: Array, wanted: Array) -> Array:
@@ -96,7 +149,7 @@ def _at(separation_nm: Array, curves: Array, wanted: Array) -> Array:
     return np.stack([np.interp(wanted, separation_nm, row) for row in curves])
 
 
-def law_of(cells: PadCells, hamaker: float, weights: ArrayLike | None = None) -> PadLaw:
+def law_of(cells: PadCells, flats: Flats, weights: ArrayLike | None = None) -> PadLaw:
     """The law of a pad from its cells; `weights` of the cells (sum 1) for a resampled pad, shape (cells,)."""
     share = np.full(cells.count, 1.0 / cells.count) if weights is None else np.asarray(weights, float)
     return PadLaw(
@@ -104,5 +157,5 @@ def law_of(cells: PadCells, hamaker: float, weights: ArrayLike | None = None) ->
         np.tensordot(share, cells.closing, 1)[:, ::-1],
         cells.grid.depth_nm[::-1],
         np.tensordot(share, cells.opening, 1)[::-1, :, ::-1],
-        hamaker,
+        flats,
     )

@@ -24,6 +24,7 @@ from scipy.optimize import lsq_linear, minimize_scalar
 
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.carried import CarriedPad
 from mesoscale.pad.compact import CompactPad, UNIT_GPa, lift
 from mesoscale.pad.memory import PadLaw
 
@@ -68,6 +69,7 @@ class PadResponse:
     opening : of b0, then b1 and b2, shape (n + 4,).
     attraction : of ln beta / A_H (with d), then m and n, shape (n + 5,).
     lifted : the same for all inputs.
+    offset : whether the walls are D0 apart at touch (law `offset`).
     """
 
     names: tuple[str, ...]
@@ -79,6 +81,7 @@ class PadResponse:
     opening: Array
     attraction: Array
     lifted: float
+    offset: bool
 
     def at(self, values: Mapping[str, float], gap_cutoff_nm: float) -> CompactPad:
         """The closed form at one set of inputs."""
@@ -98,6 +101,7 @@ class PadResponse:
             n=float(self.attraction[-1]),
             lifted=self.lifted,
             hamaker=values["hamaker"],
+            offset_nm=values.get("gap_cutoff", gap_cutoff_nm) if self.offset else 0.0,
         )
 
 
@@ -138,6 +142,7 @@ def fit_response(pads: Sequence[SampledPad], table: InputTable) -> PadResponse:
         _solve(*opening, 1)[0],
         _attraction(*attraction, lifted)[0],
         lifted,
+        any(pad.law.flats.offset_nm > 0 for pad in pads),
     )
 
 
@@ -184,11 +189,11 @@ def _equations(pad: SampledPad, row: Array, d: float) -> list[tuple[Array, Array
     """Columns and wanted values of closing, opening and attraction of one pad."""
     law, rms = pad.law, pad.values["rms"]
     s, (pushes, pulls) = law.separation_nm, law.closing
-    far = law.hamaker / (6.0 * np.pi * s**3)
+    far, hamaker = law.flats.pull_GPa(s), law.flats.hamaker
     used = (pushes > CLOSING_FLOOR * pushes.max()) & (-pulls > far)
     at = s[used, None] / rms
     closing = np.hstack([np.tile(row, (len(at), 1)), row * at, at**2]), -np.log(pushes[used])
-    near = np.log((-pulls - far)[used] / (UNIT_GPa * law.hamaker))
+    near = np.log((-pulls - far)[used] / (UNIT_GPa * hamaker))
     head = np.append(row, d)
     attraction = [np.hstack([np.tile(head, (len(at), 1)), np.log(pushes[used] / UNIT_GPa)[:, None], 0.0 * at])]
     strengths = [near]
@@ -204,7 +209,7 @@ def _equations(pad: SampledPad, row: Array, d: float) -> list[tuple[Array, Array
         decays.append(decay)
         load = np.full_like(risen, np.log(up[above[0]] / UNIT_GPa))
         attraction.append(np.hstack([np.tile(head, (len(risen), 1)), load, -decay[:, None]]))
-        strengths.append(np.log(pull[use] / (UNIT_GPa * law.hamaker)))
+        strengths.append(np.log(pull[use] / (UNIT_GPa * hamaker)))
     return [
         closing,
         (np.concatenate(opening), np.concatenate(decays)),
@@ -212,21 +217,19 @@ def _equations(pad: SampledPad, row: Array, d: float) -> list[tuple[Array, Array
     ]
 
 
-def law_of_compact(compact: CompactPad, wanted_GPa: Array, separation_nm: Array, depths: int = 24) -> PadLaw:
-    """Curves of a closed form from where its closing carries what is wanted to far away.
+def law_of_compact(
+    compact: CompactPad | CarriedPad, wanted_GPa: Array, separation_nm: Array, depths: int = 24
+) -> PadLaw:
+    """Curves of a closed form from where its closing carries what is wanted, or the most that it does, to far away.
 
     Parameters
     ----------
-    wanted_GPa : pressure up to which pads were computed, at rising `separation_nm`, shape (n,).
+    wanted_GPa : net pressure at rising `separation_nm`, shape (n,).
 
-    Raises
-    ------
-    InputError : the closed form never carries it.
     """
-    deep = np.flatnonzero(compact.closing_GPa(separation_nm)[0] >= wanted_GPa)
-    if deep.size == 0:
-        raise InputError("pad: the closed form does not reach the pressure to which pads were computed")
-    s = separation_nm[deep[-1] :]
+    net = np.add(*compact.closing_GPa(separation_nm))
+    deep = np.flatnonzero(net >= wanted_GPa)
+    s = separation_nm[deep[-1] if deep.size else int(net.argmax()) :]
     load = compact.closing_GPa(s)[0]
     shallow = np.flatnonzero(load > 1e-4 * load[0])[-1]
     # on the separations, so that every opening starts where closing ended
@@ -235,4 +238,4 @@ def law_of_compact(compact: CompactPad, wanted_GPa: Array, separation_nm: Array,
     for k, deepest in enumerate(depth):
         above = s >= deepest - 1e-9
         opening[k][:, above] = compact.opening_GPa(s[above], deepest)
-    return PadLaw(s, np.stack(compact.closing_GPa(s)), depth, opening, compact.hamaker)
+    return PadLaw(s, np.stack(compact.closing_GPa(s)), depth, opening, compact.flats)

@@ -10,6 +10,7 @@ from mesoscale.settings.base import Settings
 UM: JsonDict = {"unit": "um"}
 NM: JsonDict = {"unit": "nm"}
 GPA: JsonDict = {"unit": "GPa"}
+LARGEST_BOW_NM = 1e5
 PLACES_AT_REST = 1000
 """Parts of the beam among whose ends the lowest place at rest is sought."""
 
@@ -61,8 +62,8 @@ class DeviceSettings(Settings):
     )
     bow_nm: float = Field(
         default=0.0,
-        ge=-1e5,
-        le=1e5,
+        ge=-LARGEST_BOW_NM,
+        le=LARGEST_BOW_NM,
         description="how much farther from the dielectric the beam is in its middle than at its ends, at rest",
         json_schema_extra=NM,
     )

@@ -22,14 +22,6 @@ class PadGridSettings(Settings):
     pilot_cells: int = Field(
         default=8, ge=2, le=1000, description="cells that are closed first, to find the range of separations"
     )
-    max_pressure_MPa: float | None = Field(
-        default=None,
-        gt=0,
-        le=1e6,
-        description="mean pressure that the deepest closing reaches; null is what the switch of `device` presses, the "
-        "edge of what has landed included. A switch that presses harder is refused",
-        json_schema_extra={"unit": "MPa"},
-    )
     depths: int = Field(
         default=8,
         ge=2,

@@ -13,4 +13,4 @@ def tabulated(compact: CompactPad, law: PadLaw) -> PadLaw:
     for k, depth in enumerate(law.depth_nm):
         above = s >= depth - 1e-9
         opening[k][:, above] = compact.opening_GPa(s[above], depth)
-    return PadLaw(s, np.stack(compact.closing_GPa(s)), law.depth_nm, opening, compact.hamaker)
+    return PadLaw(s, np.stack(compact.closing_GPa(s)), law.depth_nm, opening, compact.flats)

@@ -212,12 +212,13 @@ def _pad(root: Path) -> None:
     from mesoscale.pad.cells import PadGrid
     from mesoscale.pad.compact import CompactPad
     from mesoscale.pad.curves import PadCells, adhesion_by_cells, curve_rows
+    from mesoscale.pad.memory import Flats
     from mesoscale.settings import DeviceSettings
 
-    area, hamaker = 1e6, 0.215
+    area, flats = 1e6, Flats(0.215, 0.165)
     separation = np.concatenate([np.geomspace(200, 50, 8)[:-1], np.arange(50, 19.9, -0.25)])
     grid = PadGrid(separation, np.arange(separation.size)[-61::12])
-    form = CompactPad(-5.0, 0.15, 0.006, 0.3, 0.01, 0.02, 0.05, 1.0, 0.5, 0.0, hamaker)
+    form = CompactPad(-5.0, 0.15, 0.006, 0.3, 0.01, 0.02, 0.05, 1.0, 0.5, 0.0, flats.hamaker, flats.offset_nm)
     shifts = np.random.default_rng(5).normal(0, 1.5, 24)
     closing = np.array([form.closing_GPa(separation + shift) for shift in shifts])
     opening = np.array(
@@ -228,7 +229,7 @@ def _pad(root: Path) -> None:
     cells = PadCells(grid, 40 - shifts, closing, opening, np.ones(24, bool))
     _write(root / "pad/curves.csv", curve_rows(cells))
     _write(root / "pad/adhesion.csv", adhesion_by_cells(cells, [1, 2, 4, 8, 16]))
-    switch = switch_on_pad(cells, hamaker, DeviceSettings(), area)
+    switch = switch_on_pad(cells, flats, DeviceSettings(), area)
     write_json(root / "device/pad_switch.json", switch, PROVENANCE)
     for chunk, members in enumerate(np.split(np.arange(24), 2)):
         values = {

@@ -16,7 +16,7 @@ from mesoscale.device.beam_switch import solve_beam
 from mesoscale.device.pad_switch import solve_on_pad
 from mesoscale.device.switch import beam_stiffness_N_per_m, switch_from_settings
 from mesoscale.errors import InputError
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
 from tests.workflow.browser import WHOLE_NUMBERS, probed
 from tests.workflow.made_up_results import write_all
@@ -66,7 +66,13 @@ def _law(curves, values, adhesion):
         branches.append(branch)
         place += 2 * count
     assert place == values.size
-    return PadLaw(s, branches[0], depth, np.array(branches[1:]), adhesion * curves["hamaker"])
+    return PadLaw(
+        s,
+        branches[0],
+        depth,
+        np.array(branches[1:]),
+        Flats(adhesion * curves["flats"]["hamaker"], curves["flats"]["offset_nm"]),
+    )
 
 
 def _drawn(curves):

@@ -1,6 +1,4 @@
-from dataclasses import asdict
-
-from mesoscale.device.pressing import DEVIATIONS, pressure_to_compute
+from mesoscale.device.pressing import DEVIATIONS, pressing
 from mesoscale.settings.pad import CELLS_PER_JOB, DRAWS_PER_JOB
 from mesoscale.uncertainty.chunks import chunk_bounds
 
@@ -47,7 +45,7 @@ rule plan_pad:
     params:
         contact=settings("contact"),
         grid=settings("pad")["grid"],
-        pressure=asdict(pressure_to_compute(SCENE.device, largest_MPa=SCENE.pad.grid.max_pressure_MPa)),
+        device=pressing(SCENE.device).model_dump(mode="json"),
     message:
         "choose the separations that the cells of the pad share"
     script:
@@ -91,7 +89,7 @@ rule close_draws:
     params:
         contact=settings("contact"),
         design=DRAW_DESIGN,
-        pressure=asdict(pressure_to_compute(SCENE.device, DEVIATIONS)),
+        device=pressing(SCENE.device, DEVIATIONS).model_dump(mode="json"),
         bounds=lambda wildcards: DRAW_CHUNKS[wildcards.chunk],
     message:
         f"close and open pads at other inputs, chunk {{wildcards.chunk}} of {len(DRAW_CHUNKS)}"

@@ -5,6 +5,8 @@ Out: pad/curves.h5 and pad/curves.csv (MPa against nm), pad/adhesion.csv, pad/co
 device/pad_switch.json, device/rough_pad.va, device/rough_pad.sub.
 """
 
+from dataclasses import asdict
+
 import numpy as np
 
 from mesoscale.device.pad_export import spice_pad, verilog_pad
@@ -14,7 +16,7 @@ from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad.compact import compact_summary
 from mesoscale.pad.curves import adhesion_by_cells, curve_rows
-from mesoscale.pad.memory import law_of
+from mesoscale.pad.memory import flats_of, law_of
 from mesoscale.settings import DeviceSettings
 from workflow.contact_settings import contact_settings
 from workflow.job import job, settings_from_job
@@ -28,7 +30,8 @@ with job(snakemake) as run:
     grid = cells.grid
     device = settings_from_job(DeviceSettings, snakemake.params.device)
     inputs = from_rows(load_csv(snakemake.input.inputs))
-    hamaker = inputs.medians()["hamaker"]
+    middle, central = contact_of(inputs.medians(), contact)
+    flats = flats_of(middle, central)
 
     table = curve_rows(cells)
     write_csv(snakemake.output.table, table)
@@ -46,15 +49,14 @@ with job(snakemake) as run:
             ("depth_nm", "force", "separation_nm"),
         ),
     }
-    write_h5(snakemake.output.curves, {"pad": datasets}, {"cells": cells.count, "hamaker": hamaker}, run.provenance)
+    write_h5(snakemake.output.curves, {"pad": datasets}, {"cells": cells.count, **asdict(flats)}, run.provenance)
     write_csv(snakemake.output.adhesion, adhesion_by_cells(cells, [2**k for k in range(20)]))
-    law = law_of(cells, hamaker)
+    law = law_of(cells, flats)
     write_json(snakemake.output.compact, compact_summary(law), run.provenance)
     write_text(snakemake.output.verilog, verilog_pad(law, cells.count))
     write_text(snakemake.output.spice, spice_pad(law, cells.count))
-    switch = switch_on_pad(cells, hamaker, device, area)
+    switch = switch_on_pad(cells, flats, device, area)
     if snakemake.input.draws:
         pads = load_draws(snakemake.input.draws, inputs, contact, *snakemake.params.design)
-        _, central = contact_of(inputs.medians(), contact)
-        switch |= try_answer(cells, pads, inputs, device, central.gap_cutoff_nm)
+        switch |= try_answer(cells, pads, inputs, flats, device, central.gap_cutoff_nm)
     write_json(snakemake.output.switch, switch, run.provenance)

@@ -14,6 +14,7 @@ from mesoscale.device.release import cutoff_range, released_on_pad
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import from_rows
+from mesoscale.pad.memory import flats_of
 from mesoscale.settings import DeviceSettings
 from workflow.contact_settings import contact_settings
 from workflow.job import job, settings_from_job
@@ -30,7 +31,8 @@ with job(snakemake) as run:
     cycles = cycles_of_rows(rows, prior.names)
     cells = load_cells(snakemake.input.grid, snakemake.input.cells, contact.length_nm**2)
     draws = load_draws(snakemake.input.draws, inputs, contact, *snakemake.params.design)
-    cutoffs = cutoff_range(contact_of(inputs.medians(), contact)[1].gap_cutoff_nm, draws)
+    central = contact_of(inputs.medians(), contact)
+    cutoffs = cutoff_range(central[1].gap_cutoff_nm, draws)
     device = settings_from_job(DeviceSettings, snakemake.params.device)
     responses, laws = responses_of(prior, cycles)
     given = partial(
@@ -44,7 +46,7 @@ with job(snakemake) as run:
     )
     ranked = []
     try:
-        x, volts = released_on_pad(cells, draws, inputs, device, cutoffs, POINTS)
+        x, volts = released_on_pad(cells, draws, inputs, flats_of(*central), device, cutoffs, POINTS)
     except InputError as error:
         print(error, file=run.log, flush=True)  # answer_status of device/pad_switch.json has it, too
     else:

@@ -18,10 +18,10 @@ HISTORY_NM = (60.0, 30.0, 26.0, 28.0, 33.0, 60.0, 30.0, 27.0, 23.0, 25.0, 30.0, 
 
 
 def pad():
-    compact = CompactPad(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 2.0, 0.215)
+    compact = CompactPad(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 2.0, 0.215, 0.3)
     s = np.arange(19.0, 80.0, 0.1)
     depths = np.array([20.0, 22.0, 24.0, 26.0, 28.0])
-    law = tabulated(compact, PadLaw(s, np.zeros((2, s.size)), depths, np.zeros((5, 2, s.size)), 0.215))
+    law = tabulated(compact, PadLaw(s, np.zeros((2, s.size)), depths, np.zeros((5, 2, s.size)), compact.flats))
     return law, fit_compact(law)[0]
 
 
@@ -90,6 +90,6 @@ def test_the_exports_name_what_they_were_made_of():
 
 def test_curves_without_a_closed_form_say_so():
     law, _ = pad()
-    short = PadLaw(law.separation_nm, law.closing, law.depth_nm[:2], law.opening[:2], 0.215)
+    short = PadLaw(law.separation_nm, law.closing, law.depth_nm[:2], law.opening[:2], law.flats)
     assert verilog_pad(short, 8).startswith("// pad: ")
     assert spice_pad(short, 8).startswith("* pad: ")

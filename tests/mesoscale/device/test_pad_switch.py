@@ -7,7 +7,7 @@ from mesoscale.device.pad_switch import solve_on_pad
 from mesoscale.device.statistics import analytic_pull_in_V
 from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, switch_from_settings
 from mesoscale.errors import InputError
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
 
 SWITCH = switch_from_settings(DeviceSettings())
@@ -25,7 +25,7 @@ def made_up_law(adhesion_kPa=0.0, hamaker=1e-6):
         risen = s[above] - depth
         opening[k, 0, above] = start * np.maximum(1.0 - risen / 6.0, 0.0)
         opening[k, 1, above] = -1e-12 - adhesion_kPa * 1e-6 * np.exp(-((risen - 7.0) ** 2) / 0.1)
-    return PadLaw(s, closing, np.array(DEPTHS), opening, hamaker)
+    return PadLaw(s, closing, np.array(DEPTHS), opening, Flats(hamaker, 0.0))
 
 
 def test_pull_in_is_that_of_an_ideal_plate():
@@ -58,7 +58,7 @@ def test_adhesion_above_the_spring_sticks_and_below_lowers_the_release():
 
 
 def test_nothing_beyond_the_computed_closing_is_used():
-    with pytest.raises(InputError, match="max_pressure_MPa"):
+    with pytest.raises(InputError, match="the pad was computed for 18 .. 28 nm"):
         solve_on_pad(SWITCH, made_up_law(), 300.0)
 
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from mesoscale.device import electrode, pad_results
+from mesoscale.device import pad_results
 from mesoscale.device.beam_kernels import BANDS, solve_bands
-from mesoscale.device.beam_switch import BeamStates
-from mesoscale.device.electrode import solve_or_bound
+from mesoscale.device.beam_switch import BeamStates, press_GPa
+from mesoscale.device.electrode import presser, solve_deepened
 from mesoscale.device.pad_switch import PadStates
-from mesoscale.device.pressing import pressure_to_compute
+from mesoscale.device.pressing import EDGE, pressing, pressure_to_compute
 from mesoscale.device.release import (
     _probability,
     first_order,
@@ -24,8 +24,9 @@ from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.compact import CompactPad
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.draws import Draw, draw_rows, laws_of_rows
+from mesoscale.pad.memory import Flats
 from mesoscale.pad.response import SampledPad, fit_response, law_of_compact
-from mesoscale.settings import DeviceSettings
+from mesoscale.settings import ContactSettings, DeviceSettings
 
 RANGES = {"hamaker": (0.18, 0.25), "e_star": (80.0, 100.0), "rms": (6.0, 12.0)}
 TABLE = InputTable(
@@ -43,7 +44,7 @@ def true_pad(values, gap_cutoff_nm, lifted=0.0):
     strength = values["hamaker"] * np.exp(-1.5 + 0.1 * z - 1.2 * np.log(gap_cutoff_nm / 0.165))
     return CompactPad(
         -4.0 + 0.2 * z + 0.3 * size, 3.0 / rms, 0.05 / rms**2, (2.5 + 0.3 * z) / rms, 0.2 / rms**2, 0.05 / rms**2,
-        strength, 0.95, 0.5, lifted, values["hamaker"],
+        strength, 0.95, 0.5, lifted, values["hamaker"], gap_cutoff_nm,
     )  # fmt: skip
 
 
@@ -79,16 +80,17 @@ def test_too_few_draws_are_refused_with_the_number_that_is_enough(pads):
 
 
 def test_curves_of_draws_come_back_from_their_rows(pads):
-    draws = [Draw(k, pad.values, pad.gap_cutoff_nm, range(0)) for k, pad in enumerate(pads[:2])]
+    rest = {"h_macro": 1.95, "h_prime": 8.375, "q0": 0.025, "hurst": 0.75}
+    draws = [Draw(k, pad.values | rest, pad.gap_cutoff_nm, range(0)) for k, pad in enumerate(pads[:2])]
     rows = [
         {name: "" if value is None else repr(value) for name, value in row.items()}
         for draw, pad in zip(draws, pads, strict=False)
         for row in draw_rows(draw, pad.law)
     ]
-    for pad, law in zip(pads, laws_of_rows(rows, draws), strict=False):
+    for pad, law in zip(pads, laws_of_rows(rows, draws, ContactSettings()), strict=False):
         np.testing.assert_allclose(law.opening, pad.law.opening, rtol=1e-12)
         np.testing.assert_allclose(law.closing, pad.law.closing, rtol=1e-12)
-        assert law.hamaker == pad.values["hamaker"]
+        assert law.flats == pad.law.flats
 
 
 def test_shares_of_the_variance_are_those_of_a_known_function():
@@ -114,39 +116,43 @@ def test_pads_are_computed_to_more_than_the_plate_can_press():
     plate, beam = pressure_to_compute(PLATE)(s), pressure_to_compute(DeviceSettings())(s)
     assert (beam > plate).all()
     assert plate[0] > plate[1]
-    assert (pressure_to_compute(DeviceSettings(), 1.0)(s) > beam).all()
-    assert (pressure_to_compute(DeviceSettings(), 1.0, 7.0)(s) == 0.007).all()
+    assert (pressure_to_compute(pressing(DeviceSettings(), 1.0))(s) > beam).all()
+    tilted = DeviceSettings(tilt_nm=50.0, tilt_deviation_nm=1.0)
+    assert pressing(tilted, 1.0) == pressing(DeviceSettings(tilt_deviation_nm=2.0), 1.0)
 
 
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
-def test_a_switch_whose_held_state_was_not_computed_sticks_if_it_sticks_when_held_by_less(settings):
+def test_a_pad_that_is_pressed_harder_than_it_was_computed_is_continued(settings):
     s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
-    adhesive = replace(true_pad(MIDDLE, 0.165), beta=0.5)
-    enough, less = (law_of_compact(adhesive, pressure_to_compute(settings, 0.0, MPa)(s), s) for MPa in (80.0, 10.0))
-    computed, bounded = solve_or_bound(settings, enough), solve_or_bound(settings, less)
-    assert computed["release_V"] == bounded["release_V"] == 0.0
-    assert (computed["bounded"], bounded["bounded"]) == (0.0, 1.0)
-    assert np.isnan(bounded["capacitance_fF"])
+    local = pressure_to_compute(settings)(
+        s
+    )  # 2.5 times that of the voltage alone, with less than which a plate presses
+    enough, less = (law_of_compact(true_pad(MIDDLE, 0.165), share * local, s) for share in (1.5, 0.3))
+    computed, continued = solve_deepened(settings, enough), solve_deepened(settings, less)
+    assert (computed["deepened"], continued["deepened"]) == (0.0, 1.0)
+    # an opening from deeper is stiffer than from the deepest computed depth, and the tail of closing is Gaussian
+    assert continued["release_V"] == pytest.approx(computed["release_V"], rel=0.01)
+    assert continued["capacitance_fF"] == pytest.approx(computed["capacitance_fF"], rel=0.01)
 
 
-def test_a_switch_that_the_bound_does_not_decide_stays_refused():
+def test_a_pad_that_was_closed_far_too_little_stays_refused():
     s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
     smooth = replace(true_pad(MIDDLE, 0.165), beta=0.0, hamaker=1e-9)
-    with pytest.raises(NotComputed, match="max_pressure_MPa"):
-        solve_or_bound(DeviceSettings(), law_of_compact(smooth, np.full(s.size, 0.005), s))
+    with pytest.raises(NotComputed, match="where its curves end"):
+        solve_deepened(DeviceSettings(), law_of_compact(smooth, np.full(s.size, 0.001), s))
 
 
-def test_held_by_too_little_the_reason_stays_that_of_the_switch_itself(monkeypatch):
-    """Nothing computed at the switch's own voltage, and no landing at less: the first reason is the user's."""
-
-    def solve(settings, law):
-        if settings.hold_voltage_V is None:
-            raise NotComputed("pressed too hard")
-        raise InputError("does not land")
-
-    monkeypatch.setattr(electrode, "solve_electrode", solve)
-    with pytest.raises(NotComputed, match="pressed too hard"):
-        solve_or_bound(DeviceSettings(), sampled(MIDDLE, 0.165).law)
+@pytest.mark.parametrize("change", [{}, {"bow_nm": 500.0}, {"residual_stress_MPa": 50.0}, {"hold_voltage_V": 110.0}])
+def test_pilots_know_what_the_beam_will_press_with(change):
+    """From a closing curve that ends too early, within the 15 % by which pilot cells are off."""
+    settings = DeviceSettings().model_copy(update=change)
+    s = np.linspace(0.05, 12.0, 1200) * MIDDLE["rms"]
+    compact = true_pad(MIDDLE, 0.165)
+    local = pressure_to_compute(settings)(s)
+    short, long = (law_of_compact(compact, share * local, s) for share in (0.6, 3.0))
+    pressed = presser(settings)(short.separation_nm, short.closing.sum(axis=0))
+    assert pressed == pytest.approx(press_GPa(settings, long), rel=0.15)
+    assert pressed > 1.3 * float(local[np.searchsorted(s, short.separation_nm[0])]) / EDGE
 
 
 @pytest.mark.parametrize(("settings", "stuck", "passed"), [(DeviceSettings(), 0, True), (DeviceSettings(), 12, False)])
@@ -161,7 +167,7 @@ def test_the_gate_judges_the_electrode_that_the_answer_has(monkeypatch, settings
     grid = PadGrid(np.array([30.0, 20.0]), np.array([1]))
     forces = np.zeros((8, 2, 2))
     cells = PadCells(grid, np.full(8, 30.0), forces, forces[:, None], np.ones(8, bool))
-    gate = pad_results.switch_on_pad(cells, 0.2, settings, 1e6)["gate"]
+    gate = pad_results.switch_on_pad(cells, Flats(0.2, 0.0), settings, 1e6)["gate"]
     assert gate["passed"] is passed
     assert passed or "12 of 24 resampled pads; raise pad.cells" in gate["reasons"][0]
 
@@ -169,12 +175,12 @@ def test_the_gate_judges_the_electrode_that_the_answer_has(monkeypatch, settings
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
 def test_a_hold_voltage_that_never_closes_the_switch_is_refused_in_one_line(settings):
     s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
-    law = law_of_compact(true_pad(MIDDLE, 0.165), pressure_to_compute(settings, 0.0, 80.0)(s), s)
-    pull_in = solve_or_bound(settings, law)["pull_in_V"]
-    assert solve_or_bound(settings.model_copy(update={"hold_voltage_V": 1.01 * pull_in}), law)["release_V"] >= 0.0
+    law = law_of_compact(true_pad(MIDDLE, 0.165), 2.0 * pressure_to_compute(settings)(s), s)
+    pull_in = solve_deepened(settings, law)["pull_in_V"]
+    assert solve_deepened(settings.model_copy(update={"hold_voltage_V": 1.01 * pull_in}), law)["release_V"] >= 0.0
     for share in (0.8, 0.99):
         with pytest.raises(InputError, match=f"never closes this switch, which pulls in at {pull_in:.4g} V") as caught:
-            solve_or_bound(settings.model_copy(update={"hold_voltage_V": share * pull_in}), law)
+            solve_deepened(settings.model_copy(update={"hold_voltage_V": share * pull_in}), law)
         assert "\n" not in str(caught.value)
 
 
@@ -195,13 +201,15 @@ def test_the_answer_keeps_its_causes_apart(pads):
         above = law.separation_nm >= depth - 1e-9
         one[k][:, above] = true_pad(MIDDLE, 0.165).opening_GPa(law.separation_nm[above], depth)
     cells = PadCells(grid, np.full(16, 30.0), closing, np.tile(one[:, :, ::-1], (16, 1, 1, 1)), np.ones(16, bool))
-    state = try_answer(cells, pads[1:], TABLE, PLATE, 0.165)
+    state = try_answer(cells, pads[1:], TABLE, law.flats, PLATE, 0.165)
     assert state["answer_status"] == "ok"
     shares = {row["cause"]: row["share_of_variance"] for row in state["answer"]["causes"]}
     assert shares["cells"] < 1e-9
     assert shares["inputs"] + shares["gap_cutoff"] > 0.8
     assert state["answer"]["sensitivity"][0]["share_of_variance"] > 0.3
-    assert state["answer"]["at_curves"]["gap_cutoff_nm"] == 0.165
+    beside = state["answer"]["at_curves"]
+    assert beside["gap_cutoff_nm"] == 0.165
+    assert beside["by_carried_curves"]["release_V"] == pytest.approx(beside["by_curves"]["release_V"], rel=2e-3)
     middle = 0.5 * (0.165 + max(pad.gap_cutoff_nm for pad in pads))
     assert state["answer"]["central"]["gap_cutoff_nm"] == pytest.approx(middle)
 

@@ -17,7 +17,7 @@ from mesoscale.pad.adhesion import (
     press_sphere,
     summary_rows,
 )
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import AdhesionSettings, ContactSettings
 from mesoscale.settings.inputs import WorkAndRangeSettings
 
@@ -63,7 +63,9 @@ def law_without_memory(step: float = 0.05) -> tuple[PadLaw, float]:
     curves = np.stack([push, pull])
     depths = np.array([20.0, 22.0, 26.0])
     opening = np.array([np.where(s >= depth - 1e-9, curves, np.nan) for depth in depths])
-    return PadLaw(s, curves, depths, opening, INPUTS.hamaker), float(flats_energy(INPUTS.hamaker, s[-1], 0.0))
+    return PadLaw(s, curves, depths, opening, Flats(INPUTS.hamaker, 0.0)), float(
+        flats_energy(INPUTS.hamaker, s[-1], 0.0)
+    )
 
 
 def test_a_sphere_without_memory_pulls_2_pi_R_times_the_energy_of_the_film():
@@ -92,7 +94,7 @@ def test_a_sphere_remembers_ring_by_ring():
 
     opening = np.array([np.stack([0.0 * s, np.where(s >= d - 1e-9, memory(s, d), np.nan)]) for d in depths])
     opening[:, 0][np.isnan(opening[:, 1])] = np.nan
-    law = PadLaw(s, np.stack([np.where(s < 30.0, 1e-3, 0.0), 0.0 * s]), depths, opening, 0.0)
+    law = PadLaw(s, np.stack([np.where(s < 30.0, 1e-3, 0.0), 0.0 * s]), depths, opening, Flats(0.0, 0.0))
     sphere = press_sphere(law, 20.0, 1000.0, 0.0)
     exact = -quad(lambda depth: memory(depth, depth), 20.0, 30.0)[0]
     # interpolated in logarithm between depths 0.5 nm apart

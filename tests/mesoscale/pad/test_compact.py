@@ -10,13 +10,13 @@ from mesoscale.pad.compact import CompactPad, fit_compact, well_status
 from mesoscale.pad.memory import PadLaw
 from tests.mesoscale.closed_form import tabulated
 
-TRUE = CompactPad(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 0.0, 0.215)
+TRUE = CompactPad(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 0.0, 0.215, 0.3)
 FLATTENED = replace(TRUE, lifted=6.0)
 
 
 def curves(depths=(20.0, 22.0, 24.0, 26.0, 28.0), true=TRUE):
     s = np.arange(19.0, 60.0, 0.1)
-    shape = PadLaw(s, np.zeros((2, s.size)), np.array(depths), np.zeros((len(depths), 2, s.size)), 0.215)
+    shape = PadLaw(s, np.zeros((2, s.size)), np.array(depths), np.zeros((len(depths), 2, s.size)), TRUE.flats)
     return tabulated(true, shape)
 
 

@@ -15,7 +15,7 @@ from mesoscale.pad.cells import FIRST_SEED, FilmPieces, PadGrid, close_cells, pl
 from mesoscale.pad.curves import adhesion_by_cells, assemble
 from mesoscale.pad.draws import plan_draws
 from mesoscale.pad.local import LocalPad
-from mesoscale.pad.memory import PadLaw, law_of
+from mesoscale.pad.memory import Flats, PadLaw, deepened, flats_of, law_of
 from mesoscale.settings import ContactSettings, InputRow, PadGridSettings
 
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
@@ -51,7 +51,7 @@ def exponential_law(depths):
         above = s >= depth - 1e-9
         opening[k, 0, above] = closing(depth) * np.exp(-(s[above] - depth) / 1.5)
         opening[k, 1, above] = attraction(s[above])
-    law = PadLaw(s, np.stack([closing(s), attraction(s)]), np.array(depths), opening, 0.2)
+    law = PadLaw(s, np.stack([closing(s), attraction(s)]), np.array(depths), opening, Flats(0.2, 0.165))
     return law, lambda at, depth: (closing(depth) * np.exp(-(at - depth) / 1.5), attraction(at))
 
 
@@ -81,12 +81,12 @@ def test_a_pad_that_one_tall_grain_carries_is_opened_from_light_loads(monkeypatc
 def test_a_pressure_out_of_reach_is_refused():
     rigid = ContactSettings(pixels=32, length_nm=1000.0)
     soft = ContactInputs(**{**vars(MIDDLE), "e_star": 1e-6, "hamaker": 0.0})
-    with pytest.raises(InputError, match=r"max_pressure_MPa"):
+    with pytest.raises(InputError, match=r"of the 5 MPa that the switch presses with; lower hold_voltage_V"):
         plan_grid(soft, rigid, GRID, wanted_GPa)
 
 
 def test_openings_start_where_closing_ended_and_deeper_pads_hold_more(pad):
-    law = law_of(pad, MIDDLE.hamaker)
+    law = law_of(pad, flats_of(MIDDLE, CONTACT))
     for depth in law.depth_nm:
         assert law.opening_GPa(depth, depth) == pytest.approx(law.closing_GPa(depth), rel=1e-6)
 
@@ -101,7 +101,21 @@ def test_memory_between_depths_is_exact_for_exponential_branches():
     assert (error <= 6e-4 * repulsion + 2.7e-3 * np.abs(attraction)).all()
 
 
-def test_nothing_is_extrapolated():
+def test_a_pad_that_is_continued_below_its_deepest_closing_is_exact_for_exponential_branches():
+    law, exact = exponential_law([22.0, 24.0])
+    law = PadLaw(law.separation_nm[20:], law.closing[:, 20:], law.depth_nm, law.opening[:, :, 20:], law.flats)
+    deeper = deepened(law)
+    depth = float(deeper.depth_nm[0])
+    assert depth == pytest.approx(22.0 - 2.0 * np.log(2.0))  # twice the repulsion, whose e-fold is 2 nm
+    at = np.linspace(depth, 40.0, 50)
+    repulsion, attraction = exact(at, depth)
+    # s^-3 is no exponential: (3 / s^2) over 1.4 nm, and 0.1 nm between separations
+    error = np.abs(deeper.opening_GPa(at, depth) - repulsion - attraction)
+    assert (error <= 2e-3 * repulsion + 0.1 * np.abs(attraction)).all()
+    np.testing.assert_allclose(deeper.opening_GPa(at, 23.0), law.opening_GPa(at, 23.0), rtol=1e-9)
+
+
+def test_nothing_is_extrapolated_unasked():
     law, _ = exponential_law([21.0, 23.0])
     with pytest.raises(InputError, match=r"21 \.\. 23 nm"):
         law.opening_GPa(30.0, 20.5)
@@ -110,11 +124,16 @@ def test_nothing_is_extrapolated():
 
 
 def test_far_away_a_pad_is_two_flats(pad):
-    law = law_of(pad, MIDDLE.hamaker)
+    law = law_of(pad, flats_of(MIDDLE, CONTACT))
     far = law.separation_nm[-1]
-    flats = -MIDDLE.hamaker / (6 * np.pi * far**3)
-    assert law.closing_GPa(far) == pytest.approx(flats, rel=0.02)
-    assert law.closing_GPa(2 * far) == pytest.approx(flats / 8, rel=1e-12)
+    flats = -MIDDLE.hamaker / (6 * np.pi * (far + CONTACT.gap_cutoff_nm) ** 3)
+    # two flats to 1 + 6 (rms / separation)^2
+    assert law.closing_GPa(far) == pytest.approx(flats, rel=0.02, abs=0)
+    twice = (2 * far + CONTACT.gap_cutoff_nm) / (far + CONTACT.gap_cutoff_nm)
+    assert law.closing_GPa(2 * far) == pytest.approx(flats / twice**3, rel=1e-12, abs=0)
+    pressure, slope = LocalPad(law)(np.array([[2 * far]]), np.array([[np.inf]]))
+    assert pressure[0, 0] == pytest.approx(flats / twice**3, rel=1e-12, abs=0)
+    assert slope[0, 0] == pytest.approx(-3 * pressure[0, 0] / (2 * far + CONTACT.gap_cutoff_nm), rel=1e-12, abs=0)
 
 
 def test_adhesion_falls_with_the_number_of_cells(pad):

@@ -143,7 +143,7 @@ class LocalPad { // the pad at many places, each with a deepest closing of its o
     const { separation, net, far } = this.law;
     if (s > far) {
       const flats = this.law.flats(s);
-      return [flats, (-3 * flats) / Math.max(s, 1)];
+      return [flats, (-3 * flats) / (Math.max(s, 1) + this.law.offset)];
     }
     const k = Math.min(Math.max(placeOf(separation, s) - 1, 0), separation.length - 2);
     const slope = (net[k + 1] - net[k]) / (separation[k + 1] - separation[k]);

@@ -1,14 +1,17 @@
 """What the page needs to follow the switch itself: the pad's curves, the switch and the ranges of its sliders."""
 
 import base64
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from asperity.foreign_yaml import load_mapping
 from mesoscale.device.switch import switch_from_settings
+from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
-from mesoscale.settings import DeviceSettings
+from mesoscale.pad.memory import flats_of
+from mesoscale.settings import ContactSettings, DeviceSettings
 from workflow.report.available import Results
 from workflow.report.numbers import column
 
@@ -32,7 +35,7 @@ def switch_data(results: Results) -> dict[str, Any] | None:
     return {
         "device": device.model_dump(mode="json"),
         "bends": bends,
-        "curves": _curves(results, scene["contact"]["length_nm"] ** 2),
+        "curves": _curves(results, ContactSettings(**scene["contact"])),
         "sliders": [
             _slider("gap_um", "gap at rest", "µm", device.gap_um),
             _slider("spring_N_per_m", "stiffness", "N/m", switch.spring_N_per_m),
@@ -43,7 +46,7 @@ def switch_data(results: Results) -> dict[str, Any] | None:
     }
 
 
-def _curves(results: Results, area_nm2: float) -> dict[str, Any]:
+def _curves(results: Results, contact: ContactSettings) -> dict[str, Any]:
     """The mean pad, and groups of its cells (fewer where a cell's file is not at hand)."""
     rows = results.csv("pad/curves.csv")
     closing = [row for row in rows if row["branch"] == "closing"][::-1]
@@ -57,8 +60,8 @@ def _curves(results: Results, area_nm2: float) -> dict[str, Any]:
         "separation_nm": _packed(separation),
         "depth_nm": _packed(np.array(depths)),
         "mean": _packed(np.concatenate(mean)),
-        "groups": [_packed(values, "<f4") for values in _groups(results, area_nm2)],
-        "hamaker": medians(results.csv("inputs.csv"))["hamaker"],
+        "groups": [_packed(values, "<f4") for values in _groups(results, contact.length_nm**2)],
+        "flats": asdict(flats_of(*contact_of(medians(results.csv("inputs.csv")), contact))),
     }
 
 

@@ -34,7 +34,7 @@ class OutOfRange extends Error {}
 
 class PadLaw {
   // `values` in GPa: repulsion and attraction of the closing, then of the opening from each depth; near to far
-  constructor(separation, depth, values, hamaker, adhesion) {
+  constructor(separation, depth, values, far, adhesion) {
     let place = 0;
     const branch = (from) => {
       const count = separation.length - from;
@@ -44,7 +44,7 @@ class PadLaw {
       return { separation: separation.subarray(from), pushes, pulls };
     };
     const { pushes, pulls } = branch(0);
-    Object.assign(this, { separation, depth, pushes, pulls, hamaker: adhesion * hamaker });
+    Object.assign(this, { separation, depth, pushes, pulls, hamaker: adhesion * far.hamaker, offset: far.offset_nm });
     this.net = pushes.map((value, i) => value + pulls[i]);
     this.opening = Array.from(depth, (deep) => branch(placeOf(separation, deep - 1e-9)));
     this.near = separation[0];
@@ -54,7 +54,7 @@ class PadLaw {
   static read(data, adhesion) { // the mean pad, and pads of groups of cells drawn with replacement
     const [separation, depth, mean] = [data.separation_nm, data.depth_nm, data.mean].map((text) => numbersOf(text, Float64Array));
     const groups = data.groups.map((text) => numbersOf(text, Float32Array));
-    const law = (values) => new PadLaw(separation, depth, values, data.hamaker, adhesion);
+    const law = (values) => new PadLaw(separation, depth, values, data.flats, adhesion);
     let state = 1; // fixed sequence (Park and Miller 1988): the same pads at the same inputs
     const pick = () => { state = (16807 * state) % 2147483647; return groups[state % groups.length]; };
     const drawn = () => {
@@ -68,7 +68,7 @@ class PadLaw {
     return { mean: law(mean), resampled: (count) => (groups.length ? Array.from({ length: count }, drawn) : []) };
   }
 
-  flats(s) { return -this.hamaker / (6 * Math.PI * Math.max(s, 1) ** 3); }
+  flats(s) { return -this.hamaker / (6 * Math.PI * (Math.max(s, 1) + this.offset) ** 3); }
 
   closing(s) { // net pressure in GPa
     if (s < this.near) throw new OutOfRange("the switch presses the pad harder than its curves reach");

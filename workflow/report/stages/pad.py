@@ -74,7 +74,7 @@ def _answer(answer: dict) -> list[Table]:
             if varies
         ),
         ("switches computed; of them without an answer", f"{design['points']}; {len(design['refused'])}"),
-        ("of them known to stick before they press as hard as they do", str(design["bounded"])),
+        ("of them that press harder than pads were computed", str(design["deepened"])),
     ]
     held = "the finite number of cells, inputs, D₀, bow and tilt"
     tables = [Table(f"The switch, over {held}", ("quantity", "value"), released)]
