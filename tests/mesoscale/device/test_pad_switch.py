@@ -58,7 +58,7 @@ def test_adhesion_above_the_spring_sticks_and_below_lowers_the_release():
 
 
 def test_nothing_beyond_the_computed_closing_is_used():
-    with pytest.raises(InputError, match="the pad was computed for 18 .. 28 nm"):
+    with pytest.raises(InputError, match=r"the pad was computed for 18 \.\. 28 nm"):
         solve_on_pad(SWITCH, made_up_law(), 300.0)
 
 
