@@ -32,6 +32,8 @@ TIMED_CELLS = 2
 GROUPS = 4
 ELEMENTS = (16, 32, 64, 128, 256)
 FINEST_ELEMENTS = 512
+STICKS_WITHIN = 1e-3
+MOST_ATTRACTION = 1e3
 STEPS = (4, 2)
 """Coarser grids: every so many separations of the pad's own."""
 
@@ -168,3 +170,32 @@ def _elements(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
         release, cost = _release_V(law, device, elements)
         reference = f"{FINEST_ELEMENTS} elements"
         yield _row("release", "elements of the beam", elements, abs(release - wanted), "deviation, V", reference, cost)
+    sticks, _ = _sticking(law, device, FINEST_ELEMENTS)
+    for elements in ELEMENTS:
+        factor, cost = _sticking(law, device, elements)
+        metric, reference = "relative deviation", f"{FINEST_ELEMENTS} elements"
+        error = abs(factor / sticks - 1.0)
+        yield _row("attraction that sticks", "elements of the beam", elements, error, metric, reference, cost)
+
+
+def _sticking(law: PadLaw, device: DeviceSettings, elements: int) -> tuple[float, Array]:
+    """Least factor on the attraction with which the switch sticks (NaN: none found), and the time of a switch."""
+    solved = []
+
+    def sticks(factor: float) -> bool:
+        times = np.array([[1.0], [factor]])
+        flats = replace(law.flats, hamaker=factor * law.flats.hamaker)
+        scaled = replace(law, closing=times * law.closing, opening=times * law.opening, flats=flats)
+        release, cost = _release_V(scaled, device, elements)
+        solved.append(cost)
+        return release == 0.0
+
+    low, high = 0.0, 1.0
+    while not sticks(high):
+        low, high = high, 2.0 * high
+        if high > MOST_ATTRACTION:
+            return np.nan, np.mean(solved, axis=0)
+    while high - low > STICKS_WITHIN * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if sticks(middle) else (middle, high)
+    return high, np.mean(solved, axis=0)

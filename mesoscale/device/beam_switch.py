@@ -25,7 +25,8 @@ CONTACT_GPa = 1e-6
 RELEASE_TOLERANCE = 1e-3
 ELEMENTS = 128
 """The last places that adhesion holds are some 5 um long: release is within 0.4 % of that of 1024 elements.
-Close to sticking it is within 0.2 V of that of 512, where 64 elements find that a switch at 0.7 V sticks."""
+Close to sticking it is within 0.2 V of that of 512, where with 64 elements a switch sticks that opens at 0.7 V. The
+attraction that sticks is known to 1 to 4 %."""
 FREE_SHARE = 0.5
 """Off the pad is a beam that is nowhere below this share of its separation at rest; it pulls in from two thirds."""
 
