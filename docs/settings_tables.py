@@ -27,7 +27,7 @@ def write_tables(path: Path) -> None:
 
 def _rows(model: BaseModel, known: set[type], prefix: str = "") -> Iterator[tuple[str, str, str, str]]:
     """Key, default, what is accepted and meaning of each key; those of a class are explained where it stands first."""
-    told = type(model) in known
+    explained = type(model) in known
     known.add(type(model))
     for name, field in type(model).model_fields.items():
         value = getattr(model, name)
@@ -36,7 +36,7 @@ def _rows(model: BaseModel, known: set[type], prefix: str = "") -> Iterator[tupl
         else:
             default = json.loads(model.model_dump_json(include={name}))[name]
             shown = json.dumps(default, ensure_ascii=False)
-            words = ("", "") if told else (accepted_values(field), field.description or "")
+            words = ("", "") if explained else (accepted_values(field), field.description or "")
             yield f"{prefix}{name}", f"`{shown}`", *words
 
 

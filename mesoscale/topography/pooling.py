@@ -97,14 +97,14 @@ def pool(
     choice = choose(topography, one, tests, settings)
     typical = settings.model_copy(update={"ranges": "interval"})
     (surface, rows), (_, film) = (
-        surface_of(choice, topography, one, list(quantiles.values()), each, cell_nm) for each in (settings, typical)
+        surface_of(choice, topography, one, list(quantiles.values()), asked, cell_nm) for asked in (settings, typical)
     )
     if rows:
         rows["q1"] = cutoff_row(topography, spectra)
         film["rms_scatter"] = rms_scatter_row(topography, one if surface else None)
         if cut_off:
             rows["rms"], film["rms"] = (
-                rms_before(rows["q1"], each["rms"], topography, surface) for each in (rows, film)
+                rms_before(rows["q1"], part["rms"], topography, surface) for part in (rows, film)
             )
     apart = _disagreements(pairs, one) if settings.scans else []
     doubts = []
