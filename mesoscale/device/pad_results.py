@@ -1,6 +1,6 @@
 """Content of device/pad_switch.json at central inputs: the switch on the mean pad, and what the cells leave open."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -12,11 +12,13 @@ from mesoscale.device.statistics import describe, never_closes, probability
 from mesoscale.device.switch import NM, Switch, switch_from_settings
 from mesoscale.errors import InputError
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import Flats, law_of
+from mesoscale.pad.memory import Flats, PadLaw, law_of
 from mesoscale.settings import DeviceSettings
 
 RESAMPLES = 200
 """Pads of resampled cells behind the intervals of a plate: a 5 % quantile is known to 1.5 %."""
+WORKS = (1.0 / 3.0, 1.0, 3.0)
+"""Both laws of attraction differ by a factor of 3 in their work at touch (docs/contact.md); no statistics decides."""
 
 
 def switch_on_pad(cells: PadCells, flats: Flats, settings: DeviceSettings, cell_area_nm2: float) -> dict[str, Any]:
@@ -26,6 +28,7 @@ def switch_on_pad(cells: PadCells, flats: Flats, settings: DeviceSettings, cell_
     """
     switch = switch_from_settings(settings)
     content: dict[str, Any] = {
+        "electrode": "bending" if settings.spring_N_per_m is None else "flat",
         "cells_computed": cells.count,
         "cells_of_pad": switch.area_m2 * 1e18 / cell_area_nm2,
         "unsettled_cells": int((~cells.settled).sum()),
@@ -64,9 +67,24 @@ def switch_on_pad(cells: PadCells, flats: Flats, settings: DeviceSettings, cell_
         **content,
         "mean": asdict(mean),
         "beam": bending,
+        "by_attraction": [
+            {"times": times, "release_V": _release_V(settings, law_of(cells, flats), times)} for times in WORKS
+        ],
         "estimate": {**spread, "stuck": probability(stuck, RESAMPLES)},
         "gate": {"passed": not reasons, "reasons": reasons},
     }
+
+
+def _release_V(settings: DeviceSettings, law: PadLaw, times: float) -> float | None:
+    """Release at `times` the attraction; None where the held state was not computed."""
+    scale = np.array([[1.0], [times]])
+    scaled = replace(law, closing=scale * law.closing, opening=scale * law.opening, flats=replace(law.flats, hamaker=times * law.flats.hamaker))
+    try:
+        if settings.spring_N_per_m is None:
+            return solve_beam(settings, scaled).release_V
+        return solve_on_pad(switch_from_settings(settings), scaled, settings.hold_voltage_V).release_V
+    except InputError:
+        return None
 
 
 def resampled_states(

@@ -6,6 +6,10 @@ CHUNK_RUNS = 100
 """Contact cycles per job and file: jobs of some seconds to minutes, of which an interruption loses one."""
 
 
+MOST_REPEATED = 100
+"""Direct runs that are repeated on a second surface: they tell scatter between surfaces from what inputs explain."""
+
+
 def collocation_level(settings: UncertaintySettings) -> int:
     """Level of the sparse grid."""
     return 2 if settings.surrogate == "level2" else 1

@@ -13,6 +13,8 @@ from mesoscale.uncertainty.collocation import nodes, to_values
 
 FIRST_RANDOM_SEED = 1_000_000
 """Surfaces of the direct runs differ from those of the collocation."""
+FIRST_SECOND_SURFACE = 2_000_000
+"""Second surfaces of the direct runs that are repeated at equal inputs."""
 SAMPLE_SEED = 1
 """Seed of all samples of the inputs."""
 MORRIS_LEVELS = 8

@@ -1,4 +1,4 @@
-"""Responses against direct cycles: bias of mean and deviation, errors, Q²."""
+"""Responses against direct cycles: bias of mean and deviation, errors, Q², and what makes an output doubtful."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
@@ -13,6 +13,7 @@ from mesoscale.law.parameters import FITTED, LAW_OUTPUTS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.settings.uncertainty import RESAMPLES
 from mesoscale.uncertainty.designs import SAMPLE_SEED
+from mesoscale.uncertainty.doubts import against_physics, explained
 from mesoscale.uncertainty.propagation import (
     NodeOutputs,
     Propagation,
@@ -71,24 +72,30 @@ def validation_rows(
     table: InputTable,
     result: Propagation,
     settings: UncertaintySettings,
+    again: Array,
+    most_GPa: float,
 ) -> list[dict[str, Any]]:
     """Rows of uq/validation.csv, one per output of Table 2.
 
     Parameters
     ----------
     direct : inputs (m, n) and closing and opening parameters (m, len(FITTED)) of the direct runs.
+    again : parameters at the inputs of the first direct runs on other surfaces, shape (r, len(FITTED)).
+    most_GPa : largest pressure of the curves that the law was fitted to.
 
     Notes
     -----
     `*_direct` are the truth up to sampling, with bootstrap intervals (5 to 95 %) over the direct runs;
     `*_linear` the paper's method; `*_response` the exported response with the scatter of single cells. Every
     direct run has its own surface, so `q2` (1 - mean squared error / variance of the runs) includes the scatter
-    between surfaces and cannot reach 1.
+    between surfaces and cannot reach 1; `explained` leaves that part out.
     """
     outputs = direct[1]
     ranges = table.ranges()
     cells = np.where(np.isfinite(result.cells), result.cells, result.outputs)
     predicted = to_paper_outputs(held_out_predictions(direct, nodes, result.responses, ranges, settings))
+    repeated = to_paper_outputs(again)
+    physics = against_physics(result.responses, table, most_GPa)
     linear_settings = settings.model_copy(update={"response": "linear"})
     linear_responses = exported_responses(nodes, direct, ranges, linear_settings)
     linear = to_paper_outputs(held_out_predictions(direct, nodes, linear_responses, ranges, linear_settings))
@@ -126,4 +133,12 @@ def validation_rows(
             spread = np.maximum(resampled.var(axis=1), 1e-12 * variance)
             low, high = np.quantile(1 - (errors[picks] ** 2).mean(axis=1) / spread, [0.05, 0.95])
             row["q2_low"], row["q2_high"] = low, high
+        paired = np.isfinite(repeated[:, k]) & usable[: len(repeated)] & np.isfinite(predicted[: len(repeated), k])
+        if paired.sum() > 2:
+            first, second, response = (values[: len(repeated), k][paired] for values in (truth, repeated, predicted))
+            # a stream of its own, so that the intervals above stay
+            row |= explained(
+                first, second, response, np.random.default_rng(np.random.SeedSequence([SAMPLE_SEED, 0xEA]))
+            )
+            row["doubt"] = "; ".join(filter(None, (row["doubt"], physics.get(output.name, ""))))
     return rows

@@ -21,6 +21,7 @@ INPUTS = {  # name: unit, distribution, a, b, origin
 }
 LAW = {"d_c_nm": 31.8, "C_a_GPa_nm": 15e-5, "C_r_GPa": 6.4e-4, "rho_r_nm": 3.31}
 OPENED = {"d_c_nm": 28.5, "C_a_GPa_nm": 20e-5, "C_r_GPa": 9.2e-4, "rho_r_nm": 2.67}
+DOUBT = "the response explains 10% of what the inputs explain"
 PROVENANCE = {"rule": "made_up", "inputs_hash": "0", "versions": {}}
 
 
@@ -139,7 +140,11 @@ def _uncertainty(root: Path) -> None:
     )
     _write(
         root / "uq/validation.csv",
-        [{"output": name, "runs": 50, "missing": 0, "q2": 0.9, "q2_low": 0.8, "q2_high": 0.95} for name in outputs],
+        [
+            {"output": name, "runs": 50, "missing": 0, "q2": 0.9, "q2_low": 0.8, "q2_high": 0.95, "explained": 0.95}
+            | ({"explained": 0.1, "doubt": DOUBT} if name == "C_r_GPa" else {})
+            for name in outputs
+        ],
     )
     responses = [
         _response(branch, name, value)
@@ -159,7 +164,7 @@ def _uncertainty(root: Path) -> None:
         "method": "regression",
         "inputs": inputs,
         "outputs": responses,
-        "law": {"rho_a_nm": 2.0, "alpha_nm": 2.0},
+        "law": {"rho_a_nm": 2.0, "alpha_nm": 2.0, "most_GPa": 0.007},
         "scatter": {
             "outputs": [response["name"] for response in responses],
             "transforms": ["log"] * 8,

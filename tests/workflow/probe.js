@@ -1,4 +1,5 @@
 // Appended to the report by its test: moves a slider and tells what happened in <pre id="probe">.
+document.querySelectorAll("details").forEach((part) => { part.open = true; });
 window.addEventListener("load", () => setTimeout(() => {
   const inside = (path, svg) => {
     const box = document.querySelector(`#inside-${svg} rect`);
@@ -10,14 +11,14 @@ window.addEventListener("load", () => setTimeout(() => {
       drop: (Math.max(...seen.map((point) => point[1])) - Math.min(...seen.map((point) => point[1]))) / height,
     };
   };
-  const paths = () => [...document.querySelectorAll("#chart path, #well path")].map((path) => path.getAttribute("d")).join();
+  const paths = () => [...document.querySelectorAll("#chart path")].map((path) => path.getAttribute("d")).join();
   const cells = () => document.querySelector("#parameters").textContent;
   const before = [paths(), cells()];
   const rms = document.querySelector('input[name="rms"]');
   rms.value = rms.max;
   rms.dispatchEvent(new Event("input", { bubbles: true }));
   const after = [paths(), cells()];
-  const followed = [inside(".closing:not(.band)", "chart"), inside(".opening:not(.band)", "well")];
+  const followed = [inside(".closing:not(.band)", "chart"), inside(".opening:not(.band)", "chart")];
   const figures = [...document.querySelectorAll("figure svg")].filter((svg) => !svg.closest(".whole, .panels") || svg.parentElement.getBoundingClientRect().height > 0);
   const text = document.createElement("pre");
   text.id = "probe";
@@ -33,7 +34,7 @@ window.addEventListener("load", () => setTimeout(() => {
     smallest_text: Math.min(...figures.map((svg) => {
       const scale = svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
       const drawn = document.getElementById(svg.querySelector(":scope > use")?.getAttribute("href").slice(1)) || svg;
-      return scale * Math.min(...[...drawn.querySelectorAll("text")].map((text) => parseFloat(text.style.fontSize) || 10));
+      return scale * Math.min(...[...drawn.querySelectorAll("text")].map((text) => parseFloat(getComputedStyle(text).fontSize)));
     })),
     width: innerWidth,
     overflow: document.documentElement.scrollWidth - innerWidth,

@@ -94,8 +94,8 @@ def test_a_section_that_fails_costs_itself(tmp_path, monkeypatch, capsys):
 
 def test_the_first_screen_may_fail_too(tmp_path, monkeypatch):
     monkeypatch.setattr(rendering, "failed", FAILED)
-    monkeypatch.setattr(rendering, "answer", lambda results, gates: 1 / 0)
-    assert "First screen" in rendering.render(made_up(tmp_path))
+    monkeypatch.setattr(rendering, "first_screen", lambda results, gates: 1 / 0)
+    assert "first screen</b>" in rendering.render(made_up(tmp_path))
 
 
 def test_comparison_names_a_damaged_result_and_what_it_cannot_read(tmp_path, capsys):

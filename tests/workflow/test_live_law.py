@@ -17,6 +17,7 @@ from workflow.report.render import render
 MOVE = (
     WHOLE_NUMBERS
     + """
+document.querySelectorAll("details").forEach((part) => { part.open = true; });
 window.addEventListener("load", () => {
   const table = () => [...document.querySelectorAll("#parameters tbody tr")].map((row) =>
     [...row.cells].slice(1).map((cell) => parseFloat(cell.textContent.replace("−", "-"))));

@@ -1,27 +1,15 @@
-"""One quantity, one number on the first screen; elsewhere each number stands under the method that gave it."""
+"""One quantity, one number on the first screen; elsewhere each number stands under the model that gave it."""
 
-import csv
 import re
-from urllib.parse import unquote
 
 import pytest
 
-from mesoscale.law.parameters import LAW
-from tests.workflow.made_up_results import write_all
-from workflow.report.answer import answer
+from tests.workflow.made_up_results import DOUBT, write_all
 from workflow.report.available import Results
-from workflow.report.numbers import OUTPUTS
-from workflow.report.stages import pad, uncertainty
-from workflow.report.verdict import release_cards
-
-METHODS = (
-    "by the response",
-    "by the paper's method, here",
-    "the paper",
-    "runs at central inputs",
-    "scatter",  # of the runs before it
-    "surface's share",
-)
+from workflow.report.comparison import comparison, spreads
+from workflow.report.render import render
+from workflow.report.stages import device, pad, sensitivity, uncertainty
+from workflow.report.verdict import verdict
 
 
 @pytest.fixture(scope="module", params=["paper", "own"])
@@ -30,60 +18,43 @@ def results(request, tmp_path_factory):
     return Results(root, write_all(root), request.param)
 
 
-def leading(text):
-    """The number that a text begins with."""
-    found = re.match(r"[−\d.]+", text)
-    assert found, text
-    return float(found[0].replace("−", "-"))
+def test_page_comparison_and_verdict_say_the_same(results):
+    words = verdict(results).outcome
+    assert f'<h1 id="answer-title">{words}</h1>' in render(results)
+    assert words in comparison(results, results)
+    assert spreads(results)["release voltage, 0 where it sticks", "V"][1] == verdict(results).release_V[0]
 
 
-def test_the_first_screen_has_one_number_for_one_quantity(results):
-    content = answer(results, [])
-    cards = {card["title"]: card for card in content["cards"]}
-    rows = {row[0].split(",")[0]: row for row in content["table"].rows}
-    d_c = rows["d_c (nm)"]
-    assert leading(cards["Contact begins at"]["value"]) == leading(d_c[1])
-    shift = leading(d_c[2]) - leading(d_c[1])
-    assert leading(cards["Hysteresis"]["value"]) == pytest.approx(shift, abs=0.11)  # of numbers with three digits
-    assert f"come from the {results.response} at 200 samples" in content["method"]
-    assert "hold what the inputs leave open, not the scatter from one surface to the next" in content["method"]
+def test_all_other_releases_are_in_one_folded_table(results):
+    """Seven releases and four probabilities stood on the page of scene paper."""
+    page = render(results)
+    unfolded = re.sub(r"<details.*?</details>", "", page[page.index("<main>") : page.index("</main>")], flags=re.DOTALL)
+    unfolded = re.sub(r"<svg.*?</svg>", "", unfolded, flags=re.DOTALL)
+    volts = set(re.findall(r"[\d.]+ V\b", re.sub(r"<[^>]*>", "", unfolded)))
+    assert volts <= {f"{value:.3g} V" for value in (*verdict(results).release_V, *(verdict(results).other_law_V or ()))}
+    (table,) = device.describe(results).blocks
+    assert len({row[0] for row in table.rows}) == len(table.rows) >= 4
+    for other in (pad, uncertainty, sensitivity):
+        assert not any("release (V)" in row for block in other.describe(results).blocks for row in _heads(block))
 
 
-def test_release_says_its_electrode_and_what_its_interval_holds(results):
-    for card in release_cards(results):
-        assert re.search(r"electrode (that bends|flat on the pad)", card["detail"]), card
-    assert any("the interval holds" in card["detail"] for card in release_cards(results))
+def _heads(block):
+    return [row[0] for row in block.rows] if hasattr(block, "rows") else []
+
+
+def test_a_quantity_below_its_bar_is_grey_wherever_it_stands(results):
+    for stage in (uncertainty, sensitivity):
+        table = next(block for block in stage.describe(results).blocks if hasattr(block, "rows"))
+        assert [row for row in table.faint] == ["C_r (10⁻⁴ GPa)"]
+    page = render(results)
+    assert page.count('<tr class="faint">') == 2
+    assert '"faint":["C_r_GPa"]' in page  # of the explorer
+    assert comparison(results, results).count('<tr class="faint">') == 2  # closing and opening
+    assert f"Cr: {DOUBT}" in re.sub(r"<[^>]*>", "", page)
 
 
 def test_every_column_of_the_table_of_outputs_names_its_method(results):
-    table = uncertainty.describe(results).blocks[0]
-    for head in table.header[1:]:
-        assert any(method in head for method in METHODS), head
+    table = next(block for block in uncertainty.describe(results).blocks if hasattr(block, "rows"))
+    methods = ("response", "the paper's method", "the paper", "runs at central inputs", "scatter")
+    assert all(any(method in head for method in methods) for head in table.header[1:])
     assert ("the paper" in " ".join(table.header)) == results.beside_paper
-
-
-def test_the_histogram_shows_the_number_of_the_table_s_column(results):
-    """δC_r once stood as −1.93 in the table and as +2.05 in the figure below it."""
-    section = uncertainty.describe(results)
-    header, lines = section.blocks[0].header, section.blocks[0].rows
-    figure = section.blocks[1]
-    text = unquote(re.search(r'download="table2fig.csv" href="data:text/csv;charset=utf-8,([^"]*)"', figure.svg)[1])
-    rows = [row for row in csv.reader(text.splitlines()) if not row[0].startswith("#")][1:]
-    marks = [float(row[2]) for row in rows if row[1] == "line 1"]  # the first mark of each panel: the response's
-    column = header.index("by the response (mean ± dev)")
-    assert [leading(line[column]) for line in lines] == pytest.approx(marks, rel=6e-3)
-    assert "circles: their mean and deviation" in figure.caption
-    assert ("squares: those of the paper's method here" in figure.caption) == results.beside_paper
-
-
-def test_every_release_voltage_names_its_model(results):
-    """By the electrode, or by the causes that its interval is over."""
-    tables = [block for block in pad.describe(results).blocks if hasattr(block, "rows")]
-    named = [f"{table.caption}: {row[0]}" for table in tables for row in table.rows if row[0].startswith("release")]
-    assert named
-    assert len(set(named)) == len(named)
-    assert all(re.search(r"electrode (flat|that bends)|over the finite number of cells", words) for words in named)
-
-
-def test_the_law_s_parameters_are_all_on_the_first_screen(results):
-    assert [row[0].split(" ")[0] for row in answer(results, [])["table"].rows] == [OUTPUTS[p.name][0] for p in LAW]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from workflow.report.page import COMPUTED, LITERATURE, Gate
+from workflow.report.page import COMPUTED, LITERATURE
 from workflow.results import load_csv, load_h5, load_json
 
 Row = dict[str, str]
@@ -70,6 +70,11 @@ class Results:
         """Whether asperities deform each other's ground."""
         return self.contact.get("mechanics") == "coupled"
 
+    @property
+    def fitted_MPa(self) -> float:
+        """Largest pressure of the curves that the law was fitted to."""
+        return float(self.json("uq/surrogate.json")["law"]["most_GPa"]) * 1e3
+
     def uses(self, stage: str) -> bool:
         """Whether an input of this scene comes from the stage."""
         rows = self.csv("inputs.csv") if self.has("inputs.csv") else []
@@ -78,13 +83,3 @@ class Results:
     def origin_of(self, stage: str) -> str:
         """Badge of a stage: computed, and whether this scene uses it."""
         return COMPUTED if self.uses(stage) else f"{COMPUTED}, not used: inputs are {LITERATURE}"
-
-    def gate_of(self, stage: str, name: str) -> list[Gate]:
-        """Gate that a stage wrote into its JSON file, with what it means for this scene."""
-        if not self.has(name):
-            return []
-        gate, used = self.json(name).get("gate", {}), self.uses(stage)
-        reasons = [*gate.get("reasons", ())]
-        if not used:
-            reasons.append("No input of this scene comes from here, so no other number on this page depends on it.")
-        return [Gate(stage, bool(gate.get("passed")), reasons, used)]

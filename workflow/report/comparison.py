@@ -12,10 +12,10 @@ from asperity.foreign_text import shown
 from mesoscale.law.parameters import PARAMETERS
 from workflow.checksums import is_damaged
 from workflow.report.available import Results
+from workflow.report.gates import faint_outputs
 from workflow.report.numbers import OUTPUTS, column, show
 from workflow.report.page import Table
 from workflow.report.render import low
-from workflow.report.stages import law
 from workflow.report.verdict import verdict
 
 ENDS = (0.05, 0.5, 0.95)
@@ -26,21 +26,12 @@ Spread = tuple[float, float, float]
 def comparison(first: Results, second: Results) -> str:
     """HTML of the page: what both scenes say, and the differences with their intervals."""
     pairs = [(results, results.root.name) for results in (first, second)]
-    figures = [
-        (
-            name,
-            law.band(results).replace('"law-', f'"law{k}-').replace("#law-", f"#law{k}-"),
-        )  # ids of two figures differ
-        for k, (results, name) in enumerate(pairs)
-        if results.has("device/law.csv", "device/switch.json", "uq/samples.csv")
-    ]
     here = Path(__file__).parent
     environment = Environment(loader=FileSystemLoader(here), autoescape=True, undefined=StrictUndefined)
     environment.filters["low"] = low
     return environment.get_template("comparison.html.j2").render(
         names=[name for _, name in pairs],
-        verdicts=[(name, verdict(results, [])) for results, name in pairs],
-        figures=figures,
+        verdicts=[(name, said.sentence if (said := verdict(results)) else "") for results, name in pairs],
         table=differences(first, second),
         style=(here / "style.css").read_text(encoding="utf-8"),
     )
@@ -56,10 +47,13 @@ def differences(first: Results, second: Results) -> Table:
         for difference in [difference_of(one[name, unit], other[name, unit])]
     ]
     header = ("quantity", first.root.name, second.root.name, "difference")
+    grey = {OUTPUTS[name.removeprefix("delta_")][0] for part in (first, second) for name in faint_outputs(part)}
     return Table(
-        "Median and 5 to 95 % (of probabilities 95 %); the difference is second less first, of independent scenes",
+        "Median and 5 to 95 % (of probabilities 95 %), the central value alone where a release has no interval; the "
+        "difference is second less first, of independent scenes. Grey is not to be trusted in one of them",
         header,
         lines,
+        faint={line[0] for line in lines if line[0].split(",")[0] in grey},
     )
 
 
@@ -74,6 +68,15 @@ def difference_of(first: Spread, second: Spread) -> Spread:
 def spreads(results: Results) -> dict[tuple[str, str], Spread]:
     """Quantities of a scene by name and unit."""
     quantities: dict[tuple[str, str], Spread] = {}
+    said = verdict(results)
+    if said and said.release_V:
+        low, middle, high = said.release_V if len(said.release_V) == 3 else (np.nan, *said.release_V, np.nan)
+        quantities["release voltage, 0 where it sticks", "V"] = (low, middle, high)
+    if said and said.stuck:
+        quantities["probability of sticking", ""] = said.stuck
+    pad = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
+    if pad.get("mean"):
+        quantities["largest net adhesion of the pad", "kPa"] = _described(pad["estimate"]["deepest_net_kPa"])
     if results.has("uq/samples.csv"):
         rows = results.csv("uq/samples.csv")
         for branch in ("closing", "opening"):
@@ -81,15 +84,6 @@ def spreads(results: Results) -> dict[tuple[str, str], Spread]:
                 symbol, unit, factor = OUTPUTS[name]
                 values = column(rows, f"{branch}_{name}") * factor
                 quantities[f"{symbol}, {branch}", unit] = _quantiles(values[np.isfinite(values)])
-    pad = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
-    if answer := pad.get("answer"):
-        quantities["release voltage, 0 where it sticks", "V"] = _described(answer["release_V"])
-        quantities["probability of sticking", ""] = _probability(answer["stuck"])
-    if pad.get("mean"):
-        estimate = pad["estimate"]
-        quantities["release voltage at central inputs, electrode flat", "V"] = _described(estimate["release_V"])
-        quantities["largest net adhesion of the pad", "kPa"] = _described(estimate["deepest_net_kPa"])
-        quantities["probability of sticking at central inputs, electrode flat", ""] = _probability(estimate["stuck"])
     if results.has("elastic/e_star.h5"):
         samples = results.h5("elastic/e_star.h5")[0]["samples"]["e_star_GPa"]
         quantities["E* computed", "GPa"] = _quantiles(np.asarray(samples, float))
@@ -110,13 +104,9 @@ def _described(described: dict[str, Any]) -> Spread:
     return low, middle, high
 
 
-def _probability(share: dict[str, Any]) -> Spread:
-    return float(share["low"]), float(share["value"]), float(share["high"])
-
-
 def _shown(spread: Spread) -> str:
     low, middle, high = (show(value) for value in spread)
-    return f"{middle} [{low}, {high}]"
+    return middle if np.isnan(spread[0]) else f"{middle} [{low}, {high}]"
 
 
 def results_in(folder: Path) -> Results:

@@ -1,25 +1,21 @@
 """Figures as inline SVG that follow the page: its font, its colours, light and dark.
 
-Matplotlib draws in marker colours, each of which becomes a CSS variable of the page afterwards. Each figure carries its
-numbers as CSV.
+Matplotlib draws in marker colours, each of which becomes a CSS variable of the page afterwards. Numbers of a figure are
+in the files named below it.
 """
 
 import base64
-import csv
 import io
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from typing import Any
-from urllib.parse import quote
 
 import matplotlib
 import numpy as np
 
 matplotlib.use("svg")
 from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.collections import Collection, PathCollection, PolyCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 from matplotlib.transforms import Bbox
 from PIL import Image
 
@@ -33,8 +29,6 @@ VARIABLES = {
     PAPER: "--card",
     **{color: f"--series-{i + 1}" for i, color in enumerate(SERIES)},
 }
-MOST_POINTS = 100
-"""Of a series; of a longer one every n-th stands for it, as all of them lie in the files named below the figure."""
 STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",  # text stays text: selectable, read aloud, in the page's font
     "font.family": "sans-serif",
@@ -90,19 +84,18 @@ def draw(
         plot(*axes)
         _lay_out(figure)
         boxes = _panels(figure) if columns > 1 else []
-        link = csv_link([axis for axis in axes if axis.get_visible()], name)
         stream = io.StringIO()
         # not Figure.savefig, which draws twice: once to find out what a layout would need
         FigureCanvasSVG(figure).print_svg(stream, metadata={"Date": None, "Creator": None})
     whole = _inline(stream.getvalue(), name, label)
     if not boxes:
-        return whole + link
+        return whole
     pieces = (
         f'<svg viewBox="{box}" role="img" aria-label="{_attribute(label)}, panel {k}">'
         f'<use href="#{name}-figure_1"/></svg>'
         for k, box in enumerate(boxes, start=1)
     )
-    return f'<div class="whole">{whole}</div><div class="panels">{"".join(pieces)}</div>{link}'
+    return f'<div class="whole">{whole}</div><div class="panels">{"".join(pieces)}</div>'
 
 
 def _lay_out(figure: Figure) -> None:
@@ -192,52 +185,3 @@ def _subscripts(text: str) -> str:
     """Names such as d_c with their index set low."""
     low = r'\1<tspan dy="2.5" font-size="75%">\2</tspan><tspan dy="-2.5">&#8203;</tspan>'
     return SUBSCRIPT.sub(low, text)
-
-
-def csv_link(axes: Sequence[Any], name: str) -> str:
-    """Link that saves the figure's numbers; empty for a figure without lines, bands, points or bars."""
-    rows = [(panel, *row) for panel, axis in enumerate(axes, start=1) for row in _rows(axis)]
-    if not rows:
-        return ""
-    stream = io.StringIO()
-    for panel, axis in enumerate(axes, start=1):
-        words = f"panel {panel}: {axis.get_title()}; x: {axis.get_xlabel()}; y: {axis.get_ylabel()}"
-        stream.write("# " + " ".join(words.split()) + "\n")
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(("panel", "series", "x", "y"))
-    writer.writerows((panel, series, f"{x:.5g}", f"{y:.5g}") for panel, series, x, y in rows)
-    data = quote(stream.getvalue(), safe=",:;()+")
-    href = f"data:text/csv;charset=utf-8,{data}"
-    return f'<a class="csv" download="{name}.csv" href="{href}">Numbers of this figure (CSV)</a>'
-
-
-def _rows(axis: Any) -> Iterator[tuple[str, float, float]]:
-    """Series, x and y of everything that is drawn in the coordinates of the data."""
-    for number, line in enumerate(axis.get_lines(), start=1):
-        if line.get_transform() == axis.transData:  # others mark a place across the whole panel
-            points = np.column_stack([np.asarray(values, dtype=float) for values in line.get_data()])
-            yield from _named(_series(line, f"line {number}"), points)
-    for number, part in enumerate(axis.collections, start=1):
-        yield from _collection(part, number)
-    for number, bar in enumerate((patch for patch in axis.patches if isinstance(patch, Rectangle)), start=1):
-        (left, bottom), (right, top) = bar.get_bbox().get_points().tolist()
-        yield from _named(f"bar {number}, corners", np.array([(left, bottom), (right, top)]))
-
-
-def _collection(part: Collection, number: int) -> Iterator[tuple[str, float, float]]:
-    if isinstance(part, PathCollection):
-        yield from _named(_series(part, f"points {number}"), np.asarray(part.get_offsets(), dtype=float))
-    elif isinstance(part, PolyCollection):
-        for path in part.get_paths():
-            yield from _named(_series(part, f"band {number}") + ", outline", np.asarray(path.vertices, dtype=float))
-
-
-def _series(artist: Any, otherwise: str) -> str:
-    label = str(artist.get_label())
-    return otherwise if not label or label.startswith("_") else label
-
-
-def _named(series: str, points: np.ndarray) -> Iterator[tuple[str, float, float]]:
-    points = points[np.isfinite(points).all(axis=1)]
-    step = max(1, -(-len(points) // MOST_POINTS))
-    return ((series, x, y) for x, y in points[::step].tolist())

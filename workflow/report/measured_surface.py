@@ -6,7 +6,7 @@ from typing import Any
 from workflow.report.available import Results
 from workflow.report.drawing import draw
 from workflow.report.numbers import show, shown_unit
-from workflow.report.page import Doubt, Gate, Section, Table
+from workflow.report.page import Doubt, Section, Table
 from workflow.report.surface_picture import draw_one_spectrum, short_names
 
 JUDGED = "topography/judged.csv"
@@ -90,16 +90,6 @@ def _statistics(parameters: Mapping[str, Any], section: Section) -> None:
         )
         for key, text in names.items()
     ]
-    rms = parameters["inputs"].get("rms", {})
-    if parameters["surface"] and "b" in rms:
-        rows.append(
-            (
-                "RMS height of the waves on a cell, before the cut-off",
-                "nm",
-                "–",
-                f"{show(rms['a'])} to {show(rms['b'])}",
-            )
-        )
     ends = f"{show(one['from_q'])} to {show(one['to_q'])} /nm"
     section.blocks.append(Table(f"The measured surface, all waves from {ends}", header, rows))
     if not one["overlaps"] and len(one["measurements"]) > 1:
@@ -144,13 +134,6 @@ def _judgement(results: Results, section: Section) -> None:
             lines,
         )
     )
-    outside = [row for row in rows if row["quantity"] == "first_contact" and row["inside"] != "True"]
-    reasons = [
-        f"{row['scan']} touches first at {show(float(row['pressed']))} nm, its description says "
-        f"{show(float(row['low']))} to {show(float(row['high']))} nm"
-        for row in outside
-    ]
-    section.gates.append(Gate("pressing the scans", not reasons, reasons))
     section.files.append(JUDGED)
 
 

@@ -1,6 +1,6 @@
-"""Building blocks of the page: figures, tables, gates and sections."""
+"""Building blocks of the page: figures, tables, gates, sections and parts."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,12 +19,19 @@ class Figure:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of text cells; the first `heads` columns are row headers."""
+    """A table of text cells.
+
+    Attributes
+    ----------
+    heads : columns from the left that are row headers.
+    faint : first cells of the rows that are greyed, as their numbers are not to be trusted.
+    """
 
     caption: str
     header: Sequence[str]
     rows: Sequence[Sequence[str]]
     heads: int = 1
+    faint: Collection[str] = ()
 
 
 @dataclass(frozen=True)
@@ -34,6 +41,9 @@ class Doubt:
     text: str
 
 
+Block = Figure | Table | Doubt
+
+
 @dataclass(frozen=True)
 class Gate:
     """Whether a number can be trusted, and why not.
@@ -41,36 +51,47 @@ class Gate:
     Attributes
     ----------
     used : whether anything else on the page depends on the stage.
+    answer : whether the release on the first screen rests on it.
     """
 
     stage: str
     passed: bool
     reasons: Sequence[str] = ()
     used: bool = True
+    answer: bool = True
 
 
 @dataclass
 class Section:
-    """One part of the page."""
+    """How the numbers of one stage came about: folded on the page, but for `front`."""
 
     anchor: str
     title: str
     lead: str
     origin: str = ""
-    blocks: list[Figure | Table | Doubt] = field(default_factory=list)
+    front: list[Block] = field(default_factory=list)
+    blocks: list[Block] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     files: list[str] = field(default_factory=list)
-    gates: list[Gate] = field(default_factory=list)
 
-    def add(self, svg: str | None, caption: str, paper: str = "", wide: bool = False) -> None:
+    def add(self, svg: str | None, caption: str, paper: str = "", wide: bool = False, front: bool = False) -> None:
         """Append a figure if there was anything to draw."""
         if svg:
-            self.blocks.append(Figure(svg, caption, paper, wide))
+            (self.front if front else self.blocks).append(Figure(svg, caption, paper, wide))
 
 
-def kind(block: Figure | Table | Doubt) -> str:
+def kind(block: Block) -> str:
     """Name of a block's class, for the template."""
     return type(block).__name__.lower()
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of the parts of the page."""
+
+    anchor: str
+    title: str
+    sections: Sequence[Section]
 
 
 @dataclass(frozen=True)
@@ -79,8 +100,10 @@ class Page:
 
     scene: str
     beside_paper: bool
-    answer: dict[str, Any]
-    sections: Sequence[Section]
+    first: Any
+    parts: Sequence[Part]
+    studies: Sequence[Section]
+    light: tuple[str, str]
     gates: Sequence[Gate]
     limits: Sequence[str]
     provenance: Sequence[tuple[str, str]]

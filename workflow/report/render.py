@@ -5,22 +5,23 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from asperity.foreign_text import shown
 from asperity.foreign_yaml import load_mapping
-from workflow.report.answer import answer
 from workflow.report.available import Results
 from workflow.report.drawing import SUBSCRIPT
+from workflow.report.first import first_screen
+from workflow.report.gates import GATES, trust
 from workflow.report.glossary import TERMS, Explainer, anchor
 from workflow.report.limits import limits
 from workflow.report.live.device import switch_data
 from workflow.report.live.explorer import explorer, script_json
-from workflow.report.page import Gate, Page, Section, kind
-from workflow.report.stages import STAGES
+from workflow.report.page import Gate, Page, Part, Section, kind
+from workflow.report.stages import PARTS
 from workflow.report.studies import studies
 
 HERE = Path(__file__).parent
@@ -28,34 +29,38 @@ SCRIPTS = ("controls", "spots", "explorer", "pad", "beam", "device")
 """In the order in which they build on each other."""
 
 
-NO_ANSWER: dict[str, Any] = {"verdict": "", "method": "", "figure": None, "table": None, "cards": []}
-Part = TypeVar("Part")
+Built = TypeVar("Built")
 
 
 def render(results: Results) -> str:
     """HTML of the report; sections appear only for results that exist, and one that fails costs itself alone."""
-    sections: list[Section] = []
-    for stage in STAGES:
-        name = stage.__name__.rpartition(".")[2].replace("_", " ")
-        section = guarded(name, partial(stage.describe, results), None, sections)
-        sections += [section] if section else []
-    sections += guarded("studies", partial(studies, results), [], sections)
+    broken: list[Gate] = []
+    parts = []
+    for key, title, stages in PARTS:
+        sections: list[Section] = []
+        for stage in stages:
+            name = stage.__name__.rpartition(".")[2].replace("_", " ")
+            section = guarded(name, partial(stage.describe, results), None, broken)
+            sections += [section] if section else []
+        parts += [Part(key, title, sections)] if sections else []
     live = {
-        "surrogate": guarded("explorer", partial(explorer, results), None, sections),
-        "switch_data": guarded("live switch", partial(switch_data, results), None, sections),
+        "surrogate": guarded("explorer", partial(explorer, results), None, broken),
+        "switch_data": guarded("live switch", partial(switch_data, results), None, broken),
     }
-    said = guarded("limits", partial(limits, results), [], sections)
-    provenance = guarded("provenance", partial(_provenance, results), [], sections)
-    gates = [gate for section in sections for gate in section.gates]
-    first = guarded("first screen", partial(answer, results, gates), NO_ANSWER, sections)
+    gates = [
+        gate for build in GATES for gate in guarded("gates", partial(lambda one: [*one(results)], build), [], broken)
+    ]
+    first = guarded("first screen", partial(first_screen, results, gates), None, broken)
     page = Page(
         scene=results.scene,
         beside_paper=results.beside_paper,
-        answer=first,
-        sections=sections,
-        gates=[gate for section in sections for gate in section.gates],
-        limits=said,
-        provenance=provenance,
+        first=first,
+        parts=parts,
+        studies=guarded("studies", partial(studies, results), [], broken),
+        limits=guarded("limits", partial(limits, results), [], broken),
+        provenance=guarded("provenance", partial(_provenance, results), [], broken),
+        light=trust([*gates, *broken]),
+        gates=[*gates, *broken],
         moves=results.has("curves/spots.h5"),
         terms=list(TERMS.items()),
         files=sorted(results.paths),
@@ -77,25 +82,20 @@ def render(results: Results) -> str:
     )
 
 
-def guarded(name: str, build: Callable[[], Part], instead: Part, sections: list[Section]) -> Part:
-    """A part of the page; where it fails, `instead` and a section that says so."""
+def guarded(name: str, build: Callable[[], Built], instead: Built, broken: list[Gate]) -> Built:
+    """A part of the page; where it fails, `instead` and a gate that says so."""
     try:
         return build()
     except Exception as error:
-        sections.append(failed(name, error))
+        broken.append(failed(name, error))
         return instead
 
 
-def failed(name: str, error: Exception) -> Section:
-    """What stands on the page in place of a part that failed; the console says it, too."""
+def failed(name: str, error: Exception) -> Gate:
+    """The gate of a part that failed; the console says it, too."""
     reason = " ".join(f"{type(error).__name__}: {error}".split())[:300]
     print(f"report: {name} could not be drawn ({shown(reason)})", file=sys.stderr)
-    return Section(
-        f"failed-{name.replace(' ', '-')}",
-        name.capitalize(),
-        f"This part of the page could not be drawn ({reason}). Its numbers stand in the result files.",
-        gates=[Gate(name, False, [f"Its part of the page could not be drawn: {reason}."])],
-    )
+    return Gate(name, False, (f"This part of the page could not be drawn ({reason}).",), answer=False)
 
 
 def low(text: str) -> Markup:

@@ -3,7 +3,6 @@
 import numpy as np
 
 from workflow.report.available import Results, Row
-from workflow.report.drawing import SERIES, draw
 from workflow.report.numbers import column, number, show
 from workflow.report.page import COMPUTED, Section, Table
 
@@ -44,10 +43,6 @@ def _accuracy(tables: dict[str, list[Row]]) -> Section:
         "against",
     )
     section.blocks.append(Table("Recommended settings", header, lines, heads=2))
-    keys = ("case", "knob", "value", "error", "error_metric", "reference", "wall_s")
-    for stage, rows in tables.items():
-        section.add(error_against_time(stage, rows), f"{stage}: largest error over all outputs against run time.")
-        section.blocks.append(Table(stage, keys, [[_cell(row.get(key, "")) for key in keys] for row in rows]))
     return section
 
 
@@ -62,9 +57,6 @@ def _stability(tables: dict[str, list[Row]]) -> Section:
     )
     if failed:
         section.notes.append("Not passed: " + "; ".join(failed) + ".")
-    keys = ("case", "description", "checks", "passed", "detail", "wall_s")
-    for stage, rows in tables.items():
-        section.blocks.append(Table(stage, keys, [[_cell(row.get(key, "")) for key in keys] for row in rows]))
     return section
 
 
@@ -98,23 +90,6 @@ def recommended(stage: str, rows: list[Row]) -> list[tuple[str, ...]]:
         numbers = (show(error, 2), show(seconds, 2), show(best[1], 2), show(best[2], 2))
         lines.append((stage, knob, _cell(value), *numbers, reference))
     return lines
-
-
-def error_against_time(stage: str, rows: list[Row]) -> str | None:
-    """One line per knob."""
-    drawn = {key: points for key, points in curves(rows).items() if any(e > 0 and s > 0 for _, e, s in points)}
-    if not drawn:
-        return None
-
-    def plot(axis):
-        for number_, ((knob, _), points) in enumerate(drawn.items()):
-            shown = [(seconds, error) for _, error, seconds in points if error > 0 and seconds > 0]
-            style = "o-" if number_ < len(SERIES) else "s--"
-            axis.plot(*zip(*shown, strict=True), style, color=SERIES[number_ % len(SERIES)], markersize=4, label=knob)
-        axis.set(xscale="log", yscale="log", xlabel="run time (s)", ylabel="largest error")
-        axis.legend()
-
-    return draw(f"accuracy-{stage}", f"Error against run time of stage {stage}, by setting", plot)
 
 
 def _passed(row: Row) -> bool:

@@ -1,67 +1,124 @@
-"""What the scene says of its switch, in a sentence: when it lets go, what that hangs on, what to do next."""
+"""What the scene says of its switch: one quantity of one model, on the page, in `asperity compare` and at a run's end.
+
+It is the release, and the sticking, of the scene's electrode on the pad over all that is uncertain. Where this interval
+cannot be had, the value at central inputs stands, with the reason.
+"""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from workflow.report.available import Results
-from workflow.report.numbers import SYMBOLS, show
+from workflow.report.gates import gates_of
+from workflow.report.numbers import SYMBOLS, number, show
 from workflow.report.page import Gate
 
-Card = dict[str, str]
 NAMES = {
     "gap_cutoff_nm": ("D₀", "the pull-off of the contact, which tells D₀"),
     "bow_nm": ("bow", "the bow of the electrode at rest"),
     "tilt_nm": ("tilt", "the tilt of the electrode at rest"),
 }
-CAUSES = {"inputs": "inputs", "gap_cutoff": "D₀", "geometry": "bow and tilt", "cells": "the finite number of cells"}
-UPPER_BOUND = "; an upper bound, as the model overrates the pull of tops that were pressed flat"
-"""Of coupled mechanics: attraction does not deform the contact (docs/contact.md)."""
+CELLS = "number of cells"
 DECIDED = 0.95
 """Probability from which on a switch is said to stick, or to let go."""
+EXPLAINED = 0.5
+"""Share of the variance that the fit behind the causes must explain of switches left out, or no cause is named."""
+NO_DRAWS = "the scene draws no pads at other inputs; pad.draws: 24 would give it"
+WORKS = {"clamped": 1.0 / 3.0, "offset": 3.0}
+"""Work of the other law of attraction over that of this one, at touch (docs/contact.md)."""
+OTHER_LAW = {"clamped": "a third of", "offset": "three times"}
 
 
-def verdict(results: Results, gates: Sequence[Gate]) -> str:
-    """One sentence on release, its main cause and the next step; empty without a switch on a pad."""
+@dataclass(frozen=True)
+class Verdict:
+    """Release and sticking, and what they hang on.
+
+    Attributes
+    ----------
+    release_V : 5 %, median and 95 %, 0 where it sticks; without an interval the central value alone; None: not known.
+    stuck : probability of sticking with its 95 % interval; None without an interval.
+    no_interval : why there is none; empty where there is one.
+    causes : shares of the variance, largest first.
+    no_cause : why no cause is named; empty where they are.
+    other_law_V : release at central inputs by this law of attraction and by the other one; None where not computed.
+    next_step : what to do.
+    """
+
+    electrode: str
+    release_V: tuple[float, ...] | None
+    stuck: tuple[float, float, float] | None
+    no_interval: str
+    causes: tuple[tuple[str, float], ...]
+    no_cause: str
+    other_law_V: tuple[float, float] | None
+    next_step: str
+
+    @property
+    def outcome(self) -> str:
+        """What the switch does, in a sentence."""
+        if self.release_V is None:
+            return f"The release voltage is not known, because {self.no_interval}."
+        if self.stuck is None:
+            return f"At central inputs the switch {does(*self.release_V)}; no interval, because {self.no_interval}."
+        low, middle, high = self.release_V
+        probability = self.stuck[1]
+        if probability >= DECIDED:
+            return f"The switch sticks, with a probability of {probability:.0%}."
+        interval = f"(5 to 95\u00a0%: {volts(low)} to {volts(high)})"
+        if probability <= 1 - DECIDED:
+            return f"The switch lets go at {volts(middle)} {interval}; {probability:.0%} stick."
+        return f"Whether the switch lets go is open: {probability:.0%} stick; the median is {volts(middle)} {interval}."
+
+    @property
+    def sentence(self) -> str:
+        """Outcome and next step."""
+        return f"{self.outcome} {self.next_step}"
+
+
+def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | None:
+    """The verdict of a scene; None without a switch on a pad."""
     if not results.has("device/pad_switch.json"):
-        return ""
+        return None
     pad = results.json("device/pad_switch.json")
     answer = pad.get("answer")
+    release, stuck, no_interval, causes, no_cause = None, None, "", (), ""
     if answer:
-        said = f"{_outcome(answer['stuck'], answer['release_V'])}; {_cause(answer)}"
-    elif pad["mean"] is not None:
-        estimate = pad["estimate"]
-        said = _outcome(estimate["stuck"], estimate["release_V"])
-        said = f"At central inputs, its electrode flat on the pad: {said[0].lower()}{said[1:]}"
-        if pad["beam"]:
-            said += f"; where the electrode bends, it {_bending(pad['beam'])}"
+        release = tuple(answer["release_V"]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
+        stuck = tuple(answer["stuck"][key] for key in ("low", "value", "high"))
+        causes, no_cause = _causes(answer)
     else:
-        said = "The release voltage is not known"
-    return f"{said}; {_next(pad, gates, results.coupled)}."
+        central = pad.get("beam") or (pad["mean"] if pad.get("electrode") == "flat" else None)
+        release = (central["release_V"],) if central else None
+        no_interval = pad.get("answer_status") or NO_DRAWS
+        if release is None:
+            no_interval = "; ".join(pad["gate"]["reasons"]) or no_interval
+    failed = [
+        gate
+        for gate in (gates_of(results) if gates is None else gates)
+        if gate.used and gate.answer and not gate.passed
+    ]
+    return Verdict(
+        "bending electrode" if pad.get("electrode", "bending") == "bending" else "flat electrode",
+        release,
+        stuck,
+        no_interval,
+        causes,
+        no_cause,
+        _other_law(pad, results),
+        _next(pad, failed, no_cause, results.coupled),
+    )
 
 
-def release_cards(results: Results) -> list[Card]:
-    """Release and sticking with their intervals and with what these hold."""
-    pad = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
-    answer = pad.get("answer")
-    if answer:
-        held = ", ".join(CAUSES[row["cause"]] for row in answer["causes"] if row["share_of_variance"] > 0)
-        electrode = {"bending": "electrode that bends", "flat": "electrode flat on the pad"}[answer["electrode"]]
-        held = f"the interval holds {held}" if held else "nothing uncertain changes that"
-        return _cards(answer, electrode, held, results.coupled)
-    if not pad or pad["mean"] is None:
-        return []
-    held = f"the interval holds the {pad['cells_computed']} computed cells alone, at central inputs"
-    flat = _cards(pad["estimate"], "electrode flat on the pad", held, results.coupled)
-    if pad["beam"]:
-        flat[0]["detail"] += f"; bending, the electrode {_bending(pad['beam'])}"
-    return flat
+def volts(value: float) -> str:
+    """A release voltage in words."""
+    return "sticks" if value == 0 else f"{show(value)} V"
 
 
-def release_causes(results: Results) -> list[tuple[str, float]]:
-    """Share of the variance of the release voltage of each cause that has one, largest first."""
-    pad = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
-    rows = (pad.get("answer") or {}).get("sensitivity", [])
-    return [(symbol(row["name"]), row["share_of_variance"]) for row in rows if row["share_of_variance"] > 0]
+def does(release_V: float) -> str:
+    """What a switch does, as a verb."""
+    return "sticks" if release_V == 0 else f"lets go at {show(release_V)} V"
 
 
 def symbol(name: str) -> str:
@@ -69,63 +126,59 @@ def symbol(name: str) -> str:
     return NAMES[name][0] if name in NAMES else SYMBOLS.get(name, name)
 
 
-def _cards(states: dict[str, Any], electrode: str, held: str, coupled: bool) -> list[Card]:
-    release, stuck = states["release_V"]["quantiles"], states["stuck"]
-    detail = f"median, {electrode}; 5 to 95 %: {show(release['0.05'])} to {show(release['0.95'])} V, 0 where it sticks"
-    if not any(release.values()):
-        detail = f"{electrode}; 5 to 95 %: sticks"
-    share = f"95 %: {stuck['low']:.0%} to {stuck['high']:.0%}, from {stuck['samples']} switches"
-    share += UPPER_BOUND * (coupled and stuck["value"] > 0)
-    return [
-        {"title": "Release", "value": _volts(release["0.5"]), "detail": f"{detail}; {held}"},
-        {"title": "Probability of sticking", "value": f"{stuck['value']:.0%}", "detail": f"{electrode}; {share}"},
-    ]
+def _causes(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]:
+    """Shares of the variance by cause, and why none is named."""
+    cells = next(row for row in answer["causes"] if row["cause"] == "cells")
+    rows = [*((symbol(row["name"]), row["share_of_variance"]) for row in answer["sensitivity"])]
+    rows = [(name, share) for name, share in [*rows, (CELLS, cells["share_of_variance"])] if share > 0]
+    if not rows:
+        return (), f"all {answer['design']['points']} computed combinations of what is uncertain do the same"
+    explained = explained_share(answer)
+    if explained < EXPLAINED:
+        return (), f"the fit of the release explains {max(explained, 0):.0%} of the variance of switches left out"
+    return tuple(sorted(rows, key=lambda row: -row[1])), ""
 
 
-def _volts(value: float) -> str:
-    return "sticks" if value == 0 else f"{show(value)} V"
+def explained_share(answer: dict[str, Any]) -> float:
+    """Share of the release's variance over the design, less that of the cells, which the fit explains."""
+    variance = next(
+        (
+            row["deviation_V"] ** 2 / row["share_of_variance"]
+            for row in answer["causes"]
+            if row["share_of_variance"] > 0
+        ),
+        0.0,
+    )
+    design = answer["design"]
+    variance -= design["cells_error_V"] ** 2
+    return 1.0 - design["response_error_V"] ** 2 / variance if variance > 0 else float("-inf")
 
 
-def _outcome(stuck: dict[str, Any], release: dict[str, Any]) -> str:
-    if stuck["value"] >= DECIDED:
-        return "The switch sticks"
-    low, high = (show(release["quantiles"][q]) for q in ("0.05", "0.95"))
-    volts = f"{show(release['quantiles']['0.5'])} V (5 to 95 %: {low} to {high} V)"
-    if stuck["value"] <= 1 - DECIDED:
-        return f"The switch lets go at {volts}"
-    return f"Whether the switch lets go is open: it sticks with a probability of {stuck['value']:.0%}, median {volts}"
+def _other_law(pad: dict[str, Any], results: Results) -> tuple[float, float] | None:
+    found = {round(row["times"], 3): number(row["release_V"]) for row in pad.get("by_attraction", [])}
+    here, other = (
+        found.get(round(times, 3), np.nan) for times in (1.0, WORKS.get(results.contact.get("attraction", ""), 0))
+    )
+    return (here, other) if np.isfinite([here, other]).all() else None
 
 
-def _bending(beam: dict[str, Any]) -> str:
-    return "sticks, too" if beam["stuck"] else f"lets go at {show(beam['release_V'])} V"
-
-
-def _cause(answer: dict[str, Any]) -> str:
-    largest = max(answer["causes"], key=lambda row: row["share_of_variance"])
-    if largest["share_of_variance"] == 0:
-        return f"it does so in all {answer['design']['points']} computed combinations of inputs, D₀, bow and tilt"
-    if largest["cause"] == "cells" or not answer["sensitivity"]:
-        return f"{largest['share_of_variance']:.0%} of the spread is {CAUSES[largest['cause']]}"
-    first = answer["sensitivity"][0]
-    return f"{first['share_of_variance']:.0%} of the spread comes from {symbol(first['name'])}"
-
-
-def _next(pad: dict[str, Any], gates: Sequence[Gate], coupled: bool) -> str:
-    failed = [gate for gate in gates if gate.used and not gate.passed]
+def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: bool) -> str:
     if failed:
-        return f"before anything else, mend what failed: {', '.join(gate.stage for gate in failed)} (reasons below)"
+        return f"Mend first what failed: {', '.join(gate.stage for gate in failed)}."
     answer = pad.get("answer")
-    if answer:
-        cells = next(row["share_of_variance"] for row in answer["causes"] if row["cause"] == "cells")
-        rows = answer["sensitivity"]
-        if answer["stuck"]["value"] == 1.0 and coupled:
-            return "its adhesion is an upper bound, so measure a pull-off force next (target calibrate)"
-        if answer["stuck"]["value"] == 1.0:
-            return "no better measurement would free it, a stiffer or shorter beam might"
-        if not rows or cells > rows[0]["share_of_variance"]:
-            return "compute more cells next (pad.cells)"
-        what = NAMES[rows[0]["name"]][1] if rows[0]["name"] in NAMES else f"{symbol(rows[0]['name'])} better"
-        return f"next, measure {what}: known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}"
-    if pad["mean"] is not None and 1 - DECIDED < pad["estimate"]["stuck"]["value"] < DECIDED:
-        return "compute more cells next (pad.cells)"
-    return "next, measure the bow of the electrode, which decides how much of it lands"
+    if not answer:
+        return "The interval comes first." if pad["mean"] is not None else ""
+    if answer["stuck"]["value"] == 1.0:
+        return (
+            "Measure a pull-off force next (target calibrate)."
+            if coupled
+            else "No better measurement would free it; a stiffer or shorter beam might."
+        )
+    rows = answer["sensitivity"]
+    cells = next(row["share_of_variance"] for row in answer["causes"] if row["cause"] == "cells")
+    if not rows or cells > rows[0]["share_of_variance"]:
+        return "Compute more cells next (pad.cells)."
+    if no_cause:
+        return ""
+    what = NAMES[rows[0]["name"]][1] if rows[0]["name"] in NAMES else f"{symbol(rows[0]['name'])} better"
+    return f"Measure next {what}: known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}."

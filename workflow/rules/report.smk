@@ -17,7 +17,6 @@ def report_inputs():
     ]
     files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "law.csv")]
     files += ["pad/inputs.csv", "pad/curves.csv", "pad/adhesion.csv", "device/pad_switch.json"]
-    files += [f"pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS]
     if ADHESION.pads > 0:
         files += ["adhesion/summary.csv"]
     if needed("hardness"):

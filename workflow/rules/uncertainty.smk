@@ -1,4 +1,4 @@
-from mesoscale.uncertainty.chunks import full_chunks
+from mesoscale.uncertainty.chunks import MOST_REPEATED, full_chunks
 
 DIRECT_CHUNKS = full_chunks(SCENE.uncertainty.direct_runs)
 # more runs add files and leave these as they are
@@ -40,11 +40,35 @@ rule compute_direct_runs:
         "../scripts/compute_direct_runs.py"
 
 
+# Scatter between surfaces, apart from what the inputs explain
+rule repeat_direct_runs:
+    input:
+        **SURFACE,
+        inputs=f"{RESULTS}/inputs.csv",
+    output:
+        f"{RESULTS}/uq/again.csv",
+    log:
+        f"{RESULTS}/logs/repeat_direct_runs.log",
+    priority: 1
+    threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
+    params:
+        contact=settings("contact"),
+        law=settings("law"),
+        bounds=(0, min(MOST_REPEATED, SCENE.uncertainty.direct_runs)),
+    message:
+        "repeat direct contact cycles on other surfaces"
+    script:
+        "../scripts/compute_direct_runs.py"
+
+
 rule propagate_uncertainty:
     input:
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
         direct=DIRECT,
+        again=rules.repeat_direct_runs.output if DIRECT else [],
         table2=str(CONFIG / "paper" / "table2.csv"),
     output:
         outputs=report(f"{RESULTS}/uq/outputs.csv", caption="../captions/outputs.rst", category="Uncertainty"),
@@ -58,6 +82,8 @@ rule propagate_uncertainty:
     params:
         settings=settings("uncertainty"),
         law=settings("law"),
+        max_force_nN=SCENE.contact.max_force_nN,
+        length_nm=SCENE.contact.length_nm,
     message:
         "propagate the uncertainty of the inputs"
     script:

@@ -1,18 +1,23 @@
 """Compute a chunk of direct contact cycles and keep their law.
 
-In: inputs.csv.  Out: uq/direct/chunk_NNN.csv (inputs, seed, parameters of both branches, statuses).
+In: inputs.csv.  Out: uq/direct/chunk_NNN.csv, or uq/again.csv with the same inputs on other surfaces (inputs, seed,
+parameters of both branches, statuses).
 """
 
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import LawSettings
-from mesoscale.uncertainty.designs import random_runs
+from mesoscale.uncertainty.designs import FIRST_RANDOM_SEED, FIRST_SECOND_SURFACE, random_runs
 from mesoscale.uncertainty.runs import compute_rows
 from workflow.contact_settings import contact_settings
 from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
-    runs = random_runs(from_rows(load_csv(snakemake.input.inputs)), *snakemake.params.bounds)
+    runs = random_runs(
+        from_rows(load_csv(snakemake.input.inputs)),
+        *snakemake.params.bounds,
+        first_surface=FIRST_SECOND_SURFACE if snakemake.rule == "repeat_direct_runs" else FIRST_RANDOM_SEED,
+    )
     contact = contact_settings(snakemake.params.contact, snakemake)
     law = settings_from_job(LawSettings, snakemake.params.law)
     write_csv(snakemake.output[0], compute_rows(runs, contact, law, run.progress))

@@ -1,6 +1,6 @@
 """Propagate the inputs' uncertainty through the responses and validate these.
 
-In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, the paper's Table 2.
+In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, uq/again.csv, the paper's Table 2.
 Out: uq/outputs.csv (Table 2), uq/surrogate.json, uq/samples.csv, uq/validation.csv (nm, GPa/nm, GPa).
 """
 
@@ -29,7 +29,8 @@ with job(snakemake) as run:
 
     result = propagate(nodes, table, settings, direct)
     write_csv(snakemake.output.outputs, output_rows(nodes, result, paper, table2(paper_rows, exchanged=True)))
-    constants = {"rho_a_nm": law.rho_a_nm, "alpha_nm": law.shield_nm}
+    most_GPa = snakemake.params.max_force_nN / snakemake.params.length_nm**2  # 1 GPa nm^2 = 1 nN
+    constants = {"rho_a_nm": law.rho_a_nm, "alpha_nm": law.shield_nm, "most_GPa": most_GPa}
     write_json(
         snakemake.output.surrogate,
         surrogate_json(result, nodes, table, settings, constants, paper),
@@ -39,4 +40,6 @@ with job(snakemake) as run:
     values = np.hstack([result.samples, result.outputs]).tolist()
     write_csv(snakemake.output.samples, (dict(zip(names, line, strict=True)) for line in values))
 
-    write_csv(snakemake.output.validation, validation_rows(direct, nodes, table, result, settings))
+    repeated = (row for path in snakemake.input.again for row in load_csv(path))
+    again = direct_runs_of_rows(repeated, table.names, settings.direct_runs)[1]
+    write_csv(snakemake.output.validation, validation_rows(direct, nodes, table, result, settings, again, most_GPa))

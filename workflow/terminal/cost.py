@@ -24,7 +24,7 @@ from mesoscale.settings import ContactSettings, HistorySettings
 from mesoscale.settings.contact import NOMINAL_LOADS_NN
 from mesoscale.settings.history import DWELL_STEPS
 from mesoscale.settings.pad import CELLS_PER_JOB, DRAWS_PER_JOB
-from mesoscale.uncertainty.chunks import CHUNK_RUNS, collocation_run_count
+from mesoscale.uncertainty.chunks import CHUNK_RUNS, MOST_REPEATED, collocation_run_count
 from workflow.scene import Scene
 
 TIMES = Path(".snakemake/asperity_seconds.json")
@@ -213,6 +213,7 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     "compute_nominal": lambda c, _: 0.5 + c.cycles_s(len(NOMINAL_LOADS_NN)),
     "compute_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, _design_runs(c))),
     "compute_direct_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, c.scene.uncertainty.direct_runs)),
+    "repeat_direct_runs": lambda c, _: c.cycles_s(min(MOST_REPEATED, c.scene.uncertainty.direct_runs)),
     "fit_law": lambda c, _: 0.01 * _design_runs(c),
     "propagate_uncertainty": lambda c, _: 0.5 + 0.0082 * c.scene.uncertainty.direct_runs,
     "observe_cycles": lambda c, _: c.cycles_s(min(CHUNK_RUNS, c.scene.measurements.runs)),

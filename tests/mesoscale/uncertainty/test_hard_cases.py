@@ -79,7 +79,7 @@ def _answer(
     return Answer(
         output_rows(given, result, {}, {})[place],
         ranked[place * len(table.rows) : (place + 1) * len(table.rows)],
-        validation_rows((x, y), given, table, result, settings)[place],
+        validation_rows((x, y), given, table, result, settings, np.empty((0, len(FITTED))), 0.007)[place],
         sum(response is not None for response in result.responses),
     )
 

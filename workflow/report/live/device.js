@@ -1,5 +1,5 @@
 "use strict";
-// Sliders of the switch: its voltages on the curves of the pad, flat and bending.
+// Sliders of the switch: its voltages on the mean curves of the pad.
 (() => {
   const holder = document.getElementById("switch_data");
   if (!holder) return;
@@ -10,52 +10,44 @@
   document.getElementById("switch-live").hidden = false;
   const sliders = data.sliders.map((slider) => labelled(form, slider, update));
   addReset(form, "Back to this scene", update);
-  const PADS = 100; // a share is known to 5 % at worst
   let waiting = 0;
+  document.getElementById("what-if").addEventListener("toggle", update); // folded, it computes nothing
   update();
 
   function update() {
-    const chosen = Object.fromEntries(sliders.map(({ read, name }) => [name, read()]));
-    const parts = switchOf(data.device, chosen);
-    const { mean, resampled } = PadLaw.read(data.curves, chosen.adhesion);
-    const said = [];
-    const hold = data.device.hold_voltage_V;
-    const found = { flat: attempt(() => solveOnPad(parts.plate, mean, hold), said), stuck: "…", beam: "…" };
-    const tell = () => {
-      fill(found);
-      status.textContent = [...new Set(said)].join(" ");
-    };
-    const later = (work, next) => { waiting = setTimeout(() => { work(); tell(); next?.(); }, 150); };
-    tell();
     clearTimeout(waiting);
+    if (!document.getElementById("what-if").open) return;
+    const chosen = Object.fromEntries(sliders.map(({ read, name }) => [name, read()]));
+    fill("…");
     // what takes longer than a frame waits until the sliders rest
-    later(() => { found.stuck = found.flat && share(stickingShare(parts.plate, resampled(PADS), hold)); },
-      data.bends && (() => later(() => { found.beam = attempt(() => solveBeam(parts.beam, mean), said); })));
+    waiting = setTimeout(() => {
+      const parts = switchOf(data.device, chosen);
+      const law = PadLaw.read(data.curves, chosen.adhesion);
+      const solve = () => (data.bends ? solveBeam(parts.beam, law) : solveOnPad(parts.plate, law, data.device.hold_voltage_V));
+      status.textContent = "";
+      fill(attempt(solve));
+    }, 150);
   }
 
-  function attempt(solve, said) {
+  function attempt(solve) {
     try {
       return solve();
     } catch (error) {
       if (!(error instanceof OutOfRange)) throw error;
-      said.push(`No number: ${error.message}.`);
+      status.textContent = `No number: ${error.message}.`;
       return null;
     }
   }
 
-  function fill({ flat, stuck, beam }) {
-    const volts = (state) => (state.stuck ? "sticks" : `${shown(state.release_V)} V`);
-    const bent = (tell) => (typeof beam === "string" ? beam : beam && tell(beam));
+  function fill(state) {
+    const tell = (words) => (typeof state === "string" ? state : state && words(state));
     const rows = [
-      ["pull-in", flat && `${shown(flat.pull_in_V)} V`, bent((state) => `${shown(state.pull_in_V)} V`)],
-      ["release", flat && volts(flat), bent(volts)],
-      ["probability of sticking", stuck, "not computed"],
-      ["pressure while held", flat && `${shown(flat.hold_MPa)} MPa`, "not computed"],
-      ["largest net adhesion on opening", flat && `${shown(flat.deepest_net_kPa)} kPa`, "not computed"],
-      ["landed while held", flat && "100 %", bent((state) => share(state.landed_share))],
+      ["pull-in", tell(({ pull_in_V }) => `${shown(pull_in_V)} V`)],
+      ["release", tell(({ stuck, release_V }) => (stuck ? "sticks" : `${shown(release_V)} V`))],
+      data.bends
+        ? ["landed while held", tell(({ landed_share }) => `${shown(100 * landed_share)} %`)]
+        : ["pressure while held", tell(({ hold_MPa }) => `${shown(hold_MPa)} MPa`)],
     ];
-    body.replaceChildren(...rows.map(([head, ...cells]) => tableRow(head, data.bends ? cells : cells.slice(0, 1))));
+    body.replaceChildren(...rows.map(([head, cell]) => tableRow(head, [cell])));
   }
-
-  function share(value) { return value === null ? null : `${shown(100 * value)} %`; }
 })();

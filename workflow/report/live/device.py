@@ -18,8 +18,6 @@ from workflow.report.numbers import column
 WIDEST = 3.0
 """A slider reaches from a third of the scene's value to three times it."""
 LARGEST_BOW_NM = 500.0
-GROUPS = 12
-"""Of cells, drawn with replacement for the probability of sticking."""
 
 
 def switch_data(results: Results) -> dict[str, Any] | None:
@@ -47,7 +45,7 @@ def switch_data(results: Results) -> dict[str, Any] | None:
 
 
 def _curves(results: Results, contact: ContactSettings) -> dict[str, Any]:
-    """The mean pad, and groups of its cells (fewer where a cell's file is not at hand)."""
+    """The mean pad."""
     rows = results.csv("pad/curves.csv")
     closing = [row for row in rows if row["branch"] == "closing"][::-1]
     separation = column(closing, "separation_nm")
@@ -60,28 +58,12 @@ def _curves(results: Results, contact: ContactSettings) -> dict[str, Any]:
         "separation_nm": _packed(separation),
         "depth_nm": _packed(np.array(depths)),
         "mean": _packed(np.concatenate(mean)),
-        "groups": [_packed(values, "<f4") for values in _groups(results, contact.length_nm**2)],
         "flats": asdict(flats_of(*contact_of(medians(results.csv("inputs.csv")), contact))),
     }
 
 
-def _groups(results: Results, area_nm2: float) -> list[np.ndarray]:
-    """Mean pressures (GPa) of groups of cells in the order of the mean pad's."""
-    files = [results.h5(name)[0]["cells"] for name in results.matching("pad/cells/", ".h5")]
-    if not files:
-        return []
-    closing, opening = (np.concatenate([cells[f"{branch}_nN"] for cells in files]) for branch in ("closing", "opening"))
-    groups = np.array_split(np.arange(len(closing)), min(GROUPS, len(closing)))
-    packed = []
-    for members in groups:
-        parts = [closing[members].mean(axis=0)[:, ::-1]]
-        parts += [branch[:, np.isfinite(branch[0])][:, ::-1] for branch in opening[members].mean(axis=0)[::-1]]
-        packed.append(np.concatenate([part.ravel() for part in parts]) / area_nm2)
-    return packed
-
-
-def _packed(values: np.ndarray, kind: str = "<f8") -> str:
-    return base64.b64encode(values.astype(kind).tobytes()).decode()
+def _packed(values: np.ndarray) -> str:
+    return base64.b64encode(values.astype("<f8").tobytes()).decode()
 
 
 def _slider(name: str, label: str, unit: str, value: float) -> dict[str, Any]:

@@ -10,8 +10,8 @@
   const outputs = Object.fromEntries(data.outputs.map((output) => [output.name, output]));
   const names = ["d_c_nm", "C_a_GPa_nm", "C_r_GPa", "rho_r_nm"];
   const branches = ["closing", "opening"];
-  const HIGHEST = 15; // MPa, as in the figure of the first screen
-  const READ = 6; // MPa, the pressure whose separation the table gives
+  const HIGHEST = 1e3 * data.law.most_GPa; // MPa, as far as the law was fitted
+  const READ = Math.min(6, HIGHEST); // MPa, the pressure whose separation the table gives
   const draws = scatter(data.scatter, 300);
 
   document.getElementById("live").hidden = false;
@@ -21,6 +21,7 @@
   });
   addReset(form, "Back to the middle", update);
   addEventListener("resize", update);
+  document.getElementById("explorer").addEventListener("toggle", update); // folded, it has no width
   update();
 
   function legendre(n, u) {
@@ -88,7 +89,6 @@
       ? `The response leaves its physical range here (${broken.join(" and ")}): no curve.`
       : draws.length ? "" : "No band: fewer than 20 direct runs of this scene gave a law.";
     drawLaw(shown, hamaker);
-    drawWell(shown, hamaker);
     fill(both, hamaker);
   }
 
@@ -102,17 +102,6 @@
     const panel = axes("chart", [Math.max(from - pad, 0), to + 2 * pad], [-0.05 * HIGHEST, HIGHEST],
       ["mean separation (nm)", "contact pressure (MPa)"]);
     for (const law of shown) curve(panel, law, (s, one) => pressure(s, one, hamaker));
-  }
-
-  function drawWell(shown, hamaker) {
-    const onset = data.law.rho_a_nm;
-    const kPa = (x, law) => 1e3 * pressure(law[0] + x, law, hamaker);
-    const back = shown.map(({ mean }) => separation(0, mean, hamaker) - mean[0]);
-    const reach = [1.5 * Math.min(0, ...back) - 0.1 * onset, 1.3 * onset];
-    const depth = Math.max(1e-6, ...shown.flatMap(({ mean, cells }) =>
-      [-kPa(0, mean), ...(cells.length ? [-quantile(cells.map((law) => kPa(0, law)), 0.16)] : [])]));
-    const panel = axes("well", reach, [-1.15 * depth, 0.4 * depth], ["mean separation less d_c (nm)", "contact pressure (kPa)"]);
-    for (const law of shown) curve(panel, law, kPa);
   }
 
   function curve({ x, y, grid, group }, { branch, mean, cells }, value) {
@@ -132,10 +121,16 @@
     const rows = [["d_c (nm)", (law) => law[0]], ["C_a (10⁻⁵ GPa/nm)", (law) => 1e5 * law[1]],
       ["C_r (10⁻⁴ GPa)", (law) => 1e4 * law[2]], ["ρ_r (nm)", (law) => law[3]],
       [`separation at ${READ} MPa (nm)`, (law) => (usable(law) ? separation(READ, law, hamaker) : NaN)]];
-    body.replaceChildren(...rows.map(([label, value]) => tableRow(label, both.map(({ mean, cells }) => {
-      const ends = cells.length ? [0.16, 0.84].map((q) => show(quantile(cells.map(value), q))) : [];
-      return show(value(mean)) + (ends.length ? ` [${ends.join(", ")}]` : "");
-    }))));
+    const repels = data.faint.includes("C_r_GPa") || data.faint.includes("rho_r_nm");
+    body.replaceChildren(...rows.map(([label, value], k) => {
+      const row = tableRow(label, both.map(({ mean, cells }) => {
+        const ends = cells.length ? [0.16, 0.84].map((q) => show(quantile(cells.map(value), q))) : [];
+        return show(value(mean)) + (ends.length ? ` [${ends.join(", ")}]` : "");
+      }));
+      row.classList.toggle("faint", k < names.length ? data.faint.includes(names[k]) : repels);
+      return row;
+    }));
+    document.getElementById("chart").classList.toggle("faint", repels);
   }
 
   function show(value) { return Number.isFinite(value) ? value.toPrecision(3).replace("-", "−") : "–"; }

@@ -8,6 +8,7 @@ import numpy as np
 from mesoscale.inputs.definitions import definition
 from mesoscale.law.parameters import PARAMETERS
 from workflow.report.available import Results
+from workflow.report.gates import faint_outputs
 from workflow.report.numbers import shown_unit
 
 SURROGATE_KEYS = ("name", "transform", "terms", "below")
@@ -31,7 +32,13 @@ def explorer(results: Results) -> dict[str, Any] | None:
         for row in surrogate["inputs"]
     ]
     outputs = [{key: output[key] for key in SURROGATE_KEYS if key in output} for output in surrogate["outputs"]]
-    return {"inputs": inputs, "outputs": outputs, "law": surrogate["law"], "scatter": _scatter(surrogate["scatter"])}
+    return {
+        "inputs": inputs,
+        "outputs": outputs,
+        "law": surrogate["law"],
+        "scatter": _scatter(surrogate["scatter"]),
+        "faint": [name for name in PARAMETERS if {name, f"delta_{name}"} & faint_outputs(results).keys()],
+    }
 
 
 def _label(name: str) -> str:

@@ -4,8 +4,8 @@ const VACUUM_PERMITTIVITY = 8.8541878128e-12; // F/m, CODATA 2018
 const PAD_FLOOR_GPa = 1e-13; // repulsion of 0.1 Pa counts as none
 const PAD_POINTS = 400;
 
-function numbersOf(text, kind) { // base64 of floats
-  return Float64Array.from(new kind(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer));
+function numbersOf(text) { // base64 of floats
+  return new Float64Array(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer);
 }
 
 function placeOf(sorted, x) { // number of entries below x
@@ -51,21 +51,9 @@ class PadLaw {
     this.far = separation[separation.length - 1];
   }
 
-  static read(data, adhesion) { // the mean pad, and pads of groups of cells drawn with replacement
-    const [separation, depth, mean] = [data.separation_nm, data.depth_nm, data.mean].map((text) => numbersOf(text, Float64Array));
-    const groups = data.groups.map((text) => numbersOf(text, Float32Array));
-    const law = (values) => new PadLaw(separation, depth, values, data.flats, adhesion);
-    let state = 1; // fixed sequence (Park and Miller 1988): the same pads at the same inputs
-    const pick = () => { state = (16807 * state) % 2147483647; return groups[state % groups.length]; };
-    const drawn = () => {
-      const sum = new Float64Array(mean.length);
-      for (let k = 0; k < groups.length; k++) {
-        const group = pick();
-        for (let i = 0; i < sum.length; i++) sum[i] += group[i] / groups.length;
-      }
-      return law(sum);
-    };
-    return { mean: law(mean), resampled: (count) => (groups.length ? Array.from({ length: count }, drawn) : []) };
+  static read(data, adhesion) { // the mean pad
+    const [separation, depth, mean] = [data.separation_nm, data.depth_nm, data.mean].map(numbersOf);
+    return new PadLaw(separation, depth, mean, data.flats, adhesion);
   }
 
   flats(s) { return -this.hamaker / (6 * Math.PI * (Math.max(s, 1) + this.offset) ** 3); }
@@ -156,13 +144,4 @@ function solveOnPad(plate, law, hold_V) {
     stuck: release <= 0,
     deepest_net_kPa: -Math.min(...net) * 1e6,
   };
-}
-
-function stickingShare(plate, laws, hold_V) { // of pads; null where one of them leaves its curves, or there is none
-  try {
-    return laws.length ? laws.filter((law) => solveOnPad(plate, law, hold_V).stuck).length / laws.length : null;
-  } catch (error) {
-    if (!(error instanceof OutOfRange)) throw error;
-    return null;
-  }
 }

@@ -1,7 +1,6 @@
-"""What the page says about each stage: its text, figures, tables, gates and files.
+"""What the page says about each stage: its text, figures, tables and files.
 
 Every module offers `describe(results) -> Section | None`; None where the scene has no results of the stage.
-`law` has no section: its curve opens the page, its fits and its gate belong to `contact`.
 """
 
 from workflow.report.stages import (
@@ -20,19 +19,8 @@ from workflow.report.stages import (
     uncertainty,
 )
 
-# in the order of the data's flow
-STAGES = (
-    inputs,
-    calibration,
-    hardness,
-    elastic,
-    topography,
-    contact,
-    uncertainty,
-    sensitivity,
-    model_form,
-    pad,
-    adhesion,
-    device,
-    history,
+PARTS = (
+    ("switch", "The switch", (pad, device, adhesion, history)),
+    ("contact", "The contact", (contact, uncertainty, sensitivity, model_form)),
+    ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

@@ -1,12 +1,8 @@
 """What measurements say about the inputs: prior and posterior, what each taught, what to measure next."""
 
-import numpy as np
-from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
-
 from workflow.report.available import Results
-from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
-from workflow.report.numbers import SYMBOLS, column, number, show
-from workflow.report.page import COMPUTED, Gate, Section, Table
+from workflow.report.numbers import SYMBOLS, number, show
+from workflow.report.page import COMPUTED, Section, Table
 
 
 def describe(results: Results) -> Section | None:
@@ -22,7 +18,6 @@ def describe(results: Results) -> Section | None:
         "of the model, and its responses count with their own error.",
         COMPUTED,
     )
-    section.gates.append(Gate("calibration", bool(gate["passed"]), [*gate["reasons"], *posterior["remarks"]]))
     section.files += [f"calibration/{name}" for name in ("posterior.json", "samples.csv", "summary.csv", "learned.csv")]
     if not gate["passed"]:
         section.notes.append("The chain has not converged, so there is no posterior.")
@@ -44,7 +39,6 @@ def describe(results: Results) -> Section | None:
     ]
     header = ("input", "prior, median and 5 to 95 %", "posterior", "learned (bits)")
     section.blocks.append(Table("Inputs before and after the measurements", header, lines))
-    section.add(prior_and_posterior(results), "Inputs before (orange) and after (blue) the measurements.", wide=True)
     lines = [
         (
             row["kind"].replace("_", " "),
@@ -69,7 +63,6 @@ def describe(results: Results) -> Section | None:
     ]
     header = ("quantity", "before, median and 5 to 95 %", "after")
     section.blocks.append(Table("What the next surface and the next switch show", header, lines))
-    section.add(predicted_curves(results), "Closing and opening (dashed) of the next surface, 5 to 95 %.")
     section.blocks.append(_next(results, "next.csv", "What to measure next, for the lumped switch"))
     on_pad = results.has("calibration/next_on_pad.csv") and results.csv("calibration/next_on_pad.csv")
     if on_pad and number(on_pad[0]["width_now_V"]) > 0:
@@ -117,45 +110,3 @@ def _percent(row: dict[str, str]) -> str:
 
 def _interval(row: dict[str, str], state: str) -> str:
     return f"{show(row[f'{state}_q50'])} [{show(row[f'{state}_q05'])}, {show(row[f'{state}_q95'])}]"
-
-
-def prior_and_posterior(results: Results) -> str:
-    """Medians and 90 % intervals of all inputs, each on the scale of its prior."""
-    rows = results.csv("calibration/summary.csv")
-
-    def plot(axis):
-        for place, row in enumerate(rows):
-            low, high = number(row["prior_q05"]), number(row["prior_q95"])
-            for state, shift, color in (("prior", -0.15, ORANGE), ("posterior", 0.15, BLUE)):
-                ends = [(number(row[f"{state}_{q}"]) - low) / ((high - low) or 1) for q in ("q05", "q50", "q95")]
-                axis.plot([ends[0], ends[2]], 2 * [place + shift], color=color)
-                axis.plot(ends[1], place + shift, "o", color=color, markersize=4)
-        axis.set(yticks=np.arange(len(rows)), ylim=(len(rows) - 0.5, -0.5))
-        axis.set(xlabel="share of the prior's 90 % interval")
-        axis.set_yticklabels([SYMBOLS.get(row["parameter"], row["parameter"]) for row in rows])
-        for edge in (0, 1):
-            axis.axvline(edge, color=SOFT, linewidth=0.8)
-
-    return draw("calibrated", "Prior and posterior of the inputs", plot, (5.2, 3.2))
-
-
-def predicted_curves(results: Results) -> str:
-    """Separation against net force of the next surface, before and after."""
-    rows = results.csv("calibration/predictive.csv")
-
-    def plot(axis):
-        for branch, style in (("closing", "-"), ("opening", "--")):
-            part = [row for row in rows if row["quantity"] == f"{branch} separation"]
-            force = column(part, "force_nN")
-            for state, color in (("prior", ORANGE), ("posterior", BLUE)):
-                axis.plot(column(part, f"{state}_q50"), force, style, color=color, label=f"{state}, {branch}")
-                if branch == "closing":
-                    low, high = column(part, f"{state}_q05"), column(part, f"{state}_q95")
-                    axis.fill_betweenx(force, low, high, color=color, alpha=0.2, linewidth=0)
-        axis.set(yscale="log", xlabel="mean separation (nm)", ylabel="net force (nN)")
-        axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axis.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-        axis.yaxis.set_minor_formatter(NullFormatter())
-        axis.legend()
-
-    return draw("predicted", "Curves of the next surface before and after the measurements", plot)

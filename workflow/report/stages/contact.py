@@ -6,7 +6,7 @@ from workflow.report.available import Results
 from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, SOFT, draw
 from workflow.report.live.spots import spots_picture
 from workflow.report.numbers import number, show
-from workflow.report.page import COMPUTED, Gate, Section, Table
+from workflow.report.page import COMPUTED, Section, Table
 from workflow.report.stages import law
 
 MODELS = {
@@ -14,30 +14,45 @@ MODELS = {
     "nonlinear": ("non-linear elastic", "--"),
     "plastic": ("asperity plasticity", "-"),
 }
+CHOICES = {
+    "mechanics": "mechanics",
+    "attraction": "law of the attraction",
+    "gap_cutoff_nm": "D₀ of the attraction (nm)",
+    "touching_attracts": "sites in contact attract",
+    "convention": "slope convention",
+    "q1_per_nm": "short-wave cut-off (1/nm)",
+}
+OF_SINGLE_ASPERITIES = {
+    "prefactor": "Hertz prefactor",
+    "radius": "asperity radius",
+    "area": "contact area",
+    "flow_pair": "pair of Gaussians",
+}
+"""Asperities that feel each other have neither a radius nor a shape of flow."""
 
 
 def describe(results: Results) -> Section | None:
-    """Figures 4 and 11, and the readings in use."""
+    """The picture of the contact, figures 4 and 11, and the choices in use."""
     if not results.has("curves/nominal.h5"):
         return None
     reading, coupled = results.contact, results.coupled
     section = Section(
         "curves",
-        "Contact curves at central inputs",
-        f"Closing and opening of one surface of {reading['length_nm']:g} nm with {reading['pixels']}² "
-        "grid points at central inputs.",
+        "Curves of one cell at central inputs",
+        f"Closing and opening of one surface of {reading['length_nm']:g} nm with {reading['pixels']}² grid points.",
         COMPUTED,
     )
     section.add(
         spots_picture(results),
-        "The surface seen from the flat, and where the flat has reached it while closing: in orange what the last step "
-        "added. The surface is shown as it was before contact; what gave way is in the curves below.",
+        "One cell seen from the flat, and where the flat has reached it; in orange what the last step added.",
+        front=True,
     )
     section.add(
         nominal_models(results),
-        f"Three models of {'coupled asperities' if coupled else 'the single asperity'}. Elastic and non-linear "
-        "elastic contacts reopen along their closing line; plastic ones do not.",
+        f"Three models of {'coupled asperities' if coupled else 'the single asperity'}. Elastic contacts reopen along "
+        "their closing line; plastic ones do not.",
         "Figure 4",
+        front=True,
     )
     section.add(
         nominal_loads(results),
@@ -45,28 +60,13 @@ def describe(results: Results) -> Section | None:
         "Figure 11",
         wide=True,
     )
-    words = {
-        "mechanics": "mechanics",
-        "convention": "slope convention",
-        "q1_per_nm": "short-wave cut-off (1/nm)",
-        "touching_attracts": "sites in contact attract",
-        "attraction": "law of the attraction",
-        "gap_cutoff_nm": "D₀ of the attraction (nm)",
-    }
-    if not coupled:  # asperities that feel each other have neither a radius nor a shape of flow
-        words |= {
-            "prefactor": "Hertz prefactor",
-            "radius": "asperity radius",
-            "area": "contact area",
-            "flow_pair": "pair of Gaussians",
-        }
     chosen = {**reading, **reading["reading"]}
+    words = CHOICES if coupled else CHOICES | OF_SINGLE_ASPERITIES
     used = [(label, _in_words(value)) for key, label in words.items() if (value := chosen.get(key)) is not None]
     if used:
         caption = "Readings of the paper in use" if results.beside_paper else "Choices of the contact model"
         section.blocks.append(Table(caption, ("choice", "value"), used))
     section.files += ["curves/nominal.h5", "law/nominal.csv"]
-    section.gates += [_gate(results), *law.gates(results)]
     return section
 
 
@@ -149,9 +149,3 @@ def _total(curve: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
 
 def _load(name: str) -> float:
     return float(name.removeprefix("load_"))
-
-
-def _gate(results: Results) -> Gate:
-    cycles = results.h5("curves/nominal.h5")[2]
-    bad = [name for name, cycle in cycles.items() if "/" not in name and not bool(cycle.get("converged", True))]
-    return Gate("curves", not bad, tuple(f"{name}: some load steps did not converge" for name in bad))

@@ -41,8 +41,6 @@ def describe(results: Results) -> Section | None:
         "Figure 5",
         wide=True,
     )
-    if results.has("elastic/points.csv"):
-        section.add(energy_volume(results), "Energy of every structure under isotropic strain.")
     lines = [
         (
             row["structure"],
@@ -68,7 +66,6 @@ def describe(results: Results) -> Section | None:
         section.files.append("elastic/isotropic_moduli.csv")
     section.notes += summary.get("notes", [])
     section.files += ["elastic/points.csv", "elastic/bulk_moduli.csv", "elastic/e_star.json"]
-    section.gates += results.gate_of("elastic", "elastic/e_star.json")
     return section
 
 
@@ -142,22 +139,3 @@ def elastic_distribution(results: Results) -> str | None:
         other.legend()
 
     return draw("fig5", "Bulk moduli of the structures and the effective modulus", plot, (9.4, 3.7), columns=2)
-
-
-def energy_volume(results: Results) -> str | None:
-    """E(V) of every structure, the data behind figure 5."""
-    rows = [row for row in results.csv("elastic/points.csv") if row.get("converged") == "True"]
-    if not rows:
-        return None
-
-    def plot(axis):
-        for xc, color in zip(sorted({row["xc"] for row in rows}), SERIES, strict=False):
-            axis.plot([], [], "o-", color=color, label=xc.upper())
-            for name in {row["structure"]: None for row in rows if row["xc"] == xc}:
-                part = [row for row in rows if (row["structure"], row["xc"]) == (name, xc)]
-                strain, energy = column(part, "strain"), column(part, "energy_eV")
-                axis.plot(100 * strain, energy - energy.min(), "o-", color=color, markersize=3, linewidth=1)
-        axis.set(xlabel="strain (%)", ylabel="energy above lowest point (eV per cell)")
-        axis.legend()
-
-    return draw("energy", "Energy against strain of every structure", plot, (5.0, 3.4))

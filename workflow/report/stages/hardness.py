@@ -5,12 +5,11 @@ from typing import Any
 import numpy as np
 
 from workflow.report.available import Results, Row
-from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, SOFT, draw
+from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SOFT, draw
 from workflow.report.numbers import column, number, show
 from workflow.report.page import Section, Table
 
 SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE, "s")}
-SLICE_NM = 0.25  # half the thickness of a slice that is drawn
 PAPER_HARDNESS = ((3.0, 10.0), (15.0, 2.0))  # nm, GPa: "~10 GPa at 3 nm, ~2 GPa at 15 nm" in the paper's text
 
 
@@ -44,11 +43,6 @@ def describe(results: Results) -> Section | None:
         ),
         "Figure 8",
     )
-    section.add(
-        contact_pictures(results),
-        "A slice of 0.5 nm through a contact, relaxed without the counterface; dark: cations, light: oxygen.",
-        wide=True,
-    )
     lines = [
         (
             row["run"],
@@ -72,7 +66,6 @@ def describe(results: Results) -> Section | None:
     section.blocks.append(Table("Every run and what became of it", header, lines))
     section.notes += _fit_notes(fit)
     section.files += ["hardness/points.csv", "hardness/fit.json"]
-    section.gates += results.gate_of("hardness", "hardness/fit.json")
     return section
 
 
@@ -163,43 +156,6 @@ def _draw_paper(axis) -> None:
     axis.fill_between([], [], [], color=SOFT, alpha=0.3, label="paper, range of its Table 1")
 
 
-def contact_pictures(results: Results) -> str | None:
-    """Slices through a contact before, at and after the onset of plastic flow, relaxed without the counterface."""
-    points = [
-        row
-        for row in results.csv("hardness/points.csv")
-        if row.get("status") == "yield" and all(results.has(path) for path in _pictures_of(row["run"]))
-    ]
-    if not points:
-        return None
-    # the fewest atoms show single bonds best
-    point = min(points, key=lambda row: (-number(row["energy_scale"]), number(row["wavelength_nm"])))
-    witness, snapshots = (results.csv(path) for path in _pictures_of(point["run"]))
-    travel, onset = column(witness, "displacement_nm"), number(point["onset_displacement_nm"])
-    chosen = (0, int(np.argmin(np.abs(travel - onset))), len(witness) - 1)
-    step, kind, x, y, z = (column(snapshots, name) for name in ("step", "type", "x_nm", "y_nm", "z_nm"))
-    thin = np.abs(y - number(point["wavelength_nm"]) / 4) < SLICE_NM
-    points_per_nm = 2 * 180 / number(point["wavelength_nm"])  # of a marker's diameter, on a panel 180 points wide
-
-    def plot(*axes):
-        for axis, k, title in zip(axes, chosen, ("before contact", "onset", "end"), strict=True):
-            at = thin & (step == float(witness[k]["step"]))
-            for species, radius_nm, color in ((2.0, 0.11, SKY), (1.0, 0.07, BLUE)):
-                part = at & (kind == species)
-                axis.scatter(x[part], z[part], s=(radius_nm * points_per_nm) ** 2, color=color, linewidths=0)
-            exchanged = int(number(witness[k]["exchanged_bonds"]))
-            axis.set_title(f"{title}: {travel[k]:.2f} nm, {exchanged} bonds exchanged", fontsize=9)
-            axis.set(xlabel="x (nm)", aspect="equal", ylim=(0, 1.05 * float(z.max())))
-            axis.grid(False)
-        axes[0].set_ylabel("z (nm)")
-
-    return draw("pictures", f"Slices through the contact of run {point['run']}", plot, (9.4, 3.2), columns=3)
-
-
-def _pictures_of(run: str) -> tuple[str, str]:
-    return f"hardness/witness/{run}.csv", f"hardness/snapshots/{run}.csv"
-
-
 def _scale(point: Row) -> tuple[str, str, str]:
     return SCALES.get(_key(point), ("other energies", PURPLE, "^"))
 
@@ -217,66 +173,26 @@ def _range(row: Row, name: str) -> str:
     return f"{show(value)} [{show(low)}, {show(high)}]" if np.isfinite(low) else show(value)
 
 
-SOURCES = {
-    "seed": "glass and place of the cut", "run": "within a run", "energies": "full or halved energies",
-    "size": "size of the asperity", "area": "contact area", "rate": "closing speed", "base": "thickness of the base",
-    "potential": "potential", "shape": "steepness of the asperity", "h_macro": "H_macro",
-}  # fmt: skip
-
-
-def _budget_note(budget: dict[str, Any], kind: str) -> str:
-    """The standard deviation of H′ of one kind, and its sources, the largest first."""
-    part = budget[kind]
-    largest_first = sorted(part["sources"].items(), key=lambda item: -item[1])
-    sources = ", ".join(f"{SOURCES.get(name, name)} {show(value)}" for name, value in largest_first)
-    return (
-        f"Interval of H′, {kind} part: standard deviation {show(part['std'])} GPa nm½, "
-        f"{show(100 * part['share'])} % of the variance ({sources})."
-    )
-
-
 def _fit_notes(fit: dict[str, Any]) -> list[str]:
-    """What the MD points say about both constants, and how the halved energies compare."""
+    """Both constants in use, and the attraction of the tops."""
     notes = []
-    method = "from the literature" if fit.get("method") == "literature" else "from the same points"
-    for key, label, unit in (("H_macro_GPa", "H_macro", "GPa"), ("H_prime_GPa_nm0.5", "H′", "GPa nm½")):
-        entry = fit.get(key)
-        if isinstance(entry, dict):
-            origin = method if label == "H_macro" else "from the points"
+    literature = "from the literature" if fit.get("method") == "literature" else "from the points"
+    for key, label, unit, origin in (
+        ("H_macro_GPa", "H_macro", "GPa", literature),
+        ("H_prime_GPa_nm0.5", "H′", "GPa nm½", "from the points"),
+    ):
+        if isinstance(entry := fit.get(key), dict):
             span = f"{show(entry['median'])} [{show(entry['low'])}, {show(entry['high'])}] {unit}"
             notes.append(f"{label} in use, {origin}: {span} (median and 68 % interval).")
-    free = fit.get("free_fit", {}).get("together", {})
-    if "H_macro_GPa" in free:
-        pairs = [
-            f"{label} = {show(free[key]['median'])} [{show(free[key]['low'])}, {show(free[key]['high'])}]"
-            for key, label in (("H_macro_GPa", "H_macro"), ("H_prime_GPa_nm0.5", "H′"))
-        ]
-        word = "" if free.get("identifiable") else ": the points alone do not identify both"
-        notes.append(f"Free fit of both constants to all points: {', '.join(pairs)}{word}.")
     if cutoff := fit.get("inputs", {}).get("gap_cutoff"):
-        low, high = show(cutoff["a"]), show(cutoff["b"])
         notes.append(
-            f"The tops of {len(fit['tops'])} runs attract a smooth body like a flat with the cut-off D₀ of {low} nm "
-            f"(by work) to {high} nm (by force)."
+            f"The tops of {len(fit['tops'])} runs attract a smooth body like a flat with the cut-off D₀ of "
+            f"{show(cutoff['a'])} nm (by work) to {show(cutoff['b'])} nm (by force)."
         )
-    if budget := fit.get("budget"):
-        notes += [_budget_note(budget, kind) for kind in ("statistical", "systematic")]
     for scale, change in fit.get("size_effect_at_one_shape", {}).items():
         words, _, _ = _scale({"energy_scale": scale.removeprefix("scale_")})
         notes.append(
-            f"Between the runs with {words}, each where its contact is 0.5 to 0.6 wavelengths wide "
-            f"({show(change['length_min_nm'])} to {show(change['length_max_nm'])} nm), hardness goes as length to the "
-            f"power {show(-change['mean'])} [{show(-change['high'])}, {show(-change['low'])}] ({change['runs']} runs); "
-            "0 is no size effect; the law in use, H_macro + H′/√L, goes as a power between −0.5 and 0."
-        )
-    for ratio in fit.get("halved_over_full", []):
-        notes.append(
-            f"Halved over full energies, asperity {ratio['asperity']}: {show(ratio['median'])} "
-            f"[{show(ratio['low'])}, {show(ratio['high'])}]; 0.5 is expected."
-        )
-    if cost := fit.get("cost"):
-        notes.append(
-            f"Molecular dynamics: {show(cost['atom_steps'])} atom-steps, {show(cost['lammps_cpu_s'] / 60)} minutes of "
-            f"CPU time; the Python around LAMMPS took {show(100 * cost['python_cpu_share'])} % of all."
+            f"At one shape of contact, runs with {words} have hardness as length to the power {show(-change['mean'])} "
+            f"[{show(-change['high'])}, {show(-change['low'])}] ({change['runs']} runs)."
         )
     return notes

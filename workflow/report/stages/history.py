@@ -3,7 +3,7 @@
 import numpy as np
 
 from workflow.report.available import Results, Row
-from workflow.report.drawing import SERIES, SOFT, draw
+from workflow.report.drawing import SERIES, draw
 from workflow.report.numbers import column, number, show
 from workflow.report.page import COMPUTED, Section, Table
 
@@ -27,69 +27,32 @@ def describe(results: Results) -> Section | None:
         + _shakedown(rows),
         COMPUTED,
     )
-    section.add(history_curves(results), "Cycles of one surface; opening is dashed.")
     section.add(
         history_drift(results),
         "Left: energy lost by each cycle, one line per surface. Right: how far the closed contact sinks.",
         wide=True,
     )
-    shown = [row for row in rows if int(row["cycle"]) in (1, 2, 5, 10, 20, 50, 100, last)]
+    shown = [row for row in rows if int(row["cycle"]) in (1, 2, 10, 100, last)]
     lines = [
         (
             row["seed"],
             row["cycle"],
             show(row["held_s"]) if held else "–",
             show(row["closed_nm"], 4),
-            show(row["last_contact_nm"], 4),
             show(row["contact_area_nm2"]),
             show(row["dissipated_nN_nm"]),
             show(row["pull_off_nN"]),
-            "stuck" if number(row["release_V"]) == 0 else show(row["release_V"]),
-            show(row["critical_share"]),
         )
         for row in shown
     ]
-    header = (
-        "surface",
-        "cycle",
-        "time under load (s)",
-        "closed (nm)",
-        "last contact (nm)",
-        "contact area (nm²)",
-        "energy lost (nN nm)",
-        "pull-off (nN)",
-        "release (V)",
-        "critical share in contact",
-    )
-    section.blocks.append(Table("Cycles, and the switch that would follow each", header, lines, heads=2))
+    header = ("surface", "cycle", "time under load (s)", "closed (nm)", "area (nm²)", "energy lost (nN nm)")
+    section.blocks.append(Table("Cycles", (*header, "pull-off (nN)"), lines, heads=2))
     if not all(row["converged"] == "True" for row in rows):
         section.notes.append("Some cycles did not converge or missed their force: see column converged.")
     if held:
         section.notes.append("The constants of the creep law are the scene's, not results of this work.")
     section.files += ["history/cycles.csv", "history/dwell.csv", "history/curves.h5"]
     return section
-
-
-def history_curves(results: Results) -> str:
-    """Closing and opening of the first surface, a few of its cycles."""
-    groups, _, curve_attributes = results.h5("history/curves.h5")
-    names = sorted(name for name in curve_attributes if "/" not in name)
-
-    def plot(axis):
-        for place, name in enumerate(names):
-            color = SERIES[place % len(SERIES)]
-            for branch, style in (("closing", "-"), ("opening", "--")):
-                curve = groups[f"{name}/{branch}"]
-                force = (curve["repulsive_nN"] + curve["attractive_nN"]) / 1e3
-                label = f"cycle {int(curve_attributes[name]['cycle'])}" if branch == "closing" else None
-                axis.plot(curve["separation_nm"], force, style, color=color, label=label, linewidth=1.5)
-        first = groups[f"{names[0]}/closing"]
-        contact = float(first["separation_nm"][first["repulsive_nN"] > 0].max())
-        axis.axhline(0, color=SOFT, linewidth=0.8)
-        axis.set(xlim=(None, contact + 6), xlabel="mean separation (nm)", ylabel="force on the cell (µN)")
-        axis.legend()
-
-    return draw("history", "Force against separation of a surface that is closed again and again", plot)
 
 
 def history_drift(results: Results) -> str:

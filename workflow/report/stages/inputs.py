@@ -14,18 +14,12 @@ def describe(results: Results) -> Section | None:
     if not results.has("inputs.csv"):
         return None
     rows = results.csv("inputs.csv")
-    section = Section(
-        "inputs",
-        "Inputs",
-        "What the contact model is fed with: each input with its distribution and where it comes from.",
-    )
+    section = Section("inputs", "Inputs", "", files=["inputs.csv"])
     title = "Inputs in use (the paper's Table 1)" if results.beside_paper else "Inputs in use"
-    section.blocks.append(_table(title, rows))
-    section.files.append("inputs.csv")
+    section.front.append(_table(title, rows))
     of_pad = results.csv("pad/inputs.csv") if results.has("pad/inputs.csv") else []
     if other := [row for row in of_pad if row not in rows]:
-        section.blocks.append(_table("Of a pad, which holds all places of the film", other))
-        section.files.append("pad/inputs.csv")
+        section.front.append(_table("Of a pad, which holds all places of the film", other))
     return section
 
 

@@ -1,127 +1,75 @@
 """Many cells under one plane: what a pad is, beside one cell."""
 
+from typing import Any
+
 import numpy as np
 
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import column, show
-from workflow.report.page import COMPUTED, Gate, Section, Table
-from workflow.report.verdict import CAUSES, symbol
+from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.verdict import symbol
+
+CAUSES = {"inputs": "inputs", "gap_cutoff": "D₀", "geometry": "bow and tilt", "cells": "the finite number of cells"}
 
 
 def describe(results: Results) -> Section | None:
-    """The pad's curves, its adhesion against the number of cells, and the switch on it."""
+    """The pad's curves, its adhesion against the number of cells, and what the answer is made of."""
     if not results.has("pad/curves.csv", "pad/adhesion.csv", "device/pad_switch.json"):
         return None
     switch = results.json("device/pad_switch.json")
     section = Section(
         "pad",
         "From a cell to a pad",
-        f"{switch['cells_computed']} cells with surfaces of their own, brought to one separation and opened "
-        "together, at central inputs. Cells pull at separations that differ by nanometres; where their wells are "
-        "narrower than that, the highest cells still push while others pull, and adhesion does not add up.",
+        f"{switch['cells_computed']} cells with surfaces of their own stand for the {show(switch['cells_of_pad'])} of "
+        "the electrode. They are brought to one separation and opened together.",
         COMPUTED,
     )
     section.add(
         pad_curves(results),
-        "Mean pressure of the pad. Left: closing, and opening from each depth. Right: the net pressure near the last "
-        "contact; the band is one standard error of the mean of the computed cells.",
+        "Pressure of the pad at central inputs. Left: closing, and opening from several depths. Right: net pressure "
+        "near the last contact; the band is one standard error of the mean of the cells.",
         wide=True,
+        front=True,
     )
     section.add(
         adhesion_by_cells(results),
         "Largest net adhesive pressure on opening against the number of cells of a pad, with the scatter between "
         "pads. The point at the right is the mean of all computed cells with its standard error.",
     )
-    section.blocks.append(
-        Table("The switch, its whole electrode flat on the pad", ("quantity", "value"), _lines(switch))
-    )
-    if switch.get("answer"):
-        section.blocks += _answer(switch["answer"])
-    elif switch.get("answer_status"):
-        section.notes.append(f"No interval of the release over the inputs: {switch['answer_status']}.")
+    if answer := switch.get("answer"):
+        section.blocks += _answer(answer)
     section.notes.append(
-        "Curves and causes are at the central inputs, with the scene's bow and tilt (device.bow_nm, device.tilt_nm); "
-        "only the table of the release over all causes holds the uncertainty of the inputs. The deviations of bow and "
-        "tilt in it (device.bow_deviation_nm, device.tilt_deviation_nm) are assumptions unless the scene measured them."
+        "Where the scene does not measure bow and tilt, their deviations (device.bow_deviation_nm, "
+        "device.tilt_deviation_nm) are assumptions."
     )
     section.files += ["pad/curves.csv", "pad/curves.h5", "pad/adhesion.csv", "device/pad_switch.json"]
-    gate = switch["gate"]
-    section.gates.append(Gate("pad", gate["passed"], gate["reasons"]))
     return section
 
 
-def _answer(answer: dict) -> list[Table]:
-    """Release over all causes, and which input to measure better."""
+def _answer(answer: dict[str, Any]) -> list[Table]:
+    """What the answer is made of, and which input to measure better."""
 
     def spread(key: str) -> str:
         quantiles = answer[key]["quantiles"]
-        if not quantiles:
-            return "–"
-        low, middle, high = (quantiles[q] for q in ("0.05", "0.5", "0.95"))
-        return f"{show(middle)} [{show(low)}, {show(high)}]"
+        return f"{show(quantiles['0.5'])} [{show(quantiles['0.05'])}, {show(quantiles['0.95'])}]" if quantiles else "–"
 
-    stuck, design = answer["stuck"], answer["design"]
-    varies = any(row["share_of_variance"] > 0 for row in answer["causes"])
-    released = [
-        ("release (V), 0 where it sticks, median and 5 to 95 %", spread("release_V") if varies else "sticks"),
-        ("probability of sticking, 95 % interval", f"{stuck['value']:.2f} [{stuck['low']:.2f}, {stuck['high']:.2f}]"),
+    design = answer["design"]
+    rows = [
         ("pull-in (V)", spread("pull_in_V")),
         ("capacitance closed (fF)", spread("capacitance_fF")),
-        *(
-            (f"share of the release's variance from {CAUSES[row['cause']]}", f"{row['share_of_variance']:.1%}")
-            for row in answer["causes"]
-            if varies
-        ),
         ("switches computed; of them without an answer", f"{design['points']}; {len(design['refused'])}"),
         ("of them that press harder than pads were computed", str(design["deepened"])),
+        *((f"share of {CAUSES[row['cause']]}", f"{row['share_of_variance']:.1%}") for row in answer["causes"]),
     ]
-    held = "the finite number of cells, inputs, D₀, bow and tilt"
-    tables = [Table(f"The switch, over {held}", ("quantity", "value"), released)]
-    if varies:
-        measured = [
-            (symbol(row["name"]), f"{row['share_of_variance']:.1%}", f"{row['interval_shrinks_by']:.1%}")
-            for row in answer["sensitivity"]
-        ]
-        columns = ("uncertain", "share of the variance", "known exactly, the interval shrinks by")
-        tables.append(Table("What to measure better for the release voltage", columns, measured))
-    return tables
-
-
-def _lines(switch: dict) -> list[tuple[str, str]]:
-    lines = [
-        ("cells on the electrode", show(switch["cells_of_pad"])),
-        ("pull of the spring (kPa)", show(switch["spring_pressure_kPa"])),
+    measured = [
+        (symbol(row["name"]), f"{row['share_of_variance']:.1%}", f"{row['interval_shrinks_by']:.1%}")
+        for row in answer["sensitivity"]
     ]
-    if switch["mean"] is None:
-        return lines
-    estimate = switch["estimate"]
-
-    def spread(key: str) -> str:
-        low, middle, high = (estimate[key]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
-        return f"{show(middle)} [{show(low)}, {show(high)}]"
-
-    stuck = estimate["stuck"]
+    columns = ("uncertain", "share of the variance", "known exactly, the interval shrinks by")
     return [
-        *lines,
-        ("pull-in (V)", show(switch["mean"]["pull_in_V"])),
-        ("held closed at (nm)", spread("hold_nm")),
-        ("pressure while held closed (MPa)", spread("hold_MPa")),
-        ("largest net adhesion on opening (kPa), median and 5 to 95 %", spread("deepest_net_kPa")),
-        ("release (V), 0 where it sticks, median and 5 to 95 %", spread("release_V")),
-        ("share of resampled pads that stick", f"{stuck['value']:.2f} [{stuck['low']:.2f}, {stuck['high']:.2f}]"),
-        *_bending(switch["beam"]),
-    ]
-
-
-def _bending(beam: dict | None) -> list[tuple[str, str]]:
-    """The electrode that bends, at central inputs."""
-    if beam is None:
-        return []
-    shares = f"{beam['landed_share']:.0%}; {beam['landed_at_release']:.1%}"
-    return [
-        ("release of the electrode that bends (V)", "sticks" if beam["stuck"] else show(beam["release_V"])),
-        ("share of it that has landed: while held; before it lets go", shares),
+        Table("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows),
+        Table("What to measure better for the release", columns, measured),
     ]
 
 
@@ -155,7 +103,7 @@ def pad_curves(results: Results) -> str:
         well.set(xlabel="separation (nm)", ylabel="net pressure (kPa)", title="near the last contact, on opening")
         well.legend()
 
-    return draw("pad-curves", "Mean pressure of a pad against separation", plot, (9.4, 3.8), columns=2)
+    return draw("pad-curves", "Mean pressure of a pad against separation", plot, (9.4, 3.4), columns=2)
 
 
 def _line(axis, rows: list[Row], scale: float, color: str, label: str | None, style: str = "-") -> None:

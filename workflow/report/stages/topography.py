@@ -1,6 +1,5 @@
 """Surface topography: figures 9 and 10, the parameters, contact of the scans themselves."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -67,12 +66,6 @@ def describe(results: Results) -> Section | None:
     place_doubts(parameters, section, "q0", "slope")
     section.files += ["topography/spectra.h5", "topography/parameters.json"]
     if results.has("law/scans.csv"):
-        section.add(
-            pressed(results),
-            "The contact closed on the scans themselves, on Gaussian surfaces with each scan's own spectrum, and on "
-            "Gaussian surfaces with the fitted power law up to the pixels; all with the grid and RMS of the scan.",
-            wide=True,
-        )
         header = ("scan", "surface", "d_c (nm)", "C_a (GPa/nm)", "C_r (GPa)", "ρ_r (nm)", "fit")
         keys = ("d_c_nm", "C_a_GPa_nm", "C_r_GPa", "rho_r_nm")
         closing = [row for row in results.csv("law/scans.csv") if row["branch"] == "closing"]
@@ -81,10 +74,6 @@ def describe(results: Results) -> Section | None:
         ]
         section.blocks.append(Table("Law of the measured scans, closing", header, lines))
         section.files += ["curves/scans.h5", "law/scans.csv"]
-    for gate in results.gate_of("topography", "topography/parameters.json"):
-        doubts = [doubt["code"] for doubt in parameters.get("doubts", []) if doubt["text"] not in gate.reasons]
-        remark = [f"Doubts, each beside the numbers it touches: {', '.join(doubts)}."] if doubts else []
-        section.gates.append(replace(gate, reasons=[*gate.reasons, *remark]))
     describe_surface(results, parameters, section)
     return section
 
@@ -181,29 +170,6 @@ def spectra(results: Results) -> str | None:
         axis.legend()
 
     return draw("fig10", "Power spectra of the scans with fits", plot, (5.0, 4.2))
-
-
-def pressed(results: Results) -> str | None:
-    """Closing curves of the measured scans themselves and of random surfaces of their statistics."""
-    if not results.has("curves/scans.h5"):
-        return None
-    groups, _, scan_attributes = results.h5("curves/scans.h5")
-    scans = sorted({name.split("/")[0] for name in scan_attributes})[:3]
-    styles = {"measured": (BLUE, "-"), "own spectrum": (ORANGE, "--"), "eq. 9": (GREEN, ":")}
-
-    def plot(*axes):
-        for axis, scan in zip(axes, scans, strict=True):
-            for surface, (color, style) in styles.items():
-                name = f"{scan}/{surface}"
-                curve, area = groups[f"{name}/closing"], float(scan_attributes[name]["cell_area_nm2"])
-                touching = curve["repulsive_nN"] > 0
-                pressure = 1e3 * curve["repulsive_nN"][touching] / area  # MPa
-                axis.semilogy(curve["separation_nm"][touching], pressure, style, color=color, label=surface)
-            axis.set_title(f"{scan}: RMS {float(scan_attributes[f'{scan}/measured']['rms_nm']):.1f} nm", fontsize=9)
-            axis.set(xlabel="separation (nm)", ylabel="nominal pressure (MPa)")
-            axis.legend()
-
-    return draw("pressed", "Closing on the measured scans", plot, (4.2 * len(scans), 3.4), len(scans))
 
 
 def _thin(heights: np.ndarray, most: int = 128) -> np.ndarray:

@@ -1,0 +1,104 @@
+"""The first screen: the device, its release with the zone where it sticks, causes and next step."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from asperity.foreign_yaml import load_mapping
+from mesoscale.settings import DeviceSettings
+from workflow.report.available import Results
+from workflow.report.numbers import show
+from workflow.report.verdict import OTHER_LAW, Verdict, does, verdict, volts
+
+MOST_CAUSES = 3
+LEFT, RIGHT = 70.0, 410.0
+"""Ends of the bar's axis in its picture."""
+
+
+@dataclass(frozen=True)
+class First:
+    """Pictures and words of the first screen."""
+
+    said: Verdict
+    device: str
+    bar: str
+    causes: list[tuple[str, int]]
+    other_law: str
+
+
+def first_screen(results: Results, gates: Any) -> First | None:
+    """The first screen; None without a switch on a pad."""
+    said = verdict(results, gates)
+    if said is None:
+        return None
+    other = ""
+    if said.other_law_V:
+        other = (
+            f"No statistics holds the law of attraction. At central inputs the switch {does(said.other_law_V[0])}; "
+            f"with {OTHER_LAW[results.contact['attraction']]} the work of adhesion, as by the other law, it "
+            f"{does(said.other_law_V[1])}."
+        )
+    causes = [(name, round(100 * share)) for name, share in said.causes[:MOST_CAUSES]]
+    return First(said, _device(results), release_bar(said), causes, other)
+
+
+def release_bar(said: Verdict) -> str:
+    """The release on an axis of volts: 5 to 95 % as a bar, the zone of sticking at its left end."""
+    if said.release_V is None:
+        return ""
+    others = said.other_law_V or ()
+    top = 1.15 * max(*said.release_V, *others, 1.0)
+
+    def x(value: float) -> str:
+        return f"{LEFT + (RIGHT - LEFT) * value / top:.1f}"
+
+    middle = said.release_V[len(said.release_V) // 2]
+    step = next(step for step in (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 1e4, 1e5) if top / step <= 6)
+    ticks = [k * step for k in range(int(top / step) + 1)]
+    share = "" if said.stuck is None else f" {said.stuck[1]:.0%}"
+    parts = [
+        f'<rect class="zone" x="0" y="8" width="{LEFT - 8:g}" height="54" rx="4"/>',
+        f'<text x="{LEFT / 2 - 4:g}" y="32" class="mid">sticks</text>',
+        f'<text x="{LEFT / 2 - 4:g}" y="50" class="mid strong">{share}</text>',
+        f'<path class="axis" d="M{LEFT:g} 62H{RIGHT:g}"/>',
+        *(f'<path class="axis" d="M{x(v)} 62v5"/><text x="{x(v)}" y="82" class="mid">{v:g}</text>' for v in ticks),
+        f'<text x="{(LEFT + RIGHT) / 2:g}" y="98" class="mid">release voltage (V)</text>',
+    ]
+    if len(said.release_V) == 3 and said.release_V[2] > 0:
+        low, high = x(said.release_V[0]), x(said.release_V[2])
+        parts.append(f'<path class="interval" d="M{low} 36H{high}"/>')
+    if middle > 0:
+        parts += [
+            f'<path class="median" d="M{x(middle)} 24v24"/>',
+            f'<text x="{x(middle)}" y="18" class="mid strong">{show(middle)} V</text>',
+        ]
+    if others and others[1] > 0:
+        parts.append(f'<circle class="other" cx="{x(others[1])}" cy="36" r="5"><title>other law</title></circle>')
+    label = f"Release voltage: {', '.join(volts(value) for value in said.release_V)}"
+    return f'<svg class="bar" viewBox="0 0 420 102" role="img" aria-label="{label}">{"".join(parts)}</svg>'
+
+
+def _device(results: Results) -> str:
+    """A picture of the switch with its sizes, not to scale."""
+    if not results.has("scene.yaml"):
+        return ""
+    device = DeviceSettings(**load_mapping(results.root / "scene.yaml", "record of a run")["scene"]["device"])
+    rough = "".join(f"l4 {3 * (-1) ** k * (1 + k * 7 % 3) / 2:g}" for k in range(70))
+    if device.spring_N_per_m is None:
+        metal = '<path class="metal" d="M20 40h30q25 0 60 42q20 22 90 22t90-22q35-42 60-42h30"/>'
+        size = f"beam of {device.length_um:g} × {device.width_um:g} µm, bending"
+    else:
+        metal = (
+            '<path class="metal" d="M90 96h220"/><path class="rest" d="M200 30v10l-8 5 16 8-16 8 16 8-16 8 8 5v14"/>'
+        )
+        size = f"plate on a spring of {show(device.spring_N_per_m)} N/m"
+    hold = f"held at {device.hold_voltage_V:g} V" if device.hold_voltage_V else "held at its pull-in voltage"
+    return (
+        f'<svg class="device" viewBox="0 0 400 190" role="img" aria-label="The switch: {size}">'
+        '<path class="rest" d="M20 40H380"/><path class="anchor" d="M10 40h12v110H10zM378 40h12v110h-12z"/>'
+        f'{metal}<path class="rough" d="M60 116{rough}V138H60z"/>'
+        '<rect class="anchor" x="60" y="138" width="280" height="12"/>'
+        f'<text x="200" y="24" class="mid">{size}</text>'
+        f'<text x="200" y="62" class="mid">gap {device.gap_um:g} µm</text>'
+        f'<text x="200" y="168" class="mid">dielectric of {device.dielectric_nm:g} nm, rough</text>'
+        f'<text x="200" y="185" class="mid">{hold}</text></svg>'
+    )

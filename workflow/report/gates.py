@@ -1,0 +1,128 @@
+"""Whether the numbers of each stage can be trusted, and which of them the answer rests on."""
+
+from collections.abc import Callable, Iterator, Sequence
+
+from mesoscale.law.wells import MOST_MISSED, missed_wells
+from workflow.report.available import Results
+from workflow.report.numbers import OUTPUTS, column, number, show
+from workflow.report.page import Gate
+
+MOST_MISSING = 0.05
+"""Share of curves without a law, or of laws without the well, beyond which the rest is no fair sample."""
+
+
+def gates_of(results: Results) -> list[Gate]:
+    """All gates of a scene."""
+    return [gate for build in GATES for gate in build(results)]
+
+
+def trust(gates: Sequence[Gate]) -> tuple[str, str]:
+    """One light for the answer (pass, warn or fail), and in words what it says."""
+    failed = [gate.stage for gate in gates if gate.used and gate.answer and not gate.passed]
+    if failed:
+        return "fail", f"The answer is not to be trusted: {', '.join(failed)} failed."
+    doubted = [gate.stage for gate in gates if gate.used and gate.answer and gate.reasons]
+    if doubted:
+        return "warn", f"The answer stands, with remarks on {', '.join(doubted)}."
+    return "pass", "All that the answer rests on passed."
+
+
+def faint_outputs(results: Results) -> dict[str, str]:
+    """Outputs of the law that are not to be trusted, each with the reason (uq/validation.csv)."""
+    rows = results.csv("uq/validation.csv") if results.has("uq/validation.csv") else []
+    return {row["output"]: row["doubt"] for row in rows if row.get("doubt")}
+
+
+def _of_file(stage: str, name: str, results: Results) -> Iterator[Gate]:
+    """The gate that a stage wrote into its JSON file."""
+    if results.has(name):
+        gate = results.json(name).get("gate", {})
+        yield Gate(stage, bool(gate.get("passed")), tuple(gate.get("reasons", ())), results.uses(stage))
+
+
+def _topography(results: Results) -> Iterator[Gate]:
+    name = "topography/parameters.json"
+    for gate in _of_file("topography", name, results):
+        doubts = [row["code"] for row in results.json(name).get("doubts", []) if row["text"] not in gate.reasons]
+        remark = (f"Doubts, each beside the numbers it touches: {', '.join(doubts)}.",) if doubts else ()
+        yield Gate(gate.stage, gate.passed, (*gate.reasons, *remark), gate.used)
+    rows = results.csv("topography/judged.csv") if results.has("topography/judged.csv") else []
+    reasons = tuple(
+        f"{row['scan']} touches first at {show(row['pressed'])} nm, its description says {show(row['low'])} to "
+        f"{show(row['high'])} nm"
+        for row in rows
+        if row["quantity"] == "first_contact" and row["inside"] != "True"
+    )
+    if rows:
+        yield Gate("pressing the scans", not reasons, reasons, results.uses("topography"))
+
+
+def _curves(results: Results) -> Iterator[Gate]:
+    if results.has("curves/nominal.h5"):
+        cycles = results.h5("curves/nominal.h5")[2]
+        bad = [name for name, cycle in cycles.items() if "/" not in name and not bool(cycle.get("converged", True))]
+        yield Gate("curves", not bad, tuple(f"{name}: some load steps did not converge" for name in bad))
+
+
+def _law(results: Results) -> Iterator[Gate]:
+    """Whether enough curves gave a law, and apart from that whether the laws have the adhesion of their curves."""
+    if results.has("law/parameters.csv"):
+        rows = results.csv("law/parameters.csv")
+        poor = [row for row in rows if row["status"] == "poor_fit"]
+        missing = [row for row in rows if row["status"] not in ("ok", "poor_fit")]
+        reasons = []
+        if poor:
+            worst = column(poor, "residual").max()
+            reasons.append(f"{len(poor)} of {len(rows)} fits miss their curve by up to {worst:.0%} of its maximum")
+        if missing:
+            reasons.append(
+                f"{len(missing)} of {len(rows)} curves gave no law, which favours those that could be fitted"
+            )
+        yield Gate("law", len(missing) <= MOST_MISSING * len(rows), tuple(reasons), answer=False)
+    if results.has("law/wells.csv"):
+        missed, known = missed_wells(results.csv("law/wells.csv"))
+        reason = (
+            f"{missed} of {known} laws miss the adhesion well of their curve by more than {MOST_MISSED:.0%}: take "
+            "release and sticking from the pad"
+        )
+        yield Gate("adhesion of the law", missed <= MOST_MISSING * known, (reason,) * (missed > 0), answer=False)
+
+
+def _responses(results: Results) -> Iterator[Gate]:
+    if results.has("uq/validation.csv"):
+        faint = faint_outputs(results)
+        reasons = tuple(f"{OUTPUTS[name][0]}: {reason}" for name, reason in faint.items())
+        yield Gate("responses", not faint, reasons, answer=False)
+
+
+def _pad(results: Results) -> Iterator[Gate]:
+    if results.has("device/pad_switch.json"):
+        gate = results.json("device/pad_switch.json")["gate"]
+        yield Gate("pad", gate["passed"], tuple(gate["reasons"]))
+
+
+def _device(results: Results) -> Iterator[Gate]:
+    if results.has("device/switch.json"):
+        switches = results.json("device/switch.json")
+        off = [f"{name.replace('_', ' ')} {show(x)}" for name, x in switches["checks"].items() if not number(x) < 1e-6]
+        yield Gate("switch on one cell", not off, (*off, *switches["warnings"]), answer=False)
+
+
+def _calibration(results: Results) -> Iterator[Gate]:
+    if results.has("calibration/posterior.json"):
+        posterior = results.json("calibration/posterior.json")
+        reasons = (*posterior["gate"]["reasons"], *posterior["remarks"])
+        yield Gate("calibration", bool(posterior["gate"]["passed"]), reasons, answer=results.uses("calibration"))
+
+
+GATES: tuple[Callable[[Results], Iterator[Gate]], ...] = (
+    lambda results: _of_file("hardness", "hardness/fit.json", results),
+    lambda results: _of_file("elastic", "elastic/e_star.json", results),
+    _topography,
+    _curves,
+    _pad,
+    _law,
+    _responses,
+    _device,
+    _calibration,
+)
