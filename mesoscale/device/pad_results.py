@@ -78,7 +78,12 @@ def switch_on_pad(cells: PadCells, flats: Flats, settings: DeviceSettings, cell_
 def _release_V(settings: DeviceSettings, law: PadLaw, times: float) -> float | None:
     """Release at `times` the attraction; None where the held state was not computed."""
     scale = np.array([[1.0], [times]])
-    scaled = replace(law, closing=scale * law.closing, opening=scale * law.opening, flats=replace(law.flats, hamaker=times * law.flats.hamaker))
+    scaled = replace(
+        law,
+        closing=scale * law.closing,
+        opening=scale * law.opening,
+        flats=replace(law.flats, hamaker=times * law.flats.hamaker),
+    )
     try:
         if settings.spring_N_per_m is None:
             return solve_beam(settings, scaled).release_V
