@@ -4,13 +4,13 @@ From a scan to a switch::
 
     import asperity as asp
 
-    roughness = asp.measure_roughness([asp.load_scan("film.gwy")])
-    table = asp.input_table(topography=roughness)  # the rest: the paper's Table 1
-    settings = asp.ContactSettings(pixels=256)
-    cycle = asp.run_cycle(asp.ContactInputs(**table.medians()), settings, seed=1)
-    switch = asp.drive_switch(asp.DeviceSettings(), *asp.laws_of(cycle))
-    samples = asp.monte_carlo(table, settings, samples=20)
-    switches = asp.drive_switch(asp.DeviceSettings(), samples.closing, samples.opening)
+    film = asp.Film(["first.gwy", "second.ibw"], tip_nm=8)  # or a folder, or a container
+    print("\\n".join(film.doubts))
+    material = {"e_star": 75.0, "h_macro": 1.3}  # GPa; the rest: the paper's Table 1
+    contact = film.press(material, load_nN=7000)
+    contact.plot()
+    switch = contact.switch(asp.DeviceSettings(gap_um=2.0))
+    print(switch, switch.release_V)
 
 Lengths are in nm, forces in nN, pressures and moduli in GPa; `help()` of every name states its units.
 """

@@ -1,3 +1,4 @@
+from asperity.film import Contact, Film, Switch
 from mesoscale.contact import Branch, ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import dissipated_energy, work
 from mesoscale.contact.surface import random_surface
@@ -9,18 +10,18 @@ from mesoscale.inputs.table import input_table
 from mesoscale.law.branches import laws_of
 from mesoscale.law.compact import Law, force, pressure
 from mesoscale.scan_checks.pressing import contacting_heights
-from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, LawSettings, TopographySettings
+from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, LawSettings, PadSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan, clean
-from mesoscale.topography.measurements.loading import load_scan
-from mesoscale.topography.summary import measure_roughness
 from mesoscale.uncertainty.runs import MonteCarlo, monte_carlo
 
 __all__ = [
     "Branch",
+    "Contact",
     "ContactInputs",
     "ContactSettings",
     "Cycle",
     "DeviceSettings",
+    "Film",
     "InputError",
     "InputRow",
     "InputTable",
@@ -28,7 +29,9 @@ __all__ = [
     "LawSettings",
     "MissingExtra",
     "MonteCarlo",
+    "PadSettings",
     "Scan",
+    "Switch",
     "SwitchStates",
     "TopographySettings",
     "clean",
@@ -38,8 +41,6 @@ __all__ = [
     "force",
     "input_table",
     "laws_of",
-    "load_scan",
-    "measure_roughness",
     "monte_carlo",
     "pressure",
     "random_surface",

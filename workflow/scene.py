@@ -32,6 +32,7 @@ from mesoscale.settings import (
     TopographySettings,
     UncertaintySettings,
 )
+from mesoscale.topography.measurements import files_in
 from workflow.checksums import CLOCK_S
 from workflow.former_keys import FORMER_KEYS
 
@@ -262,10 +263,7 @@ def files_of(scene: str, names: Iterable[str]) -> list[str]:
     for name in names:
         places = [Path(name), *(folder / name for folder in _folders_of(scene))]
         folder = next((place for place in places if place.is_dir()), None)
-        if folder is None:
-            files.append(name)
-        else:
-            files += sorted(str(path) for path in folder.iterdir() if path.is_file() and path.name[0] != ".")
+        files += [name] if folder is None else files_in(folder)
     return files
 
 

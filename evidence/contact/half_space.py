@@ -104,7 +104,7 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
 def _flattened(heights: np.ndarray, inputs: ContactInputs, settings: ContactSettings) -> np.ndarray:
     load = 2e3 * (settings.pixels / 64) ** 2
     bare = replace(inputs, hamaker=0.0)
-    flattened = run_cycle(bare, settings, 0, load, heights, keep_surface=True).heights
+    flattened = run_cycle(bare, settings, 0, load, heights, keep_surface=True, contact_at="lowest").heights
     assert flattened is not None
     return flattened
 

@@ -48,9 +48,14 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
         if pixels > 1024:
             continue
         coupled = settings.model_copy(update={"mechanics": "coupled"})
-        yield timed("coupled cycle", lambda s=coupled, h=heights: run_cycle(MIDDLE, s, SEED, heights=h))[0]
+        yield timed(
+            "coupled cycle", lambda s=coupled, h=heights: run_cycle(MIDDLE, s, SEED, heights=h, contact_at="lowest")
+        )[0]
         elastic = coupled.model_copy(update={"model": "elastic"})
-        row, closed = timed("coupled elastic cycle", lambda s=elastic, h=heights: run_cycle(MIDDLE, s, SEED, heights=h))
+        row, closed = timed(
+            "coupled elastic cycle",
+            lambda s=elastic, h=heights: run_cycle(MIDDLE, s, SEED, heights=h, contact_at="lowest"),
+        )
         yield {**row, "note": f"{int((closed.closing.repulsive_nN > 0).sum())} loads"}
         if pixels == PLAIN_PIXELS:
             row, forces = timed("plain model", lambda s=settings, h=heights, c=cycle: _plain(h, c, s), 1)

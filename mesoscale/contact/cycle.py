@@ -9,7 +9,7 @@ from mesoscale.checks import check_number, check_seed
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.path import trace
 from mesoscale.contact.pressed import Contact, Row
-from mesoscale.contact.surface import given_surface, random_surface
+from mesoscale.contact.surface import ContactAt, given_surface, random_surface
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
@@ -62,7 +62,7 @@ class Cycle:
     last_contact_nm : separation at which it last touches on opening.
     converged : every step converged and the requested force was reached within 1 %.
     length_nm : side of the surface.
-    heights : (N, N) surface afterwards, nm (only if asked for).
+    heights : (N, N) surface afterwards, nm, with contact at the lowest (only if asked for).
     """
 
     closing: Branch
@@ -95,6 +95,7 @@ def run_cycle(
     keep_surface: bool = False,
     hold: Callable[[Contact, Row], list[Row]] | None = None,
     numerics: Numerics = NUMERICS,
+    contact_at: ContactAt | None = None,
 ) -> Cycle:
     """Close a rough surface onto a flat up to a force, and open it again.
 
@@ -109,8 +110,7 @@ def run_cycle(
         0.8 H(L^2) L^2 if this is less, where the whole cell is one contact, and is not converged.
     heights
         (N, N) surface in nm to use instead of a random one, for instance `Cycle.heights` of an
-        earlier cycle; it is not changed. Contact is at its minima. Without `length_nm` its grid must be
-        `settings.pixels`.
+        earlier cycle; it is not changed. Without `length_nm` its grid must be `settings.pixels`.
     length_nm
         Side of `heights` in nm; default `settings.length_nm`.
     keep_surface
@@ -120,18 +120,21 @@ def run_cycle(
         last row, returns the rows that follow at the end of the closing branch.
     numerics
         How finely the contact is computed; the default is what every scene uses.
+    contact_at
+        Which of `heights` touch the flat first. Measured heights touch at their highest; those of `random_surface`,
+        `contacting_heights` and `Cycle.heights` at their lowest.
 
     Raises
     ------
     InputError
-        For heights that are not a square of real, finite numbers in nm on the stated side, a force that is not
-        positive, or a seed that is no whole number.
+        For heights without `contact_at` or that are not a square of real, finite numbers in nm on the stated side, a
+        force that is not positive, or a seed that is no whole number.
     """
     plastic = settings.model == "plastic"
     check_seed(seed)
     force = settings.max_force_nN if max_force_nN is None else max_force_nN
     check_number("max_force_nN", force, SMALLEST_FORCE_NN, LARGEST_FORCE_NN, "nN")
-    surface, settings = given_surface(heights, length_nm, settings)
+    surface, settings = given_surface(heights, length_nm, contact_at, settings)
     if surface is None:
         surface = random_surface(inputs, settings, seed)
     elif plastic:

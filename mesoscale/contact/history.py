@@ -72,6 +72,7 @@ def follow(
             contact,
             seed,
             heights=heights,
+            contact_at="lowest",
             keep_surface=True,
             hold=hold if settings.dwell_s > 0 else None,
         )

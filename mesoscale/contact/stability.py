@@ -80,7 +80,7 @@ def violations(
     gain, known = _energy_gain(cycle)
     if gain > known and start is not None:
         finer = replace(NUMERICS, force_steps=FINER * NUMERICS.force_steps)
-        gain, known = _energy_gain(run_cycle(inputs, settings, 0, heights=start, numerics=finer))
+        gain, known = _energy_gain(run_cycle(inputs, settings, 0, heights=start, contact_at="lowest", numerics=finer))
     if gain > known:
         broken.append(f"energy gained: {gain:.2g} of the work, known to {known:.1g}")
     if cycle.flags["unconverged_steps"]:
@@ -183,7 +183,7 @@ def judge(case: Case, settings: ContactSettings) -> tuple[list[str], str]:
     losses: list[float] = []
     flags: dict[str, Any] = {}
     for number in range(case.cycles):
-        cycle = run_cycle(case.inputs, chosen, 1, heights=heights, keep_surface=True)
+        cycle = run_cycle(case.inputs, chosen, 1, heights=heights, contact_at="lowest", keep_surface=True)
         broken += [f"cycle {number + 1}: {words}" for words in violations(cycle, case.inputs, chosen, heights)]
         losses.append(dissipated_energy(cycle)[0])
         heights, flags = cycle.heights, cycle.flags

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -9,6 +10,9 @@ from mesoscale.checks import check_number, checked_heights
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
+
+ContactAt = Literal["highest", "lowest"]
+"""Which of given heights touch the flat first."""
 
 
 def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) -> np.ndarray:
@@ -74,20 +78,27 @@ def shortest_wave(settings: ContactSettings) -> float:
 
 
 def given_surface(
-    heights: np.ndarray | None, length_nm: float | None, settings: ContactSettings
+    heights: np.ndarray | None, length_nm: float | None, contact_at: ContactAt | None, settings: ContactSettings
 ) -> tuple[np.ndarray | None, ContactSettings]:
-    """The heights that a caller gives, checked, and the settings with their grid and side.
+    """The heights that a caller gives, checked, contact at the lowest, and the settings with their grid and side.
 
     Raises
     ------
-    InputError : heights that are no surface in nm; a side without heights; a grid other than the settings' where no
-        side is given.
+    InputError : heights that are no surface in nm, or whose side of contact is not stated; a side without heights; a
+        grid other than the settings' where no side is given.
     """
     if heights is None:
         if length_nm is not None:
             raise InputError("length_nm is the side of heights; give both, or settings.length_nm alone")
         return None, settings
     surface = checked_heights(heights, settings.length_nm if length_nm is None else length_nm)
+    if contact_at not in get_args(ContactAt):
+        raise InputError(
+            f"contact_at = {contact_at}: say where heights touch the flat: highest, as an instrument measures them; "
+            "lowest, as random_surface, contacting_heights and Cycle.heights give them"
+        )
+    if contact_at == "highest":
+        surface = -surface
     pixels = len(surface)
     if length_nm is None:
         if pixels != settings.pixels:

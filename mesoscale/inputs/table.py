@@ -144,7 +144,7 @@ def input_table(topography: Mapping[str, Any] | None = None, **rows: InputRow) -
 
     Parameters
     ----------
-    topography : what `measure_roughness` found: gives q0, hurst and rms.
+    topography : content of topography/parameters.json: gives q0, hurst, rms and q1.
     rows : distributions by name of the input (`InputsSettings`), for instance
         ``e_star=InputRow(distribution="normal", values=(70, 5))`` in GPa.
 
@@ -152,7 +152,9 @@ def input_table(topography: Mapping[str, Any] | None = None, **rows: InputRow) -
     ------
     InputError : unknown name, a range that crosses a physical bound, or roughness that the scans do not determine.
     """
-    measured = {} if topography is None else {name: InputRow(origin="topography") for name in ("q0", "hurst", "rms")}
+    measured = (
+        {} if topography is None else {name: InputRow(origin="topography") for name in ("q0", "hurst", "rms", "q1")}
+    )
     settings = InputsSettings(**{**PAPER_ROWS, **measured, **rows})
     stages = {} if topography is None else {"topography": topography}
     return collect(settings, stages, {"topography": "measured roughness"})

@@ -163,7 +163,8 @@ def _press(
     """
     area = (contact.length_nm / cell_nm) ** 2
     values = {"rms": float(np.std(surface)), "first_contact": float(surface.mean() - surface.min())}
-    cycle = run_cycle(replace(inputs, rms=values["rms"]), contact, NOMINAL_SEED, LOADS_NN[-1] * area, surface)
+    force_nN = LOADS_NN[-1] * area
+    cycle = run_cycle(replace(inputs, rms=values["rms"]), contact, NOMINAL_SEED, force_nN, surface, contact_at="lowest")
     closing = cycle.closing
     force = np.maximum.accumulate(closing.repulsive_nN)
     share: dict[str, float] = {}

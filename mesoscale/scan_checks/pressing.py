@@ -157,6 +157,6 @@ def press_scan(
     scan = clean(raw, settings)
     for surface, heights, chosen, force in surfaces(scan, fitted, settings, contact):
         scan_inputs = replace(inputs, rms=float(np.std(heights)))
-        cycle = run_cycle(scan_inputs, chosen, NOMINAL_SEED, force, heights)
+        cycle = run_cycle(scan_inputs, chosen, NOMINAL_SEED, force, heights, contact_at="lowest")
         outcome = fit_cycle(cycle, law)
         yield PressedSurface(scan.name, surface, chosen.pixels, force, cycle, outcome)

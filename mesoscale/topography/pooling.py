@@ -18,7 +18,14 @@ from mesoscale.topography.description.choice import (
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.end import cutoff_row, rms_before
 from mesoscale.topography.description.heights import HeightTest, compare_heights, not_gaussian
-from mesoscale.topography.description.one_spectrum import OneSpectrum, Overlap, merge, overlaps, refuse_different_films
+from mesoscale.topography.description.one_spectrum import (
+    OneSpectrum,
+    Overlap,
+    merge,
+    overlaps,
+    refuse_different_films,
+    several_surfaces,
+)
 from mesoscale.topography.description.parameters import Topography, analyse
 from mesoscale.topography.description.places import rms_scatter_row
 from mesoscale.topography.description.tip_error import with_radius_error
@@ -107,9 +114,9 @@ def pool(
                 rms_before(rows["q1"], part["rms"], topography, surface) for part in (rows, film)
             )
     apart = _disagreements(pairs, one) if settings.scans else []
-    doubts = []
+    doubts = several_surfaces(pairs) if settings.scans else []
     if settings.scans:
-        doubts = description_doubts(topography, choice, one, attributes, apart, cell_nm, tests)
+        doubts += description_doubts(topography, choice, one, attributes, apart, cell_nm, tests)
     doubts += lift_doubt(images, spectra, lifted)
     if choice.name == "power_law":
         doubts = [*topography.doubts, *doubts]

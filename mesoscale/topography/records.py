@@ -121,6 +121,11 @@ def _range(limits: TrustedSpectrum) -> dict[str, Any]:
     return {"trusted_low": limits.low, "trusted_high": limits.high, "limit": limits.limit, "reach": limits.reach}
 
 
+def in_order(arrays: Mapping[str, Arrays], attributes: Mapping[str, Mapping[str, Any]]) -> dict[str, Arrays]:
+    """Records from the smallest measurement to the largest, as `pool` takes them."""
+    return dict(sorted(arrays.items(), key=lambda item: (attributes[item[0]]["length_x_nm"], item[0])))
+
+
 def trusted_record(
     name: str, arrays: Mapping[str, np.ndarray], attributes: Mapping[str, Any], settings: TopographySettings
 ) -> TrustedSpectrum:

@@ -1,46 +1,47 @@
 """The content of topography/parameters.json: what is known of the surface, by name."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description.choice import DESCRIPTIONS
 from mesoscale.topography.description.confidence import CONFIDENCE
-from mesoscale.topography.description.end import cutoff_row, trusted_end
-from mesoscale.topography.description.parameters import Topography, analyse, inputs
+from mesoscale.topography.description.end import trusted_end
+from mesoscale.topography.description.parameters import Topography
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
-from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.pooling import Pooled
 from mesoscale.topography.roughness_spectrum import hurst_from_slope, mean_square
 
 UNITS = {"q0": "1/nm", "slope": "1", "hurst": "1", "rms": "nm"}
 
 
-def measure_roughness(scans: Sequence[Scan], settings: TopographySettings | None = None) -> dict[str, Any]:
-    """Roll-off wave vector q0 (1/nm), Hurst exponent and RMS height (nm) of raw scans of one surface.
+HEADS = ("measurement", "size (nm)", "points", "RMS (nm)", "trusted q (1/nm)", "ends by")
+LONGEST_NAME = 24  # so that the table fits on 80 columns
 
-    Returns
-    -------
-    content : as topography/parameters.json: `estimates` by name with value, interval and scatter, `inputs` (what the
-        table of inputs takes) and `gate` (`passed`, `reasons`: why not to trust them).
 
-    Raises
-    ------
-    InputError : no scan, or one that cannot be used.
-    """
-    settings = settings or TopographySettings()
-    if not scans:
-        raise InputError("scans: none given; at least one is needed")
-    spectra = [trusted_scan(scan, settings) for scan in scans]
-    topography = analyse(spectra, settings)
-    content = eq9_parameters(topography, [], settings, None)
-    if content["gate"]["passed"]:
-        content["inputs"]["q1"] = cutoff_row(topography, spectra)
-    return content
+def measurement_lines(content: Mapping[str, Any]) -> Iterator[str]:
+    """What each measurement shows, as lines of a table; `content` is that of topography/parameters.json."""
+    rows = [HEADS, *(_cells(row) for row in content["scans"])]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(HEADS))]
+    for row in rows:
+        yield "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+
+
+def _cells(row: Mapping[str, Any]) -> tuple[str, ...]:
+    name, ends = row["name"], f"{row['trusted_low']:.2g} to {row['trusted_high']:.2g}"
+    if len(name) > LONGEST_NAME:
+        name = f"{name[: LONGEST_NAME // 2 - 1]}…{name[-LONGEST_NAME // 2 :]}"
+    pixels = row["pixels"].replace(" ", "")
+    return name, f"{row['length_nm']:.4g}", pixels, f"{row['rms_heights_nm']:.3g}", ends, row["limit"]
+
+
+def doubt_lines(content: Mapping[str, Any]) -> Iterator[str]:
+    """A line for each doubt, with its remedy."""
+    for doubt in content["doubts"]:
+        remedy = f"; {doubt['remedy']}" if doubt["remedy"] else ""
+        yield f"DOUBT ({doubt['code']}, about {doubt['about']}): {doubt['text']}{remedy}"
 
 
 def scan_rows(
@@ -86,64 +87,9 @@ def parameters(
     pooled: Pooled, rows: Sequence[Mapping[str, Any]], settings: TopographySettings, truth: Mapping[str, Any] | None
 ) -> dict[str, Any]:
     """Content of topography/parameters.json."""
-    content = eq9_parameters(pooled.topography, rows, settings, truth)
-    doubts = pooled.doubts
-    used = pooled.choice.name
-    stopping = [doubt for doubt in doubts if doubt.fatal or (used == "power_law" and doubt in pooled.topography.doubts)]
+    topography, doubts, used = pooled.topography, pooled.doubts, pooled.choice.name
+    stopping = [doubt for doubt in doubts if doubt.fatal or (used == "power_law" and doubt in topography.doubts)]
     passed = bool(pooled.rows) and (not stopping or settings.on_doubt == "warn")
-    content["description"] = {
-        "name": used,
-        "meaning": DESCRIPTIONS[used],
-        "overridden": pooled.choice.overridden,
-        "evidence": list(pooled.choice.evidence),
-    }
-    content["trusted_end"] = trusted_end(pooled.spectra)
-    content["one_spectrum"] = _one(pooled)
-    content["surface"] = pooled.surface
-    content["inputs"] = pooled.rows if passed else {}
-    content["film"] = pooled.film if passed else {}
-    content["gate"] = {"passed": passed, "reasons": [doubt.text for doubt in stopping]}
-    content["doubts"] = [doubt.plain() for doubt in doubts]
-    return content
-
-
-def _one(pooled: Pooled) -> dict[str, Any] | None:
-    one = pooled.one
-    if one is None:
-        return None
-    return {
-        "from_q": one.first,
-        "to_q": float(one.q[-1]),
-        "place_sd": one.place_sd,
-        "measurements": list(one.names),
-        **one.statistics(),
-        "overlaps": [
-            {
-                "first": pair.first,
-                "second": pair.second,
-                "from_q": pair.low,
-                "to_q": pair.high,
-                "ratio": pair.ratio,
-                "expected_within": pair.expected,
-                "agrees": pair.agrees,
-            }
-            for pair in pooled.pairs[:MOST_PAIRS]
-        ],
-    }
-
-
-MOST_PAIRS = 40  # of many alike scans the rest repeats them
-
-
-def eq9_parameters(
-    topography: Topography,
-    rows: Sequence[Mapping[str, Any]],
-    settings: TopographySettings,
-    truth: Mapping[str, Any] | None,
-) -> dict[str, Any]:
-    """What eq. 9 says of the surface: estimates, fits, inputs and gate."""
-    doubts = list(topography.reasons)
-    passed = bool(topography.estimates) and (not doubts or settings.on_doubt == "warn")
     likelihood, line = topography.likelihood, topography.line_fit
     content: dict[str, Any] = {
         "synthetic": truth is not None,
@@ -160,8 +106,19 @@ def eq9_parameters(
         "likelihood": None,
         "lines": None,
         "scans": list(rows),
-        "inputs": inputs(topography, settings) if passed else {},
-        "gate": {"passed": passed, "reasons": doubts},
+        "description": {
+            "name": used,
+            "meaning": DESCRIPTIONS[used],
+            "overridden": pooled.choice.overridden,
+            "evidence": list(pooled.choice.evidence),
+        },
+        "trusted_end": trusted_end(pooled.spectra),
+        "one_spectrum": _one(pooled),
+        "surface": pooled.surface,
+        "inputs": pooled.rows if passed else {},
+        "film": pooled.film if passed else {},
+        "gate": {"passed": passed, "reasons": [doubt.text for doubt in stopping]},
+        "doubts": [doubt.plain() for doubt in doubts],
     }
     if likelihood is not None:
         fitted = likelihood.spectrum(topography.cutoff)
@@ -203,3 +160,31 @@ def eq9_parameters(
             "hurst": hurst_from_slope(truth["truth"]["slope"], settings.convention),
         }
     return content
+
+
+MOST_PAIRS = 40  # of many alike scans the rest repeats them
+
+
+def _one(pooled: Pooled) -> dict[str, Any] | None:
+    one = pooled.one
+    if one is None:
+        return None
+    return {
+        "from_q": one.first,
+        "to_q": float(one.q[-1]),
+        "place_sd": one.place_sd,
+        "measurements": list(one.names),
+        **one.statistics(),
+        "overlaps": [
+            {
+                "first": pair.first,
+                "second": pair.second,
+                "from_q": pair.low,
+                "to_q": pair.high,
+                "ratio": pair.ratio,
+                "expected_within": pair.expected,
+                "agrees": pair.agrees,
+            }
+            for pair in pooled.pairs[:MOST_PAIRS]
+        ],
+    }

@@ -1,8 +1,9 @@
-"""The entrance for researchers: from a scan to switches in ten lines."""
+"""The entrance for researchers: from scans to a contact and a switch."""
 
 import csv
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,39 +13,60 @@ import asperity as asp
 from mesoscale.topography.measurements.loading import write_gwy
 
 TABLE_1 = Path(__file__).parents[2] / "config" / "paper" / "table1.csv"
+INPUTS = asp.ContactInputs(0.215, 91.0, 1.95, 8.375, q0=0.025, hurst=0.7, rms=5.0)
 SMALL = asp.ContactSettings(pixels=64, length_nm=250.0, max_force_nN=500.0)
 
 
 @pytest.fixture(scope="module")
 def film(tmp_path_factory):
     settings = asp.ContactSettings(pixels=512, length_nm=5000.0)
-    inputs = asp.ContactInputs(0.215, 91.0, 1.95, 8.375, q0=0.025, hurst=0.7, rms=5.0)
     path = tmp_path_factory.mktemp("film") / "film.gwy"
-    write_gwy(path, asp.Scan(asp.random_surface(inputs, settings, 1), (5000.0, 5000.0), "film"))
+    write_gwy(path, asp.Scan(asp.random_surface(INPUTS, settings, 1), (5000.0, 5000.0), "film"))
     return path
 
 
-def test_scan_to_switches_in_ten_lines(film):
-    roughness = asp.measure_roughness([asp.load_scan(film)])
-    table = asp.input_table(topography=roughness)
-    cycle = asp.run_cycle(asp.ContactInputs(**table.medians()), SMALL, seed=1)
-    switch = asp.drive_switch(asp.DeviceSettings(), *asp.laws_of(cycle))
-    samples = asp.monte_carlo(table, SMALL, samples=4)
-    switches = asp.drive_switch(asp.DeviceSettings(), samples.closing, samples.opening)
-
+def test_a_film_of_known_roughness_is_measured_and_pressed(film):
+    measured = asp.Film(film)
+    table = measured.inputs({"e_star": 75.0, "hamaker": asp.InputRow(values=(0.2, 0.3))})
     # the surface was made with these
-    low, high = roughness["estimates"]["hurst"]["interval"]
+    low, high = measured.description["estimates"]["hurst"]["interval"]
     assert low < 0.7 + 0.05
     assert high > 0.7 - 0.05
     assert table.medians()["rms"] == pytest.approx(5.0, rel=0.1)
-    assert cycle.converged
-    # a plate that snaps in from far away does not feel the contact: sqrt(8 k (g + t/eps)^3 / (27 eps0 A))
-    device = asp.switch_from_settings(asp.DeviceSettings())
-    reach = (device.gap_nm + device.dielectric_nm) * 1e-9
-    ideal = np.sqrt(8 * device.spring_N_per_m * reach**3 / (27 * 8.8541878128e-12 * device.area_m2))
-    assert switch.pull_in_V == pytest.approx(ideal, rel=1e-4)
-    assert len(switches.release_V) + len(samples.failed) == 4
-    assert np.all(switches.release_V < switches.pull_in_V)
+    assert table.medians()["e_star"] == 75.0
+    contact = measured.press({"e_star": 75.0}, load_nN=3000.0, pixels=128)
+    assert contact.cycle.converged
+    # pressures carry the load, and walls that are pressed have no gap
+    assert contact.pressure_GPa.mean() * contact.cycle.cell_area_nm2 == pytest.approx(3000.0, rel=1e-5)
+    assert not contact.gap_nm[contact.pressure_GPa > 0].any()
+    assert contact.gap_nm.mean() == pytest.approx(contact.cycle.closing.separation_nm[-1], rel=0.02)
+    assert repr(contact).startswith("Contact: touches at ")
+    assert measured._repr_html_().count("\n") == 2 + len(measured.doubts)
+
+
+def test_heights_of_your_own_have_their_peaks_where_an_instrument_has_them():
+    settings = asp.ContactSettings(pixels=256, length_nm=2500.0)
+    flat_peaks = -np.exp(asp.random_surface(INPUTS, settings, 1) / 4)  # deep pits
+    up, down = (
+        asp.Film(asp.Scan(z, (2500.0, 2500.0), "own"), line_alignment="none") for z in (flat_peaks, -flat_peaks)
+    )
+    touch = [film.press(load_nN=1000.0, pixels=128).cycle.first_contact_nm for film in (up, down)]
+    assert touch[0] < 0.7 * touch[1]
+
+
+def test_unlike_films_raise_a_doubt_before_anything_is_computed():
+    """Maps of 1 and 5 um of equal height: other spectra where both see the surface."""
+    settings = [asp.ContactSettings(pixels=256, length_nm=side) for side in (1000.0, 5000.0)]
+    inputs = [replace(INPUTS, hurst=0.3), replace(INPUTS, hurst=0.95, q0=0.02)]
+    scans = [
+        asp.Scan(asp.random_surface(i, s, 1), (s.length_nm, s.length_nm), f"{s.length_nm:g}")
+        for i, s in zip(inputs, settings, strict=True)
+    ]
+    film = asp.Film(scans)
+    assert any(doubt.startswith("DOUBT (several_surfaces") for doubt in film.doubts)
+    with pytest.raises(asp.InputError, match="look like two surfaces"):
+        film.press()
+    assert asp.Film(scans, on_doubt="warn").inputs()
 
 
 def test_the_table_without_changes_is_the_papers():
@@ -69,7 +91,8 @@ def test_more_samples_extend_fewer():
         (lambda: asp.monte_carlo(asp.input_table(), SMALL, samples=0), "samples = 0"),
         (lambda: asp.monte_carlo(asp.input_table(), SMALL, samples=2.5), "samples = 2.5"),
         (lambda: asp.monte_carlo(asp.input_table(), SMALL, 2, seed=0.5), "seed = 0.5"),
-        (lambda: asp.measure_roughness([]), "none given"),
+        (lambda: asp.Film([]), "nothing to read"),
+        (lambda: asp.Film("nowhere.gwy"), "no such scan"),
         (lambda: asp.input_table(roughness=asp.InputRow(values=(1, 2))), "roughness"),
         (lambda: asp.input_table(hurst=asp.InputRow(values=(0.5, 50))), "hurst: spans"),
         (lambda: asp.Scan(np.zeros(9), (1.0, 1.0), "line"), "a map"),
@@ -100,7 +123,7 @@ cycle = asp.run_cycle(asp.ContactInputs(0.215, 91.0, 1.95, 8.375, 0.025, 0.75, 8
                       asp.ContactSettings(pixels=64, length_nm=250.0), seed=1, max_force_nN=500.0)
 print(cycle.converged)
 try:
-    asp.load_scan(sys.argv[1])
+    asp.Film(sys.argv[1])
 except asp.MissingExtra as error:
     print(error)
 """

@@ -7,7 +7,7 @@ Out: topography/spectra.h5 (figures 9 and 10), topography/parameters.json (1/nm,
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.curves import CURVES
 from mesoscale.topography.pooling import pool, result_curves
-from mesoscale.topography.records import DATASETS, KEPT
+from mesoscale.topography.records import DATASETS, KEPT, in_order
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.summary import parameters, scan_rows
 from workflow.job import job, settings_from_job
@@ -20,7 +20,7 @@ with job(snakemake) as run:
         groups, _, group_attributes = load_h5(path)
         arrays.update(groups)
         attributes.update(group_attributes)
-    arrays = dict(sorted(arrays.items(), key=lambda item: (attributes[item[0]]["length_x_nm"], item[0])))
+    arrays = in_order(arrays, attributes)
     truth, typical = None, None
     if snakemake.input.truth:
         truth = load_json(snakemake.input.truth)

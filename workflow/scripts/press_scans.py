@@ -7,14 +7,15 @@ surface and branch).
 
 import math
 from dataclasses import asdict
+from itertools import chain
 from pathlib import Path
 
 from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
-from mesoscale.scan_checks.pressing import press_scan
+from mesoscale.scan_checks.pressing import has_square_pixels, press_scan
 from mesoscale.settings import LawSettings, TopographySettings
-from mesoscale.topography.measurements.loading import load_scan
+from mesoscale.topography.measurements.loading import load_measurements
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from workflow.contact_settings import contact_settings
 from workflow.job import job, settings_from_job
@@ -30,8 +31,10 @@ with job(snakemake) as run:
     groups, attributes, rows = {}, {}, []
     files = list(snakemake.input.scans)
     for number, path in enumerate(files):
-        raw = load_scan(path, f"{number + 1:02d}_{Path(path).stem}", settings.channel)
-        for pressed in press_scan(raw, spectrum, fitted["misfit"], inputs, settings, contact, law):
+        measured = load_measurements(path, f"{number + 1:02d}_{Path(path).stem}", settings)
+        maps = [item.data for item in measured if has_square_pixels(item.data)]
+        pressing = (press_scan(raw, spectrum, fitted["misfit"], inputs, settings, contact, law) for raw in maps)
+        for pressed in chain.from_iterable(pressing):
             name = f"{pressed.scan}/{pressed.surface}"
             for branch, curve in (("closing", pressed.cycle.closing), ("opening", pressed.cycle.opening)):
                 groups[f"{name}/{branch}"] = {

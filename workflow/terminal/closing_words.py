@@ -2,18 +2,16 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
+from mesoscale.topography.summary import doubt_lines, measurement_lines
 from workflow.results import load_csv, load_json
-
-HEADS = ("measurement", "size (nm)", "points", "RMS (nm)", "trusted q (1/nm)", "ends by")
 
 
 def closing_words(results: Path) -> Iterator[str]:
     """Lines about the surface of a scene: a table, the description, the judgement of the scans, then the doubts."""
     content = load_json(results / "topography/parameters.json")
     yield ""
-    yield from _table([HEADS, *(_cells(row) for row in content["scans"])])
+    yield from measurement_lines(content)
     description = content["description"]
     chosen = "set by the scene" if description["overridden"] else "chosen by evidence"
     yield f"described by {description['name']} ({chosen}): {description['meaning']}"
@@ -24,9 +22,7 @@ def closing_words(results: Path) -> Iterator[str]:
         yield from judgement(load_csv(results / "topography/judged.csv"))
     if (results / "topography/unseen.csv").is_file():
         yield from unseen(load_csv(results / "topography/unseen.csv"))
-    for doubt in content["doubts"]:
-        remedy = f"; {doubt['remedy']}" if doubt["remedy"] else ""
-        yield f"DOUBT ({doubt['code']}, about {doubt['about']}): {doubt['text']}{remedy}"
+    yield from doubt_lines(content)
 
 
 def unseen(rows: list[dict[str, str]]) -> Iterator[str]:
@@ -58,14 +54,3 @@ def judgement(rows: list[dict[str, str]]) -> Iterator[str]:
         f"{float(row['pressed']):.3g} nm, its description says {float(row['low']):.3g} to {float(row['high']):.3g} nm; "
         "measure more places"
     )
-
-
-def _cells(row: dict[str, Any]) -> tuple[str, ...]:
-    ends = f"{row['trusted_low']:.2g} to {row['trusted_high']:.2g}"
-    return row["name"], f"{row['length_nm']:.4g}", row["pixels"], f"{row['rms_heights_nm']:.3g}", ends, row["limit"]
-
-
-def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
-    widths = [max(len(row[k]) for row in rows) for k in range(len(HEADS))]
-    for row in rows:
-        yield "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()

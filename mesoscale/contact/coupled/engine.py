@@ -141,6 +141,14 @@ class CoupledContact(Contact):
         """Repulsive force of the pressures, nN."""
         return float(self.pressure.sum()) * self.site_area
 
+    def fields(self) -> tuple[np.ndarray, np.ndarray]:
+        """Pressure (GPa) and gap (nm; 0 in contact) of all sites at the current separation, shapes (N, N)."""
+        pressure = np.zeros(self.heights.size)
+        pressure[self.sites] = self.pressure
+        displacement = (self.grid or grid.Grid(self.n, self.length, self.e_star)).displacement(pressure)
+        gap = np.where(pressure > 0.0, 0.0, np.maximum(self.heights + self.separation + displacement, 0.0))
+        return pressure.reshape(self.n, self.n), gap.reshape(self.n, self.n)
+
     def _solve_rounds(self) -> tuple[int, bool]:
         """Solve with the hardness of each cluster until the clusters are those it belongs to.
 

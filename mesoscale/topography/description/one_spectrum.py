@@ -19,11 +19,15 @@ import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.topography.description.confidence import QUANTILES, REACH
+from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.likelihood import DISCREPANCY
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, with_ends
 
 BANDS_PER_DECADE = 10
 DIFFERENT_FILMS = 100.0  # ratio of C, a factor of 10 in RMS height, beyond which two files are not of one surface
+MOST_MISFIT = 3.0  # of reduced chi^2 of a common shape: of 143 pairs of maps of one synthetic surface none reaches 1.8
+# of ln C between two places whose RMS heights scatter by 40 %, at 99 %: a factor of 18
+MOST_PLACES = 2.58 * np.sqrt(2) * 0.8
 KINK = 0.35  # standard deviation of the change of slope times the band's width, from band to band
 MOST_BIASED = 0.3  # of ln C, where hardly one amplitude is behind it
 DRAWS = 500
@@ -44,6 +48,7 @@ class Overlap:
     low, high : shared wave vectors, 1/nm.
     ratio : C of the second over that of the first, geometric mean over the shared bands.
     expected : factor within which they should agree, by their own errors alone, at 90 %.
+    misfit : reduced chi^2 of one ratio for all shared bands: far above 1 where the spectra differ in shape.
     """
 
     first: str
@@ -52,6 +57,13 @@ class Overlap:
     high: float
     ratio: float
     expected: float
+    misfit: float
+
+    @property
+    def one_surface(self) -> bool:
+        """Can these be two places of one surface, whose spectra differ by one factor, and by no large one?"""
+        most = np.hypot(np.log(self.expected), MOST_PLACES)
+        return bool(abs(np.log(self.ratio)) <= most and self.misfit <= MOST_MISFIT)
 
     @property
     def agrees(self) -> bool:
@@ -263,12 +275,15 @@ def overlaps(spectra: Sequence[TrustedSpectrum]) -> list[Overlap]:
             if len(common) == 0:
                 continue
             weight = 1 / (variance[a] + other_variance[b])
-            difference = float(np.sum(weight * (other_level[b] - level[a])) / weight.sum())
+            apart = other_level[b] - level[a]
+            difference = float(np.sum(weight * apart) / weight.sum())
+            misfit = float(np.sum(weight * (apart - difference) ** 2)) / max(len(common) - 1, 1)
             # errors of neighbouring bands go together: no more certain than a typical band
             spread = float(np.sqrt(1 / weight.mean()))
             edges = 10 ** (np.array([common[0], common[-1] + 1]) / BANDS_PER_DECADE)
             expected = float(np.exp(REACH * spread))
-            pairs.append(Overlap(first.name, second.name, edges[0], edges[1], float(np.exp(difference)), expected))
+            ratio = float(np.exp(difference))
+            pairs.append(Overlap(first.name, second.name, edges[0], edges[1], ratio, expected, misfit))
     return sorted(pairs, key=lambda item: item.low / item.high)
 
 
@@ -286,3 +301,20 @@ def refuse_different_films(pairs: Sequence[Overlap]) -> None:
             f"{worst.high:.2g} /nm their spectra differ by a factor of {max(worst.ratio, 1 / worst.ratio):.3g}; "
             f"accepted is {DIFFERENT_FILMS:g}; give the files of one film, or correct a unit or a height scale"
         )
+
+
+def several_surfaces(pairs: Sequence[Overlap]) -> list[Doubt]:
+    """One doubt where two measurements do not look like places of one surface; it names the pair that differs most."""
+    strangers = [pair for pair in pairs if not pair.one_surface]
+    if not strangers:
+        return []
+    worst = max(strangers, key=lambda pair: max(pair.misfit, abs(np.log(pair.ratio))))
+    differ = f"by a factor of {max(worst.ratio, 1 / worst.ratio):.2g}"
+    if worst.misfit > MOST_MISFIT:
+        differ = f"in shape, by {np.sqrt(worst.misfit):.2g} times their errors"
+    text = (
+        f"{worst.first} and {worst.second} look like two surfaces: from {worst.low:.2g} to {worst.high:.2g} /nm their "
+        f"spectra differ {differ}"
+    )
+    remedy = "give the measurements of one surface; if they are, set topography.on_doubt: warn"
+    return [Doubt("several_surfaces", text, remedy, fatal=True)]

@@ -73,5 +73,6 @@ def _check_span(profile: Profile, low: float, high: float, limit: str) -> None:
     if high < 2 * low:
         raise InputError(
             f"{profile.name}: nothing to see: its waves are trusted from {low:.2g} /nm, but the {limit} limit "
-            f"ends them at {high:.2g} /nm; give a longer or finer profile, or leave it out"
+            f"ends them at {high:.2g} /nm; give a longer or finer profile, state its own tip "
+            "(topography.instruments; 0 for a side view), or leave it out"
         )

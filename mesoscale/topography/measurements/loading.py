@@ -64,7 +64,8 @@ def load_measurements(
 
     Raises
     ------
-    InputError : as `load_scan`, a container that cannot be trusted, or a profile without unit.
+    InputError : file missing, unreadable or of unknown format; no or several height channels; no physical size or
+        unit; pixels not on a regular grid; a container that cannot be trusted.
     """
     path, settings = Path(path), settings or TopographySettings()
     _check_present(path)
@@ -75,8 +76,8 @@ def load_measurements(
 def _measurements(path: Path, name: str | None, settings: TopographySettings) -> list[Measurement]:
     if not is_container(path):
         instrument = _instrument(path.name, settings)
-        data = _load(path, name or path.stem, instrument.channel or settings.channel, instrument.unit, True)
-        return [_limited(data, instrument, settings)]
+        data = _load(path, name or path.stem, instrument.channel or settings.channel, instrument.unit)
+        return [with_limits(data, settings, instrument)]
     measurements = []
     with unpacked(path) as members:
         for number, member in enumerate(members):
@@ -84,12 +85,12 @@ def _measurements(path: Path, name: str | None, settings: TopographySettings) ->
             label = re.sub(r"[^\w.-]+", "_", f"{name or path.stem}_{number + 1}_{Path(member.name).stem}")
             unit, channel = instrument.unit or member.unit, instrument.channel or settings.channel
             try:
-                data = _load(member.path, label, channel, unit, True, member.sizes)
+                data = _load(member.path, label, channel, unit, member.sizes)
             except InputError as error:
                 raise InputError(str(error).replace(str(member.path), f"{path}: {member.name}")) from None
             if isinstance(data, Profile):
                 data = replace(data, bow=member.bow, tip_radius_nm=data.tip_radius_nm or member.tip_radius_nm)
-            measurements.append(_limited(data, instrument, settings))
+            measurements.append(with_limits(data, settings, instrument))
     if not measurements:
         raise InputError(f"{path}: its list of measurements is empty")
     return measurements
@@ -98,39 +99,22 @@ def _measurements(path: Path, name: str | None, settings: TopographySettings) ->
 def _instrument(name: str, settings: TopographySettings) -> InstrumentSettings:
     """The instrument that the scene states for a name; one without limits where it states none."""
     fits = (item for item in settings.instruments if fnmatch(name, item.files))
-    return next(fits, InstrumentSettings(files="*"))
+    return next(fits, NO_LIMITS)
 
 
-def _limited(data: Scan | Profile, instrument: InstrumentSettings, settings: TopographySettings) -> Measurement:
+NO_LIMITS = InstrumentSettings(files="*")
+
+
+def with_limits(
+    data: Scan | Profile, settings: TopographySettings, instrument: InstrumentSettings = NO_LIMITS
+) -> Measurement:
+    """A scan or line profile with the limits of its instrument; what that leaves open is the settings'."""
     radius = instrument.tip_radius_nm
     if radius is None and isinstance(data, Profile):
         radius = data.tip_radius_nm
     stated = radius is not None or isinstance(data, Scan)  # topography.tip_radius_nm is a scanning probe's
     used = settings.tip_radius_nm if radius is None else radius
     return Measurement(data, used, stated, instrument.shortest_wave_nm, instrument.noise_nm)
-
-
-def load_scan(path: str | Path, name: str | None = None, channel: str | None = None) -> Scan:
-    """Read the height channel of an AFM file, in nm.
-
-    Parameters
-    ----------
-    path : file of any format that SurfaceTopography reads, NumPy's own excepted.
-    name : what to call the scan; by default the file's name.
-    channel : name of the height channel; None takes the only one, or the first of several of one name
-        (trace and retrace).
-
-    Raises
-    ------
-    InputError : file missing, unreadable or of unknown format; no or several height channels; no physical
-        size or unit; pixels not on a regular two-dimensional grid.
-    """
-    path = Path(path)
-    _check_present(path)
-    _import_readers()
-    data = guarded(path, lambda: _load(path, name or path.stem, channel, None))
-    assert isinstance(data, Scan)  # profiles are refused
-    return data
 
 
 def _import_readers() -> None:
@@ -155,7 +139,6 @@ def _load(
     name: str,
     channel: str | None,
     unit: str | None,
-    profiles: bool = False,
     sizes: tuple[float, ...] | None = None,
 ) -> Scan | Profile:
     with warnings.catch_warnings():
@@ -164,7 +147,7 @@ def _load(
         try:
             channels = _heights(path, lambda: list(reader.channels))
             info, note = _height_channel(path, channels, channel)
-            if info.dim == 1 and profiles:
+            if info.dim == 1:
                 return _profile(path, name, info, unit)
             return _scan(path, name, info, note, unit, sizes)
         finally:

@@ -90,7 +90,7 @@ def test_cycles_on_the_changed_surface_shake_down():
     """The second closing to the same force follows the first opening, and hardly anything flows any more."""
     settings = settings_for()
     first = run_cycle(INPUTS, settings, 1, keep_surface=True)
-    second = run_cycle(INPUTS, settings, 1, heights=first.heights, keep_surface=True)
+    second = run_cycle(INPUTS, settings, 1, heights=first.heights, contact_at="lowest", keep_surface=True)
     assert second.first_contact_nm == pytest.approx(first.last_contact_nm, abs=1e-12)
     assert second.first_contact_nm < first.first_contact_nm
     loss = [-work(c.closing) - work(c.opening) for c in (first, second)]
@@ -102,7 +102,7 @@ def test_a_larger_load_continues_a_smaller_one():
     """A closing interrupted by opening reaches the same end as one without, but for the path's steps."""
     settings, fine = settings_for(), Numerics(force_steps=100)
     half = run_cycle(INPUTS, settings, 1, 250.0, keep_surface=True, numerics=fine)
-    continued = run_cycle(INPUTS, settings, 1, 500.0, heights=half.heights, numerics=fine).closing
+    continued = run_cycle(INPUTS, settings, 1, 500.0, heights=half.heights, contact_at="lowest", numerics=fine).closing
     direct = run_cycle(INPUTS, settings, 1, 500.0, numerics=fine).closing
     assert continued.separation_nm[-1] == pytest.approx(direct.separation_nm[-1], abs=0.1)
 
@@ -111,10 +111,10 @@ def test_given_heights_are_not_changed_and_their_mean_plane_counts():
     heights = synthesize(256, 250.0, 0.025, 0.75, 8.5, 1)
     kept = heights.copy()
     own = run_cycle(INPUTS, settings_for(), 1)
-    given = run_cycle(INPUTS, settings_for(), 99, heights=heights)
+    given = run_cycle(INPUTS, settings_for(), 99, heights=heights, contact_at="lowest")
     np.testing.assert_array_equal(heights, kept)
     np.testing.assert_allclose(given.closing.separation_nm, own.closing.separation_nm, rtol=1e-12)
-    lifted = run_cycle(INPUTS, settings_for(model="elastic"), 99, heights=heights + 4.0)
+    lifted = run_cycle(INPUTS, settings_for(model="elastic"), 99, heights=heights + 4.0, contact_at="lowest")
     assert lifted.first_contact_nm == pytest.approx(own.first_contact_nm, rel=1e-12)
 
 
@@ -146,12 +146,14 @@ def test_elastic_models_copy_no_surface_and_never_flow(monkeypatch):
     monkeypatch.setattr(engine.AsperityContact, "__init__", remember)
     monkeypatch.setattr(engine.kernels, "settle", lambda *a: pytest.fail("an elastic surface flowed"))
     for model in ("elastic", "nonlinear"):
-        run_cycle(INPUTS, settings_for(model=model), 1, heights=heights)
+        run_cycle(INPUTS, settings_for(model=model), 1, heights=heights, contact_at="lowest")
     assert all(np.shares_memory(surface, heights) for surface in held)
 
 
 def test_a_flat_surface_touches_everywhere():
-    cycle = run_cycle(INPUTS, settings_for(model="elastic"), 1, heights=np.zeros((64, 64)), length_nm=250.0)
+    cycle = run_cycle(
+        INPUTS, settings_for(model="elastic"), 1, heights=np.zeros((64, 64)), contact_at="lowest", length_nm=250.0
+    )
     assert cycle.converged
     assert cycle.first_contact_nm == 0.0
     assert cycle.closing.contact_area_nm2[-1] == pytest.approx(250.0**2)
@@ -180,14 +182,22 @@ ROUGH = synthesize(256, 250.0, 0.025, 0.75, 8.5, 1)  # nm
 )
 def test_bad_surfaces_are_refused_in_one_line(heights, words):
     with pytest.raises(InputError, match=words) as refusal:
-        run_cycle(INPUTS, settings_for(), 1, heights=heights)
+        run_cycle(INPUTS, settings_for(), 1, heights=heights, contact_at="lowest")
     assert "\n" not in str(refusal.value)
 
 
 @pytest.mark.parametrize("length_nm", [0.0, -250.0, 250e-9, np.nan, "250", True])
 def test_a_side_that_is_no_length_in_nm_is_refused(length_nm):
     with pytest.raises(InputError, match=r"length_nm = .* nm"):
-        run_cycle(INPUTS, settings_for(), 1, heights=ROUGH, length_nm=length_nm)
+        run_cycle(INPUTS, settings_for(), 1, heights=ROUGH, contact_at="lowest", length_nm=length_nm)
+
+
+def test_measured_heights_touch_at_their_peaks_and_heights_of_no_stated_side_are_refused():
+    own = run_cycle(INPUTS, settings_for(), 1, heights=ROUGH, contact_at="lowest")
+    measured = run_cycle(INPUTS, settings_for(), 1, heights=-ROUGH, contact_at="highest")
+    np.testing.assert_array_equal(measured.opening.repulsive_nN, own.opening.repulsive_nN)
+    with pytest.raises(InputError, match="say where heights touch the flat: highest, as an instrument"):
+        run_cycle(INPUTS, settings_for(), 1, heights=ROUGH)
 
 
 def test_a_side_without_heights_is_refused():
@@ -198,8 +208,8 @@ def test_a_side_without_heights_is_refused():
 def test_given_heights_bring_their_own_grid_and_side():
     """A quarter of the settings' sites on half their side: the same contact as with settings of that size."""
     small = synthesize(128, 125.0, 0.1, 0.75, 2.0, 1)
-    given = run_cycle(INPUTS, settings_for(), 1, heights=small, length_nm=125.0)
-    stated = run_cycle(INPUTS, settings_for(pixels=128, length_nm=125.0), 1, heights=small)
+    given = run_cycle(INPUTS, settings_for(), 1, heights=small, contact_at="lowest", length_nm=125.0)
+    stated = run_cycle(INPUTS, settings_for(pixels=128, length_nm=125.0), 1, heights=small, contact_at="lowest")
     np.testing.assert_array_equal(given.opening.repulsive_nN, stated.opening.repulsive_nN)
     assert given.cell_area_nm2 == stated.cell_area_nm2 == 125.0**2
 

@@ -11,10 +11,16 @@ import pytest
 from mesoscale.errors import InputError
 from mesoscale.settings import InstrumentSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan, clean
-from mesoscale.topography.measurements.loading import REFUSED_FORMATS, load_measurements, load_scan, write_gwy
+from mesoscale.topography.measurements.loading import REFUSED_FORMATS, load_measurements, write_gwy
 
 IN_NM = TopographySettings(instruments=(InstrumentSettings(files="*", unit="nm"),))
 AFM = Path(__file__).resolve().parents[5] / "shared" / "afm"
+
+
+def load_scan(path, channel=None):
+    """The only scan of a file."""
+    (measured,) = load_measurements(path, settings=TopographySettings(channel=channel))
+    return measured.data
 
 
 def gwy(path, heights, lengths=(1000.0, 750.0)):

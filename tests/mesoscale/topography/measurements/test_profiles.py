@@ -5,7 +5,7 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.settings import InstrumentSettings, TopographySettings
-from mesoscale.topography.measurements.loading import load_measurements, load_scan
+from mesoscale.topography.measurements.loading import load_measurements
 from mesoscale.topography.measurements.profiles import Profile, clean_profile, profile_of
 
 X = np.arange(500) * 2.0
@@ -39,11 +39,6 @@ def test_a_profile_without_unit_is_refused_unless_the_scene_states_one(tmp_path)
 def test_the_default_tip_is_not_taken_for_a_stylus_without_a_word(tmp_path):
     (result,) = load_measurements(written(tmp_path / "line.txt", "x (nm)\tz (nm)"))
     assert not result.radius_stated
-
-
-def test_a_scan_is_still_asked_for_where_only_scans_fit(tmp_path):
-    with pytest.raises(InputError, match="not a line profile"):
-        load_scan(written(tmp_path / "line.txt", "x (nm)\tz (nm)"))
 
 
 def test_uneven_points_are_read_at_even_steps():

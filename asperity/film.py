@@ -1,0 +1,290 @@
+"""A measured film, the contact on it and a switch on its pad: what a scene computes, by the same calls."""
+
+import hashlib
+import html
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mesoscale.contact import ContactInputs, Cycle, run_cycle
+from mesoscale.contact.energy import pull_off
+from mesoscale.device.pad_results import switch_on_pad
+from mesoscale.device.pressing import pressure_to_compute
+from mesoscale.errors import InputError
+from mesoscale.extras import needs
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.inputs.table import PAPER_ROWS, check_resolved, input_table
+from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
+from mesoscale.pad.curves import assemble
+from mesoscale.settings import (
+    ContactSettings,
+    DeviceSettings,
+    InputRow,
+    InputsSettings,
+    PadSettings,
+    TopographySettings,
+)
+from mesoscale.settings.contact import NOMINAL_SEED
+from mesoscale.topography.measurements import files_in
+from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.loading import Measurement, load_measurements, with_limits
+from mesoscale.topography.pooling import pool
+from mesoscale.topography.records import in_order, record
+from mesoscale.topography.summary import doubt_lines, measurement_lines, parameters, scan_rows
+
+Material = Mapping[str, float | InputRow | Any]
+"""Numbers, or distributions as `InputRow`, by the names of a scene's inputs: e_star, h_macro, h_prime, hamaker, …"""
+
+RECOMMENDED = {"mechanics": "coupled", "attraction": "offset"}
+"""Of a contact: all asperities on one elastic half-space, and walls that are D0 apart at touch (docs/contact.md)."""
+CELLS = 64
+PIXELS = (512, 1024, 2048)
+TABLE_1 = InputsSettings()
+MATERIAL = {
+    "e_star": PAPER_ROWS["e_star"],
+    "h_macro": TABLE_1.rows()["h_macro"],
+    "h_prime": PAPER_ROWS["h_prime"],
+    "hamaker": TABLE_1.rows()["hamaker"],
+    "gap_cutoff": InputRow(values=(0.26, 0.34), source="tops of silica made of atoms (docs/hardness.md)"),
+}
+"""The material where none is given: the paper's films, and D0 of silica."""
+
+
+class _Shown:
+    """What says itself in lines of text: the first alone in a terminal, all of them in a notebook."""
+
+    def lines(self) -> Iterator[str]:
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        return next(self.lines())
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(chr(10).join(self.lines()))}</pre>"
+
+
+class Film(_Shown):
+    """What scans, line profiles and containers say together of one surface.
+
+    Parameters
+    ----------
+    files : a file, a folder or a list of them, in any format that a scene reads; or a `Scan` of heights of your own.
+    tip_nm : radius of the AFM tip where no file states it; None: that of a scene, 5 nm.
+    settings : further keys of a scene's section `topography`, such as ``line_alignment="none"``.
+
+    Attributes
+    ----------
+    measurements : what the files hold, before levelling.
+    description : as topography/parameters.json of a scene: estimates, doubts, gate and what random surfaces follow.
+
+    Raises
+    ------
+    InputError : nothing to read, or measurements that cannot be used.
+    """
+
+    def __init__(
+        self, files: str | PathLike[str] | Scan | Iterable[Any], tip_nm: float | None = None, **settings: Any
+    ) -> None:
+        given = [files] if isinstance(files, (str, PathLike, Scan)) else list(files)
+        sources = [part for item in given for part in ([item] if isinstance(item, Scan) else files_in(item))]
+        if not sources:
+            raise InputError(f"{', '.join(map(str, given)) or 'files'}: nothing to read; give scans of a surface")
+        names = tuple(item.name if isinstance(item, Scan) else item for item in sources)
+        tip = {} if tip_nm is None else {"tip_radius_nm": tip_nm}
+        self.settings = TopographySettings(scans=names, **tip, **settings)
+        self.measurements: list[Measurement] = []
+        arrays, attributes = {}, {}
+        for number, source in enumerate(sources, 1):
+            for measured in _load(source, number, self.settings):
+                name = measured.data.name
+                arrays[name], described = record(measured, self.settings)
+                attributes[name] = {**_origin(source), **described}
+                self.measurements.append(measured)
+        cell_nm = ContactSettings().length_nm
+        pooled = pool(in_order(arrays, attributes), attributes, self.settings, cell_nm, cut_off=True)
+        rows = scan_rows(pooled.spectra, pooled.topography, attributes, None)
+        self.description = parameters(pooled, rows, self.settings, None)
+
+    @property
+    def doubts(self) -> list[str]:
+        """What to take with care, each with its remedy."""
+        return list(doubt_lines(self.description))
+
+    def lines(self) -> Iterator[str]:
+        """A summary, what each measurement shows, and the doubts."""
+        used = self.description["description"]
+        yield f"Film: {len(self.measurements)} measurements, {len(self.doubts)} doubts; described by {used['meaning']}"
+        yield from measurement_lines(self.description)
+        yield from self.doubts
+
+    def inputs(self, material: Material | None = None) -> InputTable:
+        """The uncertain inputs: roughness of the film, and the material (default: `MATERIAL`).
+
+        Raises
+        ------
+        InputError : an unknown input, a value out of range, or measurements that no description fits.
+        """
+        rows = {**MATERIAL, **{name: _row(value) for name, value in (material or {}).items()}}
+        if "adhesion" in rows:  # states the attraction by work and range
+            rows = {name: row for name, row in rows.items() if name not in ("hamaker", "gap_cutoff")}
+        return input_table(self.description, **rows)
+
+    def press(self, material: Material | None = None, load_nN: float = 7000.0, pixels: int | None = None) -> "Contact":
+        """Close 1 um^2 of the film onto a flat up to a load, and open it: at central inputs, coupled asperities.
+
+        The surface is the one of a scene's nominal curves: random, with the film's spectrum and heights.
+
+        Parameters
+        ----------
+        load_nN : largest repulsive force (nN).
+        pixels : a side; None: the fewest of 512, 1024 and 2048 that resolve the film's cut-off.
+
+        Raises
+        ------
+        InputError : as `inputs`, or a grid that does not resolve the cut-off.
+        """
+        table = self.inputs(material)
+        settings = ContactSettings(
+            **RECOMMENDED, pixels=pixels or pixels_for(table), surface=self.description["surface"]
+        )
+        check_resolved(table, settings.nyquist_per_nm)
+        inputs, settings = contact_of(table.medians(), settings)
+        fields: list[tuple[np.ndarray, np.ndarray]] = []
+
+        def look(contact: Any, _: Any) -> list[Any]:
+            fields.append(contact.fields())
+            return []
+
+        cycle = run_cycle(inputs, settings, NOMINAL_SEED, load_nN, hold=look)
+        return Contact(inputs, settings, cycle, *fields[0])
+
+
+@dataclass(frozen=True, repr=False)
+class Contact(_Shown):
+    """A film pressed onto a flat.
+
+    Attributes
+    ----------
+    inputs, settings : what was computed.
+    cycle : force against separation of closing and opening.
+    pressure_GPa, gap_nm : maps at the largest load, shape (pixels, pixels); walls touch where the pressure is positive.
+    """
+
+    inputs: ContactInputs
+    settings: ContactSettings
+    cycle: Cycle
+    pressure_GPa: np.ndarray
+    gap_nm: np.ndarray
+
+    def lines(self) -> Iterator[str]:
+        """Where it touches, how much of it, and how hard it pulls."""
+        closing, share = self.cycle.closing, float((self.pressure_GPa > 0).mean())
+        yield (
+            f"Contact: touches at {self.cycle.first_contact_nm:.4g} nm; {closing.repulsive_nN[-1]:.4g} nN press it to "
+            f"{closing.separation_nm[-1]:.4g} nm, {share:.2%} in contact; pulls off with "
+            f"{pull_off(self.cycle.opening):.3g} nN{'' if self.cycle.converged else '; NOT CONVERGED'}"
+        )
+
+    def plot(self) -> Any:
+        """The map of pressure and force against separation, as a Matplotlib figure."""
+        with needs("run"):
+            import matplotlib.pyplot as plt
+        figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
+        side = self.settings.length_nm / 1000
+        touching = np.where(self.pressure_GPa > 0, self.pressure_GPa, np.nan)
+        left.imshow(self.gap_nm.T, extent=(0, side, 0, side), origin="lower", cmap="Greys")
+        image = left.imshow(touching.T, extent=(0, side, 0, side), origin="lower", cmap="plasma")
+        figure.colorbar(image, ax=left, label="pressure (GPa); grey: gap")
+        left.set(xlabel="x (µm)", ylabel="y (µm)")
+        for name in ("closing", "opening"):
+            branch = getattr(self.cycle, name)
+            right.plot(branch.separation_nm, branch.net_nN / 1000, label=name)
+        edge = self.cycle.first_contact_nm + 0.5 * self.inputs.rms
+        right.set(xlim=(None, edge), xlabel="mean separation (nm)", ylabel="net force (µN)")
+        right.legend()
+        return figure
+
+    def switch(
+        self,
+        device: DeviceSettings | None = None,
+        pad: PadSettings | None = None,
+        progress: Callable[[float, str], None] | None = None,
+    ) -> "Switch":
+        """A switch on a pad of this film: pull-in and release at central inputs.
+
+        Parameters
+        ----------
+        pad : how many surfaces of 1 um^2 are closed and opened, and how; the pad has their mean. None: 64.
+        progress : called with the finished share and a word on it.
+
+        Raises
+        ------
+        InputError : the pad never reaches the pressure that the switch presses with.
+        """
+        device, pad = device or DeviceSettings(), pad or PadSettings(cells=CELLS)
+        area = self.settings.length_nm**2
+        wanted = pressure_to_compute(device, largest_MPa=pad.grid.max_pressure_MPa)
+        grid = plan_grid(self.inputs, self.settings, pad.grid, wanted)
+        seeds = range(FIRST_SEED, FIRST_SEED + pad.cells)
+        cells = assemble(grid, list(close_cells(self.inputs, self.settings, grid, seeds, progress)), area)
+        return Switch(switch_on_pad(cells, self.inputs.hamaker, device, area))
+
+
+@dataclass(frozen=True, repr=False)
+class Switch(_Shown):
+    """A switch on a pad.
+
+    Attributes
+    ----------
+    content : as device/pad_switch.json of a scene without draws.
+    """
+
+    content: dict[str, Any]
+
+    @property
+    def states(self) -> dict[str, Any] | None:
+        """What the switch does: the bending electrode, or the plate of a given spring; None where nothing is known."""
+        return self.content.get("beam") or self.content["mean"]
+
+    @property
+    def release_V(self) -> float:
+        """Voltage at which it lets go; 0 where it sticks, NaN where it is not known."""
+        return self.states["release_V"] if self.states else float("nan")
+
+    def lines(self) -> Iterator[str]:
+        """Pull-in, release, and why not to trust them."""
+        cells, states = self.content["cells_computed"], self.states
+        opens = f"opens at {self.release_V:.3g} V" if self.release_V > 0 else "sticks"
+        does = f"closes at {states['pull_in_V']:.3g} V, {opens}" if states else "not known"
+        yield f"Switch on a pad of {cells} cells: {does}"
+        yield from (f"DOUBT: {reason}" for reason in self.content["gate"]["reasons"])
+
+
+def pixels_for(table: InputTable) -> int:
+    """The fewest pixels a side that resolve the cut-off of a table of inputs on 1 um; the most there are otherwise."""
+    ends = [row.distribution.span()[1] for row in table.rows if row.name == "q1"]
+    fine = (n for n in PIXELS if ContactSettings(pixels=n).nyquist_per_nm >= max(ends, default=0.0))
+    return next(fine, PIXELS[-1])
+
+
+def _load(source: str | Scan, number: int, settings: TopographySettings) -> list[Measurement]:
+    if isinstance(source, Scan):
+        return [with_limits(source, settings)]
+    return load_measurements(source, f"{number:02d}_{Path(source).stem}", settings)
+
+
+def _origin(source: str | Scan) -> dict[str, str]:
+    if isinstance(source, Scan):
+        return {"file": "", "sha256": ""}
+    with Path(source).open("rb") as stream:
+        return {"file": source, "sha256": hashlib.file_digest(stream, "sha256").hexdigest()}
+
+
+def _row(value: Any) -> Any:
+    """A number as a distribution."""
+    return InputRow(distribution="fixed", values=(value,)) if isinstance(value, (int, float)) else value
