@@ -13,10 +13,10 @@ export UV_SYSTEM_CERTS := 1
 
 .PHONY: run plan test bench lint docs floors setup
 run: setup
-	@$(RUN) asperity run --scene "$(SCENE)" $(if $(HOURS),--hours "$(HOURS)") $(TARGET)
+	@$(RUN) asperity run $(if $(HOURS),--hours "$(HOURS)") "$(SCENE)" $(TARGET)
 
 plan: setup
-	@$(RUN) asperity plan --scene "$(SCENE)" $(TARGET)
+	@$(RUN) asperity plan "$(SCENE)" $(TARGET)
 
 test: setup
 	$(RUN) pytest --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder

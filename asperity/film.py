@@ -4,7 +4,6 @@ import hashlib
 import html
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -88,9 +87,9 @@ class Film(_Shown):
     """
 
     def __init__(
-        self, files: str | PathLike[str] | Scan | Iterable[Any], tip_nm: float | None = None, **settings: Any
+        self, files: str | Path | Scan | Iterable[str | Path | Scan], tip_nm: float | None = None, **settings: Any
     ) -> None:
-        given = [files] if isinstance(files, (str, PathLike, Scan)) else list(files)
+        given = [files] if isinstance(files, (str, Path, Scan)) else list(files)
         sources = [part for item in given for part in ([item] if isinstance(item, Scan) else files_in(item))]
         if not sources:
             raise InputError(f"{', '.join(map(str, given)) or 'files'}: nothing to read; give scans of a surface")
@@ -117,8 +116,12 @@ class Film(_Shown):
 
     def lines(self) -> Iterator[str]:
         """A summary, what each measurement shows, and the doubts."""
-        used = self.description["description"]
-        yield f"Film: {len(self.measurements)} measurements, {len(self.doubts)} doubts; described by {used['meaning']}"
+        used, doubts = self.description["description"], self.description["doubts"]
+        several = any(doubt["code"] == "several_surfaces" for doubt in doubts)
+        yield (
+            f"Film: {len(self.measurements)} measurements, as far as can be told of "
+            f"{'SEVERAL SURFACES' if several else 'one surface'}; {len(doubts)} doubts; described by {used['meaning']}"
+        )
         yield from measurement_lines(self.description)
         yield from self.doubts
 
@@ -149,9 +152,9 @@ class Film(_Shown):
         InputError : as `inputs`, or a grid that does not resolve the cut-off.
         """
         table = self.inputs(material)
-        settings = ContactSettings(
-            **RECOMMENDED, pixels=pixels or pixels_for(table), surface=self.description["surface"]
-        )
+        described = self.description
+        pixels = pixels or pixels_for(described["inputs"]["q1"])
+        settings = ContactSettings(**RECOMMENDED, pixels=pixels, surface=described["surface"])
         check_resolved(table, settings.nyquist_per_nm)
         inputs, settings = contact_of(table.medians(), settings)
         fields: list[tuple[np.ndarray, np.ndarray]] = []
@@ -265,11 +268,10 @@ class Switch(_Shown):
         yield from (f"DOUBT: {reason}" for reason in self.content["gate"]["reasons"])
 
 
-def pixels_for(table: InputTable) -> int:
-    """The fewest pixels a side that resolve the cut-off of a table of inputs on 1 um; the most there are otherwise."""
-    ends = [row.distribution.span()[1] for row in table.rows if row.name == "q1"]
-    fine = (n for n in PIXELS if ContactSettings(pixels=n).nyquist_per_nm >= max(ends, default=0.0))
-    return next(fine, PIXELS[-1])
+def pixels_for(cutoff: Mapping[str, float] | None) -> int:
+    """The fewest pixels a side that resolve a film's cut-off, uniform or fixed, on 1 um; the most where none do."""
+    end = max(cutoff["a"], cutoff.get("b", 0.0)) if cutoff else 0.0
+    return next((n for n in PIXELS if ContactSettings(pixels=n).nyquist_per_nm >= end), PIXELS[-1])
 
 
 def _load(source: str | Scan, number: int, settings: TopographySettings) -> list[Measurement]:

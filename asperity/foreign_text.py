@@ -1,10 +1,12 @@
 """Text of a stranger: shown on the terminal, in tables that a spreadsheet opens, and handed to Snakemake."""
 
 import re
+import textwrap
 from urllib.parse import quote, unquote
 
 PLAIN = re.compile(r"[A-Za-z0-9_./-]*[A-Za-z][A-Za-z0-9_./-]*")
 ENCODED = "percent:"
+COLUMNS = 80
 
 SPREADSHEET_COMMANDS = "=+-@\t\r"
 """With these a cell begins that a spreadsheet computes: `=HYPERLINK(...)` would send out what stands in others."""
@@ -13,6 +15,11 @@ SPREADSHEET_COMMANDS = "=+-@\t\r"
 def shown(text: str) -> str:
     """Text on one line without control characters: they could colour, hide or overwrite what a terminal shows."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape", "surrogatepass").decode() for c in text)
+
+
+def wrapped(text: str) -> str:
+    """A line broken at the 80 columns of a terminal, its rest indented; one that fits stays as it is."""
+    return textwrap.fill(text, COLUMNS, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
 
 
 def as_cell(text: str) -> str:

@@ -28,7 +28,8 @@ contact.plot().savefig("own_scan.png", dpi=120)
 
 # %% [markdown]
 # The maps show where the film touches. `contact.pressure_GPa`, `contact.gap_nm` and `contact.cycle` hold the numbers.
-# They are those of a scene with the same inputs, digit for digit.
+# They are those of a scene with the same inputs: digit for digit, where linear algebra runs on one thread
+# (`OMP_NUM_THREADS=1`), as it does in a scene.
 #
 # A switch lands on many such places. Sixteen are enough for a first look; a scene takes 64 or more, and gives the
 # interval of the answer as well. Few tall grains carry this film, so 32 cells tell how far it must be closed.

@@ -114,7 +114,7 @@ def campaign(folder: Path, every: int = 1) -> Iterator[Attack]:
 
 def _judged(kind: str, place: Path, scene: str, results: str, outside: Path) -> Attack:
     target = f"results/{results}/scene.yaml"
-    status, said, seconds = commanded(place, "run", "--scene", scene, "--cores", "1", target)
+    status, said, seconds = commanded(place, "run", "--cores", "1", scene, target)
     made = sorted(path.name for path in (place / "results").glob("*")) if (place / "results").is_dir() else []
     done = status == 0 and (place / target).is_file() and made == [results]
     refused = status != 0 and any(line.startswith("ERROR ") for line in said.splitlines())

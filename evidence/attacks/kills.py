@@ -83,7 +83,7 @@ def _ended(rng: random.Random, place: Path, path: Path, target: str, longest: fl
     moment = rng.uniform(0.02, 0.4) * longest
     if (place / target).exists():
         shutil.rmtree(place / "results")  # so that there is work to interrupt
-    asperity = [str(Path(sys.executable).with_name("asperity")), "run", "--scene", str(path), "--cores", "2", target]
+    asperity = [str(Path(sys.executable).with_name("asperity")), "run", "--cores", "2", str(path), target]
     environment = {**os.environ, "XDG_CACHE_HOME": str(place.with_name("cache")), "ASPERITY_ATTACK": str(place)}
     controller, terminal = pty.openpty() if way == "terminal closed" else os.pipe()
     with (place / "said.txt").open("wb") as file:

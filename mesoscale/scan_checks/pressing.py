@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 import scipy.fft
@@ -32,7 +32,7 @@ SURFACES = {
 }
 
 
-def has_square_pixels(data: Scan | Profile) -> bool:
+def has_square_pixels(data: Scan | Profile) -> TypeGuard[Scan]:
     """Can this be pressed: a scan whose pixels are square?"""
     return isinstance(data, Scan) and abs(data.pixel_nm[0] / data.pixel_nm[1] - 1) <= OBLONG
 

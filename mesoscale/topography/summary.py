@@ -18,7 +18,7 @@ UNITS = {"q0": "1/nm", "slope": "1", "hurst": "1", "rms": "nm"}
 
 
 HEADS = ("measurement", "size (nm)", "points", "RMS (nm)", "trusted q (1/nm)", "ends by")
-LONGEST_NAME = 24  # so that the table fits on 80 columns
+LONGEST_NAME = 20  # so that the table fits on 80 columns
 
 
 def measurement_lines(content: Mapping[str, Any]) -> Iterator[str]:

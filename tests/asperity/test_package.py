@@ -79,12 +79,12 @@ def test_a_new_scene_is_valid_and_never_overwritten(tmp_path, monkeypatch, capsy
     assert Path(first.rpartition("$schema=")[2]).is_file()
     assert main(["new", "film.yaml"]) == 1
     assert main(["new", "film"]) == 1
-    assert main(["open", "--scene", "film"]) == 1
+    assert main(["open", "film"]) == 1
     assert [line[:5] for line in capsys.readouterr().err.splitlines()] == ["ERROR"] * 3
 
 
 def test_plan_runs_nothing_outside_the_checkout(tmp_path):
-    command = [sys.executable, "-m", "asperity", "plan", "--scene", "paper"]
+    command = [sys.executable, "-m", "asperity", "plan", "paper"]
     shown = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert "render_report" in shown.stdout + shown.stderr
     assert not list(tmp_path.glob("results/*"))

@@ -54,7 +54,7 @@ def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry):
     said = capsys.readouterr().err
     assert "3 jobs, about 1 s on 2 cores, and unheard_of, whose time nobody has measured" in said
     assert ("fit_law         2        2 s" in said) == dry
-    assert ("1 of 3  fit the law (1 s), about 1 s left" in said) == (not dry)
+    assert ("1 of 3  fit the law (1 s), 1 s left" in said) == (not dry)
     assert costs.learned == ([] if dry else [("fit_law", 1.0)])
 
 

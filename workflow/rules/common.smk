@@ -25,7 +25,7 @@ def refuse(mistakes):
 SCENE_GIVEN = from_word(str(config.get("scene", "reduced")))  # a name or a path
 for argument in workflow.config_settings.config_args or ():
     if argument.startswith("scene=") and from_word(argument.removeprefix("scene=")) != SCENE_GIVEN:
-        refuse(f"{argument}: Snakemake reads {SCENE_GIVEN!r}; rename the file, or: asperity run --scene FILE")
+        refuse(f"{argument}: Snakemake reads {SCENE_GIVEN!r}; rename the file, or: asperity run FILE")
 try:
     SCENE = load_scene(SCENE_GIVEN)
 except SceneError as error:

@@ -2,6 +2,7 @@
 
 import logging
 import sys
+import textwrap
 import time
 from collections import Counter, defaultdict
 from collections.abc import Mapping
@@ -11,6 +12,7 @@ from typing import Any
 
 from snakemake.exceptions import WorkflowError
 
+from asperity.foreign_text import COLUMNS, wrapped
 from workflow.job import last_line
 from workflow.terminal.cost import Costs, wall_seconds
 
@@ -81,8 +83,8 @@ class Terminal(logging.Handler):
             width = max(len(row[0]) for row in rows)
             _say("\n".join(f"{rule:<{width}}  {count:>5}  {cost:>9}" for rule, count, cost in rows) + "\n")
         if self._workflow.dryrun and self.refusal:
-            _say(f"a run is refused: {self.refusal}")
-        _say(f"{self._jobs} jobs, about {wall} on {self._cores} cores{besides}")
+            _say(wrapped(f"a run is refused: {self.refusal}"))
+        _say(wrapped(f"{self._jobs} jobs, about {wall} on {self._cores} cores{besides}"))
 
     @property
     def _cores(self) -> int:
@@ -114,9 +116,10 @@ class Terminal(logging.Handler):
             self._costs.learn(rule, took, planned)
         self._counts[rule] -= 1
         left = sum(self._seconds_left.values()) / self._cores
-        rest = f", about {duration(left)} left" if self._done < self._jobs else ""
-        count = f"{self._done:>{len(str(self._jobs))}} of {self._jobs}"
-        _say(f"{time.strftime('%H:%M:%S')}  {count}  {message} ({duration(took)}){rest}")
+        rest = f", {duration(left)} left" if self._done < self._jobs else ""
+        start = f"{time.strftime('%H:%M')}  {self._done:>{len(str(self._jobs))}} of {self._jobs}  "
+        end = f" ({duration(took)}){rest}"
+        _say(start + textwrap.shorten(message, COLUMNS - len(start) - len(end), placeholder=" …") + end)
 
 
 def _say_if_silent(about: Mapping[str, Any]) -> None:

@@ -1,0 +1,121 @@
+"""From measured files to a scene: what they show, and a commented scene file that computes a switch on them."""
+
+import json
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+from asperity.bundle import ROOT
+from asperity.film import CELLS, MATERIAL, RECOMMENDED, Film, pixels_for
+from mesoscale.errors import InputError
+from mesoscale.inputs.definitions import definition
+from mesoscale.inputs.table import PAPER_ROWS
+from mesoscale.settings import DeviceSettings, InputRow
+from mesoscale.topography.measurements import files_in
+from mesoscale.topography.measurements.loading import load_measurements
+
+SHOWN_OF_DEVICE = (
+    "length_um",
+    "width_um",
+    "thickness_um",
+    "gap_um",
+    "youngs_modulus_GPa",
+    "dielectric_nm",
+    "permittivity",
+)
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
+GIVEN = "command line"
+
+
+def readable(names: Sequence[str], say: Callable[[str], None]) -> list[str]:
+    """Files by name, folders replaced by those of their files that can be read; `say` is told of the others.
+
+    Raises
+    ------
+    InputError : nothing to read.
+    """
+    files = []
+    for name in names:
+        if not Path(name).is_dir():
+            files.append(name)
+            continue
+        for file in files_in(name):
+            try:
+                load_measurements(file)
+                files.append(file)
+            except InputError as error:
+                say(f"left out: {error}")
+    if not files:
+        raise InputError(f"{', '.join(names)}: nothing to read; give scans, line profiles or containers of one surface")
+    return files
+
+
+def material_of(given: Sequence[str]) -> dict[str, InputRow]:
+    """Rows of inputs from words such as e_star=75, h_macro=1:1.6 (range) and e_star=75+-4 (deviation).
+
+    Raises
+    ------
+    InputError : none of these forms, or an unknown input.
+    """
+    rows = {}
+    for word in given:
+        name, _, value = word.partition("=")
+        definition(name)
+        numbers = re.fullmatch(rf"({NUMBER})(?:(:|\+-)({NUMBER}))?", value)
+        if numbers is None:
+            raise InputError(f"{word}: accepted are {name}=75, {name}=70:80 (from, to) and {name}=75+-4 (deviation)")
+        first, sign, second = numbers.groups()
+        kind = {None: "fixed", ":": "uniform", "+-": "normal"}[sign]
+        values = tuple(float(number) for number in (first, second) if number)
+        rows[name] = InputRow(distribution=kind, values=values, source=GIVEN)  # pyright: ignore[reportArgumentType]
+    return rows
+
+
+def device_of(given: Sequence[str]) -> dict[str, float]:
+    """Keys of the section `device` from words such as gap_um=2.
+
+    Raises
+    ------
+    InputError : an unknown key, or no number.
+    """
+    keys = {}
+    for word in given:
+        name, _, value = word.partition("=")
+        if name not in DeviceSettings.model_fields or not re.fullmatch(NUMBER, value):
+            raise InputError(f"{word}: accepted is KEY=NUMBER with a key of {', '.join(DeviceSettings.model_fields)}")
+        keys[name] = float(value)
+    DeviceSettings(**keys)
+    return keys
+
+
+def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Mapping[str, float]) -> Iterator[str]:
+    """The text of a scene; without a film its roughness is the paper's, by numbers to replace."""
+    yield f"# yaml-language-server: $schema={ROOT / 'config' / 'scene.schema.json'}"
+    yield f"# Every key with its default: {ROOT / 'config' / 'config.yaml'}"
+    if film is not None:
+        yield "topography:"
+        yield f"  scans: {json.dumps(list(film.settings.scans), ensure_ascii=False)}"
+        yield f"  tip_radius_nm: {film.settings.tip_radius_nm:g}  # of the AFM tip, where no file states it"
+    yield "inputs:  # uniform [low, high], normal [mean, deviation], fixed [value]"
+    yield "  # without its row, e_star is computed by DFT and h_prime by molecular dynamics"
+    rows = {**MATERIAL, **material}
+    if film is None:
+        rows |= {name: PAPER_ROWS[name] for name in ("q0", "hurst", "rms")}
+    for name, row in rows.items():
+        about = definition(name)
+        values = ", ".join(f"{value:.12g}" for value in row.values or () if isinstance(value, float))
+        stated = f"origin: literature, distribution: {row.distribution}, values: [{values}]"
+        yield f"  # {about.label}{f', {about.unit}' if about.unit != '1' else ''}"
+        yield f"  {name}: {{{stated}, source: {json.dumps(row.source, ensure_ascii=False)}}}"
+    grid = "pixels: 512, q1_per_nm: 0.5"  # which that resolves (docs/contact.md, The cut-off)
+    if film is not None:
+        if "q1" not in rows:
+            yield "  q1: {origin: topography}  # no roughness beyond what the measurements show"
+        grid = f"pixels: {pixels_for(film.description['inputs'].get('q1'))}"
+    mechanics = ", ".join(f"{key}: {value}" for key, value in RECOMMENDED.items())
+    yield f"contact: {{{mechanics}, {grid}}}  # asperities share one elastic half-space"
+    yield f"pad: {{cells: {CELLS}}}  # more cells: a surer answer"
+    yield "device:  # a published beam, where you gave nothing else"
+    defaults = {key: getattr(DeviceSettings(), key) for key in SHOWN_OF_DEVICE}
+    for name, value in (defaults | dict(device)).items():
+        yield f"  {name}: {value:g}"

@@ -1,0 +1,124 @@
+"""From measured files to a scene, and the Python object beside that scene: the same numbers, digit for digit."""
+
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from threadpoolctl import threadpool_limits
+
+import asperity as asp
+from asperity.__main__ import main
+from mesoscale.topography.measurements.loading import write_gwy
+from workflow.results import load_csv, load_h5, load_json
+from workflow.scene import load_scene
+
+AFM = Path(__file__).resolve().parents[3] / "shared" / "afm"
+
+
+@pytest.fixture(scope="module")
+def scans(tmp_path_factory):
+    """Two places of a film whose heights are skewed, and a file that is no scan."""
+    folder = tmp_path_factory.mktemp("film") / "scans"
+    folder.mkdir()
+    settings = asp.ContactSettings(pixels=256, length_nm=2500.0)
+    inputs = asp.ContactInputs(0.215, 91.0, 1.95, 8.375, q0=0.025, hurst=0.7, rms=5.0)
+    for seed in (1, 2):
+        heights = 5.0 * np.exp(asp.random_surface(inputs, settings, seed) / 10.0)
+        write_gwy(folder / f"place_{seed}.gwy", asp.Scan(heights, (2500.0, 2500.0), "place"))
+    (folder / "notes.txt").write_text("made up")
+    return folder
+
+
+@pytest.fixture
+def started(monkeypatch):
+    """What the command would start in its place."""
+    given = []
+    monkeypatch.setattr("os.execv", lambda program, arguments: given.append(arguments))
+    return given
+
+
+def test_a_folder_becomes_a_scene_and_a_run(scans, started, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    words = ["--tip-nm", "8", "--material", "e_star=75+-4", "h_macro=1:1.6", "--device", "gap_um=2"]
+    main([str(scans), *words])
+    said = capsys.readouterr().out
+    assert "left out: " in said
+    assert "notes.txt" in said
+    assert all(len(line) <= 80 for line in said.splitlines() if str(tmp_path.parent) not in line)
+    assert "scans.yaml is the scene of this film" in said
+    assert "defaults" not in said
+    assert "scene=scans.yaml" in started[0]
+    scene = load_scene("scans.yaml")
+    assert (scene.contact.mechanics, scene.topography.tip_radius_nm, scene.device.gap_um) == ("coupled", 8.0, 2.0)
+    rows = scene.inputs.rows()
+    assert (rows["e_star"].distribution, rows["e_star"].values) == ("normal", (75.0, 4.0))
+    assert (rows["h_macro"].distribution, rows["h_macro"].values) == ("uniform", (1.0, 1.6))
+    assert {name for name, row in rows.items() if row.origin == "topography"} == {"q0", "hurst", "rms", "q1"}
+    main([str(scans), *words])  # the same scene again: it goes on
+    assert len(started) == 2
+    assert main([str(scans), "--device", "gap_um=3"]) == 1  # another scene would overwrite this one
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["rnu"], "rnu: neither a file nor a command; did you mean run?"),
+        (["empty"], "empty: nothing to read"),
+        (["scans", "--material", "stiffness=3"], "stiffness: no such input"),
+        (["scans", "--material", "e_star=hard"], "e_star=hard: accepted are e_star=75"),
+        (["scans", "--device", "gap=2"], "gap=2: accepted is KEY=NUMBER with a key of length_um"),
+    ],
+)
+def test_bad_input_of_the_door_is_one_line(scans, arguments, words, started, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("empty").mkdir()
+    Path("scans").symlink_to(scans)
+    assert main(arguments) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"ERROR {words}")
+    assert not started
+
+
+@pytest.mark.skipif(not AFM.is_dir(), reason="real scans are not shipped")
+def test_two_real_films_are_doubted_and_not_run(started, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main([str(AFM / "example_ps.tiff"), str(AFM / "di-6.di")]) == 1
+    said = capsys.readouterr()
+    assert "DOUBT (several_surfaces, about spectrum): 01_example_ps and 02_di-6 look like" in said.out
+    assert said.err.startswith("ERROR example_ps.yaml: not run because of the doubts above")
+    assert not started
+    # whoever knows that they are of one film says so, and the files that eq. 9 does not describe are pressed
+    film = asp.Film([AFM / "example_ps.tiff", AFM / "di-6.di"], on_doubt="warn")
+    assert film.press().cycle.converged
+
+
+def test_python_gives_the_numbers_of_the_scene_digit_for_digit(scans, started, workflow_in, monkeypatch):
+    monkeypatch.chdir(workflow_in.folder)
+    main([str(scans), "--scene", "mine.yaml"])
+    content = yaml.safe_load(Path("mine.yaml").read_text(encoding="utf-8"))
+    content["contact"]["pixels"] = 128
+    content["pad"] = {"cells": 8, "draws": 0}
+    content["topography"]["press_scans"] = True
+    Path("mine.yaml").write_text(yaml.safe_dump(content))
+    done = workflow_in.run("mine.yaml", "curves", "pad", "press_scans")
+    assert done.returncode == 0, done.stderr
+
+    results = workflow_in.folder / "results/mine"
+    with threadpool_limits(1):  # as jobs have it: sums of more threads differ in their last digits
+        film = asp.Film([scans / "place_1.gwy", scans / "place_2.gwy"])
+        contact = film.press(load_nN=7000.0, pixels=128)
+        switch = contact.switch(pad=asp.PadSettings(cells=8))
+    stored = load_json(results / "topography/parameters.json")
+    assert stored["description"]["name"] == "measured_heights"
+    for key in ("estimates", "surface", "inputs", "doubts", "gate"):
+        assert film.description[key] == stored[key]
+    curves, _, facts = load_h5(results / "curves/nominal.h5")
+    for name in ("closing", "opening"):
+        for key, values in asdict(getattr(contact.cycle, name)).items():
+            np.testing.assert_array_equal(values, curves[f"load_7000/{name}"][key])
+    assert contact.cycle.first_contact_nm == facts["load_7000"]["first_contact_nm"]
+    stored = load_json(results / "device/pad_switch.json")
+    assert {key: stored[key] for key in switch.content} == switch.content
+    assert len(load_csv(results / "law/scans.csv")) == 2 * 3 * 2
