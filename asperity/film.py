@@ -4,6 +4,7 @@ import hashlib
 import html
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,15 +12,17 @@ import numpy as np
 
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import pull_off
+from mesoscale.device.electrode import presser
 from mesoscale.device.pad_results import switch_on_pad
-from mesoscale.device.pressing import pressure_to_compute
+from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.inputs.table import PAPER_ROWS, check_resolved, input_table
+from mesoscale.inputs.table import PAPER_ROWS, check_resolved, film_table, input_table
 from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
 from mesoscale.pad.curves import assemble
+from mesoscale.pad.memory import flats_of
 from mesoscale.settings import (
     ContactSettings,
     DeviceSettings,
@@ -156,7 +159,7 @@ class Film(_Shown):
         pixels = pixels or pixels_for(described["inputs"]["q1"])
         settings = ContactSettings(**RECOMMENDED, pixels=pixels, surface=described["surface"])
         check_resolved(table, settings.nyquist_per_nm)
-        inputs, settings = contact_of(table.medians(), settings)
+        on_grid, (inputs, settings) = settings, contact_of(table.medians(), settings)
         fields: list[tuple[np.ndarray, np.ndarray]] = []
 
         def look(contact: Any, _: Any) -> list[Any]:
@@ -164,7 +167,10 @@ class Film(_Shown):
             return []
 
         cycle = run_cycle(inputs, settings, NOMINAL_SEED, load_nN, hold=look)
-        return Contact(inputs, settings, cycle, *fields[0])
+        pad = partial(film_table, table, described["film"])
+        return Contact(
+            inputs, settings, cycle, *fields[0], _pad=lambda scatter: contact_of(pad(scatter).medians(), on_grid)
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -175,6 +181,7 @@ class Contact(_Shown):
     ----------
     inputs, settings : what was computed.
     cycle : force against separation of closing and opening.
+    _pad : inputs and settings of a pad, which holds all places of the film, by their scatter (`pad.rms_scatter`).
     pressure_GPa, gap_nm : maps at the largest load, shape (pixels, pixels); walls touch where the pressure is positive.
     """
 
@@ -183,6 +190,7 @@ class Contact(_Shown):
     cycle: Cycle
     pressure_GPa: np.ndarray
     gap_nm: np.ndarray
+    _pad: Callable[[Any], tuple[ContactInputs, ContactSettings]]
 
     def lines(self) -> Iterator[str]:
         """Where it touches, how much of it, and how hard it pulls."""
@@ -230,12 +238,12 @@ class Contact(_Shown):
         InputError : the pad never reaches the pressure that the switch presses with.
         """
         device, pad = device or DeviceSettings(), pad or PadSettings(cells=CELLS)
-        area = self.settings.length_nm**2
-        wanted = pressure_to_compute(device, largest_MPa=pad.grid.max_pressure_MPa)
-        grid = plan_grid(self.inputs, self.settings, pad.grid, wanted)
+        inputs, settings = self._pad(pad.rms_scatter)
+        held, area = pressing(device), settings.length_nm**2
+        grid = plan_grid(inputs, settings, pad.grid, pressure_to_compute(held), pressed_GPa=presser(held))
         seeds = range(FIRST_SEED, FIRST_SEED + pad.cells)
-        cells = assemble(grid, list(close_cells(self.inputs, self.settings, grid, seeds, progress)), area)
-        return Switch(switch_on_pad(cells, self.inputs.hamaker, device, area))
+        cells = assemble(grid, list(close_cells(inputs, settings, grid, seeds, progress)), area)
+        return Switch(switch_on_pad(cells, flats_of(inputs, settings), device, area))
 
 
 @dataclass(frozen=True, repr=False)
