@@ -69,7 +69,7 @@ def against_physics(responses: Responses, table: InputTable, most_GPa: float) ->
     base = table.sample(BASES, SAMPLE_SEED)
     low, high = (table.ranges()[:, k] for k in (0, 1))
     base = np.clip(base, low, high)
-    found = {}
+    reasons = {}
     for name, symbol in STIFFENING.items():
         if name not in table.names or (k := table.names.index(name)) < 0 or not high[k] > low[k]:
             continue
@@ -80,20 +80,20 @@ def against_physics(responses: Responses, table: InputTable, most_GPa: float) ->
         fall = float((np.maximum.accumulate(course) - course).max())
         if fall > TOLERANCE:
             line = f"on closing, the pressure at equal separation falls by {fall:.0%} where {symbol} rises"
-            found |= {"C_r_GPa": line, "rho_r_nm": line}
+            reasons |= {"C_r_GPa": line, "rho_r_nm": line}
     if "hamaker" in table.names and high[k := table.names.index("hamaker")] > low[k]:
         least, most = (evaluate(responses, _moved(base, k, end[k]))[:, CLOSING][:, 1].mean() for end in (low, high))
         rise, due = most / least - 1.0, high[k] / low[k] - 1.0
         if abs((1.0 + rise) / (1.0 + due) - 1.0) > TOLERANCE:
-            found["C_a_GPa_nm"] = f"it changes by {rise:.0%} where the Hamaker constant rises by {due:.0%}"
+            reasons["C_a_GPa_nm"] = f"it changes by {rise:.0%} where the Hamaker constant rises by {due:.0%}"
     both = evaluate(responses, base)
     closing, opening = both[:, CLOSING], both[:, OPENING]
     at = _separations(closing, most_GPa)
     harder = (_repulsion(opening, at) > (1.0 + TOLERANCE) * SHARES * most_GPa).any(axis=1).mean()
     if harder > TOLERANCE:
         line = f"opening presses harder than closing at equal separation at {harder:.0%} of the inputs"
-        found |= {"delta_C_r_GPa": line, "delta_rho_r_nm": line}
-    return found
+        reasons |= {"delta_C_r_GPa": line, "delta_rho_r_nm": line}
+    return reasons
 
 
 def _moved(base: Array, k: int, value: float) -> Array:

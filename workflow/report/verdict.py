@@ -149,15 +149,15 @@ def explained_share(answer: dict[str, Any]) -> float:
         ),
         0.0,
     )
-    design = answer["design"]
-    variance -= design["cells_error_V"] ** 2
-    return 1.0 - design["response_error_V"] ** 2 / variance if variance > 0 else float("-inf")
+    points = answer["design"]
+    variance -= points["cells_error_V"] ** 2
+    return 1.0 - points["response_error_V"] ** 2 / variance if variance > 0 else float("-inf")
 
 
 def _other_law(pad: dict[str, Any], results: Results) -> tuple[float, float] | None:
-    found = {round(row["times"], 3): number(row["release_V"]) for row in pad.get("by_attraction", [])}
+    releases = {round(row["times"], 3): number(row["release_V"]) for row in pad.get("by_attraction", [])}
     here, other = (
-        found.get(round(times, 3), np.nan) for times in (1.0, WORKS.get(results.contact.get("attraction", ""), 0))
+        releases.get(round(times, 3), np.nan) for times in (1.0, WORKS.get(results.contact.get("attraction", ""), 0))
     )
     return (here, other) if np.isfinite([here, other]).all() else None
 

@@ -54,12 +54,12 @@ def _answer(answer: dict[str, Any]) -> list[Table]:
         quantiles = answer[key]["quantiles"]
         return f"{show(quantiles['0.5'])} [{show(quantiles['0.05'])}, {show(quantiles['0.95'])}]" if quantiles else "–"
 
-    design = answer["design"]
+    points = answer["design"]
     rows = [
         ("pull-in (V)", spread("pull_in_V")),
         ("capacitance closed (fF)", spread("capacitance_fF")),
-        ("switches computed; of them without an answer", f"{design['points']}; {len(design['refused'])}"),
-        ("of them that press harder than pads were computed", str(design["deepened"])),
+        ("switches computed; of them without an answer", f"{points['points']}; {len(points['refused'])}"),
+        ("of them that press harder than pads were computed", str(points["deepened"])),
         *((f"share of {CAUSES[row['cause']]}", f"{row['share_of_variance']:.1%}") for row in answer["causes"]),
     ]
     measured = [
