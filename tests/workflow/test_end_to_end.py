@@ -99,9 +99,9 @@ def test_a_deleted_stage_is_made_again_with_what_depends_on_it(finished):
 
 def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_workflow, tmp_path):
     workflow = make_workflow(tmp_path)
-    scene = tmp_path / "ci.yaml"
-    scene.write_text("extends: ci\nname: ci\ncompute: [elastic, topography]\n")
-    logs = tmp_path / "results/ci/logs"
+    scene = tmp_path / "killed.yaml"
+    scene.write_text("extends: ci\nname: killed\ncompute: [elastic, topography]\n")
+    logs = tmp_path / "results/killed/logs"
     for job in STAGES.values():
         if not list(logs.glob(f"{job}*.log")):  # a run killed in another stage may have come this far
             assert workflow.kill_when(str(scene), lambda job=job: bool(list(logs.glob(f"{job}*.log")))), job
@@ -110,5 +110,5 @@ def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_w
     for name in RESULTS:
         if name in ("scene.yaml", "report.html") or name.startswith("hardness/"):
             continue
-        first, second = (content(folder / "results/ci" / name) for folder in (finished.folder, tmp_path))
+        first, second = content(finished.folder / "results/ci" / name), content(tmp_path / "results/killed" / name)
         np.testing.assert_equal(second, first, err_msg=name)
