@@ -1,6 +1,7 @@
 """What a switch does on a pad, whichever electrode it has: one that bends, or a plate on a spring."""
 
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,7 +73,8 @@ def solve_deepened(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
 def presser(settings: DeviceSettings) -> Callable[[NDArray[np.float64], NDArray[np.float64]], float]:
     """Largest net pressure (GPa) of the switch on a pad, from the closing curve of the pad.
 
-    The function takes separations (nm), from near to far, and net pressures (GPa), of shape (n,).
+    The function takes separations (nm), from near to far, and net pressures (GPa), of shape (n,). It gives 0 for a pad
+    that is closed so near to its mean plane that nothing deeper can be planned; the switch's answer has the reason.
     """
 
     def pressed_GPa(separation_nm: NDArray[np.float64], net_GPa: NDArray[np.float64]) -> float:
@@ -80,12 +82,14 @@ def presser(settings: DeviceSettings) -> Callable[[NDArray[np.float64], NDArray[
             return 0.0  # a plate presses with less than its voltage alone
         closing = np.stack([np.maximum(net_GPa, 0.0), np.minimum(net_GPa, 0.0)])
         law = PadLaw(separation_nm, closing, separation_nm[:1], closing[None], Flats(0.0, 0.0))
-        for _ in range(DEEPENED_BY):
-            law = deepened(law)
+        with suppress(NotComputed):  # closed nearly to its mean plane: it is continued as far as that goes
+            for _ in range(DEEPENED_BY):
+                law = deepened(law)
         try:
             return press_GPa(settings, law)
         except NotComputed:
-            return float(law.closing_GPa(law.separation_nm[0]))
+            deepest = law.separation_nm[0]
+            return float(law.closing_GPa(deepest)) if deepest < separation_nm[0] else 0.0
         except InputError:
             return 0.0  # a switch that does not pull in presses nothing; its answer has the reason
 
