@@ -5,6 +5,7 @@ same results. The second run does without the melts and closings of the hardness
 scene depends: `test_ownership` and `test_closing` kill those.
 """
 
+import json
 from pathlib import Path
 
 import h5py
@@ -12,7 +13,6 @@ import numpy as np
 import pytest
 
 from workflow.job import result_checksum
-from workflow.results import load_json
 
 # one job of each stage; its log is opened when it starts, so killing at its first sight interrupts that very job
 STAGES = {
@@ -69,7 +69,8 @@ def content(path: Path):
         with h5py.File(path) as file:
             return {name: item[()].tobytes() for name, item in datasets(file).items()}
     if path.suffix == ".json":
-        return {key: value for key, value in load_json(path).items() if key != "provenance"}
+        named_alike = json.loads(path.read_text(encoding="utf-8").replace("results/killed/", "results/ci/"))
+        return {key: value for key, value in named_alike.items() if key != "provenance"}
     return result_checksum(path)
 
 
