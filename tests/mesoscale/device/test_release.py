@@ -155,6 +155,12 @@ def test_pilots_know_what_the_beam_will_press_with(change):
     assert pressed > 1.3 * float(local[np.searchsorted(s, short.separation_nm[0])]) / EDGE
 
 
+def test_a_pad_closed_nearly_to_its_mean_plane_asks_for_nothing_deeper():
+    """Its repulsion cannot double before the mean planes meet, so no plan would ever carry the switch."""
+    separation = np.linspace(0.5, 3.0, 20)
+    assert presser(DeviceSettings())(separation, 1e-6 * np.exp(-(separation - 3.0))) == 0.0
+
+
 @pytest.mark.parametrize(("settings", "stuck", "passed"), [(DeviceSettings(), 0, True), (DeviceSettings(), 12, False)])
 def test_the_gate_judges_the_electrode_that_the_answer_has(monkeypatch, settings, stuck, passed):
     """A flat plate that sticks on half of the resampled pads says nothing of an electrode that bends."""
