@@ -8,7 +8,6 @@ import json
 import random
 import resource
 import struct
-import tempfile
 import time
 import zipfile
 from collections.abc import Callable, Iterator
@@ -17,7 +16,7 @@ from typing import Any
 
 from atomistic.errors import InputError as AtomisticInputError
 from atomistic.potentials import load_potential
-from evidence.attacks.runs import HANG_S, Attack, figures, table
+from evidence.attacks.runs import HANG_S, Attack, campaign_table, figures
 from mesoscale.errors import InputError
 from mesoscale.tables import foreign_table
 from mesoscale.topography.measurements.loading import load_measurements
@@ -148,8 +147,7 @@ def arguments(parser: Any) -> None:
 
 def rows(given: Any) -> Iterator[dict[str, Any]]:
     """A row for each kind of file."""
-    with tempfile.TemporaryDirectory() as folder:
-        yield from table(campaign(Path(folder), given.seed, given.share))
+    yield from campaign_table(campaign, given.seed, given.share)
 
 
 def campaign(folder: Path, seed: int, share: float = 1.0) -> Iterator[Attack]:

@@ -8,12 +8,11 @@ outside the folder, a traceback, a hang, another scene.
 import os
 import shutil
 import stat
-import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from evidence.attacks.runs import CONTACT, HANG_S, Attack, commanded, figures, table
+from evidence.attacks.runs import CONTACT, HANG_S, Attack, campaign_table, commanded, figures
 
 __all__ = ["campaign", "figures", "rows"]
 MODULES = (
@@ -35,8 +34,7 @@ def arguments(parser: Any) -> None:
 
 def rows(given: Any) -> Iterator[dict[str, Any]]:
     """A row for each kind of folder."""
-    with tempfile.TemporaryDirectory() as folder:
-        yield from table(campaign(Path(folder), given.every))
+    yield from campaign_table(campaign, given.every)
 
 
 def planted() -> Iterator[tuple[str, Callable[[Path, str], object]]]:

@@ -6,13 +6,12 @@ A run on a full disk ends in one ERROR line; with more room the next one ends wi
 
 import random
 import subprocess
-import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from evidence.attacks.runs import CONTACT, Attack, contents, figures, last_words, run, table, undisturbed
+from evidence.attacks.runs import Attack, campaign_table, contents, figures, finished_contact, last_words, run
 
 __all__ = ["campaign", "figures", "rows"]
 TARGET = "law"
@@ -31,16 +30,12 @@ def arguments(parser: Any) -> None:
 
 def rows(given: Any) -> Iterator[dict[str, Any]]:
     """A row for all disks."""
-    with tempfile.TemporaryDirectory() as folder:
-        yield from table(campaign(Path(folder), given.seed, given.count))
+    yield from campaign_table(campaign, given.seed, given.count)
 
 
 def campaign(folder: Path, seed: int, count: int) -> Iterator[Attack]:
     """Disks of each size, from nothing but a few blocks to all that the scene needs."""
-    scene = folder / "contact.yaml"
-    scene.write_text(CONTACT, encoding="utf-8")
-    whole = folder / "whole"
-    expected, _ = undisturbed(whole, scene, TARGET)
+    scene, whole, expected = finished_contact(folder, TARGET)
     used = int(subprocess.run(["du", "-s", "-k", whole], capture_output=True, text=True, check=True).stdout.split()[0])
     rng = random.Random(seed)
     for number in range(count):

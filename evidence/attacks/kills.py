@@ -11,7 +11,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,7 +18,17 @@ from typing import Any
 
 import psutil
 
-from evidence.attacks.runs import CONTACT, GLASS, Attack, contents, figures, last_words, run, table, undisturbed
+from evidence.attacks.runs import (
+    CONTACT,
+    GLASS,
+    Attack,
+    campaign_table,
+    contents,
+    figures,
+    last_words,
+    run,
+    undisturbed,
+)
 
 __all__ = ["campaign", "figures", "rows"]
 SIGNALS = ("SIGTERM", "SIGINT", "SIGHUP", "SIGQUIT", "SIGKILL", "SIGPIPE", "SIGABRT", "SIGXCPU")
@@ -52,8 +61,7 @@ def arguments(parser: Any) -> None:
 
 def rows(given: Any) -> Iterator[dict[str, Any]]:
     """A row for each way."""
-    with tempfile.TemporaryDirectory() as folder:
-        yield from table(campaign(Path(folder), given.scene, given.count, given.seed))
+    yield from campaign_table(campaign, given.scene, given.count, given.seed)
 
 
 def campaign(folder: Path, scene: str, ends: int, seed: int) -> Iterator[Attack]:

@@ -6,13 +6,12 @@ The run must name each damaged file, make it again, and end with the results of 
 
 import random
 import shutil
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from evidence.attacks.runs import CONTACT, Attack, contents, figures, last_words, run, table, undisturbed
+from evidence.attacks.runs import Attack, campaign_table, contents, figures, finished_contact, last_words, run
 
 __all__ = ["campaign", "figures", "rows"]
 # a run leaves damaged files alone that it is not asked for: the spots come with the nominal curves, for the report
@@ -41,16 +40,12 @@ def arguments(parser: Any) -> None:
 
 def rows(given: Any) -> Iterator[dict[str, Any]]:
     """A row for each kind of damage."""
-    with tempfile.TemporaryDirectory() as folder:
-        yield from table(campaign(Path(folder), given.seed, given.count))
+    yield from campaign_table(campaign, given.seed, given.count)
 
 
 def campaign(folder: Path, seed: int, count: int) -> Iterator[Attack]:
     """The attacks of `count` rounds; a round damages half of the files of a copy in one way each."""
-    scene = folder / "contact.yaml"
-    scene.write_text(CONTACT, encoding="utf-8")
-    whole = folder / "whole"
-    expected, _ = undisturbed(whole, scene, TARGETS[0])
+    scene, whole, expected = finished_contact(folder, TARGETS[0])
     for number in range(seed, seed + count):
         rng = random.Random(number)
         copy = folder / f"damaged_{number}"

@@ -4,8 +4,9 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -45,6 +46,12 @@ def table(attacks: Iterable[Attack]) -> Iterator[dict[str, Any]]:
             "slowest_s": max(attack.seconds for attack in made),
             "words": (faults or [made[-1].words])[0][:160],
         }
+
+
+def campaign_table(campaign: Callable[..., Iterator[Attack]], *given: Any) -> Iterator[dict[str, Any]]:
+    """The table of a campaign in a temporary folder, which is its first argument."""
+    with tempfile.TemporaryDirectory() as folder:
+        yield from table(campaign(Path(folder), *given))
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
@@ -120,6 +127,13 @@ def undisturbed(folder: Path, scene_file: Path, target: str) -> tuple[dict[str, 
             raise RuntimeError(done.stdout + done.stderr)
         clock.write_text(str(time.monotonic() - started))
     return contents(results), float(clock.read_text())
+
+
+def finished_contact(folder: Path, target: str) -> tuple[Path, Path, dict[str, str]]:
+    """Scene `CONTACT`, a folder in which it ran to `target`, and what its results say."""
+    scene_file, whole = folder / "contact.yaml", folder / "whole"
+    scene_file.write_text(CONTACT, encoding="utf-8")
+    return scene_file, whole, undisturbed(whole, scene_file, target)[0]
 
 
 def contents(results: Path) -> dict[str, str]:

@@ -6,7 +6,6 @@ Anything else is a fault: another exception, a crash, numbers that are no surfac
 """
 
 import random
-import tempfile
 import time
 import zlib
 from collections.abc import Callable, Iterator
@@ -15,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from evidence.attacks.runs import Attack, figures, table
+from evidence.attacks.runs import Attack, campaign_table, figures
 from mesoscale.errors import InputError
 from mesoscale.settings import InstrumentSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan
@@ -137,8 +136,7 @@ def arguments(parser: Any) -> None:
 
 def rows(given: Any) -> Iterator[dict[str, Any]]:
     """A row for each kind of damage."""
-    with tempfile.TemporaryDirectory() as folder:
-        yield from table(campaign(Path(folder), [Path(name) for name in given.files], given.seed))
+    yield from campaign_table(campaign, [Path(name) for name in given.files], given.seed)
 
 
 def campaign(folder: Path, places: list[Path], seed: int) -> Iterator[Attack]:

@@ -9,7 +9,6 @@ agrees.  Anything else is a fault: another exception, a refusal of several lines
 
 import json
 import re
-import tempfile
 import time
 from collections.abc import Iterator
 from functools import cache
@@ -20,7 +19,7 @@ import jsonschema
 import yaml
 
 from asperity.foreign_yaml import load_mapping
-from evidence.attacks.runs import Attack, figures, table
+from evidence.attacks.runs import Attack, campaign_table, figures
 from evidence.attacks.scene_mutations import mutated
 from workflow.scene import Scene, SceneError, files_of, load_scene, locate
 from workflow.scene_checks import mistakes
@@ -111,8 +110,7 @@ def arguments(parser: Any) -> None:
 
 def rows(given: Any) -> Iterator[dict[str, Any]]:
     """A row for all scenes of each number of mistakes in text or content."""
-    with tempfile.TemporaryDirectory() as folder:
-        yield from table(campaign(Path(folder), given.seed, given.count))
+    yield from campaign_table(campaign, given.seed, given.count)
 
 
 def campaign(folder: Path, first: int, count: int) -> Iterator[Attack]:
