@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mesoscale.pad.compact import CompactPad
-from mesoscale.pad.memory import Flats, FLOOR_GPa, PadLaw
+from mesoscale.pad.memory import Flats, FLOOR_GPa, PadLaw, rows_at
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def factors_of(law: PadLaw, compact: CompactPad) -> Factors:
         above = np.isfinite(branch[0])
         change = _logarithm(branch[:, above], compact.opening_GPa(s[above], depth))
         decay = np.maximum.accumulate(compact.decay(s[above], depth))
-        opening.append((decay, change - _at(compact.log_load(depth), load, closing)[:, None]))
+        opening.append((decay, change - rows_at(compact.log_load(depth), load, closing)[:, None]))
     order = np.argsort(compact.log_load(law.depth_nm), kind="stable")
     return Factors(load, closing, compact.log_load(law.depth_nm)[order], tuple(opening[k] for k in order))
 
@@ -69,7 +69,9 @@ class CarriedPad:
     def closing_GPa(self, separation_nm: ArrayLike) -> tuple[Array, Array]:
         """Repulsion and attraction (negative) while closing."""
         load = self.compact.log_load(separation_nm)
-        return self._times(self.compact.closing_GPa(separation_nm), _at(load, self.factors.load, self.factors.closing))
+        return self._times(
+            self.compact.closing_GPa(separation_nm), rows_at(load, self.factors.load, self.factors.closing)
+        )
 
     def opening_GPa(self, separation_nm: Array, deepest_nm: float) -> tuple[Array, Array]:
         """Repulsion and attraction (negative) at separations not below the deepest closing."""
@@ -80,9 +82,9 @@ class CarriedPad:
         lower = max(upper - 1, 0)
         apart = known[upper] - known[lower]
         share = float(np.clip((load - known[lower]) / apart, 0.0, 1.0)) if apart > 0 else 0.0
-        light, heavy = (_at(decay, *self.factors.opening[k]) for k in (lower, upper))
+        light, heavy = (rows_at(decay, *self.factors.opening[k]) for k in (lower, upper))
         change = (1.0 - share) * light + share * heavy
-        started = _at(load, self.factors.load, self.factors.closing)
+        started = rows_at(load, self.factors.load, self.factors.closing)
         return self._times(self.compact.opening_GPa(separation_nm, deepest_nm), started[:, None] + change)
 
     @staticmethod
@@ -95,8 +97,3 @@ def _logarithm(curves: ArrayLike, form: ArrayLike) -> Array:
     """Logarithm of curves over the closed form, of one shape; 0 where both are nothing."""
     curve, smooth = (np.log(np.maximum(np.abs(np.asarray(part, float)), FLOOR_GPa)) for part in (curves, form))
     return curve - smooth
-
-
-def _at(wanted: Array | float, known: Array, rows: Array) -> Array:
-    """Rows at other places, the ends held, shape (rows, *wanted.shape)."""
-    return np.stack([np.interp(wanted, known, row) for row in rows])

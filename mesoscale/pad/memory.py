@@ -74,7 +74,7 @@ class PadLaw:
         """
         s = np.asarray(separation_nm, float)
         self._check(s)
-        return self._extended(s, np.sum(_at(self.separation_nm, self.closing, s), axis=0))
+        return self._extended(s, np.sum(rows_at(s, self.separation_nm, self.closing), axis=0))
 
     def opening_GPa(self, separation_nm: ArrayLike, deepest_nm: float) -> Array:
         """Net pressure while opening from `deepest_nm` (GPa), any shape; separations below it count as it.
@@ -102,7 +102,7 @@ class PadLaw:
 
     def _logarithms(self, number: int, separation_nm: Array) -> Array:
         known = np.isfinite(self.opening[number, 0])
-        repulsion, attraction = _at(self.separation_nm[known], self.opening[number][:, known], separation_nm)
+        repulsion, attraction = rows_at(separation_nm, self.separation_nm[known], self.opening[number][:, known])
         return np.log(np.stack([np.maximum(repulsion, FLOOR_GPa), np.maximum(-attraction, FLOOR_GPa)]))
 
     def _check(self, separation_nm: Array) -> None:
@@ -139,14 +139,14 @@ def deepened(law: PadLaw, times: float = 2.0) -> PadLaw:
     opening[1:, :, DEEPENED:] = law.opening
     at = np.concatenate([deeper, s])
     risen = np.minimum(at - at[0] + s[start], s[-1])
-    opening[0] = _at(s[start:], law.opening[0][:, start:], risen) * growth[:, :1]
+    opening[0] = rows_at(risen, s[start:], law.opening[0][:, start:]) * growth[:, :1]
     closing = np.hstack([ends[:, None] * growth, law.closing])
     return PadLaw(at, closing, np.concatenate([at[:1], law.depth_nm]), opening, law.flats)
 
 
-def _at(separation_nm: Array, curves: Array, wanted: Array) -> Array:
-    """Rows of `curves` at other separations, shape (rows, *wanted.shape)."""
-    return np.stack([np.interp(wanted, separation_nm, row) for row in curves])
+def rows_at(wanted: Array | float, known: Array, rows: Array) -> Array:
+    """Rows, given at `known`, at other places, the ends held; shape (rows, *wanted.shape)."""
+    return np.stack([np.interp(wanted, known, row) for row in rows])
 
 
 def law_of(cells: PadCells, flats: Flats, weights: ArrayLike | None = None) -> PadLaw:
