@@ -13,6 +13,7 @@ from mesoscale.topography.description.choice import (
     choose,
     description_doubts,
     refuse_coarse_measurements,
+    rows_of,
     surface_of,
 )
 from mesoscale.topography.description.doubts import Doubt
@@ -103,9 +104,8 @@ def pool(
     one = merge(spectra, lifted)
     choice = choose(topography, one, tests, settings)
     typical = settings.model_copy(update={"ranges": "interval"})
-    (surface, rows), (_, film) = (
-        surface_of(choice, topography, one, list(quantiles.values()), asked, cell_nm) for asked in (settings, typical)
-    )
+    surface = surface_of(choice, topography, one, list(quantiles.values()), settings, cell_nm)
+    rows, film = (rows_of(choice, topography, one, asked, cell_nm) for asked in (settings, typical))
     if rows:
         rows["q1"] = cutoff_row(topography, spectra)
         film["rms_scatter"] = rms_scatter_row(topography, one if surface else None)
@@ -113,9 +113,10 @@ def pool(
             rows["rms"], film["rms"] = (
                 rms_before(rows["q1"], part["rms"], topography, surface) for part in (rows, film)
             )
-    apart = _disagreements(pairs, one) if settings.scans else []
-    doubts = several_surfaces(pairs) if settings.scans else []
+    doubts = []
     if settings.scans:
+        apart = _disagreements(pairs, one)
+        doubts = several_surfaces(pairs)
         doubts += description_doubts(topography, choice, one, attributes, apart, cell_nm, tests)
     doubts += lift_doubt(images, spectra, lifted)
     if choice.name == "power_law":

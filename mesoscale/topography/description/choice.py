@@ -93,8 +93,27 @@ def surface_of(
     quantiles: Sequence[np.ndarray],
     settings: TopographySettings,
     cell_nm: float,
-) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
-    """What random surfaces are made from: entries of `contact.surface`, and distributions of q0, hurst and rms.
+) -> dict[str, Any]:
+    """What random surfaces are made from besides q0, hurst and rms: entries of `contact.surface`; none for eq. 9."""
+    if choice.name == "power_law" or one is None:
+        return {}
+    q, psd = _table(one, 2 * np.pi / cell_nm)
+    pivot_q0, pivot_hurst = _nearest(topography, one, settings)
+    heights = list(common_heights(quantiles)) if choice.name == "measured_heights" and len(quantiles) else []
+    return {
+        "spectrum": {"q": q.tolist(), "psd": psd.tolist(), "q0": pivot_q0, "hurst": pivot_hurst},
+        "heights": heights,
+    }
+
+
+def rows_of(
+    choice: Choice,
+    topography: Topography,
+    one: OneSpectrum | None,
+    settings: TopographySettings,
+    cell_nm: float,
+) -> dict[str, dict[str, Any]]:
+    """Distributions of q0, hurst and rms, with the ranges that the settings ask for.
 
     The RMS height is that of the waves of a cell of side `cell_nm`, and of a film whose spectrum is flat beyond, as the
     pad makes it (`pad.cells`). With a measured spectrum q0 and hurst are coordinates that bend the spectrum about
@@ -105,26 +124,18 @@ def surface_of(
         if "rms" in rows:
             share = np.sqrt(_share_on_cells(topography, cell_nm))
             rows["rms"] |= {key: float(rows["rms"][key] * share) for key in ("a", "b")}
-        return {}, rows
+        return rows
     drawn = one.draws(places=settings.ranges == "scatter")
-    q, psd = _table(one, 2 * np.pi / cell_nm)
     rms = np.sqrt(_cell_mean_square(one, drawn, cell_nm))
     pivot_q0, pivot_hurst = _nearest(topography, one, settings)
     bend_q0, bend_hurst = _bends(one, pivot_q0, drawn)
     hurst = np.clip([pivot_hurst - bend_hurst, pivot_hurst + bend_hurst], *HURST_ENDS)
-    surface: dict[str, Any] = {
-        "spectrum": {"q": q.tolist(), "psd": psd.tolist(), "q0": pivot_q0, "hurst": pivot_hurst},
-        "heights": [],
-    }
-    if choice.name == "measured_heights" and len(quantiles):
-        surface["heights"] = list(common_heights(quantiles))
     ranges = {
         "q0": [pivot_q0 * np.exp(-bend_q0), pivot_q0 * np.exp(bend_q0)],
         "hurst": hurst,
         "rms": np.quantile(rms, QUANTILES),
     }
-    rows = {name: {"distribution": "uniform", "a": float(a), "b": float(b)} for name, (a, b) in ranges.items()}
-    return surface, rows
+    return {name: {"distribution": "uniform", "a": float(a), "b": float(b)} for name, (a, b) in ranges.items()}
 
 
 def cell_waves(cell_nm: float) -> tuple[np.ndarray, np.ndarray, float]:
