@@ -2,6 +2,7 @@
 
 import hashlib
 import html
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -57,11 +58,12 @@ MATERIAL = {
 """The material where none is given: the paper's films, and D0 of silica."""
 
 
-class _Shown:
+class _Shown(ABC):
     """What says itself in lines of text: the first alone in a terminal, all of them in a notebook."""
 
+    @abstractmethod
     def lines(self) -> Iterator[str]:
-        raise NotImplementedError
+        """What it says, a line at a time."""
 
     def __repr__(self) -> str:
         return next(self.lines())

@@ -1,13 +1,12 @@
 """The tables of settings.md, written from the settings classes while the site is built."""
 
-import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
 from pydantic import BaseModel
 
-from workflow.scene import Scene, accepted_values
+from workflow.scene import Scene, accepted_values, value_in_json
 
 
 def write_tables(path: Path) -> None:
@@ -34,10 +33,8 @@ def _rows(model: BaseModel, known: set[type], prefix: str = "") -> Iterator[tupl
         if isinstance(value, BaseModel):
             yield from _rows(value, known, f"{prefix}{name}.")
         else:
-            default = json.loads(model.model_dump_json(include={name}))[name]
-            shown = json.dumps(default, ensure_ascii=False)
             words = ("", "") if explained else (accepted_values(field), field.description or "")
-            yield f"{prefix}{name}", f"`{shown}`", *words
+            yield f"{prefix}{name}", f"`{value_in_json(model, name)}`", *words
 
 
 def _table(rows: Iterator[tuple[str, str, str, str]]) -> str:

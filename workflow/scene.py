@@ -379,6 +379,11 @@ def _type_words(annotation: Any) -> str:
     return names.get(annotation, "a mapping")
 
 
+def value_in_json(model: BaseModel, name: str) -> str:
+    """The value of a field as a scene may state it: JSON is valid YAML."""
+    return json.dumps(json.loads(model.model_dump_json(include={name}))[name], ensure_ascii=False)
+
+
 def documented_defaults() -> str:
     """The text of config/config.yaml: every key with its description, what it accepts and its default."""
     head = (
@@ -407,9 +412,7 @@ def _document(model: BaseModel, depth: int, explained: set[type[BaseModel]]) -> 
             continue
         if not known:
             lines.append(f"{indent}# {field.description} ({accepted_values(field)})")
-        # JSON is valid YAML
-        default = json.loads(model.model_dump_json(include={name}))[name]
-        lines.append(f"{indent}{name}: {json.dumps(default, ensure_ascii=False)}")
+        lines.append(f"{indent}{name}: {value_in_json(model, name)}")
     return lines
 
 

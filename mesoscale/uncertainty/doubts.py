@@ -71,7 +71,10 @@ def against_physics(responses: Responses, table: InputTable, most_GPa: float) ->
     base = np.clip(base, low, high)
     reasons = {}
     for name, symbol in STIFFENING.items():
-        if name not in table.names or (k := table.names.index(name)) < 0 or not high[k] > low[k]:
+        if name not in table.names:
+            continue
+        k = table.names.index(name)
+        if high[k] <= low[k]:
             continue
         moved = [_moved(base, k, value) for value in np.linspace(low[k], high[k], LEVELS)]
         laws = [evaluate(responses, x)[:, CLOSING] for x in moved]
