@@ -145,7 +145,7 @@ def deepened(law: PadLaw, times: float = 2.0) -> PadLaw:
 
 
 def rows_at(wanted: Array | float, known: Array, rows: Array) -> Array:
-    """Rows, given at `known`, at other places, the ends held; shape (rows, *wanted.shape)."""
+    """Rows, given at `known`, at other places, the ends held; shape (rows,) + that of `wanted`."""
     return np.stack([np.interp(wanted, known, row) for row in rows])
 
 
