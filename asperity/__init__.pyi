@@ -9,7 +9,7 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import input_table
 from mesoscale.law.branches import laws_of
 from mesoscale.law.compact import Law, force, pressure
-from mesoscale.scan_checks.pressing import contacting_heights
+from mesoscale.scan_checks.surface import contacting_heights
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, LawSettings, PadSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.uncertainty.runs import MonteCarlo, monte_carlo

@@ -16,7 +16,7 @@ import numpy as np
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.scan_checks.judged import MOST_CONTACT, judge
-from mesoscale.scan_checks.pressing import has_square_pixels
+from mesoscale.scan_checks.surface import has_square_pixels
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import load_measurements

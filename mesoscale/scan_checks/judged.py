@@ -9,7 +9,7 @@ import numpy as np
 
 from mesoscale.contact import run_cycle
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.scan_checks.pressing import contacting_heights
+from mesoscale.scan_checks.surface import contacting_heights
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.topography.description.choice import carried_on

@@ -110,8 +110,4 @@ class TopographySettings(Settings):
         description="what happens to measurements that no description fits: stop before they are used, or warn in the "
         "report and use them",
     )
-    press_scans: bool = Field(
-        default=False,
-        description="close the contact on the scans themselves too, beside random surfaces of their statistics",
-    )
     synthetic: SyntheticScanSettings = SyntheticScanSettings()

@@ -46,8 +46,8 @@ def test_a_mistyped_target_is_one_line_with_the_nearest_name(capsys, monkeypatch
     assert main(["run", "paper", "lwa"]) == 1
     assert capsys.readouterr().err == "ERROR lwa: no such target; did you mean law? (asperity targets lists them)\n"
     assert not started
-    main(["run", "paper", "law", "--cores", "2", "press_scans", "results/paper/law/nominal.csv"])
-    assert started[0][started[0].index("law") :][:3] == ["law", "press_scans", "results/paper/law/nominal.csv"]
+    main(["run", "paper", "law", "--cores", "2", "judge_scans", "results/paper/law/nominal.csv"])
+    assert started[0][started[0].index("law") :][:3] == ["law", "judge_scans", "results/paper/law/nominal.csv"]
 
 
 def test_a_new_scene_has_the_mechanics_that_are_recommended(tmp_path, monkeypatch):

@@ -28,8 +28,6 @@ def report_inputs():
     if needed("topography"):
         files += ["topography/spectra.h5", "topography/parameters.json"]
         files += [str(Path(path).relative_to(RESULTS)) for path in JUDGED]
-        if SCENE.topography.press_scans:
-            files += ["curves/scans.h5", "law/scans.csv"]
     if SCENE.history.cycles > 0:
         files += [f"history/{name}" for name in ("cycles.csv", "dwell.csv", "curves.h5")]
     if SCENE.measurements.tables:

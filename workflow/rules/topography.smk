@@ -142,26 +142,6 @@ rule weigh_unseen_waves:
         "../scripts/weigh_unseen_waves.py"
 
 
-rule press_scans:
-    input:
-        scans=SCAN_FILES,
-        parameters=f"{RESULTS}/topography/parameters.json",
-        inputs=f"{RESULTS}/inputs.csv",
-    output:
-        curves=f"{RESULTS}/curves/scans.h5",
-        law=f"{RESULTS}/law/scans.csv",
-    log:
-        f"{RESULTS}/logs/press_scans.log",
-    params:
-        settings=settings("topography"),
-        contact=settings("contact"),
-        law=settings("law"),
-    message:
-        "close the contact on the measured scans themselves"
-    script:
-        "../scripts/press_scans.py"
-
-
 if needed("topography"):
     ACCURACY.append(f"{RESULTS}/accuracy/topography.csv")
 

@@ -84,22 +84,6 @@ TABLES = (
         (text("curve", "group of curves/nominal.h5"), BRANCH, *_FIT, _CURVE_STATUS),
     ),
     Table(
-        ("law/scans.csv",),
-        "The law of one branch of a measured scan, or of a random surface like it.",
-        (
-            text("scan", "name of the scan"),
-            text("surface", "measured, own spectrum or eq. 9: the surface pressed"),
-            number("cell_area_nm2", "nm²", "area of the surface"),
-            integer("pixels", "grid points a side"),
-            number("rms_nm", "nm", "RMS roughness of the surface"),
-            number("max_force_nN", "nN", "largest repulsion"),
-            boolean("converged", "whether the cycle converged"),
-            number("first_contact_nm", "nm", "separation of first contact"),
-            BRANCH,
-            *_FIT,
-        ),
-    ),
-    Table(
         ("history/cycles.csv",),
         "One cycle of one surface.",
         (

@@ -9,7 +9,7 @@ from pathlib import Path
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.scan_checks.judged import judge
-from mesoscale.scan_checks.pressing import has_square_pixels
+from mesoscale.scan_checks.surface import has_square_pixels
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.measurements.loading import load_measurements
 from mesoscale.topography.records import trusted_record

@@ -1,4 +1,4 @@
-"""Surface topography: figures 9 and 10, the parameters, contact of the scans themselves."""
+"""Surface topography: figures 9 and 10, and the parameters."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ import numpy as np
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SKY, SOFT, draw
 from workflow.report.measured_surface import describe_surface, place_doubts
-from workflow.report.numbers import SYMBOLS, number, show, shown_unit
+from workflow.report.numbers import SYMBOLS, show, shown_unit
 from workflow.report.page import SYNTHETIC, Section, Table
 from workflow.report.surface_picture import short_names
 
@@ -65,15 +65,6 @@ def describe(results: Results) -> Section | None:
         section.blocks.append(Table(caption, header, lines))
     place_doubts(parameters, section, "q0", "slope")
     section.files += ["topography/spectra.h5", "topography/parameters.json"]
-    if results.has("law/scans.csv"):
-        header = ("scan", "surface", "d_c (nm)", "C_a (GPa/nm)", "C_r (GPa)", "ρ_r (nm)", "fit")
-        keys = ("d_c_nm", "C_a_GPa_nm", "C_r_GPa", "rho_r_nm")
-        closing = [row for row in results.csv("law/scans.csv") if row["branch"] == "closing"]
-        lines = [
-            (row["scan"], row["surface"], *(show(number(row[key])) for key in keys), row["status"]) for row in closing
-        ]
-        section.blocks.append(Table("Law of the measured scans, closing", header, lines))
-        section.files += ["curves/scans.h5", "law/scans.csv"]
     describe_surface(results, parameters, section)
     return section
 
