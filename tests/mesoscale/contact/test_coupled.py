@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 from evidence.contact import half_space, plain_coupled
 from evidence.contact.draws import draw_inputs
-from mesoscale.contact import ContactInputs, exact, run_cycle
+from mesoscale.contact import ContactInputs, run_cycle
 from mesoscale.contact.coupled import dense, grid, validity
 from mesoscale.contact.coupled.engine import CoupledContact
 from mesoscale.contact.energy import dissipated_energy
@@ -16,6 +16,7 @@ from mesoscale.contact.numerics import Numerics
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.synthesis import synthesize
+from tests.mesoscale.contact import exact
 
 INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0)
 MODELS = ("elastic", "nonlinear", "plastic")

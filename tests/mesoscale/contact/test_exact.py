@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import fft, integrate
 
-from mesoscale.contact import exact
+from tests.mesoscale.contact import exact
 
 E_STAR = 91.0
 WAVE = {"amplitude": 3.0, "wavelength": 50.0, "e_star": E_STAR}

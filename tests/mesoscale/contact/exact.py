@@ -1,6 +1,6 @@
-"""Exact solutions for an elastic half-space: sphere, flat punch, sinusoid (docs/contact.md, "Exact solutions").
+"""Exact solutions for an elastic half-space: sphere, flat punch, sinusoid.
 
-They are the oracles of the contact engines. Frictionless, no adhesion, combined modulus E*; the flat is rigid.
+The contact engines are tested against them. Frictionless, no adhesion, combined modulus E*; the flat is rigid.
 Units nm, nN, GPa: 1 GPa nm^2 = 1 nN. Every function takes numbers or arrays, which broadcast.
 
 The separation of a periodic contact is that of the mean planes: the mean over the cell of the gap between the
