@@ -47,7 +47,7 @@ def test_an_exponent_without_a_point_is_a_number(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("device: {landed_fraction: 0.01}", ["device.landed_fraction: no longer a setting, delete it", "bow_nm"]),
+        ("device: {landed_fraction: 0.01}", ["device.landed_fraction: no longer a key, delete it", "bow_nm"]),
         ("contact: {pixls: 256}", ["contact.pixls", "unknown key", "did you mean pixels?"]),
         ("contact: {pixels: 1}", ["contact.pixels = 1", "an integer", ">= "]),
         ("contact: {pixels: '256'}", ['contact.pixels = "256"', "an integer"]),
