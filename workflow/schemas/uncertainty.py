@@ -112,8 +112,6 @@ _SENSITIVITY = Table(
         *_in_unit("paper_mu_star_as_printed", "the paper's, as printed"),
         number("difference_in_seed_sd", "1", "mu_star minus the paper's, over mu_star_seed_sd"),
         number("difference_in_seed_sd_as_printed", "1", "the same for the paper's as printed"),
-        *_in_unit("morris_mu_star", "Morris' mean absolute effect through the response", "90 % interval"),
-        *_in_unit("morris_sigma", "standard deviation of the effects: curvature and interaction"),
         *_with_ends(number("sobol_first", "1", "first-order Sobol' index of the response"), "90 % interval"),
         *_with_ends(number("sobol_total", "1", "total Sobol' index of the response"), "90 % interval"),
         number("seed_share", "1", "share of the variance that comes from the random surface"),

@@ -37,7 +37,7 @@ def test_the_correlation_of_the_hardness_fit_reaches_the_engines_inputs():
 
 
 def test_d0_as_eighth_input_moves_the_attraction_alone(monkeypatch):
-    for name, count in {"SOBOL_SAMPLES": 128, "SOBOL_RESAMPLES": 3, "MORRIS_TRAJECTORIES": 4}.items():
+    for name, count in {"SOBOL_SAMPLES": 128, "SOBOL_RESAMPLES": 3}.items():
         monkeypatch.setattr(sensitivity, name, count)
     table = collect(PAPER.model_copy(update={"gap_cutoff": InputRow(values=(0.165, 0.3))}), {}, {})
     settings = UncertaintySettings(samples=500, direct_runs=150)

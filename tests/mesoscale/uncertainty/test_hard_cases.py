@@ -99,7 +99,6 @@ def _zero_width() -> list[str]:
     return _unless(
         deviation_of_the_one_that_varies=_close(answer.output["dev"], 1 / np.sqrt(12)),
         no_effect_of_the_fixed=all(row["mu_star"] < 1e-9 for row in answer.sensitivity[1:]),
-        no_morris_effect_of_the_fixed=all(row["morris_mu_star"] < 1e-6 for row in answer.sensitivity[1:]),
         index_one_of_the_other=_close(answer.sensitivity[0]["sobol_total"], 1.0),
     )
 
@@ -258,7 +257,6 @@ def small_samples(monkeypatch):
     """Few samples behind indices, so that the cases take a second."""
     monkeypatch.setattr(sensitivity, "SOBOL_SAMPLES", 512)
     monkeypatch.setattr(sensitivity, "SOBOL_RESAMPLES", 4)
-    monkeypatch.setattr(sensitivity, "MORRIS_TRAJECTORIES", 4)
 
 
 @pytest.mark.parametrize(("name", "description", "case"), CASES, ids=[case[0] for case in CASES])
