@@ -37,7 +37,7 @@ class ContactInputs:
             check_number(row.name, getattr(self, row.name), row.low, row.high, row.unit, row.zero)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)  # behind inputs of `ContactInputs` that have a default
 class FilmInputs(ContactInputs):
     """Inputs of a film whose places differ: `rms` is that of the median place.
 
