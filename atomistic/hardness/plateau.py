@@ -9,7 +9,6 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import bdtrc, stdtrit
 
 from atomistic.hardness.runs import PROTOCOL, geometry
 from atomistic.settings import ClosingSettings
@@ -123,6 +122,8 @@ def plastic_onset(witness: Rows, apart_nm: float, rules: Rules = RULES) -> Onset
     onsets = np.flatnonzero((new >= limit) & lasting & ~apart)
     if len(onsets) == 0:
         return Onset(None, background)
+    from scipy.special import bdtrc  # half a second to import, which plans do without
+
     count, earlier, snapshots = int(new[onsets[0]]), int(np.sum(new[before])), int(np.sum(before))
     p_value = float(bdtrc(count - 1, count + earlier, 1 / (1 + snapshots)))
     return Onset(float(displacement[onsets[0]]), background, float(count), p_value)
@@ -281,6 +282,8 @@ def interval_of_mean(values: np.ndarray) -> tuple[float, float]:
     """
     if len(values) < 2 or np.ptp(values) == 0:
         return float(np.mean(values)), float(np.mean(values))
+    from scipy.special import stdtrit
+
     effective = _effective_number(values)
     half = float(stdtrit(effective - 1, 0.84)) * float(np.std(values, ddof=1)) / np.sqrt(effective)
     return float(np.mean(values)) - half, float(np.mean(values)) + half

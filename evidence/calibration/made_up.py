@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.calibration.observables import LAWS, force_levels_nN, observe, separations_at
+from mesoscale.calibration.observables import LAWS, force_levels_nN
+from mesoscale.calibration.observed import observe, separations_at
 from mesoscale.calibration.switches import SwitchModel
 from mesoscale.contact import run_cycle
 from mesoscale.inputs.contact import contact_of

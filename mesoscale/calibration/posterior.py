@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from mesoscale.calibration.likelihood import SWITCH_KINDS, Posterior, posterior_of
 from mesoscale.calibration.measurements import ON_SURFACES, Measurements
-from mesoscale.calibration.observables import LAWS, NAMES, OBSERVABLES, observe
+from mesoscale.calibration.observables import LAWS, NAMES, OBSERVABLES
+from mesoscale.calibration.observed import observe
 from mesoscale.calibration.responses import ResponseFits, Responses, fit_responses, transformed
 from mesoscale.calibration.sampling import MAX_STEPS, SEED, Chain, sample
 from mesoscale.calibration.surfaces import Expected, SurfaceData
