@@ -25,10 +25,10 @@ from mesoscale.topography.description.one_spectrum import (
     merge,
     overlaps,
     refuse_different_films,
-    several_surfaces,
 )
 from mesoscale.topography.description.parameters import Topography, analyse
 from mesoscale.topography.description.places import rms_scatter_row
+from mesoscale.topography.description.surfaces import several_surfaces
 from mesoscale.topography.description.tip_error import with_radius_error
 from mesoscale.topography.description.tip_on_grains import lift_doubt, with_lift_error, without_lift
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
@@ -116,7 +116,9 @@ def pool(
     doubts = []
     if settings.scans:
         apart = _disagreements(pairs, one)
-        doubts = several_surfaces(pairs)
+        doubts = several_surfaces(
+            images, pairs, {name: str(values.get("file", name)) for name, values in attributes.items()}
+        )
         doubts += description_doubts(topography, choice, one, attributes, apart, cell_nm, tests)
     doubts += lift_doubt(images, spectra, lifted)
     if choice.name == "power_law":

@@ -19,7 +19,6 @@ import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.topography.description.confidence import QUANTILES, REACH
-from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.likelihood import DISCREPANCY
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, with_ends
 
@@ -188,7 +187,7 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     ----------
     common_error : of ln C, the same at all waves (`tip_on_grains`).
     """
-    measured = [(item.name, *_on_bands(item)) for item in spectra]
+    measured = [(item.name, *on_bands(item)) for item in spectra]
     measured = [entry for entry in measured if len(entry[1])]
     if sum(len(entry[1]) for entry in measured) < 4:
         return None
@@ -243,7 +242,7 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     return result.with_mean_square(largest.rms_nm**2, LEVELLED_WAVES * first_wave, error)
 
 
-def _on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Numbers of the bands that a measurement reaches, ln C at their centres, and its variance."""
     inside, corrected, error = with_ends(item)
     nothing = np.empty(0, dtype=int), np.empty(0), np.empty(0)
@@ -267,7 +266,7 @@ def _on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 def overlaps(spectra: Sequence[TrustedSpectrum]) -> list[Overlap]:
     """Every pair of measurements of different size or kind that sees common bands, the largest shared range first."""
-    bands = [(item, *_on_bands(item)) for item in spectra]
+    bands = [(item, *on_bands(item)) for item in spectra]
     pairs = []
     for i, (first, numbers, level, variance) in enumerate(bands):
         for second, other, other_level, other_variance in bands[i + 1 :]:
@@ -301,20 +300,3 @@ def refuse_different_films(pairs: Sequence[Overlap]) -> None:
             f"{worst.high:.2g} /nm their spectra differ by a factor of {max(worst.ratio, 1 / worst.ratio):.3g}; "
             f"accepted is {DIFFERENT_FILMS:g}; give the files of one film, or correct a unit or a height scale"
         )
-
-
-def several_surfaces(pairs: Sequence[Overlap]) -> list[Doubt]:
-    """One doubt where two measurements do not look like places of one surface; it names the pair that differs most."""
-    strangers = [pair for pair in pairs if not pair.one_surface]
-    if not strangers:
-        return []
-    worst = max(strangers, key=lambda pair: max(pair.misfit, abs(np.log(pair.ratio))))
-    differ = f"by a factor of {max(worst.ratio, 1 / worst.ratio):.2g}"
-    if worst.misfit > MOST_MISFIT:
-        differ = f"in shape, by {np.sqrt(worst.misfit):.2g} times their errors"
-    text = (
-        f"{worst.first} and {worst.second} look like two surfaces: from {worst.low:.2g} to {worst.high:.2g} /nm their "
-        f"spectra differ {differ}"
-    )
-    remedy = "give the measurements of one surface; if they are, set topography.on_doubt: warn"
-    return [Doubt("several_surfaces", text, remedy, fatal=True)]

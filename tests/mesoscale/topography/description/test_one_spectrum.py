@@ -6,13 +6,10 @@ import numpy as np
 import pytest
 
 from mesoscale.errors import InputError
-from mesoscale.settings import TopographySettings
-from mesoscale.topography.analysis import trusted_scan
-from mesoscale.topography.description.one_spectrum import merge, overlaps, refuse_different_films, several_surfaces
+from mesoscale.topography.description.one_spectrum import merge, overlaps, refuse_different_films
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import Spectrum
-from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
 
 TRUTH = RoughSpectrum.from_rms(6.0, 0.02, 3.0, 100.0)
 
@@ -92,28 +89,6 @@ def test_files_of_different_films_are_refused_by_name():
     pairs = overlaps([measured("smooth", 0.01, 0.5), measured("rough", 0.05, 1.0, 1e4)])
     with pytest.raises(InputError, match="smooth and rough cannot be one surface"):
         refuse_different_films(pairs)
-
-
-def test_spectra_of_another_shape_or_far_apart_are_doubted_as_two_surfaces():
-    rng = np.random.default_rng(1)
-    place = measured("place", 0.01, 0.5, 1.0, rng)
-    assert several_surfaces(overlaps([place, measured("another place", 0.02, 0.8, 5.0, rng)])) == []
-    steeper = measured("steeper", 0.02, 0.8, 1.0, rng)
-    steeper = replace(steeper, spectrum=replace(steeper.spectrum, psd=steeper.spectrum.psd * steeper.spectrum.q))
-    for other, words in ((steeper, "differ in shape"), (measured("rough", 0.02, 0.8, 60.0, rng), "by a factor of")):
-        (doubt,) = several_surfaces(overlaps([place, other]))
-        assert doubt.code == "several_surfaces"
-        assert doubt.fatal
-        assert f"place and {other.name} look like two surfaces" in doubt.text
-        assert words in doubt.text
-
-
-def test_maps_of_one_surface_are_not_doubted():
-    """Sizes, steepness and places that differ by 40 % in RMS height, seen through tip, noise and levelling."""
-    settings = TopographySettings(tip_radius_nm=5.0)
-    for seed, slope in enumerate((2.4, 3.2, 4.0)):
-        made = synthetic_scans(ScanSet(pixels=256, small_scans=2, large_scans=2, slope=slope, seed=seed))
-        assert several_surfaces(overlaps([trusted_scan(item.scan, settings) for item in made])) == []
 
 
 def test_too_little_gives_none():

@@ -1,0 +1,171 @@
+"""Are the measurements of one surface, or of several?
+
+On one film ln C_kb = f_b + a_k + s_k x_b + error: a place k has a level and, less, a tilt of its own over x = ln q.
+Levels and tilts scatter about one middle. On two films they fall into two heaps. Which map is of which film is not
+told, so each cut of the ordered values into two heaps is asked (for one variable the best two heaps are such a cut,
+doi:10.1080/01621459.1958.10501479): how far are their means apart, over the scatter within? How large the largest
+answer is by chance says a simulation of as many places of one film, with the scatter and the errors found here.
+
+A scatter that is estimated hides two films whose places differ by as much as the films do. With six maps the means must
+be about ten times the scatter apart (python -m evidence topography.surfaces has the error rates).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesoscale.topography.description.doubts import Doubt
+from mesoscale.topography.description.one_spectrum import BANDS_PER_DECADE, MOST_MISFIT, Overlap, on_bands
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
+
+Array = np.ndarray
+FALSE_ALARMS = 0.05  # of films of one surface, shared by level and tilt
+FEWEST = 4  # measurements; of fewer no scatter within two heaps can be told from a difference
+SIMULATED = 999
+LEAST_APART = {"level": 0.2, "tilt": 0.2}  # of ln C (10 % of the RMS height), and of the slope of ln C over ln q
+UNKNOWN = 100.0  # variance of a level that no shared band ties to the others
+MOST_NAMES = 6  # of a heap in a sentence
+
+
+@dataclass(frozen=True)
+class Cut:
+    """Places in two heaps by one property of theirs.
+
+    Attributes
+    ----------
+    score : distance of the means over its standard deviation, by errors and scatter within the heaps.
+    apart : distance of the means.
+    low, high : numbers of the places of each heap.
+    """
+
+    score: float
+    apart: float
+    low: Array
+    high: Array
+
+
+def levels_and_tilts(spectra: Sequence[TrustedSpectrum]) -> dict[str, tuple[Array, Array]]:
+    """Level and tilt of each measurement about their means, (n,), with their covariance (n, n), on shared bands."""
+    bands = [on_bands(item) for item in spectra]
+    number = np.concatenate([part[0] for part in bands])
+    owner = np.repeat(np.arange(len(bands)), [len(part[0]) for part in bands])
+    value, variance = (np.concatenate([part[k] for part in bands]) for k in (1, 2))
+    _, index, count = np.unique(number, return_inverse=True, return_counts=True)
+    shared = count[index] > 1
+    if not shared.any():
+        return {}
+    number, owner, value, variance, index = (part[shared] for part in (number, owner, value, variance, index))
+    x = number * np.log(10) / BANDS_PER_DECADE
+    x = x - np.average(x, weights=1 / variance)
+    film, places = np.eye(len(count))[index], np.eye(len(bands))[owner]
+    mean_free = np.eye(len(bands)) - 1 / len(bands)
+    found = {}
+    for name, parts in (("level", [film, places]), ("tilt", [film, places, places * x[:, None]])):
+        system = np.hstack(parts)
+        prior = np.full(system.shape[1], 1 / UNKNOWN)
+        prior[: len(count)] = 1e-6
+        covariance = np.linalg.inv(system.T @ (system / variance[:, None]) + np.diag(prior))
+        last = slice(-len(bands), None)
+        solution = covariance @ (system.T @ (value / variance))
+        found[name] = mean_free @ solution[last], mean_free @ covariance[last, last] @ mean_free
+    return found
+
+
+def best_cut(values: Array, covariance: Array) -> Cut:
+    """The cut of n values, of errors `covariance` (n, n), whose heaps are furthest apart for the scatter within."""
+    n = len(values)
+    order = np.argsort(values)
+    values, covariance = values[order], covariance[np.ix_(order, order)]
+    below = np.arange(1, n)
+    above = n - below
+    # sums over the first j values, and of the blocks of the covariance that a cut behind them makes
+    summed, squares = np.cumsum(values), float(values @ values)
+    low = np.cumsum(np.cumsum(covariance, axis=0), axis=1).diagonal()[:-1]
+    across = np.cumsum(covariance.sum(axis=1))[:-1] - low
+    high = covariance.sum() - low - 2 * across
+    first, second = summed[:-1], summed[-1] - summed[:-1]
+    apart = second / above - first / below
+    within = squares - first**2 / below - second**2 / above
+    expected = np.trace(covariance) - low / below - high / above
+    scatter = np.maximum(within - expected, 0.0) / (n - 2)
+    variance = low / below**2 + high / above**2 - 2 * across / (below * above) + scatter * (1 / below + 1 / above)
+    score = apart / np.sqrt(variance)
+    best = int(np.argmax(score))
+    return Cut(float(score[best]), float(apart[best]), order[: best + 1], order[best + 1 :])
+
+
+def by_chance(values: Array, covariance: Array, score: float) -> float:
+    """Probability that places of one film give a best cut of `score` or more."""
+    n = len(values)
+    mean_free = np.eye(n) - 1 / n
+    scatter = max(float(values @ mean_free @ values - np.trace(mean_free @ covariance)), 0.0) / (n - 1)
+    spread, vectors = np.linalg.eigh(covariance + scatter * np.eye(n))
+    drawn = np.random.default_rng(4).standard_normal((SIMULATED, n)) @ (vectors * np.sqrt(np.maximum(spread, 0.0))).T
+    return (1 + sum(best_cut(row, covariance).score >= score for row in drawn)) / (SIMULATED + 1)
+
+
+def two_heaps(spectra: Sequence[TrustedSpectrum]) -> tuple[str, Cut, float] | None:
+    """What parts the measurements into two surfaces, the heaps, and the chance of one surface; None for one surface."""
+    if len(spectra) < FEWEST:
+        return None
+    found = levels_and_tilts(spectra)
+    cuts = [(name, best_cut(*part)) for name, part in found.items()]
+    asked = [(by_chance(*found[name], cut.score), name, cut) for name, cut in cuts if cut.apart > LEAST_APART[name]]
+    chance, name, cut = min(asked, key=lambda item: item[0], default=(1.0, "", None))
+    return None if cut is None or chance > FALSE_ALARMS / len(found) else (name, cut, chance)
+
+
+def several_surfaces(
+    spectra: Sequence[TrustedSpectrum], pairs: Sequence[Overlap], files: Mapping[str, str]
+) -> list[Doubt]:
+    """A doubt where the measurements do not look like places of one surface; it names the groups.
+
+    Parameters
+    ----------
+    files : of the measurements, by name.
+    """
+    heaps = two_heaps(spectra)
+    if heaps is not None:
+        name, cut, chance = heaps
+        groups = [[spectra[k].name for k in sorted(heap)] for heap in (cut.low, cut.high)]
+        differ = f"by a factor of {np.exp(cut.apart):.2g} in C" if name == "level" else f"by {cut.apart:.2g} in slope"
+        text = (
+            f"{_listed(groups[0])} and {_listed(groups[1])} look like two surfaces: their spectra differ {differ}, "
+            f"more than places of one surface do (by chance once in {1 / chance:.0f})"
+        )
+        return [Doubt("several_surfaces", text, _apart(groups, files), fatal=True)]
+    strangers = [pair for pair in pairs if not pair.one_surface]
+    if strangers:
+        worst = max(strangers, key=lambda pair: max(pair.misfit, abs(np.log(pair.ratio))))
+        differ = f"by a factor of {max(worst.ratio, 1 / worst.ratio):.2g}"
+        if worst.misfit > MOST_MISFIT:
+            differ = f"in shape, by {np.sqrt(worst.misfit):.2g} times their errors"
+        text = (
+            f"{worst.first} and {worst.second} look like two surfaces: from {worst.low:.2g} to {worst.high:.2g} /nm "
+            f"their spectra differ {differ}"
+        )
+        return [Doubt("several_surfaces", text, _apart([[worst.first], [worst.second]], files), fatal=True)]
+    apart = [pair for pair in pairs if not pair.agrees]
+    if apart and len(spectra) < FEWEST:
+        worst = max(apart, key=lambda pair: abs(np.log(pair.ratio)))
+        text = (
+            f"{worst.first} and {worst.second} differ by a factor of {max(worst.ratio, 1 / worst.ratio):.2g} in C; "
+            f"fewer than {FEWEST} measurements cannot tell two surfaces from places of one"
+        )
+        return [Doubt("few_places", text, "measure other places of the surface", "rms")]
+    return []
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = len(names) - MOST_NAMES
+    return ", ".join(names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
+
+
+def _apart(groups: Sequence[Sequence[str]], files: Mapping[str, str]) -> str:
+    """How to run the groups apart: one line of a scene each, where no file holds measurements of both."""
+    own = [list(dict.fromkeys(files.get(name, name) for name in group)) for group in groups]
+    if set(own[0]) & set(own[1]):
+        return "export each group to files of its own; if they are one surface, set topography.on_doubt: warn"
+    scenes = " and ".join(f"topography: {{scans: [{', '.join(part)}]}}" for part in own)
+    return f"run them apart, in scenes with {scenes}; if they are one surface, set topography.on_doubt: warn"
