@@ -67,7 +67,8 @@ def moments(heights: np.ndarray) -> tuple[float, float, float]:
     """Skewness, kurtosis, and the highest point in units of the RMS height."""
     z = heights - heights.mean()
     z /= np.sqrt(np.mean(z**2))
-    return float(np.mean(z**3)), float(np.mean(z**4)), float(z.max())
+    square = z * z  # the power function takes ten times as long
+    return float(np.mean(square * z)), float(np.mean(square * square)), float(z.max())
 
 
 def not_gaussian(tests: Sequence[HeightTest]) -> str:

@@ -83,9 +83,7 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
         heights -= fitted_trend(heights, order=1 if settings.detrend == "plane" else 2)
         steps.append(f"subtracted a {settings.detrend} fit")
     if settings.line_alignment == "median":
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # lines without any value stay empty until filled
-            heights -= np.nanmedian(heights, axis=0)
+        heights -= _line_medians(heights)
         steps.append("subtracted the median of each scan line")
     if share > 0:
         heights = fill_missing(heights)
@@ -108,14 +106,22 @@ def alignment_effect(scan: Scan, settings: TopographySettings) -> tuple[float, f
     heights = np.where(np.isfinite(scan.heights_nm), scan.heights_nm, np.nan)
     if settings.detrend != "none":
         heights -= fitted_trend(heights, order=1 if settings.detrend == "plane" else 2)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # lines without any value
-        aligned = heights - np.nanmedian(heights, axis=0)
+    aligned = heights - _line_medians(heights)
     before, after = float(np.nanstd(heights)), float(np.nanstd(aligned))
     if min(before, after) == 0:
         return 0.0, 0.0
-    skewness = [float(np.nanmean(((z - np.nanmean(z)) / np.nanstd(z)) ** 3)) for z in (heights, aligned)]
+    centred = [z - np.nanmean(z) for z in (heights, aligned)]
+    skewness = [float(np.nanmean(z * z * z)) / sd**3 for z, sd in zip(centred, (before, after), strict=True)]
     return 1 - after / before, skewness[1] - skewness[0]
+
+
+def _line_medians(heights: np.ndarray) -> np.ndarray:
+    """Median of each scan line of heights (nx, ny); NaN for lines without any value, which are filled later."""
+    if np.isfinite(heights).all():
+        return np.median(np.ascontiguousarray(heights.T), axis=1)  # eight times as fast
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        return np.nanmedian(heights, axis=0)
 
 
 def form_share(heights: np.ndarray) -> float:
@@ -149,7 +155,10 @@ def fitted_trend(heights: np.ndarray, order: int) -> np.ndarray:
         gram = np.array([[np.sum(a * b, where=known) for b in terms] for a in terms])
         right = np.array([np.sum(a * heights, where=known) for a in terms])
     coefficients = np.linalg.lstsq(gram, right, rcond=None)[0]
-    return np.sum([c * term for c, term in zip(coefficients, terms, strict=True)], axis=0)
+    trend = np.zeros_like(heights)
+    for coefficient, term in zip(coefficients, terms, strict=True):
+        trend += coefficient * term
+    return trend
 
 
 def fill_missing(heights: np.ndarray) -> np.ndarray:
