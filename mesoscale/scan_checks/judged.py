@@ -13,9 +13,9 @@ from mesoscale.scan_checks.surface import contacting_heights
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.topography.description.choice import carried_on
-from mesoscale.topography.description.confidence import CONFIDENCE
+from mesoscale.topography.description.confidence import CONFIDENCE, REACH
 from mesoscale.topography.description.heights import common_heights, height_quantiles
-from mesoscale.topography.description.one_spectrum import OneSpectrum, merge
+from mesoscale.topography.description.one_spectrum import OneSpectrum, few_places, merge
 from mesoscale.topography.description.parameters import Topography, analyse
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.height_synthesis import synthesize_heights
@@ -52,10 +52,15 @@ class Described:
             for psd in self.one.draws(places=True, count=count):
                 yield SpectrumTable(*carried_on(self.one, psd)).psd  # as the contact's own surfaces
             return
-        estimates = self.topography.estimates
+        estimates, fitted = self.topography.estimates, self.topography.likelihood
+        rms = estimates["rms"]
+        error = 0.5 * math.log(rms.interval[1] / rms.interval[0]) / REACH  # of the typical place
+        if fitted is not None:  # and one more place besides
+            error = math.hypot(error, few_places(len(fitted.amplitudes)) * fitted.amplitude_sd / 2)
         for _ in range(count):
-            q0, slope, rms = (rng.uniform(*estimates[name].scatter) for name in ("q0", "slope", "rms"))
-            yield RoughSpectrum.from_rms(rms, q0, slope, self.topography.cutoff).psd
+            q0, slope = (rng.uniform(*estimates[name].scatter) for name in ("q0", "slope"))
+            rms_nm = rms.value * math.exp(error * rng.standard_normal())
+            yield RoughSpectrum.from_rms(rms_nm, q0, slope, self.topography.cutoff).psd
 
 
 def judge(

@@ -29,7 +29,7 @@ from mesoscale.topography.description.one_spectrum import (
 from mesoscale.topography.description.parameters import Topography, analyse
 from mesoscale.topography.description.places import rms_scatter_row
 from mesoscale.topography.description.surfaces import several_surfaces
-from mesoscale.topography.description.tip_error import with_radius_error
+from mesoscale.topography.description.tip_error import spectrum_with_radius_error, with_radius_error
 from mesoscale.topography.description.tip_on_grains import lift_doubt, with_lift_error, without_lift
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.records import is_profile, trusted_record
@@ -102,6 +102,8 @@ def pool(
     topography, spectra, lifted = parameters_of(images, quantiles if not_gaussian(tests) else {}, settings)
     refuse_coarse_measurements(spectra, cell_nm)
     one = merge(spectra, lifted)
+    if settings.scans:  # synthetic scans know their tip
+        one = spectrum_with_radius_error(one, spectra)
     choice = choose(topography, one, tests, settings)
     typical = settings.model_copy(update={"ranges": "interval"})
     surface = surface_of(choice, topography, one, list(quantiles.values()), settings, cell_nm)

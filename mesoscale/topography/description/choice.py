@@ -22,7 +22,8 @@ DESCRIPTIONS = {
     "measured_heights": "the measured spectrum with its band, and the measured distribution of heights",
 }
 EXTENSION_DECADES = 1.0  # the last slope is carried on this far beyond what is measured
-END_DECADES = 0.5  # over which that slope is taken
+POSSIBLE_SLOPES = (-4.0, -2.1)  # of a self-affine surface (0 < H < 1); shallower ones have no finite RMS height
+END_DECADES = 0.3  # over which that slope is taken
 HURST_ENDS = (0.05, 1.95)  # of the bending exponent; it is a coordinate, the spectrum itself is the measured one
 SLOWEST_BEND, FASTEST_BEND = 0.02, 0.7  # of ln q0
 
@@ -193,10 +194,17 @@ def carried_on(one: OneSpectrum, psd: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def _end_slope(one: OneSpectrum, psd: np.ndarray) -> np.ndarray:
-    """Logarithmic slopes of the ends of spectra (..., m); at least as steep as keeps the RMS height finite."""
+    """Logarithmic slopes of the ends of spectra (..., m).
+
+    A spectrum that ends before its power law says nothing of it: the slopes are then spread over `POSSIBLE_SLOPES`.
+    """
     end = one.q > one.q[-1] * 10 ** -(END_DECADES + 0.01)
     logs = np.log(psd[..., end]).reshape(-1, np.count_nonzero(end))
-    return np.minimum(np.polyfit(np.log(one.q[end]), logs.T, 1)[0], -2.1).reshape(psd.shape[:-1])
+    slopes = np.polyfit(np.log(one.q[end]), logs.T, 1)[0]
+    unseen = slopes > POSSIBLE_SLOPES[1]
+    count = np.count_nonzero(unseen)
+    slopes[unseen] = np.interp((np.arange(count) + 0.5) / max(count, 1), (0, 1), POSSIBLE_SLOPES)
+    return slopes.reshape(psd.shape[:-1])
 
 
 def _tail(one: OneSpectrum, psd: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
-from mesoscale.topography.description.confidence import QUANTILES, REACH
+from mesoscale.topography.description.confidence import QUANTILES, REACH, student_reach
 from mesoscale.topography.description.likelihood import DISCREPANCY
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, with_ends
 
@@ -78,7 +78,7 @@ class OneSpectrum:
     ----------
     q : (m,) centres of the bands, 1/nm, from waves twice as long as the longest measurement on.
     log_psd : (m,) ln C of the typical place, C in nm^4.
-    covariance : (m, m) of log_psd.
+    covariance : (m, m) of log_psd; REACH times its root is an end of the interval, also by few places.
     place_sd : standard deviation of ln C between places and instruments, common to all bands; 0 for one measurement.
     count : (m,) measurements behind each band; 0 in a gap between instruments and before the first.
     names : measurements that take part.
@@ -118,7 +118,7 @@ class OneSpectrum:
         rng = np.random.default_rng(0)  # the same draws whenever they are asked for
         logs = self._normal_draws(rng, count) if self.logs is None else self.logs[:count]
         if places:
-            logs = logs + self.place_sd * rng.standard_normal((count, 1))
+            logs = logs + self.place_sd * few_places(len(self.names)) * rng.standard_normal((count, 1))
         return np.exp(logs)
 
     def with_mean_square(self, mean_square: float, low: float, error: float) -> "OneSpectrum":
@@ -136,6 +136,13 @@ class OneSpectrum:
         covariance = (weight[:, None] * (logs - centre)).T @ (logs - centre)
         drawn = logs[rng.choice(CANDIDATES, size=DRAWS, p=weight)]
         return replace(self, log_psd=centre, covariance=covariance, logs=drawn)
+
+    def with_error(self, error: np.ndarray) -> "OneSpectrum":
+        """The same with a further error of ln C: `error` (m,) times one normal variable for all bands."""
+        logs = self.logs
+        if logs is not None:
+            logs = logs + np.random.default_rng(5).standard_normal((len(logs), 1)) * error
+        return replace(self, covariance=self.covariance + np.outer(error, error), logs=logs)
 
     def _normal_draws(self, rng: np.random.Generator, count: int) -> np.ndarray:
         values, vectors = np.linalg.eigh(self.covariance)
@@ -178,6 +185,11 @@ class OneSpectrum:
                 "unit": unit,
             }
         return result
+
+
+def few_places(count: int) -> float:
+    """How much further than a normal distribution one reaches whose scatter is estimated from `count` places."""
+    return student_reach(count - 1) / REACH if count > 1 else 1.0
 
 
 def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneSpectrum | None:
@@ -226,7 +238,7 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     result = OneSpectrum(
         centres,
         solution[:m],
-        covariance[:m, :m] + common_error**2,
+        covariance[:m, :m] + common_error**2 + variance / places * (few_places(places) ** 2 - 1),
         float(np.sqrt(variance)),
         np.sum([(bands >= entry[1][0]) & (bands <= entry[1][-1]) for entry in measured], axis=0),
         tuple(entry[0] for entry in measured),
@@ -260,6 +272,9 @@ def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     wanted = (numbers + 0.5) / BANDS_PER_DECADE * np.log(10)
     # a band that is only half covered is read at its centre along the measurement's own slope
     slope = np.gradient(level, centre)
+    # the mean over a band of a power law is above its middle
+    width = np.bincount(index, modes * np.log(q) ** 2) / worth - centre**2
+    level = level - 0.5 * slope**2 * np.maximum(width, 0.0)
     tip = np.bincount(index, modes * error[inside]) / worth
     return numbers, level + slope * (wanted - centre), 1 / worth + DISCREPANCY**2 + tip**2
 

@@ -1,4 +1,4 @@
-"""What an error of the tips' radii makes of the parameters: part of their intervals."""
+"""What an error of the tips' radii makes of the parameters and of the spectrum: part of their intervals."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -7,6 +7,7 @@ import numpy as np
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.confidence import REACH
+from mesoscale.topography.description.one_spectrum import OneSpectrum, merge
 from mesoscale.topography.description.parameters import Estimate, Topography, analyse
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, trusted_range
 
@@ -33,6 +34,21 @@ def with_radius_error(
         values = [entry[name].value for entry in other if name in entry]
         estimates[name] = _widened(name, estimate, values) if len(values) == 2 else estimate
     return replace(topography, estimates=estimates)
+
+
+def spectrum_with_radius_error(one: OneSpectrum | None, spectra: Sequence[TrustedSpectrum]) -> OneSpectrum | None:
+    """The same spectrum whose band holds an error of RADIUS_ERROR in every tip's radius, alike for all of them."""
+    if one is None or not any(item.tip_radius_nm > 0 for item in spectra):
+        return one
+    blunt, sharp = (merge([_with_radius(item, f) for item in spectra]) for f in (1 + RADIUS_ERROR, 1 - RADIUS_ERROR))
+    if blunt is None or sharp is None:
+        return one
+    log_q = np.log(one.q)
+    ends = [
+        np.interp(log_q, np.log(other.q), other.log_psd - np.interp(np.log(other.q), log_q, one.log_psd))
+        for other in (blunt, sharp)
+    ]
+    return one.with_error((ends[0] - ends[1]) / 2 / WIDTH_OF_UNIFORM)
 
 
 def _with_radius(item: TrustedSpectrum, factor: float) -> TrustedSpectrum:

@@ -84,7 +84,7 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     Returns
     -------
     use : (m,) bool, the shells.
-    psd : (m,) C with the tip's bias taken out, nm^4.
+    psd : (m,) C with the tip's bias and the window's blur taken out, nm^4.
     error : (m,) error of ln C that the correction leaves; 0 in the trusted range.
     """
     q, psd = item.spectrum.q, item.spectrum.psd
@@ -99,11 +99,11 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
         use &= q < q[blunt & use][0]
     error = np.where(q > item.high, BLUNT_ERROR * bias, 0.0)
     psd = psd * np.exp(bias)
-    if not item.spectrum.sharp and use.sum() > 3:  # the longest waves, that levelling and window change
+    if not item.spectrum.sharp and use.sum() > 3:  # the window lifts long waves, levelling takes the longest
         long = (q < item.low) & (q > 0.9 * item.spectrum.spacing)
         start = np.flatnonzero(use)[: max(4, int(np.sum(use & (q < 3 * item.low))))]
         slope = float(np.clip(-np.polyfit(np.log(q[start]), np.log(psd[start]), 1)[0], 0.0, 6.0))
-        psd = np.where(long, psd * np.exp(-blur(slope, q / item.spectrum.spacing)), psd)
+        psd = psd * np.exp(-blur(slope, q / item.spectrum.spacing))
         error = np.where(long, LEVELLED_ERROR, error)
         use |= long
     return use, psd, error

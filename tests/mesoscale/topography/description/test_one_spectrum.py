@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mesoscale.errors import InputError
+from mesoscale.topography.description.confidence import REACH
 from mesoscale.topography.description.one_spectrum import merge, overlaps, refuse_different_films
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
@@ -113,3 +114,25 @@ def test_the_mean_square_of_the_largest_map_bounds_waves_that_no_band_measures()
 def test_a_longer_line_knows_the_long_waves_of_a_map_better():
     small = replace(measured("map", 0.05, 1.0), rms_nm=1.6, side_nm=400.0)
     assert merge([measured("line", 1e-3, 0.1), small]).logs is None
+
+
+def test_bands_of_few_places_hold_the_truth_as_often_as_they_say():
+    """Three places of known scatter, 200 surfaces: the band of the typical place, and one more place, at 90 %."""
+    typical, another = [], []
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        one = merge([measured(str(k), 0.01, 0.5, np.exp(0.4 * rng.standard_normal()), rng) for k in range(3)])
+        middle = int(np.argmin(np.abs(one.q - 0.1)))
+        true = np.log(TRUTH.psd(one.q[middle]))
+        typical.append(abs(true - one.log_psd[middle]) < REACH * one.log_sd[middle])
+        drawn = np.log(one.draws(places=True)[:, middle])
+        low, high = np.quantile(drawn, [0.05, 0.95])
+        another.append(low < true + 0.4 * rng.standard_normal() < high)
+    assert 0.84 < np.mean(typical) < 0.96  # three standard deviations of 200 counts at 90 % are 0.064
+    assert 0.84 < np.mean(another) < 0.96
+
+
+def test_the_mean_over_a_band_of_a_steep_spectrum_is_not_taken_for_its_middle():
+    one = merge([measured(str(k), 0.05, 1.0, modes=1e6) for k in range(4)])
+    beyond = (one.q > 0.1) & (one.q < 0.8)
+    assert np.log(one.psd / TRUTH.psd(one.q))[beyond] == pytest.approx(0.0, abs=0.005)
