@@ -97,18 +97,6 @@ def test_a_link_of_results_that_leads_nowhere(workflow_in):
     assert "results: a link to /nowhere/at/all, which is not there" in line
 
 
-def test_results_of_another_scene_of_the_same_name(workflow_in):
-    scene = workflow_in.folder / "mine.yaml"
-    scene.write_text("")
-    results = workflow_in.folder / "results/mine"
-    results.mkdir(parents=True)
-    (results / ".scene").write_text("/elsewhere/mine.yaml\n")
-    done = workflow_in.run(str(scene))
-    assert done.returncode != 0
-    (line,) = errors(done)
-    assert f"results of /elsewhere/mine.yaml, not of {scene}; give one of them another name" in line
-
-
 def test_two_runs_of_one_scene(workflow_in):
     results = workflow_in.folder / "results/paper"
     results.mkdir(parents=True)
