@@ -13,6 +13,7 @@ from mesoscale.device.statistics import least_pull_in_V, never_closes
 from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.table import check_literature
+from mesoscale.settings.contact import base_modulus
 from workflow.scene import ROOT, Scene
 from workflow.terminal.cost import history_s
 from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
@@ -43,6 +44,12 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
     except InputError as error:
         yield str(error)
         return
+    bodies, (least, most) = scene.contact.bodies, spans.get("e_star", (0.0, math.inf))
+    if bodies and not least / 1.25 <= (bases := base_modulus(bodies)) <= 1.25 * most:
+        yield (
+            f"contact.bodies: their bases have E* = {bases:.4g} GPa, inputs.e_star reaches from {least:g} to {most:g}; "
+            "e_star is that of the bases: correct one of them"
+        )
     side, nyquist = scene.contact.length_nm, scene.contact.nyquist_per_nm
     low, high = spans.get("q0", (math.inf, 0.0))
     if low < 2 * math.pi / side:

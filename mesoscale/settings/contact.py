@@ -1,9 +1,10 @@
 """Settings of the contact model."""
 
 import math
+from collections.abc import Sequence
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from mesoscale.settings.base import Settings
 from mesoscale.settings.surface import SurfaceSettings
@@ -48,6 +49,25 @@ class ReadingSettings(Settings):
         default=False,
         description="whether sites in contact attract (with the gap D0) or are left out of eq. 1",
     )
+
+
+class MaterialSettings(Settings):
+    """An elastic layer of one of the two bodies, or its base."""
+
+    young_GPa: float = Field(gt=0, le=1e6, description="Young's modulus", json_schema_extra={"unit": "GPa"})
+    poisson: float = Field(ge=0, lt=0.5, description="Poisson's ratio")
+    thickness_nm: float | None = Field(
+        default=None, gt=0, le=1e6, description="thickness; null: the base", json_schema_extra={"unit": "nm"}
+    )
+
+
+Body = tuple[MaterialSettings, ...]
+"""A body from its surface down."""
+
+
+def base_modulus(bodies: Sequence[Body]) -> float:
+    """E* of the bases together, GPa: 1 / E* is the sum of (1 - nu^2) / E."""
+    return 1.0 / sum((1.0 - body[-1].poisson ** 2) / body[-1].young_GPa for body in bodies)
 
 
 class ContactSettings(Settings):
@@ -102,7 +122,24 @@ class ContactSettings(Settings):
         description="wavelength of Gregory's retardation of the attraction, about 100 nm for most solids; null: none",
         json_schema_extra={"unit": "nm"},
     )
+    bodies: tuple[Body, ...] = Field(
+        default=(),
+        max_length=2,
+        description="elastic layers of the two bodies, each from its surface down to its base; e_star is then that of "
+        "the bases together, and scales all layers; empty: e_star alone (mechanics: coupled)",
+    )
     reading: ReadingSettings = ReadingSettings()
+
+    @model_validator(mode="after")
+    def _bodies_have_one_base_each(self) -> "ContactSettings":
+        for body in self.bodies:
+            if not body or [material.thickness_nm is None for material in body] != [False] * (len(body) - 1) + [True]:
+                raise ValueError(
+                    "bodies: each is a list of layers with thickness_nm, and at its end a base without one"
+                )
+        if self.bodies and self.mechanics != "coupled":
+            raise ValueError("bodies: single asperities know one modulus; accepted with mechanics: coupled")
+        return self
 
     @property
     def nyquist_per_nm(self) -> float:

@@ -46,6 +46,18 @@ def test_a_switch_that_never_closes_or_is_never_open(device, words):
     assert [words in line for line in found] == [True] * bool(words)
 
 
+def test_bodies_whose_bases_have_another_modulus():
+    bodies = [[{"young_GPa": 250, "poisson": 0.25}]]
+    scene = Scene.model_validate(
+        {
+            "contact": {"mechanics": "coupled", "bodies": bodies},
+            "inputs": {"e_star": {"origin": "literature", "values": [90, 92], "source": "test"}},
+        }
+    )
+    (line,) = [line for line in mistakes(scene, {}) if line.startswith("contact.bodies")]
+    assert "E* = 266.7 GPa, inputs.e_star reaches from 90 to 92" in line
+
+
 def test_a_run_of_weeks_is_planned_with_its_time_and_refused(workflow_in):
     scene = workflow_in.folder / "mine.yaml"
     scene.write_text("{contact: {mechanics: coupled, pixels: 2048}, uncertainty: {direct_runs: 100000}}")

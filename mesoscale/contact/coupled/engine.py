@@ -12,7 +12,7 @@ import numpy as np
 
 from mesoscale.contact.attraction import attracting
 from mesoscale.contact.changes import undo
-from mesoscale.contact.coupled import clusters, dense, grid, half_space, validity
+from mesoscale.contact.coupled import clusters, dense, grid, half_space, layers, validity
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.pressed import Contact, State
 from mesoscale.inputs.contact import ContactInputs
@@ -41,7 +41,8 @@ class CoupledContact(Contact):
         super().__init__(surface, inputs, settings, numerics)
         self.e_star = float(inputs.e_star)
         self.hamaker, self.settings = float(inputs.hamaker), settings
-        self.table = half_space.influence(self.n)
+        self.bodies = settings.bodies
+        self.table = half_space.influence(self.n, self.length, self.bodies)
         self.scale = self.length / self.e_star
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
         # how far 1 nN raises the surface at most, anywhere: it does, because the mean of the displacement is 0
@@ -50,7 +51,7 @@ class CoupledContact(Contact):
         self.matrix = np.empty((0, 0))
         self.place = np.full(self.heights.size, -1, np.int32)
         self.mean = self.offset
-        self.roughness = validity.roughness(surface, self.length)
+        self.roughness = validity.roughness(surface, self.length, self.bodies)
         self._forget()
 
     def _forget(self) -> None:
@@ -131,10 +132,18 @@ class CoupledContact(Contact):
         return {
             "rms_slope": self.roughness.slope,
             "rms_curvature_per_nm": self.roughness.curvature,
-            "plasticity_index": self.e_star * self.roughness.slope / hardness if hardness > 0.0 else math.inf,
+            "plasticity_index": self.modulus * self.roughness.slope / hardness if hardness > 0.0 else math.inf,
             "yielded_share": yielded,
-            **validity.adhesion_numbers(self.hamaker, self.settings, self.e_star, self.roughness),
+            **validity.adhesion_numbers(self.hamaker, self.settings, self.modulus, self.roughness),
         }
+
+    @property
+    def modulus(self) -> float:
+        """E* (GPa) of waves as short as the contacts are, h''/h': theirs where the bodies have layers."""
+        if not self.bodies or self.roughness.slope == 0.0:
+            return self.e_star
+        q = self.roughness.curvature / self.roughness.slope
+        return self.e_star / float(layers.softness(self.bodies, q, q)(math.log(q)))
 
     @property
     def force(self) -> float:
@@ -145,7 +154,7 @@ class CoupledContact(Contact):
         """Pressure (GPa) and gap (nm; 0 in contact) of all sites at the current separation, shapes (N, N)."""
         pressure = np.zeros(self.heights.size)
         pressure[self.sites] = self.pressure
-        displacement = (self.grid or grid.Grid(self.n, self.length, self.e_star)).displacement(pressure)
+        displacement = (self.grid or grid.Grid(self.n, self.length, self.e_star, self.bodies)).displacement(pressure)
         gap = np.where(pressure > 0.0, 0.0, np.maximum(self.heights + self.separation + displacement, 0.0))
         return pressure.reshape(self.n, self.n), gap.reshape(self.n, self.n)
 
@@ -259,7 +268,7 @@ class CoupledContact(Contact):
 
     def _know_all(self) -> None:
         """Go over to the whole grid."""
-        self.grid = grid.Grid(self.n, self.length, self.e_star)
+        self.grid = grid.Grid(self.n, self.length, self.e_star, self.bodies)
         pressure, limit = np.zeros(self.heights.size), np.full(self.heights.size, self._fresh_limit)
         pressure[self.sites], limit[self.sites] = self.pressure, self.limit
         self.pressure, self.limit = pressure, limit

@@ -1,7 +1,8 @@
 """Pressures between bounds on a whole grid: active sets, with the half-space applied by FFT.
 
 The problem is that of `dense`. Here the linear system of each step is solved by conjugate gradients that are
-preconditioned with the stiffness of the free half-space, E* abs(q) / 2 (Vollebregt, doi:10.1007/s10957-013-0433-z).
+preconditioned with the stiffness of the free half-space, without layers E* abs(q) / 2 (Vollebregt,
+doi:10.1007/s10957-013-0433-z).
 """
 
 from collections.abc import Callable
@@ -11,6 +12,7 @@ from numba import njit
 from scipy import fft
 
 from mesoscale.contact.coupled import dense, half_space
+from mesoscale.settings.contact import Body
 
 NEWTON_STEPS = 60
 FACE_STEPS = 500
@@ -24,9 +26,9 @@ Apply = Callable[[np.ndarray], np.ndarray]
 class Grid:
     """A half-space of N x N sites, for pressures and displacements of shape (N^2,)."""
 
-    def __init__(self, pixels: int, length: float, e_star: float):
+    def __init__(self, pixels: int, length: float, e_star: float, bodies: tuple[Body, ...] = ()):
         self.shape = (pixels, pixels)
-        number = half_space.wave_numbers(pixels)
+        number = half_space.wave_numbers(pixels) / half_space.softness(pixels, length, bodies)
         number[0, 0] = 1.0  # a preconditioner must not swallow the mean
         self.stiffness = (number * (np.pi * e_star / length)).astype(np.float32)
         number[0, 0] = np.inf

@@ -1,14 +1,17 @@
 """The elastic half-space under a periodic cell: its Green's function, as a table and by FFT.
 
 A pressure of wave vector q bends the surface by 2 / (E* abs(q)) times itself (K. L. Johnson, Contact Mechanics, 1985,
-section 13.2). The mean is left out: it shifts the half-space as a whole, and the separation of the mean planes is
-what is prescribed.
+section 13.2), times the softness of its layers (`layers`). The mean is left out: it shifts the half-space as a whole,
+and the separation of the mean planes is what is prescribed.
 """
 
 from functools import lru_cache
 
 import numpy as np
 from scipy import fft
+
+from mesoscale.contact.coupled import layers
+from mesoscale.settings.contact import Body
 
 
 def wave_numbers(pixels: int) -> np.ndarray:
@@ -17,21 +20,28 @@ def wave_numbers(pixels: int) -> np.ndarray:
 
 
 @lru_cache(maxsize=4)
-def _compliance(pixels: int) -> np.ndarray:
-    """1 / abs(q) in units of L / 2 pi; 0 for the mean."""
+def softness(pixels: int, length: float, bodies: tuple[Body, ...]) -> np.ndarray:
+    """Compliance of all modes over that of the bases alone, shape (pixels, pixels // 2 + 1) or (); 1 for the mean."""
+    if not bodies:
+        return np.ones(())
     number = wave_numbers(pixels)
-    number[0, 0] = np.inf
-    return 1.0 / number
+    number[0, 0] = 1.0
+    q = number * (2.0 * np.pi / length)
+    shares = layers.softness(bodies, float(q.min()), float(q.max()))(np.log(q))
+    shares[0, 0] = 1.0
+    return shares
 
 
 @lru_cache(maxsize=4)
-def influence(pixels: int) -> np.ndarray:
+def influence(pixels: int, length: float, bodies: tuple[Body, ...]) -> np.ndarray:
     """Displacement (in L / E*) at sites 0 .. pixels/2 in x and y from a unit pressure on one site (in E*).
 
     Shape (pixels // 2 + 1, pixels // 2 + 1); the rest of the cell follows by its symmetry.
     """
     half = pixels // 2 + 1
-    table = np.asarray(fft.irfft2(_compliance(pixels), s=(pixels, pixels))) / np.pi
+    number = wave_numbers(pixels)
+    number[0, 0] = np.inf
+    table = np.asarray(fft.irfft2(softness(pixels, length, bodies) / number, s=(pixels, pixels))) / np.pi
     table = np.ascontiguousarray(table[:half, :half])
     table.flags.writeable = False
     return table

@@ -16,7 +16,7 @@ from scipy import fft
 
 from mesoscale.contact.coupled import half_space
 from mesoscale.settings import ContactSettings
-from mesoscale.settings.contact import RANGE_IN_D0, WORK_FACTOR
+from mesoscale.settings.contact import RANGE_IN_D0, WORK_FACTOR, Body
 
 KAPPA = 2.0  # area of an elastic contact over force / (E* h'), as Pastewka and Robbins take it
 
@@ -36,7 +36,7 @@ class Roughness(NamedTuple):
     flattening: float
 
 
-def roughness(heights: np.ndarray, length: float) -> Roughness:
+def roughness(heights: np.ndarray, length: float, bodies: tuple[Body, ...] = ()) -> Roughness:
     """Slope, curvature and the mean pressure of full contact of heights (N, N) in nm on a side of `length` nm."""
     pixels = len(heights)
     spectrum = np.asarray(fft.rfft2(heights))
@@ -45,7 +45,7 @@ def roughness(heights: np.ndarray, length: float) -> Roughness:
     power[:, 1 : (pixels + 1) // 2] *= 2.0  # the other half of the modes
     squared = (number * (2.0 * np.pi / length)) ** 2
     slope, curvature = (math.sqrt(float((power * factor).sum())) / pixels**2 for factor in (squared, squared**2))
-    spectrum *= number * (-np.pi / length)
+    spectrum *= number * (-np.pi / length) / half_space.softness(pixels, length, bodies)
     pressure = np.asarray(fft.irfft2(spectrum, s=heights.shape, overwrite_x=True))
     return Roughness(slope, curvature, max(-float(pressure.min()), 0.0))
 
