@@ -221,13 +221,6 @@ def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False)
         given.scene.encode()
     except UnicodeEncodeError:
         return _refuse(f"scene={given.scene}: the name is no Unicode; rename the file")
-    rules = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("workflow/rules/*.smk"))
-    names = [*TARGETS, *re.findall(r"^ *rule (\w+):", rules, re.MULTILINE)]
-    for target in given.target:
-        if target not in names and not set(target) & set("./"):  # a file is Snakemake's to judge
-            close = difflib.get_close_matches(target, names, n=1)
-            hint = f"; did you mean {close[0]}?" if close else ""
-            return _refuse(f"{target}: no such target{hint} (asperity targets lists them)")
     options = ["--dry-run", "--quiet", "rules"]
     if not dry:
         options = ["--resources", f"mem_mb={_memory_MB()}", "--quiet", "host", "reason"]

@@ -40,16 +40,6 @@ def test_every_stage_of_the_workflow_is_a_listed_target(capsys):
     assert all(len(line) <= 80 for line in capsys.readouterr().out.splitlines())
 
 
-def test_a_mistyped_target_is_one_line_with_the_nearest_name(capsys, monkeypatch):
-    started = []
-    monkeypatch.setattr("os.execv", lambda program, arguments: started.append(arguments))
-    assert main(["run", "paper", "lwa"]) == 1
-    assert capsys.readouterr().err == "ERROR lwa: no such target; did you mean law? (asperity targets lists them)\n"
-    assert not started
-    main(["run", "paper", "law", "--cores", "2", "judge_scans", "results/paper/law/nominal.csv"])
-    assert started[0][started[0].index("law") :][:3] == ["law", "judge_scans", "results/paper/law/nominal.csv"]
-
-
 def test_a_new_scene_has_the_mechanics_that_are_recommended(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     main(["new", "film.yaml"])

@@ -21,6 +21,18 @@ def test_an_unknown_scene(workflow_in):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("target", "meant"), [("lwa", "law"), ("results/paper/uq/outputs.cs", "results/paper/uq/outputs.csv")]
+)
+def test_a_mistyped_target_is_one_line_with_the_nearest_name(workflow_in, target, meant):
+    done = workflow_in.run("paper", target)
+    assert done.returncode != 0
+    assert done.stderr.splitlines()[-1] == (
+        f"ERROR {target}: no such target; did you mean {meant}? (asperity targets lists the stages)"
+    )
+    assert "Exception" not in done.stderr
+
+
 def test_contradictions_are_told_all_at_once(workflow_in):
     scene = workflow_in.folder / "mine.yaml"
     scene.write_text("{uncertainty: {direct_runs: 1}, history: {cycles: 100000, seeds: 1000}}")

@@ -22,8 +22,8 @@ class OneSecondEach:
     def seconds(self, rule, wildcards):
         return None if rule == "unheard_of" else 1.0
 
-    def learn(self, rule, took, planned):
-        self.learned.append((rule, planned))
+    def learn(self, rule, wildcards, took):
+        self.learned.append(rule)
 
 
 class Job(SimpleNamespace):
@@ -32,8 +32,8 @@ class Job(SimpleNamespace):
     __hash__ = object.__hash__
 
 
-def job(name):
-    return Job(rule=SimpleNamespace(name=name, norun=False), wildcards_dict={}, priority=0)
+def job(name, number=7):
+    return Job(rule=SimpleNamespace(name=name, norun=False), wildcards_dict={}, priority=0, jobid=number)
 
 
 def send(terminal, event, **about):
@@ -43,7 +43,7 @@ def send(terminal, event, **about):
 
 @pytest.mark.parametrize("dry", [True, False])
 def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry):
-    jobs = [job("fit_law"), job("fit_law"), job("unheard_of")]
+    jobs = [job("fit_law"), job("fit_law", 8), job("unheard_of", 9)]
     dag = SimpleNamespace(needrun_jobs=lambda: jobs, job_dependencies=lambda job: [])
     snakemake = SimpleNamespace(dryrun=dry, local_exec=True, cores=2, dag=dag)
     costs = OneSecondEach()
@@ -55,7 +55,30 @@ def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry):
     assert "3 jobs, about 1 s on 2 cores, and unheard_of, whose time nobody has measured" in said
     assert ("fit_law         2        2 s" in said) == dry
     assert ("1 of 3  fit the law (1 s), 1 s left" in said) == (not dry)
-    assert costs.learned == ([] if dry else [("fit_law", 1.0)])
+    assert costs.learned == ([] if dry else ["fit_law"])
+
+
+def test_the_time_left_follows_what_jobs_take(capsys, development_machine, monkeypatch, tmp_path):
+    # a machine of a tenth of the speed: after three jobs of eight seconds the rest is known to a third
+    clock, chunks = [0.0], [job("compute_direct_runs", number) for number in range(8)]
+    monkeypatch.setattr("workflow.terminal.progress.time.monotonic", lambda: clock[0])
+    dag = SimpleNamespace(needrun_jobs=lambda: chunks, job_dependencies=lambda job: [])
+    snakemake = SimpleNamespace(dryrun=False, local_exec=True, cores=1, dag=dag)
+    costs = Costs(load_scene("paper"), {}, tmp_path / "none.json")
+    takes = 10 * costs.seconds("compute_direct_runs", {})
+    terminal = Terminal(snakemake, costs, "nothing to do", 12)
+    wall_s = terminal._wall_s
+    send(terminal, "run_info")
+    for number in range(3):
+        send(terminal, "job_info", jobid=number, rule_name="compute_direct_runs", rule_msg="compute")
+        clock[0] += takes
+        send(terminal, "job_finished", job_id=number)
+    assert wall_s() == pytest.approx(5 * takes, rel=1 / 3)
+    send(terminal, "job_info", jobid=3, rule_name="compute_direct_runs", rule_msg="compute")
+    left = wall_s()
+    clock[0] += takes / 2  # a job at work is counted by what is left of it
+    assert wall_s() == pytest.approx(left - takes / 2)
+    assert capsys.readouterr().err.count(" left") == 3
 
 
 @pytest.mark.parametrize(("local", "hours", "refusal"), [(True, 12, ""), (True, 1e-4, "too long"), (False, 1e-4, "")])
@@ -114,12 +137,13 @@ def test_costs_grow_with_what_a_job_does(development_machine, tmp_path):
 def test_a_plan_learns_from_what_jobs_took(development_machine, tmp_path):
     paper, times = load_scene("paper"), tmp_path / ".snakemake/times.json"
     costs = Costs(paper, {}, times)
-    guess = costs.seconds("fit_law", {})
+    guess, at_first = costs.seconds("fit_law", {}), costs.seconds("solve_switch", {})
     for _ in range(round(1000 / guess)):  # a machine of a third of the speed, long enough to be believed
-        costs.learn("fit_law", 3 * guess, guess)
+        costs.learn("fit_law", {}, 3 * guess)
     later = Costs(paper, {}, times)
     assert later.seconds("fit_law", {}) == pytest.approx(3 * guess, rel=0.1)
-    assert later.seconds("solve_switch", {}) == costs.seconds("solve_switch", {})
+    # what has not run here is as slow as the rest
+    assert later.seconds("solve_switch", {}) == pytest.approx(3 * at_first, rel=0.2)
     times.write_text("{")  # a run was killed while it wrote
     assert Costs(paper, {}, times).seconds("fit_law", {}) == guess
 

@@ -7,9 +7,10 @@ _ASPERITY = (
     "Each asperity is pressed on its own. On opening this is too compliant; target model_form tells by how much.",
 )
 _COUPLED = (
-    "Attraction does not deform the contact, so pull-off of flattened tops is an upper bound.",
+    "Attraction does not deform the contact.",
     "Flowed volume is not kept: the rim that it would make carries no load.",
 )
+_CLAMPED = "With the clamped law the pull-off of flattened tops is an upper bound."
 
 
 def limits(results: Results) -> list[str]:
@@ -18,6 +19,7 @@ def limits(results: Results) -> list[str]:
     return [
         "The law of attraction is a choice, not a measurement: the first screen shows the release by both laws.",
         *(_COUPLED if results.coupled else _ASPERITY),
+        *([_CLAMPED] if results.coupled and results.contact.get("attraction") == "clamped" else []),
         f"The RMS slope is set by the shortest waves {shortest}.",
         "Only few asperities carry a square micrometre, so the law of one cell differs much between surfaces.",
         "No creep unless the scene asks for it (history); no liquid films, no charging, no sliding.",

@@ -21,7 +21,6 @@ from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, plan_rows
 from atomistic.hardness.glass import TIMESTEP_FS, total_ps
 from atomistic.materials import Material
 from mesoscale.settings import ContactSettings, HistorySettings
-from mesoscale.settings.contact import NOMINAL_LOADS_NN
 from mesoscale.settings.history import DWELL_STEPS
 from mesoscale.settings.pad import CELLS_PER_JOB, DRAWS_PER_JOB
 from mesoscale.uncertainty.chunks import CHUNK_RUNS, MOST_REPEATED, collocation_run_count
@@ -29,18 +28,20 @@ from workflow.scene import Scene
 
 TIMES = Path(".snakemake/asperity_seconds.json")
 """What jobs took and their first guess, seconds by rule; delete it to start again from the first guess."""
-TRUST_S = 30.0  # jobs of so many guessed seconds count as much as the first guess
+TRUST_S = 10.0  # jobs of so many guessed seconds count as much as the first guess
+KEPT_S = 30.0  # those of former runs count as at most so many, since this run may find the machine busier
 LONGEST_RUN_H = 12.0  # of a run on one machine, unless it is said to be meant: what a night finishes
 START_S = 0.8  # Snakemake's start of a job, and the packages
 ENGINE_S = 0.9  # more packages for a contact, and its loops from numba's cache
 GRID = 1024**2  # sites of the reference
 # of any cycle; of one on the reference grid, besides; the power of the sites with which that grows
 CYCLE_S = {"asperity": (0.005, 0.054, 1.0), "coupled": (0.01, 2.5, 2.2)}
+NOMINAL = {"asperity": 10, "coupled": 70}  # cycles: the largest load presses seven times as hard
 RUN_S = 0.004  # law of a run and its row
-CELL = {"asperity": 2.75, "coupled": 3.9}  # a pad's cell over a cycle: it opens from several depths
+CELL = {"asperity": 2.2, "coupled": 3.9}  # a pad's cell over a cycle: it opens from several depths
 PRESSED = {"asperity": 1.0, "coupled": 9.0}  # that which a switch presses over it
-DRAW = {"asperity": 0.9, "coupled": 0.45}  # a cell of a pad at other inputs: fewer steps, half of the depths
-PILOT = {"asperity": 0.45, "coupled": 0.15}  # a cell that is only closed, in coarse steps
+DRAW = {"asperity": 0.8, "coupled": 0.45}  # a cell of a pad at other inputs: fewer steps, half of the depths
+PILOT = {"asperity": 0.53, "coupled": 0.17}  # a cell that is only closed, in coarse steps
 TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
 
 
@@ -87,27 +88,33 @@ class Costs:
             bodies = (scene.hardness.material, scene.hardness.closing.counter_material)
             rows = plan_rows(scene.hardness, *(oxides[formula] for formula in bodies))
             self.atom_steps = {str(row["run"]): float(row["atom_steps"]) for row in rows[:-1]}
-        self._sums = defaultdict(lambda: [0.0, 0.0])  # seconds and their first guess, by rule; later runs count more
+        self._sums = defaultdict(lambda: [0.0, 0.0])  # seconds and their first guess, by rule
         with suppress(OSError, ValueError):  # no run yet, or one that was killed
-            self._sums |= {rule: [took / 2, guess / 2] for rule, (took, guess) in json.loads(times.read_text()).items()}
-        slowness = 1 / relative_speed()
-        self._factor = defaultdict(
-            lambda: slowness,
-            {rule: (took + TRUST_S * slowness) / (guess + TRUST_S) for rule, (took, guess) in self._sums.items()},
-        )
+            for rule, (took, guess) in json.loads(times.read_text()).items():
+                share = min(1.0, KEPT_S / guess)
+                self._sums[rule] = [share * took, share * guess]
+        self._slowness = 1 / relative_speed()
 
     def seconds(self, rule: str, wildcards: Mapping[str, str]) -> float | None:
-        """Seconds of one core of this machine; None for a rule without a first guess."""
-        guess = FIRST_GUESS.get(rule)
-        return None if guess is None else self._factor[rule] * (START_S + guess(self, wildcards))
+        """Seconds of one core of this machine, by all that jobs took so far; None for a rule without a first guess."""
+        if rule not in FIRST_GUESS:
+            return None
+        took, guessed = self._sums.get(rule, (0.0, 0.0))
+        every_took, every_guessed = np.sum([(0.0, 0.0), *self._sums.values()], axis=0).tolist()
+        # a rule that has not run here is as slow as the others were
+        general = (every_took + TRUST_S * self._slowness) / (every_guessed + TRUST_S)
+        return (took + TRUST_S * general) / (guessed + TRUST_S) * self._guess(rule, wildcards)
 
-    def learn(self, rule: str, took: float, planned: float) -> None:
-        """Keep for later runs what a job took beside what `seconds` said."""
+    def learn(self, rule: str, wildcards: Mapping[str, str], took: float) -> None:
+        """Keep what a job took, for the rest of this run and for later ones."""
         sums = self._sums[rule]
-        sums[0], sums[1] = sums[0] + took, sums[1] + planned / self._factor[rule]
+        sums[0], sums[1] = sums[0] + took, sums[1] + self._guess(rule, wildcards)
         with suppress(OSError):  # a full disk
             self._times.parent.mkdir(exist_ok=True)
             self._times.write_text(json.dumps(self._sums))
+
+    def _guess(self, rule: str, wildcards: Mapping[str, str]) -> float:
+        return START_S + FIRST_GUESS[rule](self, wildcards)
 
     def refusal(self, seconds: Mapping[str, float], wall_s: float, cores: int, hours: float) -> str:
         """Why a run on one machine is refused: the key behind most of its time; empty where it is not.
@@ -210,7 +217,7 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     "analyse_scans": lambda c, _: 4.0 + 4.8 * c.scene.topography.synthetic.pixels**2 / GRID,
     "judge_scans": lambda c, _: 3.0 + 3.0 * len(c.scene.topography.scans),
     "weigh_unseen_waves": lambda c, _: 24 * c.cycle_s,
-    "compute_nominal": lambda c, _: 0.5 + c.cycles_s(len(NOMINAL_LOADS_NN)),
+    "compute_nominal": lambda c, _: 0.5 + c.cycles_s(NOMINAL[c.mechanics]),
     "compute_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, _design_runs(c))),
     "compute_direct_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, c.scene.uncertainty.direct_runs)),
     "repeat_direct_runs": lambda c, _: c.cycles_s(min(MOST_REPEATED, c.scene.uncertainty.direct_runs)),
@@ -227,7 +234,7 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     "close_draws": lambda c, _: c.cells_s(
         min(DRAWS_PER_JOB, c.scene.pad.draws) * (c.scene.pad.draw_cells * DRAW[c.mechanics] + 2 * PILOT[c.mechanics])
     ),
-    "assemble_pad": lambda c, _: 8.0 if c.scene.pad.draws else 2.0,
+    "assemble_pad": lambda c, _: 14.0 if c.scene.pad.draws else 5.0,
     "measure_pad_accuracy": lambda c, _: 60.0 + c.cells_s(4),
     "open_pads": lambda c, job: _adhesion_s(c.scene, int(job["adhesion_case"])),
     "follow_history": lambda c, _: history_s(c.scene.history, c.scene.contact),

@@ -1,22 +1,38 @@
 """What a run says in the terminal: its plan, and a line for each finished job with the clock and the time left."""
 
+import difflib
 import logging
+import re
 import sys
 import textwrap
 import time
 from collections import Counter, defaultdict
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from shutil import disk_usage
 from typing import Any
 
 from snakemake.exceptions import WorkflowError
 
-from asperity.foreign_text import COLUMNS, wrapped
+from asperity.foreign_text import COLUMNS, shown, wrapped
 from workflow.job import last_line
 from workflow.terminal.cost import Costs, wall_seconds
 
 FULL_DISK = 100_000  # bytes left: less than a job and its log need
+LAST_PART = 0.1  # of the time of a job at work that takes longer than planned, still to come
+
+NO_SUCH_TARGET = re.compile(r"MissingRuleException:\nNo rule to produce (.*) \(if you use input functions")
+
+
+@dataclass(frozen=True)
+class Waiting:
+    """A job that has not finished; `needs` are the numbers of others."""
+
+    rule: str
+    wildcards: dict[str, str]
+    needs: list[int]
+    priority: int
 
 
 class Terminal(logging.Handler):
@@ -40,9 +56,8 @@ class Terminal(logging.Handler):
         self.refusal = ""
         self._planned = False
         self._jobs = self._done = 0
-        self._counts: Counter[str] = Counter()  # of the jobs that have not finished, by rule
-        self._seconds_left: defaultdict[str, float] = defaultdict(float)
-        self._running: dict[int, tuple[str, str, float]] = {}  # rule, message and start by number of the job
+        self._left: dict[int, Waiting] = {}  # jobs that have not finished, by number
+        self._running: dict[int, tuple[str, float]] = {}  # message and start by number of the job
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print what a message of Snakemake means for the user."""
@@ -52,33 +67,48 @@ class Terminal(logging.Handler):
             self._plan()
         elif event == "job_info" and not self._workflow.dryrun:
             message = about["rule_msg"] or about["rule_name"]
-            self._running[about["jobid"]] = about["rule_name"], message, time.monotonic()
+            self._running[about["jobid"]] = message, time.monotonic()
         elif event == "job_finished":
             self._finish(about["job_id"])
         elif event == "job_error":
             _say_if_silent(about)
         elif event is None and record.getMessage().startswith("Nothing to be done"):
             _say(self._nothing_to_do)
+        elif mistyped := NO_SUCH_TARGET.match(record.getMessage()):
+            self._refuse_target(mistyped[1])
+
+    def _refuse_target(self, target: str) -> None:
+        rules = self._workflow.rules
+        names = [rule.name for rule in rules] + [str(path) for rule in rules for path in rule.output]
+        close = difflib.get_close_matches(target, names, n=1)
+        hint = f"; did you mean {close[0]}?" if close else ""
+        _say(f"ERROR {shown(target)}: no such target{hint} (asperity targets lists the stages)")
 
     def _plan(self) -> None:
-        jobs = self._waiting()
-        rules = [job.rule.name for job in jobs]
-        self._counts = Counter(rules)
-        costs = [(job.rule.name, self._costs.seconds(job.rule.name, dict(job.wildcards_dict))) for job in jobs]
-        unknown = sorted({rule for rule, cost in costs if cost is None})
-        seconds = [cost or 0.0 for _, cost in costs]
-        for rule, cost in zip(rules, seconds, strict=True):
-            self._seconds_left[rule] += cost
+        jobs = [job for job in self._workflow.dag.needrun_jobs() if not job.rule.norun]
+        needed = self._workflow.dag.job_dependencies
+        self._left = {
+            job.jobid: Waiting(
+                job.rule.name, dict(job.wildcards_dict), [other.jobid for other in needed(job)], job.priority
+            )
+            for job in jobs
+        }
         self._jobs = len(jobs)
-        wall_s = wall_seconds(seconds, self._needs(jobs), self._cores, [job.priority for job in jobs])
+        costs = {number: self._seconds(job) for number, job in self._left.items()}
+        unknown = sorted({job.rule for number, job in self._left.items() if costs[number] is None})
+        by_rule: defaultdict[str, float] = defaultdict(float)
+        for number, job in self._left.items():
+            by_rule[job.rule] += costs[number] or 0.0
+        wall_s = self._wall_s()
         if self._workflow.local_exec:
-            self.refusal = self._costs.refusal(self._seconds_left, wall_s, self._cores, self._hours)
+            self.refusal = self._costs.refusal(by_rule, wall_s, self._cores, self._hours)
         wall = duration(wall_s) if jobs else "no time"
         besides = f", and {', '.join(unknown)}, whose time nobody has measured" if unknown else ""
         if self._workflow.dryrun:
+            counts = Counter(job.rule for job in self._left.values())
             rows = [
                 ("job", "count", "one core"),
-                *((rule, str(count), self._time(rule)) for rule, count in self._counts.items()),
+                *((rule, str(counts[rule]), duration(cost) if cost else "?") for rule, cost in by_rule.items()),
             ]
             width = max(len(row[0]) for row in rows)
             _say("\n".join(f"{rule:<{width}}  {count:>5}  {cost:>9}" for rule, count, cost in rows) + "\n")
@@ -93,30 +123,32 @@ class Terminal(logging.Handler):
         except WorkflowError:  # a cluster's jobs have no common number
             return self._workflow.nodes
 
-    def _waiting(self) -> list[Any]:
-        return [job for job in self._workflow.dag.needrun_jobs() if not job.rule.norun]
+    def _seconds(self, job: "Waiting") -> float | None:
+        return self._costs.seconds(job.rule, job.wildcards)
 
-    def _needs(self, jobs: list[Any]) -> list[list[int]]:
-        """Which of the jobs each waits for, by their numbers."""
-        numbers = {job: number for number, job in enumerate(jobs)}
-        needed = self._workflow.dag.job_dependencies
-        return [[numbers[other] for other in needed(job) if other in numbers] for job in jobs]
-
-    def _time(self, rule: str) -> str:
-        return duration(self._seconds_left[rule]) if self._seconds_left[rule] else "?"
+    def _wall_s(self) -> float:
+        """Time to the end, side by side, by what the jobs took so far; jobs at work have their last part left."""
+        numbers = {number: place for place, number in enumerate(self._left)}
+        seconds = [self._seconds(job) or 0.0 for job in self._left.values()]
+        for number, (_, started) in self._running.items():
+            if number in numbers:
+                planned, spent = seconds[numbers[number]], time.monotonic() - started
+                seconds[numbers[number]] = max(planned - spent, LAST_PART * spent)
+        needs = [[numbers[other] for other in job.needs if other in numbers] for job in self._left.values()]
+        # jobs at work have a core already
+        priorities = [10 * (number in self._running) + job.priority for number, job in self._left.items()]
+        return wall_seconds(seconds, needs, self._cores, priorities)
 
     def _finish(self, number: int) -> None:
-        rule, message, started = self._running.pop(number, ("", "", 0.0))
-        if rule not in self._counts:  # a target that only gathers
+        message, started = self._running.pop(number, ("", 0.0))
+        if not message or number not in self._left:  # a dry run, or a target that only gathers
             return
+        job = self._left.pop(number)
         self._done += 1
-        took, planned = time.monotonic() - started, self._seconds_left[rule] / self._counts[rule]
-        self._seconds_left[rule] -= planned
-        if self._workflow.local_exec and planned:  # on a cluster jobs wait
-            self._costs.learn(rule, took, planned)
-        self._counts[rule] -= 1
-        left = sum(self._seconds_left.values()) / self._cores
-        rest = f", {duration(left)} left" if self._done < self._jobs else ""
+        took = time.monotonic() - started
+        if self._workflow.local_exec and self._seconds(job) is not None:  # on a cluster jobs wait
+            self._costs.learn(job.rule, job.wildcards, took)
+        rest = f", {duration(self._wall_s())} left" if self._left else ""
         start = f"{time.strftime('%H:%M')}  {self._done:>{len(str(self._jobs))}} of {self._jobs}  "
         end = f" ({duration(took)}){rest}"
         _say(start + textwrap.shorten(message, COLUMNS - len(start) - len(end), placeholder=" …") + end)
@@ -153,7 +185,8 @@ def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: st
 
     def is_needed(record: logging.LogRecord) -> bool:
         in_detail = workflow.dryrun and getattr(record, "event", None) == "job_info"  # --dry-run without --quiet
-        return record.levelno > logging.INFO or in_detail or workflow.output_settings.verbose
+        in_own_words = NO_SUCH_TARGET.match(record.getMessage())
+        return (record.levelno > logging.INFO and not in_own_words) or in_detail or workflow.output_settings.verbose
 
     for handler in logger.handlers:
         handler.addFilter(is_needed)
