@@ -1,6 +1,7 @@
 """What a run says in the terminal: its plan, and a line for each finished job with the clock and the time left."""
 
 import difflib
+import json
 import logging
 import re
 import sys
@@ -44,14 +45,16 @@ class Terminal(logging.Handler):
     costs : of the scene.
     nothing_to_do : what to say when every result is there.
     hours : the longest run on one machine.
+    plan : file to write with the times of the plan; empty: none.
 
     Attributes
     ----------
     refusal : why the planned run is longer than that; empty where it is not, or a cluster takes its jobs.
     """
 
-    def __init__(self, workflow: Any, costs: Costs, nothing_to_do: str, hours: float) -> None:
+    def __init__(self, workflow: Any, costs: Costs, nothing_to_do: str, hours: float, plan: str = "") -> None:
         super().__init__()
+        self._plan_file = plan
         self._workflow, self._costs, self._nothing_to_do, self._hours = workflow, costs, nothing_to_do, hours
         self.refusal = ""
         self._planned = False
@@ -102,6 +105,9 @@ class Terminal(logging.Handler):
         wall_s = self._wall_s()
         if self._workflow.local_exec:
             self.refusal = self._costs.refusal(by_rule, wall_s, self._cores, self._hours)
+        if self._plan_file:
+            plan = {"seconds": by_rule, "wall_s": wall_s, "cores": self._cores}
+            Path(self._plan_file).write_text(json.dumps(plan), encoding="utf-8")
         wall = duration(wall_s) if jobs else "no time"
         besides = f", and {', '.join(unknown)}, whose time nobody has measured" if unknown else ""
         if self._workflow.dryrun:
@@ -180,7 +186,7 @@ def duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 90 * 60 else f"{seconds / 3600:.1f} h"
 
 
-def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: str, hours: float) -> Terminal:
+def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: str, hours: float, plan: str) -> Terminal:
     """Let `Terminal` tell what goes on instead of Snakemake, whose warnings and errors stay."""
 
     def is_needed(record: logging.LogRecord) -> bool:
@@ -190,7 +196,7 @@ def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: st
 
     for handler in logger.handlers:
         handler.addFilter(is_needed)
-    terminal = Terminal(workflow, costs, nothing_to_do, hours)
+    terminal = Terminal(workflow, costs, nothing_to_do, hours, plan)
     logger.addHandler(terminal)
     return terminal
 

@@ -1,0 +1,106 @@
+"""Does the error that a scene's counts are said to leave in the release agree with repeated runs?
+
+A finished scene gives the inputs. Each repeat has other surfaces, other draws and so another pad. The predicted error
+is that of `workflow.effort` from the contributions of the scene as shipped; the measured one is the standard deviation
+of the median release over the repeats. The switches behind the median are at the same 64 points in all repeats, so
+their number is not tested. Atomistic counts are not repeated: their runs take an hour each.
+"""
+
+import argparse
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+import numpy as np
+
+from mesoscale.device import release
+from mesoscale.device.electrode import presser
+from mesoscale.device.pressing import DEVIATIONS, pressing, pressure_to_compute
+from mesoscale.errors import InputError
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.table import from_rows
+from mesoscale.pad import draws as pad_draws
+from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
+from mesoscale.pad.curves import PadCells, assemble
+from mesoscale.pad.memory import flats_of
+from mesoscale.pad.response import SampledPad
+from mesoscale.tables import load_table
+from workflow.effort import KNOWN
+from workflow.results import load_json
+from workflow.scene import load_scene
+
+COUNTS = ((16, 16), (48, 16), (128, 24))
+"""Cells and draws of the three budgets."""
+APART = 10_000_000
+"""Between the surfaces of two repeats."""
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Which scene, and how often."""
+    parser.add_argument("--scene", default="paper")
+    parser.add_argument("--repeats", type=int, default=5)
+
+
+def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """The median release of each repeat at each budget."""
+    scene = load_scene(given.scene)
+    table = from_rows(load_table(Path("results") / scene.name / "pad" / "inputs.csv"))
+    inputs, contact = contact_of(table.medians(), scene.contact)
+    flats, area = flats_of(inputs, contact), contact.length_nm**2
+    device = pressing(scene.device)
+    grid = plan_grid(inputs, contact, scene.pad.grid, pressure_to_compute(device), pressed_GPa=presser(device))
+    device = pressing(scene.device, DEVIATIONS)
+    for repeat in range(1, given.repeats + 1):
+        seeds = range(FIRST_SEED + APART * repeat, FIRST_SEED + APART * repeat + max(COUNTS)[0])
+        closed = list(close_cells(inputs, contact, grid, seeds))
+        for cells, draws in COUNTS:
+            with (
+                mock.patch.object(pad_draws, "FIRST_SEED", FIRST_SEED + repeat),
+                mock.patch.object(pad_draws, "FIRST_DRAW_SEED", pad_draws.FIRST_DRAW_SEED + APART * repeat),
+            ):
+                planned = pad_draws.plan_draws(table, scene.contact, draws, scene.pad.draw_cells)
+            laws = pad_draws.close_draws(planned, scene.contact, pressure_to_compute(device), presser(device))
+            pads = [
+                SampledPad(draw.values, draw.gap_cutoff_nm, scene.pad.draw_cells, law)
+                for draw, law in zip(planned, laws, strict=True)
+            ]
+            pad = assemble(grid, closed[:cells], area)
+            yield {
+                "scene": scene.name,
+                "repeat": repeat,
+                "cells": cells,
+                "draws": draws,
+                "release_V": median_release_V(pad, pads, table, flats, scene.device, contact.gap_cutoff_nm),
+            }
+
+
+def median_release_V(
+    cells: PadCells, pads: list[SampledPad], table: Any, flats: Any, device: Any, cutoff_nm: float
+) -> float:
+    """Median over the points of the answer; those that cannot be solved are left out."""
+    model = release._model(cells, pads, table, flats, cutoff_nm)
+    released = []
+    for point in release.plan_points(table, device, *release.cutoff_range(cutoff_nm, pads))[3]:
+        try:
+            released.append(release._solve(point, model)["release_V"])
+        except InputError:
+            continue
+    return float(np.median(released))
+
+
+def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """Measured and predicted error (V) at each budget."""
+    found = {}
+    known = load_json(KNOWN)["scenes"]
+    for scene, cells, draws in sorted({(row["scene"], int(row["cells"]), int(row["draws"])) for row in table}):
+        values = [
+            float(row["release_V"])
+            for row in table
+            if (row["scene"], int(row["cells"]), int(row["draws"])) == (scene, cells, draws)
+        ]
+        variance = known[scene]["variance_V2"]
+        predicted = np.sqrt(variance["pad.cells"] / cells + variance["pad.draws"] / draws)
+        found[f"{scene}_{cells}_{draws}"] = f"{np.std(values, ddof=1):.2g} V"
+        found[f"{scene}_{cells}_{draws}_predicted"] = f"{predicted:.2g} V"
+    return found
