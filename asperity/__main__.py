@@ -32,6 +32,7 @@ TARGETS = {
     "uq": "what the uncertain inputs do to the law",
     "sensitivity": "which input causes the spread",
     "device": "switch on single cells; tables and circuit models of the law",
+    "failure": "how often the switch fails, down to one in a million",
     "adhesion": "energy and pull-off of pads",
     "calibrate": "inputs narrowed by your measurements of contacts",
     "history": "cycle after cycle, with creep",

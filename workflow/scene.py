@@ -23,6 +23,7 @@ from mesoscale.settings import (
     AdhesionSettings,
     ContactSettings,
     DeviceSettings,
+    FailureSettings,
     HistorySettings,
     InputsSettings,
     LawSettings,
@@ -83,6 +84,7 @@ class Scene(Settings):
     adhesion: AdhesionSettings = AdhesionSettings()
     uncertainty: UncertaintySettings = UncertaintySettings()
     device: DeviceSettings = DeviceSettings()
+    failure: FailureSettings = FailureSettings()
     history: HistorySettings = HistorySettings()
     measurements: MeasurementsSettings = MeasurementsSettings()
     report: ReportSettings = ReportSettings()

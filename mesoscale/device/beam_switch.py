@@ -5,6 +5,7 @@ The landed area is a result. The way down is followed by the separation of mid-s
 the beam creeps to the balance at the hold voltage, and then the voltage is lowered until no place is in contact.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,7 @@ from mesoscale.device.beam_kernels import BEYOND, GPA, NM, SETTLED, UNSETTLED, a
 from mesoscale.device.switch import VACUUM_PERMITTIVITY
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.local import LocalPad
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.memory import PadLaw, attracting
 from mesoscale.settings import DeviceSettings
 
 Array = NDArray[np.float64]
@@ -86,6 +87,27 @@ def solve_beam(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) 
         float(pressure.max()) * 1e3,
         capacitance * 1e15,
     )
+
+
+def closed_beam(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> Callable[[float, float], bool]:
+    """Whether the beam is still closed at a voltage with so many times the attraction, as a function of both.
+
+    The beam is closed with its hold voltage, at least with that of its pull-in.
+
+    Raises
+    ------
+    InputError : see `solve_beam`; the function raises NotComputed, too.
+    """
+    first = _Moving(beam_of(settings, elements), LocalPad(law), settings.dielectric_nm / settings.permittivity)
+    hold = max(first.pull_in_V(), settings.hold_voltage_V or 0.0)
+    bare = LocalPad(attracting(law, 0.0))
+
+    def closed(voltage: float, times: float) -> bool:
+        moving = _Moving(first.beam, first.pad.attracting(times, bare), first.dielectric_nm)
+        moving.nodal = first.nodal.copy()
+        return moving.creep(hold) and moving.creep(voltage)
+
+    return closed
 
 
 def press_GPa(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> float:

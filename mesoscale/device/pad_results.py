@@ -1,6 +1,6 @@
 """Content of device/pad_switch.json at central inputs: the switch on the mean pad, and what the cells leave open."""
 
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from mesoscale.device.statistics import describe, never_closes, probability
 from mesoscale.device.switch import NM, Switch, switch_from_settings
 from mesoscale.errors import InputError
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import Flats, PadLaw, law_of
+from mesoscale.pad.memory import Flats, PadLaw, attracting, law_of
 from mesoscale.settings import DeviceSettings
 
 RESAMPLES = 200
@@ -77,13 +77,7 @@ def switch_on_pad(cells: PadCells, flats: Flats, settings: DeviceSettings, cell_
 
 def _release_V(settings: DeviceSettings, law: PadLaw, times: float) -> float | None:
     """Release at `times` the attraction; None where the held state was not computed."""
-    scale = np.array([[1.0], [times]])
-    scaled = replace(
-        law,
-        closing=scale * law.closing,
-        opening=scale * law.opening,
-        flats=replace(law.flats, hamaker=times * law.flats.hamaker),
-    )
+    scaled = attracting(law, times)
     try:
         if settings.spring_N_per_m is None:
             return solve_beam(settings, scaled).release_V

@@ -19,8 +19,9 @@ from mesoscale.device.statistics import describe, probability
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.carried import CarriedPad, Factors, factors_of
+from mesoscale.pad.compact import CompactPad
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import Flats, law_of
+from mesoscale.pad.memory import Flats, PadLaw, law_of
 from mesoscale.pad.response import PadResponse, SampledPad, fit_response, law_of_compact
 from mesoscale.settings import DeviceSettings
 
@@ -56,23 +57,12 @@ def plan_points(
     table: InputTable, settings: DeviceSettings, low_nm: float, high_nm: float, count: int = POINTS
 ) -> tuple[list[str], list[str], Array, list[Point]]:
     """Names and causes of what varies, its probabilities at the points, shape (points, k), and the points."""
-    from scipy.special import ndtri
     from scipy.stats import qmc  # slow to import
 
     inputs = len(table.rows)
     units = qmc.LatinHypercube(inputs + 3, rng=0).random(count)
-    values = table.transform(units[:, :inputs])
-    cutoffs = low_nm + (high_nm - low_nm) * units[:, inputs]
-    bows = settings.bow_nm + settings.bow_deviation_nm * ndtri(units[:, inputs + 1])
-    tilts = np.abs(settings.tilt_nm + settings.tilt_deviation_nm * ndtri(units[:, inputs + 2]))
-    points = [
-        Point(
-            dict(zip(table.names, row.tolist(), strict=True)),
-            float(cutoff),
-            settings.model_copy(update={"bow_nm": float(bow), "tilt_nm": float(tilt)}),
-        )
-        for row, cutoff, bow, tilt in zip(values, cutoffs, bows, tilts, strict=True)
-    ]
+    values = values_at(units, table, settings, low_nm, high_nm)
+    points = [point_of(row, table.names, settings) for row in values]
     bends = settings.spring_N_per_m is None
     columns = [
         *((k, name, "inputs") for k, name in enumerate(table.names) if np.ptp(values[:, k]) > 0),
@@ -82,6 +72,28 @@ def plan_points(
     ]
     chosen = [k for k, _, _ in columns]
     return [name for _, name, _ in columns], [cause for _, _, cause in columns], units[:, chosen], points
+
+
+def values_at(units: Array, table: InputTable, settings: DeviceSettings, low_nm: float, high_nm: float) -> Array:
+    """Inputs, D0, bow and tilt (nm) at probabilities; both of shape (m, inputs + 3)."""
+    from scipy.special import ndtri
+
+    inputs = len(table.rows)
+    return np.column_stack(
+        [
+            table.transform(units[:, :inputs]),
+            low_nm + (high_nm - low_nm) * units[:, inputs],
+            settings.bow_nm + settings.bow_deviation_nm * ndtri(units[:, inputs + 1]),
+            np.abs(settings.tilt_nm + settings.tilt_deviation_nm * ndtri(units[:, inputs + 2])),
+        ]
+    )
+
+
+def point_of(row: Array, names: Sequence[str], settings: DeviceSettings) -> Point:
+    """The switch of a row of `values_at`."""
+    *values, cutoff_nm, bow_nm, tilt_nm = row.tolist()
+    shape = {"bow_nm": bow_nm, "tilt_nm": tilt_nm}
+    return Point(dict(zip(names, values, strict=True)), cutoff_nm, settings.model_copy(update=shape))
 
 
 def cutoff_range(gap_cutoff_nm: float, draws: Sequence[SampledPad]) -> tuple[float, float]:
@@ -109,7 +121,7 @@ def released_on_pad(
     ------
     InputError : too few draws, or half of the points cannot be solved.
     """
-    model = _model(cells, draws, table, flats, cutoffs_nm[0])
+    model = model_of(cells, draws, table, flats, cutoffs_nm[0])
     solved, reason = [], ""
     for point in plan_points(table, settings, *cutoffs_nm, count)[3]:
         try:
@@ -145,7 +157,7 @@ def answer(
     InputError : too few draws, or the switch cannot be solved at central inputs.
     """
     middle = table.medians()
-    model = _model(cells, draws, table, flats, cutoffs_nm[0])
+    model = model_of(cells, draws, table, flats, cutoffs_nm[0])
     by_curves = solve_deepened(settings, law_of(cells, flats))
     at_curves = Point(middle, cutoffs_nm[0], settings)
     middle_nm = float(np.mean(cutoffs_nm))
@@ -242,7 +254,7 @@ def _probability(stuck: int, solved: int, refused: int) -> dict[str, float | int
     return {**probability(stuck, solved), "low": least["low"], "high": most["high"]}
 
 
-def _model(
+def model_of(
     cells: PadCells, draws: Sequence[SampledPad], table: InputTable, flats: Flats, gap_cutoff_nm: float
 ) -> Model:
     """The closed form through the central pad and the draws, and the factors of the central curves on it."""
@@ -253,13 +265,32 @@ def _model(
 
 def _solve(point: Point, model: Model) -> dict[str, float]:
     """The switch of a point, on the curves carried there."""
+    return solve_deepened(point.device, pad_at(point, model))
+
+
+def pad_at(point: Point, model: Model) -> PadLaw:
+    """The curves carried to a point."""
+    form, s = _form_at(point, model)
+    return law_of_compact(form, pressure_to_compute(point.device)(s), s)
+
+
+def carried_share(point: Point, model: Model) -> float:
+    """Largest pressure that the closed form carries at a point, over that to which pads are computed.
+
+    Below 1 the switch is beyond the model: its pad would be closed more than any that was computed.
+    """
+    form, s = _form_at(point, model)
+    return float((np.add(*form.closing_GPa(s)) / pressure_to_compute(point.device)(s)).max())
+
+
+def _form_at(point: Point, model: Model) -> tuple[CompactPad | CarriedPad, Array]:
+    """The closed form at a point with the factors of the central curves, and separations for it (nm)."""
     response, factors = model
     compact = response.at(point.values, point.gap_cutoff_nm)
     step = 0.01 * point.values["rms"]
     near = np.arange(step, 8.0 * point.values["rms"], step)
     s = np.concatenate([near, np.geomspace(near[-1], max(FAR_NM, 2.0 * near[-1]), 24)[1:]])
-    wanted = pressure_to_compute(point.device)(s)
-    return solve_deepened(point.device, law_of_compact(CarriedPad(compact, factors) if factors else compact, wanted, s))
+    return CarriedPad(compact, factors) if factors else compact, s
 
 
 def first_order(units: Array, values: Array) -> tuple[Array, float]:

@@ -1,10 +1,12 @@
 """The pressure of a pad at many places at once, each with a deepest closing of its own."""
 
+from copy import copy
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.memory import PadLaw, attracting
 
 Array = NDArray[np.float64]
 
@@ -33,6 +35,14 @@ class LocalPad:
         """What `pad_pressure` takes of the pad."""
         flats = self.law.flats
         return self.at_nm, self.closing, self.depth_nm, self.rise_nm, self.opening, flats.hamaker, flats.offset_nm
+
+    def attracting(self, times: float, bare: "LocalPad") -> "LocalPad":
+        """The pad with `times` its attraction, from that without any: pressures are linear in it."""
+        pad = copy(self)
+        pad.law = attracting(self.law, times)
+        pad.closing = bare.closing + times * (self.closing - bare.closing)
+        pad.opening = bare.opening + times * (self.opening - bare.opening)
+        return pad
 
     def __call__(self, separation_nm: Array, deepest_nm: Array) -> tuple[Array, Array]:
         """Pressure and slope, of the shape (e, p) of both; continued in a line below the computed closing."""

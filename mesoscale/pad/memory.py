@@ -1,6 +1,6 @@
 """The pressure of a pad as a function of separation and of the deepest closing."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -142,6 +142,13 @@ def deepened(law: PadLaw, times: float = 2.0) -> PadLaw:
     opening[0] = rows_at(risen, s[start:], law.opening[0][:, start:]) * growth[:, :1]
     closing = np.hstack([ends[:, None] * growth, law.closing])
     return PadLaw(at, closing, np.concatenate([at[:1], law.depth_nm]), opening, law.flats)
+
+
+def attracting(law: PadLaw, times: float) -> PadLaw:
+    """The pad with `times` its attraction."""
+    scale = np.array([[1.0], [times]])
+    flats = replace(law.flats, hamaker=times * law.flats.hamaker)
+    return replace(law, closing=scale * law.closing, opening=scale * law.opening, flats=flats)
 
 
 def rows_at(wanted: Array | float, known: Array, rows: Array) -> Array:

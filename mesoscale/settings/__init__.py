@@ -3,6 +3,7 @@
 from mesoscale.settings.base import Settings
 from mesoscale.settings.contact import ContactSettings, ReadingSettings
 from mesoscale.settings.device import DeviceSettings
+from mesoscale.settings.failure import FailureSettings
 from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import TABLE_1, Correlation, InputRow, InputsSettings
 from mesoscale.settings.law import LawSettings
@@ -17,6 +18,7 @@ __all__ = [
     "ContactSettings",
     "Correlation",
     "DeviceSettings",
+    "FailureSettings",
     "HistorySettings",
     "InputRow",
     "InputsSettings",

@@ -39,6 +39,7 @@ def write_all(root: Path) -> list[Path]:
     _topography(root)
     _history(root)
     _adhesion(root)
+    _failure(root)
     _model_form(root)
     _calibration(root)
     _studies(root)
@@ -478,3 +479,20 @@ def _studies(root: Path) -> None:
     _write(root / "accuracy/contact.csv", rows)
     cases = [{"case": case, "passed": passed} for case, passed in (("flat", True), ("spikes", False))]
     _write(root / "stability/contact.csv", cases)
+
+
+def _failure(root: Path) -> None:
+    failing = {"probability": 3e-5, "low": 2e-5, "high": 5e-5, "variation": 0.2, "by_response": 4e-5, "runs": 128}
+    rows = [
+        {"hold_V": volts, "attraction": times, "failing": 1e-6 * times * volts, "beyond": 1e-8 * volts}
+        for volts in (60.0, 80.0, 100.0)
+        for times in (1 / 3, 1.0, 3.0)
+    ]
+    laws = [
+        {"attraction": times, "failing": failing, "by_cells": [1e-5, 1e-4], "largest_hold_V": largest, "there": None}
+        for times, largest in ((1 / 3, 100.0), (1.0, 71.0), (3.0, None))
+    ]
+    rate = {"release_V": 0.0, "allowed": 1e-6, "hold_V": 70.0, "beyond": 2e-6, "laws": laws, "switches": 160}
+    control = [{"name": "rms", "failing_if_known": 1e-7}, {"name": "hurst", "failing_if_known": 3e-5}]
+    write_json(root / "device/failure.json", rate | {"control_attraction": 1.0, "control": control}, PROVENANCE)
+    _write(root / "device/failure.csv", rows)

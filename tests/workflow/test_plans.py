@@ -55,6 +55,12 @@ def test_scene_paper_runs_no_atomistic_and_no_afm_job(plan):
     assert plan("paper") >= MESOSCALE | REPORT
 
 
+def test_the_failure_rate_is_found_where_a_scene_asks_for_it(plan):
+    assert "find_failure_rate" not in plan("paper") | plan("ci")
+    assert {"find_failure_rate", "close_cells", "close_draws"} <= plan("paper", "failure")
+    assert "assemble_pad" not in plan("paper", "failure")
+
+
 def test_adhesion_is_computed_where_a_scene_asks_for_it(plan):
     assert "open_pads" not in plan("paper")
     wanted = {"collect_inputs", "collect_pad_inputs", "open_pads", "summarise_adhesion"}

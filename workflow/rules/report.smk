@@ -28,6 +28,8 @@ def report_inputs():
     if needed("topography"):
         files += ["topography/spectra.h5", "topography/parameters.json"]
         files += [str(Path(path).relative_to(RESULTS)) for path in JUDGED]
+    if SCENE.failure.probability is not None:
+        files += ["device/failure.json", "device/failure.csv"]
     if SCENE.history.cycles > 0:
         files += [f"history/{name}" for name in ("cycles.csv", "dwell.csv", "curves.h5")]
     if SCENE.measurements.tables:

@@ -128,6 +128,16 @@ TABLES = (
         ),
     ),
     Table(
+        ("device/failure.csv",),
+        "One hold voltage with one law of attraction.",
+        (
+            number("hold_V", "V", "hold voltage"),
+            number("attraction", "1", "factor on the attraction"),
+            number("failing", "1", "probability of a failure by the response"),
+            number("beyond", "1", "probability of a switch beyond the model"),
+        ),
+    ),
+    Table(
         ("device/law.csv",),
         "One gap of one branch.",
         (

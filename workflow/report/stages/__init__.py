@@ -9,6 +9,7 @@ from workflow.report.stages import (
     contact,
     device,
     elastic,
+    failure,
     hardness,
     history,
     inputs,
@@ -20,7 +21,7 @@ from workflow.report.stages import (
 )
 
 PARTS = (
-    ("switch", "The switch", (pad, device, adhesion, history)),
+    ("switch", "The switch", (pad, device, failure, adhesion, history)),
     ("contact", "The contact", (contact, uncertainty, sensitivity, model_form)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

@@ -1,0 +1,104 @@
+"""Do rare-event intervals of the failure rate hold what brute force finds, and what does each cost?
+
+`repeat`: a plate on pads of a known closed form fails with a probability near 1e-2 or 1e-3, by attraction. The same
+switches are drawn and solved one by one (`brute_force`), and the rare-event method is repeated with new random numbers.
+"""
+
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator, Mapping, Sequence
+from time import process_time
+from typing import Any
+
+import numpy as np
+
+from mesoscale.device.failure import Population, corrected, learn
+from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
+from mesoscale.pad.response import PadResponse
+from mesoscale.settings import DeviceSettings
+
+PLATE = DeviceSettings(spring_N_per_m=170.0)
+TABLE = InputTable(
+    tuple(
+        UncertainInput(name, "", distribution, "literature", "")
+        for name, distribution in {
+            "hamaker": Distribution("uniform", 0.18, 0.25),
+            "e_star": Distribution("normal", 90.0, 4.0),
+            "rms": Distribution("normal", 9.0, 0.8),
+        }.items()
+    ),
+    np.eye(3),
+)
+PADS = PadResponse(
+    names=("e_star",),
+    centre=np.array([90.0]),
+    half=np.array([10.0]),
+    rms_nm=9.0,
+    gap_cutoff_nm=0.165,
+    closing=np.array([-4.0, 0.2, 0.3, 3.0, 0.0, 0.0, 0.05]),
+    opening=np.array([2.5, 0.3, 0.0, 0.2, 0.05]),
+    attraction=np.array([-1.5, 0.1, 0.0, -1.2, 0.95, 0.5]),
+    lifted=0.0,
+    offset=True,
+)
+"""The closed form of any pad, with numbers near those of Table 1."""
+CUTOFFS_NM = (0.165, 0.265)
+ATTRACTIONS = {"1e-2": 1.47, "1e-3": 1.32}
+"""Factors on the attraction with which so many switches fail."""
+METHODS = ("brute_force", "rare_event")
+
+
+def population() -> Population:
+    """The plates of the study."""
+    return Population(TABLE, PLATE, CUTOFFS_NM, (PADS, None), 0.0)
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Options on the command line."""
+    parser.add_argument("--repeats", type=int, default=20)
+    parser.add_argument("--brute-force", type=int, default=100_000)
+
+
+def rows(given: Namespace) -> Iterator[dict[str, Any]]:
+    """A row for brute force, and one for each repetition, of each probability."""
+    plates = population()
+    z = np.random.default_rng(1).normal(size=(given.brute_force, plates.dimension))
+    for name, times in ATTRACTIONS.items():
+        started = process_time()
+        failed = int(plates.failed(z, plates.hold_V, times).sum())
+        share = failed / len(z)
+        error = (share * (1.0 - share) / len(z)) ** 0.5
+        yield _row(name, "brute_force", 0, share, (share - 1.96 * error, share + 1.96 * error), len(z), started)
+    for seed in range(given.repeats):
+        started = process_time()
+        response = learn(plates, lambda *_: None, seed)
+        for name, times in ATTRACTIONS.items():
+            found = corrected(response, times, plates.hold_V, seed)
+            solved = response.switches + found.runs
+            yield _row(name, "rare_event", seed, found.probability, (found.low, found.high), solved, started)
+
+
+def _row(
+    wanted: str, method: str, seed: int, value: float, interval: tuple[float, float], switches: int, started: float
+) -> dict[str, Any]:
+    return {
+        "wanted": wanted,
+        "method": method,
+        "seed": seed,
+        "probability": value,
+        "low": interval[0],
+        "high": interval[1],
+        "switches": switches,
+        "cpu_s": process_time() - started,
+    }
+
+
+def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """In how many repetitions brute force lies in the interval, and how many switches both need."""
+    shown = {}
+    for wanted in ATTRACTIONS:
+        by = {kind: [row for row in table if (row["wanted"], row["method"]) == (wanted, kind)] for kind in METHODS}
+        truth = float(by["brute_force"][-1]["probability"])
+        held = [float(row["low"]) <= truth <= float(row["high"]) for row in by["rare_event"]]
+        shown[f"held_{wanted[-1]}"] = f"{sum(held)} of {len(held)}"
+        shown[f"truth_{wanted[-1]}"] = f"{truth:.2g}"
+    return shown

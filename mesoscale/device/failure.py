@@ -1,0 +1,336 @@
+"""How often a switch fails: the share of switches that stick, or let go too late, down to one in a million.
+
+Sticking is a yes or no, from which no rare event can be learned. So the reserve of a switch is the logarithm of the
+factor on its attraction with which it just fails. It fails by itself where the reserve is below zero, and with k times
+the attraction where it is below ln k. One response of the reserve serves all laws of attraction and hold voltages.
+"""
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr, ndtri
+
+from mesoscale.device.beam_switch import ELEMENTS, closed_beam
+from mesoscale.device.electrode import DEEPENED_BY, RESAMPLES
+from mesoscale.device.pad_results import WORKS
+from mesoscale.device.pad_switch import solve_on_pad
+from mesoscale.device.pressing import held_V
+from mesoscale.device.release import Model, Point, carried_share, pad_at, point_of, values_at
+from mesoscale.device.statistics import least_pull_in_V
+from mesoscale.device.switch import switch_from_settings
+from mesoscale.errors import InputError, NotComputed
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.curves import PadCells
+from mesoscale.pad.memory import Flats, PadLaw, attracting, deepened, law_of
+from mesoscale.settings import DeviceSettings
+from mesoscale.uncertainty.rare_events import LEAST, Corrected, Process, Sampled, correct, sample_event
+
+Array = NDArray[np.float64]
+
+FIRST = 96
+"""Switches of the first response."""
+FEWEST = 32
+ROUNDS, BATCH = 5, 16
+"""Switches are added so often, so many at once, where a failure is likely."""
+RUNS = 128
+"""Switches that correct a probability."""
+WIDE = 2.0
+"""The first switches have this many times the deviations of the inputs: rare events are far out."""
+COARSE = 64
+"""Elements of the beams that the response learns from; those that correct it have `ELEMENTS`."""
+LEAST_TIMES, MOST_TIMES, STEP = 0.1, 30.0, 0.1
+"""Factors on the attraction that are tried, and the difference of their logarithms to which the reserve is known."""
+SPAN = 1.5
+"""Largest hold voltage of the curve, over that of the scene."""
+VOLTAGES = 5
+
+
+class Attracted:
+    """A switch whose attraction can be changed.
+
+    Parameters
+    ----------
+    release_V : a switch that is still closed at this voltage has failed.
+    elements : of its beam.
+    """
+
+    def __init__(self, settings: DeviceSettings, law: PadLaw, release_V: float, elements: int):
+        self.settings, self.release_V, self.elements = settings, release_V, elements
+        self.laws = [law]
+        self.closed: Callable[[float, float], bool] | None = None
+
+    def fails(self, times: float) -> bool:
+        """Whether the switch fails with `times` its attraction.
+
+        Raises
+        ------
+        InputError : the pad is pressed beyond what is known of it, or the electrode cannot be solved.
+        """
+        while True:
+            try:
+                if self.settings.spring_N_per_m is not None:
+                    law = attracting(self.laws[-1], times)
+                    plate = solve_on_pad(switch_from_settings(self.settings), law, self.settings.hold_voltage_V)
+                    return plate.stuck or plate.release_V < self.release_V
+                self.closed = self.closed or closed_beam(self.settings, self.laws[-1], self.elements)
+                return self.closed(self.release_V, times)
+            except NotComputed:
+                if len(self.laws) > DEEPENED_BY:
+                    raise
+                self.laws.append(deepened(self.laws[-1]))
+                self.closed = None
+
+    def reserve(self, step: float = STEP) -> float:
+        """Logarithm of the factor on the attraction with which the switch just fails, known to half a step."""
+        low, high = np.log(LEAST_TIMES), np.log(MOST_TIMES)
+        while high - low > step:
+            middle = 0.5 * (low + high)
+            try:
+                failed = self.fails(float(np.exp(middle)))
+            except InputError:
+                failed = True
+            low, high = (low, middle) if failed else (middle, high)
+        return float(0.5 * (low + high))
+
+
+@dataclass(frozen=True)
+class Population:
+    """All switches that the scene allows, as standard normal numbers z: inputs, D0, bow and tilt.
+
+    Attributes
+    ----------
+    table, settings, cutoffs_nm, model : as `mesoscale.device.release` takes them.
+    release_V : a switch that is still closed at this voltage has failed.
+    pad_deviation : standard deviation of the reserve between pads of the switch's size.
+    """
+
+    table: InputTable
+    settings: DeviceSettings
+    cutoffs_nm: tuple[float, float]
+    model: Model
+    release_V: float
+    pad_deviation: float = 0.0
+
+    @property
+    def dimension(self) -> int:
+        """Number of standard normal numbers."""
+        return len(self.table.rows) + 3
+
+    @property
+    def names(self) -> list[str]:
+        """What the numbers stand for."""
+        return [*self.table.names, "gap_cutoff_nm", "bow_nm", "tilt_nm"]
+
+    @property
+    def hold_V(self) -> float:
+        """Hold voltage of the scene; where it has none, that of the pull-in without contact."""
+        return held_V(self.settings)
+
+    def columns(self, z: Array, hold_V: Array) -> Array:
+        """What the response depends on."""
+        return np.column_stack([values_at(ndtr(z), self.table, self.settings, *self.cutoffs_nm), hold_V])
+
+    def points(self, z: Array, hold_V: float) -> list[Point]:
+        """The switches of numbers (m, dimension)."""
+        held = self.settings.model_copy(update={"hold_voltage_V": hold_V})
+        rows = values_at(ndtr(z), self.table, self.settings, *self.cutoffs_nm)
+        return [point_of(row, self.table.names, held) for row in rows]
+
+    def carried(self, z: Array, hold_V: float) -> Array:
+        """Logarithm of `carried_share`, shape (m,): below zero is beyond the model."""
+        return np.log([carried_share(point, self.model) for point in self.points(z, hold_V)])
+
+    def reserves(self, z: Array, hold_V: float) -> Array:
+        """Reserves of switches, shape (m,); NaN beyond the model."""
+        found = np.full(len(z), np.nan)
+        for k in np.flatnonzero(self.carried(z, hold_V) >= 0.0):
+            (point,) = self.points(z[k : k + 1], hold_V)
+            found[k] = Attracted(point.device, pad_at(point, self.model), self.release_V, COARSE).reserve()
+        return found
+
+    def failed(self, z: Array, hold_V: float, times: float) -> NDArray[np.bool_]:
+        """Which switches fail and are not beyond the model, shape (m,); one that cannot be solved has failed."""
+        # pads of the switch's size differ: a pad that holds more by so much fails with so much less attraction
+        scatter = self.pad_deviation * np.random.default_rng(np.random.SeedSequence([0, 0x5CA])).normal(size=len(z))
+        found = self.carried(z, hold_V) >= 0.0
+        for k in np.flatnonzero(found):
+            (point,) = self.points(z[k : k + 1], hold_V)
+            with suppress(InputError):
+                switch = Attracted(point.device, pad_at(point, self.model), self.release_V, ELEMENTS)
+                found[k] = switch.fails(times * float(np.exp(-scatter[k])))
+        return found
+
+    def beyond(self, hold_V: float) -> Sampled:
+        """The switches beyond the model."""
+        return sample_event(lambda z: (self.carried(z, hold_V), np.full(len(z), 1e-9)), self.dimension, 0.0, 0)
+
+
+@dataclass(frozen=True)
+class Response:
+    """What was learned of the reserve of a population, from a number of switches."""
+
+    population: Population
+    process: Process
+    switches: int
+
+    def moments(self, z: Array, hold_V: float) -> tuple[Array, Array]:
+        """Mean and deviation of the reserve, the scatter between pads in it."""
+        mean, deviation = self.process(self.population.columns(z, np.full(len(z), hold_V)))
+        return mean, np.hypot(deviation, self.population.pad_deviation)
+
+    def sample(self, times: float, hold_V: float, seed: int, known: int | None = None) -> Sampled:
+        """The failures with `times` the attraction; the number `known` stays at its median."""
+
+        def moments(z: Array) -> tuple[Array, Array]:
+            return self.moments(z if known is None else np.where(np.arange(z.shape[1]) == known, 0.0, z), hold_V)
+
+        return sample_event(moments, self.population.dimension, float(np.log(times)), seed)
+
+
+def voltages(population: Population) -> Array:
+    """Hold voltages of the curve: from pull-in, or that of the scene, to `SPAN` times that of the scene."""
+    return np.linspace(min(population.hold_V, least_pull_in_V(population.settings)), SPAN * population.hold_V, VOLTAGES)
+
+
+def learn(population: Population, tell: Callable[[float, str], None], seed: int = 0) -> Response:
+    """The response of the reserve, from switches of the whole population and then from such as nearly fail."""
+    from scipy.stats import qmc  # slow to import
+
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xFA11]))
+    low, high = voltages(population)[[0, -1]]
+    first = qmc.LatinHypercube(population.dimension, rng=rng).random(FIRST)
+    z = ndtri(first) * np.where(np.arange(FIRST) % 2, 1.0, WIDE)[:, None]
+    batches = [(z[k::VOLTAGES], float(volts)) for k, volts in enumerate(voltages(population))]
+    columns, reserves = np.empty((0, population.dimension + 1)), np.empty(0)
+    number = 0
+    while True:
+        tell(0.6 * number / ROUNDS, f"{len(reserves)} switches")
+        for part, hold_V in batches:
+            columns = np.concatenate([columns, population.columns(part, np.full(len(part), hold_V))])
+            reserves = np.concatenate([reserves, population.reserves(part, hold_V)])
+        # a switch that fails with the least attraction says nothing of where others begin to
+        within, known = np.isfinite(reserves), reserves > np.log(LEAST_TIMES) + STEP
+        if within.sum() < FEWEST:
+            raise InputError(
+                f"failure: {within.sum()} of {FIRST} switches are within what the pad was computed for; accepted are "
+                f"at least {FEWEST}; lower device.hold_voltage_V, or narrow the inputs"
+            )
+        if known.sum() < FEWEST:
+            raise InputError(
+                f"failure.release_V = {population.release_V:.4g}: {known.sum()} of {within.sum()} switches release "
+                f"above it; accepted are at least {FEWEST}; lower it, or device.hold_voltage_V"
+            )
+        response = Response(population, Process(columns[known], reserves[known]), len(reserves))
+        if number == ROUNDS:
+            return response
+        hold_V, times = float(rng.uniform(low, high)), WORKS[number % len(WORKS)]
+        likely = response.sample(times, hold_V, seed + number).points
+        number += 1
+        batches = [(likely[rng.permutation(len(likely))[:BATCH]], hold_V)]
+
+
+def corrected(response: Response, times: float, hold_V: float, seed: int = 0) -> Corrected:
+    """Probability of a failure with `times` the attraction, the response corrected by runs."""
+    sampled = response.sample(times, hold_V, seed)
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xC0]))
+    chosen = rng.permutation(len(sampled.points))[:RUNS]
+    failed = response.population.failed(sampled.points[chosen], hold_V, times)
+    return correct(sampled, failed, sampled.chance[chosen])
+
+
+def reserve_deviation(cells: PadCells, flats: Flats, settings: DeviceSettings, release_V: float) -> float:
+    """Standard deviation of the reserve on pads of resampled cells: what their finite number leaves open."""
+    rng = np.random.default_rng(np.random.SeedSequence([0, 0xCE1]))
+    share = np.full(cells.count, 1.0 / cells.count)
+    laws = [law_of(cells, flats, rng.multinomial(cells.count, share) / cells.count) for _ in range(RESAMPLES)]
+    return float(np.std([Attracted(settings, law, release_V, COARSE).reserve(0.01) for law in laws], ddof=1))
+
+
+def largest_hold_V(hold_V: Array, probability: Array, allowed: float) -> float | None:
+    """Largest voltage (V) at which a probability that rises with it is allowed; None where even the least is too much.
+
+    The logarithm of the probability is interpolated; voltages and probabilities are of shape (n,).
+    """
+    logarithm = np.log(np.maximum(np.maximum.accumulate(probability), LEAST))
+    wanted = float(np.log(allowed))
+    if logarithm[0] > wanted:
+        return None
+    if logarithm[-1] <= wanted:
+        return float(hold_V[-1])
+    upper = int(np.argmax(logarithm > wanted))
+    share = (wanted - logarithm[upper - 1]) / (logarithm[upper] - logarithm[upper - 1])
+    return float(hold_V[upper - 1] + share * (hold_V[upper] - hold_V[upper - 1]))
+
+
+def failure_rate(
+    population: Population,
+    cells: PadCells,
+    flats: Flats,
+    allowed: float,
+    cell_area_nm2: float,
+    tell: Callable[[float, str], None],
+) -> tuple[dict[str, Any], list[dict[str, float]]]:
+    """Content of device/failure.json and rows of device/failure.csv.
+
+    Raises
+    ------
+    InputError : no switch of the population is within the model, or none lets go above the asked voltage.
+    """
+    settings, hold = population.settings, population.hold_V
+    held = settings.model_copy(update={"hold_voltage_V": hold})
+    cells_deviation = reserve_deviation(cells, flats, held, population.release_V)
+    pad_cells = switch_from_settings(settings).area_m2 * 1e18 / cell_area_nm2
+    population = replace(population, pad_deviation=cells_deviation * float(np.sqrt(cells.count / pad_cells)))
+    response = learn(population, tell)
+    rows = []
+    for number, volts in enumerate(voltages(population).tolist()):
+        tell(0.6 + 0.2 * number / VOLTAGES, f"hold voltage {volts:.3g} V")
+        beyond = population.beyond(volts).probability
+        rows += [
+            {
+                "hold_V": volts,
+                "attraction": times,
+                "failing": response.sample(times, volts, 0).probability,
+                "beyond": beyond,
+            }
+            for times in WORKS
+        ]
+    laws = []
+    for number, times in enumerate(WORKS):
+        tell(0.8 + 0.2 * number / len(WORKS), f"{times:.2g} times the attraction")
+        own = [row for row in rows if row["attraction"] == times]
+        volts, share = (np.array([row[key] for row in own]) for key in ("hold_V", "failing"))
+        ends = [response.sample(times * np.exp(sign * 1.96 * cells_deviation), hold, 0).probability for sign in (-1, 1)]
+        allowed_V = largest_hold_V(volts, share + [row["beyond"] for row in own], allowed)
+        laws.append(
+            {
+                "attraction": times,
+                "failing": asdict(corrected(response, times, hold)),
+                "by_cells": ends,
+                "largest_hold_V": allowed_V,
+                "there": None if allowed_V is None else asdict(corrected(response, times, allowed_V)),
+            }
+        )
+    # with the scene's own attraction, or where that never fails with the largest
+    judged = next((times for times in (1.0, WORKS[-1]) if response.sample(times, hold, 0).probability > 0.0), None)
+    return {
+        "release_V": population.release_V,
+        "allowed": allowed,
+        "hold_V": hold,
+        "beyond": population.beyond(hold).probability,
+        "laws": laws,
+        "control_attraction": judged,
+        "control": sorted(
+            (
+                {"name": name, "failing_if_known": response.sample(judged, hold, 0, k).probability}
+                for k, name in enumerate(population.names)
+                if judged is not None
+            ),
+            key=lambda row: row["failing_if_known"],
+        ),
+        "switches": response.switches,
+    }, rows

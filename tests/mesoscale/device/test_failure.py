@@ -1,0 +1,87 @@
+"""How often a switch fails: its reserve, and probabilities against brute force."""
+
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evidence.pad.rare_failures import population
+from mesoscale.device.beam_switch import closed_beam, solve_beam
+from mesoscale.device.failure import STEP, Attracted, corrected, largest_hold_V, learn
+from mesoscale.device.pad_switch import solve_on_pad
+from mesoscale.device.switch import switch_from_settings
+from mesoscale.errors import InputError
+from mesoscale.pad.memory import attracting
+from mesoscale.settings import DeviceSettings
+from tests.mesoscale.device.test_beam import made_up_law
+
+BEAM = DeviceSettings(hold_voltage_V=80.0)
+PLATE = DeviceSettings(spring_N_per_m=1e3, hold_voltage_V=160.0)
+
+
+def test_a_closed_beam_lets_go_where_the_solved_one_does():
+    law = made_up_law(40.0)
+    for times in (0.5, 1.0):
+        release = solve_beam(BEAM, attracting(law, times)).release_V
+        closed = closed_beam(BEAM, law)
+        assert release > 0.0
+        assert closed(1.01 * release, times)
+        assert not closed(0.99 * release, times)
+
+
+@pytest.mark.parametrize("settings", [BEAM, PLATE])
+def test_the_reserve_is_the_attraction_with_which_the_switch_just_sticks(settings):
+    law = made_up_law(40.0)
+    reserve = Attracted(settings, law, 0.0, 128).reserve()
+    for logarithm, wanted in ((reserve - STEP, False), (reserve + STEP, True)):
+        scaled = attracting(law, float(np.exp(logarithm)))
+        if settings.spring_N_per_m is None:
+            assert solve_beam(settings, scaled).stuck == wanted
+        else:
+            assert solve_on_pad(switch_from_settings(settings), scaled, settings.hold_voltage_V).stuck == wanted
+    assert Attracted(settings, law, 2.0, 128).reserve() <= reserve  # to let go in time asks for more than to let go
+
+
+def test_a_well_far_deeper_than_the_spring_and_none_at_all_reach_the_ends():
+    assert Attracted(PLATE, made_up_law(1e6), 0.0, 64).reserve() < np.log(0.1) + STEP
+    assert Attracted(PLATE, made_up_law(0.0), 0.0, 64).reserve() > np.log(30.0) - STEP
+
+
+def test_a_gap_of_20_nm_is_told_or_refused():
+    """A switch that rests in its own pad gives an answer or a line, no other error."""
+    narrow = Attracted(PLATE.model_copy(update={"gap_um": 0.02}), made_up_law(40.0), 0.0, 64)
+    with suppress(InputError):
+        assert narrow.fails(1.0) in (True, False)
+
+
+@pytest.mark.parametrize(
+    ("allowed", "wanted"),
+    [(1e-4, 75.0), (1e-6, None), (0.5, 90.0), (1e-5, 70.0)],
+    ids=["between", "none", "all", "least"],
+)
+def test_the_largest_hold_voltage_is_where_the_curve_meets_what_is_allowed(allowed, wanted):
+    found = largest_hold_V(np.array([70.0, 80.0, 90.0]), np.array([1e-5, 1e-3, 1e-2]), allowed)
+    assert found == (wanted if wanted is None else pytest.approx(wanted))
+
+
+def test_the_probability_is_that_of_brute_force():
+    """Some 1 % of the plates; brute force of 3000 knows it to 18 %, the other to its interval."""
+    plates = population()
+    response = learn(plates, lambda *_: None)
+    found = corrected(response, 1.47, plates.hold_V)
+    z = np.random.default_rng(5).normal(size=(3000, plates.dimension))
+    share = plates.failed(z, plates.hold_V, 1.47).mean()
+    assert found.low * 0.64 < share < found.high * 1.36
+    assert found.runs + response.switches < 400
+    one_in_a_million = corrected(response, 1.18, plates.hold_V)
+    assert 1e-7 < one_in_a_million.probability < 1e-4
+    assert one_in_a_million.variation < 0.5
+
+
+def test_switches_beyond_the_model_and_windows_that_none_reaches_are_one_line():
+    hard = replace(population(), settings=PLATE.model_copy(update={"hold_voltage_V": 5e3}))
+    with pytest.raises(InputError, match=r"within what the pad was computed for"):
+        learn(hard, lambda *_: None)
+    with pytest.raises(InputError, match=r"failure\.release_V = 60: 0 of \d+ switches release above it"):
+        learn(replace(population(), release_V=60.0), lambda *_: None)

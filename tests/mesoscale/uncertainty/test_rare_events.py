@@ -1,0 +1,64 @@
+"""Probabilities of rare events against exact ones."""
+
+import numpy as np
+import pytest
+from scipy.special import ndtr
+
+from mesoscale.uncertainty.rare_events import LEAST, Corrected, Process, correct, sample_event
+
+SURE = 1e-9
+DIMENSION = 6
+
+
+def reserve(z, beta):
+    """A plane at the distance beta from the origin: the event has the probability Phi(-beta)."""
+    return beta - z.sum(axis=1) / np.sqrt(z.shape[1])
+
+
+@pytest.mark.parametrize("beta", [0.0, 2.326, 4.753])
+def test_a_plane_has_the_probability_of_its_distance(beta):
+    found = sample_event(lambda z: (reserve(z, beta), np.full(len(z), SURE)), DIMENSION, 0.0, 1)
+    assert found.probability == pytest.approx(ndtr(-beta), rel=4.0 * max(found.variation, 0.01))
+    assert found.variation < 0.3
+    assert (reserve(found.points, beta) <= 0.0).all()
+    np.testing.assert_allclose(found.chance, 1.0)
+
+
+def test_an_event_that_always_happens_and_one_that_never_does():
+    always = sample_event(lambda z: (reserve(z, -20.0), np.full(len(z), SURE)), DIMENSION, 0.0, 1)
+    assert always.probability == pytest.approx(1.0)
+    never = sample_event(lambda z: (reserve(z, 20.0), np.full(len(z), SURE)), DIMENSION, 0.0, 1)
+    assert (never.probability, len(never.points)) == (0.0, 0)
+    found = correct(never, np.empty(0, bool), np.empty(0))
+    assert (found.probability, found.high) == (0.0, LEAST)
+
+
+@pytest.mark.parametrize("shift", [-0.3, 0.3])
+def test_runs_correct_a_response_that_is_wrong(shift):
+    """A response that is off by its own deviation alone is wrong by a factor of 4; the interval holds the truth."""
+    held = 0
+    for seed in range(10):
+        found = sample_event(lambda z: (reserve(z, 4.0) + shift, np.full(len(z), 0.3)), DIMENSION, 0.0, seed)
+        chosen = np.random.default_rng(seed).permutation(len(found.points))[:256]
+        corrected = correct(found, reserve(found.points[chosen], 4.0) <= 0.0, found.chance[chosen])
+        held += corrected.low <= ndtr(-4.0) <= corrected.high
+        assert abs(np.log(corrected.probability / ndtr(-4.0))) < 1.0
+    assert held >= 8
+
+
+def test_no_event_in_all_runs_leaves_an_upper_end():
+    found = sample_event(lambda z: (reserve(z, 2.0), np.full(len(z), 0.3)), DIMENSION, 0.0, 1)
+    none = correct(found, np.zeros(100, bool), found.chance[:100])
+    assert isinstance(none, Corrected)
+    assert none.low == none.probability == 0.0
+    assert none.high == pytest.approx(0.03 * found.probability)
+
+
+def test_a_process_foretells_a_smooth_function_and_leaves_out_what_does_not_vary():
+    rng = np.random.default_rng(0)
+    x = np.hstack([rng.uniform(-1, 1, (80, 3)), np.full((80, 1), 7.0)])
+    y = x[:, 0] + np.exp(0.5 * x[:, 1]) + 0.2 * x[:, 1] * x[:, 2]
+    process = Process(x[:60], y[:60])
+    mean, deviation = process(x[60:])
+    assert np.abs(mean - y[60:]).max() < 0.02
+    assert (deviation < 0.05).all()

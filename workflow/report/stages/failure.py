@@ -1,0 +1,72 @@
+"""How often the switch fails."""
+
+import numpy as np
+
+from workflow.report.available import Results
+from workflow.report.drawing import INK, SERIES, SOFT, draw
+from workflow.report.numbers import column, show
+from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.verdict import volts
+
+
+def describe(results: Results) -> Section | None:
+    """Failure rate against hold voltage, and the largest voltage that is allowed."""
+    if not results.has("device/failure.json", "device/failure.csv"):
+        return None
+    rate = results.json("device/failure.json")
+    event = f"is still closed at {volts(rate['release_V'])}" if rate["release_V"] else "sticks"
+    section = Section(
+        "failure",
+        "How often it fails",
+        f"A switch fails where it {event}. {show(rate['allowed'])} of all may. Statistics does not know the law of "
+        "attraction, so each row has its own. Inputs, geometry and pads are drawn together.",
+        COMPUTED,
+        files=["device/failure.json", "device/failure.csv"],
+    )
+    section.add(_curve(results), "Share that fails against hold voltage, by the response.")
+    header = ("attraction", f"failing at {volts(rate['hold_V'])} [95 %]", "by finite cells", "largest hold voltage")
+    rows = [
+        (
+            f"{show(law['attraction'], 2)} times",
+            f"{show(law['failing']['probability'], 2)} [{_interval(law['failing'])}]",
+            " to ".join(show(end, 2) for end in law["by_cells"]),
+            "none" if law["largest_hold_V"] is None else volts(law["largest_hold_V"]),
+        )
+        for law in rate["laws"]
+    ]
+    section.blocks.append(Table("Failures, and the largest hold voltage that is allowed", header, rows))
+    if rate["control"]:
+        known = [(row["name"], show(row["failing_if_known"], 2)) for row in rate["control"][:5]]
+        header = (
+            "if this input is at its median",
+            f"fails with {show(rate['control_attraction'], 2)} times the attraction",
+        )
+        section.blocks.append(Table("What to control", header, known))
+    if rate["beyond"] > rate["allowed"]:
+        section.notes.append(
+            f"{show(rate['beyond'], 2)} of all switches press their pad beyond what was computed. They count as failed "
+            "for the largest hold voltage."
+        )
+    return section
+
+
+def _interval(failing: dict[str, float]) -> str:
+    return f"{show(failing['low'], 2)}, {show(failing['high'], 2)}"
+
+
+def _curve(results: Results) -> str:
+    rows = results.csv("device/failure.csv")
+
+    def plot(axis):
+        laws = list(dict.fromkeys(row["attraction"] for row in rows))
+        for color, times in zip(SERIES, laws, strict=False):
+            own = [row for row in rows if row["attraction"] == times]
+            seen = np.where(column(own, "failing") > 0, column(own, "failing"), np.nan)
+            axis.plot(column(own, "hold_V"), seen, "o-", color=color, label=f"{show(times, 2)} times the attraction")
+        own = rows[:: len(laws)]
+        axis.plot(column(own, "hold_V"), column(own, "beyond"), "--", color=SOFT, label="beyond the model")
+        axis.axhline(results.json("device/failure.json")["allowed"], linewidth=0.8, color=INK, label="allowed")
+        axis.set(yscale="log", xlabel="hold voltage (V)", ylabel="share that fails")
+        axis.legend(frameon=False)
+
+    return draw("failure", "Share of switches that fail against hold voltage", plot)

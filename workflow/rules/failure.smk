@@ -1,0 +1,30 @@
+# Failure rate of the switch; only in scenes with failure.probability
+
+
+rule failure:
+    input:
+        f"{RESULTS}/device/failure.json",
+
+
+rule find_failure_rate:
+    input:
+        **SURFACE,
+        inputs=f"{RESULTS}/pad/inputs.csv",
+        grid=f"{RESULTS}/pad/grid.csv",
+        chunks=[f"{RESULTS}/pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS],
+        draws=[f"{RESULTS}/pad/draws/chunk_{chunk}.csv" for chunk in DRAW_CHUNKS],
+    output:
+        rate=f"{RESULTS}/device/failure.json",
+        table=f"{RESULTS}/device/failure.csv",
+    log:
+        f"{RESULTS}/logs/find_failure_rate.log",
+    threads: 1
+    params:
+        contact=settings("contact"),
+        design=DRAW_DESIGN,
+        device=settings("device"),
+        failure=settings("failure"),
+    message:
+        "find how often the switch fails"
+    script:
+        "../scripts/find_failure_rate.py"
