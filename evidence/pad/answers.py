@@ -1,0 +1,118 @@
+"""What do the law of attraction, D0, hardness, seeds and the number of cells change in the default answer?
+
+Each row is scene `reduced` up to its pad, with one statement changed. What its atoms give is stated: E*, H' and D0 of
+its own runs. `pixels` of 256 make the rows cheap, and are the same for all that are compared. Rows with other seeds
+have other surfaces, other draws and other points. The pull is that of a large pad, closed to the largest pressure.
+"""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from evidence.record import ROOT
+from mesoscale.tables import load_table
+
+ATOMS = {
+    "e_star": {"origin": "literature", "distribution": "normal", "values": [90.5, 2.5], "source": "reduced"},
+    "h_prime": {"origin": "literature", "values": [3.7, 17.8], "source": "reduced"},
+    "gap_cutoff": {"origin": "literature", "values": [0.26, 0.34], "source": "reduced"},
+}
+GLASS = {  # the closing runs' own hardness, without the soft metal of eq. 4
+    "h_macro": {"origin": "literature", "values": [8, 11], "source": "closing runs of full energies"},
+    "h_prime": {"origin": "literature", "distribution": "fixed", "values": [0], "source": "no size effect"},
+}
+LITERATURE = {"gap_cutoff": {"origin": "literature", "values": [0.165, 0.3], "source": "Israelachvili, 13.13"}}
+CLAMPED = {"contact": {"attraction": "clamped"}}
+SEEDS = {"mesoscale/pad/cells.py": "FIRST_SEED = 1000", "mesoscale/device/release.py": "rng=0"}
+CASES: dict[str, dict[str, Any]] = {
+    "default": {},
+    "clamped, literature's D0": {**CLAMPED, "inputs": LITERATURE},
+    "offset, literature's D0": {"inputs": LITERATURE},
+    "clamped": CLAMPED,
+    "hardness of the glass": {"inputs": GLASS},
+    "clamped, literature's D0, hardness of the glass": {**CLAMPED, "inputs": {**LITERATURE, **GLASS}},
+    "256 cells": {"pad": {"cells": 256}},
+    "other seeds, 1": {},
+    "other seeds, 2": {},
+}
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Which cases, at which grid."""
+    parser.add_argument("--cases", nargs="+", default=list(CASES), choices=list(CASES))
+    parser.add_argument("--pixels", type=int, default=256)
+
+
+def rows(given: Namespace) -> Iterator[dict[str, Any]]:
+    """A row for each case."""
+    for case in given.cases:
+        changed = CASES[case]
+        scene = {
+            "extends": "reduced",
+            "name": "answer",
+            "compute": [],
+            "inputs": ATOMS | changed.get("inputs", {}),
+            "contact": {"pixels": given.pixels} | changed.get("contact", {}),
+            **{key: value for key, value in changed.items() if key not in ("inputs", "contact")},
+        }
+        with tempfile.TemporaryDirectory() as folder:
+            tree = _other_seeds(Path(folder) / "tree", case[-1]) if case.startswith("other") else ROOT
+            (Path(folder) / "answer.yaml").write_text(yaml.safe_dump(scene))
+            started = time.monotonic()
+            subprocess.run(
+                [sys.executable, "-m", "asperity", "run", "--cores", "1", str(Path(folder) / "answer.yaml"), "pad"],
+                check=True, cwd=folder, env=os.environ | {"PYTHONPATH": str(tree)}, stdout=subprocess.DEVNULL,
+            )  # fmt: skip
+            minutes = (time.monotonic() - started) / 60
+            yield {"case": case, "pixels": given.pixels, **_answer(Path(folder) / "results" / "answer"),
+                   "minutes_of_one_core": minutes}  # fmt: skip
+
+
+def _other_seeds(tree: Path, number: str) -> Path:
+    """A copy of the product whose surfaces, draws and points come from other seeds."""
+    for package in ("asperity", "atomistic", "mesoscale", "workflow", "config", "evidence"):
+        shutil.copytree(ROOT / package, tree / package, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("Snakefile", "pyproject.toml", "uv.lock"):
+        shutil.copy(ROOT / name, tree / name)
+    for name, seed in SEEDS.items():
+        text = (tree / name).read_text()
+        if seed not in text:
+            raise ValueError(f"{name}: {seed!r} is no longer there")
+        (tree / name).write_text(text.replace(seed, re.sub(r"\d+$", f"{number}0000", seed)))
+    return tree
+
+
+def _answer(results: Path) -> dict[str, Any]:
+    switch = json.loads((results / "device" / "pad_switch.json").read_text())["answer"]
+    volts, stuck = switch["release_V"]["quantiles"], switch["stuck"]
+    largest = sorted(switch["sensitivity"], key=lambda row: -row["share_of_variance"])[:3]
+    pull = load_table(results / "pad" / "adhesion.csv")[-1]
+    return {
+        "release_V": volts["0.5"], "low_V": volts["0.05"], "high_V": volts["0.95"],
+        "central_V": switch["central"]["release_V"],
+        "stuck": stuck["value"], "stuck_low": stuck["low"], "stuck_high": stuck["high"],
+        "points": stuck["samples"], "refused": len(switch["design"]["refused"]),
+        "largest_shares": ", ".join(f"{row['name']} {row['share_of_variance']:.2f}" for row in largest),
+        "closed_to_MPa": float(pull["closed_to_MPa"]), "pull_kPa": float(pull["net_adhesion_kPa"]),
+        "pull_error_kPa": float(pull["standard_error_kPa"]),
+    }  # fmt: skip
+
+
+def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """Release and sticking of each case, the last run of each."""
+    return {
+        re.sub(r"\W+", "_", f"{row['case']}_{row['pixels']}"): f"{float(row['release_V']):.2f} V "
+        f"[{float(row['low_V']):.2f}, {float(row['high_V']):.2f}], {float(row['stuck']):.0%} stick"
+        for row in rows
+    }
