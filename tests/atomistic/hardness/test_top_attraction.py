@@ -31,6 +31,14 @@ def test_a_flat_stack_of_layers_has_the_work_of_dense_solids():
     assert 0.215 / (6 * np.pi * by_force**3) == pytest.approx(1.26, abs=0.01)
 
 
+def test_a_top_of_one_atom_pulls_as_its_potential():
+    contact = contact_distance_A(DENSITY)
+    atom = attract_top(np.zeros(1), np.ones(1), 1 / LAYER, DENSITY)
+    strength = 1 / (6 * np.pi * DENSITY)
+    assert atom.work == pytest.approx(2 / 3 * strength / contact**3, rel=1e-9)
+    assert atom.force_per_A == pytest.approx(1.8 * strength / contact**4 / 2.5 ** (2 / 3), rel=1e-9)
+
+
 @pytest.mark.parametrize("radius_A", [40.0, 160.0])
 def test_a_sphere_of_continuum_pulls_off_with_the_work_of_its_flat(radius_A):
     """DMT: 2 pi R w, but for terms of the order of the gap (some 2 Å) over the radius.
