@@ -2,7 +2,10 @@
 
 The hardness stage takes the cut-off D0 of the attraction from rigid tops (`atomistic.hardness.top_attraction`). Here
 the smooth half-space is taken away from the relaxed tops of closing runs in small steps, and all atoms come to rest
-after each. The same tops are also judged rigid, with all their atoms and with those below the contact alone.
+after each. The same tops are also judged rigid, with all their atoms and with those below the contact alone. `slab` has
+a rough body of atoms instead of the smooth one, above the rigid atoms below the contact: a slab of the same glass, cut
+at random heights and shifted at random (registry). Atoms of both attract by the 12-6 potential whose sum over a
+half-space is the 9-3 potential of the smooth body.
 """
 
 import tempfile
@@ -12,9 +15,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from atomistic.hardness.closing import attraction_row
-from atomistic.hardness.contact_area import calibrated
+from atomistic.hardness.contact_area import calibrated, contact_map, shares_in_contact
 from atomistic.hardness.glass import make_glass, write_forcefield
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.pressing import base_thickness_nm, plan_closing, prepare_body, press_bodies
@@ -35,6 +39,7 @@ from evidence.record import ROOT
 
 HAMAKER_EV = 0.215 / 0.1602176634  # middle of the paper's Table 1; the free atoms feel it beside their bonds
 STEP_A, REACH_A = 0.06, 5.0
+SLABS, SLAB_A, PAIR_A = 12, 25.0, 20.0  # slabs above a top, their thickness, reach of the pairs
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -86,7 +91,12 @@ def rows(given: Namespace) -> Iterator[dict]:
                 body = replace(
                     body, positions_A=read.relaxed(n).frame[:, 1:4], types=read.relaxed(n).frame[:, 0].astype(int)
                 )
-                yield {"run": run.name, "snapshot": n, **top_rows(read, n, geometry, body, potential, run.energy_scale)}
+                yield {
+                    "run": run.name,
+                    "snapshot": n,
+                    **top_rows(read, n, geometry, body, potential, run.energy_scale),
+                    **slab_rows(read, n, geometry, glass),
+                }
 
 
 def top_rows(
@@ -106,6 +116,61 @@ def top_rows(
     for name, attraction in judged.items():
         found[f"{name}_force_D0_nm"], found[f"{name}_work_D0_nm"] = combined_cutoffs_nm([attraction])
     return found
+
+
+def slab_rows(read: Readout, segment: int, geometry: Geometry, glass: Atoms) -> dict[str, float]:
+    """Cut-offs of the rigid top below its contact beside slabs of its glass: mean and scatter over registries."""
+    sample, places = read.last_sample(segment), read.relaxed(segment).frame[:, 1:4]
+    side, axis = geometry.wavelength_A, (geometry.axis_A, geometry.axis_A)
+    shares = shares_in_contact(
+        places[:, :2], contact_map(sample.touching_A, (side, side), read.area, axis), (side, side), axis
+    )
+    density = bulk_density_per_A3(read.relaxed(0).frame[:, 1:4], side**2)
+    rng = np.random.default_rng(segment)
+    judged = [
+        combined_cutoffs_nm([beside(places, shares, slab(glass, side, rng), side, sample.area_A2, density)])
+        for _ in range(SLABS)
+    ]
+    (force, work), (force_scatter, work_scatter) = np.mean(judged, axis=0), np.std(judged, axis=0, ddof=1)
+    return {
+        "slab_force_D0_nm": force, "slab_force_scatter_nm": force_scatter,
+        "slab_work_D0_nm": work, "slab_work_scatter_nm": work_scatter,
+    }  # fmt: skip
+
+
+def slab(glass: Atoms, side: float, rng: np.random.Generator) -> np.ndarray:
+    """Atoms above a cut through the glass at a random place, the lowest at height 0, shape (atoms, 3)."""
+    cell = np.asarray(glass.cell_A)
+    tiles = round(side / cell[0])
+    places = (glass.positions_A + rng.random(3) * cell) % cell
+    tiled = np.concatenate([places + cell * [i, j, k] for i in range(tiles) for j in range(tiles) for k in range(2)])
+    kept = tiled[tiled[:, 2] < SLAB_A]
+    return kept - np.array([0.0, 0.0, kept[:, 2].min()])
+
+
+def beside(
+    top: np.ndarray, shares: np.ndarray, body: np.ndarray, side: float, area_A2: float, density: float, grain=1.0
+) -> TopAttraction:
+    """Largest force and work between rigid atoms of a top, with their shares, and of a body above it; A_H = 1.
+
+    Each atom of the body counts `grain` times.
+    """
+    strength, repulsion = grain / (np.pi * density) ** 2, 2.5 * contact_distance_A(density) ** 6
+    counted = (shares > 0) & (top[:, 2] > top[shares > 0, 2].max() - PAIR_A)
+    top, shares = top[counted] - np.array([0.0, 0.0, top[counted, 2].min()]), shares[counted]
+    body, box = body + np.array([0.0, 0.0, top[:, 2].max()]), [side, side, 1e4]
+    near = KDTree(top % box, boxsize=box).sparse_distance_matrix(
+        KDTree(body % box, boxsize=box), PAIR_A, output_type="coo_matrix"
+    )
+    rise = body[near.col, 2] - top[near.row, 2]
+    across, weight = np.maximum(near.data**2 - rise**2, 0.0), strength * shares[near.row]
+    gaps = np.arange(-2.0, 8.0, STEP_A)
+    energy = np.empty(gaps.size)
+    for i, gap in enumerate(gaps):
+        inverse = 1.0 / np.maximum(across + (rise + gap) ** 2, 0.5) ** 3
+        energy[i] = -float(weight @ (inverse - repulsion * inverse**2))
+    rest = int(energy.argmin())
+    return TopAttraction(area_A2, float(np.gradient(energy, STEP_A)[rest:].max()), -float(energy[rest]))
 
 
 def pulled(top: Atoms, area_A2: float, density: float, potential: Potential, energy_scale: float) -> TopAttraction:
@@ -150,6 +215,8 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         "free_work": ratio("free_work_D0_nm", "whole_work_D0_nm"),
         "below_force": ratio("below_force_D0_nm", "whole_force_D0_nm"),
         "below_work": ratio("below_work_D0_nm", "whole_work_D0_nm"),
+        "slab_force": ratio("slab_force_D0_nm", "below_force_D0_nm"),
+        "slab_work": ratio("slab_work_D0_nm", "below_work_D0_nm"),
         "force_D0": f"{mean('below_force_D0_nm'):.2f} nm",
         "work_D0": f"{mean('below_work_D0_nm'):.2f} nm",
     }
