@@ -59,14 +59,6 @@ autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 napoleon_use_ivar = True
 
-
-def _quiet(app, config):
-    """Silence what a short name such as `width` warns of: it stands for the field at hand, not for a link.
-
-    Not `suppress_warnings = [...]`, which `sphinx-build -D suppress_warnings=...` would replace.
-    """
-    config.suppress_warnings = [*config.suppress_warnings, "ref.python"]
-
-
-def setup(app):
-    app.connect("config-inited", _quiet)
+suppress_warnings = [
+    "ref.python",  # a short name such as `width` stands for the field at hand, not for a link
+]
