@@ -21,7 +21,7 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.carried import CarriedPad, Factors, factors_of
 from mesoscale.pad.compact import CompactPad
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import Flats, PadLaw, law_of
+from mesoscale.pad.memory import Flats, FLOOR_GPa, PadLaw, law_of
 from mesoscale.pad.response import PadResponse, SampledPad, fit_response, law_of_compact
 from mesoscale.settings import DeviceSettings
 
@@ -34,6 +34,9 @@ SOLVED = 0.8
 SOLVED_TO_RANK = 0.5
 """The same where causes are only compared with each other."""
 FAR_NM = 300.0
+FALLS = 1e4
+"""A pad has lost contact far out: its repulsion is there below this part of its largest."""
+LEAST_SHARE = 1e-6
 Model = tuple[PadResponse, Factors | None]
 """The closed form of a pad at any inputs, and the factors of the central curves on it."""
 
@@ -277,10 +280,14 @@ def pad_at(point: Point, model: Model) -> PadLaw:
 def carried_share(point: Point, model: Model) -> float:
     """Largest pressure that the closed form carries at a point, over that to which pads are computed.
 
-    Below 1 the switch is beyond the model: its pad would be closed more than any that was computed.
+    Below 1 the switch is beyond the model: its pad would be closed more than any that was computed. A closed form must
+    also fall by `FALLS` with the separation, or the share is what it falls by, in logarithm.
     """
     form, s = _form_at(point, model)
-    return float((np.add(*form.closing_GPa(s)) / pressure_to_compute(point.device)(s)).max())
+    pushes, pulls = form.closing_GPa(s)
+    carried = float(((pushes + pulls) / pressure_to_compute(point.device)(s)).max())
+    fallen = float(np.log(max(pushes.max(), FLOOR_GPa) / max(pushes[-1], FLOOR_GPa)) / np.log(FALLS))
+    return max(min(carried, fallen), LEAST_SHARE)
 
 
 def _form_at(point: Point, model: Model) -> tuple[CompactPad | CarriedPad, Array]:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evidence.pad.rare_failures import population
+from evidence.pad.rare_failures import PADS, population
 from mesoscale.device.beam_switch import closed_beam, solve_beam
 from mesoscale.device.failure import STEP, Attracted, corrected, largest_hold_V, learn
 from mesoscale.device.pad_switch import solve_on_pad
@@ -77,6 +77,14 @@ def test_the_probability_is_that_of_brute_force():
     one_in_a_million = corrected(response, 1.18, plates.hold_V)
     assert 1e-7 < one_in_a_million.probability < 1e-4
     assert one_in_a_million.variation < 0.5
+
+
+def test_a_closed_form_that_rises_with_the_separation_is_beyond_the_model():
+    plates = population()
+    rising = replace(PADS, closing=np.array([4.0, 0.2, 0.3, -3.0, 0.0, 0.0, 0.0]))
+    z = np.zeros((1, plates.dimension))
+    assert plates.carried(z, plates.hold_V) > 0.0
+    assert replace(plates, model=(rising, None)).carried(z, plates.hold_V) < 0.0
 
 
 def test_switches_beyond_the_model_and_windows_that_none_reaches_are_one_line():
