@@ -192,7 +192,7 @@ def pulled(top: Atoms, area_A2: float, density: float, potential: Potential, ene
         }  # fmt: skip
         run_lammps(str(Path(__file__).with_name("pull.in")), workspace, variables)
         height, force = np.loadtxt(workspace / "pull.txt").T
-    pull = -np.sign(force[0]) * force  # the first force pushes
+    pull = np.sign(force[-10:].mean()) * force  # the last forces pull
     apart = int(np.argmax(pull > 0))
     work = float(np.trapezoid(pull[apart:], height[apart:]))
     beyond = area_A2 * HAMAKER_EV / (12 * np.pi * (height[-1] - highest) ** 2)  # of a flat, a few per cent
