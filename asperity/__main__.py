@@ -269,10 +269,10 @@ def _in(unit: str, units: dict[str, float]) -> Callable[[str], float]:
     """What reads a positive number with one of these units as a number in `unit`."""
 
     def read(text: str) -> float:
-        found = re.fullmatch(rf"(\d+\.?\d*|\.\d+) ?({'|'.join(units)})", text, re.ASCII)
-        if not found or not 0 < float(found[1]) < 1e9:
+        quantity = re.fullmatch(rf"(\d+\.?\d*|\.\d+) ?({'|'.join(units)})", text, re.ASCII)
+        if not quantity or not 0 < float(quantity[1]) < 1e9:
             raise argparse.ArgumentTypeError(f"{shown(text)}: accepted is a number > 0 with {' or '.join(units)}")
-        return float(found[1]) * units[found[2]] / units[unit]
+        return float(quantity[1]) * units[quantity[2]] / units[unit]
 
     return read
 

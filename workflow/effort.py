@@ -103,7 +103,7 @@ class Effort:
     def reaching(self, error_V: float) -> dict[str, int] | None:
         """Counts of the least time with an error; None where none has it."""
         scale = np.geomspace(1e-3, 1e9, 4000)
-        return next((found for one in scale if self.error_V(found := self._at(float(one))) <= error_V), None)
+        return next((counts for one in scale if self.error_V(counts := self._at(float(one))) <= error_V), None)
 
     def _at(self, scale: float) -> dict[str, int]:
         """Counts on the line of the least error, within their limits."""
@@ -155,20 +155,20 @@ def known_contributions(scene: Scene) -> tuple[dict[str, Any], str]:
     root = Path("results") / scene.name
     if (root / "device/pad_switch.json").is_file():
         files = ("device/pad_switch.json", "hardness/fit.json", "hardness/points.csv", "elastic/e_star.json")
-        if found := contributions(Results(root, [root / f for f in files if (root / f).is_file()], scene.name)):
-            return found, f"its last run in {root}"
+        if contributed := contributions(Results(root, [root / f for f in files if (root / f).is_file()], scene.name)):
+            return contributed, f"its last run in {root}"
     known = load_json(KNOWN)["scenes"]
     names = [scene.name, scene.extends or "", "reduced" if scene.contact.mechanics == "coupled" else "paper"]
     name = next(name for name in names if name in known)
     return known[name], f"shipped scene {name}"
 
 
-def effort_of(scene: Scene, found: Mapping[str, Any], seconds: Mapping[str, float]) -> Effort:
+def effort_of(scene: Scene, contributed: Mapping[str, Any], seconds: Mapping[str, float]) -> Effort:
     """The effort of a scene.
 
     Parameters
     ----------
-    found : as `contributions` gives it.
+    contributed : as `contributions` gives it.
     seconds : of one core, by rule.
     """
     counts = {
@@ -180,8 +180,8 @@ def effort_of(scene: Scene, found: Mapping[str, Any], seconds: Mapping[str, floa
     knobs, other = {}, dict(seconds)
     for key, rules in RULES.items():
         if took := sum(other.pop(rule, 0.0) for rule in rules):
-            knobs[key] = Knob(counts[key], LEAST[key], took / counts[key], found["variance_V2"].get(key, 0.0))
-    return Effort(knobs, found["fixed_V"], sum(other.values()))
+            knobs[key] = Knob(counts[key], LEAST[key], took / counts[key], contributed["variance_V2"].get(key, 0.0))
+    return Effort(knobs, contributed["fixed_V"], sum(other.values()))
 
 
 def settings_of(scene: Scene, counts: Mapping[str, int]) -> dict[str, dict[str, Any]]:
@@ -239,8 +239,8 @@ def _choose(
     given: argparse.Namespace, scene: Scene, seconds: Mapping[str, float], share: float, cores: int
 ) -> Iterator[str]:
     """Choose the counts, write the scene where one is wanted, and say all of it; `share`: wall time over core time."""
-    found, whose = known_contributions(scene)
-    effort = effort_of(scene, found, seconds)
+    contributed, whose = known_contributions(scene)
+    effort = effort_of(scene, contributed, seconds)
     if "pad.draws" not in effort.knobs:
         raise SceneError(f"{given.scene}: pad.draws = 0: without draws there is no interval, and no error to follow")
     if given.budget is not None:
@@ -252,7 +252,7 @@ def _choose(
     else:
         counts = effort.reaching(given.error)
         if counts is None:
-            name, part = found["largest"]
+            name, part = contributed["largest"]
             raise SceneError(
                 f"{given.scene}: --error {given.error:g}V: no budget reaches it: {effort.floor_V:.2g} V are left by "
                 f"what no count reduces, {part:.0%} of it by {name}; know that better, or allow more"

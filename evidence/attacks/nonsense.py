@@ -78,7 +78,7 @@ NONSENSE: dict[str, tuple[str, str]] = {
     "negative force": ("contact: {max_force_nN: -7000}", "contact.max_force_nN = -7000"),
     "cell of nothing": ("contact: {length_nm: 1.0e-300}", "contact.length_nm = 1e-300"),
     "cell of a metre": ("contact: {length_nm: 1.0e+9}", "contact.length_nm = 1000000000.0"),
-    "flow of no width": ("contact: {flow_width_nm: 1.0e-12}", "it is 0.3 nm, the paper's"),
+    "flow of no width": ("contact: {flow_width_nm: 1.0e-12}", "unknown key"),
     "one pixel": ("contact: {pixels: 1}", "contact.pixels = 1"),
     "spectrum that falls back": ("contact: {surface: {spectrum: {q: [2, 1], psd: [1, 1]}}}", "not in rising order"),
     "regression with one run": (scene("uncertainty: {direct_runs: 1}"), "needs at least 14"),

@@ -146,23 +146,23 @@ class Population:
 
     def reserves(self, z: Array, hold_V: float) -> Array:
         """Reserves of switches, shape (m,); NaN beyond the model."""
-        found = np.full(len(z), np.nan)
+        reserves = np.full(len(z), np.nan)
         for k in np.flatnonzero(self.carried(z, hold_V) >= 0.0):
             (point,) = self.points(z[k : k + 1], hold_V)
-            found[k] = Attracted(point.device, pad_at(point, self.model), self.release_V, COARSE).reserve()
-        return found
+            reserves[k] = Attracted(point.device, pad_at(point, self.model), self.release_V, COARSE).reserve()
+        return reserves
 
     def failed(self, z: Array, hold_V: float, times: float) -> NDArray[np.bool_]:
         """Which switches fail and are not beyond the model, shape (m,); one that cannot be solved has failed."""
         # pads of the switch's size differ: a pad that holds more by so much fails with so much less attraction
         scatter = self.pad_deviation * np.random.default_rng(np.random.SeedSequence([0, 0x5CA])).normal(size=len(z))
-        found = self.carried(z, hold_V) >= 0.0
-        for k in np.flatnonzero(found):
+        failed = self.carried(z, hold_V) >= 0.0
+        for k in np.flatnonzero(failed):
             (point,) = self.points(z[k : k + 1], hold_V)
             with suppress(InputError):
                 switch = Attracted(point.device, pad_at(point, self.model), self.release_V, ELEMENTS)
-                found[k] = switch.fails(times * float(np.exp(-scatter[k])))
-        return found
+                failed[k] = switch.fails(times * float(np.exp(-scatter[k])))
+        return failed
 
     def beyond(self, hold_V: float) -> Sampled:
         """The switches beyond the model."""
@@ -302,10 +302,10 @@ def failure_rate(
     laws = []
     for number, times in enumerate(WORKS):
         tell(0.8 + 0.2 * number / len(WORKS), f"{times:.2g} times the attraction")
-        own = [row for row in rows if row["attraction"] == times]
-        volts, share = (np.array([row[key] for row in own]) for key in ("hold_V", "failing"))
+        curve = [row for row in rows if row["attraction"] == times]
+        volts, share = (np.array([row[key] for row in curve]) for key in ("hold_V", "failing"))
         ends = [response.sample(times * np.exp(sign * 1.96 * cells_deviation), hold, 0).probability for sign in (-1, 1)]
-        allowed_V = largest_hold_V(volts, share + [row["beyond"] for row in own], allowed)
+        allowed_V = largest_hold_V(volts, share + [row["beyond"] for row in curve], allowed)
         laws.append(
             {
                 "attraction": times,

@@ -79,6 +79,6 @@ def _state(waves: Array, material: MaterialSettings) -> Array:
     nu = material.poisson
     twice_shear = material.young_GPa / (1.0 + nu)
     f, slope, second, third = (waves[:, n] for n in range(4))
-    along = ((1.0 - nu) * second + nu * f) / twice_shear
+    lateral = ((1.0 - nu) * second + nu * f) / twice_shear
     into = ((1.0 - nu) * third - (2.0 - nu) * slope) / twice_shear
-    return np.stack([f, slope, along, into], axis=1)
+    return np.stack([f, slope, lateral, into], axis=1)

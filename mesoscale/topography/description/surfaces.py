@@ -60,7 +60,7 @@ def levels_and_tilts(spectra: Sequence[TrustedSpectrum]) -> dict[str, tuple[Arra
     x = x - np.average(x, weights=1 / variance)
     film, places = np.eye(len(count))[index], np.eye(len(bands))[owner]
     mean_free = np.eye(len(bands)) - 1 / len(bands)
-    found = {}
+    estimates = {}
     for name, parts in (("level", [film, places]), ("tilt", [film, places, places * x[:, None]])):
         system = np.hstack(parts)
         prior = np.full(system.shape[1], 1 / UNKNOWN)
@@ -68,8 +68,8 @@ def levels_and_tilts(spectra: Sequence[TrustedSpectrum]) -> dict[str, tuple[Arra
         covariance = np.linalg.inv(system.T @ (system / variance[:, None]) + np.diag(prior))
         last = slice(-len(bands), None)
         solution = covariance @ (system.T @ (value / variance))
-        found[name] = mean_free @ solution[last], mean_free @ covariance[last, last] @ mean_free
-    return found
+        estimates[name] = mean_free @ solution[last], mean_free @ covariance[last, last] @ mean_free
+    return estimates
 
 
 def best_cut(values: Array, covariance: Array) -> Cut:
@@ -109,11 +109,11 @@ def two_heaps(spectra: Sequence[TrustedSpectrum]) -> tuple[str, Cut, float] | No
     """What parts the measurements into two surfaces, the heaps, and the chance of one surface; None for one surface."""
     if len(spectra) < FEWEST:
         return None
-    found = levels_and_tilts(spectra)
-    cuts = [(name, best_cut(*part)) for name, part in found.items()]
-    asked = [(by_chance(*found[name], cut.score), name, cut) for name, cut in cuts if cut.apart > LEAST_APART[name]]
+    estimates = levels_and_tilts(spectra)
+    cuts = [(name, best_cut(*part)) for name, part in estimates.items()]
+    asked = [(by_chance(*estimates[name], cut.score), name, cut) for name, cut in cuts if cut.apart > LEAST_APART[name]]
     chance, name, cut = min(asked, key=lambda item: item[0], default=(1.0, "", None))
-    return None if cut is None or chance > FALSE_ALARMS / len(found) else (name, cut, chance)
+    return None if cut is None or chance > FALSE_ALARMS / len(estimates) else (name, cut, chance)
 
 
 def several_surfaces(
@@ -164,8 +164,8 @@ def _listed(names: Sequence[str]) -> str:
 
 def _apart(groups: Sequence[Sequence[str]], files: Mapping[str, str]) -> str:
     """How to run the groups apart: one line of a scene each, where no file holds measurements of both."""
-    own = [list(dict.fromkeys(files.get(name, name) for name in group)) for group in groups]
-    if set(own[0]) & set(own[1]):
-        return "export each group to files of its own; if they are one surface, set topography.on_doubt: warn"
-    scenes = " and ".join(f"topography: {{scans: [{', '.join(part)}]}}" for part in own)
+    scans = [list(dict.fromkeys(files.get(name, name) for name in group)) for group in groups]
+    if set(scans[0]) & set(scans[1]):
+        return "export each group to files of its scans; if they are one surface, set topography.on_doubt: warn"
+    scenes = " and ".join(f"topography: {{scans: [{', '.join(part)}]}}" for part in scans)
     return f"run them apart, in scenes with {scenes}; if they are one surface, set topography.on_doubt: warn"

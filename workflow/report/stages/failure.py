@@ -60,11 +60,11 @@ def _curve(results: Results) -> str:
     def plot(axis):
         laws = list(dict.fromkeys(row["attraction"] for row in rows))
         for color, times in zip(SERIES, laws, strict=False):
-            own = [row for row in rows if row["attraction"] == times]
-            seen = np.where(column(own, "failing") > 0, column(own, "failing"), np.nan)
-            axis.plot(column(own, "hold_V"), seen, "o-", color=color, label=f"{show(times, 2)} times the attraction")
-        own = rows[:: len(laws)]
-        axis.plot(column(own, "hold_V"), column(own, "beyond"), "--", color=SOFT, label="beyond the model")
+            curve = [row for row in rows if row["attraction"] == times]
+            seen = np.where(column(curve, "failing") > 0, column(curve, "failing"), np.nan)
+            axis.plot(column(curve, "hold_V"), seen, "o-", color=color, label=f"{show(times, 2)} times the attraction")
+        curve = rows[:: len(laws)]
+        axis.plot(column(curve, "hold_V"), column(curve, "beyond"), "--", color=SOFT, label="beyond the model")
         axis.axhline(results.json("device/failure.json")["allowed"], linewidth=0.8, color=INK, label="allowed")
         axis.set(yscale="log", xlabel="hold voltage (V)", ylabel="share that fails")
         axis.legend(frameon=False)
