@@ -6,19 +6,15 @@ have other surfaces, other draws and other points. The pull is that of a large p
 """
 
 import json
-import os
 import re
 import shutil
-import subprocess
-import sys
 import tempfile
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import yaml
-
+from evidence.pad.runs import results_of
 from evidence.record import ROOT
 from mesoscale.tables import load_table
 
@@ -66,13 +62,9 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
             **{key: value for key, value in changed.items() if key not in ("inputs", "contact")},
         }
         with tempfile.TemporaryDirectory() as folder:
-            tree = _other_seeds(Path(folder) / "tree", case[-1]) if case.startswith("other") else ROOT
-            (Path(folder) / "answer.yaml").write_text(yaml.safe_dump(scene))
-            subprocess.run(
-                [sys.executable, "-m", "asperity", "run", "--cores", "1", str(Path(folder) / "answer.yaml"), "pad"],
-                check=True, cwd=folder, env=os.environ | {"PYTHONPATH": str(tree)}, stdout=subprocess.DEVNULL,
-            )  # fmt: skip
-            yield {"case": case, "pixels": given.pixels, **_answer(Path(folder) / "results" / "answer")}
+            tree = _other_seeds(Path(folder), case[-1]) if case.startswith("other") else ROOT
+            with results_of(scene, "pad", tree) as results:
+                yield {"case": case, "pixels": given.pixels, **_answer(results)}
 
 
 def _other_seeds(tree: Path, number: str) -> Path:

@@ -79,7 +79,7 @@ def median_release_V(
     cells: PadCells, pads: list[SampledPad], table: Any, flats: Any, device: Any, cutoff_nm: float
 ) -> float:
     """Median over the points of the answer; those that cannot be solved are left out."""
-    model = release._model(cells, pads, table, flats, cutoff_nm)
+    model = release.model_of(cells, pads, table, flats, cutoff_nm)
     released = []
     for point in release.plan_points(table, device, *release.cutoff_range(cutoff_nm, pads))[3]:
         try:

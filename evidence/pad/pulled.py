@@ -4,14 +4,11 @@ Rows are those of scenes `diamond` and `adhesion` with coupled mechanics. On dia
 measured to pull with 0.08 to 7.15 mJ/m².
 """
 
-import subprocess
-import sys
-import tempfile
 from argparse import Namespace
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
+from evidence.pad.runs import results_of
 from mesoscale.tables import load_table
 
 COLUMNS = (
@@ -23,10 +20,8 @@ COLUMNS = (
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """The rows of both scenes."""
     for scene in ("diamond", "adhesion"):
-        with tempfile.TemporaryDirectory() as folder:
-            command = [sys.executable, "-m", "asperity", "run", "--cores", "1", scene, "adhesion"]
-            subprocess.run(command, check=True, cwd=folder, stdout=subprocess.DEVNULL)
-            for row in load_table(Path(folder) / "results" / scene / "adhesion" / "summary.csv"):
+        with results_of(scene, "adhesion") as results:
+            for row in load_table(results / "adhesion" / "summary.csv"):
                 if row["mechanics"] == "coupled":
                     yield {"scene": scene, **{name: _number(row[name]) for name in COLUMNS}}
 

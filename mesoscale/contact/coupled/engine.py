@@ -143,7 +143,7 @@ class CoupledContact(Contact):
         if not self.bodies or self.roughness.slope == 0.0:
             return self.e_star
         q = self.roughness.curvature / self.roughness.slope
-        return self.e_star / float(layers.softness(self.bodies, q, q)(math.log(q)))
+        return self.e_star / float(layers.softness(self.bodies, np.array([q]))[0])
 
     @property
     def force(self) -> float:

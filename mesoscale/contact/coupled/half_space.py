@@ -27,7 +27,7 @@ def softness(pixels: int, length: float, bodies: tuple[Body, ...]) -> np.ndarray
     number = wave_numbers(pixels)
     number[0, 0] = 1.0
     q = number * (2.0 * np.pi / length)
-    shares = layers.softness(bodies, float(q.min()), float(q.max()))(np.log(q))
+    shares = layers.softness_spline(bodies, float(q.min()), float(q.max()))(np.log(q))
     shares[0, 0] = 1.0
     return shares
 

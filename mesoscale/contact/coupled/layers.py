@@ -22,13 +22,17 @@ HYPERBOLIC = 0.5 * np.array([[1.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -1.0], [1.0,
 """From exp(-z), z exp(-z), exp(z), z exp(z) to cosh z, sinh z, z cosh z, z sinh z."""
 
 
-@lru_cache(maxsize=8)
-def softness(bodies: tuple[Body, ...], lowest_q: float, highest_q: float) -> CubicSpline:
-    """Compliance of all bodies together over that of their bases alone, as a spline over ln q (1/nm)."""
+@lru_cache(maxsize=4)
+def softness_spline(bodies: tuple[Body, ...], lowest_q: float, highest_q: float) -> CubicSpline:
+    """`softness` between two wave vectors (1/nm), over ln q."""
     wanted = np.log([lowest_q, highest_q])
     log_q = np.linspace(wanted[0] - STEP, wanted[1] + STEP, 3 + int(np.ceil((wanted[1] - wanted[0]) / STEP)))
-    with_layers = sum(compliance(body, np.exp(log_q)) for body in bodies)
-    return CubicSpline(log_q, with_layers / (2.0 * np.exp(-log_q) / base_modulus(bodies)))
+    return CubicSpline(log_q, softness(bodies, np.exp(log_q)))
+
+
+def softness(bodies: tuple[Body, ...], q_per_nm: Array) -> Array:
+    """Compliance of all bodies together over that of their bases alone, shape that of `q_per_nm`."""
+    return sum(compliance(body, q_per_nm) for body in bodies) * q_per_nm / 2.0 * base_modulus(bodies)
 
 
 def compliance(body: Body, q_per_nm: Array) -> Array:
