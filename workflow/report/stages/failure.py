@@ -6,7 +6,7 @@ from workflow.report.available import Results
 from workflow.report.drawing import INK, SERIES, SOFT, draw
 from workflow.report.numbers import column, show
 from workflow.report.page import COMPUTED, Section, Table
-from workflow.report.verdict import volts
+from workflow.report.verdict import symbol, volts
 
 
 def describe(results: Results) -> Section | None:
@@ -36,7 +36,7 @@ def describe(results: Results) -> Section | None:
     ]
     section.blocks.append(Table("Failures, and the largest hold voltage that is allowed", header, rows))
     if rate["control"]:
-        known = [(row["name"], show(row["failing_if_known"], 2)) for row in rate["control"][:5]]
+        known = [(symbol(row["name"]), show(row["failing_if_known"], 2)) for row in rate["control"][:5]]
         header = (
             "if this input is at its median",
             f"fails with {show(rate['control_attraction'], 2)} times the attraction",
