@@ -13,7 +13,7 @@ import numpy as np
 
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import pull_off
-from mesoscale.device.electrode import presser
+from mesoscale.device.electrode import presser, releases_by_cells
 from mesoscale.device.pad_results import switch_on_pad
 from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.errors import InputError
@@ -245,7 +245,8 @@ class Contact(_Shown):
         grid = plan_grid(inputs, settings, pad.grid, pressure_to_compute(held), pressed_GPa=presser(held))
         seeds = range(FIRST_SEED, FIRST_SEED + pad.cells)
         cells = assemble(grid, list(close_cells(inputs, settings, grid, seeds, progress)), area)
-        return Switch(switch_on_pad(cells, flats_of(inputs, settings), device, area))
+        flats = flats_of(inputs, settings)
+        return Switch(switch_on_pad(cells, flats, device, area, partial(releases_by_cells, device, cells, flats)))
 
 
 @dataclass(frozen=True, repr=False)
