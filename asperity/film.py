@@ -19,6 +19,7 @@ from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.definitions import definition
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import PAPER_ROWS, check_resolved, film_table, input_table
 from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
@@ -137,7 +138,9 @@ class Film(_Shown):
         ------
         InputError : an unknown input, a value out of range, or measurements that no description fits.
         """
-        rows = {**MATERIAL, **{name: _row(value) for name, value in (material or {}).items()}}
+        given = {name: _row(value) for name, value in (material or {}).items()}
+        laws = ("", given.get("hardness", "paper"))
+        rows = {**{name: row for name, row in MATERIAL.items() if definition(name).hardness in laws}, **given}
         if "adhesion" in rows:  # states the attraction by work and range
             rows = {name: row for name, row in rows.items() if name not in ("hamaker", "gap_cutoff")}
         return input_table(self.description, **rows)
