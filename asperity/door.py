@@ -111,7 +111,7 @@ def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Map
     if film is not None:
         if "q1" not in rows:
             yield "  q1: {origin: topography}  # no roughness beyond what the measurements show"
-        grid = f"pixels: {pixels_for(film.description['inputs'].get('q1'))}"
+        grid = f"pixels: {pixels_for(film.description['inputs'].get('q1'), film.description['cell_nm'])}"
     mechanics = ", ".join(f"{key}: {value}" for key, value in RECOMMENDED.items())
     yield f"contact: {{{mechanics}, {grid}}}  # asperities share one elastic half-space"
     yield f"pad: {{cells: {CELLS}}}  # more cells: a surer answer"

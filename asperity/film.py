@@ -13,13 +13,12 @@ import numpy as np
 
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import pull_off
-from mesoscale.device.electrode import presser, releases_by_cells
+from mesoscale.device.electrode import presser
 from mesoscale.device.pad_results import switch_on_pad
 from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.inputs.contact import contact_of
-from mesoscale.inputs.definitions import definition
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import PAPER_ROWS, check_resolved, film_table, input_table
 from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
@@ -47,7 +46,8 @@ Material = Mapping[str, float | InputRow | Any]
 RECOMMENDED = {"mechanics": "coupled", "attraction": "offset"}
 """Of a contact: all asperities on one elastic half-space, and walls that are D0 apart at touch (docs/contact.md)."""
 CELLS = 64
-PIXELS = (512, 1024, 2048)
+PIXELS = {128: 4.0, 256: 4.0, 512: 1.0, 1024: 1.0, 2048: 1.0}
+"""Grids, and how far beyond a film's cut-off they must resolve: small ones are for films of long waves."""
 TABLE_1 = InputsSettings()
 MATERIAL = {
     "e_star": PAPER_ROWS["e_star"],
@@ -110,8 +110,7 @@ class Film(_Shown):
                 arrays[name], described = record(measured, self.settings)
                 attributes[name] = {**_origin(source), **described}
                 self.measurements.append(measured)
-        cell_nm = ContactSettings().length_nm
-        pooled = pool(in_order(arrays, attributes), attributes, self.settings, cell_nm, cut_off=True)
+        pooled = pool(in_order(arrays, attributes), attributes, self.settings, cell_nm=None, cut_off=True)
         rows = scan_rows(pooled.spectra, pooled.topography, attributes, None)
         self.description = parameters(pooled, rows, self.settings, None)
 
@@ -138,31 +137,33 @@ class Film(_Shown):
         ------
         InputError : an unknown input, a value out of range, or measurements that no description fits.
         """
-        given = {name: _row(value) for name, value in (material or {}).items()}
-        laws = ("", given.get("hardness", "paper"))
-        rows = {**{name: row for name, row in MATERIAL.items() if definition(name).hardness in laws}, **given}
+        rows = {**MATERIAL, **{name: _row(value) for name, value in (material or {}).items()}}
         if "adhesion" in rows:  # states the attraction by work and range
             rows = {name: row for name, row in rows.items() if name not in ("hamaker", "gap_cutoff")}
         return input_table(self.description, **rows)
 
-    def press(self, material: Material | None = None, load_nN: float = 7000.0, pixels: int | None = None) -> "Contact":
-        """Close 1 um^2 of the film onto a flat up to a load, and open it: at central inputs, coupled asperities.
+    def press(
+        self, material: Material | None = None, load_nN: float | None = None, pixels: int | None = None
+    ) -> "Contact":
+        """Close a cell of the film onto a flat up to a load, and open it: at central inputs, coupled asperities.
 
-        The surface is the one of a scene's nominal curves: random, with the film's spectrum and heights.
+        The surface is the one of a scene's nominal curves: random, with the film's spectrum and heights. The cell has
+        a side of 1 um, or a longer one where the measurements are coarse (`description["cell_nm"]`).
 
         Parameters
         ----------
-        load_nN : largest repulsive force (nN).
-        pixels : a side; None: the fewest of 512, 1024 and 2048 that resolve the film's cut-off.
+        load_nN : largest repulsive force (nN); None: 7000 on 1 um^2.
+        pixels : a side; None: the fewest of 128, 256, … 2048 that resolve the film's cut-off.
 
         Raises
         ------
         InputError : as `inputs`, or a grid that does not resolve the cut-off.
         """
         table = self.inputs(material)
-        described = self.description
-        pixels = pixels or pixels_for(described["inputs"]["q1"])
-        settings = ContactSettings(**RECOMMENDED, pixels=pixels, surface=described["surface"])
+        described, side = self.description, self.description["cell_nm"]
+        pixels = pixels or pixels_for(described["inputs"]["q1"], side)
+        settings = ContactSettings(**RECOMMENDED, pixels=pixels, length_nm=side, surface=described["surface"])
+        load_nN = load_nN or settings.max_force_nN * (side / ContactSettings().length_nm) ** 2
         check_resolved(table, settings.nyquist_per_nm)
         on_grid, (inputs, settings) = settings, contact_of(table.medians(), settings)
         fields: list[tuple[np.ndarray, np.ndarray]] = []
@@ -235,7 +236,7 @@ class Contact(_Shown):
 
         Parameters
         ----------
-        pad : how many surfaces of 1 um^2 are closed and opened, and how; the pad has their mean. None: 64.
+        pad : how many cells are closed and opened, and how; the pad has their mean. None: 64.
         progress : called with the finished share and a word on it.
 
         Raises
@@ -248,8 +249,7 @@ class Contact(_Shown):
         grid = plan_grid(inputs, settings, pad.grid, pressure_to_compute(held), pressed_GPa=presser(held))
         seeds = range(FIRST_SEED, FIRST_SEED + pad.cells)
         cells = assemble(grid, list(close_cells(inputs, settings, grid, seeds, progress)), area)
-        flats = flats_of(inputs, settings)
-        return Switch(switch_on_pad(cells, flats, device, area, partial(releases_by_cells, device, cells, flats)))
+        return Switch(switch_on_pad(cells, flats_of(inputs, settings), device, area))
 
 
 @dataclass(frozen=True, repr=False)
@@ -282,10 +282,11 @@ class Switch(_Shown):
         yield from (f"DOUBT: {reason}" for reason in self.content["gate"]["reasons"])
 
 
-def pixels_for(cutoff: Mapping[str, float] | None) -> int:
-    """The fewest pixels a side that resolve a film's cut-off, uniform or fixed, on 1 um; the most where none do."""
-    end = max(cutoff["a"], cutoff.get("b", 0.0)) if cutoff else 0.0
-    return next((n for n in PIXELS if ContactSettings(pixels=n).nyquist_per_nm >= end), PIXELS[-1])
+def pixels_for(cutoff: Mapping[str, float] | None, side_nm: float) -> int:
+    """The fewest pixels a side that resolve a film's cut-off, uniform or fixed, on a cell; the most where none do."""
+    end = max(cutoff["a"], cutoff.get("b", 0.0)) if cutoff else np.inf
+    fits = (n for n, margin in PIXELS.items() if np.pi * n / side_nm >= margin * end)
+    return next(fits, max(PIXELS))
 
 
 def _load(source: str | Scan, number: int, settings: TopographySettings) -> list[Measurement]:

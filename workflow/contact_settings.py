@@ -8,7 +8,7 @@ from workflow.results import load_json
 
 
 def contact_settings(given: dict[str, Any], snakemake: Any) -> ContactSettings:
-    """Settings of the scene; where it takes the surface from measurements and gives no spectrum or heights, theirs.
+    """Settings of the scene; where it takes the surface from measurements, their cell, and their spectrum and heights.
 
     Parameters
     ----------
@@ -16,9 +16,14 @@ def contact_settings(given: dict[str, Any], snakemake: Any) -> ContactSettings:
     snakemake : of the job; its input `topography` is topography/parameters.json, or absent.
     """
     path = snakemake.input.get("topography")
-    described = load_json(path).get("surface", {}) if path else {}
-    stated = given["surface"]
+    described = load_json(path) if path else {}
+    surface, stated = described.get("surface", {}), given["surface"]
     settings = settings_from_job(ContactSettings, given)
-    if not described or any(stated[key] for key in ("spectrum", "heights", "moments")):
+    cell_nm = described.get("cell_nm", settings.length_nm)
+    if cell_nm != settings.length_nm:  # chosen with the description: the same pressure on it
+        force = settings.max_force_nN * (cell_nm / settings.length_nm) ** 2
+        given = {**given, "length_nm": cell_nm, "max_force_nN": force}
+        settings = ContactSettings(**given)
+    if not surface or any(stated[key] for key in ("spectrum", "heights", "moments")):
         return settings
-    return ContactSettings(**{**given, "surface": {**stated, **described}})
+    return ContactSettings(**{**given, "surface": {**stated, **surface}})

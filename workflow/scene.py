@@ -93,6 +93,11 @@ class Scene(Settings):
         """The stages among hardness, elastic and topography that this scene computes."""
         return (set(self.inputs.origins()) & set(COMPUTED)) | set(self.compute)
 
+    @property
+    def cell_follows_film(self) -> bool:
+        """Is the side of a cell chosen with the description of measured scans: does the scene not state it?"""
+        return bool(self.topography.scans) and "length_nm" not in self.contact.model_fields_set
+
     @model_validator(mode="after")
     def _measurements_for_a_calibration(self) -> "Scene":
         if "calibration" in self.inputs.origins() and not self.measurements.tables:

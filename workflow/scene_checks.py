@@ -44,11 +44,6 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
     except InputError as error:
         yield str(error)
         return
-    if "h_film" in spans and spans["h_film"][0] < (base := spans["h_macro"][1]):
-        yield (
-            f"inputs.h_film reaches down to {spans['h_film'][0]:g} GPa, inputs.h_macro of its base up to {base:g}: "
-            "films softer than their base are not modelled; correct one of them"
-        )
     bodies, (least, most) = scene.contact.bodies, spans.get("e_star", (0.0, math.inf))
     if bodies and not least / 1.25 <= (bases := base_modulus(bodies)) <= 1.25 * most:
         yield (
@@ -82,11 +77,10 @@ def _stages(scene: Scene) -> Iterator[str]:
             "contacts have a history; choose contact.model: plastic"
         )
     device, side_um = scene.device, scene.contact.length_nm / 1000
-    area_um2 = device.electrode_um2 or device.length_um * device.width_um
-    if area_um2 < side_um**2:
+    if device.area_um2 < side_um**2 and not scene.cell_follows_film:
         yield (
-            f"device: an electrode of {area_um2:g} um^2 (electrode_um2, or length_um times width_um) is smaller than "
-            f"one cell of {side_um:g} um (contact.length_nm); take a larger electrode or a smaller cell"
+            f"device: an electrode of {device.area_um2:g} um^2 (electrode_um2, or length_um times width_um) is smaller "
+            f"than one cell of {side_um:g} um (contact.length_nm); take a larger electrode or a smaller cell"
         )
     if device.touching_at_rest:
         yield device.touching_at_rest

@@ -1,7 +1,7 @@
 """Does what pressing a real scan gives lie inside the 90 % interval that its description gives?
 
 Every file below a folder: the test data of SurfaceTopography, and the diamond film of `config/measurements`. Each map
-with square pixels judges the description made from itself, on cells that hold eight of its shortest waves. Loads that
+with square pixels judges the description made from itself. Loads that
 press more than half of a scan into contact are counted apart: a scene does not ask for them. Outside are an
 interferometer map of 1.8 mm with dust, and the area of a ridged map (doubt `anisotropic`).
 """
@@ -10,8 +10,6 @@ import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
@@ -39,7 +37,6 @@ STATED: dict[str, dict[str, Any]] = {
     },
 }
 INPUTS = ContactInputs(hamaker=0.2, e_star=91, h_macro=2, h_prime=8, q0=0.05, hurst=0.5, rms=4)
-CELL_NM = 1000.0
 FIRST_CONTACT = {"pressed": "first_contact_nm", "median": "described_nm", "low": "low_nm", "high": "high_nm"}
 COLUMNS = (
     *("file", "measurements", "description", "doubts", "cell_nm", "length_nm", *FIRST_CONTACT.values(), "inside"),
@@ -70,13 +67,12 @@ def described(path: Path) -> dict[str, Any]:
     for item in measured:
         arrays[item.data.name], attributes[item.data.name] = record(item, settings)
     images = [trusted_record(key, data, attributes[key], settings) for key, data in arrays.items()]
-    cell_nm = max(CELL_NM, 16 * np.pi / max(image.high for image in images))
-    pooled = pool(arrays, attributes, settings, cell_nm)
+    pooled = pool(arrays, attributes, settings, cell_nm=None)
     found: dict[str, Any] = {
         "measurements": len(measured),
         "description": pooled.choice.name,
         "doubts": " ".join(doubt.code for doubt in pooled.doubts),
-        "cell_nm": cell_nm,
+        "cell_nm": pooled.cell_nm,
         "length_nm": max(float(values["length_x_nm"]) for values in attributes.values()),
     }
     maps = [item.data for item in measured if isinstance(item.data, Scan) and has_square_pixels(item.data)]

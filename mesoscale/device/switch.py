@@ -108,7 +108,7 @@ def switch_from_settings(settings: DeviceSettings, range_nm: float | None = None
     ----------
     range_nm : of the law's near attraction; None: it comes off at once, as the plate of a given spring.
     """
-    area = settings.electrode_um2 or settings.length_um * settings.width_um
+    area = settings.area_um2
     last_share = 1.0
     if range_nm is not None and settings.spring_N_per_m is None:
         last_share = min(float(np.sqrt(range_nm / (3.0 * settings.gap_um * 1e3))), 1.0)

@@ -86,7 +86,8 @@ class ContactSettings(Settings):
         default=1000.0,
         ge=1,
         le=1e6,
-        description="side of the square, periodic cell",
+        description="side of the square, periodic cell; with measured scans left out: it holds the shortest measured "
+        "waves (docs/topography.md, Cells), and max_force_nN grows with its area",
         json_schema_extra={"unit": "nm"},
     )
     max_force_nN: float = Field(

@@ -108,6 +108,11 @@ class DeviceSettings(Settings):
         json_schema_extra={"unit": "V"},
     )
 
+    @property
+    def area_um2(self) -> float:
+        """Area of the electrode, um^2."""
+        return self.electrode_um2 or self.length_um * self.width_um
+
     def shape_at_rest_nm(self, share: ArrayLike) -> NDArray[np.float64]:
         """Height of the bending electrode at rest over its flat place (nm), at shares of its length from one end."""
         share = np.asarray(share, float)

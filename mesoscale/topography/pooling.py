@@ -1,5 +1,6 @@
 """From the records of all measurements to the parameters, the description and the curves of the surface."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -8,11 +9,12 @@ import numpy as np
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.curves import fit_curves, pooled_curve
+from mesoscale.topography.description.cell import finer_waves_doubt, refuse_coarse_measurements, suited_cell
 from mesoscale.topography.description.choice import (
     Choice,
+    carried_on,
     choose,
     description_doubts,
-    refuse_coarse_measurements,
     rows_of,
     surface_of,
 )
@@ -33,7 +35,7 @@ from mesoscale.topography.description.tip_error import spectrum_with_radius_erro
 from mesoscale.topography.description.tip_on_grains import lift_doubt, with_lift_error, without_lift
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.records import is_profile, trusted_record
-from mesoscale.topography.roughness_spectrum import RoughSpectrum
+from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
 from mesoscale.topography.spectrum import Spectrum
 
 ENDS = ("spacing", "nyquist")
@@ -51,6 +53,7 @@ class Pooled:
     pairs : measurements that see common bands.
     surface, rows : entries of `contact.surface`, distributions of q0, hurst, rms and q1.
     film : distributions of q0, hurst and rms of the typical place, and of the scatter of ln RMS between places.
+    cell_nm : side of the cells that the contact is computed on.
     doubts : those that touch what is used.
     """
 
@@ -64,21 +67,23 @@ class Pooled:
     rows: dict[str, dict[str, Any]]
     film: dict[str, dict[str, Any]]
     doubts: list[Doubt]
+    cell_nm: float
 
 
 def pool(
     arrays: Mapping[str, Mapping[str, np.ndarray]],
     attributes: Mapping[str, Mapping[str, Any]],
     settings: TopographySettings,
-    cell_nm: float,
+    cell_nm: float | None,
     cut_off: bool = False,
+    electrode_nm: float = math.inf,
 ) -> Pooled:
     """Describe the surface behind all records.
 
     Parameters
     ----------
     arrays, attributes : records by name (`records.record`).
-    cell_nm : side of the surfaces that the contact model will make.
+    cell_nm : side of the surfaces that the contact model will make; None: the one that suits (`suited_cell`).
     cut_off : they end at the measured cut-off; the RMS height is then that of the waves before it.
 
     Raises
@@ -100,6 +105,7 @@ def pool(
         refuse_different_films(pairs)
     quantiles = {name: data["quantiles"] for name, data in arrays.items() if "quantiles" in data}
     topography, spectra, lifted = parameters_of(images, quantiles if not_gaussian(tests) else {}, settings)
+    cell_nm = suited_cell(spectra, electrode_nm) if cell_nm is None else cell_nm
     refuse_coarse_measurements(spectra, cell_nm)
     one = merge(spectra, lifted)
     if settings.scans:  # synthetic scans know their tip
@@ -122,12 +128,14 @@ def pool(
             images, pairs, {name: str(values.get("file", name)) for name, values in attributes.items()}
         )
         doubts += description_doubts(topography, choice, one, attributes, apart, cell_nm, tests)
+        if one is not None:
+            doubts += finer_waves_doubt(SpectrumTable(*carried_on(one, one.psd)).psd, spectra, cell_nm)
     doubts += lift_doubt(images, spectra, lifted)
     if choice.name == "power_law":
         doubts = [*topography.doubts, *doubts]
     else:
         doubts = [*(doubt for doubt in topography.doubts if doubt.fatal), *doubts]
-    return Pooled(spectra, topography, one, tests, pairs, choice, surface, rows, film, doubts)
+    return Pooled(spectra, topography, one, tests, pairs, choice, surface, rows, film, doubts, cell_nm)
 
 
 def parameters_of(

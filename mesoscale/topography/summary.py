@@ -114,6 +114,7 @@ def parameters(
         },
         "trusted_end": trusted_end(pooled.spectra),
         "one_spectrum": _one(pooled),
+        "cell_nm": pooled.cell_nm,
         "surface": pooled.surface,
         "inputs": pooled.rows if passed else {},
         "film": pooled.film if passed else {},

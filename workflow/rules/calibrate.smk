@@ -34,8 +34,7 @@ rule collect_priors:
         f"{RESULTS}/logs/collect_priors.log",
     params:
         settings=PRIORS.model_dump(mode="json"),
-        attraction=SCENE.contact.attraction,
-        nyquist_per_nm=SCENE.contact.nyquist_per_nm,
+        contact=settings("contact"),
     message:
         "collect what is known of the inputs before the measurements"
     script:

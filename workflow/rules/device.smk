@@ -6,6 +6,7 @@ rule device:
 
 rule solve_switch:
     input:
+        **SURFACE,
         samples=f"{RESULTS}/uq/samples.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
         wells=f"{RESULTS}/law/wells.csv",
@@ -23,8 +24,7 @@ rule solve_switch:
     params:
         device=settings("device"),
         law=settings("law"),
-        max_force_nN=SCENE.contact.max_force_nN,
-        length_nm=SCENE.contact.length_nm,
+        contact=settings("contact"),
     message:
         "solve the switch, and export the law for device and circuit simulators"
     script:

@@ -33,8 +33,7 @@ rule collect_inputs:
         f"{RESULTS}/logs/collect_inputs.log",
     params:
         settings=settings("inputs"),
-        attraction=SCENE.contact.attraction,
-        nyquist_per_nm=SCENE.contact.nyquist_per_nm,
+        contact=settings("contact"),
     message:
         "collect the uncertain inputs"
     script:

@@ -84,7 +84,8 @@ rule pool_spectra:
         f"{RESULTS}/logs/pool_spectra.log",
     params:
         settings=settings("topography"),
-        cell_nm=SCENE.contact.length_nm,
+        cell_nm=None if SCENE.cell_follows_film else SCENE.contact.length_nm,
+        electrode_nm=1000 * SCENE.device.area_um2**0.5 if SCENE.cell_follows_film else None,
         cut_off=SCENE.inputs.prior_origins().get("q1") == "topography",
     message:
         "describe the surface behind the spectra"

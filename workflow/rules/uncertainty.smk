@@ -142,6 +142,7 @@ rule model_form:
 
 rule compute_pairs:
     input:
+        **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/uq/model_form/pairs_{{chunk}}.csv",

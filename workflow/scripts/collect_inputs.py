@@ -9,6 +9,7 @@ import copy
 
 from mesoscale.inputs.table import check_resolved, collect, to_rows
 from mesoscale.settings import InputsSettings
+from workflow.contact_settings import contact_settings
 from workflow.job import job, settings_from_job
 from workflow.results import load_json, write_csv
 
@@ -20,6 +21,6 @@ with job(snakemake) as run:
     settings = settings_from_job(InputsSettings, given)
     stages = {stage: load_json(path) for stage, path in results.items()}
     files = {stage: "/".join(path.split("/")[-2:]) for stage, path in results.items()}
-    table = collect(settings, stages, files, snakemake.params.attraction)
-    check_resolved(table, snakemake.params.nyquist_per_nm)
+    table = collect(settings, stages, files, snakemake.params.contact["attraction"])
+    check_resolved(table, contact_settings(snakemake.params.contact, snakemake).nyquist_per_nm)
     write_csv(snakemake.output[0], to_rows(table))

@@ -4,6 +4,8 @@ In: topography/spectra/chunk_*.h5, truth.json for synthetic scans.
 Out: topography/spectra.h5 (figures 9 and 10), topography/parameters.json (1/nm, 1, nm).
 """
 
+import math
+
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.curves import CURVES
 from mesoscale.topography.pooling import pool, result_curves
@@ -27,7 +29,8 @@ with job(snakemake) as run:
         known = truth["truth"]
         typical = RoughSpectrum.from_rms(known["rms_nm"], known["q0"], known["slope"], known["q1"])
 
-    pooled = pool(arrays, attributes, settings, snakemake.params.cell_nm, snakemake.params.cut_off)
+    given = snakemake.params
+    pooled = pool(arrays, attributes, settings, given.cell_nm, given.cut_off, given.electrode_nm or math.inf)
     rows = scan_rows(pooled.spectra, pooled.topography, attributes, truth)
     for row in rows:
         attributes[row["name"]] = {**attributes[row["name"]], **row}

@@ -14,6 +14,7 @@ from mesoscale.device.export import law_table, spice_subcircuit, spice_testbench
 from mesoscale.device.statistics import stiction_rows
 from mesoscale.law.wells import well_note
 from mesoscale.settings import DeviceSettings, LawSettings
+from workflow.contact_settings import contact_settings
 from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_csv, write_json, write_text
 
@@ -22,8 +23,9 @@ with job(snakemake) as run:
     law = settings_from_job(LawSettings, snakemake.params.law)
     rows, fitted = load_csv(snakemake.input.samples), load_csv(snakemake.input.parameters)
     samples = samples_of_rows(rows, fitted, device, law.rho_a_nm, law.shield_nm)
-    area_nm2 = snakemake.params.length_nm**2
-    law_pressure_MPa = snakemake.params.max_force_nN / area_nm2 * 1e3  # 1 GPa nm^2 = 1 nN
+    contact = contact_settings(snakemake.params.contact, snakemake)
+    area_nm2 = contact.length_nm**2
+    law_pressure_MPa = contact.max_force_nN / area_nm2 * 1e3  # 1 GPa nm^2 = 1 nN
     results, states = drive_switch(samples, device, law_pressure_MPa)
     write_json(snakemake.output.switch, results, run.provenance)
     write_csv(snakemake.output.release, state_rows(states))

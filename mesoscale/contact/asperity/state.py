@@ -4,8 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mesoscale.inputs.hardness import HardnessLaw
-
 
 class Asperities(NamedTuple):
     """Asperities of one surface; a dead (merged) one has ``sites`` 0. Sizes: N^2 sites.
@@ -47,19 +45,21 @@ def no_asperities(sites: int) -> Asperities:
 
 
 class Mechanics(NamedTuple):
-    """Constants of eqs 2 and 3, and the hardness.
+    """Constants of eqs 2-4.
 
     Attributes
     ----------
     stiffness : p E*, GPa.
-    hardness : hardness against area (eq. 4).
+    h_macro : hardness of large asperities, GPa.
+    h_prime : size effect of hardness, GPa nm^0.5.
     site_area : area of a site, nm^2.
     curvature_radius : radius from the mean curvature of an asperity's sites, else from its truncation.
     area_of_sites : area from the number of sites, else Hertz's.
     """
 
     stiffness: float
-    hardness: HardnessLaw
+    h_macro: float
+    h_prime: float
     site_area: float
     curvature_radius: bool
     area_of_sites: bool

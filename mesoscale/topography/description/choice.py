@@ -6,14 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.confidence import QUANTILES, REACH
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.heights import HeightTest, common_heights, not_gaussian
 from mesoscale.topography.description.one_spectrum import OneSpectrum
 from mesoscale.topography.description.parameters import Topography, inputs
-from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.roughness_spectrum import hurst_from_slope, mean_square
 
 DESCRIPTIONS = {
@@ -158,6 +156,7 @@ def _share_on_cells(topography: Topography, cell_nm: float) -> float:
         return 1.0
     waves, areas, end = cell_waves(cell_nm)
     whole, summed = (mean_square(1.0, fitted.q0, fitted.slope, high) for high in (topography.cutoff, end))
+    areas = np.where(waves <= topography.cutoff, areas, 0.0)  # a coarse film ends before the sum does
     return float(((waves / fitted.q0) ** -fitted.slope @ areas + max(whole - summed, 0.0)) / whole)
 
 
@@ -169,11 +168,16 @@ def _cell_mean_square(one: OneSpectrum, psd: np.ndarray, cell_nm: float) -> np.n
     return np.reshape(summed, psd.shape[:-1]) + one.moment(0, low=end, psd=psd) + _tail(one, psd)
 
 
-def share_on_cells(topography: Topography, one: OneSpectrum | None, choice: Choice, cell_nm: float) -> float:
-    """Share of the mean square height that cells have, by the description in use."""
+def share_on_cells(
+    topography: Topography, one: OneSpectrum | None, choice: Choice, cell_nm: float
+) -> tuple[float, float]:
+    """Share of the mean square height (nm^2) that cells have, and all of it, by the description in use."""
     if choice.name == "power_law" or one is None:
-        return _share_on_cells(topography, cell_nm)
-    return float(_cell_mean_square(one, one.psd, cell_nm) / (one.moment(0, psd=one.psd) + _tail(one, one.psd)))
+        fitted = topography.likelihood
+        whole = mean_square(fitted.plateau, fitted.q0, fitted.slope, topography.cutoff) if fitted else 0.0
+        return _share_on_cells(topography, cell_nm), whole
+    whole = float(one.moment(0, psd=one.psd) + _tail(one, one.psd))
+    return float(_cell_mean_square(one, one.psd, cell_nm)) / whole, whole
 
 
 def _table(one: OneSpectrum, low: float) -> tuple[np.ndarray, np.ndarray]:
@@ -237,23 +241,6 @@ def _bends(one: OneSpectrum, q0: float, drawn: np.ndarray) -> tuple[float, float
     return float(np.clip(bend_q0, SLOWEST_BEND, FASTEST_BEND)), bend_hurst
 
 
-def refuse_coarse_measurements(spectra: Sequence[TrustedSpectrum], cell_nm: float) -> None:
-    """Refuse measurements that see next to no wave of a cell, before surfaces are made of what nobody saw.
-
-    Raises
-    ------
-    InputError : naming the finest measurement, its scale, and what would help.
-    """
-    finest = max(spectra, key=lambda item: item.high, default=None)
-    if finest is not None and finest.high < FINEST_WAVES * 2.0 * np.pi / cell_nm:
-        seen = 2.0 * np.pi / finest.high
-        raise InputError(
-            f"topography: the shortest wave that {finest.name} shows is {seen:.3g} nm long, so that a cell of "
-            f"contact.length_nm = {cell_nm:g} holds next to none that was measured; measure on a finer scale, or set "
-            f"contact.length_nm to {8.0 * seen:.2g} or more for the contact of the scales that were measured"
-        )
-
-
 def description_doubts(
     topography: Topography,
     choice: Choice,
@@ -265,13 +252,16 @@ def description_doubts(
 ) -> list[Doubt]:
     """Doubts of the measurements besides those of eq. 9, which only count where eq. 9 is used."""
     doubts = []
-    share = share_on_cells(topography, one, choice, cell_nm)
+    share, whole = share_on_cells(topography, one, choice, cell_nm)
     if share < LEAST_ON_CELLS:
         text = (
-            f"a cell of {cell_nm:g} nm has {np.sqrt(share):.0%} of the RMS height; the rest is in longer waves, which "
-            "no stage has"
+            f"a cell of {cell_nm:g} nm has {np.sqrt(share):.0%} of the RMS height; the rest, "
+            f"{np.sqrt(whole * (1 - share)):.3g} nm, is in longer waves, which no stage has"
         )
-        remedy = "a larger contact.length_nm holds more of them; on a wide electrode they lift and tilt whole cells"
+        remedy = (
+            "a larger contact.length_nm holds more of them; on a wide electrode they lift and tilt whole cells: "
+            "device.bow_deviation_nm can stand for those as long as the electrode"
+        )
         doubts.append(Doubt("waves_beyond_cell", text, remedy, "rms"))
     for name, values in attributes.items():
         share, skewness = (float(values.get(f"alignment_{key}", 0.0)) for key in ("share", "skewness"))
@@ -308,7 +298,6 @@ def description_doubts(
 
 
 SUMMED = 16  # longest waves that are summed one by one; beyond, sum and integral differ by less than a per cent
-FINEST_WAVES = 2.0  # the shortest measured wave goes at least so often into a cell
 LEAST_ON_CELLS = 0.5  # share of the mean square height that cells have without a word
 MOST_ANISOTROPIC = 2.0  # ratio of slopes; isotropic surfaces C ~ q^-2.5 to q^-4 without a plateau reach 1.4
 MOST_SKEWED = 0.3  # skewness that aligning lines may add without a word

@@ -1,4 +1,4 @@
-"""What a tip adds to the long waves of tall grains."""
+"""What a tip adds to the long waves of tall grains, and takes from those of grooves."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ from mesoscale.topography.synthetic_scans import dilate
 
 SIDE, SITES, RADIUS = 1000.0, 512, 6.0
 SPECTRUM = RoughSpectrum.from_rms(4.0, 0.03, 2.8, 1.6)
-GRAINS, GAUSS = common_heights([np.exp(0.25 * Z)]), common_heights([Z])
+GRAINS, GROOVES, GAUSS = (common_heights([z]) for z in (np.exp(0.25 * Z), -np.exp(-0.25 * Z), Z))
 SETTINGS = TopographySettings(scans=("a",), tip_radius_nm=RADIUS, line_alignment="none", detrend="none")
 
 
@@ -40,16 +40,18 @@ def analysed(heights):
     return spectra, quantiles, float(np.mean(lifts))
 
 
-def test_the_lift_of_grains_is_found_within_its_error():
-    spectra, quantiles, true = analysed(GRAINS)
+@pytest.mark.parametrize(("heights", "sign"), [(GRAINS, 1), (GROOVES, -1)])
+def test_what_a_tip_changes_is_found_within_its_error(heights, sign):
+    """Grains are lifted, grooves are filled."""
+    spectra, quantiles, true = analysed(heights)
     topography = analyse(spectra, SETTINGS)
     seen = max(item.high for item in spectra)
     gain, error = tip_lift(
         RADIUS, topography.likelihood, seen, topography.cutoff, np.mean(list(quantiles.values()), axis=0)
     )
-    assert true > 0.15  # a fifth of the power: dilation, not the analysis, says so
+    assert sign * true > 0.15  # a fifth of the power: dilation, not the analysis, says so
     assert abs(gain - true) < 1.645 * error
-    assert error < 0.6 * gain
+    assert error < 0.6 * sign * gain
 
 
 def test_a_gaussian_surface_is_not_lifted():

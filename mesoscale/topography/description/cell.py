@@ -1,0 +1,95 @@
+"""The side of the cells that the contact is computed on: what measurements see of it, and what the device has room for.
+
+A cell holds the shortest waves that were measured several times. Waves longer than its side lift whole cells of a pad;
+waves shorter than the measured ones are an assumption, and its effect is stated.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from mesoscale.errors import InputError
+from mesoscale.settings import ContactSettings
+from mesoscale.topography.description.doubts import Doubt
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
+from mesoscale.topography.synthesis import synthesize_spectrum
+
+USUAL_NM = ContactSettings().length_nm
+FINEST_WAVES = 2.0  # the shortest measured wave goes at least so often into a cell
+SUITED_WAVES = 8.0  # and so often into a cell whose side is chosen
+MANY_WAVES = 16.0  # so often, and the contact is mostly one of measured waves
+SURFACES, SITES = 8, 256  # of the first contact with and without finer waves
+
+
+def suited_cell(spectra: Sequence[TrustedSpectrum], electrode_nm: float = math.inf) -> float:
+    """Side (nm) of cells: eight of the shortest measured waves, at least the usual, at most the electrode's.
+
+    Parameters
+    ----------
+    electrode_nm : side of a square of the electrode's area.
+
+    Raises
+    ------
+    InputError : hardly a measured wave is as short as the electrode.
+    """
+    finest, seen = _shortest_wave(spectra)
+    if electrode_nm < FINEST_WAVES * seen:
+        raise InputError(
+            f"topography: the shortest wave that {finest} shows is {seen:.3g} nm long, and the electrode has a side of "
+            f"{electrode_nm:.3g} nm (device), so that no roughness below it was measured; measure on a finer scale, or "
+            "correct the size of the device"
+        )
+    return min(max(USUAL_NM, float(f"{SUITED_WAVES * seen:.2g}")), electrode_nm)
+
+
+def refuse_coarse_measurements(spectra: Sequence[TrustedSpectrum], cell_nm: float) -> None:
+    """Refuse measurements that see next to no wave of a cell, before surfaces are made of what nobody saw.
+
+    Raises
+    ------
+    InputError : naming the finest measurement, its scale, and what would help.
+    """
+    finest, seen = _shortest_wave(spectra)
+    if cell_nm < FINEST_WAVES * seen:
+        raise InputError(
+            f"topography: the shortest wave that {finest} shows is {seen:.3g} nm long, so that a cell of "
+            f"contact.length_nm = {cell_nm:g} holds next to none that was measured; measure on a finer scale, or set "
+            f"contact.length_nm to {SUITED_WAVES * seen:.2g} or more (leave it out: it is chosen) for the contact of "
+            "the scales that were measured"
+        )
+
+
+def finer_waves_doubt(
+    psd: Callable[[np.ndarray], np.ndarray], spectra: Sequence[TrustedSpectrum], cell_nm: float
+) -> list[Doubt]:
+    """What waves beyond the measured ones would change, where a cell holds few measured ones.
+
+    Parameters
+    ----------
+    psd : C (nm^4) at wave vectors (1/nm), carried on for a decade beyond the measurements.
+    """
+    finest, seen = _shortest_wave(spectra)
+    if cell_nm >= MANY_WAVES * seen:
+        return []
+    step, end = 2.0 * np.pi / cell_nm, 2.0 * np.pi / seen
+    effects = []
+    for last in (end, 10.0 * end):
+        q = np.geomspace(step, last, 400)
+        rms, slope = (float(np.sqrt(np.trapezoid(2 * np.pi * q**power * psd(q), q))) for power in (1, 3))
+        surfaces = (synthesize_spectrum(SITES, cell_nm, psd, rms, seed, last) for seed in range(SURFACES))
+        effects.append((slope, float(np.mean([heights.max() for heights in surfaces]))))
+    (cut_slope, cut_nm), (slope, contact_nm) = effects
+    text = (
+        f"cells of {cell_nm:g} nm are computed; the shortest wave that was measured is {seen:.3g} nm long ({finest}); "
+        f"if the spectrum went on for a decade, the RMS slope would be {slope:.2g} instead of {cut_slope:.2g}, and "
+        f"cells would touch at {contact_nm:.3g} instead of {cut_nm:.3g} nm"
+    )
+    remedy = "the answer is that of the scales measured; measure finer ones, or end the surfaces there (inputs.q1)"
+    return [Doubt("finer_waves", text, remedy, "contact")]
+
+
+def _shortest_wave(spectra: Sequence[TrustedSpectrum]) -> tuple[str, float]:
+    """Name of the finest measurement, and the shortest wave (nm) that it shows."""
+    finest = max(spectra, key=lambda item: item.high)
+    return finest.name, 2.0 * np.pi / finest.high
