@@ -158,7 +158,7 @@ def known_contributions(scene: Scene) -> tuple[dict[str, Any], str]:
         if contributed := contributions(Results(root, [root / f for f in files if (root / f).is_file()], scene.name)):
             return contributed, f"its last run in {root}"
     known = load_json(KNOWN)["scenes"]
-    names = [scene.name, scene.extends or "", "reduced" if scene.contact.mechanics == "coupled" else "paper"]
+    names = [scene.name, scene.extends or "", "paper" if scene.contact.mechanics == "asperity" else "reduced"]
     name = next(name for name in names if name in known)
     return known[name], f"shipped scene {name}"
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from mesoscale.checks import check_number, check_seed
 from mesoscale.contact.numerics import NUMERICS, Numerics
-from mesoscale.contact.path import trace
+from mesoscale.contact.path import reopen, trace
 from mesoscale.contact.pressed import Contact, Row
 from mesoscale.contact.surface import ContactAt, given_surface, random_surface
 from mesoscale.inputs.contact import ContactInputs
@@ -142,7 +142,7 @@ def run_cycle(
     contact = contact_on(surface, inputs, settings, numerics)
     capacity = contact.capacity
     first_contact = contact.touching_separation
-    approach = _approach(contact)
+    approach = [contact.away(first_contact + gap) for gap in _gaps(contact)[::-1]]
     closing = trace(contact, numerics.force_steps, plastic, stop_force=min(force, capacity))
     reached = closing.reached and force <= capacity
     miss = abs(closing.rows[-1].force - force) / force
@@ -150,33 +150,40 @@ def run_cycle(
         closing.rows += hold(contact, closing.rows[-1])
     last = closing.rows[-1]
     changed, remarks = contact.changed_sites, contact.remarks()
-    if changed > 0 and last.force > 0:
+    repeated, unconverged = closing.repeated, closing.unconverged
+    if not contact.REVERSIBLE:
+        path = reopen(contact, numerics.force_steps, last)
+        opening, repeated, unconverged = path.rows, repeated + path.repeated, unconverged + path.unconverged
+        departure = [contact.away(opening[-1].separation + gap) for gap in _gaps(contact)]
+        unconverged += contact.unsettled
+        remarks["jump_loss_aJ"] = float(contact.lost)
+    elif changed > 0 and last.force > 0:
         contact.adopt_changes()
-        departure = _approach(contact)
+        departure = [contact.away(contact.touching_separation + gap) for gap in _gaps(contact)]
         path = trace(contact, numerics.force_steps, False, last.force, stop_separation=last.separation)
         # the last row of the way down is the state in which closing ended
         opening = [last._replace(sweeps=0), *path.rows[-2::-1]]
     else:  # nothing flowed: the way back is the way there
-        departure = approach
+        departure = approach[::-1]
         opening = [row._replace(sweeps=0) for row in closing.rows[::-1]]
     return Cycle(
         closing=_branch(contact, [*approach, *closing.rows]),
-        opening=_branch(contact, [*opening, *departure[::-1]]),
+        opening=_branch(contact, [*opening, *departure]),
         first_contact_nm=first_contact + contact.offset,
         last_contact_nm=(opening[-1].separation if last.force > 0 else first_contact) + contact.offset,
         flags={
             "force_reached": reached,
             "force_miss": abs(last.force - force) / force,
-            "unconverged_steps": closing.unconverged,
+            "unconverged_steps": unconverged,
             "largest_load": closing.load,
             "full_contact": closing.full,
             "radius_bound_events": closing.bounds,
-            "repeated_steps": closing.repeated,
+            "repeated_steps": repeated,
             "changed_sites": changed,
             "repulsion_drop": _largest_drop([row.force for row in closing.rows]),
             **remarks,
         },
-        converged=reached and miss <= MAX_FORCE_MISS and closing.unconverged == 0,
+        converged=reached and miss <= MAX_FORCE_MISS and unconverged == 0,
         inputs=inputs,
         length_nm=settings.length_nm,
         heights=surface if keep_surface else None,
@@ -186,7 +193,11 @@ def run_cycle(
 def contact_on(
     surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
 ) -> Contact:
-    """Contact on (N, N) heights in nm by the engine of `settings.mechanics`; the other one is not even compiled."""
+    """Contact on (N, N) heights in nm by the engine of `settings.mechanics`; the others are not even compiled."""
+    if settings.mechanics == "adhesive":
+        from mesoscale.contact.coupled.adhesive import AdhesiveContact
+
+        return AdhesiveContact(surface, inputs, settings, numerics)
     if settings.mechanics == "coupled":
         from mesoscale.contact.coupled.engine import CoupledContact
 
@@ -202,11 +213,9 @@ def _largest_drop(forces: list[float]) -> float:
     return float((highest - forces).max() / highest[-1]) if highest[-1] > 0 else 0.0
 
 
-def _approach(contact: Contact) -> list[Row]:
-    """Rows before first contact, from afar, where only the attraction acts."""
-    touch = contact.touching_separation
-    gaps = np.geomspace(max(4.0 * contact.rms, 10.0), max(0.01 * contact.rms, 0.01), 20)
-    return [Row(touch + gap, 0.0, contact.attraction(touch + gap), 0, 0, 0) for gap in gaps]
+def _gaps(contact: Contact) -> np.ndarray:
+    """Distances from contact (nm), rising, at which the attraction of what does not touch is computed."""
+    return np.geomspace(max(4.0 * contact.rms, 10.0), max(0.01 * contact.rms, 0.01), 20)[::-1]
 
 
 def _branch(contact: Contact, rows: list[Row]) -> Branch:

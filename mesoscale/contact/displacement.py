@@ -69,7 +69,7 @@ class Closing:
         attraction : whether it is wanted, too; it takes half of the time.
         """
         flat, repulsive = separation_nm - self._contact.offset, 0.0
-        if flat < self._touching:
+        if flat < self._touching or not self._contact.REVERSIBLE:
             moved = _bring_down(self._contact, self._flats[-1] if self._flats else flat, flat)
             self.settled &= moved.settled and not moved.stuck
             repulsive = moved.force
@@ -85,10 +85,10 @@ class Closing:
     def opening(self) -> Array:
         """The same on the way back from here to the first separation, in the order of closing, shape (2, n)."""
         forces = self.closing
-        self._has_flowed |= self._contact.changed_sites > 0
+        self._has_flowed |= self._contact.changed_sites > 0 or not self._contact.REVERSIBLE
         if self._has_flowed:  # else the way back is the way there
-            forces[:, :-1] = _way_back(self._contact, np.array(self._flats[:-1]))
-            self._contact.move_to(self._flats[-1], False)
+            forces[:, :-1] = self._contact.opened(np.array(self._flats))[:, :-1]
+            self.settled &= self._contact.unsettled == 0
         return forces
 
 
@@ -136,15 +136,3 @@ def _bring_down(contact: Contact, start: float, target: float) -> State:
         moved = contact.move_to(target, True)
         step = min(2.0 * step, start - target)
     return moved
-
-
-def _way_back(contact: Contact, flats: Array) -> Array:
-    """Repulsion and attraction of the surface as flow has left it, without further flow, shape (2, len(flats))."""
-    contact.adopt_changes()
-    touching = contact.touching_separation
-    forces = np.zeros((2, flats.size))
-    for place, flat in enumerate(flats):
-        if flat < touching:
-            forces[0, place] = contact.move_to(flat, False).force
-        forces[1, place] = contact.attraction(flat)
-    return forces

@@ -5,21 +5,27 @@ import numpy as np
 from mesoscale.contact.cycle import Branch, Cycle
 
 
-def work(branch: Branch) -> tuple[float, float]:
-    """Work against the repulsion along a branch and its uncertainty, both nN nm (1e-18 J) and positive.
+def work(branch: Branch, net: bool = False) -> tuple[float, float]:
+    """Work of the flat along a branch and its uncertainty, both nN nm (1e-18 J).
 
-    Trapezoids; the uncertainty is a third of what leaving out every second point changes, as for any rule of
-    second order (Richardson).
+    The work is against the repulsion, or that of the net force, as spent on closing and regained on opening.
+    Trapezoids; the uncertainty is a third of what leaving out every second point changes, as for any rule of second
+    order (Richardson).
     """
-    h, force = branch.separation_nm, branch.repulsive_nN
+    h, force = branch.separation_nm, branch.net_nN if net else branch.repulsive_nN
     coarse = np.append(np.arange(0, len(h) - 1, 2), len(h) - 1)
     fine = float(np.trapezoid(force, h))
-    return abs(fine), abs(fine - float(np.trapezoid(force[coarse], h[coarse]))) / 3.0
+    spent = fine if h[-1] > h[0] else -fine
+    return spent, abs(fine - float(np.trapezoid(force[coarse], h[coarse]))) / 3.0
 
 
 def dissipated_energy(cycle: Cycle) -> tuple[float, float]:
-    """Work lost between closing and opening against the repulsion, and its uncertainty, nN nm (1e-18 J)."""
-    (spent, error_spent), (regained, error_regained) = work(cycle.closing), work(cycle.opening)
+    """Work lost between closing and opening, and its uncertainty, nN nm (1e-18 J).
+
+    Against the repulsion; where attraction deforms the contact and has an energy (`mechanics: adhesive`), of both.
+    """
+    net = "jump_loss_aJ" in cycle.flags
+    (spent, error_spent), (regained, error_regained) = work(cycle.closing, net), work(cycle.opening, net)
     return spent - regained, error_spent + error_regained
 
 

@@ -47,10 +47,10 @@ def trace(
     path = Path()
     final = stop_force
     separation = contact.touching_separation
-    path.rows.append(Row(separation, 0.0, contact.attraction(separation), 0, 0, 0))
-    force = 0.0
+    path.rows.append(contact.away(separation))
+    force = path.rows[0].force
     scale = max(contact.rms, 1e-3 * contact.spacing)
-    smallest = 1e-7 * scale
+    smallest = contact.SMALLEST_STEP * scale
     step = scale / 300.0
     limit = -contact.highest - 2.0 * contact.length
 
@@ -96,6 +96,35 @@ def trace(
         step = min(step * min(2.0, max(0.5, wanted / rise if rise > 0 else 2.0)), largest)
         if contact.AIMS_AT_END and rise > 0 and force + wanted > final:
             step = min(step, (path.rows[-2].separation - separation) * (final - force) / rise)
+    return path
+
+
+def reopen(contact: Contact, steps: int, last: Row) -> Path:
+    """Lift the flat from the end of closing until nothing touches any more, in steps that follow both forces.
+
+    For contacts that come back another way than they went. Where a force jumps, the step is as small as a path allows.
+    """
+    path = Path([last._replace(sweeps=0)])
+    scale = max(contact.rms, 1e-3 * contact.spacing)
+    smallest = contact.SMALLEST_STEP * scale
+    step = scale / 300.0
+    usual = (last.force - last.attraction) / steps
+    while path.rows[-1].sites > 0:
+        before = path.rows[-1]
+        target = before.separation + step
+        moved = contact.move_to(target, False)
+        pull = contact.attraction(target)
+        change = max(abs(moved.force - before.force), abs(pull - before.attraction))
+        wanted = min(usual, max(0.1 * (before.force - before.attraction), 0.02 * usual))
+        if change > 2.0 * wanted and step > smallest:
+            contact.back()
+            path.repeated += 1
+            step = max(step * max(0.25, wanted / change), smallest)
+            continue
+        path.rows.append(Row(target, moved.force, pull, moved.sites, moved.asperities, moved.sweeps))
+        path.unconverged += not moved.settled
+        largest = max(scale, target - last.separation) / 30.0
+        step = min(step * min(2.0, max(0.5, wanted / change if change > 0.0 else 2.0)), largest)
     return path
 
 

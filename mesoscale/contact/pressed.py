@@ -68,12 +68,18 @@ class Contact(ABC):
     heights : (N^2,) in nm; contact is at the minima. Flow changes them in place.
     offset : mean of the heights before contact, nm.
     order, order_heights : unchanged sites up to the height `sorted_to`, and their heights in nm.
+    unsettled : steps of `away` that did not settle.
     """
 
     FORCE_TOLERANCE = 1e-6
     # of H(L^2) L^2, what the cell carries as one contact: beyond, more than three quarters of it touch, asperities
     # that merge carry less than apart, and cycles gain energy (seen at 0.9 on 64^2 sites, not at 0.8)
     BEARING_SHARE = 0.8
+
+    # whether opening without flow goes the way of closing, but for the flow; then it is computed as a closing
+    REVERSIBLE = True
+    # of a path, over the roughness
+    SMALLEST_STEP = 1e-7
 
     # whether the last steps of a path aim at its end: a step beyond may fall back below the largest force where a
     # cluster that grows softens, and be taken for one that fell short; the paper's paths go beyond
@@ -100,6 +106,7 @@ class Contact(ABC):
         self.order = np.empty(0, np.int32)
         self.order_heights = np.empty(0)
         self.sorted_to = -np.inf
+        self.unsettled = 0
         self.adhesion = (
             Attraction(self.heights, self.site_area, inputs.hamaker, settings, numerics) if inputs.hamaker > 0 else None
         )
@@ -119,6 +126,29 @@ class Contact(ABC):
     @abstractmethod
     def attraction(self, separation: float) -> float:
         """Attractive force in nN, negative (eq. 1); 0 without a pass over anything if A_H = 0."""
+
+    @property
+    def lost(self) -> float:
+        """Energy lost in jumps, nN nm."""
+        return 0.0
+
+    def away(self, separation: float) -> Row:
+        """The contact where it does not touch."""
+        return Row(separation, 0.0, self.attraction(separation), 0, 0, 0)
+
+    def opened(self, separations: np.ndarray) -> np.ndarray:
+        """Repulsion and attraction (nN) on the way back over separations of a closing, without further flow.
+
+        The last separation is the present one, at which the contact is afterwards, too. Shape (2, n).
+        """
+        self.adopt_changes()
+        touching = self.touching_separation
+        forces = np.zeros((2, separations.size))
+        for place, separation in enumerate(separations):
+            if separation < touching:
+                forces[0, place] = self.move_to(separation, False).force
+            forces[1, place] = self.attraction(separation)
+        return forces
 
     @property
     def changed_sites(self) -> int:

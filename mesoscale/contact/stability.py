@@ -88,9 +88,9 @@ def violations(
     limit = 1.0 + NUMERICS.flow_tolerance
     if settings.model == "plastic" and float(cycle.flags["largest_load"]) > limit * (1 + 1e-12):
         broken.append(f"an asperity at {cycle.flags['largest_load']:.4g} of its hardness")
-    coupled = settings.mechanics == "coupled"
+    coupled = settings.mechanics != "asperity"
     constant = settings.model == "elastic" or inputs.h_prime == 0.0
-    if coupled and constant and float(cycle.flags["repulsion_drop"]) > LOST:
+    if settings.mechanics == "coupled" and constant and float(cycle.flags["repulsion_drop"]) > LOST:
         broken.append(f"closing lost {cycle.flags['repulsion_drop']:.2g} of its repulsion")
     if start is not None and cycle.heights is not None:
         moved = cycle.heights - start
@@ -114,7 +114,7 @@ def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case
     carried = (inputs.h_macro + inputs.h_prime * area**-0.25) * area
     x = (np.arange(n) - n // 2) * settings.length_nm / n
     with_ = partial(replace, inputs)
-    coupled = settings.mechanics == "coupled"  # then the separation of the mean planes says when contact is full
+    coupled = settings.mechanics != "asperity"  # then the separation of the mean planes says when contact is full
     reading = settings.reading.model_copy
     cases = [
         Case("central inputs", "medians of the scene's inputs", inputs),

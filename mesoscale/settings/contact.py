@@ -73,9 +73,10 @@ def base_modulus(bodies: Sequence[Body]) -> float:
 class ContactSettings(Settings):
     """Mesoscale contact model (docs/contact.md)."""
 
-    mechanics: Literal["asperity", "coupled"] = Field(
+    mechanics: Literal["asperity", "coupled", "adhesive"] = Field(
         default="asperity",
-        description="how asperities carry load: each on its own by eq. 3, or all on one elastic half-space",
+        description="how asperities carry load: each on its own by eq. 3, all on one elastic half-space, or on "
+        "one that the attraction deforms, too",
     )
     model: Literal["elastic", "nonlinear", "plastic"] = Field(
         default="plastic",
@@ -127,7 +128,7 @@ class ContactSettings(Settings):
         default=(),
         max_length=2,
         description="elastic layers of the two bodies, each from its surface down to its base; e_star is then that of "
-        "the bases together, and scales all layers; empty: e_star alone (mechanics: coupled)",
+        "the bases together, and scales all layers; empty: e_star alone (mechanics: coupled or adhesive)",
     )
     reading: ReadingSettings = ReadingSettings()
 
@@ -138,8 +139,8 @@ class ContactSettings(Settings):
                 raise ValueError(
                     "bodies: each is a list of layers with thickness_nm, and at its end a base without one"
                 )
-        if self.bodies and self.mechanics != "coupled":
-            raise ValueError("bodies: single asperities know one modulus; accepted with mechanics: coupled")
+        if self.bodies and self.mechanics == "asperity":
+            raise ValueError("bodies: single asperities know one modulus; accepted with mechanics: coupled or adhesive")
         return self
 
     @property

@@ -11,7 +11,7 @@ Length = Annotated[float, Field(gt=0, le=1e6)]
 
 Scatter = Annotated[float, Field(ge=0, le=2)]
 
-CELLS_PER_JOB = {"asperity": 64, "coupled": 32}
+CELLS_PER_JOB = {"asperity": 64, "coupled": 32, "adhesive": 8}
 """Cells of a pad per job and file, by mechanics: coupled ones take seconds each."""
 DRAWS_PER_JOB = 12
 

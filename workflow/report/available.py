@@ -68,7 +68,7 @@ class Results:
     @property
     def coupled(self) -> bool:
         """Whether asperities deform each other's ground."""
-        return self.contact.get("mechanics") == "coupled"
+        return self.contact.get("mechanics") in ("coupled", "adhesive")
 
     @property
     def fitted_MPa(self) -> float:

@@ -6,20 +6,20 @@ _ASPERITY = (
     "Contact area is where a plane cuts the surface, which overestimates it.",
     "Each asperity is pressed on its own. On opening this is too compliant; target model_form tells by how much.",
 )
-_COUPLED = (
-    "Attraction does not deform the contact.",
-    "Flowed volume is not kept: the rim that it would make carries no load.",
-)
+_COUPLED = ("Flowed volume is not kept: the rim that it would make carries no load.",)
+_UNDEFORMED = "Attraction does not deform the contact."
 _CLAMPED = "With the clamped law the pull-off of flattened tops is an upper bound."
 
 
 def limits(results: Results) -> list[str]:
     """What a reader must know before using the numbers."""
     shortest = "that the grid resolves" if results.contact.get("q1_per_nm") is None else "that the cut-off q₁ leaves"
+    undeformed = results.contact.get("mechanics") == "coupled"
     return [
         "The law of attraction is a choice, not a measurement: the first screen shows the release by both laws.",
         *(_COUPLED if results.coupled else _ASPERITY),
-        *([_CLAMPED] if results.coupled and results.contact.get("attraction") == "clamped" else []),
+        *([_UNDEFORMED] if undeformed else []),
+        *([_CLAMPED] if undeformed and results.contact.get("attraction") == "clamped" else []),
         f"The RMS slope is set by the shortest waves {shortest}.",
         "Only few asperities carry a square micrometre, so the law of one cell differs much between surfaces.",
         "No creep unless the scene asks for it (history); no liquid films, no charging, no sliding.",

@@ -35,13 +35,17 @@ START_S = 0.8  # Snakemake's start of a job, and the packages
 ENGINE_S = 0.9  # more packages for a contact, and its loops from numba's cache
 GRID = 1024**2  # sites of the reference
 # of any cycle; of one on the reference grid, besides; the power of the sites with which that grows
-CYCLE_S = {"asperity": (0.005, 0.054, 1.0), "coupled": (0.01, 2.5, 2.2)}
-NOMINAL = {"asperity": 10, "coupled": 70}  # cycles: the largest load presses seven times as hard
+CYCLE_S = {"asperity": (0.005, 0.054, 1.0), "coupled": (0.01, 2.5, 2.2), "adhesive": (0.05, 36.0, 1.2)}
+NOMINAL = {"asperity": 10, "coupled": 70, "adhesive": 30}  # cycles: the largest load presses seven times as hard
 RUN_S = 0.004  # law of a run and its row
-CELL = {"asperity": 2.2, "coupled": 3.9}  # a pad's cell over a cycle: it opens from several depths
-PRESSED = {"asperity": 1.0, "coupled": 9.0}  # that which a switch presses over it
-DRAW = {"asperity": 0.8, "coupled": 0.45}  # a cell of a pad at other inputs: fewer steps, half of the depths
-PILOT = {"asperity": 0.53, "coupled": 0.17}  # a cell that is only closed, in coarse steps
+CELL = {"asperity": 2.2, "coupled": 3.9, "adhesive": 3.0}  # a pad's cell over a cycle: it opens from several depths
+PRESSED = {"asperity": 1.0, "coupled": 9.0, "adhesive": 5.0}  # that which a switch presses over it
+DRAW = {
+    "asperity": 0.8,
+    "coupled": 0.45,
+    "adhesive": 0.7,
+}  # a cell of a pad at other inputs: fewer steps, half of the depths
+PILOT = {"asperity": 0.53, "coupled": 0.17, "adhesive": 0.3}  # a cell that is only closed, in coarse steps
 TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
 
 

@@ -7,7 +7,7 @@ from mesoscale.settings.history import DWELL_STEPS
 from mesoscale.settings.uncertainty import RESAMPLES
 
 PROCESS_MB = 600.0  # a job is two processes with their packages
-SITE_MB = {"asperity": 62e-6, "coupled": 140e-6}  # 4096^2 sites take 1.1 GB, 1024^2 coupled ones 323 MB
+SITE_MB = {"asperity": 62e-6, "coupled": 140e-6, "adhesive": 260e-6}  # 4096^2 sites take 1.1 GB, 1024^2 323 and 515 MB
 RUN_MB = 6e-3  # a direct run in regressions: 4000 to 10,000 of them take 26 MB, their rows 1.5 kB each
 RESAMPLED_MB = 32e-6  # a direct run in each resampling; measured with 10,000 runs, 24e-6 with 30,000
 ROW_MB = 1.4e-3  # a row of a history's table, as it is made and written

@@ -115,11 +115,11 @@ class CoupledContact(Contact):
         number, count = self._clusters()
         if with_flow:
             clusters.flatten(
-                self.heights, self.sites, separation, self.displacement, self.pressure, self.limit, self.changes
+                self.heights, self.sites, separation, self.displacement, self.pressure, self._bounds(), self.changes
             )
         touching = int(np.count_nonzero(number >= 0))
         hardness = self._hardness_of(number)
-        load = float((self.pressure / hardness).max()) if touching and hardness.all() else 0.0
+        load = float((self._traction() / hardness).max()) if touching and hardness.all() else 0.0
         return State(self.force, touching, count, 0, load, rounds, settled, False)
 
     def remarks(self) -> dict[str, float]:
@@ -128,7 +128,8 @@ class CoupledContact(Contact):
         touching = number >= 0
         area = self.site_area * max(int(touching.sum()) / max(count, 1), 1.0)
         hardness = self.hardness.of(area)
-        yielded = float(np.mean(self.pressure[touching] >= self._hardness_of(number)[touching])) if count else 0.0
+        reached = self._traction()[touching] >= (1.0 - 1e-12) * self._hardness_of(number)[touching]
+        yielded = float(np.mean(reached)) if count else 0.0
         return {
             "rms_slope": self.roughness.slope,
             "rms_curvature_per_nm": self.roughness.curvature,
@@ -147,8 +148,25 @@ class CoupledContact(Contact):
 
     @property
     def force(self) -> float:
-        """Repulsive force of the pressures, nN."""
+        """Repulsive force, nN."""
+        return self._pressed
+
+    @property
+    def _pressed(self) -> float:
+        """Force of all pressures, nN."""
         return float(self.pressure.sum()) * self.site_area
+
+    def _traction(self) -> np.ndarray:
+        """Normal stress (GPa) on the known sites, compression positive."""
+        return self.pressure
+
+    def _bounds(self) -> np.ndarray:
+        """Largest pressures (GPa) of the known sites."""
+        return self.limit
+
+    def _open_gap(self) -> np.ndarray:
+        """Gap (nm) of the known sites before the pressures deform the surface."""
+        return self.heights[self.sites] + self.separation
 
     def fields(self) -> tuple[np.ndarray, np.ndarray]:
         """Pressure (GPa) and gap (nm; 0 in contact) of all sites at the current separation, shapes (N, N)."""
@@ -194,14 +212,14 @@ class CoupledContact(Contact):
     def _solve(self) -> bool:
         """Find the pressures with the limits at hand; True if they settled."""
         while True:
-            self._know(self.force)
-            gap = self.heights[self.sites] + self.separation
+            self._know(self._pressed)
+            gap, limit = self._open_gap(), self._bounds()
             if self.grid is None:
                 _, settled = dense.solve(
                     self.matrix,
                     self.sites.size,
                     gap,
-                    self.limit,
+                    limit,
                     self.stiffness,
                     self.TOLERANCE,
                     self.pressure,
@@ -209,14 +227,14 @@ class CoupledContact(Contact):
                 )
             else:
                 self.pressure, self.displacement, _, settled = grid.solve(
-                    self.grid, gap, self.limit, self.stiffness, self.TOLERANCE, self.pressure
+                    self.grid, gap, limit, self.stiffness, self.TOLERANCE, self.pressure
                 )
             if not settled:
-                settled = self._project(gap)
-            if self._knows_enough(self.force):
+                settled = self._project(gap, limit)
+            if self._knows_enough(self._pressed):
                 return settled
 
-    def _project(self, gap: np.ndarray) -> bool:
+    def _project(self, gap: np.ndarray, limit: np.ndarray) -> bool:
         """The same where the active sets did not settle."""
         matrix = self.matrix[: self.sites.size, : self.sites.size]
         if self.grid is None:
@@ -226,10 +244,10 @@ class CoupledContact(Contact):
             norm = float(self.grid.compliance.max())
             apply = self.grid.displacement
         self.pressure, self.displacement, _, _ = grid.project(
-            apply, norm, gap, self.limit, self.stiffness, self.TOLERANCE, self.pressure
+            apply, norm, gap, limit, self.stiffness, self.TOLERANCE, self.pressure
         )
         sites = self.sites.size
-        worst = dense.residual(gap, self.pressure, self.displacement, self.limit, self.stiffness, sites)
+        worst = dense.residual(gap, self.pressure, self.displacement, limit, self.stiffness, sites)
         return worst <= self.SETTLED
 
     def _highest(self, force: float) -> float:

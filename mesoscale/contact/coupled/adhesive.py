@@ -1,0 +1,280 @@
+"""The coupled contact with an attraction that deforms it, and with the jumps that follow.
+
+The stress t on the surface is the pressure p of touching sites less the attraction s(g) of all sites, and the gap is
+g = h + d + G t >= 0. Where p > 0 the surfaces touch (g = 0), and t <= H. This is a minimum of the energy
+
+    E(g) = elastic energy + sum of W(g) a^2, with W' = s.
+
+W is concave, so it lies below its tangent. With s kept from the last gap the energy is a bound on E that is convex: the
+repulsive contact under given stresses, which the coupled engine solves. Its minimum has a lower E than the last gap
+(a convex-concave procedure, Yuille and Rangarajan, doi:10.1162/08997660360581958). The iteration therefore ends in a
+stable state next to the last one. Where the branch ends it goes on to the next, and the energy between is lost.
+Anderson's mixing (doi:10.1145/321296.321305) makes it faster; a mix that raises the energy is left out.
+"""
+
+import math
+from collections import deque
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from mesoscale.contact.attraction import inverse_cube
+from mesoscale.contact.coupled import grid
+from mesoscale.contact.coupled.engine import CoupledContact
+from mesoscale.contact.numerics import NUMERICS, Numerics
+from mesoscale.contact.pressed import Row, State
+from mesoscale.errors import InputError
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.settings import ContactSettings
+
+
+class Pulled(NamedTuple):
+    """What attraction does at one separation.
+
+    Attributes
+    ----------
+    pull : (N^2,) attraction of the sites, GPa.
+    shift : (N^2,) displacement of the surface by it, nm.
+    moved : (N^2,) displacement by all stresses, nm.
+    energy : elastic and adhesive, nN nm.
+    total : attraction of all sites over the gap that the stresses leave, nN.
+    flowing : work against the hardness, part of the energy, nN nm.
+    net : force on the flat, nN.
+    lost : in jumps so far, nN nm.
+    """
+
+    separation: float
+    pull: np.ndarray
+    shift: np.ndarray
+    moved: np.ndarray
+    energy: float
+    total: float
+    flowing: float
+    net: float
+    lost: float
+
+
+class AdhesiveContact(CoupledContact):
+    """A surface on an elastic half-space that attraction deforms, too, and its stresses at the current separation."""
+
+    REVERSIBLE = False
+    FORCE_TOLERANCE = 1e-4
+    SMALLEST_STEP = 1e-4
+    STEPS = 500  # of the iteration
+    CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
+    MIXED = 12  # steps that are mixed
+    MIXED_PULL = 1e-3  # sites with less than this share of the largest attraction are not mixed
+
+    def __init__(
+        self, surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings, numerics: Numerics = NUMERICS
+    ):
+        self.space = grid.Grid(surface.shape[0], settings.length_nm, float(inputs.e_star), settings.bodies)
+        super().__init__(surface, inputs, settings, numerics)
+        self._check_range()
+
+    def _check_range(self) -> None:
+        """Refuse an attraction that falls off so fast that single sites jump (InputError)."""
+        if self.adhesion is None:
+            return
+        steepest = 3.0 * self.strongest / self.adhesion.cutoff
+        if steepest > self.stiffness:
+            pixels = int(np.ceil(self.n * steepest / self.stiffness))
+            raise InputError(
+                f"contact.mechanics = adhesive: the attraction changes by {steepest:.3g} GPa per nm, the grid resolves "
+                f"{self.stiffness:.3g} GPa per nm; take contact.pixels >= {pixels}, a larger contact.gap_cutoff_nm, or "
+                "mechanics: coupled"
+            )
+
+    def _forget(self) -> None:
+        super()._forget()
+        nothing = np.zeros(self.heights.size)
+        self.now = self.earlier = Pulled(math.inf, nothing, nothing, nothing, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.saved = (self.now, self.earlier)
+
+    @property
+    def strongest(self) -> float:
+        """Attraction of touching sites, GPa."""
+        law = self.adhesion
+        return self.hamaker / (6.0 * np.pi) * float(inverse_cube(law.cutoff, law.rate)) if law else 0.0
+
+    def back(self) -> None:
+        """Undo the last move, its flow and its stresses."""
+        super().back()
+        self.now, self.earlier = self.saved
+        self.displacement = self.now.moved[self.sites]
+
+    def move_to(self, separation: float, with_flow: bool) -> State:
+        """Bring the flat to a separation; it may be undone by `back` until the next move."""
+        self.saved = (self.now, self.earlier)
+        guess = self._expected(separation)
+        if not (with_flow or self.capped):
+            self.limit = np.full(self.limit.size, math.inf)
+            self.mean = float(self.heights.mean())
+        self.earlier, self.now = self.now, self.now._replace(separation=separation, pull=guess)
+        state = super().move_to(separation, with_flow)
+        if state.force < math.inf:
+            self._balance(with_flow)
+        return state
+
+    def _balance(self, with_flow: bool) -> None:
+        """Energy that a step has lost in jumps; what flow takes up is no longer stored.
+
+        A step loses what its energy falls by, beyond the work of its mean force. Up to a third of abs(F2 - F1) step / 2
+        may be the curvature of F (a parabola); beyond half of it the contact has jumped. Flow loses energy by itself.
+        """
+        was, net = self.saved[0], self.force + self.attraction(self.separation)
+        lost, step = was.lost, self.separation - was.separation
+        if math.isfinite(step) and not with_flow:
+            loss = was.energy - self.now.energy - 0.5 * (was.net + net) * step
+            lost += loss if loss > 0.25 * abs((net - was.net) * step) else 0.0
+        stored = self.now.energy - (self.now.flowing if with_flow else 0.0)
+        self.now = self.now._replace(net=net, lost=lost, energy=stored)
+
+    def _expected(self, separation: float) -> np.ndarray:
+        """Attraction of the sites if it goes on as in the last step."""
+        step, last = separation - self.now.separation, self.now.separation - self.earlier.separation
+        if not (math.isfinite(last) and last * step > 0.0):
+            return self.now.pull
+        change = min(step / last, 1.0) * (self.now.pull - self.earlier.pull)
+        change[self.now.pull <= self.MIXED_PULL * self.strongest] = 0.0
+        return np.clip(self.now.pull + change, 0.0, self.strongest)
+
+    @property
+    def lost(self) -> float:
+        """Energy lost in jumps so far, nN nm."""
+        return self.now.lost
+
+    def away(self, separation: float) -> Row:
+        """The contact at a separation, where attraction may close it; on the way down it flows."""
+        moved = self.move_to(separation, self.flows and separation < self.separation)
+        self.unsettled += not moved.settled
+        return Row(separation, moved.force, self.attraction(separation), moved.sites, moved.asperities, moved.sweeps)
+
+    def opened(self, separations: np.ndarray) -> np.ndarray:
+        """Repulsion and attraction (nN) on the way back over separations of a closing, shape (2, n).
+
+        The last separation is the present one; the contact is as before afterwards.
+        """
+        kept = (self.separation, self.sites, self.pressure.copy(), self.limit.copy()), (self.now, self.earlier)
+        rows = [self.away(separation) for separation in separations[::-1].tolist()]
+        self.before, self.saved = kept
+        self.back()
+        return np.array([(row.force, row.attraction) for row in rows[::-1]]).T
+
+    @property
+    def force(self) -> float:
+        """Force of the compressive stresses, nN."""
+        return float(np.maximum(self._traction(), 0.0).sum()) * self.site_area
+
+    def attraction(self, separation: float) -> float:
+        """Force of the tensile stresses in nN, negative, at the current separation."""
+        return self._pressed - self.now.total - self.force
+
+    def fields(self) -> tuple[np.ndarray, np.ndarray]:
+        """Stress (GPa, compression positive) and gap (nm) of all sites, shapes (N, N)."""
+        shape = (self.n, self.n)
+        gap = np.maximum(self.heights + self.separation + self.now.moved, 0.0)
+        return (self._spread() - self.now.pull).reshape(shape), gap.reshape(shape)
+
+    def _spread(self) -> np.ndarray:
+        """Pressures of all sites, shape (N^2,)."""
+        pressure = np.zeros(self.heights.size)
+        pressure[self.sites] = self.pressure
+        return pressure
+
+    def _traction(self) -> np.ndarray:
+        return self.pressure - self.now.pull[self.sites]
+
+    def _bounds(self) -> np.ndarray:
+        return self.limit + self.now.pull[self.sites]
+
+    def _open_gap(self) -> np.ndarray:
+        return super()._open_gap() + self.now.shift[self.sites]
+
+    def _highest(self, force: float) -> float:
+        return super()._highest(force) - float(self.now.shift.min())
+
+    def _solve(self) -> bool:
+        """Find the stresses with the limits at hand; True if they settled."""
+        law, strongest = self.adhesion, self.strongest
+        wanted = safe = self.now.pull
+        mixed = np.empty(0, int)
+        steps: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=self.MIXED)
+        lowest, settled, change = math.inf, False, math.inf
+        for _ in range(self.STEPS):
+            self.now = self.now._replace(pull=wanted, shift=self.space.displacement(-wanted))
+            settled = super()._solve()
+            pressure = self._spread()
+            moved = self.now.shift + self.space.displacement(pressure)
+            reached = np.zeros_like(moved)
+            energy = change = 0.0
+            if law is not None:
+                energy, change = attract(
+                    self.heights,
+                    self.separation,
+                    moved,
+                    pressure,
+                    wanted,
+                    self.hamaker,
+                    law.least,
+                    law.offset,
+                    law.rate,
+                    reached,
+                )
+            yielding = self.pressure >= self._bounds()
+            overlap = -(self.heights + self.separation + moved)[self.sites[yielding]]
+            flowing = float(self.limit[yielding] @ overlap)
+            energy += flowing + strongest * float(overlap.sum())
+            self.now = self.now._replace(
+                moved=moved,
+                energy=energy * self.site_area,
+                flowing=flowing * self.site_area,
+                total=float(reached.sum()) * self.site_area,
+            )
+            if change <= self.CHANGE * strongest:
+                break
+            if wanted is not safe and energy > lowest:  # a mix that leads astray
+                steps.clear()
+                wanted = safe
+                continue
+            if not steps:
+                mixed = np.flatnonzero(reached > self.MIXED_PULL * strongest)
+            steps.append((wanted[mixed], reached[mixed]))
+            lowest, wanted = energy, reached
+            safe = reached
+            if len(steps) > 1:
+                wanted = reached.copy()
+                wanted[mixed] = np.clip(mix(steps), 0.0, strongest)
+        self.displacement = self.now.moved[self.sites]
+        return settled and change <= self.CHANGE * strongest
+
+
+def mix(steps: deque[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
+    """Where the iteration tends to, from its last steps, pairs of what went in and what came out, shape (sites,)."""
+    start, end = (np.array(arrays) for arrays in zip(*steps, strict=True))
+    change = end - start
+    shares = np.linalg.lstsq(np.diff(change, axis=0).T, change[-1], rcond=1e-8)[0]
+    return end[-1] - shares @ np.diff(end, axis=0)
+
+
+@njit(cache=True)
+def attract(heights, separation, moved, pressure, pull, hamaker, least, offset, rate, reached):
+    """Attraction (GPa) of the sites of a deformed surface, into `reached`.
+
+    The energy of flats s apart is -A_H / (12 pi s^2 (1 + c s)); within the least distance the attraction is constant.
+
+    Returns
+    -------
+    Elastic and adhesive energy, nN/nm, and the largest change of the attraction from `pull`, GPa.
+    """
+    strength = hamaker / (6.0 * np.pi)
+    energy = change = 0.0
+    for k in range(moved.size):
+        gap = heights[k] + separation + moved[k]
+        walls = max(gap, least) + offset
+        reached[k] = strength * inverse_cube(walls, rate)
+        energy += 0.5 * (pressure[k] - pull[k]) * moved[k]
+        energy -= 0.5 * strength / (walls * walls * (1.0 + rate * walls)) + reached[k] * max(least - gap, 0.0)
+        change = max(change, abs(reached[k] - pull[k]))
+    return energy, change
