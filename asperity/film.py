@@ -13,12 +13,13 @@ import numpy as np
 
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import pull_off
-from mesoscale.device.electrode import presser
+from mesoscale.device.electrode import presser, releases_by_cells
 from mesoscale.device.pad_results import switch_on_pad
 from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.definitions import definition
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import PAPER_ROWS, check_resolved, film_table, input_table
 from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
@@ -137,7 +138,9 @@ class Film(_Shown):
         ------
         InputError : an unknown input, a value out of range, or measurements that no description fits.
         """
-        rows = {**MATERIAL, **{name: _row(value) for name, value in (material or {}).items()}}
+        given = {name: _row(value) for name, value in (material or {}).items()}
+        laws = ("", given.get("hardness", "paper"))
+        rows = {**{name: row for name, row in MATERIAL.items() if definition(name).hardness in laws}, **given}
         if "adhesion" in rows:  # states the attraction by work and range
             rows = {name: row for name, row in rows.items() if name not in ("hamaker", "gap_cutoff")}
         return input_table(self.description, **rows)
@@ -249,7 +252,8 @@ class Contact(_Shown):
         grid = plan_grid(inputs, settings, pad.grid, pressure_to_compute(held), pressed_GPa=presser(held))
         seeds = range(FIRST_SEED, FIRST_SEED + pad.cells)
         cells = assemble(grid, list(close_cells(inputs, settings, grid, seeds, progress)), area)
-        return Switch(switch_on_pad(cells, flats_of(inputs, settings), device, area))
+        flats = flats_of(inputs, settings)
+        return Switch(switch_on_pad(cells, flats, device, area, partial(releases_by_cells, device, cells, flats)))
 
 
 @dataclass(frozen=True, repr=False)

@@ -5,7 +5,7 @@ and changes nothing: the same inputs give the same digits.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -29,7 +29,7 @@ Config = Mapping[str, Any]
 MOST_POINTS = 1 << 26
 """Grid points of all cells of one request."""
 MOST_SEPARATIONS = 1000
-INPUTS = tuple(field.name for field in fields(ContactInputs))
+INPUTS = tuple(field.name for field in fields(ContactInputs) if field.default is MISSING)
 PAD_SEPARATIONS_NM = (40.0, 35.0, 30.0, 28.0)
 
 

@@ -44,6 +44,11 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
     except InputError as error:
         yield str(error)
         return
+    if "h_film" in spans and spans["h_film"][0] < (base := spans["h_macro"][1]):
+        yield (
+            f"inputs.h_film reaches down to {spans['h_film'][0]:g} GPa, inputs.h_macro of its base up to {base:g}: "
+            "films softer than their base are not modelled; correct one of them"
+        )
     bodies, (least, most) = scene.contact.bodies, spans.get("e_star", (0.0, math.inf))
     if bodies and not least / 1.25 <= (bases := base_modulus(bodies)) <= 1.25 * most:
         yield (

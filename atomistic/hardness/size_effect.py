@@ -75,9 +75,8 @@ def fit_size_effect(
     result["size_effect_at_one_shape"] = same_shape_exponents(points)
     # the error of the area lies anywhere within that of its calibration: a uniform distribution
     systematic = {"area": area_error / np.sqrt(3), **others}
-    if fit.h_macro == "literature":
-        h_macro, h_prime = literature_samples(used, fit.h_macro_GPa, systematic)
-    else:
+    h_macro, h_prime, h_film = literature_samples(used, fit.h_macro_GPa, systematic)
+    if fit.h_macro == "free":
         h_macro, h_prime = free_samples(used, systematic)
     result["inputs"] = {
         "h_macro": {"distribution": "uniform", **_range(h_macro, fit), "unit": "GPa"},
@@ -87,6 +86,12 @@ def fit_size_effect(
             "b": float(np.quantile(h_prime, INTERVAL[1])),
             "unit": "GPa nm^0.5",
             "correlation": {"h_macro": _spearman(h_macro, h_prime)},
+        },
+        "h_film": {
+            "distribution": "uniform",
+            "a": float(np.quantile(h_film, INTERVAL[0])),
+            "b": float(np.quantile(h_film, INTERVAL[1])),
+            "unit": "GPa",
         },
     }
     result["H_macro_GPa"] = _summary(h_macro)
@@ -107,8 +112,8 @@ def _cost(points: Sequence[Point]) -> dict[str, float]:
 
 def literature_samples(
     points: Sequence[Point], h_macro_GPa: tuple[float, float], systematic: Mapping[str, float], count: int = BOOTSTRAP
-) -> tuple[np.ndarray, np.ndarray]:
-    """Joint samples of H_macro (uniform in its range) and H' (from the points, energy scales alike)."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Joint samples of H_macro (uniform in its range), H' and the hardness (from the points, energy scales alike)."""
     rng = _rng(11)
     hardness, spread, length, scale = _columns(points)
     scales = np.unique(scale)
@@ -116,7 +121,7 @@ def literature_samples(
     chosen = rng.choice(len(points), size=count, p=weight)
     h_macro = rng.uniform(*h_macro_GPa, count)
     drawn = (hardness[chosen] + spread[chosen] * rng.normal(size=count)) * _shared(systematic, count)
-    return h_macro, (drawn - h_macro) * np.sqrt(length[chosen])
+    return h_macro, (drawn - h_macro) * np.sqrt(length[chosen]), drawn
 
 
 def free_samples(points: Sequence[Point], systematic: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:

@@ -34,6 +34,14 @@ class Asperity:
     hardness: float
 
 
+def hardness(area: float, inputs: ContactInputs) -> float:
+    """H of a contact (GPa; area in nm^2): eq. 4, or a film on a base."""
+    if inputs.t_film == 0:
+        return inputs.h_macro + inputs.h_prime * area**-0.25
+    softening = inputs.k_film * (area**0.5 / inputs.t_film) ** inputs.m_film
+    return (inputs.h_film + softening * inputs.h_macro) / (1 + softening)
+
+
 def connected_sites(touching: np.ndarray) -> list[np.ndarray]:
     """Connected sets of touching sites on the periodic grid, as flat indices."""
     labels, count = ndimage.label(touching, np.ones((3, 3)))
@@ -90,8 +98,8 @@ def asperities(h: np.ndarray, separation: float, inputs: ContactInputs, settings
         force = p * inputs.e_star * np.sqrt(radius * indentation**3)
         if reading.area == "hertz":
             area = np.pi * radius * indentation
-        hardness = inputs.h_macro + inputs.h_prime * area**-0.25
-        touching.append(Asperity(sites, divmod(int(peak), len(h)), indentation, radius, area, force, hardness))
+        yields = hardness(area, inputs)
+        touching.append(Asperity(sites, divmod(int(peak), len(h)), indentation, radius, area, force, yields))
     return touching
 
 

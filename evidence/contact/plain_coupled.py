@@ -7,6 +7,7 @@ import numpy as np
 from scipy import linalg, optimize
 
 from evidence.contact.plain_contact import connected_sites
+from evidence.contact.plain_contact import hardness as hardness_of
 from mesoscale.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
@@ -38,9 +39,9 @@ def pressures(gap: np.ndarray, limit: np.ndarray, matrix: np.ndarray) -> np.ndar
 def hardness(touching: np.ndarray, inputs: ContactInputs, settings: ContactSettings) -> np.ndarray:
     """H of the cluster of each site (eq. 4); of a cluster of one site where nothing touches."""
     site_area = (settings.length_nm / len(touching)) ** 2
-    ceilings = np.full(touching.size, inputs.h_macro + inputs.h_prime * site_area**-0.25)
+    ceilings = np.full(touching.size, hardness_of(site_area, inputs))
     for sites in connected_sites(touching):
-        ceilings[sites] = inputs.h_macro + inputs.h_prime * (len(sites) * site_area) ** -0.25
+        ceilings[sites] = hardness_of(len(sites) * site_area, inputs)
     return ceilings
 
 

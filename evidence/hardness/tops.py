@@ -43,16 +43,17 @@ SLABS, SLAB_A, PAIR_A = 12, 25.0, 20.0  # slabs above a top, their thickness, re
 
 
 def arguments(parser: ArgumentParser) -> None:
-    """Glasses, energies and snapshots."""
+    """Glasses, energies, potential and snapshots."""
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2])
     parser.add_argument("--energy-scales", type=float, nargs="+", default=[1.0, 0.5])
+    parser.add_argument("--potential", default="pmmcs", choices=["pmmcs", "teter"])
     parser.add_argument("--every", type=int, default=1, help="of the snapshots whose contact counts, each so many")
 
 
 def rows(given: Namespace) -> Iterator[dict]:
     """Close the smallest asperity of the defaults, then take a half-space away from each of its relaxed tops."""
     material = oxide_glasses(load_materials(ROOT / "config" / "materials").values())["SiO2"]
-    potential = load_potential(ROOT / "config" / "potentials" / "pmmcs.yaml")
+    potential = load_potential(ROOT / "config" / "potentials" / f"{given.potential}.yaml")
     area, _ = calibrated(potential)
     asperity = min(HardnessSettings().asperities, key=lambda one: one.tiles)
     closing = ClosingSettings()
@@ -92,6 +93,7 @@ def rows(given: Namespace) -> Iterator[dict]:
                     body, positions_A=read.relaxed(n).frame[:, 1:4], types=read.relaxed(n).frame[:, 0].astype(int)
                 )
                 yield {
+                    "potential": potential.name,
                     "run": run.name,
                     "snapshot": n,
                     **top_rows(read, n, geometry, body, potential, run.energy_scale),
@@ -200,10 +202,14 @@ def pulled(top: Atoms, area_A2: float, density: float, potential: Potential, ene
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """Ratios of D0, averaged over the tops, and the mean D0 of each way."""
+    """Ratios of D0, averaged over the tops, and the mean D0 of both ways with each potential."""
 
-    def mean(column: str) -> float:
-        return float(np.mean([float(row[column]) for row in rows]))
+    by_potential = {
+        name: [row for row in rows if row["potential"] == name] for name in sorted({row["potential"] for row in rows})
+    }
+
+    def mean(column: str, name: str) -> str:
+        return f"{np.mean([float(row[column]) for row in by_potential[name]]):.2f} nm"
 
     def ratio(first: str, second: str) -> str:
         values = [float(row[first]) / float(row[second]) for row in rows]
@@ -217,6 +223,6 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         "below_work": ratio("below_work_D0_nm", "whole_work_D0_nm"),
         "slab_force": ratio("slab_force_D0_nm", "below_force_D0_nm"),
         "slab_work": ratio("slab_work_D0_nm", "below_work_D0_nm"),
-        "force_D0": f"{mean('below_force_D0_nm'):.2f} nm",
-        "work_D0": f"{mean('below_work_D0_nm'):.2f} nm",
+        **{f"force_D0_{name}": mean("below_force_D0_nm", name) for name in by_potential},
+        **{f"work_D0_{name}": mean("below_work_D0_nm", name) for name in by_potential},
     }

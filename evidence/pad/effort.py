@@ -83,7 +83,7 @@ def median_release_V(
     released = []
     for point in release.plan_points(table, device, *release.cutoff_range(cutoff_nm, pads))[3]:
         try:
-            released.append(release._solve(point, model)["release_V"])
+            released.append(release.solve_point(point, model)["release_V"])
         except InputError:
             continue
     return float(np.median(released))

@@ -17,6 +17,7 @@ from mesoscale.calibration.surfaces import SCALAR_COLUMNS, pseudo_inverse
 from mesoscale.calibration.switches import SwitchModel
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.inputs.hardness import HardnessLaw
 
 Array = NDArray[np.float64]
 
@@ -142,7 +143,7 @@ def check_range(
             _check_values(data, "e_star", samples["e_star"])
         elif data.kind == "hardness":
             area = np.median(data.columns["area"])
-            _check_values(data, "hardness", samples["h_macro"] + samples["h_prime"] * area**-0.25)
+            _check_values(data, "hardness", HardnessLaw.of(samples).pressure(area))
         elif data.kind in ("release", "pull_in"):
             laws = cycles.y[:, -len(LAWS) :]
             whole = np.isfinite(laws).all(axis=1)

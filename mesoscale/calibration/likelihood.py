@@ -14,6 +14,7 @@ from mesoscale.calibration.responses import Prediction, ResponseFits, Responses
 from mesoscale.calibration.surfaces import Expected, SurfaceData, surface_data
 from mesoscale.calibration.switches import SwitchModel, law_values
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.inputs.hardness import HardnessLaw
 
 Array = NDArray[np.float64]
 
@@ -43,7 +44,7 @@ class DirectData:
         """Predictions from inputs by name, shape (m, values)."""
         if self.kind == "modulus":
             return np.repeat(table["e_star"][:, None], len(self.values), axis=1)
-        return table["h_macro"][:, None] + table["h_prime"][:, None] * self.area_nm2**-0.25
+        return HardnessLaw.of({name: values[:, None] for name, values in table.items()}).pressure(self.area_nm2)
 
     def log_likelihood(self, table: dict[str, Array]) -> Array:
         """Shape (m,); the model's own error is one share for all values."""

@@ -49,17 +49,6 @@ class State(NamedTuple):
     stuck: bool
 
 
-class Hardness(NamedTuple):
-    """H(A) = H_macro + H' A^-1/4 (eq. 4): GPa, and GPa nm^0.5."""
-
-    h_macro: float
-    h_prime: float
-
-    def of(self, area: float) -> float:
-        """Hardness (GPa) of an area in nm^2."""
-        return self.h_macro + self.h_prime / math.sqrt(math.sqrt(area))
-
-
 class Contact(ABC):
     """A surface, its sites by rising height, what flow has changed of it, and its attraction.
 
@@ -98,7 +87,7 @@ class Contact(ABC):
         self.rms = math.sqrt(max(float(self.heights @ self.heights) / self.heights.size - self.offset**2, 0.0))
         self.capped = settings.model == "nonlinear"
         self.flows = settings.model == "plastic"
-        self.hardness = self.fresh_hardness = Hardness(float(inputs.h_macro), float(inputs.h_prime))
+        self.hardness = self.fresh_hardness = inputs.hardness
         self.tolerance = numerics.flow_tolerance if numerics.flow == "return" else 0.0
         # a surface that cannot flow needs no record of changes
         self.changes = no_changes(self.heights.size if self.flows else 0)
@@ -159,7 +148,7 @@ class Contact(ABC):
     def capacity(self) -> float:
         """Largest force (nN) for which a plastic contact still consists of asperities; see `BEARING_SHARE`."""
         area = self.length**2
-        return self.BEARING_SHARE * self.hardness.of(area) * area if self.flows else math.inf
+        return self.BEARING_SHARE * self.hardness.pressure(area) * area if self.flows else math.inf
 
     @property
     def touching_separation(self) -> float:
@@ -172,7 +161,7 @@ class Contact(ABC):
 
     def soften(self, factor: float) -> None:
         """Take this share of the hardness of the fresh material."""
-        self.hardness = Hardness(self.fresh_hardness.h_macro * factor, self.fresh_hardness.h_prime * factor)
+        self.hardness = self.fresh_hardness.scaled(factor)
 
     def adopt_changes(self) -> None:
         """Leave contact and take the surface as flow has left it for the original one.

@@ -89,7 +89,7 @@ def violations(
     if settings.model == "plastic" and float(cycle.flags["largest_load"]) > limit * (1 + 1e-12):
         broken.append(f"an asperity at {cycle.flags['largest_load']:.4g} of its hardness")
     coupled = settings.mechanics != "asperity"
-    constant = settings.model == "elastic" or inputs.h_prime == 0.0
+    constant = settings.model == "elastic" or inputs.hardness.constant
     if settings.mechanics == "coupled" and constant and float(cycle.flags["repulsion_drop"]) > LOST:
         broken.append(f"closing lost {cycle.flags['repulsion_drop']:.2g} of its repulsion")
     if start is not None and cycle.heights is not None:
@@ -111,7 +111,7 @@ def _energy_gain(cycle: Cycle) -> tuple[float, float]:
 def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case]:
     """The cases around the inputs and settings of a scene."""
     n, area = settings.pixels, settings.length_nm**2
-    carried = (inputs.h_macro + inputs.h_prime * area**-0.25) * area
+    carried = inputs.hardness.pressure(area) * area
     x = (np.arange(n) - n // 2) * settings.length_nm / n
     with_ = partial(replace, inputs)
     coupled = settings.mechanics != "asperity"  # then the separation of the mean planes says when contact is full
@@ -120,12 +120,12 @@ def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case
         Case("central inputs", "medians of the scene's inputs", inputs),
         Case("E* x 1000", "stiff: yields at once", with_(e_star=min(1e3 * inputs.e_star, 1e6))),
         Case("E* / 1000", "soft: never yields", with_(e_star=1e-3 * inputs.e_star)),
-        Case("hard", "H = 1e6 GPa: elastic", with_(h_macro=1e6)),
-        Case("H' = 0", "constant hardness", with_(h_prime=0.0)),
+        Case("hard", "H = 1e6 GPa: elastic", with_(h_macro=1e6, t_film=0.0)),
+        Case("H' = 0", "constant hardness", with_(h_prime=0.0, t_film=0.0)),
         Case(
             "no hardness",
             "H = 1e-6 GPa: flows without carrying",
-            with_(h_macro=1e-6, h_prime=0.0),
+            with_(h_macro=1e-6, h_prime=0.0, t_film=0.0),
             {"max_force_nN": 1e-9 * area},
         ),
         Case("rms 0.01 nm", "nearly flat", with_(rms=0.01)),

@@ -1,12 +1,13 @@
 """Content of device/pad_switch.json at central inputs: the switch on the mean pad, and what the cells leave open."""
 
+from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.electrode import releases_by_cells
 from mesoscale.device.pad_switch import PadStates, solve_on_pad
 from mesoscale.device.statistics import describe, never_closes, probability
 from mesoscale.device.switch import NM, Switch, switch_from_settings
@@ -21,10 +22,20 @@ WORKS = (1.0 / 3.0, 1.0, 3.0)
 """Both laws of attraction differ by a factor of 3 in their work at touch (docs/contact.md); no statistics decides."""
 
 
-def switch_on_pad(cells: PadCells, flats: Flats, settings: DeviceSettings, cell_area_nm2: float) -> dict[str, Any]:
+def switch_on_pad(
+    cells: PadCells,
+    flats: Flats,
+    settings: DeviceSettings,
+    cell_area_nm2: float,
+    released: Callable[[], NDArray[np.float64]],
+) -> dict[str, Any]:
     """Content of device/pad_switch.json: the switch on the mean pad, and what the number of cells leaves open.
 
     A switch whose held state was not computed gets no numbers; `gate` says why.
+
+    Parameters
+    ----------
+    released : gives release voltages (V) on pads of resampled cells; called where the electrode bends.
     """
     switch = switch_from_settings(settings)
     content: dict[str, Any] = {
@@ -50,8 +61,8 @@ def switch_on_pad(cells: PadCells, flats: Flats, settings: DeviceSettings, cell_
     try:
         if settings.spring_N_per_m is None:
             bending = asdict(solve_beam(settings, law_of(cells, flats)))
-            released = releases_by_cells(settings, cells, flats)
-            reasons += _undecided(cells.count, int((released == 0).sum()), len(released), "")
+            by_cells = released()
+            reasons += _undecided(cells.count, int((by_cells == 0).sum()), len(by_cells), "")
         else:
             low, high = (spread["deepest_net_kPa"]["quantiles"][key] for key in ("0.05", "0.95"))
             pulls = (

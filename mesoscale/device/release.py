@@ -6,14 +6,14 @@ it both ways. The finite number of computed cells is a separate cause: it is no 
 the cells of the central pad tells its part.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.electrode import releases_by_cells, solve_deepened
+from mesoscale.device.electrode import solve_deepened
 from mesoscale.device.pressing import pressure_to_compute
 from mesoscale.device.statistics import describe, probability
 from mesoscale.errors import InputError
@@ -128,7 +128,7 @@ def released_on_pad(
     solved, reason = [], ""
     for point in plan_points(table, settings, *cutoffs_nm, count)[3]:
         try:
-            released = _solve(point, model)["release_V"]
+            released = solve_point(point, model)["release_V"]
         except InputError as error:
             reason = str(error)
         else:
@@ -146,6 +146,7 @@ def answer(
     flats: Flats,
     settings: DeviceSettings,
     cutoffs_nm: tuple[float, float],
+    released: Callable[[], Array],
 ) -> dict[str, Any]:
     """`answer` of device/pad_switch.json.
 
@@ -154,6 +155,7 @@ def answer(
     cells : of the pad at central inputs and the first D0.
     draws : pads at other inputs.
     cutoffs_nm : range of D0.
+    released : gives release voltages (V) on pads of resampled cells.
 
     Raises
     ------
@@ -164,12 +166,12 @@ def answer(
     by_curves = solve_deepened(settings, law_of(cells, flats))
     at_curves = Point(middle, cutoffs_nm[0], settings)
     middle_nm = float(np.mean(cutoffs_nm))
-    in_the_middle = _solve(Point(middle, middle_nm, settings), model)
+    in_the_middle = solve_point(Point(middle, middle_nm, settings), model)
     names, causes, units, points = plan_points(table, settings, *cutoffs_nm)
     solved, refused = [], []
     for place, point in enumerate(points):
         try:
-            solved.append((place, _solve(point, model)))
+            solved.append((place, solve_point(point, model)))
         except InputError as error:
             refused.append(str(error))
     if len(solved) < SOLVED * len(points):
@@ -178,7 +180,7 @@ def answer(
     solved_values = {key: np.array([state[key] for _, state in solved]) for key in by_curves}
     release = solved_values["release_V"]
     stuck = release == 0.0
-    cells_V = float(releases_by_cells(settings, cells, flats).std(ddof=1))
+    cells_V = float(released().std(ddof=1))
     first, error = first_order(units[places], release)
     rng = np.random.default_rng(np.random.SeedSequence([0, 0xA15]))
     noisy = np.where(stuck, 0.0, np.maximum(release + cells_V * rng.normal(size=release.size), 0.0))
@@ -217,8 +219,8 @@ def answer(
         "at_curves": {
             "gap_cutoff_nm": cutoffs_nm[0],
             "by_curves": by_curves,
-            "by_carried_curves": _solve(at_curves, model),
-            "by_closed_form": _solve(at_curves, (model[0], None)),
+            "by_carried_curves": solve_point(at_curves, model),
+            "by_closed_form": solve_point(at_curves, (model[0], None)),
         },
         "design": {
             "draws": len(draws),
@@ -239,11 +241,12 @@ def try_answer(
     flats: Flats,
     settings: DeviceSettings,
     gap_cutoff_nm: float,
+    released: Callable[[], Array],
 ) -> dict[str, Any]:
     """`answer` for device/pad_switch.json, or None with `answer_status` that says why there is none."""
     try:
         return {
-            "answer": answer(cells, draws, table, flats, settings, cutoff_range(gap_cutoff_nm, draws)),
+            "answer": answer(cells, draws, table, flats, settings, cutoff_range(gap_cutoff_nm, draws), released),
             "answer_status": "ok",
         }
     except InputError as error:
@@ -266,7 +269,7 @@ def model_of(
     return response, factors_of(central.law, response.at(central.values, gap_cutoff_nm))
 
 
-def _solve(point: Point, model: Model) -> dict[str, float]:
+def solve_point(point: Point, model: Model) -> dict[str, float]:
     """The switch of a point, on the curves carried there."""
     return solve_deepened(point.device, pad_at(point, model))
 

@@ -1,16 +1,18 @@
-"""What the contact model takes: the seven inputs of Table 1, and how a row of uncertain inputs enters it."""
+"""What the contact model takes: the inputs of Table 1, those of a film, and how uncertain inputs enter it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 from mesoscale.checks import check_number
+from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME, RMS_SCATTER, definition
+from mesoscale.inputs.hardness import HardnessLaw
 from mesoscale.settings import ContactSettings
 
 
 @dataclass(frozen=True)
 class ContactInputs:
-    """The seven inputs of Table 1; their accepted ranges stand in `mesoscale.inputs.definitions`.
+    """The seven inputs of Table 1, and a film; their accepted ranges stand in `mesoscale.inputs.definitions`.
 
     Attributes
     ----------
@@ -21,6 +23,8 @@ class ContactInputs:
     q0 : roll-off wave vector of the surface, 1/nm.
     hurst : Hurst exponent of the surface.
     rms : RMS height of the surface, nm.
+    h_film, t_film, k_film, m_film : hardness (GPa) and thickness (nm) of a film, and how the base softens it
+        (`HardnessLaw`); without thickness there is no film.
     """
 
     hamaker: float
@@ -30,11 +34,25 @@ class ContactInputs:
     q0: float
     hurst: float
     rms: float
+    h_film: float = 0.0
+    t_film: float = 0.0
+    k_film: float = 0.0
+    m_film: float = 0.0
 
     def __post_init__(self):
         for field in fields(self):
             row = BY_NAME[field.name]
             check_number(row.name, getattr(self, row.name), row.low, row.high, row.unit, row.zero)
+        if self.t_film > 0 and self.h_film < self.h_macro:  # contacts that harden as they grow have no one pressure
+            raise InputError(
+                f"h_film = {self.h_film:.4g} GPa on h_macro = {self.h_macro:.4g} GPa: accepted are films at least as "
+                "hard as their base"
+            )
+
+    @property
+    def hardness(self) -> HardnessLaw:
+        """Hardness against contact area."""
+        return HardnessLaw.of({name: float(value) for name, value in vars(self).items()})
 
 
 @dataclass(frozen=True, kw_only=True)  # behind inputs of `ContactInputs` that have a default
@@ -58,5 +76,6 @@ def contact_of(values: Mapping[str, float], settings: ContactSettings) -> tuple[
     """
     replaced = {row.setting: value for name, value in values.items() if (row := definition(name)).setting}
     kind = FilmInputs if RMS_SCATTER.name in values else ContactInputs
-    inputs = kind(**{name: value for name, value in values.items() if not definition(name).setting})
+    given = {name: value for name, value in values.items() if not definition(name).setting}
+    inputs = kind(**{"h_prime": 0.0, **given})  # laws without it: `inputs.hardness`
     return inputs, ContactSettings(**(dict(settings) | replaced)) if replaced else settings

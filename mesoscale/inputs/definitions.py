@@ -22,6 +22,7 @@ class InputDefinition:
     literature : default range where no stage computes it, uniform, from the paper's Table 1.
     setting : field of `ContactSettings` that it replaces; empty: a field of `ContactInputs` of its name.
     optional : left out unless a scene gives it.
+    hardness : law of hardness that has it (`inputs.hardness`); empty: not an input of one.
     """
 
     name: str
@@ -35,11 +36,17 @@ class InputDefinition:
     literature: tuple[float, float] | None = None
     setting: str = ""
     optional: bool = False
+    hardness: str = ""
 
     @property
     def accepted(self) -> str:
         """The accepted values in words."""
         return f"{'0 or ' if self.zero else ''}{self.low:g} .. {self.high:g}"
+
+    @property
+    def may_lack(self) -> bool:
+        """Whether scenes can go without it."""
+        return self.optional or bool(self.hardness)
 
     def accepts(self, value: float) -> bool:
         """Is this a physical value?"""
@@ -50,7 +57,9 @@ INPUTS = (
     InputDefinition("hamaker", "Hamaker constant", "A_H", "1e-18 J", 1e-6, 1e4, zero=True, literature=(0.18, 0.25)),
     InputDefinition("e_star", "effective modulus", "E*", "GPa", 1e-6, 1e6, stage="elastic"),
     InputDefinition("h_macro", "macroscopic hardness", "H_macro", "GPa", 1e-9, 1e6, zero=True, literature=(0.7, 3.2)),
-    InputDefinition("h_prime", "size effect of hardness", "H′", "GPa nm^0.5", 1e-9, 1e6, zero=True, stage="hardness"),
+    InputDefinition(
+        "h_prime", "size effect of hardness", "H′", "GPa nm^0.5", 1e-9, 1e6, True, stage="hardness", hardness="paper"
+    ),
     InputDefinition("q0", "roll-off wave vector", "q₀", "1/nm", 1e-7, 1e3, stage="topography"),
     InputDefinition("hurst", "Hurst exponent", "Hurst", "1", 1e-6, 2.0, stage="topography"),
     InputDefinition("rms", "RMS roughness", "RMS", "nm", 1e-5, 1e6, zero=True, stage="topography"),
@@ -59,6 +68,16 @@ INPUTS = (
     ),
     InputDefinition(
         "q1", "short-wave cut-off", "q₁", "1/nm", 1e-6, 1e3, stage="topography", setting="q1_per_nm", optional=True
+    ),
+    InputDefinition(
+        "h_film", "hardness of the film", "H_film", "GPa", 1e-9, 1e6, True, "hardness", optional=True, hardness="film"
+    ),
+    InputDefinition("t_film", "thickness of the film", "t_film", "nm", 1e-3, 1e6, True, optional=True, hardness="film"),
+    InputDefinition(
+        "k_film", "factor of softening by the base", "k", "1", 1e-6, 1e3, True, optional=True, hardness="film"
+    ),
+    InputDefinition(
+        "m_film", "exponent of softening by the base", "m", "1", 1e-2, 10.0, True, optional=True, hardness="film"
     ),
 )
 """The inputs of the paper's Table 1 in its order, then the optional ones.

@@ -155,7 +155,8 @@ def input_table(topography: Mapping[str, Any] | None = None, **rows: InputRow) -
     measured = (
         {} if topography is None else {name: InputRow(origin="topography") for name in ("q0", "hurst", "rms", "q1")}
     )
-    settings = InputsSettings(**{**PAPER_ROWS, **measured, **rows})
+    paper = {**PAPER_ROWS, "h_prime": PAPER_ROWS["h_prime"] if rows.get("hardness", "paper") == "paper" else None}
+    settings = InputsSettings(**{**paper, **measured, **rows})
     stages = {} if topography is None else {"topography": topography}
     return collect(settings, stages, {"topography": "measured roughness"})
 

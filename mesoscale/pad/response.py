@@ -226,10 +226,15 @@ def law_of_compact(
     ----------
     wanted_GPa : net pressure at rising `separation_nm`, shape (n,).
 
+    Raises
+    ------
+    InputError : the form presses hardest where the pad is farthest away.
     """
     net = np.add(*compact.closing_GPa(separation_nm))
     deep = np.flatnonzero(net >= wanted_GPa)
     s = separation_nm[deep[-1] if deep.size else int(net.argmax()) :]
+    if s.size == 1:
+        raise InputError(f"separation {s[0]:.4g} nm: the closed form of the pad still presses there")
     load = compact.closing_GPa(s)[0]
     shallow = np.flatnonzero(load > 1e-4 * load[0])[-1]
     # on the separations, so that every opening starts where closing ended

@@ -80,6 +80,7 @@ class Correlation(Settings):
     rank: float = Field(gt=-1, lt=1, description="Spearman's rank correlation of the two")
 
 
+HardnessLawName = Literal["constant", "paper", "film"]
 TABLE_1 = "Kim et al. (2013), Table 1"
 
 
@@ -115,13 +116,19 @@ def _key(row: InputDefinition) -> Any:
     if row.optional:
         return InputRow | None, Field(default=None, description=f"optional input: {about}")
     if row.literature is None:
-        return InputRow, Field(default=InputRow(origin=cast(Any, row.stage)), description=about)
+        kind = InputRow | None if row.hardness else InputRow
+        return kind, Field(default=InputRow(origin=cast(Any, row.stage)), description=about)
     return InputRow, Field(default=InputRow(values=row.literature, source=TABLE_1), description=about)
 
 
 class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.name: _key(row) for row in INPUTS})):
     """Origin and distribution of the uncertain inputs (docs/uncertainty.md)."""
 
+    hardness: HardnessLawName = Field(
+        default="paper",
+        description="law of hardness against contact area: constant (h_macro), eq. 4 (h_macro, h_prime), or film on a "
+        "base (h_film, t_film, k_film, m_film; h_macro of the base)",
+    )
     adhesion: WorkAndRangeSettings | None = Field(
         default=None, description="work and range of the attraction, in place of hamaker and gap_cutoff; null: by these"
     )
@@ -135,6 +142,19 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
         given = [name for name in ("hamaker", "gap_cutoff") if getattr(self, name) != fields[name].default]
         if self.adhesion and given:
             raise ValueError(f"adhesion and {' and '.join(given)} give the same attraction; leave one of them out")
+        return self
+
+    @model_validator(mode="after")
+    def _inputs_of_the_hardness(self) -> "InputsSettings":
+        for row in INPUTS:
+            given, default = getattr(self, row.name), type(self).model_fields[row.name].default
+            if row.hardness == self.hardness and given is None:
+                raise ValueError(f"hardness: {row.hardness} needs {row.name}, {row.label} ({row.unit}); give its row")
+            if row.hardness not in ("", self.hardness) and given not in (None, default):
+                raise ValueError(
+                    f"{row.name} belongs to hardness: {row.hardness}, but hardness is {self.hardness}; "
+                    f"set {row.name} to null, or take that law"
+                )
         return self
 
     @model_validator(mode="after")
@@ -157,7 +177,7 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
 
     def rows(self, law: AttractionLaw = "offset") -> dict[str, InputRow]:
         """The inputs in use, by name; `law` of the attraction that `adhesion` states."""
-        named = {row.name: getattr(self, row.name) for row in INPUTS}
+        named = {row.name: getattr(self, row.name) for row in INPUTS if row.hardness in ("", self.hardness)}
         if self.adhesion:
             stated = {"hamaker": self.adhesion.hamaker(law), "gap_cutoff": self.adhesion.gap_cutoff_nm(law)}
             for name, value in stated.items():

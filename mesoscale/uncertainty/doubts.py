@@ -23,7 +23,7 @@ BASES, LEVELS = 256, 7
 """Other inputs drawn, and values of the one that is moved."""
 SHARES = np.array([0.1, 0.25, 0.5, 1.0])
 """Of the largest pressure of the fits, at which curves are compared."""
-STIFFENING = {"e_star": "E*", "h_macro": "H_macro", "h_prime": "H′"}
+STIFFENING = {"e_star": "E*", "h_macro": "H_macro", "h_prime": "H′", "h_film": "H_film"}
 """Inputs whose rise can only raise the pressure at equal separation."""
 
 

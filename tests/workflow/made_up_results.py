@@ -214,6 +214,7 @@ def _device(root: Path) -> None:
 
 
 def _pad(root: Path) -> None:
+    from mesoscale.device.electrode import releases_by_cells
     from mesoscale.device.pad_results import switch_on_pad
     from mesoscale.pad.cells import PadGrid
     from mesoscale.pad.compact import CompactPad
@@ -235,7 +236,9 @@ def _pad(root: Path) -> None:
     cells = PadCells(grid, 40 - shifts, closing, opening, np.ones(24, bool))
     _write(root / "pad/curves.csv", curve_rows(cells))
     _write(root / "pad/adhesion.csv", adhesion_by_cells(cells, [1, 2, 4, 8, 16]))
-    switch = switch_on_pad(cells, flats, DeviceSettings(), area)
+    switch = switch_on_pad(
+        cells, flats, DeviceSettings(), area, lambda: releases_by_cells(DeviceSettings(), cells, flats)
+    )
     write_json(root / "device/pad_switch.json", switch, PROVENANCE)
     for chunk, members in enumerate(np.split(np.arange(24), 2)):
         values = {

@@ -5,7 +5,7 @@ from mesoscale.inputs.definitions import INPUTS
 from workflow.schemas.inputs_and_law import SEED
 from workflow.schemas.table import Column, Table, integer, number, text
 
-_INPUTS = tuple(number(row.name, row.unit, row.label, optional=row.optional) for row in INPUTS)
+_INPUTS = tuple(number(row.name, row.unit, row.label, optional=row.may_lack) for row in INPUTS)
 
 
 def _spread(unit: str, state: str) -> tuple[Column, ...]:

@@ -4,7 +4,7 @@ from mesoscale.inputs.definitions import INPUTS
 from mesoscale.law.parameters import LAW
 from workflow.schemas.table import Column, Table, boolean, integer, number, text
 
-INPUT_VALUES = tuple(number(row.name, row.unit, f"{row.label} of the run", optional=row.optional) for row in INPUTS)
+INPUT_VALUES = tuple(number(row.name, row.unit, f"{row.label} of the run", optional=row.may_lack) for row in INPUTS)
 """One column per uncertain input in use."""
 LAW_VALUES = tuple(number(row.name, row.unit, row.meaning, empty=True) for row in LAW)
 SEED = integer("seed", "seed of the random surface")

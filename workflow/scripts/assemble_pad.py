@@ -6,9 +6,11 @@ device/pad_switch.json, device/rough_pad.va, device/rough_pad.sub.
 """
 
 from dataclasses import asdict
+from functools import cache, partial
 
 import numpy as np
 
+from mesoscale.device.electrode import releases_by_cells
 from mesoscale.device.pad_export import spice_pad, verilog_pad
 from mesoscale.device.pad_results import switch_on_pad
 from mesoscale.device.release import try_answer
@@ -55,8 +57,9 @@ with job(snakemake) as run:
     write_json(snakemake.output.compact, compact_summary(law), run.provenance)
     write_text(snakemake.output.verilog, verilog_pad(law, cells.count))
     write_text(snakemake.output.spice, spice_pad(law, cells.count))
-    switch = switch_on_pad(cells, flats, device, area)
+    released = cache(partial(releases_by_cells, device, cells, flats))  # both below ask for them
+    switch = switch_on_pad(cells, flats, device, area, released)
     if snakemake.input.draws:
         pads = load_draws(snakemake.input.draws, inputs, contact, *snakemake.params.design)
-        switch |= try_answer(cells, pads, inputs, flats, device, central.gap_cutoff_nm)
+        switch |= try_answer(cells, pads, inputs, flats, device, central.gap_cutoff_nm, released)
     write_json(snakemake.output.switch, switch, run.provenance)

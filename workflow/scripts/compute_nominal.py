@@ -24,7 +24,7 @@ with job(snakemake) as run:
     for name, chosen, force, cycle in nominal_cycles(inputs, settings, run.progress):
         cycles.append((force, cycle))
         attributes[name] = {
-            **asdict(inputs),
+            **middle,
             "model": chosen.model,
             "seed": NOMINAL_SEED,
             "max_force_nN": force,

@@ -21,7 +21,8 @@ with job(snakemake) as run:
     law = settings_from_job(LawSettings, snakemake.params.law)
     device = settings_from_job(DeviceSettings, snakemake.params.device)
     contact = contact_settings(snakemake.params.contact, snakemake)
-    inputs, contact = contact_of(medians(load_csv(snakemake.input.inputs)), contact)
+    middle = medians(load_csv(snakemake.input.inputs))
+    inputs, contact = contact_of(middle, contact)
     cycles, dwell, groups, attributes = [], [], {}, {}
     shown = shown_cycles(settings)
     for seed, held in follow_all(inputs, contact, settings, run.progress):
@@ -29,7 +30,7 @@ with job(snakemake) as run:
         dwell += dwell_rows(seed, held, contact, settings)
         if seed == NOMINAL_SEED and held.number in shown:
             name = f"cycle_{held.number:04d}"
-            attributes[name] = {"cycle": held.number, "seed": seed, **asdict(inputs)}
+            attributes[name] = {"cycle": held.number, "seed": seed, **middle}
             for branch in ("closing", "opening"):
                 groups[f"{name}/{branch}"] = {
                     key: Dataset(values, *BRANCH_COLUMNS[key], ("separation_nm",))

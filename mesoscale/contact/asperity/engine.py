@@ -25,7 +25,7 @@ class AsperityContact(Contact):
         super().__init__(surface, inputs, settings, numerics)
         self.mechanics = state.Mechanics(
             PREFACTOR[settings.reading.prefactor] * inputs.e_star,
-            *self.hardness,
+            self.hardness,
             self.site_area,
             settings.reading.radius == "curvature",
             settings.reading.area == "sites",
@@ -46,7 +46,7 @@ class AsperityContact(Contact):
     def soften(self, factor: float) -> None:
         """Take this share of the hardness of the fresh material."""
         super().soften(factor)
-        self.mechanics = self.mechanics._replace(**self.hardness._asdict())
+        self.mechanics = self.mechanics._replace(hardness=self.hardness)
 
     def move_to(self, separation: float, with_flow: bool) -> State:
         """Bring the flat down to a separation; it may be undone by `back` until the next move."""

@@ -174,8 +174,13 @@ def shape(asperities, number, level, mechanics):
 
 @njit(cache=True)
 def hardness(area, mechanics):
-    """H(A) = H_macro + H' A^-1/4, GPa (eq. 4)."""
-    return mechanics.h_macro + mechanics.h_prime / np.sqrt(np.sqrt(area))
+    """H(A) in GPa, as `HardnessLaw.pressure`."""
+    law = mechanics.hardness
+    length = np.sqrt(area)
+    base = law.h_macro + law.h_prime / np.sqrt(length)
+    if law.t_film == 0.0:
+        return base
+    return base + (law.h_film - base) / (1.0 + law.k_film * (length / law.t_film) ** law.m_film)
 
 
 @njit(cache=True)

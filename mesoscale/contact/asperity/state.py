@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mesoscale.inputs.hardness import HardnessLaw
+
 
 class Asperities(NamedTuple):
     """Asperities of one surface; a dead (merged) one has ``sites`` 0. Sizes: N^2 sites.
@@ -45,21 +47,19 @@ def no_asperities(sites: int) -> Asperities:
 
 
 class Mechanics(NamedTuple):
-    """Constants of eqs 2-4.
+    """Constants of eqs 2 and 3, and the hardness.
 
     Attributes
     ----------
     stiffness : p E*, GPa.
-    h_macro : hardness of large asperities, GPa.
-    h_prime : size effect of hardness, GPa nm^0.5.
+    hardness : hardness against area (eq. 4).
     site_area : area of a site, nm^2.
     curvature_radius : radius from the mean curvature of an asperity's sites, else from its truncation.
     area_of_sites : area from the number of sites, else Hertz's.
     """
 
     stiffness: float
-    h_macro: float
-    h_prime: float
+    hardness: HardnessLaw
     site_area: float
     curvature_radius: bool
     area_of_sites: bool

@@ -78,7 +78,7 @@ class CoupledContact(Contact):
         if not (self.flows or self.capped):
             return full
         area = self.length**2
-        return min(full, self.BEARING_SHARE * self.hardness.of(area) * area)
+        return min(full, self.BEARING_SHARE * self.hardness.pressure(area) * area)
 
     def lift(self) -> None:
         """Leave contact; the surface stays as it is."""
@@ -127,7 +127,7 @@ class CoupledContact(Contact):
         number, count = self._clusters()
         touching = number >= 0
         area = self.site_area * max(int(touching.sum()) / max(count, 1), 1.0)
-        hardness = self.hardness.of(area)
+        hardness = self.hardness.pressure(area)
         reached = self._traction()[touching] >= (1.0 - 1e-12) * self._hardness_of(number)[touching]
         yielded = float(np.mean(reached)) if count else 0.0
         return {
@@ -187,7 +187,7 @@ class CoupledContact(Contact):
             solved = self._solve()
             wanted = self._hardness_of(self._clusters()[0])
             touching = self.pressure > 0.0
-            if self.hardness.h_prime == 0.0 or np.array_equal(wanted[touching], self.limit[touching]):
+            if self.hardness.constant or np.array_equal(wanted[touching], self.limit[touching]):
                 return rounds, solved
             settled = solved and bool(np.all(wanted[touching] <= self.limit[touching] * (1.0 + self.tolerance)))
             if rounds >= self.FALLING_ROUNDS:
@@ -204,10 +204,10 @@ class CoupledContact(Contact):
         return number, clusters.label(self.sites, self.place, self.pressure, self.n, number)
 
     def _hardness_of(self, number: np.ndarray) -> np.ndarray:
-        """Hardness (GPa) of the clusters by eq. 4, for each known site; for one apart that of a single site."""
+        """Hardness (GPa) of the clusters, for each known site; for one apart that of a single site."""
         sites = np.bincount(number[number >= 0], minlength=1)
         area = self.site_area * np.where(number >= 0, sites[number], 1)
-        return self.hardness.h_macro + self.hardness.h_prime * area**-0.25
+        return self.hardness.pressure(area)
 
     def _solve(self) -> bool:
         """Find the pressures with the limits at hand; True if they settled."""
@@ -297,7 +297,7 @@ class CoupledContact(Contact):
     @property
     def _fresh_limit(self) -> float:
         """Limit of a site that has not touched."""
-        return self.hardness.of(self.site_area) if self.bounded else math.inf
+        return self.hardness.pressure(self.site_area) if self.bounded else math.inf
 
     def attraction(self, separation: float) -> float:
         """Attractive force in nN, negative (eq. 1), at the current separation or before contact.

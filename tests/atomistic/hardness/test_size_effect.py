@@ -71,14 +71,15 @@ def test_a_narrow_series_is_not_identifiable_and_says_so():
 def test_literature_h_macro_gives_the_hand_calculation():
     """10.6 and 5.3 GPa at 3 nm with H_macro 1.95 GPa: H' = 15.0 and 5.8 GPa nm^0.5."""
     for hardness, expected in ((10.6, 15.0), (5.3, 5.8)):
-        h_macro, h_prime = literature_samples([point(hardness, 3.0, spread=0.0)], (1.9499, 1.9501), {})
+        h_macro, h_prime, h_film = literature_samples([point(hardness, 3.0, spread=0.0)], (1.9499, 1.9501), {})
         assert np.ptp(h_macro) < 1e-3
         assert np.mean(h_prime) == pytest.approx(expected, abs=0.05)
+        np.testing.assert_allclose(h_film, hardness)
 
 
 def test_both_energy_scales_weigh_the_same():
     points = [point(10, 4, 1.0)] * 9 + [point(5, 4, 0.5)]
-    _, h_prime = literature_samples(points, (0.7, 0.7001), {}, 4000)
+    _, h_prime, _ = literature_samples(points, (0.7, 0.7001), {}, 4000)
     assert np.mean(h_prime > 12) == pytest.approx(0.5, abs=0.03)
 
 
@@ -134,7 +135,7 @@ def test_budget_is_the_variance_of_what_is_handed_on():
         for _ in range(2)
     ]
     macro, systematic = FitSettings().h_macro_GPa, {"area": 0.03, "rate": 0.06}
-    _, h_prime = literature_samples(points, macro, systematic, 50_000)
+    _, h_prime, _ = literature_samples(points, macro, systematic, 50_000)
     budget = variance_budget(points, macro, systematic)
     assert budget["std"] == pytest.approx(np.std(h_prime), rel=0.02)
     assert budget["statistical"]["share"] + budget["systematic"]["share"] == pytest.approx(1)

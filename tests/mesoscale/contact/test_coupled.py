@@ -1,5 +1,6 @@
 """The coupled engine: exact solutions, the plain model, tamaas, and what must hold for every cycle."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -19,6 +20,7 @@ from mesoscale.topography.synthesis import synthesize
 from tests.mesoscale.contact import exact
 
 INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.06, hurst=0.75, rms=3.0)
+FILM = replace(INPUTS, h_prime=0.0, h_film=8.0, t_film=2.0, k_film=0.24, m_film=1.2)
 MODELS = ("elastic", "nonlinear", "plastic")
 LATTICE = 3.900264920001956  # of a square lattice of charges in their neutralising background: sum 1/r - integral
 
@@ -122,8 +124,9 @@ def test_a_wave_is_westergaards(share):
     assert moved.sites / pixels**2 == pytest.approx(share, abs=2 / pixels)
 
 
+@pytest.mark.parametrize("inputs", [INPUTS, FILM], ids=["paper", "film"])
 @pytest.mark.parametrize("model", MODELS)
-def test_pressures_and_surface_agree_with_the_plain_model(model):
+def test_pressures_and_surface_agree_with_the_plain_model(model, inputs):
     # bounded least squares is slow: fewer sites; the engine takes the number of sites from the surface
     pixels, length = (32, 40.0) if model == "elastic" else (18, 22.5)
     settings = coupled(32, length, model=model)
@@ -131,8 +134,8 @@ def test_pressures_and_surface_agree_with_the_plain_model(model):
     lowest = np.unravel_index(np.argmin(heights), heights.shape)
     heights = np.roll(heights, (-lowest[0], -lowest[1]), (0, 1))  # the first cluster straddles the corner
     separations = -heights.min() - np.linspace(0.05, 2.2, 5)
-    expected, surface = plain_coupled.walk(heights, separations, INPUTS, settings)
-    contact = CoupledContact(heights.copy(), INPUTS, settings)
+    expected, surface = plain_coupled.walk(heights, separations, inputs, settings)
+    contact = CoupledContact(heights.copy(), inputs, settings)
     found = []
     for separation in separations:
         assert contact.move_to(separation, model == "plastic").settled

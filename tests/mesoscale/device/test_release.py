@@ -1,6 +1,8 @@
 """The answer: shares of the variance, the response of a pad to its inputs, and the switch on both."""
 
 from dataclasses import replace
+from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from scipy.stats import qmc
 from mesoscale.device import pad_results
 from mesoscale.device.beam_kernels import BANDS, solve_bands
 from mesoscale.device.beam_switch import BeamStates, press_GPa
-from mesoscale.device.electrode import presser, solve_deepened
+from mesoscale.device.electrode import presser, releases_by_cells, solve_deepened
 from mesoscale.device.pad_switch import PadStates
 from mesoscale.device.pressing import EDGE, pressing, pressure_to_compute
 from mesoscale.device.release import (
@@ -169,11 +171,11 @@ def test_the_gate_judges_the_electrode_that_the_answer_has(monkeypatch, settings
     monkeypatch.setattr(pad_results, "solve_beam", lambda *_: state)
     monkeypatch.setattr(pad_results, "solve_on_pad", lambda *_: flat[1])
     monkeypatch.setattr(pad_results, "resampled_states", lambda *_: flat)
-    monkeypatch.setattr(pad_results, "releases_by_cells", lambda *_: np.repeat([0.0, 7.0], [stuck, 24 - stuck]))
+    released = np.repeat([0.0, 7.0], [stuck, 24 - stuck])
     grid = PadGrid(np.array([30.0, 20.0]), np.array([1]))
     forces = np.zeros((8, 2, 2))
     cells = PadCells(grid, np.full(8, 30.0), forces, forces[:, None], np.ones(8, bool))
-    gate = pad_results.switch_on_pad(cells, Flats(0.2, 0.0), settings, 1e6)["gate"]
+    gate = pad_results.switch_on_pad(cells, Flats(0.2, 0.0), settings, 1e6, lambda: released)["gate"]
     assert gate["passed"] is passed
     assert passed or "12 of 24 resampled pads; raise pad.cells" in gate["reasons"][0]
 
@@ -188,6 +190,13 @@ def test_a_hold_voltage_that_never_closes_the_switch_is_refused_in_one_line(sett
         with pytest.raises(InputError, match=f"never closes this switch, which pulls in at {pull_in:.4g} V") as caught:
             solve_deepened(settings.model_copy(update={"hold_voltage_V": share * pull_in}), law)
         assert "\n" not in str(caught.value)
+
+
+def test_a_closed_form_that_rises_with_the_separation_is_refused_in_one_line():
+    s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
+    rising = SimpleNamespace(closing_GPa=lambda at: np.stack([1e-6 * at, 0.0 * at]))
+    with pytest.raises(InputError, match="the closed form of the pad still presses there"):
+        law_of_compact(rising, np.full(s.size, 1.0), s)
 
 
 def test_refused_points_widen_the_probability_of_sticking():
@@ -207,7 +216,8 @@ def test_the_answer_keeps_its_causes_apart(pads):
         above = law.separation_nm >= depth - 1e-9
         one[k][:, above] = true_pad(MIDDLE, 0.165).opening_GPa(law.separation_nm[above], depth)
     cells = PadCells(grid, np.full(16, 30.0), closing, np.tile(one[:, :, ::-1], (16, 1, 1, 1)), np.ones(16, bool))
-    state = try_answer(cells, pads[1:], TABLE, law.flats, PLATE, 0.165)
+    released = partial(releases_by_cells, PLATE, cells, law.flats)
+    state = try_answer(cells, pads[1:], TABLE, law.flats, PLATE, 0.165, released)
     assert state["answer_status"] == "ok"
     shares = {row["cause"]: row["share_of_variance"] for row in state["answer"]["causes"]}
     assert shares["cells"] < 1e-9

@@ -136,7 +136,7 @@ def hardness_size(results: Results) -> str | None:
                 np.array([point[key] for point in fit["curve"]], dtype=float)
                 for key in ("contact_length_nm", "low_GPa", "high_GPa", "median_GPa")
             )
-            axis.plot(length, middle, color=GREEN, label="H_macro + H′/√L in use")
+            axis.plot(length, middle, color=GREEN, label="H_macro + H′/√L (eq. 4)")
             axis.fill_between(length, low, high, color=GREEN, alpha=0.18, linewidth=0, label="its 68 % interval")
             inner = (column(fit["curve"], f"statistical_{end}_GPa") for end in ("low", "high"))
             axis.fill_between(length, *inner, color=GREEN, alpha=0.35, linewidth=0, label="scatter between runs alone")
