@@ -214,6 +214,30 @@ class SingleCrystal(_Section):
         return self
 
 
+class Eam(_Section):
+    """Embedded-atom potential of a metal in closed form (Zhou, Johnson and Wadley, doi:10.1103/PhysRevB.69.144113).
+
+    Energies in eV, distances in Å; `r` is the nearest distance, `f` and `rho` are electron densities of one unit.
+    """
+
+    mass_u: Positive
+    lattice_A: tuple[Positive, Positive] = Field(description="a and c of the hexagonal crystal at 0 K")
+    r_A: Positive
+    f: Positive
+    rho: Positive
+    alpha: Positive
+    beta: Positive
+    A_eV: Positive
+    B_eV: Positive
+    kappa: Positive
+    lambda_: Positive = Field(alias="lambda")
+    F_inner_eV: tuple[float, float, float, float] = Field(description="F_n of densities below 0.85 rho")
+    F_middle_eV: tuple[float, float, float, float] = Field(description="F up to 1.15 rho")
+    F_outer_eV: float = Field(description="F_e beyond")
+    eta: Positive
+    source: str
+
+
 class PoissonRange(_Section):
     """Range of Poisson's ratio."""
 
@@ -238,6 +262,7 @@ class Material(_Section):
     network_glass: NetworkGlass | None = None
     polycrystal: Polycrystal | None = None
     single_crystal_GPa: SingleCrystal | None = None
+    eam: Eam | None = None
     poisson_ratio: PoissonRange | None = None
 
     @property
@@ -245,7 +270,7 @@ class Material(_Section):
         """The formula in a word, as scenes and potentials name an oxide: SiO2."""
         return "".join(f"{element}{count if count > 1 else ''}" for element, count in self.formula.items())
 
-    def part(self, section: Literal["oxide_glass", "network_glass", "polycrystal"]) -> Any:
+    def part(self, section: Literal["oxide_glass", "network_glass", "polycrystal", "eam"]) -> Any:
         """A section that a stage cannot do without.
 
         Raises
@@ -273,6 +298,8 @@ class Material(_Section):
                 raise ValueError(f"{key} has {', '.join(sorted(elements))}; it must have {', '.join(self.formula)}")
         if self.oxide_glass is not None and (len(self.formula) != 2 or "O" not in self.formula):
             raise ValueError(f"oxide_glass: needs a formula of one cation and O, got {self.formula_text}")
+        if self.eam is not None and len(self.formula) != 1:
+            raise ValueError(f"eam: needs a formula of one element, got {self.formula_text}")
         return self
 
 

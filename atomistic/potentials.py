@@ -200,6 +200,32 @@ class Potential(Settings):
             np.savetxt(lines, rows, fmt="%d %.12g %.12g %.12g")
         return lines.getvalue()
 
+    def files(
+        self,
+        elements: tuple[str, ...],
+        energy_scale: float,
+        repelled: "tuple[Potential, tuple[str, ...]] | None" = None,
+    ) -> dict[str, str]:
+        """What LAMMPS needs by the name of its file: tables, and in `pairs` the commands that use them.
+
+        Parameters
+        ----------
+        elements, repelled : of `write_forcefield`.
+        """
+        bodies = [("table", self, elements)]
+        if repelled is not None:
+            bodies.append(("table_repelled", *repelled))
+        types = [(body, element) for body in bodies for element in body[2]]
+        lines = ["pair_style table linear 4000"]
+        for i, (body, first) in enumerate(types, 1):
+            file, within, of_body = body
+            for j, (other, second) in enumerate(types[i - 1 :], i):
+                section = "_".join(sorted((first, second), key=of_body.index)) if other is body else "contact"
+                lines.append(f"pair_coeff {i} {j} {file} {section} {within.cutoff_A}")
+        lines += ["neighbor 0.6 bin", "neigh_modify every 2 delay 0 check yes"]
+        tables = {file: within.table(tuple(dict.fromkeys(of)), energy_scale) for file, within, of in bodies}
+        return {**tables, "pairs": "\n".join(lines) + "\n"}
+
 
 def contact_energy_and_force(r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Repulsion (eV, eV/Å) of atoms of two bodies without adhesion: 12-6 cut at its minimum (WCA)."""

@@ -79,7 +79,7 @@ def write_forcefield(
     energy_scale: float,
     repelled: tuple[Potential, tuple[str, ...]] | None = None,
 ) -> None:
-    """Write the tables and the commands that use them into a workspace (files `table`, `table_repelled`, `pairs`).
+    """Write the tables of a potential and the commands that use them (file `pairs`) into a workspace.
 
     They are written at every start, since LAMMPS executes `pairs`: one that came with a received folder must not run.
 
@@ -88,21 +88,8 @@ def write_forcefield(
     elements : of each LAMMPS type; an element may stand for several types.
     repelled : potential and elements of a second body, whose types follow, and which only repels the first.
     """
-    bodies = [("table", potential, elements)]
-    if repelled is not None:
-        bodies.append(("table_repelled", *repelled))
-    types = [(body, element) for body in bodies for element in body[2]]
-    lines = ["pair_style table linear 4000"]
-    for i, (body, first) in enumerate(types, 1):
-        file, within, of_body = body
-        for j, (other, second) in enumerate(types[i - 1 :], i):
-            section = "_".join(sorted((first, second), key=of_body.index)) if other is body else "contact"
-            lines.append(f"pair_coeff {i} {j} {file} {section} {within.cutoff_A}")
-    for file, within, of_body in bodies:
-        species = tuple(dict.fromkeys(of_body))
-        (workspace / file).write_text(within.table(species, energy_scale), encoding="utf-8")
-    lines += ["neighbor 0.6 bin", "neigh_modify every 2 delay 0 check yes"]
-    (workspace / "pairs").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    for file, text in potential.files(elements, energy_scale, repelled).items():
+        (workspace / file).write_text(text, encoding="utf-8")
 
 
 def make_glass(

@@ -47,7 +47,7 @@ def test_a_film_softer_than_its_base():
     rows = {"h_film": [2, 10], "t_film": [4, 5], "k_film": [0.1, 0.5], "m_film": [1, 2]}
     inputs = {"hardness": "film", "h_prime": None, **{name: {"values": tuple(values)} for name, values in rows.items()}}
     (line,) = mistakes(Scene.model_validate({"inputs": inputs}), {})
-    assert line.startswith("inputs.h_film reaches down to 2.")
+    assert line.startswith("inputs.h_film reaches down to 2 GPa")
     assert "films softer than their base are not modelled" in line
 
 
