@@ -18,7 +18,7 @@ from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.closing import commensurate
 from atomistic.hardness.contact_area import Area, contact_area
 from atomistic.hardness.glass import make_glass
-from atomistic.hardness.pressing import plan_closing, prepare_body, press_bodies
+from atomistic.hardness.pressing import Plan, plan_closing, prepare_body, press_bodies
 from atomistic.hardness.readout import beyond_counterface
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
 from atomistic.lammps import Atoms, Workspace, load_averages, load_dump
@@ -116,20 +116,33 @@ def pressed_layers(
     for k, (potential, glass) in enumerate(slabs):
         aside = Workspace(work / f"anneal{k}", {}, "anneal.in")
         annealed.append(prepare_body(run, glass, potential, closing, PROTOCOL, aside, (1, k), 0.0, SLAB_BASE_NM))
+    return layers_of(run, annealed, [potential for potential, _ in slabs], closing, plan, area, work)
+
+
+def layers_of(
+    run: ClosingRun,
+    annealed: list[Atoms],
+    potentials: Sequence[Potential],
+    closing: ClosingSettings,
+    plan: Plan,
+    area: Area,
+    work: Path,
+) -> list[Layer]:
+    """The layers of prepared flat bodies, pressed until the plan ends; of snapshots about the hardness."""
     workspace = Workspace(work / "pressed", {}, "closing.in")
     geometry, _ = press_bodies(
         run,
         annealed,
-        slabs[0][0],
+        potentials[0],
         closing,
         PROTOCOL,
         plan,
         (1, 9),
         workspace,
         lambda geometry, segments: False,
-        counter_potential=slabs[-1][0],
+        counter_potential=potentials[-1],
     )
-    low, high = (energy_scale * stress for stress in STRESS_GPA)
+    low, high = (run.energy_scale * stress for stress in STRESS_GPA)
     layers = []
     for n in range(1, plan.segments + 1):
         force = {int(row[0]): row[2] for row in load_averages(workspace / f"averages.{n}")}
@@ -137,7 +150,7 @@ def pressed_layers(
             if low < force.get(step, 0.0) / geometry.wavelength_A**2 * EV_PER_A3_IN_GPA < high:
                 places, beyond = beyond_counterface(near, geometry, area.touch_A)
                 height = near[near[:, 0] <= geometry.lower, 4]
-                plane = np.mean(height[beyond > -area.depth_A]) if bodies == 2 else np.max(height - beyond)
+                plane = np.mean(height[beyond > -area.depth_A]) if len(annealed) == 2 else np.max(height - beyond)
                 layers.append(Layer(geometry.wavelength_A, places, beyond, np.maximum(0.0, plane - height)))
     return layers
 

@@ -32,6 +32,7 @@ STRAIN = 4e-3
 STEEPNESS = 0.1  # amplitude over wavelength, as in scene reduced
 CLOSING = ClosingSettings(speed_m_s=100, depth_over_amplitude=2.0)
 LEAST_NM, MOST_SHARE = 2.0, 0.4
+BINS_NM, BIN_NM = (1.5, 2.0, 2.5, 3.0, 3.5), 0.5  # of contact length
 DEPTHS_A = (0.5, 1.0, 1.5)
 MEASURED = {"a_A": 2.951, "c_A": 4.684, "C11_GPa": 162.4, "C12_GPa": 92.0, "C13_GPa": 69.0, "C33_GPa": 180.7}
 """Experiment at room temperature: Fisher and Renken (1964), and the lattice of any handbook."""
@@ -164,15 +165,20 @@ def press(metal: Metal, body: Atoms, wavelength_nm: float, seed: int, work: Path
         energy_scale=1.0,
     )
     base_nm = base_thickness_nm(CLOSING, float(body.cell_A[0]) / 10)
-    aside = Workspace(work / "anneal", {}, "anneal.in")
+    aside = Workspace(work / "anneal", identity(body), "anneal.in")
     force: Any = metal  # has what of a `Potential` is used
     cut = prepare_body(run, body, force, CLOSING, PROTOCOL, aside, (seed, 7), run.asperity.amplitude_nm, base_nm)
     return pressed(run, cut, force, seed, work)
 
 
+def identity(body: Atoms) -> dict[str, Any]:
+    """What tells a body from the one pressed before in the same folder."""
+    return {"body": body.positions_A.tolist()}
+
+
 def pressed(run: ClosingRun, body: Atoms, force: Any, seed: int, work: Path) -> dict[str, float]:
     """Press a prepared body by a flat, as deep as the plan goes."""
-    plan, workspace = plan_closing(CLOSING, run), Workspace(work / "closing", {}, "closing.in")
+    plan, workspace = plan_closing(CLOSING, run), Workspace(work / "closing", identity(body), "closing.in")
     geometry, plan = press_bodies(run, [body], force, CLOSING, PROTOCOL, plan, (seed, 8), workspace, lambda *_: False)
     found: dict[str, float] = {"atoms": len(body)}
     for depth in DEPTHS_A:
@@ -187,6 +193,10 @@ def pressed(run: ClosingRun, body: Atoms, force: Any, seed: int, work: Path) -> 
         found[f"hardness{label}_GPa"] = float(np.mean(stress[used]))
         found[f"exponent{label}"] = float(np.polyfit(np.log(length[used]), np.log(stress[used]), 1)[0])
         found[f"length{label}_nm"] = float(np.mean(length[used]))
+        for low in BINS_NM:
+            here = (length >= low) & (length < low + BIN_NM)
+            if here.any():
+                found[f"stress{label}_{low + BIN_NM / 2:g}_nm_GPa"] = float(np.mean(stress[here]))
         if depth == DEPTHS_A[0]:
             found["averages"] = int(used.sum())
             found["drift_meV_atom"] = float(max(abs(row["energy_drift_meV_per_atom"]) for row in curve))
