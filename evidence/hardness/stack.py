@@ -10,12 +10,13 @@ gate. Glass and metal by themselves are pressed in the same way, and the share o
 import io
 import tempfile
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.optimize import curve_fit
 
 from atomistic.constants import AVOGADRO, EV_PER_A3_IN_GPA
 from atomistic.hardness.asperity import cut_asperity, formula_of, neutralise, profile, remove_strays
@@ -29,7 +30,7 @@ from atomistic.potentials import TABLE_POINTS, TABLE_START_A, Potential, contact
 from atomistic.settings import AsperitySettings, GlassSettings
 from evidence.hardness import area as section
 from evidence.hardness.choices import silica_and
-from evidence.hardness.metal import CLOSING, STEEPNESS, identity, made, pressed, titanium
+from evidence.hardness.metal import CLOSING, LEAST_NM, STEEPNESS, identity, made, pressed, titanium
 from evidence.hardness.metals import NEIGHBOURS, Metal, square_crystal
 
 BOND_A, BOND_PER_A = 2.1, 1.8  # length and steepness of the Morse bond
@@ -102,6 +103,56 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
                 found = pressed(run, body, _as_potential(stack), seed, work / "press")
                 for name, value in {**found, **slid(body, work / "press" / "closing")}.items():
                     yield row("film", seed, thickness, name, value)
+
+
+def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """The work of separation, the shares of the film by L/t, and k and m of the law `film`."""
+    found = {}
+    for row in rows:
+        if row["quantity"] == "work_of_separation_J_m2":
+            found[f"work_{row['bond_eV']}_eV"] = f"{float(row['value']):.2g} J/m²"
+    for label in ("", "_depth_1.5_A"):
+        ratios, parts = shares(rows, label)
+        if len(ratios) > 3:
+            (k, m), covariance = curve_fit(softened, ratios, parts, (0.24, 1.2), bounds=(0, [10, 6]))
+            errors = np.sqrt(np.diag(covariance))
+            found[f"k{label}"], found[f"m{label}"] = f"{k:.2g} ± {errors[0]:.1g}", f"{m:.2g} ± {errors[1]:.1g}"
+            found[f"ratios{label}"] = f"{min(ratios):.2g} to {max(ratios):.2g}"
+            found[f"misfit{label}"] = f"{float(np.sqrt(np.mean((parts - softened(ratios, k, m)) ** 2))):.2g}"
+            for low, high in ((0.8, 1.5), (1.5, 2.5), (2.5, 5.0)):
+                here = parts[(ratios >= low) & (ratios < high)]
+                if len(here):
+                    found[f"share_{low:g}_{high:g}{label}"] = f"{here.min():.2f} to {here.max():.2f}"
+    return found
+
+
+def softened(ratio: np.ndarray, k: float, m: float) -> np.ndarray:
+    """Share of the film in the law `film` by L/t."""
+    return 1 / (1 + k * ratio**m)
+
+
+def shares(rows: Sequence[Mapping[str, str]], label: str = "") -> tuple[np.ndarray, np.ndarray]:
+    """L/t and share of the film of every film and bin of contact length, glass and metal of the same seed beside it.
+
+    Parameters
+    ----------
+    label : of the depth of the contact area, as `pressed` has it.
+    """
+    stress: dict[tuple[str, str, float], dict[float, float]] = {}
+    for row in rows:
+        name = row["quantity"].removesuffix("_nm_GPa")
+        if name.startswith(f"stress{label}_") and "_" not in (length := name.removeprefix(f"stress{label}_")):
+            key = row["case"], row["seed"], float(row["thickness_nm"])
+            stress.setdefault(key, {})[float(length)] = float(row["value"])
+    points = []
+    for (case, seed, thickness), by_length in stress.items():
+        glass, metal = (stress.get((body, seed, 0.0), {}) for body in ("glass", "metal"))
+        for length in by_length.keys() & glass.keys() & metal.keys() if case == "film" else ():
+            if length > LEAST_NM:
+                above = glass[length] - metal[length]
+                points.append((length / thickness, (by_length[length] - metal[length]) / above))
+    ratios, parts = np.array(sorted(points)).reshape(-1, 2).T
+    return ratios, parts
 
 
 @dataclass(frozen=True)
