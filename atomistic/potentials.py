@@ -212,7 +212,7 @@ class Potential(Settings):
         ----------
         elements, repelled : of `write_forcefield`.
         """
-        bodies = [("table", self, elements)]
+        bodies: list[tuple[str, Potential, tuple[str, ...]]] = [("table", self, elements)]
         if repelled is not None:
             bodies.append(("table_repelled", *repelled))
         types = [(body, element) for body in bodies for element in body[2]]

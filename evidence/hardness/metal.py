@@ -31,6 +31,7 @@ from evidence.record import ROOT
 STRAIN = 4e-3
 STEEPNESS = 0.1  # amplitude over wavelength, as in scene reduced
 CLOSING = ClosingSettings(speed_m_s=100, depth_over_amplitude=2.0)
+CRYSTAL_A, CRYSTAL_PS = 20.0, 3.0  # height of its cell, which is tiled, and anneal: it need only expand
 LEAST_NM, MOST_SHARE = 2.0, 0.4
 BINS_NM, BIN_NM = (1.5, 2.0, 2.5, 3.0, 3.5), 0.5  # of contact length
 DEPTHS_A = (0.5, 1.0, 1.5)
@@ -136,8 +137,9 @@ def constants(eam: Eam, a: float, c: float) -> dict[str, float]:
 
 def made(metal: Metal, kind: str, edge_A: float, grain_A: float, seed: int, work: Path) -> Atoms:
     """A body at 300 K in a cell of square section."""
-    cold = square_crystal(metal, edge_A, edge_A) if kind == "crystal" else polycrystal(metal, edge_A, grain_A, seed)
-    return annealed(metal, cold, work, seed)
+    if kind == "crystal":
+        return annealed(metal, square_crystal(metal, edge_A, CRYSTAL_A), work, seed, CRYSTAL_PS)
+    return annealed(metal, polycrystal(metal, edge_A, grain_A, seed), work, seed)
 
 
 def density(metal: Metal, body: Atoms) -> float:

@@ -142,13 +142,13 @@ def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms
     return Atoms((metal.element,), np.ones(len(positions), int), positions, np.full(3, edge_A))
 
 
-def annealed(metal: Metal, atoms: Atoms, work: Path, seed: int) -> Atoms:
-    """The body after an anneal at zero pressure, cooled to 300 K; its cell keeps its shape."""
+def annealed(metal: Metal, atoms: Atoms, work: Path, seed: int, anneal_ps: float = ANNEAL_PS) -> Atoms:
+    """The body after an anneal at zero pressure, cooled to 300 K in the same time; its cell keeps its shape."""
     workspace = Workspace(work, {"seed": seed, "atoms": atoms.positions_A.tolist()}, "glass.in")
     for name, text in metal.files(atoms.elements, 1.0).items():
         (workspace / name).write_text(text, encoding="utf-8")
     write_data(workspace / "start.data", atoms, {metal.element: metal.eam.mass_u})
-    steps = round(1000 * ANNEAL_PS / TIMESTEP_FS)
+    steps = round(1000 * anneal_ps / TIMESTEP_FS)
     variables = {
         "data": "start.data",
         "pairs": "pairs",

@@ -78,9 +78,9 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
                 seed=seed,
                 energy_scale=1.0,
             )
-            base_nm = base_thickness_nm(CLOSING, given.wavelength)
+            base_nm, amplitude = base_thickness_nm(CLOSING, given.wavelength), run.asperity.amplitude_nm
             if "alone" in given.parts:
-                aside, amplitude = Workspace(work / "anneal", identity(glass), "anneal.in"), run.asperity.amplitude_nm
+                aside = Workspace(work / "anneal", identity(glass), "anneal.in")
                 cut = prepare_body(run, glass, oxide, CLOSING, PROTOCOL, aside, (seed, 7), amplitude, base_nm)
                 for name, value in pressed(run, cut, oxide, seed, work / "alone").items():
                     yield row("glass", seed, 0.0, name, value)
@@ -110,19 +110,20 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     found = {}
     for row in rows:
         if row["quantity"] == "work_of_separation_J_m2":
-            found[f"work_{row['bond_eV']}_eV"] = f"{float(row['value']):.2g} J/m²"
-    for label in ("", "_depth_1.5_A"):
-        ratios, parts = shares(rows, label)
+            name = {"0.28": "work_weak", "0.45": "work_strong"}.get(row["bond_eV"], "work_other")
+            found[name] = f"{float(row['value']):.2g} J/m²"
+    for label, of in (("", ""), ("_deep", "_depth_1.5_A")):
+        ratios, parts = shares(rows, of)
         if len(ratios) > 3:
             (k, m), covariance = curve_fit(softened, ratios, parts, (0.24, 1.2), bounds=(0, [10, 6]))
             errors = np.sqrt(np.diag(covariance))
             found[f"k{label}"], found[f"m{label}"] = f"{k:.2g} ± {errors[0]:.1g}", f"{m:.2g} ± {errors[1]:.1g}"
             found[f"ratios{label}"] = f"{min(ratios):.2g} to {max(ratios):.2g}"
             found[f"misfit{label}"] = f"{float(np.sqrt(np.mean((parts - softened(ratios, k, m)) ** 2))):.2g}"
-            for low, high in ((0.8, 1.5), (1.5, 2.5), (2.5, 5.0)):
+            for name, low, high in (("thick", 0.8, 1.5), ("middle", 1.5, 2.5), ("thin", 2.5, 5.0)):
                 here = parts[(ratios >= low) & (ratios < high)]
                 if len(here):
-                    found[f"share_{low:g}_{high:g}{label}"] = f"{here.min():.2f} to {here.max():.2f}"
+                    found[f"share_{name}{label}"] = f"{here.min():.2f} to {here.max():.2f}"
     return found
 
 
