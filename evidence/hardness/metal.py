@@ -74,7 +74,8 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     texts = {name: f"{found[name][-1]:.4g}" for name in shown if name in found}
     for kind in ("crystal", "polycrystal"):
         if values := found.get(f"{kind}_hardness_GPa"):
-            texts[f"{kind}_hardness_GPa"] = f"{min(values):.3g} to {max(values):.3g} GPa"
+            ends = dict.fromkeys(f"{value:.2g}" for value in (min(values), max(values)))
+            texts[f"{kind}_hardness_GPa"] = f"{' to '.join(ends)} GPa"
     return texts
 
 

@@ -34,6 +34,9 @@ def test_a_film_of_known_roughness_is_measured_and_pressed(film):
     assert high > 0.7 - 0.05
     assert table.medians()["rms"] == pytest.approx(5.0, rel=0.1)
     assert table.medians()["e_star"] == 75.0
+    hard = {"hardness": "film", "h_macro": 1.0, "h_film": 9.0, "t_film": 5.0, "k_film": 0.3, "m_film": 1.5}
+    assert measured.inputs(hard).medians()["t_film"] == 5.0
+    assert "h_prime" not in measured.inputs(hard).names
     contact = measured.press({"e_star": 75.0}, load_nN=3000.0, pixels=128)
     assert contact.cycle.converged
     # pressures carry the load, and walls that are pressed have no gap

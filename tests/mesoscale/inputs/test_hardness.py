@@ -7,7 +7,7 @@ from mesoscale.calibration.likelihood import DirectData
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.hardness import HardnessLaw
-from mesoscale.inputs.table import input_table
+from mesoscale.inputs.table import PAPER_ROWS, collect, input_table
 from mesoscale.settings import ContactSettings, InputRow, InputsSettings
 
 FILM = HardnessLaw(h_macro=0.7, h_film=10.5, t_film=5.0, k_film=0.24, m_film=1.2)
@@ -78,6 +78,14 @@ def test_measured_hardness_is_compared_with_the_law_of_the_scene():
 def test_a_row_that_is_missing_or_belongs_to_another_law(given, message):
     with pytest.raises(InputError, match=message):
         InputsSettings(**given)
+
+
+def test_a_film_without_enough_closing_runs_is_refused():
+    settings = InputsSettings(hardness="film", **{**PAPER_ROWS, "h_prime": None, **rows()})
+    settings = settings.model_copy(update={"h_film": InputRow(origin="hardness")})
+    failed = {"hardness": {"gate": {"passed": False, "reasons": ["2 of 12 runs gave a defended hardness"]}}}
+    with pytest.raises(InputError, match=r"fit\.json: its gate failed \(2 of 12 runs.*\), so h_film cannot be taken"):
+        collect(settings, failed, {"hardness": "hardness/fit.json"})
 
 
 def test_a_film_softer_than_its_base_is_refused():
