@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from evidence.record import load
 from evidence.topography.real_files import INPUTS, STATED
 from mesoscale.errors import InputError
 from mesoscale.scan_checks.judged import judge
@@ -32,7 +33,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
-    """One row for each number that a quarter is judged by."""
+    """One row for each number that a quarter is judged by, of maps that the table does not have."""
+    present = {(row["file"], row["map"]) for row in load("topography.quarters")}
     for path in sorted(path for path in given.folder.rglob("*") if path.is_file()):
         settings = TopographySettings.model_validate({"scans": ["file"], **STATED.get(path.name, {})})
         try:
@@ -40,7 +42,9 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
         except InputError:  # `real_files` has the refusals
             continue
         for item in measured:
-            if has_square_pixels(item.data) and min(item.data.heights_nm.shape) >= 2 * FEWEST_PIXELS:
+            if not has_square_pixels(item.data) or (path.name, item.data.name) in present:
+                continue
+            if min(item.data.heights_nm.shape) >= 2 * FEWEST_PIXELS:
                 for row in judged(item, cut(item.data), settings):
                     yield {"file": path.name, "map": item.data.name, **row}
 

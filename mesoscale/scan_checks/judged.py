@@ -24,6 +24,7 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
 from mesoscale.topography.synthesis import synthesize_spectrum
 
 Array = np.ndarray
+EVENLY = 0.5 * (5.0**0.5 - 1.0)  # multiples of the golden ratio (modulo 1) are spread evenly, however many
 SITES = 256  # a scan is thinned to at most so many sites a side, and so are the surfaces beside it
 MAPS, BLOCKS = 10, 4  # maps of heights drawn, and blocks a side of a scan that they are drawn from
 TOUCHED, PRESSED = 40, 20  # surfaces that are brought to first contact, and of these the ones that are pressed
@@ -47,19 +48,25 @@ class Described:
 
     def spectra(self, count: int) -> Iterator[Callable[[Array], Array]]:
         """`count` spectra C(q) that the measurements allow for a place of the surface."""
-        rng = np.random.default_rng(1)
+        from scipy.special import ndtri
+
+        # spread evenly, the first ones too: twenty random places can have half of the film's scatter
+        places = ndtri((np.arange(count) + 0.5) * EVENLY % 1.0)
         if self.one is not None:
-            for psd in self.one.draws(places=True, count=count):
-                yield SpectrumTable(*carried_on(self.one, psd)).psd  # as the contact's own surfaces
+            scatter = self.one.place_sd * few_places(len(self.one.names))
+            for psd, place in zip(self.one.draws(places=False, count=count), places, strict=True):
+                # as the contact's own surfaces
+                yield SpectrumTable(*carried_on(self.one, psd * math.exp(scatter * place))).psd
             return
+        rng = np.random.default_rng(1)
         estimates, fitted = self.topography.estimates, self.topography.likelihood
         rms = estimates["rms"]
         error = 0.5 * math.log(rms.interval[1] / rms.interval[0]) / REACH  # of the typical place
         if fitted is not None:  # and one more place besides
             error = math.hypot(error, few_places(len(fitted.amplitudes)) * fitted.amplitude_sd / 2)
-        for _ in range(count):
+        for place in places:
             q0, slope = (rng.uniform(*estimates[name].scatter) for name in ("q0", "slope"))
-            rms_nm = rms.value * math.exp(error * rng.standard_normal())
+            rms_nm = rms.value * math.exp(error * place)
             yield RoughSpectrum.from_rms(rms_nm, q0, slope, self.topography.cutoff).psd
 
 
@@ -75,8 +82,9 @@ def judge(
     """Rows of topography/judged.csv: pressing each scan, and what its description says of it.
 
     Each scan is left out of the description that it judges, as far as there are others; a lone scan judges the
-    description made from itself. The surfaces go the way of the scan: they are cut from larger ones, levelled as it
-    is, and made periodic. They are as blunt as the scan: what the tips took is left out of both.
+    description made from itself. A scan that the others say nothing of is passed over. The surfaces go the way of the
+    scan: they are cut from larger ones, levelled as it is, and made periodic. They are as blunt as the scan: what the
+    tips took is left out of both.
 
     Parameters
     ----------
@@ -93,7 +101,12 @@ def judge(
         used = [item for item in spectra if item.name != scan.name] if left_out else list(spectra)
         others = [item for item in cleaned.values() if item.name != scan.name] or [scan]
         heights = tuple(height_maps(others)) if name == "measured_heights" else ()
-        described = Described(analyse(used, settings), merge(used) if name != "power_law" else None, heights)
+        topography = analyse(used, settings)
+        # without this scan eq. 9 may have nothing to say
+        one = merge(used) if name != "power_law" or "rms" not in topography.estimates else None
+        if one is None and "rms" not in topography.estimates:
+            continue
+        described = Described(topography, one, heights)
         yield from _judged(scan, described, name, left_out, inputs, settings, contact, most_contact)
 
 

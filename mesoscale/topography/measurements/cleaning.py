@@ -143,22 +143,16 @@ def cut_off_share(heights: np.ndarray) -> float:
 def fitted_trend(heights: np.ndarray, order: int) -> np.ndarray:
     """Least-squares plane (order 1) or quadratic (order 2) through heights (nx, ny); NaN are left out."""
     nx, ny = heights.shape
-    x, y = np.linspace(-1, 1, nx)[:, None], np.linspace(-1, 1, ny)[None, :]
-    terms = [np.ones_like(x * y), x + 0 * y, y + 0 * x]
-    if order >= 2:
-        terms += [x**2 + 0 * y, x * y, y**2 + 0 * x]
+    x, y = np.linspace(-1, 1, nx), np.linspace(-1, 1, ny)
+    powers = [(0, 0), (1, 0), (0, 1), *([(2, 0), (1, 1), (0, 2)] if order >= 2 else [])]
+    x, y = (np.stack([u**k for k in range(2 * order + 1)]) for u in (x, y))  # all terms are products
     known = np.isfinite(heights)
-    if known.all():
-        gram = np.array([[np.vdot(a, b) for b in terms] for a in terms])
-        right = np.array([np.vdot(a, heights) for a in terms])
-    else:
-        gram = np.array([[np.sum(a * b, where=known) for b in terms] for a in terms])
-        right = np.array([np.sum(a * heights, where=known) for a in terms])
-    coefficients = np.linalg.lstsq(gram, right, rcond=None)[0]
-    trend = np.zeros_like(heights)
-    for coefficient, term in zip(coefficients, terms, strict=True):
-        trend += coefficient * term
-    return trend
+    weights, sums = (x @ values @ y.T for values in (known.astype(float), np.where(known, heights, 0.0)))
+    gram = np.array([[weights[i + k, j + m] for k, m in powers] for i, j in powers])
+    right = np.array([sums[i, j] for i, j in powers])
+    table = np.zeros((2 * order + 1, 2 * order + 1))
+    table[tuple(np.transpose(powers))] = np.linalg.lstsq(gram, right, rcond=None)[0]
+    return x.T @ table @ y
 
 
 def fill_missing(heights: np.ndarray) -> np.ndarray:

@@ -1,12 +1,16 @@
 """The scans as judges of their description."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.scan_checks.judged import _predicted, judge
+from mesoscale.scan_checks.judged import Described, _predicted, judge
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.analysis import trusted_scan
+from mesoscale.topography.description.one_spectrum import few_places, merge
+from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.height_synthesis import synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
@@ -53,6 +57,26 @@ def test_a_lone_scan_judges_the_description_made_from_itself():
     rows = judged(list(grainy(1)), "measured_heights")
     assert not any(row["left_out"] for row in rows)
     assert {row["quantity"] for row in rows} == {"rms", "first_contact", "separation_1uN", "separation_7uN", "area_7uN"}
+
+
+@pytest.mark.parametrize("measured", [False, True], ids=["eq. 9", "measured spectrum"])
+def test_the_first_surfaces_scatter_as_places_do(measured):
+    """Twenty are pressed: too few to leave the scatter between places to chance."""
+    factors = np.exp(0.4 * np.array([-1.3, -0.6, 0.0, 0.6, 1.3]))
+    scans = [replace(scan, heights_nm=k * scan.heights_nm) for k, scan in zip(factors, grainy(5), strict=True)]
+    spectra = [trusted_scan(scan, SETTINGS) for scan in scans]
+    topography, one = analyse(spectra, SETTINGS), merge(spectra) if measured else None
+    levels = [np.log(psd(np.array([0.1]))[0]) / 2 for psd in Described(topography, one, ()).spectra(20)]
+    place = (one.place_sd if one else topography.likelihood.amplitude_sd) / 2 * few_places(5)
+    assert np.std(levels) == pytest.approx(place, rel=0.3)
+
+
+def test_a_scan_that_the_others_say_nothing_of_is_passed_over():
+    first, second = grainy(2)
+    blind = trusted_scan(second, SETTINGS)
+    spectra = [trusted_scan(first, SETTINGS), replace(blind, high=blind.low, reach=blind.low)]
+    rows = judge([first, second], spectra, "power_law", INPUTS, SETTINGS, ContactSettings())
+    assert {row["scan"] for row in rows} == {"g1"}
 
 
 def test_a_load_that_merges_all_contacts_is_no_judge():
