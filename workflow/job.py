@@ -23,7 +23,7 @@ from pydantic import BaseModel
 from asperity.foreign_text import shown
 from atomistic.errors import InputError as AtomisticInputError
 from mesoscale.errors import InputError as MesoscaleInputError
-from workflow.checksums import file_checksum, is_damaged
+from workflow.checksums import file_checksum, record_of, is_damaged
 from workflow.ownership import join
 from workflow.schemas import UnfitTable
 
@@ -66,7 +66,8 @@ class Job:
         """Rule, hash of the settings and input files, and package versions."""
         digest = hashlib.sha256(json.dumps(self.params, sort_keys=True, default=str).encode())
         for path in self.inputs:
-            digest.update(result_checksum(path).encode())
+            ours = record_of(path).is_file()  # a file of the user may have any encoding
+            digest.update((result_checksum(path) if ours else file_checksum(path)).encode())
         return {"rule": self.rule, "inputs_hash": digest.hexdigest(), "versions": package_versions()}
 
     def progress(self, fraction: float, text: str = "") -> None:

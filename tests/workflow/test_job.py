@@ -73,6 +73,14 @@ def test_provenance_depends_on_settings_and_inputs(snakemake, tmp_path):
     assert len(set(hashes)) == 3
 
 
+def test_a_table_of_the_user_may_have_any_encoding(snakemake, tmp_path):
+    table = tmp_path / "stylus.csv"
+    table.write_bytes("Radius: 2.5 \u00b5m,1\n".encode("latin-1"))
+    snakemake.input = [table]
+    with job(snakemake) as run:
+        assert run.provenance["inputs_hash"]
+
+
 def test_provenance_names_the_installed_packages_alone(monkeypatch):
     assert {"numpy", "openturns", "SurfaceTopography"} <= set(package_versions())
     monkeypatch.setattr("workflow.job.PACKAGES", ("numpy", "no-such-package"))
