@@ -23,7 +23,7 @@ from pydantic import BaseModel
 from asperity.foreign_text import shown
 from atomistic.errors import InputError as AtomisticInputError
 from mesoscale.errors import InputError as MesoscaleInputError
-from workflow.checksums import file_checksum, record_of, is_damaged
+from workflow.checksums import file_checksum, is_damaged, record_of
 from workflow.ownership import join
 from workflow.schemas import UnfitTable
 

@@ -61,7 +61,7 @@ def test_each_bad_scan_gets_one_line(refused):
     done, _ = refused
     assert done.returncode != 0
     unreadable, sizeless = errors(done)
-    assert "sizeless.txt: has no physical size" in sizeless
+    assert "sizeless.txt: has no physical size and no length unit" in sizeless
     assert "unreadable.gwy: no reader understands this file" in unreadable
 
 

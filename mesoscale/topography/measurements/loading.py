@@ -241,10 +241,9 @@ def _scan(
         sizes = given["physical_sizes"] = stated_sizes
     if not unit and stated_unit is not None:
         unit = given["unit"] = stated_unit
-    if sizes is None or len(sizes) != 2 or not all(np.isfinite(s) and s > 0 for s in sizes):
-        raise InputError(f"{path}: has no physical size; save it in a format that carries size and unit (.gwy)")
-    if not unit:
-        raise InputError(f"{path}: has no length unit; save it in a format that carries size and unit (.gwy)")
+    sized = sizes is not None and len(sizes) == 2 and all(np.isfinite(s) and s > 0 for s in sizes)
+    if lacks := " and no ".join(["physical size"] * (not sized) + ["length unit"] * (not unit)):
+        raise InputError(f"{path}: has no {lacks}; save it in a format that carries size and unit (.gwy)")
     if grid is not None and int(np.prod(grid)) > MAX_PIXELS:
         raise InputError(f"{path}: {grid[0]} x {grid[1]} pixels; at most {MAX_PIXELS} pixels are accepted")
     topography = _heights(path, lambda: info.topography(**given))
@@ -271,7 +270,7 @@ def _profile(path: Path, name: str, info: Any, stated_unit: str | None) -> Profi
     if factors is None:
         raise InputError(
             f"{path}: a profile without length unit; state it in topography.instruments "
-            f"(files: {path.name!r}, unit: um) or in the heads of its columns"
+            f"(files: {path.name!r}, unit: um; tip_radius_nm, too) or in the heads of its columns"
         )
 
     def points() -> list[np.ndarray]:
