@@ -23,6 +23,7 @@ import numpy as np
 
 from asperity.foreign_text import as_word, shown, wrapped
 from workflow.report.available import Results
+from workflow.report.contributions import contributions
 from workflow.results import load_json
 from workflow.scene import ROOT, Scene, SceneError, load_scene
 from workflow.terminal.progress import duration
@@ -39,11 +40,6 @@ RULES = {
 LEAST = {"pad.cells": 16, "pad.draws": 16, "hardness.seeds": 1, "elastic.structures": 4}
 """Fewer cells or draws leave the pad's closed form undetermined; fewer glasses fail the gate of E*."""
 MOST = 100_000
-DRAWS = 0.18
-"""Error that one draw leaves in the median release, over the deviation by the inputs: the draws of scene `paper` left
-out in six blocks. It falls with the root of their number."""
-MEDIAN = 1.25
-"""Standard error of a median over that of a mean."""
 
 
 @dataclass(frozen=True)
@@ -112,42 +108,6 @@ class Effort:
             for key, knob in self.knobs.items()
         }
         return {key: max(knob.least, int(wanted[key])) for key, knob in self.knobs.items()}
-
-
-def contributions(results: Results) -> dict[str, Any] | None:
-    """What inputs and counts leave open of the release, from the results of a scene; None without an answer.
-
-    Returns
-    -------
-    `fixed_V` by cause, `largest` (the input behind most of it, and its share), and `variance_V2` of one of each count.
-    """
-    if not results.has("device/pad_switch.json"):
-        return None
-    pad = results.json("device/pad_switch.json")
-    if not (answer := pad.get("answer")):
-        return None
-    design, shares = answer["design"], {row["name"]: row["share_of_variance"] for row in answer["sensitivity"]}
-    total_V2, cells_V2 = answer["release_V"]["std"] ** 2, design["cells_error_V"] ** 2
-    inputs_V2 = max(total_V2 - cells_V2, 0.0)
-    variances = {"pad.cells": cells_V2 * pad["cells_computed"], "pad.draws": DRAWS**2 * inputs_V2}
-    if results.has("hardness/fit.json") and "budget" in (fit := results.json("hardness/fit.json")):
-        # the mean over runs errs by the scatter between them; all runs of a seed are one of the count
-        seeds = len({point["seed"] for point in results.csv("hardness/points.csv")})
-        of_runs = fit["budget"]["statistical"]["share"] / fit["points_used"]
-        variances["hardness.seeds"] = shares.get("h_prime", 0.0) * total_V2 * of_runs * seeds
-    if results.has("elastic/e_star.json"):
-        e_star = results.json("elastic/e_star.json")
-        of_glasses = (e_star["standard_error_of_mean_GPa"] / e_star["std_GPa"]) ** 2
-        variances["elastic.structures"] = (
-            shares.get("e_star", 0.0) * total_V2 * of_glasses * len(e_star["structures_used"])
-        )
-    points_V = MEDIAN * design["response_error_V"] / np.sqrt(design["points"])
-    largest = max(shares, key=lambda name: shares[name])
-    return {
-        "fixed_V": {"inputs": float(np.sqrt(inputs_V2)), "64 switches behind the interval": float(points_V)},
-        "largest": [largest, shares[largest]],
-        "variance_V2": variances,
-    }
 
 
 def known_contributions(scene: Scene) -> tuple[dict[str, Any], str]:

@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from workflow.effort import KNOWN, contributions
+from workflow.effort import KNOWN
 from workflow.report.available import Results
+from workflow.report.contributions import contributions
 from workflow.results import load_json
 
 RUNS_A_SEED = 6

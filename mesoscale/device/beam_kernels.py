@@ -118,7 +118,7 @@ def deflect(nodal, shape):
     return deflection
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)  # switches are solved side by side
 def creep(nodal, deepest_nm, rest_m, beam, pad, electric, contact_nm, free_nm):
     """Let a beam move to balance at one voltage, every place remembering how deep it came; both changed in place.
 

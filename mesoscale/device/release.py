@@ -7,6 +7,7 @@ the cells of the central pad tells its part.
 """
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -147,6 +148,7 @@ def answer(
     settings: DeviceSettings,
     cutoffs_nm: tuple[float, float],
     released: Callable[[], Array],
+    threads: int,
 ) -> dict[str, Any]:
     """`answer` of device/pad_switch.json.
 
@@ -156,6 +158,7 @@ def answer(
     draws : pads at other inputs.
     cutoffs_nm : range of D0.
     released : gives release voltages (V) on pads of resampled cells.
+    threads : switches that are solved at once.
 
     Raises
     ------
@@ -168,16 +171,14 @@ def answer(
     middle_nm = float(np.mean(cutoffs_nm))
     in_the_middle = solve_point(Point(middle, middle_nm, settings), model)
     names, causes, units, points = plan_points(table, settings, *cutoffs_nm)
-    solved, refused = [], []
-    for place, point in enumerate(points):
-        try:
-            solved.append((place, solve_point(point, model)))
-        except InputError as error:
-            refused.append(str(error))
+    with ThreadPoolExecutor(threads) as pool:
+        states = list(pool.map(lambda point: _solved(point, model), points))
+    refused = [state for state in states if isinstance(state, str)]
+    solved = [state for state in states if not isinstance(state, str)]
     if len(solved) < SOLVED * len(points):
         raise InputError(f"device: {len(refused)} of {len(points)} switches cannot be solved, the first: {refused[0]}")
-    places = [place for place, _ in solved]
-    solved_values = {key: np.array([state[key] for _, state in solved]) for key in by_curves}
+    places = [place for place, state in enumerate(states) if not isinstance(state, str)]
+    solved_values = {key: np.array([state[key] for state in solved]) for key in by_curves}
     release = solved_values["release_V"]
     stuck = release == 0.0
     cells_V = float(released().std(ddof=1))
@@ -242,15 +243,15 @@ def try_answer(
     settings: DeviceSettings,
     gap_cutoff_nm: float,
     released: Callable[[], Array],
+    threads: int,
 ) -> dict[str, Any]:
     """`answer` for device/pad_switch.json, or None with `answer_status` that says why there is none."""
+    cutoffs_nm = cutoff_range(gap_cutoff_nm, draws)
     try:
-        return {
-            "answer": answer(cells, draws, table, flats, settings, cutoff_range(gap_cutoff_nm, draws), released),
-            "answer_status": "ok",
-        }
+        state = answer(cells, draws, table, flats, settings, cutoffs_nm, released, threads)
     except InputError as error:
         return {"answer": None, "answer_status": str(error)}
+    return {"answer": state, "answer_status": "ok"}
 
 
 def _probability(stuck: int, solved: int, refused: int) -> dict[str, float | int]:
@@ -272,6 +273,14 @@ def model_of(
 def solve_point(point: Point, model: Model) -> dict[str, float]:
     """The switch of a point, on the curves carried there."""
     return solve_deepened(point.device, pad_at(point, model))
+
+
+def _solved(point: Point, model: Model) -> dict[str, float] | str:
+    """The switch of a point, or why it cannot be solved."""
+    try:
+        return solve_point(point, model)
+    except InputError as error:
+        return str(error)
 
 
 def pad_at(point: Point, model: Model) -> PadLaw:

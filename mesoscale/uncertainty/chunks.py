@@ -2,7 +2,7 @@
 
 from mesoscale.settings import UncertaintySettings
 
-CHUNK_RUNS = 100
+CHUNK_RUNS = 200
 """Contact cycles per job and file: jobs of some seconds to minutes, of which an interruption loses one."""
 
 

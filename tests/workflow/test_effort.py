@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from asperity.__main__ import main
-from workflow.effort import LEAST, Effort, Knob, contributions, effort_of, known_contributions, settings_of
+from workflow.effort import LEAST, Effort, Knob, effort_of, known_contributions, settings_of
 from workflow.report.available import Results
+from workflow.report.contributions import contributions
 from workflow.scene import Scene, load_scene
 
 EFFORT = Effort(
@@ -69,7 +70,7 @@ def test_contributions_add_up_to_the_spread_of_the_answer(tmp_path):
     answer = {
         "release_V": {"std": 0.5},
         "sensitivity": [{"name": "rms", "share_of_variance": 0.7}],
-        "design": {"cells_error_V": 0.3, "response_error_V": 0.08, "points": 64},
+        "design": {"cells_error_V": 0.3, "response_error_V": 0.08, "points": 64, "draws": 24},
     }
     file = tmp_path / "device/pad_switch.json"
     file.parent.mkdir()

@@ -115,7 +115,7 @@ rule assemble_pad:
     log:
         f"{RESULTS}/logs/assemble_pad.log",
     priority: 2
-    threads: 1
+    threads: 2  # its switches are solved side by side
     params:
         contact=settings("contact"),
         design=DRAW_DESIGN,

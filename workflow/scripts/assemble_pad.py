@@ -61,5 +61,5 @@ with job(snakemake) as run:
     switch = switch_on_pad(cells, flats, device, area, released)
     if snakemake.input.draws:
         pads = load_draws(snakemake.input.draws, inputs, contact, *snakemake.params.design)
-        switch |= try_answer(cells, pads, inputs, flats, device, central.gap_cutoff_nm, released)
+        switch |= try_answer(cells, pads, inputs, flats, device, central.gap_cutoff_nm, released, snakemake.threads)
     write_json(snakemake.output.switch, switch, run.provenance)

@@ -217,7 +217,7 @@ def test_the_answer_keeps_its_causes_apart(pads):
         one[k][:, above] = true_pad(MIDDLE, 0.165).opening_GPa(law.separation_nm[above], depth)
     cells = PadCells(grid, np.full(16, 30.0), closing, np.tile(one[:, :, ::-1], (16, 1, 1, 1)), np.ones(16, bool))
     released = partial(releases_by_cells, PLATE, cells, law.flats)
-    state = try_answer(cells, pads[1:], TABLE, law.flats, PLATE, 0.165, released)
+    state = try_answer(cells, pads[1:], TABLE, law.flats, PLATE, 0.165, released, 2)
     assert state["answer_status"] == "ok"
     shares = {row["cause"]: row["share_of_variance"] for row in state["answer"]["causes"]}
     assert shares["cells"] < 1e-9

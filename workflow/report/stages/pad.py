@@ -5,12 +5,19 @@ from typing import Any
 import numpy as np
 
 from workflow.report.available import Results, Row
+from workflow.report.contributions import contributions
 from workflow.report.drawing import BLUE, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import column, show
 from workflow.report.page import COMPUTED, Section, Table
 from workflow.report.verdict import symbol
 
 CAUSES = {"inputs": "inputs", "gap_cutoff": "D₀", "geometry": "bow and tilt", "cells": "the finite number of cells"}
+COUNTED = {
+    "pad.cells": "cells of the pad",
+    "pad.draws": "pads at other inputs",
+    "hardness.seeds": "glasses that are pressed",
+    "elastic.structures": "glasses behind E*",
+}
 
 
 def describe(results: Results) -> Section | None:
@@ -38,7 +45,10 @@ def describe(results: Results) -> Section | None:
         "pads. The point at the right is the mean of all computed cells with its standard error.",
     )
     if answer := switch.get("answer"):
-        section.blocks += _answer(answer)
+        section.blocks += [*_answer(answer), _left_open(results)]
+        section.notes.append(
+            f"asperity plan {results.scene} --budget 1h shows minutes against this error, and counts for them."
+        )
     section.notes.append(
         "Where the scene does not measure bow and tilt, their deviations (device.bow_deviation_nm, "
         "device.tilt_deviation_nm) are assumptions."
@@ -71,6 +81,16 @@ def _answer(answer: dict[str, Any]) -> list[Table]:
         Table("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows),
         Table("What to measure better for the release", columns, measured),
     ]
+
+
+def _left_open(results: Results) -> Table:
+    """What inputs and counts leave open of the release."""
+    found: Any = contributions(results)
+    rows = [(name, f"{value:.2g}", "no count") for name, value in found["fixed_V"].items()]
+    for key, count in found["counts"].items():
+        rows.append((f"{COUNTED[key]}: {count}", f"{np.sqrt(found['variance_V2'][key] / count):.2g}", f"`{key}`"))
+    columns = ("left open by", "deviation of the release (V)", "reduced by")
+    return Table("What more computing would narrow: deviations add up by their squares", columns, rows)
 
 
 def pad_curves(results: Results) -> str:
