@@ -98,9 +98,14 @@ def _answer(results: Path) -> dict[str, Any]:
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """Release and sticking of each case, the last run of each."""
+    """Release and sticking of each case, the last run of each; the share of H_macro with the default's statements."""
+    same = [row["largest_shares"] for row in rows if row["case"].split(",")[0] in ("default", "other seeds")]
+    shares = [float(share) for text in same for share in re.findall(r"h_macro ([\d.]+)", text)]
     return {
-        re.sub(r"\W+", "_", f"{row['case']}_{row['pixels']}"): f"{float(row['release_V']):.2f} V "
-        f"[{float(row['low_V']):.2f}, {float(row['high_V']):.2f}], {float(row['stuck']):.0%} stick"
-        for row in rows
+        "h_macro": ", ".join(f"{share:.0%}" for share in shares),
+        **{
+            re.sub(r"\W+", "_", f"{row['case']}_{row['pixels']}"): f"{float(row['release_V']):.2f} V "
+            f"[{float(row['low_V']):.2f}, {float(row['high_V']):.2f}], {float(row['stuck']):.0%} stick"
+            for row in rows
+        },
     }

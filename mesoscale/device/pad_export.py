@@ -1,14 +1,24 @@
-"""The closed form of a pad for circuit simulators, with the deepest closing as a state.
+"""The curves of a pad as tables for circuit simulators, with the deepest closing as a state.
 
 The state is `closed` = start - (smallest separation so far) >= 0. It follows start - s upward with the time constant
 `follow` and stays where it is while the pad opens, but for a leak that a simulator needs to find its first balance.
+
+Closing gives the logarithms of push and pull at the deepest separation. An opening from there adds how both change with
+the rise above it, interpolated between the depths that were computed. Verilog-A gets monotone cubic pieces (Fritsch and
+Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300), so that force and slope are continuous; SPICE gets straight ones.
 """
 
-from dataclasses import asdict
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
-from mesoscale.errors import InputError
-from mesoscale.pad.compact import CompactPad, fit_compact, well_status, wells_of
-from mesoscale.pad.memory import PadLaw
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from mesoscale.pad.memory import FLOOR_GPa, PadLaw
+
+Array = NDArray[np.float64]
 
 START_NM = 200.0
 """Separation from which closing counts; a pad is not in contact so far out."""
@@ -16,16 +26,128 @@ FOLLOWING = 1e3
 """Conductance of following (S): large beside the 1e-12 S that simulators add to every node."""
 LEAK = 1e-15
 """Conductance of the leak over that of following: the state falls by 1e-15 of itself per time constant."""
+OF_WELL, OF_NET, OF_PULL = 0.003, 0.0005, 0.05
+"""Error that tables may have beside the curves: of the well and of the net pressure; far out, of the pull."""
+NEAR = 10.0
+"""Net pressures up to so many wells are near the well."""
+FAINT = 1e-3
+"""A push of this part of the shallowest well counts as none, so that its logarithm stays finite."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A curve through nodes, shape (n,) each: places (nm), values, and slopes of the cubic pieces (1/nm)."""
+
+    x: Array
+    y: Array
+    slope: Array
+
+
+@dataclass(frozen=True)
+class Tables:
+    """A pad as pieces: logarithms of push (less `faint_GPa`) and of pull over that of flats.
+
+    Attributes
+    ----------
+    closing : push and pull at the deepest separation.
+    depth_nm : separations from which the pad was opened, shape (k,).
+    opening : from each depth, how both change with the rise above it.
+    of_well : largest error on opening where the net pressure is below `NEAR` wells, over the well.
+    of_net : largest error elsewhere, over the net pressure.
+    """
+
+    closing: tuple[Piece, Piece]
+    depth_nm: Array
+    opening: list[tuple[Piece, Piece]]
+    faint_GPa: float
+    of_well: float
+    of_net: float
+
+
+def tables_of(law: PadLaw, cubic: bool) -> Tables:
+    """Tables of the curves of a pad; `cubic` or straight pieces."""
+    wells = np.array([-min(np.nanmin(opened.sum(axis=0)), 0.0) for opened in law.opening])
+    faint = max(FAINT * float(wells.min()), 1e2 * FLOOR_GPa)
+    s = law.separation_nm
+
+    def logarithms(pressures: Array, at_nm: Array) -> Array:
+        pull = (FLOOR_GPa - pressures[1]) / (FLOOR_GPa + law.flats.pull_GPa(at_nm))
+        return np.log(np.stack([pressures[0] + faint, np.maximum(pull, FLOOR_GPa)]))
+
+    def fitted(
+        x: Array, values: Array, at_nm: Array, start: Array, well: float, at: Sequence[int] = ()
+    ) -> tuple[tuple[Piece, Piece], float, float]:
+        flats = law.flats.pull_GPa(at_nm) + FLOOR_GPa
+        push, pull = np.exp(values[0]) - faint, flats * np.exp(values[1])
+
+        net = push - pull
+
+        def missed(made: Array) -> Array:
+            return abs(np.exp(made[0]) - faint - flats * np.exp(made[1]) - net)
+
+        allowed = np.minimum(OF_WELL * well, OF_PULL * pull) + OF_NET * abs(net) + FLOOR_GPa
+        pieces, made = _pieces(x, values, lambda made: missed(made) / allowed, at, cubic)
+        near = abs(net) < NEAR * well
+        of_well, of_net = missed(made) / well, missed(made) / np.maximum(abs(net), faint)
+        first, second = (replace(one, y=one.y - shift) for one, shift in zip(pieces, start, strict=True))
+        return (first, second), float(of_well.max(initial=0.0, where=near)), float(of_net.max(initial=0.0, where=~near))
+
+    at_depths = [int(abs(s - depth).argmin()) for depth in law.depth_nm]
+    closing, _, of_closing = fitted(
+        s, logarithms(law.closing, s), s, np.zeros(2), float(wells.min()) or faint, at_depths
+    )
+    opening, errors = [], []
+    for depth, opened, well in zip(law.depth_nm, law.opening, wells, strict=True):
+        known = np.isfinite(opened[0])
+        values = logarithms(opened[:, known], s[known])
+        pieces, *missed = fitted(s[known] - depth, values, s[known], values[:, 0], well or faint)
+        opening.append(pieces)
+        errors.append(missed)
+    of_well, of_net = np.max(errors, axis=0)
+    return Tables(closing, law.depth_nm, opening, faint, float(of_well), max(float(of_net), of_closing))
+
+
+def _pieces(
+    x: Array, values: Array, error: Callable[[Array], Array], nodes: Sequence[int], cubic: bool
+) -> tuple[tuple[Piece, Piece], Array]:
+    """Pieces through nodes, added where they miss the values most until `error` is below 1; and what they give at x."""
+    chosen = {0, x.size // 2, x.size - 1, *nodes}
+    while True:
+        at = sorted(chosen)
+        curve = PchipInterpolator(x[at], values[:, at], axis=1)
+        made = curve(x) if cubic else np.stack([np.interp(x, x[at], row[at]) for row in values])
+        missed = error(made)
+        missed[at] = 0.0
+        if missed.max() <= 1.0:
+            slopes = curve.derivative()(x[at])
+            first, second = (Piece(x[at], row[at], slope) for row, slope in zip(values, slopes, strict=True))
+            return (first, second), made
+        chosen.add(int(missed.argmax()))
 
 
 def verilog_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
-    """Verilog-A module `rough_pad` on a kinematic node; a comment says why where the curves give no closed form."""
-    fitted, note = _closed_form(law, cells)
-    if fitted is None:
-        return f"// {note}\n"
-    parameters = "\n".join(f"    parameter real {name} = {value:.17g};" for name, value in asdict(fitted).items())
+    """Verilog-A module `rough_pad` on a kinematic node."""
+    tables = tables_of(law, cubic=True)
+    functions = [_function("closing_push", tables.closing[0]), _function("closing_pull", tables.closing[1])]
+    for k, (push, pull) in enumerate(tables.opening):
+        functions += [_function(f"repel{k}", push), _function(f"attract{k}", pull)]
+    depths, last = tables.depth_nm, tables.depth_nm.size - 1
+    between = [
+        f"""if (deepest < {depths[k + 1]:.7g}) begin
+            share = max((deepest - {depths[k]:.7g}) / {depths[k + 1] - depths[k]:.7g}, 0.0);
+            push = push + (1.0 - share) * repel{k}(risen) + share * repel{k + 1}(risen);
+            pull = pull + (1.0 - share) * attract{k}(risen) + share * attract{k + 1}(risen);
+        end"""
+        for k in range(last)
+    ]
+    between.append(
+        f"""begin
+            push = push + repel{last}(risen);
+            pull = pull + attract{last}(risen);
+        end"""
+    )
     return f"""// Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
-// {note}
+// {_note(tables, cells)}
 // s: mean separation (position in m) of the moving electrode above ref; the branch carries the force in N.
 // closed: by how much (nm) the pad has been closed so far below {START_NM:g} nm; a state.
 // Lengths in nm, pressures in GPa, hamaker in 1e-18 J; follow in s: much shorter than any motion.
@@ -39,10 +161,22 @@ module rough_pad(s, ref);
 
     parameter real area_nm2 = {area_nm2:.12g} from (0:inf);
     parameter real follow = 1.0e-9 from (0:inf);
-{parameters}
+    parameter real hamaker = {law.flats.hamaker:.12g} from [0:inf);
+    parameter real offset_nm = {law.flats.offset_nm:.12g} from [0:inf);
 
-    real separation, further, deepest, risen, load, decay, lift, far, near;
+    real separation, further, deepest, risen, share, push, pull, flats;
 
+    analog function real piece;
+        input x, x0, x1, y0, y1, m0, m1;
+        real x, x0, x1, y0, y1, m0, m1, t, h;
+        begin
+            h = x1 - x0;
+            t = (x - x0) / h;
+            piece = y0 + t * (h * m0 + t * (3.0 * (y1 - y0) - h * (2.0 * m0 + m1)
+                + t * (h * (m0 + m1) - 2.0 * (y1 - y0))));
+        end
+    endfunction
+{"".join(functions)}
     analog begin
         separation = Pos(s, ref) * 1.0e9;
         further = {START_NM:.1f} - separation - V(closed);
@@ -50,59 +184,89 @@ module rough_pad(s, ref);
 
         deepest = min({START_NM:.1f} - V(closed), separation);
         risen = separation - deepest;
-        load = exp(-c0 - c1_per_nm * deepest - c2_per_nm2 * deepest * deepest);
-        decay = (b0_per_nm + b1_per_nm2 * deepest) * risen + b2_per_nm2 * risen * risen;
-        far = hamaker / (6.0 * `M_PI * pow(max(separation, 1.0) + offset_nm, 3.0));
-        lift = 1.0 + lifted * pow(max(1.0 - exp(-decay), 0.0), 3.0);
-        near = beta * 1.0e-3 * exp(m * ln(load / 1.0e-3) - n * decay) * lift;
+        if (deepest < {depths[0]:.7g})
+            $strobe("rough_pad: closed to %g nm, the table ends at {depths[0]:.4g} nm", deepest);
+        push = closing_push(deepest);
+        pull = closing_pull(deepest);
+        {" else ".join(between)}
+        flats = hamaker / (6.0 * `M_PI * pow(max(separation, 1.0) + offset_nm, 3.0)) + {FLOOR_GPa:g};
 
         // 1 GPa nm^2 = 1 nN; a positive pressure pushes s away from ref
-        F(s, ref) <+ -area_nm2 * (load * exp(-decay) - far - near) * 1.0e-9;
+        F(s, ref) <+ -area_nm2 * (exp(push) - {tables.faint_GPa:.7g} - flats * exp(pull)) * 1.0e-9;
     end
 endmodule
 """
 
 
+def _function(name: str, piece: Piece) -> str:
+    """A Verilog-A function of the cubic pieces through nodes; beyond the ends it goes on straight."""
+    x, y, slope = ([f"{value:.7g}" for value in row] for row in (piece.x, piece.y, piece.slope))
+    lines = [f"if (x < {x[0]}) {name} = {y[0]} + {slope[0]} * (x - {x[0]});"]
+    for (x0, y0, m0), (x1, y1, m1) in pairwise(zip(x, y, slope, strict=True)):
+        lines.append(f"else if (x < {x1}) {name} = piece(x, {x0}, {x1}, {y0}, {y1}, {m0}, {m1});")
+    lines.append(f"else {name} = {y[-1]};")
+    body = "\n            ".join(lines)
+    return f"""
+    analog function real {name};
+        input x;
+        real x;
+        begin
+            {body}
+        end
+    endfunction
+"""
+
+
 def spice_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
     """SPICE subcircuit `rough_pad` (ngspice): node s 1 V = 1 nm, node force 1 V = 1 nN, positive = pushed away."""
-    fitted, note = _closed_form(law, cells)
-    if fitted is None:
-        return f"* {note}\n"
-    defaults = " ".join(f"{name}={value:.17g}" for name, value in asdict(fitted).items())
-    load = "exp(-{c0} - {c1_per_nm}*V(deepest) - {c2_per_nm2}*V(deepest)*V(deepest))"
+    tables = tables_of(law, cubic=False)
+    depths = tables.depth_nm
+    weights, rises = [], []
+    for k, pieces in enumerate(tables.opening):
+        at = depths[max(k - 1, 0) : k + 2]
+        hat = Piece(at, (at == depths[k]).astype(float), at)
+        weights.append(f"Bweight{k} weight{k} 0 V = {_pwl('V(deepest)', hat)}")
+        for name, piece in zip(("push", "pull"), pieces, strict=True):
+            rises.append(f"B{name}{k} {name}{k} 0 V = {_pwl('V(risen)', piece)}")
+    sums = {
+        name: "".join(f"\n+   + V(weight{k})*V({name}{k})" for k in range(depths.size)) for name in ("push", "pull")
+    }
+    lines = "\n".join([*weights, *rises])
     return f"""* Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
-* {note}
+* {_note(tables, cells)}
 * nodes     s      mean separation, 1 V = 1 nm
 *           force  force on the moving electrode, 1 V = 1 nN, positive = pushed away
 * closed    by how much (nm) the pad has been closed so far below {START_NM:g} nm; a state
 * follow    time constant (s) of that state: much shorter than any motion; integrate by backward Euler
 *           (.options method=gear maxord=1), because what overshoots is remembered
-.subckt rough_pad s force params: area={area_nm2:.12g} follow=1e-9 {defaults}
+.subckt rough_pad s force params: area={area_nm2:.12g} follow=1e-9
++   hamaker={law.flats.hamaker:.12g} offset_nm={law.flats.offset_nm:.12g}
 Cclosed closed 0 {{{FOLLOWING:g}*follow}}
 Rleak closed 0 {1 / (FOLLOWING * LEAK):g}
 Bclosed 0 closed I = {FOLLOWING:g} * max({START_NM:g} - V(s) - V(closed), 0)
 Bdeepest deepest 0 V = min({START_NM:g} - V(closed), V(s))
 Brisen risen 0 V = V(s) - V(deepest)
-Bload load 0 V = {load}
-Bdecay decay 0 V = ({{b0_per_nm}} + {{b1_per_nm2}}*V(deepest))*V(risen) + {{b2_per_nm2}}*V(risen)*V(risen)
-Bgone gone 0 V = max(1 - exp(-V(decay)), 0)
+Bpush0c closing_push 0 V = {_pwl("V(deepest)", tables.closing[0])}
+Bpull0c closing_pull 0 V = {_pwl("V(deepest)", tables.closing[1])}
+{lines}
 Bwalls walls 0 V = max(V(s), 1) + {{offset_nm}}
-Bfar far 0 V = {{hamaker/(6*3.14159265358979324)}} / (V(walls)*V(walls)*V(walls))
-Bforce force 0 V = {{area}} * (V(load)*exp(-V(decay)) - V(far)
-+   - {{beta*1e-3}} * exp({{m}}*ln(V(load)/1e-3) - {{n}}*V(decay)) * (1 + {{lifted}}*V(gone)*V(gone)*V(gone)))
+Bflats flats 0 V = {{hamaker/(6*3.14159265358979324)}} / (V(walls)*V(walls)*V(walls)) + {FLOOR_GPa:g}
+Bforce force 0 V = {{area}} * (exp(V(closing_push){sums["push"]}) - {tables.faint_GPa:.7g}
++   - V(flats) * exp(V(closing_pull){sums["pull"]}))
 .ends rough_pad
 """
 
 
-def _closed_form(law: PadLaw, cells: int) -> tuple[CompactPad | None, str]:
-    """The closed form, None where there is none, and one line on it."""
-    try:
-        fitted, residuals = fit_compact(law)
-    except InputError as error:
-        return None, str(error)
-    low, high = float(law.depth_nm[0]), float(law.depth_nm[-1])
-    return fitted, (
-        f"from {cells} cells, closed to {low:.4g} .. {high:.4g} nm; misfit {residuals.closing:.0%} closing, "
-        f"{residuals.opening:.0%} opening, {residuals.attraction_opening:.0%} attraction on opening; "
-        f"well: {well_status(wells_of(fitted, law))}"
+def _pwl(of: str, piece: Piece) -> str:
+    """Straight pieces of ngspice, the ends held, four nodes a line."""
+    held = [(piece.x[0] - 1e3, piece.y[0]), *zip(piece.x, piece.y, strict=True), (piece.x[-1] + 1e3, piece.y[-1])]
+    nodes = [f"{x:.7g},{y:.7g}" for x, y in held]
+    return f"pwl({of}" + "".join((",\n+   " if k % 4 == 0 else ", ") + node for k, node in enumerate(nodes)) + ")"
+
+
+def _note(tables: Tables, cells: int) -> str:
+    """One line on what the tables were made of, and how near they are to the curves."""
+    return (
+        f"from {cells} cells, closed to {tables.depth_nm[0]:.4g} .. {tables.depth_nm[-1]:.4g} nm; beside the curves at "
+        f"most {tables.of_well:.1%} of the well near it, {tables.of_net:.1%} of the net pressure beyond"
     )

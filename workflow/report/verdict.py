@@ -66,7 +66,7 @@ class Verdict:
         probability = self.stuck[1]
         if probability >= DECIDED:
             return f"The switch sticks, with a probability of {probability:.0%}."
-        interval = f"(5 to 95\u00a0%: {volts(low)} to {volts(high)})"
+        interval = f"(5\u00a0to\u00a095\u00a0%: {volts(low)} to {volts(high)})"
         if probability <= 1 - DECIDED:
             return f"The switch lets go at {volts(middle)} {interval}; {probability:.0%} stick."
         return f"Whether the switch lets go is open: {probability:.0%} stick; the median is {volts(middle)} {interval}."

@@ -49,7 +49,7 @@ def _on_pad(pad: dict[str, Any]) -> list[tuple[str, str, str]]:
         rows.append(("electrode flat on the pad, central inputs", _spread(estimate["release_V"]), stuck))
     if answer := pad.get("answer"):
         closed = answer["at_curves"]["by_closed_form"]["release_V"]
-        rows.append(("closed form of the pad (rough_pad.va), central inputs", volts(closed), "–"))
+        rows.append(("closed form of the pad, central inputs", volts(closed), "–"))
     return rows
 
 

@@ -85,10 +85,10 @@ def _answer(answer: dict[str, Any]) -> list[Table]:
 
 def _left_open(results: Results) -> Table:
     """What inputs and counts leave open of the release."""
-    found: Any = contributions(results)
-    rows = [(name, f"{value:.2g}", "no count") for name, value in found["fixed_V"].items()]
-    for key, count in found["counts"].items():
-        rows.append((f"{COUNTED[key]}: {count}", f"{np.sqrt(found['variance_V2'][key] / count):.2g}", f"`{key}`"))
+    parts: Any = contributions(results)
+    rows = [(name, f"{value:.2g}", "no count") for name, value in parts["fixed_V"].items()]
+    for key, count in parts["counts"].items():
+        rows.append((f"{COUNTED[key]}: {count}", f"{np.sqrt(parts['variance_V2'][key] / count):.2g}", f"`{key}`"))
     columns = ("left open by", "deviation of the release (V)", "reduced by")
     return Table("What more computing would narrow: deviations add up by their squares", columns, rows)
 
