@@ -67,6 +67,16 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
             f"inputs.q0 reaches {high:g} 1/nm, beyond what the grid resolves ({nyquist:.3g} 1/nm: pi contact.pixels / "
             "contact.length_nm); take more pixels, a smaller side or a smaller q0"
         )
+    if scene.contact.mechanics == "adhesive" and math.isfinite(least):
+        cutoff, _ = spans.get("gap_cutoff", (scene.contact.gap_cutoff_nm, math.inf))
+        _, hamaker = spans.get("hamaker", (0.0, 0.0))
+        # one site yields by 4 ln(1 + sqrt 2) / pi of its side over E*; the attraction changes by 3 s / D0 at most
+        needed = hamaker / (2 * math.pi * cutoff**4) * side * 4 * math.log(1 + math.sqrt(2)) / (math.pi * least)
+        if needed > scene.contact.pixels:
+            yield (
+                f"contact.mechanics = adhesive: D0 down to {cutoff:g} nm and A_H up to {hamaker:g} aJ fall off faster "
+                f"than the grid resolves; take contact.pixels >= {math.ceil(needed)}, a larger D0 or mechanics: coupled"
+            )
 
 
 def _stages(scene: Scene) -> Iterator[str]:

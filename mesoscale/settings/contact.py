@@ -57,7 +57,7 @@ class MaterialSettings(Settings):
     young_GPa: float = Field(gt=0, le=1e6, description="Young's modulus", json_schema_extra={"unit": "GPa"})
     poisson: float = Field(ge=0, lt=0.5, description="Poisson's ratio")
     thickness_nm: float | None = Field(
-        default=None, gt=0, le=1e6, description="thickness; null: the base", json_schema_extra={"unit": "nm"}
+        default=None, ge=0, le=1e6, description="thickness, above 0; null: the base", json_schema_extra={"unit": "nm"}
     )
 
 
@@ -134,6 +134,8 @@ class ContactSettings(Settings):
 
     @model_validator(mode="after")
     def _bodies_have_one_base_each(self) -> "ContactSettings":
+        if any(material.thickness_nm == 0.0 for body in self.bodies for material in body):
+            raise ValueError("bodies: a layer with thickness_nm = 0 is none; leave it out")
         for body in self.bodies:
             if not body or [material.thickness_nm is None for material in body] != [False] * (len(body) - 1) + [True]:
                 raise ValueError(

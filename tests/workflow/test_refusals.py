@@ -78,6 +78,20 @@ def test_bodies_whose_bases_have_another_modulus():
     assert "E* = 266.7 GPa, inputs.e_star reaches from 90 to 92" in line
 
 
+def test_an_attraction_that_the_grid_does_not_resolve():
+    scene = Scene.model_validate(
+        {
+            "contact": {"mechanics": "adhesive", "gap_cutoff_nm": 0.165, "pixels": 512},
+            "inputs": {
+                "e_star": {"origin": "literature", "values": [90, 92], "source": "test"},
+                "hamaker": {"origin": "literature", "values": [0.18, 0.25], "source": "test"},
+            },
+        }
+    )
+    (line,) = [line for line in mistakes(scene, {}) if line.startswith("contact.mechanics")]
+    assert "take contact.pixels >= 670, a larger D0" in line
+
+
 def test_a_run_of_weeks_is_planned_with_its_time_and_refused(workflow_in):
     scene = workflow_in.folder / "mine.yaml"
     scene.write_text("{contact: {mechanics: coupled, pixels: 2048}, uncertainty: {direct_runs: 100000}}")
