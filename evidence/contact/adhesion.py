@@ -66,7 +66,8 @@ def _judged(number: int, pixels: int) -> dict[str, Any]:
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """How far the coupled contact overestimates pull-off, and how many adhesive cycles broke a law."""
-    fine = [row for row in rows if row["pixels"] == str(GRIDS[-1])]
+    finest = max(int(row["pixels"]) for row in rows)
+    fine = [row for row in rows if int(row["pixels"]) == finest]
     coupled, adhesive = (
         np.array([float(row[f"pull_off_{name}_nN"]) for row in fine]) for name in ("coupled", "adhesive")
     )
