@@ -180,6 +180,25 @@ def test_the_gate_judges_the_electrode_that_the_answer_has(monkeypatch, settings
     assert passed or "12 of 24 resampled pads; raise pad.cells" in gate["reasons"][0]
 
 
+def test_a_plate_that_cannot_be_solved_says_nothing_of_an_electrode_that_bends(monkeypatch):
+    state = BeamStates(60.0, 60.0, 7.0, False, 0.5, 0.02, 5.0, 100.0)
+
+    def refused(*_):
+        raise NotComputed("deepest closing 18.5 nm: the pad was computed for 11.8 .. 18.2 nm")
+
+    monkeypatch.setattr(pad_results, "solve_beam", lambda *_: state)
+    monkeypatch.setattr(pad_results, "solve_on_pad", refused)
+    grid = PadGrid(np.array([30.0, 20.0]), np.array([1]))
+    forces = np.zeros((8, 2, 2))
+    cells = PadCells(grid, np.full(8, 30.0), forces, forces[:, None], np.ones(8, bool))
+    bending = pad_results.switch_on_pad(cells, Flats(0.2, 0.0), DeviceSettings(), 1e6, lambda: np.full(24, 7.0))
+    assert bending["gate"] == {"passed": True, "reasons": []}
+    assert bending["mean"] is None
+    assert bending["beam"]["release_V"] == 7.0
+    flat = pad_results.switch_on_pad(cells, Flats(0.2, 0.0), PLATE, 1e6, lambda: np.full(24, 7.0))
+    assert not flat["gate"]["passed"]
+
+
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
 def test_a_hold_voltage_that_never_closes_the_switch_is_refused_in_one_line(settings):
     s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
