@@ -16,7 +16,7 @@ def test_designs_can_be_cut_anywhere():
 
 def test_more_runs_leave_every_chunk_as_it_is():
     few, more = full_chunks(220), full_chunks(1000)
-    assert list(few.values()) == [(0, 100), (100, 200), (200, 300)]
+    assert list(few.values()) == [(0, 200), (200, 400)]
     assert all(more[name] == bounds for name, bounds in few.items())
 
 
