@@ -88,7 +88,7 @@ def _left_open(results: Results) -> Table:
     parts: Any = contributions(results)
     rows = [(name, f"{value:.2g}", "no count") for name, value in parts["fixed_V"].items()]
     for key, count in parts["counts"].items():
-        rows.append((f"{COUNTED[key]}: {count}", f"{np.sqrt(parts['variance_V2'][key] / count):.2g}", f"`{key}`"))
+        rows.append((f"{COUNTED[key]}: {count}", f"{np.sqrt(parts['variance_V2'][key] / count):.2g}", key))
     columns = ("left open by", "deviation of the release (V)", "reduced by")
     return Table("What more computing would narrow: deviations add up by their squares", columns, rows)
 
