@@ -17,7 +17,6 @@ import numpy as np
 from mesoscale.device import release
 from mesoscale.device.electrode import presser
 from mesoscale.device.pressing import DEVIATIONS, pressing, pressure_to_compute
-from mesoscale.errors import InputError
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad import draws as pad_draws
@@ -80,13 +79,9 @@ def median_release_V(
 ) -> float:
     """Median over the points of the answer; those that cannot be solved are left out."""
     model = release.model_of(cells, pads, table, flats, cutoff_nm)
-    released = []
-    for point in release.plan_points(table, device, *release.cutoff_range(cutoff_nm, pads))[3]:
-        try:
-            released.append(release.solve_point(point, model)["release_V"])
-        except InputError:
-            continue
-    return float(np.median(released))
+    points = release.plan_points(table, device, *release.cutoff_range(cutoff_nm, pads))[3]
+    solved, _ = release.solve_points(points, model)
+    return float(np.median([state["release_V"] for state in solved.values()]))
 
 
 def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:

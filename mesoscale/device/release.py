@@ -126,18 +126,12 @@ def released_on_pad(
     InputError : too few draws, or half of the points cannot be solved.
     """
     model = model_of(cells, draws, table, flats, cutoffs_nm[0])
-    solved, reason = [], ""
-    for point in plan_points(table, settings, *cutoffs_nm, count)[3]:
-        try:
-            released = solve_point(point, model)["release_V"]
-        except InputError as error:
-            reason = str(error)
-        else:
-            solved.append([*(point.values[name] for name in table.names), released])
+    points = plan_points(table, settings, *cutoffs_nm, count)[3]
+    solved, refused = solve_points(points, model)
     if len(solved) < SOLVED_TO_RANK * count:
-        raise InputError(f"device: {count - len(solved)} of {count} switches cannot be solved, the last: {reason}")
-    points = np.array(solved)
-    return points[:, :-1], points[:, -1]
+        raise InputError(f"device: {len(refused)} of {count} switches cannot be solved, the last: {refused[-1]}")
+    values = np.array([[points[place].values[name] for name in table.names] for place in solved])
+    return values, np.array([state["release_V"] for state in solved.values()])
 
 
 def answer(
@@ -169,20 +163,16 @@ def answer(
     by_curves = solve_deepened(settings, law_of(cells, flats))
     at_curves = Point(middle, cutoffs_nm[0], settings)
     middle_nm = float(np.mean(cutoffs_nm))
-    in_the_middle = solve_point(Point(middle, middle_nm, settings), model)
+    in_the_middle = _solve(Point(middle, middle_nm, settings), model)
     names, causes, units, points = plan_points(table, settings, *cutoffs_nm)
-    with ThreadPoolExecutor(threads) as pool:
-        states = list(pool.map(lambda point: _solved(point, model), points))
-    refused = [state for state in states if isinstance(state, str)]
-    solved = [state for state in states if not isinstance(state, str)]
+    solved, refused = solve_points(points, model, threads)
     if len(solved) < SOLVED * len(points):
         raise InputError(f"device: {len(refused)} of {len(points)} switches cannot be solved, the first: {refused[0]}")
-    places = [place for place, state in enumerate(states) if not isinstance(state, str)]
-    solved_values = {key: np.array([state[key] for state in solved]) for key in by_curves}
+    solved_values = {key: np.array([state[key] for state in solved.values()]) for key in by_curves}
     release = solved_values["release_V"]
     stuck = release == 0.0
     cells_V = float(released().std(ddof=1))
-    first, error = first_order(units[places], release)
+    first, error = first_order(units[list(solved)], release)
     rng = np.random.default_rng(np.random.SeedSequence([0, 0xA15]))
     noisy = np.where(stuck, 0.0, np.maximum(release + cells_V * rng.normal(size=release.size), 0.0))
     variance = float(noisy.var()) or 1.0
@@ -220,8 +210,8 @@ def answer(
         "at_curves": {
             "gap_cutoff_nm": cutoffs_nm[0],
             "by_curves": by_curves,
-            "by_carried_curves": solve_point(at_curves, model),
-            "by_closed_form": solve_point(at_curves, (model[0], None)),
+            "by_carried_curves": _solve(at_curves, model),
+            "by_closed_form": _solve(at_curves, (model[0], None)),
         },
         "design": {
             "draws": len(draws),
@@ -270,17 +260,26 @@ def model_of(
     return response, factors_of(central.law, response.at(central.values, gap_cutoff_nm))
 
 
-def solve_point(point: Point, model: Model) -> dict[str, float]:
+def solve_points(
+    points: Sequence[Point], model: Model, threads: int = 1
+) -> tuple[dict[int, dict[str, float]], list[str]]:
+    """The switches of points, by their place, and why the others cannot be solved; so many at once."""
+
+    def solved(point: Point) -> dict[str, float] | str:
+        try:
+            return _solve(point, model)
+        except InputError as error:
+            return str(error)
+
+    with ThreadPoolExecutor(threads) as pool:
+        states = list(pool.map(solved, points))
+    refused = [state for state in states if isinstance(state, str)]
+    return {place: state for place, state in enumerate(states) if not isinstance(state, str)}, refused
+
+
+def _solve(point: Point, model: Model) -> dict[str, float]:
     """The switch of a point, on the curves carried there."""
     return solve_deepened(point.device, pad_at(point, model))
-
-
-def _solved(point: Point, model: Model) -> dict[str, float] | str:
-    """The switch of a point, or why it cannot be solved."""
-    try:
-        return solve_point(point, model)
-    except InputError as error:
-        return str(error)
 
 
 def pad_at(point: Point, model: Model) -> PadLaw:
