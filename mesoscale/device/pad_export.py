@@ -9,14 +9,14 @@ Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300), so that force and slope are c
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from mesoscale.pad.memory import FLOOR_GPa, PadLaw
+from mesoscale.pad.memory import FLOOR_GPa, PadLaw, rows_at
 
 Array = NDArray[np.float64]
 
@@ -36,11 +36,10 @@ FAINT = 1e-3
 
 @dataclass(frozen=True)
 class Piece:
-    """A curve through nodes, shape (n,) each: places (nm), values, and slopes of the cubic pieces (1/nm)."""
+    """A curve through nodes: places (nm) and values, shape (n,) each."""
 
     x: Array
     y: Array
-    slope: Array
 
 
 @dataclass(frozen=True)
@@ -75,21 +74,20 @@ def tables_of(law: PadLaw, cubic: bool) -> Tables:
         return np.log(np.stack([pressures[0] + faint, np.maximum(pull, FLOOR_GPa)]))
 
     def fitted(
-        x: Array, values: Array, at_nm: Array, start: Array, well: float, at: Sequence[int] = ()
+        x: Array, values: Array, at_nm: Array, start: Array, well: float, nodes: Sequence[int] = ()
     ) -> tuple[tuple[Piece, Piece], float, float]:
         flats = law.flats.pull_GPa(at_nm) + FLOOR_GPa
         push, pull = np.exp(values[0]) - faint, flats * np.exp(values[1])
-
         net = push - pull
 
         def missed(made: Array) -> Array:
             return abs(np.exp(made[0]) - faint - flats * np.exp(made[1]) - net)
 
         allowed = np.minimum(OF_WELL * well, OF_PULL * pull) + OF_NET * abs(net) + FLOOR_GPa
-        pieces, made = _pieces(x, values, lambda made: missed(made) / allowed, at, cubic)
+        at, made = _nodes(x, values, lambda made: missed(made) / allowed, nodes, cubic)
         near = abs(net) < NEAR * well
         of_well, of_net = missed(made) / well, missed(made) / np.maximum(abs(net), faint)
-        first, second = (replace(one, y=one.y - shift) for one, shift in zip(pieces, start, strict=True))
+        first, second = (Piece(x[at], row[at] - shift) for row, shift in zip(values, start, strict=True))
         return (first, second), float(of_well.max(initial=0.0, where=near)), float(of_net.max(initial=0.0, where=~near))
 
     at_depths = [int(abs(s - depth).argmin()) for depth in law.depth_nm]
@@ -107,21 +105,18 @@ def tables_of(law: PadLaw, cubic: bool) -> Tables:
     return Tables(closing, law.depth_nm, opening, faint, float(of_well), max(float(of_net), of_closing))
 
 
-def _pieces(
+def _nodes(
     x: Array, values: Array, error: Callable[[Array], Array], nodes: Sequence[int], cubic: bool
-) -> tuple[tuple[Piece, Piece], Array]:
-    """Pieces through nodes, added where they miss the values most until `error` is below 1; and what they give at x."""
+) -> tuple[list[int], Array]:
+    """Nodes, added where pieces miss the values most until `error` is below 1; and what the pieces give at x."""
     chosen = {0, x.size // 2, x.size - 1, *nodes}
     while True:
         at = sorted(chosen)
-        curve = PchipInterpolator(x[at], values[:, at], axis=1)
-        made = curve(x) if cubic else np.stack([np.interp(x, x[at], row[at]) for row in values])
+        made = PchipInterpolator(x[at], values[:, at], axis=1)(x) if cubic else rows_at(x, x[at], values[:, at])
         missed = error(made)
         missed[at] = 0.0
         if missed.max() <= 1.0:
-            slopes = curve.derivative()(x[at])
-            first, second = (Piece(x[at], row[at], slope) for row, slope in zip(values, slopes, strict=True))
-            return (first, second), made
+            return at, made
         chosen.add(int(missed.argmax()))
 
 
@@ -200,7 +195,8 @@ endmodule
 
 def _function(name: str, piece: Piece) -> str:
     """A Verilog-A function of the cubic pieces through nodes; beyond the ends it goes on straight."""
-    x, y, slope = ([f"{value:.7g}" for value in row] for row in (piece.x, piece.y, piece.slope))
+    slopes = PchipInterpolator(piece.x, piece.y).derivative()(piece.x)
+    x, y, slope = ([f"{value:.7g}" for value in row] for row in (piece.x, piece.y, slopes))
     lines = [f"if (x < {x[0]}) {name} = {y[0]} + {slope[0]} * (x - {x[0]});"]
     for (x0, y0, m0), (x1, y1, m1) in pairwise(zip(x, y, slope, strict=True)):
         lines.append(f"else if (x < {x1}) {name} = piece(x, {x0}, {x1}, {y0}, {y1}, {m0}, {m1});")
@@ -224,7 +220,7 @@ def spice_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
     weights, rises = [], []
     for k, pieces in enumerate(tables.opening):
         at = depths[max(k - 1, 0) : k + 2]
-        hat = Piece(at, (at == depths[k]).astype(float), at)
+        hat = Piece(at, (at == depths[k]).astype(float))
         weights.append(f"Bweight{k} weight{k} 0 V = {_pwl('V(deepest)', hat)}")
         for name, piece in zip(("push", "pull"), pieces, strict=True):
             rises.append(f"B{name}{k} {name}{k} 0 V = {_pwl('V(risen)', piece)}")
