@@ -46,52 +46,51 @@ def switch_on_pad(
         "unsettled_cells": int((~cells.settled).sum()),
         "spring_pressure_kPa": switch.spring_N_per_m * switch.gap_nm * NM / switch.area_m2 * 1e-3,
     }
-    bends = settings.spring_N_per_m is None
+    law, bends = law_of(cells, flats), settings.spring_N_per_m is None
     reasons, plate, beam = [], None, None
     if content["unsettled_cells"]:
         reasons.append(f"{content['unsettled_cells']} cells in which flow did not come to rest")
     try:
-        plate = _plate(switch, cells, flats, settings)
+        plate = _plate(switch, law, cells, settings)
     except InputError as error:
         if not bends:
             return {**content, "mean": None, "gate": {"passed": False, "reasons": [str(error)]}}
     try:
         if bends:
-            beam = asdict(solve_beam(settings, law_of(cells, flats)))
+            beam = asdict(solve_beam(settings, law))
             by_cells = released()
             reasons += _undecided(cells.count, int((by_cells == 0).sum()), len(by_cells), "")
+        elif plate:
+            pulled = plate["estimate"]["deepest_net_kPa"]["quantiles"]
+            pulls = (
+                f": the pad pulls with {pulled['0.05']:.2g} to {pulled['0.95']:.2g} kPa, the spring with "
+                f"{content['spring_pressure_kPa']:.2g} kPa"
+            )
+            reasons += _undecided(cells.count, plate["estimate"]["stuck"]["count"], RESAMPLES, pulls)
     except InputError as error:
         reasons.append(str(error))
-    if not bends and plate:
-        stuck, pulled = plate["estimate"]["stuck"]["count"], plate["estimate"]["deepest_net_kPa"]["quantiles"]
-        pulls = (
-            f": the pad pulls with {pulled['0.05']:.2g} to {pulled['0.95']:.2g} kPa, the spring with "
-            f"{content['spring_pressure_kPa']:.2g} kPa"
-        )
-        reasons += _undecided(cells.count, stuck, RESAMPLES, pulls)
-    if solved := beam or (plate and plate["mean"]):
-        reasons += [line] if (line := never_closes(settings, solved["pull_in_V"])) else []
+    solved = beam or (plate and plate["mean"])
+    if solved and (line := never_closes(settings, solved["pull_in_V"])):
+        reasons.append(line)
     return {
         **content,
         "mean": plate["mean"] if plate else None,
         "beam": beam,
-        "by_attraction": [
-            {"times": times, "release_V": _release_V(settings, law_of(cells, flats), times)} for times in WORKS
-        ],
+        "by_attraction": [{"times": times, "release_V": _release_V(settings, law, times)} for times in WORKS],
         **({"estimate": plate["estimate"]} if plate else {}),
         "gate": {"passed": not reasons, "reasons": reasons},
     }
 
 
-def _plate(switch: Switch, cells: PadCells, flats: Flats, settings: DeviceSettings) -> dict[str, Any]:
+def _plate(switch: Switch, law: PadLaw, cells: PadCells, settings: DeviceSettings) -> dict[str, Any]:
     """The switch as a plate on the mean pad, and on pads of resampled cells.
 
     Raises
     ------
     InputError : see `solve_on_pad`.
     """
-    mean = solve_on_pad(switch, law_of(cells, flats), settings.hold_voltage_V)
-    resampled = resampled_states(switch, cells, flats, settings.hold_voltage_V, RESAMPLES, 0)
+    mean = solve_on_pad(switch, law, settings.hold_voltage_V)
+    resampled = resampled_states(switch, cells, law.flats, settings.hold_voltage_V, RESAMPLES, 0)
     names = ("pull_in_V", "hold_nm", "hold_MPa", "release_V", "deepest_net_kPa")
     spread = {name: describe(np.array([getattr(state, name) for state in resampled])) for name in names}
     stuck = sum(state.stuck for state in resampled)
