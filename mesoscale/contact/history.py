@@ -140,7 +140,8 @@ class Hold:
             step *= 2.0
         separation, moved = path[-1]
         self.missed += abs(moved.force - force) > 1e-3 * force
-        return _row(contact, separation, moved, sum(passed.sweeps for _, passed in path))
+        whole = moved._replace(sweeps=sum(passed.sweeps for _, passed in path))
+        return whole.row(separation, contact.attraction(separation))
 
 
 def _times(settings: HistorySettings, start_s: float) -> np.ndarray:
@@ -149,10 +150,6 @@ def _times(settings: HistorySettings, start_s: float) -> np.ndarray:
     ends = np.log1p(np.array([start_s, end_s]) / settings.creep_time_s)
     inner = np.linspace(ends[0], ends[1], DWELL_STEPS + 1)[1:-1]
     return np.array([start_s, *settings.creep_time_s * np.expm1(inner), end_s])
-
-
-def _row(contact: Contact, separation: float, moved: State, sweeps: int) -> Row:
-    return Row(separation, moved.force, contact.attraction(separation), moved.sites, moved.asperities, sweeps)
 
 
 def _from_mean(contact: Contact, row: Row) -> Row:

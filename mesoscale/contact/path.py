@@ -57,8 +57,7 @@ def trace(
     def accept(target: float, moved: State) -> None:
         nonlocal separation, force
         separation, force = target, moved.force
-        pull = contact.attraction(target)
-        path.rows.append(Row(target, force, pull, moved.sites, moved.asperities, moved.sweeps))
+        path.rows.append(moved.row(target, contact.attraction(target)))
         path.bounds += moved.bounds
         path.unconverged += not moved.settled
         path.load = max(path.load, moved.load)
@@ -121,7 +120,7 @@ def reopen(contact: Contact, steps: int, last: Row) -> Path:
             path.repeated += 1
             step = max(step * max(0.25, wanted / change), smallest)
             continue
-        path.rows.append(Row(target, moved.force, pull, moved.sites, moved.asperities, moved.sweeps))
+        path.rows.append(moved.row(target, pull))
         path.unconverged += not moved.settled
         largest = max(scale, target - last.separation) / 30.0
         step = min(step * min(2.0, max(0.5, wanted / change if change > 0.0 else 2.0)), largest)

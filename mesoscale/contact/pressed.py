@@ -48,6 +48,10 @@ class State(NamedTuple):
     settled: bool
     stuck: bool
 
+    def row(self, separation: float, attraction: float) -> Row:
+        """The row of this state at its separation, with the attraction there (nN, negative)."""
+        return Row(separation, self.force, attraction, self.sites, self.asperities, self.sweeps)
+
 
 class Contact(ABC):
     """A surface, its sites by rising height, what flow has changed of it, and its attraction.

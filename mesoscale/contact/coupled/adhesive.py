@@ -149,7 +149,7 @@ class AdhesiveContact(CoupledContact):
         """The contact at a separation, where attraction may close it; on the way down it flows."""
         moved = self.move_to(separation, self.flows and separation < self.separation)
         self.unsettled += not moved.settled
-        return Row(separation, moved.force, self.attraction(separation), moved.sites, moved.asperities, moved.sweeps)
+        return moved.row(separation, self.attraction(separation))
 
     def opened(self, separations: np.ndarray) -> np.ndarray:
         """Repulsion and attraction (nN) on the way back over separations of a closing, shape (2, n).
