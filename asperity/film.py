@@ -165,8 +165,7 @@ class Film(_Shown):
         table = self.inputs(material)
         described, side = self.description, self.description["cell_nm"]
         pixels = pixels or pixels_for(described["inputs"]["q1"], side)
-        settings = ContactSettings(**RECOMMENDED, pixels=pixels, length_nm=side, surface=described["surface"])
-        load_nN = load_nN or settings.max_force_nN * (side / ContactSettings().length_nm) ** 2
+        settings = ContactSettings(**RECOMMENDED, pixels=pixels, surface=described["surface"]).on_cell(side)
         check_resolved(table, settings.nyquist_per_nm)
         on_grid, (inputs, settings) = settings, contact_of(table.medians(), settings)
         fields: list[tuple[np.ndarray, np.ndarray]] = []

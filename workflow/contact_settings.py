@@ -19,11 +19,7 @@ def contact_settings(given: dict[str, Any], snakemake: Any) -> ContactSettings:
     described = load_json(path) if path else {}
     surface, stated = described.get("surface", {}), given["surface"]
     settings = settings_from_job(ContactSettings, given)
-    cell_nm = described.get("cell_nm", settings.length_nm)
-    if cell_nm != settings.length_nm:  # chosen with the description: the same pressure on it
-        force = settings.max_force_nN * (cell_nm / settings.length_nm) ** 2
-        given = {**given, "length_nm": cell_nm, "max_force_nN": force}
-        settings = ContactSettings(**given)
+    settings = settings.on_cell(described.get("cell_nm", settings.length_nm))
     if not surface or any(stated[key] for key in ("spectrum", "heights", "moments")):
         return settings
-    return ContactSettings(**{**given, "surface": {**stated, **surface}})
+    return ContactSettings(**{**dict(settings), "surface": {**stated, **surface}})

@@ -149,3 +149,8 @@ class ContactSettings(Settings):
     def nyquist_per_nm(self) -> float:
         """Largest wave vector that the grid resolves, 1/nm."""
         return math.pi * self.pixels / self.length_nm
+
+    def on_cell(self, length_nm: float) -> "ContactSettings":
+        """The same at the same mean pressure on a cell of another side (nm)."""
+        force = self.max_force_nN * (length_nm / self.length_nm) ** 2
+        return ContactSettings(**{**dict(self), "length_nm": length_nm, "max_force_nN": force})
