@@ -85,6 +85,24 @@ def test_contributions_add_up_to_the_spread_of_the_answer(tmp_path):
     assert contributions(Results(tmp_path, [file], "mine")) is None
 
 
+@pytest.mark.parametrize(("error_GPa", "known"), [(None, False), (1.5, True)])
+def test_one_glass_says_nothing_of_how_glasses_scatter(tmp_path, error_GPa, known):
+    answer = {
+        "release_V": {"std": 0.5},
+        "sensitivity": [{"name": "e_star", "share_of_variance": 0.1}],
+        "design": {"cells_error_V": 0.3, "response_error_V": 0.08, "points": 64, "draws": 24},
+    }
+    glasses = {"standard_error_of_mean_GPa": error_GPa, "std_GPa": 3.0, "structures_used": ["a01"]}
+    files = [tmp_path / "device/pad_switch.json", tmp_path / "elastic/e_star.json"]
+    for file, content in zip(files, ({"cells_computed": 100, "answer": answer}, glasses), strict=True):
+        file.parent.mkdir()
+        file.write_text(json.dumps(content))
+    parts = contributions(Results(tmp_path, files, "mine"))
+    assert parts is not None
+    assert ("elastic.structures" in parts["counts"]) is known
+    assert parts["counts"].keys() == parts["variance_V2"].keys()
+
+
 def test_a_scene_that_has_not_run_has_the_contributions_of_the_shipped_one_it_extends(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     scene = load_scene("paper").model_copy(update={"name": "mine", "extends": "paper"})

@@ -79,6 +79,10 @@ def test_every_promised_result_is_there(finished):
     assert not missing
 
 
+def test_every_part_of_the_page_is_drawn(finished):
+    assert "could not be drawn" not in (finished.folder / "results/ci/report.html").read_text(encoding="utf-8")
+
+
 def test_every_h5_file_is_complete_and_has_units(finished):
     for path in (finished.folder / "results/ci").rglob("*.h5"):
         with h5py.File(path) as file:

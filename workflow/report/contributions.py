@@ -36,9 +36,9 @@ def contributions(results: Results) -> dict[str, Any] | None:
         counts["hardness.seeds"] = len({point["seed"] for point in results.csv("hardness/points.csv")})
         of_runs = fit["budget"]["statistical"]["share"] / fit["points_used"]
         variances["hardness.seeds"] = shares.get("h_prime", 0.0) * total_V2 * of_runs * counts["hardness.seeds"]
-    if results.has("elastic/e_star.json"):
-        e_star = results.json("elastic/e_star.json")
-        of_glasses = (e_star["standard_error_of_mean_GPa"] / e_star["std_GPa"]) ** 2
+    e_star = results.json("elastic/e_star.json") if results.has("elastic/e_star.json") else {}
+    if (error_GPa := e_star.get("standard_error_of_mean_GPa")) is not None:  # one glass has none
+        of_glasses = (error_GPa / e_star["std_GPa"]) ** 2
         counts["elastic.structures"] = len(e_star["structures_used"])
         variances["elastic.structures"] = (
             shares.get("e_star", 0.0) * total_V2 * of_glasses * counts["elastic.structures"]
