@@ -1,4 +1,4 @@
-"""What do the law of attraction, D0, hardness, seeds and the number of cells change in the default answer?
+"""What do the law of attraction, D0, mechanics, hardness, seeds and cells change in the default answer?
 
 Each row is scene `reduced` up to its pad, with one statement changed. What its atoms give is stated: E*, H' and D0 of
 its own runs. `pixels` of 256 make the rows cheap, and are the same for all that are compared. Rows with other seeds
@@ -28,6 +28,7 @@ GLASS = {  # the closing runs' own hardness, without the soft metal of eq. 4
     "h_prime": {"origin": "literature", "distribution": "fixed", "values": [0], "source": "no size effect"},
 }
 LITERATURE = {"gap_cutoff": {"origin": "literature", "values": [0.165, 0.3], "source": "Israelachvili, 13.13"}}
+SMALL = {"cells": 32, "draws": 12, "draw_cells": 2}  # an adhesive cell takes some ten times as long as a coupled one
 CLAMPED = {"contact": {"attraction": "clamped"}}
 SEEDS = {"mesoscale/pad/cells.py": "FIRST_SEED = 1000", "mesoscale/device/release.py": "rng=0"}
 CASES: dict[str, dict[str, Any]] = {
@@ -35,6 +36,8 @@ CASES: dict[str, dict[str, Any]] = {
     "clamped, literature's D0": {**CLAMPED, "inputs": LITERATURE},
     "offset, literature's D0": {"inputs": LITERATURE},
     "clamped": CLAMPED,
+    "small pad": {"pad": SMALL},
+    "small pad, attraction deforms": {"pad": SMALL, "contact": {"mechanics": "adhesive"}},
     "hardness of the glass": {"inputs": GLASS},
     "clamped, literature's D0, hardness of the glass": {**CLAMPED, "inputs": {**LITERATURE, **GLASS}},
     "256 cells": {"pad": {"cells": 256}},
