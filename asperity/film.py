@@ -112,6 +112,8 @@ class Film(_Shown):
                 attributes[name] = {**_origin(source), **described}
                 self.measurements.append(measured)
         pooled = pool(in_order(arrays, attributes), attributes, self.settings, cell_nm=None, cut_off=True)
+        self._spectra = pooled.spectra
+        self._levelled = {name: data["heights"] for name, data in arrays.items() if "heights" in data}
         rows = scan_rows(pooled.spectra, pooled.topography, attributes, None)
         self.description = parameters(pooled, rows, self.settings, None)
 
@@ -130,6 +132,26 @@ class Film(_Shown):
         )
         yield from measurement_lines(self.description)
         yield from self.doubts
+
+    def plot(self) -> Any:
+        """The first map, levelled, and all spectra with their trusted parts, as a Matplotlib figure."""
+        with needs("run"):
+            import matplotlib.pyplot as plt
+        figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
+        maps = (item.data for item in self.measurements if isinstance(item.data, Scan))
+        if (first := next(maps, None)) is not None:
+            x_um, y_um = (length / 1000 for length in first.lengths_nm)
+            image = left.imshow(self._levelled[first.name].T, extent=(0, x_um, 0, y_um), origin="lower", cmap="Greys_r")
+            figure.colorbar(image, ax=left, label="height (nm)")
+        left.set(xlabel="x (µm)", ylabel="y (µm)", title=first.name if first else "no map")
+        for number, item in enumerate(self._spectra):
+            q, psd = item.spectrum.q, item.spectrum.psd
+            trusted = (q >= item.low) & (q <= item.high)
+            right.loglog(q, psd, color="0.8", linewidth=0.6, zorder=1)
+            right.loglog(q[trusted], psd[trusted], ".-", color=f"C{number % 10}", markersize=3, label=item.name)
+        right.set(xlabel="wave vector (1/nm)", ylabel="power spectrum (nm⁴); grey: not trusted")
+        figure.legend(fontsize="small", loc="outside lower center", ncols=2)
+        return figure
 
     def inputs(self, material: Material | None = None) -> InputTable:
         """The uncertain inputs: roughness of the film, and the material (default: `MATERIAL`).

@@ -6,8 +6,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from matplotlib.testing.compare import compare_images
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "docs" / "examples").glob("*.py"))
+DOCS = Path(__file__).parents[2] / "docs"
+EXAMPLES = sorted((DOCS / "examples").glob("*.py"))
+FIGURES = DOCS / "figures"
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
@@ -16,3 +19,5 @@ def test_an_example_runs_and_draws(example, tmp_path):
     run = subprocess.run([sys.executable, str(example)], cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
     assert (tmp_path / f"{example.stem}.png").stat().st_size > 5000
+    if (shown := FIGURES / f"{example.stem}.png").exists():  # the picture of README is what the example draws today
+        assert compare_images(str(shown), str(tmp_path / shown.name), tol=5) is None

@@ -44,6 +44,9 @@ def test_a_film_of_known_roughness_is_measured_and_pressed(film):
     assert not contact.gap_nm[contact.pressure_GPa > 0].any()
     assert contact.gap_nm.mean() == pytest.approx(contact.cycle.closing.separation_nm[-1], rel=0.02)
     assert repr(contact).startswith("Contact: touches at ")
+    image, spectra = measured.plot().axes[:2]
+    assert image.images[0].get_array().std() == pytest.approx(5.0, rel=0.1)
+    assert len(spectra.lines) == 2  # one measurement, and its trusted part
     assert measured._repr_html_().count("\n") == 2 + len(measured.doubts)
 
 
