@@ -52,16 +52,20 @@ class TopAttraction:
     work: float
 
 
-def gap_cutoff(witnesses: Mapping[str, Sequence[Mapping[str, float]]]) -> dict[str, Any] | None:
+def gap_cutoff(
+    witnesses: Mapping[str, Sequence[Mapping[str, float]]], glasses: Mapping[str, int]
+) -> dict[str, Any] | None:
     """The cut-off D0 of all tops of some runs: its distribution, and what each run says.
 
     Force and work ask for two values, because no law of one length follows the pull of a real top at all distances. The
-    distribution is uniform between them, the lower end less, and the upper end more, by the error of a mean over runs.
-    The lower end also counts that atoms follow the pull: `FREE_ATOMS`.
+    distribution is uniform between them, the lower end less, and the upper end more, by the error of a mean: over runs
+    or, since runs of one glass have the same top, over glasses, whichever is larger. The lower end also counts that
+    atoms follow the pull: `FREE_ATOMS`.
 
     Parameters
     ----------
     witnesses : rows of `Closing.witness`, by run.
+    glasses : seed of each run's glass.
 
     Returns
     -------
@@ -78,9 +82,15 @@ def gap_cutoff(witnesses: Mapping[str, Sequence[Mapping[str, float]]]) -> dict[s
     runs = {run: tops for run, tops in runs.items() if tops}
     if len(runs) < 2:
         return None
-    by_run = np.array([combined_cutoffs_nm(tops) for tops in runs.values()])
+    of_glasses: dict[int, list[TopAttraction]] = {}
+    for run, tops in runs.items():
+        of_glasses.setdefault(glasses[run], []).extend(tops)
+    by_run, by_glass = (
+        np.array([combined_cutoffs_nm(tops) for tops in groups.values()]) for groups in (runs, of_glasses)
+    )
     by_force, by_work = combined_cutoffs_nm(top for tops in runs.values() for top in tops)
-    error_force, error_work = by_run.std(axis=0, ddof=1) / np.sqrt(len(runs))
+    errors = [of.std(axis=0, ddof=1) / np.sqrt(len(of)) for of in (by_run, by_glass) if len(of) > 1]
+    error_force, error_work = np.max(errors, axis=0)
     return {
         "distribution": "uniform",
         "a": float(FREE_ATOMS * by_work - error_work),

@@ -23,7 +23,8 @@ with job(snakemake) as run:
     points = load_csv(snakemake.input.points)
     fit = fit_size_effect(points, glasses, settings, snakemake.params.energy_scales, area_error)
     witnesses = {Path(path).stem: load_numbers(path) for path in snakemake.input.witnesses}
-    if cutoff := gap_cutoff({point["run"]: witnesses[point["run"]] for point in points if point["status"] == "yield"}):
+    used = {point["run"]: int(point["seed"]) for point in points if point["status"] == "yield"}
+    if cutoff := gap_cutoff({name: witnesses[name] for name in used}, used):
         fit["tops"] = cutoff.pop("runs")
         fit["inputs"]["gap_cutoff"] = cutoff
     write_json(snakemake.output.fit, fit, run.provenance)

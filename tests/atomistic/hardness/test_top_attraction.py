@@ -98,7 +98,8 @@ def test_the_distribution_spans_work_and_force_of_all_runs():
     depths = -SPACING * np.arange(40)
     smooth = attract_top(depths, np.ones(40), 1 / LAYER, DENSITY)
     small = {"top_area_nm2": np.nan, "top_force_over_hamaker": np.nan, "top_work_over_hamaker": np.nan}
-    found = gap_cutoff({"first": [small, *rows(smooth)], "second": rows(smooth, smooth), "third": [small]})
+    witnesses = {"first": [small, *rows(smooth)], "second": rows(smooth, smooth), "third": [small]}
+    found = gap_cutoff(witnesses, {"first": 1, "second": 2, "third": 3})
     assert found is not None
     by_force, by_work = combined_cutoffs_nm([smooth])
     # runs of one kind of top do not scatter
@@ -106,6 +107,23 @@ def test_the_distribution_spans_work_and_force_of_all_runs():
     assert [(run["run"], run["snapshots"]) for run in found["runs"]] == [("first", 1), ("second", 2)]
 
 
+def test_runs_of_one_glass_count_as_one_where_glasses_differ():
+    smooth, rough = (
+        attract_top(-SPACING * np.r_[0.0, bare * np.ones(3), np.arange(1, 40)], np.ones(43), 1 / LAYER, DENSITY)
+        for bare in (0.0, 2.0)
+    )
+    witnesses = {name: rows(smooth if name in "ab" else rough) for name in "abcd"}
+    of_runs = gap_cutoff(witnesses, dict(zip("abcd", range(4), strict=True)))
+    of_two = gap_cutoff(witnesses, {"a": 1, "b": 1, "c": 2, "d": 2})
+    assert of_runs is not None
+    assert of_two is not None
+    by_force, _ = combined_cutoffs_nm([smooth, smooth, rough, rough])
+    ends = [combined_cutoffs_nm([top])[0] for top in (smooth, rough)]
+    # two values half a range from their mean each: s/sqrt(2) is half the range, and of two such pairs s/2 is 0.58 of it
+    assert of_two["b"] - by_force == pytest.approx(abs(ends[0] - ends[1]) / 2, rel=1e-6)
+    assert of_two["b"] - by_force == pytest.approx(np.sqrt(3) * (of_runs["b"] - by_force), rel=1e-6)
+
+
 def test_one_run_gives_no_distribution():
     depths = -SPACING * np.arange(40)
-    assert gap_cutoff({"only": rows(attract_top(depths, np.ones(40), 1 / LAYER, DENSITY))}) is None
+    assert gap_cutoff({"only": rows(attract_top(depths, np.ones(40), 1 / LAYER, DENSITY))}, {"only": 1}) is None
