@@ -129,13 +129,6 @@ def undisturbed(folder: Path, scene_file: Path, target: str) -> tuple[dict[str, 
     return contents(results), float(clock.read_text())
 
 
-def finished_contact(folder: Path, target: str) -> tuple[Path, Path, dict[str, str]]:
-    """Scene `CONTACT`, a folder in which it ran to `target`, and what its results say."""
-    scene_file, whole = folder / "contact.yaml", folder / "whole"
-    scene_file.write_text(CONTACT, encoding="utf-8")
-    return scene_file, whole, undisturbed(whole, scene_file, target)[0]
-
-
 def contents(results: Path) -> dict[str, str]:
     """Checksum of what each result says, machine times apart, by its path; logs and working files left out."""
     return {
