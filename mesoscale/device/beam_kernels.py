@@ -86,17 +86,17 @@ def newton_step(nodal, pressure_Pa, slope_Pa_m, other_Pa, inertia, shape, stiffn
             if row < 0 or row >= unknowns:
                 continue
             for g in range(points):
-                share = weights[g] * shape[i, g]
+                share = weights[e, g] * shape[e, i, g]
                 right[row, 0] += pressure_Pa[e, g] * share
                 right[row, 1] += other_Pa[e, g] * share
             for j in range(4):
-                right[row, 0] -= stiffness[i, j] * nodal[e + j // 2, j % 2]
+                right[row, 0] -= stiffness[e, i, j] * nodal[e + j // 2, j % 2]
                 column = 2 * e + j - 2
                 if column < 0 or column >= unknowns:
                     continue
-                entry = stiffness[i, j]
+                entry = stiffness[e, i, j]
                 for g in range(points):
-                    entry += (inertia - slope_Pa_m[e, g]) * weights[g] * shape[i, g] * shape[j, g]
+                    entry += (inertia - slope_Pa_m[e, g]) * weights[e, g] * shape[e, i, g] * shape[e, j, g]
                 bands[row, column - row + BANDS] += entry
     solve_bands(bands, right)
     change, answer = np.zeros((elements + 1, 2)), np.zeros((elements + 1, 2))
@@ -110,11 +110,11 @@ def newton_step(nodal, pressure_Pa, slope_Pa_m, other_Pa, inertia, shape, stiffn
 @njit(cache=True)
 def deflect(nodal, shape):
     """Deflection at the integration points, shape (elements, points)."""
-    deflection = np.zeros((nodal.shape[0] - 1, shape.shape[1]))
+    deflection = np.zeros((nodal.shape[0] - 1, shape.shape[2]))
     for e in range(deflection.shape[0]):
         for g in range(deflection.shape[1]):
             for i in range(4):
-                deflection[e, g] += nodal[e + i // 2, i % 2] * shape[i, g]
+                deflection[e, g] += nodal[e + i // 2, i % 2] * shape[e, i, g]
     return deflection
 
 

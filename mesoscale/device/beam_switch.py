@@ -64,7 +64,12 @@ def solve_beam(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) 
     NotComputed : the beam presses harder than the pad was computed for.
     InputError : the beam never lands, is not held, or is no beam.
     """
-    moving = _Moving(beam_of(settings, elements), LocalPad(law), settings.dielectric_nm / settings.permittivity)
+    return solve_bent(beam_of(settings, elements), settings, law)
+
+
+def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw) -> BeamStates:
+    """As `solve_beam`, of any beam."""
+    moving = _Moving(beam, LocalPad(law), settings.dielectric_nm / settings.permittivity)
     pull_in = moving.pull_in_V()
     hold = settings.hold_voltage_V or pull_in
     closed = moving.creep(hold)

@@ -10,7 +10,6 @@ Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300), so that force and slope are c
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,12 +23,19 @@ START_NM = 200.0
 """Separation from which closing counts; a pad is not in contact so far out."""
 FOLLOWING = 1e3
 """Conductance of following (S): large beside the 1e-12 S that simulators add to every node."""
+FOLLOW_S = 1e-9
+"""Time constant (s): much shorter than any motion."""
 LEAK = 1e-15
 """Conductance of the leak over that of following: the state falls by 1e-15 of itself per time constant."""
 OF_WELL, OF_NET, OF_PULL = 0.003, 0.0005, 0.05
 """Error that tables may have beside the curves: of the well and of the net pressure; far out, of the pull."""
 NEAR = 10.0
 """Net pressures up to so many wells are near the well."""
+REACH_NM = 20.0
+"""So far below its deepest closing the repulsion of a pad goes on to grow in SPICE, at most `MOST` e-folds."""
+MOST = 8.0
+FADE_NM = 5.0
+"""So much above the shallowest depth, a pad opens as it closed: it has not been in contact."""
 FAINT = 1e-3
 """A push of this part of the shallowest well counts as none, so that its logarithm stays finite."""
 
@@ -123,26 +129,8 @@ def _nodes(
 def verilog_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
     """Verilog-A module `rough_pad` on a kinematic node."""
     tables = tables_of(law, cubic=True)
-    functions = [_function("closing_push", tables.closing[0]), _function("closing_pull", tables.closing[1])]
-    for k, (push, pull) in enumerate(tables.opening):
-        functions += [_function(f"repel{k}", push), _function(f"attract{k}", pull)]
-    depths, last = tables.depth_nm, tables.depth_nm.size - 1
-    between = [
-        f"""if (deepest < {depths[k + 1]:.7g}) begin
-            share = max((deepest - {depths[k]:.7g}) / {depths[k + 1] - depths[k]:.7g}, 0.0);
-            push = push + (1.0 - share) * repel{k}(risen) + share * repel{k + 1}(risen);
-            pull = pull + (1.0 - share) * attract{k}(risen) + share * attract{k + 1}(risen);
-        end"""
-        for k in range(last)
-    ]
-    between.append(
-        f"""begin
-            push = push + repel{last}(risen);
-            pull = pull + attract{last}(risen);
-        end"""
-    )
     return f"""// Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
-// {_note(tables, cells)}
+// {note(tables, cells)}
 // s: mean separation (position in m) of the moving electrode above ref; the branch carries the force in N.
 // closed: by how much (nm) the pad has been closed so far below {START_NM:g} nm; a state.
 // Lengths in nm, pressures in GPa, hamaker in 1e-18 J; follow in s: much shorter than any motion.
@@ -155,59 +143,86 @@ module rough_pad(s, ref);
     electrical closed;
 
     parameter real area_nm2 = {area_nm2:.12g} from (0:inf);
-    parameter real follow = 1.0e-9 from (0:inf);
+    parameter real follow = {FOLLOW_S:g} from (0:inf);
     parameter real hamaker = {law.flats.hamaker:.12g} from [0:inf);
     parameter real offset_nm = {law.flats.offset_nm:.12g} from [0:inf);
 
-    real separation, further, deepest, risen, share, push, pull, flats;
-
-    analog function real piece;
-        input x, x0, x1, y0, y1, m0, m1;
-        real x, x0, x1, y0, y1, m0, m1, t, h;
-        begin
-            h = x1 - x0;
-            t = (x - x0) / h;
-            piece = y0 + t * (h * m0 + t * (3.0 * (y1 - y0) - h * (2.0 * m0 + m1)
-                + t * (h * (m0 + m1) - 2.0 * (y1 - y0))));
-        end
-    endfunction
-{"".join(functions)}
+    real separation, further, deepest;
+{verilog_pressure(tables)}
     analog begin
         separation = Pos(s, ref) * 1.0e9;
         further = {START_NM:.1f} - separation - V(closed);
         I(closed) <+ {FOLLOWING:.1f} * (follow * ddt(V(closed)) + {LEAK:g} * V(closed) - max(further, 0.0));
 
         deepest = min({START_NM:.1f} - V(closed), separation);
-        risen = separation - deepest;
-        if (deepest < {depths[0]:.7g})
-            $strobe("rough_pad: closed to %g nm, the table ends at {depths[0]:.4g} nm", deepest);
-        push = closing_push(deepest);
-        pull = closing_pull(deepest);
-        {" else ".join(between)}
-        flats = hamaker / (6.0 * `M_PI * pow(max(separation, 1.0) + offset_nm, 3.0)) + {FLOOR_GPa:g};
+        if (deepest < {tables.depth_nm[0]:.7g})
+            $strobe("rough_pad: closed to %g nm, the table ends at {tables.depth_nm[0]:.4g} nm", deepest);
 
         // 1 GPa nm^2 = 1 nN; a positive pressure pushes s away from ref
-        F(s, ref) <+ -area_nm2 * (exp(push) - {tables.faint_GPa:.7g} - flats * exp(pull)) * 1.0e-9;
+        F(s, ref) <+ -area_nm2 * pressure(separation, deepest, hamaker, offset_nm) * 1.0e-9;
     end
 endmodule
 """
 
 
+def verilog_pressure(tables: Tables) -> str:
+    """Verilog-A functions of the net pressure (GPa) by separation and deepest closing (nm), and of the flats."""
+    functions = [_function("closing_push", tables.closing[0]), _function("closing_pull", tables.closing[1])]
+    for k, (push, pull) in enumerate(tables.opening):
+        functions += [_function(f"repel{k}", push), _function(f"attract{k}", pull)]
+    depths, last = tables.depth_nm, tables.depth_nm.size - 1
+    between = [
+        f"""if (deepest < {depths[k + 1]:.7g}) begin
+                share = max((deepest - {depths[k]:.7g}) / {depths[k + 1] - depths[k]:.7g}, 0.0);
+                push = push + (1.0 - share) * repel{k}(risen) + share * repel{k + 1}(risen);
+                pull = pull + (1.0 - share) * attract{k}(risen) + share * attract{k + 1}(risen);
+            end"""
+        for k in range(last)
+    ]
+    between.append(
+        f"""begin
+                share = max(1.0 - (deepest - {depths[last]:.7g}) / {FADE_NM:.1f}, 0.0);
+                push = push + share * repel{last}(risen);
+                pull = pull + share * attract{last}(risen);
+            end"""
+    )
+    return f"""
+{"".join(functions)}
+    analog function real pressure;
+        input separation, deepest, hamaker, offset;
+        real separation, deepest, hamaker, offset, risen, share, push, pull, flats;
+        begin
+            risen = separation - deepest;
+            push = closing_push(deepest);
+            pull = closing_pull(deepest);
+            {" else ".join(between)}
+            flats = hamaker / (6.0 * `M_PI * pow(max(separation, 1.0) + offset, 3.0)) + {FLOOR_GPa:g};
+            pressure = exp(push) - {tables.faint_GPa:.7g} - flats * exp(pull);
+        end
+    endfunction
+"""
+
+
 def _function(name: str, piece: Piece) -> str:
-    """A Verilog-A function of the cubic pieces through nodes; beyond the ends it goes on straight."""
-    slopes = PchipInterpolator(piece.x, piece.y).derivative()(piece.x)
-    x, y, slope = ([f"{value:.7g}" for value in row] for row in (piece.x, piece.y, slopes))
-    lines = [f"if (x < {x[0]}) {name} = {y[0]} + {slope[0]} * (x - {x[0]});"]
-    for (x0, y0, m0), (x1, y1, m1) in pairwise(zip(x, y, slope, strict=True)):
-        lines.append(f"else if (x < {x1}) {name} = piece(x, {x0}, {x1}, {y0}, {y1}, {m0}, {m1});")
-    lines.append(f"else {name} = {y[-1]};")
-    body = "\n            ".join(lines)
+    """A Verilog-A function of the cubic pieces through nodes; beyond the ends it goes on straight, then level.
+
+    Branches choose the piece, which stands once: compilers write functions out wherever they are called.
+    """
+    cubic = PchipInterpolator(piece.x, piece.y)
+    before = [piece.x[0], piece.y[0], float(cubic.derivative()(piece.x[0])), 0.0, 0.0]
+    after = [piece.x[-1], piece.y[-1], 0.0, 0.0, 0.0]
+    rows = [before, *np.vstack([piece.x[:-1], cubic.c[::-1]]).T, after]
+    chosen = [" ".join(f"{of} = {value:.9g};" for of, value in zip(("x0", *"abcd"), row, strict=True)) for row in rows]
+    ends = [f"if (x < {x:.9g}) begin {row} end" for x, row in zip(piece.x, chosen, strict=False)]
+    body = "\n            else ".join([*ends, f"begin {chosen[-1]} end"])
     return f"""
     analog function real {name};
         input x;
-        real x;
+        real x, x0, a, b, c, d;
         begin
             {body}
+            x0 = x - x0;
+            {name} = a + x0 * (b + x0 * (c + x0 * d));
         end
     endfunction
 """
@@ -217,9 +232,9 @@ def spice_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
     """SPICE subcircuit `rough_pad` (ngspice): node s 1 V = 1 nm, node force 1 V = 1 nN, positive = pushed away."""
     tables = tables_of(law, cubic=False)
     depths = tables.depth_nm
-    weights, rises = [], []
+    weights, rises, places = [], [], np.append(depths, depths[-1] + FADE_NM)
     for k, pieces in enumerate(tables.opening):
-        at = depths[max(k - 1, 0) : k + 2]
+        at = places[max(k - 1, 0) : k + 2]
         hat = Piece(at, (at == depths[k]).astype(float))
         weights.append(f"Bweight{k} weight{k} 0 V = {_pwl('V(deepest)', hat)}")
         for name, piece in zip(("push", "pull"), pieces, strict=True):
@@ -228,39 +243,42 @@ def spice_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
         name: "".join(f"\n+   + V(weight{k})*V({name}{k})" for k in range(depths.size)) for name in ("push", "pull")
     }
     lines = "\n".join([*weights, *rises])
+    most = [piece.y.max() + MOST for piece in tables.closing]  # wild steps of a simulator stay finite
     return f"""* Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
-* {_note(tables, cells)}
+* {note(tables, cells)}
 * nodes     s      mean separation, 1 V = 1 nm
 *           force  force on the moving electrode, 1 V = 1 nN, positive = pushed away
 * closed    by how much (nm) the pad has been closed so far below {START_NM:g} nm; a state
 * follow    time constant (s) of that state: much shorter than any motion; integrate by backward Euler
 *           (.options method=gear maxord=1), because what overshoots is remembered
-.subckt rough_pad s force params: area={area_nm2:.12g} follow=1e-9
+.subckt rough_pad s force params: area={area_nm2:.12g} follow={FOLLOW_S:g}
 +   hamaker={law.flats.hamaker:.12g} offset_nm={law.flats.offset_nm:.12g}
 Cclosed closed 0 {{{FOLLOWING:g}*follow}}
 Rleak closed 0 {1 / (FOLLOWING * LEAK):g}
 Bclosed 0 closed I = {FOLLOWING:g} * max({START_NM:g} - V(s) - V(closed), 0)
 Bdeepest deepest 0 V = min({START_NM:g} - V(closed), V(s))
 Brisen risen 0 V = V(s) - V(deepest)
-Bpush0c closing_push 0 V = {_pwl("V(deepest)", tables.closing[0])}
+Bpush0c closing_push 0 V = {_pwl("V(deepest)", tables.closing[0], REACH_NM)}
 Bpull0c closing_pull 0 V = {_pwl("V(deepest)", tables.closing[1])}
 {lines}
-Bwalls walls 0 V = max(V(s), 1) + {{offset_nm}}
-Bflats flats 0 V = {{hamaker/(6*3.14159265358979324)}} / (V(walls)*V(walls)*V(walls)) + {FLOOR_GPa:g}
-Bforce force 0 V = {{area}} * (exp(V(closing_push){sums["push"]}) - {tables.faint_GPa:.7g}
-+   - V(flats) * exp(V(closing_pull){sums["pull"]}))
+Bflats flats 0 V = {{hamaker/(6*3.14159265358979324)}} / pow(max(V(s), 1) + {{offset_nm}}, 3) + {FLOOR_GPa:g}
+Bforce force 0 V = {{area}} * (exp(min(V(closing_push){sums["push"]}, {most[0]:.4g})) - {tables.faint_GPa:.7g}
++   - V(flats) * exp(min(V(closing_pull){sums["pull"]}, {most[1]:.4g})))
 .ends rough_pad
 """
 
 
-def _pwl(of: str, piece: Piece) -> str:
-    """Straight pieces of ngspice, the ends held, four nodes a line."""
-    held = [(piece.x[0] - 1e3, piece.y[0]), *zip(piece.x, piece.y, strict=True), (piece.x[-1] + 1e3, piece.y[-1])]
+def _pwl(of: str, piece: Piece, below: float = 0.0) -> str:
+    """Straight pieces of ngspice, the ends held, four nodes a line; `below` the first node, the slope of the first."""
+    x, y = piece.x, piece.y
+    held = [(x[0] - 1e3, y[0]), *zip(x, y, strict=True), (x[-1] + 1e3, y[-1])]
+    if below:
+        held[0] = x[0] - below, y[0] - below * (y[1] - y[0]) / (x[1] - x[0])
     nodes = [f"{x:.7g},{y:.7g}" for x, y in held]
     return f"pwl({of}" + "".join((",\n+   " if k % 4 == 0 else ", ") + node for k, node in enumerate(nodes)) + ")"
 
 
-def _note(tables: Tables, cells: int) -> str:
+def note(tables: Tables, cells: int) -> str:
     """One line on what the tables were made of, and how near they are to the curves."""
     return (
         f"from {cells} cells, closed to {tables.depth_nm[0]:.4g} .. {tables.depth_nm[-1]:.4g} nm; beside the curves at "

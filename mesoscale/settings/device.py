@@ -100,6 +100,20 @@ class DeviceSettings(Settings):
         le=10,
         description="factor on the attraction of the law; 0.1 brings it near measured dry adhesion",
     )
+    density_g_cm3: float = Field(
+        default=8.9,
+        ge=0.01,
+        le=30,
+        description="density of the electrode, for its motion; the default is nickel's",
+        json_schema_extra={"unit": "g/cm^3"},
+    )
+    gas_kPa: float = Field(
+        default=101.325,
+        ge=1e-6,
+        le=1e4,
+        description="pressure of the air around the electrode, for its motion",
+        json_schema_extra={"unit": "kPa"},
+    )
     hold_voltage_V: float | None = Field(
         default=None,
         gt=0,

@@ -1,0 +1,235 @@
+"""The switch in motion: exact limits, energy, and the compiled Verilog-A beside the same equations in Python."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+from mesoscale.device.beam_switch import solve_beam
+from mesoscale.device.lumps import VISCOSITY, Study, lumps_of, move, study_lumps
+from mesoscale.device.pad_export import FOLLOW_S, START_NM
+from mesoscale.device.statistics import analytic_pull_in_V
+from mesoscale.device.switch import GPA, NM, switch_from_settings
+from mesoscale.device.switch_export import verilog_switch
+from mesoscale.errors import InputError
+from mesoscale.pad.local import LocalPad
+from mesoscale.settings import DeviceSettings
+from tests.mesoscale.device.test_beam import made_up_law
+from tests.mesoscale.device.test_pad_export import needs_openvaf, pad
+
+BEAM = DeviceSettings(hold_voltage_V=40.0)
+PLATE = DeviceSettings(spring_N_per_m=10.0)
+VACUUM = {"gas_Pa": 1e-3, "loss_us": 0.0}
+LAW = pad()
+PAD = LocalPad(LAW)
+
+
+def test_lumps_vibrate_as_a_clamped_beam():
+    """f = 4.730^2 / (2 pi L^2) sqrt(E t^2 / 12 rho)."""
+    lumps = lumps_of(BEAM, 12)
+    exact = 4.730041**2 / (510e-6) ** 2 * np.sqrt(89.3e9 * (4e-6) ** 2 / 12 / 8900)
+    assert np.sqrt(lumps.modes[0][0] / NM / lumps.mass_kg_m2) == pytest.approx(exact, rel=2e-3)
+    gram = lumps.modes[1].T @ np.diag(lumps.area_m2) @ lumps.modes[1]
+    np.testing.assert_allclose(gram, lumps.area_m2.sum() * np.eye(12), atol=1e-6 * lumps.area_m2.sum())
+
+
+@pytest.mark.parametrize("law", [LAW, made_up_law(0.0), made_up_law(30.0)], ids=["tails", "no adhesion", "adhesion"])
+def test_few_lumps_pull_in_and_release_as_the_finite_elements(law):
+    study = study_lumps(BEAM, law)
+    assert max(study.pull_in, study.release) <= 0.01
+    assert study.capacitance <= 0.03
+    assert study.lumps <= 32
+
+
+def test_tilt_hardly_changes_what_the_lumps_leave_out():
+    flat, tilted = (solve_beam(BEAM.model_copy(update={"tilt_nm": tilt}), LAW) for tilt in (0.0, 400.0))
+    assert tilted.release_V == pytest.approx(flat.release_V, rel=2e-3)
+    assert tilted.pull_in_V == pytest.approx(flat.pull_in_V, rel=2e-3)
+
+
+def test_an_odd_number_of_lumps_is_refused():
+    with pytest.raises(InputError, match="even number of lumps, not 3"):
+        lumps_of(BEAM, 3)
+
+
+@pytest.mark.parametrize("fringe", [0.0, 2.0 / np.pi])
+def test_the_pull_is_the_slope_of_the_capacitance(fringe):
+    lumps = replace(lumps_of(BEAM, 4), fringe=fringe)
+    s = np.array([30.0, 90.0, 800.0, 3000.0])
+    for k in range(4):
+        step = 1e-3 * np.eye(4)[k]
+        slope = (lumps.electric(s + step)[0] - lumps.electric(s - step)[0]) / (2e-3 * NM)
+        assert lumps.electric(s)[1][k] * lumps.area_m2[k] == pytest.approx(-0.5 * slope, rel=1e-5)
+
+
+@pytest.mark.parametrize("s", [30.0, 300.0, 3000.0])
+def test_the_gas_is_a_damper_when_slow_and_a_spring_when_fast(s):
+    lumps = lumps_of(PLATE)
+    thin = 1.0 + 9.638 * (67.3 / s) ** 1.159
+    slow = VISCOSITY / thin * lumps.width_m**2 / (s * NM) ** 3 * NM * 1e6  # Pa per nm/us
+    excess = 1e-7
+    pressure, flow = lumps.gas(np.array(s), np.array(s * (1.0 + excess)))
+    assert pressure == pytest.approx(lumps.gas_Pa * excess, rel=1e-6)
+    assert pressure == pytest.approx(slow * flow, rel=1e-6)  # in balance the gas flows as fast as the walls come
+
+
+def flight(volts, lumps, end_us, precision=1e-6):
+    return move(lumps, PAD, lambda t: volts, end_us, precision=precision)
+
+
+def bare_plate():
+    return replace(lumps_of(PLATE), **VACUUM)
+
+
+def test_a_step_closes_an_undamped_plate_above_the_dynamic_pull_in():
+    """V = sqrt(k g^3 / 4 eps A), 0.9186 of the static one."""
+    static = analytic_pull_in_V(switch_from_settings(PLATE))
+    dynamic = np.sqrt(27.0 / 32.0) * static
+    for share, closes in ((0.998, False), (1.002, True)):
+        lowest = flight(share * dynamic, bare_plate(), 120.0).separation_nm.min()
+        assert (lowest < 1500.0) == closes  # half of the electric gap, 1758 nm, is the top
+
+
+def test_an_undamped_plate_takes_the_time_of_the_energy_integral():
+    lumps, volts, switch = bare_plate(), 80.0, switch_from_settings(PLATE)
+    electric, mass = switch.gap_nm + switch.dielectric_nm, lumps.mass_kg_m2
+
+    def speed(x):  # nm/us, x the way in nm
+        work = 0.5 * volts**2 * 8.8541878128e-12 / NM * (1.0 / (electric - x) - 1.0 / electric)
+        return np.sqrt(2.0 * (work - 0.5 * lumps.spring_Pa_nm[0, 0] / NM * (x * NM) ** 2) / mass) * 1e3
+
+    way = switch.gap_nm - 300.0
+    exact = quad(lambda root: 2.0 * root / speed(root**2), 0.0, np.sqrt(way))[0]  # x = root^2: 1/v has a root at rest
+    motion = flight(volts, lumps, 1.5 * exact)
+    falling = motion.separation_nm[0][: int(motion.separation_nm[0].argmin())]
+    found = np.interp(-300.0, -falling, motion.time_us[: falling.size])
+    assert found == pytest.approx(exact, rel=1e-3)
+
+
+def energies(lumps, motion, volts):
+    """Kinetic and elastic energy, and the work of the source less what the field holds (J); shape (times,) each."""
+    moving = 0.5 * lumps.mass_kg_m2 * lumps.area_m2 @ (1e-3 * motion.velocity_nm_us) ** 2
+    bent = (motion.separation_nm - lumps.rest_nm[:, None]) * NM
+    elastic = 0.5 * np.einsum("it,ij,jt->t", bent, lumps.stiffness_N_m, bent)
+    return moving, elastic, 0.5 * volts**2 * (motion.capacitance_F - motion.capacitance_F[0])
+
+
+def test_a_beam_in_flight_keeps_its_energy():
+    lumps = replace(lumps_of(BEAM, 8), **VACUUM)
+    motion = flight(75.0, lumps, 12.0)
+    moving, elastic, given = energies(lumps, motion, 75.0)
+    flying = motion.separation_nm.min(axis=0) > 250.0
+    assert flying.sum() > 50
+    assert abs(moving + elastic - given)[flying].max() < 2e-3 * given[flying].max()
+
+
+def test_landing_takes_energy_and_gives_none():
+    lumps = replace(lumps_of(BEAM, 8), gas_Pa=1e-3)
+    motion = flight(80.0, lumps, 12.0, precision=1e-3)
+    moving, elastic, given = energies(lumps, motion, 80.0)
+    # what is neither moving nor bent has gone into the pad; its attraction gives back less than it pushes
+    lost = given - moving - elastic
+    assert motion.separation_nm.min() < 35.0
+    assert lost.min() > -0.01 * given.max()
+    assert lost[-1] > 0.0
+
+
+def values_of(lumps, law, state, volts):
+    """What the compiled module takes at a state of `Lumps.rates`."""
+    s, v, closed, amount = state.reshape(4, -1)
+    modes, speeds = np.linalg.solve(lumps.modes[1], np.stack([lumps.rest_nm - s, -v], axis=1)).T
+    values = {"fringe": lumps.fringe, "gas_Pa": lumps.gas_Pa, "viscosity": VISCOSITY, "mass": lumps.mass_kg_m2}
+    values |= {"loss": lumps.loss_us, "follow": FOLLOW_S, "mfactor": 1.0, "V(top,bottom)": volts, **vars(law.flats)}
+    for k in range(lumps.count):
+        values |= {f"V(mode{k})": modes[k], f"V(speed{k})": speeds[k]}
+        values |= {f"V(closed{k})": closed[k], f"V(lost{k})": lumps.rest_nm[k] - amount[k]}
+    return values
+
+
+def compiled(lumps, tmp_path):
+    """Rates of change, and charge, by the module that OpenVAF compiles."""
+    import openvaf_py
+
+    path = tmp_path / "rough_switch.va"
+    path.write_text(verilog_switch(lumps, Study(4, 0.0, 0.0, 0.0), LAW, 256))
+    (module,) = openvaf_py.compile_va(str(path))
+    inside = 3 + 4 * np.arange(lumps.count)  # after the terminals: mode, speed, closed, lost of each lump
+
+    def rates(state, volts):
+        residuals, _ = module.run_init_eval(values_of(lumps, LAW, state, volts))
+        rest = np.array([resistive for resistive, _ in residuals])
+        modes, speeds = -rest[inside], -rest[inside + 1] * 1e-3 / lumps.mass_kg_m2
+        closed, lost = -rest[inside + 2] / (1e3 * FOLLOW_S * 1e6), -rest[inside + 3]
+        return np.concatenate([-lumps.modes[1] @ modes, -lumps.modes[1] @ speeds, closed, -lost]), residuals[0][1]
+
+    return rates
+
+
+@needs_openvaf
+@pytest.mark.parametrize("lumps", [lumps_of(PLATE), replace(lumps_of(BEAM, 4), fringe=0.6)], ids=["plate", "beam"])
+def test_the_compiled_switch_has_the_same_rates_and_charge(tmp_path, lumps):
+    rates = compiled(lumps, tmp_path)
+    rng = np.random.default_rng(0)
+    for volts, low, high in ((40.0, 22.0, 60.0), (7.0, 30.0, 500.0), (70.0, 1000.0, 3490.0)):
+        s = rng.uniform(low, high, lumps.count)
+        deepest = np.minimum(s, rng.uniform(20.0, 28.0, lumps.count))  # opened from where its curves are
+        gas = s * rng.uniform(0.5, 3.0, lumps.count)
+        state = np.concatenate([s, 100.0 * rng.normal(size=lumps.count), START_NM - deepest, gas])
+        found, charge = rates(state, volts)
+        wanted = lumps.rates(state, volts, PAD)
+        # the tables hold the pad's curves to a part of its pressure; the spring and the voltage are alike to the digit
+        pressed = abs(PAD(s[:, None], deepest[:, None])[0]).max() * GPA + 1e3
+        scale = np.repeat([1.0, 1e-3 * pressed / lumps.mass_kg_m2, 1e3, 1.0], lumps.count)
+        np.testing.assert_allclose(found / scale, wanted / scale, rtol=1e-6, atol=0.01)
+        assert charge == pytest.approx(volts * lumps.electric(s)[0], rel=1e-8)
+
+
+@needs_openvaf
+def test_the_compiled_plate_closes_as_fast(tmp_path):
+    lumps = lumps_of(PLATE)
+    rates, start = compiled(lumps, tmp_path), np.array([lumps.rest_nm[0], 0.0, 0.0, lumps.rest_nm[0]])
+    solved = solve_ivp(
+        lambda t, y: rates(y, 75.0)[0], (0.0, 17.6), start, method="Radau", rtol=1e-3, atol=0.1, first_step=1e-3
+    )
+    motion = move(lumps, PAD, lambda t: 75.0, 17.6)
+    times = [
+        np.interp(-100.0, -s[: int(np.argmax(s < 90.0)) + 1], t[: int(np.argmax(s < 90.0)) + 1])
+        for s, t in ((solved.y[0], solved.t), (motion.separation_nm[0], motion.time_us))
+    ]
+    assert times[0] == pytest.approx(times[1], rel=0.01)
+
+
+HARD = {
+    "gap of 10 nm": (PLATE.model_copy(update={"gap_um": 0.0101, "spring_N_per_m": 1e5}), 1.0),
+    "gap of 100 um": (PLATE.model_copy(update={"gap_um": 100.0}), 500.0),
+    "never lands": (PLATE, 5.0),
+    "no voltage": (PLATE, 0.0),
+    "just below pull-in": (BEAM, 69.0),
+    "just above pull-in": (BEAM, 70.5),
+    "vacuum": (BEAM.model_copy(update={"gas_kPa": 1e-6}), 72.0),
+    "pressed gas": (BEAM.model_copy(update={"gas_kPa": 1e3}), 72.0),
+    "light": (BEAM.model_copy(update={"density_g_cm3": 0.01}), 72.0),
+    "heavy": (BEAM.model_copy(update={"density_g_cm3": 30.0}), 72.0),
+    "soft spring": (PLATE.model_copy(update={"spring_N_per_m": 1e-3}), 5.0),
+    "stiff spring": (PLATE.model_copy(update={"spring_N_per_m": 1e6}), 50.0),
+    "no dielectric": (PLATE.model_copy(update={"dielectric_nm": 0.0}), 30.0),
+    "thick dielectric": (PLATE.model_copy(update={"dielectric_nm": 1e4}), 70.0),
+    "tension": (BEAM.model_copy(update={"residual_stress_MPa": 500.0}), 100.0),
+    "bow": (BEAM.model_copy(update={"bow_nm": 1000.0}), 72.0),
+}
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_hard_cases_are_followed(name):
+    settings, volts = HARD[name]
+    lumps, end = lumps_of(settings, 4), 1.0 if settings.spring_N_per_m else 15.0  # a plate in contact rings for long
+    motion = move(lumps, PAD, lambda t: volts, end, precision=1e-3)
+    assert np.isfinite(motion.separation_nm).all()
+    assert motion.time_us[-1] == end
+    assert (motion.closed_nm >= -1e-6).all()
+    assert (motion.gas_nm > 0.0).all()
+    if volts == 0.0:
+        np.testing.assert_allclose(
+            motion.separation_nm, lumps.rest_nm[:, None] * np.ones(motion.time_us.size), rtol=1e-3
+        )
