@@ -12,15 +12,16 @@ import tempfile
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.optimize import curve_fit
 
 from atomistic.constants import AVOGADRO, EV_PER_A3_IN_GPA
+from atomistic.errors import InputError
 from atomistic.hardness.asperity import cut_asperity, formula_of, neutralise, profile, remove_strays
-from atomistic.hardness.contact_area import Area
+from atomistic.hardness.contact_area import Area, calibrated
 from atomistic.hardness.glass import make_glass
 from atomistic.hardness.pressing import base_thickness_nm, plan_closing, prepare_body
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
@@ -30,130 +31,151 @@ from atomistic.potentials import TABLE_POINTS, TABLE_START_A, Potential, contact
 from atomistic.settings import AsperitySettings, GlassSettings
 from evidence.hardness import area as section
 from evidence.hardness.choices import silica_and
-from evidence.hardness.metal import CLOSING, LEAST_NM, STEEPNESS, identity, made, pressed, titanium
+from evidence.hardness.metal import CLOSING, DEPTHS_A, MOST_SHARE, STEEPNESS, identity, made, pressed, titanium
 from evidence.hardness.metals import NEIGHBOURS, Metal, square_crystal
+from evidence.record import load
 
 BOND_A, BOND_PER_A = 2.1, 1.8  # length and steepness of the Morse bond
+CROSS = {"O": "bond", "Si": "contact"}  # of titanium
 GAP_A = 1.6  # between the surfaces that are laid on each other
 COLUMN_A = 4.0  # of the map of thickness
 FLAT_TILES = 2
 MASSES_U = {2: 28.085, 3: 15.999}  # of the film, by type
 SLAB_NM = 1.2  # film of the gates
+LEAST_FILM_NM = 0.3  # one layer of tetrahedra
+GLASS_A = 28.0  # about the edge of the cell of glass
+GATES = {
+    "film_density_g_cm3": "g/cm³",
+    "gap_95_A": "Å",
+    "slid_A": "Å",
+    "drift_meV_atom": "meV an atom",
+    "hottest_K": "K",
+}
 
 
 def arguments(parser: ArgumentParser) -> None:
     """Which parts."""
-    parser.add_argument("parts", nargs="*", default=["bond", "area", "alone", "stack"])
-    parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2])
-    parser.add_argument("--thickness", type=float, nargs="+", default=[0.8, 1.2, 2.0], help="of the film, nm")
+    parser.add_argument("parts", nargs="*", default=["area", "bond", "glass", "metal", "film"])
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3, 4])
+    parser.add_argument("--thickness", type=float, nargs="+", default=[0.6, 1.0, 2.0], help="of the film, nm")
     parser.add_argument("--wavelength", type=float, default=5.6, help="of the asperity, nm")
+    parser.add_argument("--metal", default="polycrystal", choices=["crystal", "polycrystal"], help="below the film")
     parser.add_argument("--grain", type=float, default=3.0, help="nm")
-    parser.add_argument("--bond", type=float, default=0.28, help="depth of the Morse bond, eV")
+    parser.add_argument("--bond", type=float, nargs="+", default=[0.28], help="depth of the Morse bond, eV")
 
 
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
-    """Gates of bond and area on a flat film; glass and metal by themselves; then the films."""
+    """Gates of area and bond on a flat film; glass and metal by themselves; then the films."""
     silica, oxide = silica_and("pmmcs")
-    stack, edge = Stack(oxide, titanium(), given.bond), 10 * given.wavelength
+    stacks, edge = [Stack(oxide, titanium(), depth) for depth in given.bond], 10 * given.wavelength
+    for thickness in given.thickness:
+        check_thickness(thickness, given.wavelength)
+    run = ClosingRun(
+        name="stack",
+        asperity=AsperitySettings(name="stack", tiles=round(edge / GLASS_A), amplitude_nm=STEEPNESS * given.wavelength),
+        seed=0,
+        energy_scale=1.0,
+    )
+    base_nm = base_thickness_nm(CLOSING, given.wavelength)
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
 
-        def row(case: str, seed: int, thickness_nm: float, quantity: str, value: float) -> dict[str, Any]:
-            given_ = {"case": case, "seed": seed, "thickness_nm": thickness_nm, "bond_eV": given.bond}
-            return {**given_, "quantity": quantity, "value": float(value)}
+        def row(
+            case: str, thickness_nm: float, quantity: str, value: float, metal: str, bond_eV: float | str = ""
+        ) -> dict[str, Any]:
+            by = {"wavelength_nm": given.wavelength, "metal": metal, "bond_eV": bond_eV}
+            where = {"case": case, "seed": run.seed, "thickness_nm": thickness_nm, **by}
+            return {**where, "quantity": quantity, "value": float(value)}
 
         for seed in given.seeds:
-            glass = make_glass(silica, oxide, GlassSettings(), seed, work / "glass", edge_A=edge / 2)
-            if "bond" in given.parts and seed == given.seeds[0]:
-                for depth in dict.fromkeys((given.bond, 0.28, 0.45)):
-                    of = Stack(oxide, stack.metal, depth)
-                    value = work_of_separation(of, flat_stack(of, glass, SLAB_NM, seed, work / "flat"), work)
-                    yield {**row("flat", seed, SLAB_NM, "work_of_separation_J_m2", value), "bond_eV": depth}
-            if "area" in given.parts and seed == given.seeds[0]:
-                for name, value in area_errors(stack, glass, seed, work).items():
-                    yield row("flat", seed, SLAB_NM, name, value)
-            run = ClosingRun(
-                name="stack",
-                asperity=AsperitySettings(name="stack", tiles=2, amplitude_nm=STEEPNESS * given.wavelength),
-                seed=seed,
-                energy_scale=1.0,
-            )
-            base_nm, amplitude = base_thickness_nm(CLOSING, given.wavelength), run.asperity.amplitude_nm
-            if "alone" in given.parts:
-                aside = Workspace(work / "anneal", identity(glass), "anneal.in")
-                cut = prepare_body(run, glass, oxide, CLOSING, PROTOCOL, aside, (seed, 7), amplitude, base_nm)
-                for name, value in pressed(run, cut, oxide, seed, work / "alone").items():
-                    yield row("glass", seed, 0.0, name, value)
+            run = run.model_copy(update={"seed": seed})
+            glass = make_glass(silica, oxide, GlassSettings(), seed, work / "glass", edge_A=edge / run.asperity.tiles)
+            for stack in stacks:
+                found = {}
+                if "area" in given.parts:
+                    found |= area_errors(stack, glass, seed, work)
+                if "bond" in given.parts:
+                    flat = flat_stack(stack, glass, SLAB_NM, seed, work / "flat")
+                    found["work_of_separation_J_m2"] = work_of_separation(stack, flat, work)
+                for name, value in found.items():
+                    yield row("flat", SLAB_NM, name, value, "crystal", stack.depth_eV)
+            if not {"glass", "metal", "film"} & set(given.parts):
+                continue
+            for body in ("glass", "metal", "film"):
+                calibrated_depth(body)  # before any hardness is looked at
+            metal = stacks[0].metal
+            bulk = scaled(made(metal, given.metal, edge, 10 * given.grain, seed, work / "bulk"), edge)
+            whole = run.model_copy(update={"asperity": run.asperity.model_copy(update={"tiles": 1})})
+            alone = {"glass": (run, glass, oxide, ""), "metal": (whole, bulk, _as_potential(metal), given.metal)}
+            for case in sorted(alone.keys() & set(given.parts)):
+                of, cell, force, kind = alone[case]
+                aside = Workspace(work / "anneal", identity(cell), "anneal.in")
+                amplitude = run.asperity.amplitude_nm
+                cut = prepare_body(of, cell, force, CLOSING, PROTOCOL, aside, (seed, 7), amplitude, base_nm)
+                for name, value in pressed(of, cut, force, seed, work / "alone").items():
+                    yield row(case, 0.0, name, value, kind)
                 aside.remove()
-            bulk = scaled(made(stack.metal, "polycrystal", edge, 10 * given.grain, seed, work / "bulk"), edge)
-            if "alone" in given.parts:
-                aside = Workspace(work / "anneal", identity(bulk), "anneal.in")
-                of_metal, force = (
-                    run.model_copy(update={"asperity": one_tile(run.asperity)}),
-                    _as_potential(stack.metal),
-                )
-                cut = prepare_body(of_metal, bulk, force, CLOSING, PROTOCOL, aside, (seed, 7), amplitude, base_nm)
-                for name, value in pressed(of_metal, cut, force, seed, work / "alone").items():
-                    yield row("metal", seed, 0.0, name, value)
-                aside.remove()
-            for thickness in given.thickness if "stack" in given.parts else ():
+            for thickness, stack in product(given.thickness, stacks) if "film" in given.parts else ():
                 body = laid(stack, bulk, glass, run, 10 * thickness, 10 * base_nm, work / "weld")
-                for name, value in gates(body).items():
-                    yield row("film", seed, thickness, name, value)
                 found = pressed(run, body, _as_potential(stack), seed, work / "press")
-                for name, value in {**found, **slid(body, work / "press" / "closing")}.items():
-                    yield row("film", seed, thickness, name, value)
+                for name, value in {**gates(body), **found, **slid(body, work / "press" / "closing")}.items():
+                    yield row("film", thickness, name, value, given.metal, stack.depth_eV)
+
+
+def check_thickness(film_nm: float, wavelength_nm: float) -> None:
+    """Refuse a film that is no layer, or so thick that no contact of its asperity feels the metal.
+
+    Raises
+    ------
+    InputError : of those two.
+    """
+    widest = wavelength_nm * MOST_SHARE**0.5
+    if not LEAST_FILM_NM <= film_nm <= widest:
+        raise InputError(
+            f"film of {film_nm:g} nm on an asperity of {wavelength_nm:g} nm, whose widest contact is {widest:.1f} nm: "
+            f"accepted are {LEAST_FILM_NM:g} (one layer) to {widest:.1f} nm"
+        )
+
+
+def calibrated_depth(body: str) -> tuple[str, float]:
+    """Depth (Å) with the least mean error of the contact area on bodies of this kind, and its largest error.
+
+    Raises
+    ------
+    InputError : no area was calibrated on them; that of another kind of body does not serve.
+    """
+    study, case = {"film": ("hardness.stack", "flat"), "metal": ("hardness.metal", "slab")}.get(body, ("", ""))
+    if body == "glass":
+        return f"{Area.depth_A:g}", calibrated(silica_and("pmmcs")[1])[1]
+    errors = {
+        row["quantity"]: abs(float(row["value"]))
+        for row in (load(study) if study else ())
+        if row.get("case", row.get("body")) == case and row["quantity"].startswith("area_error")
+    }
+    if not errors:
+        part = f"; run `python -m evidence {study} area`" if study else ""
+        raise InputError(f"{body}: the contact area is not calibrated on it{part}")
+    depth = min(DEPTHS_A, key=lambda depth: errors[f"area_error_mean_depth_{depth:g}_A"])
+    return f"{depth:g}", max(errors[f"area_error_{end}_depth_{depth:g}_A"] for end in ("lowest", "highest"))
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """The work of separation, the shares of the film by L/t, and k and m of the law `film`."""
-    found = {}
+    """The work of separation, the error of the area, and the gates of the films."""
+    found, values = {}, {}
     for row in rows:
         if row["quantity"] == "work_of_separation_J_m2":
             name = {"0.28": "work_weak", "0.45": "work_strong"}.get(row["bond_eV"], "work_other")
             found[name] = f"{float(row['value']):.2g} J/m²"
-    for label, of in (("", ""), ("_deep", "_depth_1.5_A")):
-        ratios, parts = shares(rows, of)
-        if len(ratios) > 3:
-            (k, m), covariance = curve_fit(softened, ratios, parts, (0.24, 1.2), bounds=(0, [10, 6]))
-            errors = np.sqrt(np.diag(covariance))
-            found[f"k{label}"], found[f"m{label}"] = f"{k:.2g} ± {errors[0]:.1g}", f"{m:.2g} ± {errors[1]:.1g}"
-            found[f"ratios{label}"] = f"{min(ratios):.2g} to {max(ratios):.2g}"
-            found[f"misfit{label}"] = f"{float(np.sqrt(np.mean((parts - softened(ratios, k, m)) ** 2))):.2g}"
-            for name, low, high in (("thick", 0.8, 1.5), ("middle", 1.5, 2.5), ("thin", 2.5, 5.0)):
-                here = parts[(ratios >= low) & (ratios < high)]
-                if len(here):
-                    found[f"share_{name}{label}"] = f"{here.min():.2f} to {here.max():.2f}"
+        values.setdefault((row["case"], row["quantity"]), []).append(float(row["value"]))
+    for quantity, unit in GATES.items():
+        if gate := values.get(("film", quantity)):
+            found[quantity.rsplit("_", 1)[0]] = f"{min(gate):.2g} to {max(gate):.2g} {unit}"
+    for depth in DEPTHS_A:
+        ends = [values.get(("flat", f"area_error_{end}_depth_{depth:g}_A")) for end in ("lowest", "highest")]
+        if ends[0] and ends[1]:
+            label = f"{depth:g}".replace(".", "_")
+            found[f"area_{label}"] = f"{100 * min(ends[0]):+.0f} to {100 * max(ends[1]):+.0f} %"
     return found
-
-
-def softened(ratio: np.ndarray, k: float, m: float) -> np.ndarray:
-    """Share of the film in the law `film` by L/t."""
-    return 1 / (1 + k * ratio**m)
-
-
-def shares(rows: Sequence[Mapping[str, str]], label: str = "") -> tuple[np.ndarray, np.ndarray]:
-    """L/t and share of the film of every film and bin of contact length, glass and metal of the same seed beside it.
-
-    Parameters
-    ----------
-    label : of the depth of the contact area, as `pressed` has it.
-    """
-    stress: dict[tuple[str, str, float], dict[float, float]] = {}
-    for row in rows:
-        name = row["quantity"].removesuffix("_nm_GPa")
-        if name.startswith(f"stress{label}_") and "_" not in (length := name.removeprefix(f"stress{label}_")):
-            key = row["case"], row["seed"], float(row["thickness_nm"])
-            stress.setdefault(key, {})[float(length)] = float(row["value"])
-    points = []
-    for (case, seed, thickness), by_length in stress.items():
-        glass, metal = (stress.get((body, seed, 0.0), {}) for body in ("glass", "metal"))
-        for length in by_length.keys() & glass.keys() & metal.keys() if case == "film" else ():
-            if length > LEAST_NM:
-                above = glass[length] - metal[length]
-                points.append((length / thickness, (by_length[length] - metal[length]) / above))
-    ratios, parts = np.array(sorted(points)).reshape(-1, 2).T
-    return ratios, parts
 
 
 @dataclass(frozen=True)
@@ -175,14 +197,24 @@ class Stack:
         return {**self.oxide.species, **self.metal.species}
 
     def files(self, elements: tuple[str, ...], energy_scale: float, repelled: None = None) -> dict[str, str]:
-        """What LAMMPS needs, as `Potential.files`."""
+        """What LAMMPS needs, as `Potential.files`.
+
+        Raises
+        ------
+        InputError : an ion without cross terms to the metal.
+        """
         metal, *ions = elements
+        if foreign := [ion for ion in ions if ion not in CROSS]:
+            raise InputError(
+                f"{metal} and {foreign[0]}: no cross terms, so that no film of it lies on the metal; known are "
+                f"those with {' and '.join(CROSS)}"
+            )
         end = self.oxide.cutoff_A
         nothing = " ".join(["NULL"] * len(ions))
         lines = ["pair_style hybrid table linear 4000 eam/alloy"]
         lines.append(f"pair_coeff * * eam/alloy metal.eam {metal} {nothing}")
         for i, first in enumerate(ions, 2):
-            lines.append(f"pair_coeff 1 {i} table cross {'bond' if first == 'O' else 'contact'} {end}")
+            lines.append(f"pair_coeff 1 {i} table cross {CROSS[first]} {end}")
             lines += [
                 f"pair_coeff {i} {i + j} table table {first}_{second} {end}" for j, second in enumerate(ions[i - 2 :])
             ]
@@ -208,11 +240,6 @@ class Stack:
 def _as_potential(force: Stack | Metal) -> Any:
     """It has what of a `Potential` the pressing uses: `species` and `files`."""
     return force
-
-
-def one_tile(asperity: AsperitySettings) -> AsperitySettings:
-    """The asperity on a body whose cell is its wavelength."""
-    return asperity.model_copy(update={"tiles": 1})
 
 
 def scaled(body: Atoms, edge_A: float) -> Atoms:
@@ -345,7 +372,7 @@ def area_errors(stack: Stack, glass: Atoms, seed: int, work: Path) -> dict[str, 
     plan = replace(plan, segments=-(-steps // plan.segment_steps))
     layers = section.layers_of(run, [body], [_as_potential(stack)], CLOSING, plan, Area(), work / "area")
     found = {"area_snapshots": float(len(layers))}
-    for depth in (0.5, 1.0, 1.5):
+    for depth in DEPTHS_A:
         errors = [row["error"] for row in section.cut_bodies(layers, Area(depth_A=depth))]
         for name, value in (("mean", np.mean(errors)), ("lowest", min(errors)), ("highest", max(errors))):
             found[f"area_error_{name}_depth_{depth:g}_A"] = float(value)

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from evidence.pad.runs import results_of
-from evidence.record import ROOT
+from evidence.record import ROOT, load
 from mesoscale.tables import load_table
 
 ATOMS = {
@@ -27,6 +27,7 @@ GLASS = {  # the closing runs' own hardness, without the soft metal of eq. 4
     "h_macro": {"origin": "literature", "values": [8, 11], "source": "closing runs of full energies"},
     "h_prime": {"origin": "literature", "distribution": "fixed", "values": [0], "source": "no size effect"},
 }
+OXIDE = {"distribution": "fixed", "values": [5], "source": "TiO2 on titanium, Kim et al. (2013)"}
 LITERATURE = {"gap_cutoff": {"origin": "literature", "values": [0.165, 0.3], "source": "Israelachvili, 13.13"}}
 SMALL = {"cells": 32, "draws": 12, "draw_cells": 2}  # an adhesive cell takes some ten times as long as a coupled one
 CLAMPED = {"contact": {"attraction": "clamped"}}
@@ -40,6 +41,8 @@ CASES: dict[str, dict[str, Any]] = {
     "small pad, attraction deforms": {"pad": SMALL, "contact": {"mechanics": "adhesive"}},
     "hardness of the glass": {"inputs": GLASS},
     "clamped, literature's D0, hardness of the glass": {**CLAMPED, "inputs": {**LITERATURE, **GLASS}},
+    "film": {},  # on H_macro of the default
+    "film, metal as pressed": {},
     "256 cells": {"pad": {"cells": 256}},
     "other seeds, 1": {},
     "other seeds, 2": {},
@@ -52,10 +55,33 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--pixels", type=int, default=256)
 
 
+def film_inputs(pressed: bool) -> dict[str, Any]:
+    """Inputs of an oxide film by the law of study `hardness.laws`; `pressed`: on its metal, not on H_macro."""
+    row = {found["of"]: found for found in load("hardness.laws") if found["quantity"] == "film"}
+
+    def between(name: str) -> dict[str, Any]:
+        ends = [float(row[name][end]) for end in ("low", "high")]
+        return {"origin": "literature", "values": ends, "source": "python -m evidence hardness.laws"}
+
+    rank = float(row["rank correlation of k and m"]["value"])
+    return {
+        "hardness": "film",
+        "h_prime": None,
+        "h_film": GLASS["h_macro"],
+        "t_film": {"origin": "literature", **OXIDE},
+        "k_film": between("k"),
+        "m_film": between("m"),
+        "correlations": [{"first": "k_film", "second": "m_film", "rank": rank}],
+        **({"h_macro": between("H_base")} if pressed else {}),
+    }
+
+
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """A row for each case."""
     for case in given.cases:
         changed = CASES[case]
+        if case.startswith("film"):
+            changed = {"inputs": film_inputs("pressed" in case)}
         scene = {
             "extends": "reduced",
             "name": "answer",

@@ -1,5 +1,6 @@
 """Titanium's potential beside another code, and the bodies made of it."""
 
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -8,10 +9,11 @@ from scipy.spatial import KDTree
 
 from atomistic.errors import InputError
 from atomistic.materials import load_material
+from evidence.hardness import laws
 from evidence.hardness.choices import silica_and
 from evidence.hardness.metal import titanium
 from evidence.hardness.metals import PLACES, TOO_NEAR, crystal, lattice_energy, polycrystal, square_crystal
-from evidence.hardness.stack import Stack, figures
+from evidence.hardness.stack import Stack, calibrated_depth, check_thickness
 from evidence.record import ROOT
 
 
@@ -89,17 +91,58 @@ def test_an_eam_of_a_compound_is_refused(tmp_path):
         load_material(Path(tmp_path / "titanium.yaml"))
 
 
-def test_shares_of_a_made_up_law_give_its_parameters():
-    """Glass 10 and metal 4 GPa; films between them by k 0.3 and m 1.5."""
-    lengths, rows = (2.25, 2.75, 3.25), []
-    for case, thickness in (("glass", 0.0), ("metal", 0.0), ("film", 0.8), ("film", 2.0)):
-        for length in lengths:
-            part = {"glass": 1.0, "metal": 0.0}.get(case, 0.0)
-            if case == "film":
-                part = 1 / (1 + 0.3 * (length / thickness) ** 1.5)
-            quantity, value = f"stress_{length:g}_nm_GPa", str(4 + 6 * part)
-            row = {"case": case, "seed": "1", "thickness_nm": str(thickness), "bond_eV": "0.28"}
-            rows.append({**row, "quantity": quantity, "value": value})
-    found = figures(rows)
-    assert (found["k"].split()[0], found["m"].split()[0]) == ("0.3", "1.5")
-    assert found["ratios"] == "1.1 to 4.1"
+def stack_rows(seeds=("1", "2"), noise=0.0):
+    """Glass 10 and metal 4 GPa, and films between them by k 0.3 and m 1.5, area calibrated at 0.5 A."""
+    rng = np.random.default_rng(1)
+    where = {"wavelength_nm": "5.6", "bond_eV": "0.28", "metal": "polycrystal"}
+    rows = [
+        {"case": "flat", "seed": "1", "thickness_nm": "1.2", **where, "quantity": name, "value": value}
+        for name, value in (("area_error_mean_depth_0.5_A", "0.02"), ("area_error_mean_depth_1_A", "0.08"))
+    ]
+    for case, thickness in (("glass", 0.0), ("metal", 0.0), ("film", 0.6), ("film", 1.0), ("film", 2.0)):
+        for seed, length in product(seeds, (2.25, 2.75, 3.25, 3.75)):
+            share = 1 / (1 + 0.3 * (length / thickness) ** 1.5) if case == "film" else float(case == "glass")
+            row = {"case": case, "seed": seed, "thickness_nm": str(thickness), **where}
+            stress = (4 + 6 * share) * np.exp(noise * rng.normal())
+            rows.append({**row, "quantity": f"stress_{length:g}_nm_GPa", "value": str(stress)})
+    return rows
+
+
+def test_a_made_up_law_is_found_and_foretells_what_is_left_out():
+    points = laws.points_of(stack_rows())
+    assert points.length_nm.max() == 3.25  # beyond, the contact takes up more than its share of the cell
+    np.testing.assert_allclose(laws.fit("film", points), [10, 4, 0.3, 1.5], rtol=1e-5)
+    assert laws.left_out("film", points, "point") < 1e-5
+    assert laws.left_out("film", points, "thickness") < 1e-5
+    assert laws.left_out("constant", points, "thickness") > laws.left_out("constant", points, "point") > 0.05
+
+
+def test_k_of_other_runs_is_compared_with_that_of_the_same_seeds():
+    rows = stack_rows()
+    strong = [{**row, "bond_eV": "0.45"} for row in rows if row["case"] == "film" and row["thickness_nm"] != "1.0"]
+    assert laws.changed_k(rows + strong, {"bond_eV": "0.45"}) == pytest.approx(1, rel=1e-4)
+
+
+def test_a_law_without_runs_in_its_range_is_refused():
+    with pytest.raises(InputError, match=r"films on crystal \(0\.28 eV\): 0 points of films between 2 and 3\.5 nm"):
+        laws.points_of(stack_rows(), {"metal": "crystal"})
+
+
+def test_a_film_thinner_than_a_layer_or_thicker_than_the_widest_contact_is_refused():
+    check_thickness(0.6, 5.6)
+    for thickness in (0.1, 4.0):
+        with pytest.raises(InputError, match=r"5\.6 nm, whose widest contact is 3\.5 nm: accepted are 0\.3"):
+            check_thickness(thickness, 5.6)
+
+
+def test_an_ion_without_cross_terms_is_refused(metal):
+    with pytest.raises(InputError, match="Ti and N: no cross terms, so that no film of it lies on the metal"):
+        Stack(silica_and("pmmcs")[1], metal, 0.28).files(("Ti", "Si", "N"), 1.0)
+
+
+def test_no_body_takes_the_area_calibrated_on_another(monkeypatch):
+    monkeypatch.setattr("evidence.hardness.stack.load", lambda study: stack_rows() if study == "hardness.stack" else [])
+    with pytest.raises(InputError, match=r"metal: the contact area is not calibrated on it; run `python -m evidence"):
+        calibrated_depth("metal")
+    with pytest.raises(InputError, match=r"nitride: the contact area is not calibrated on it$"):
+        calibrated_depth("nitride")
