@@ -4,7 +4,7 @@ The runs are those of study `hardness.stack`. `constant` and eq. 4 (`paper`) kno
 the thickness t, and the hardness of glass and metal by themselves, which are the film of no and of all softening. An
 error is the root mean square of ln(predicted / found), one point (L, t) or one thickness left out of the fit; seeds are
 averaged. `prediction` has k and m of a prototype, written down before these runs. Uncertainty is by a bootstrap over
-seeds, which share glass and metal; cross terms and state of the metal enter by the k of the runs that change them.
+the runs of a body; cross terms and state of the metal enter by the k of the runs that change them.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -12,8 +12,9 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from scipy.optimize import least_squares
-from scipy.stats import spearmanr
+from scipy.stats import rankdata
 
 from atomistic.errors import InputError
 from atomistic.hardness.size_effect import INTERVAL, SYSTEMATIC
@@ -24,11 +25,11 @@ from mesoscale.inputs.hardness import HardnessLaw
 
 PREDICTION = {"k": 0.24, "m": 1.2}  # of a prototype with other films, written down before
 MAIN = {"wavelength_nm": "5.6", "metal": "polycrystal", "bond_eV": "0.28"}
-OTHERS = {"strong bond": {"bond_eV": "0.45"}, "crystal": {"metal": "crystal"}, "wide": {"wavelength_nm": "8.4"}}
+OTHERS = {"strong bond": {"bond_eV": "0.45"}, "crystal": {"metal": "crystal"}}
 LENGTHS_NM = (3.0, 5.0, 10.0, 15.0, 30.0, 100.0)
 OXIDE_NM = 5.0  # of TiO2 on the titanium of Kim et al. (2013)
 SOFT_GPA, SIZE_EFFECT = (0.7, 3.2), (3.7, 16.7)  # H_macro and H' (GPa nm^0.5) of scene reduced
-DRAWS, LEAST_POINTS = 400, 6
+DRAWS, LEAST_POINTS = 400, 3
 Law = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -81,6 +82,7 @@ def points_of(rows: Sequence[Mapping[str, str]], changed: Mapping[str, str] | No
             thickness = {"glass": np.inf, "metal": 0.0}.get(case, float(row["thickness_nm"]))
             found.append((float(row["seed"]), thickness, float(length), float(row["value"])))
     points = Points(*np.array(found).reshape(-1, 4).T)
+    points = points.take(np.isin(points.seed, points.seed[points.film]))
     if points.film.sum() < LEAST_POINTS:
         raise InputError(
             f"a law of films on {which['metal']} ({which['bond_eV']} eV): {points.film.sum()} points of films between "
@@ -151,9 +153,12 @@ def left_out(name: str, points: Points, by: str, alike: bool = False) -> float:
 
 
 def resampled(points: Points, rng: np.random.Generator) -> Points:
-    """The points of as many seeds, drawn with replacement."""
-    seeds = np.unique(points.seed)
-    parts = [points.take(points.seed == seed) for seed in rng.choice(seeds, len(seeds))]
+    """The points of as many runs of each body, drawn with replacement from its seeds."""
+    parts = []
+    for thickness in np.unique(points.thickness_nm):
+        body = points.take(points.thickness_nm == thickness)
+        seeds = np.unique(body.seed)
+        parts += [body.take(body.seed == seed) for seed in rng.choice(seeds, len(seeds))]
     return Points(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
@@ -161,7 +166,12 @@ def changed_k(rows: Sequence[Mapping[str, str]], changed: Mapping[str, str]) -> 
     """k of runs that differ from `MAIN`, over that of the same seeds and thicknesses of `MAIN`; m as in `MAIN`."""
     main, other = points_of(rows), points_of(rows, changed)
     m = fit("film", main)[3]
-    alike = main.take(np.isin(main.seed, other.seed) & (~main.film | np.isin(main.thickness_nm, other.thickness_nm)))
+    pairs = set(zip(other.seed[other.film], other.thickness_nm[other.film], strict=True))
+
+    def alike(points: Points) -> Points:
+        seeds = [seed for seed, _ in pairs]
+        both = list(zip(points.seed, points.thickness_nm, strict=True))
+        return points.take(np.isin(points.seed, seeds) & (~points.film | np.array([pair in pairs for pair in both])))
 
     def k_of(points: Points) -> float:
         ends = [points.stress_GPa[points.thickness_nm == t].mean() for t in (np.inf, 0.0)]
@@ -173,7 +183,7 @@ def changed_k(rows: Sequence[Mapping[str, str]], changed: Mapping[str, str]) -> 
 
         return float(np.exp(least_squares(misfit, [np.log(0.3)], bounds=(-7, 4)).x[0]))
 
-    return k_of(other) / k_of(alike)
+    return k_of(alike(other)) / k_of(alike(main))
 
 
 def rows(given: object) -> Iterator[dict[str, Any]]:
@@ -208,26 +218,31 @@ def rows(given: object) -> Iterator[dict[str, Any]]:
     draws[:, 2] *= np.exp(rng.normal(0, np.linalg.norm([np.log(factor) for factor in factors.values()]), DRAWS))
     for name, value, column in zip(("H_film", "H_base", "k", "m"), best, draws.T, strict=True):
         yield row("film", name, float(value), *np.quantile(column, INTERVAL).tolist())
-    yield row("film", "rank correlation of k and m", float(spearmanr(draws[:, 2], draws[:, 3])[0]))
+    yield row("film", "rank correlation of k and m", float(np.corrcoef(rankdata(draws[:, 2:], axis=0).T)[0, 1]))
     area = max(calibrated_depth(body)[1] for body in ("glass", "metal", "film")) / np.sqrt(3)
     shared = np.exp(rng.normal(0, np.linalg.norm([area, *SYSTEMATIC.values()]), DRAWS))
     soft, size = rng.uniform(*SOFT_GPA, DRAWS), rng.uniform(*SIZE_EFFECT, DRAWS)
-    for length in LENGTHS_NM:
+    h_film, h_base, k, m = draws.T
+
+    def hardness(length: float) -> dict[str, np.ndarray]:
         at = partial(film, length=np.array(length), thickness=np.array(OXIDE_NM))
-        h_film, h_base, k, m = draws.T
-        cases = {
+        return {
             "metal as pressed": shared * at(np.array([h_film, h_base, k, m])),
             "metal of H_macro": at(np.array([shared * h_film, soft, k, m])),
             "eq. 4": soft + size / np.sqrt(length),
         }
+
+    found = {f"hardness_{length:g}_nm": hardness(length) for length in LENGTHS_NM}
+    found["fall_3_to_15_nm"] = {case: values / hardness(15.0)[case] for case, values in hardness(3.0).items()}
+    for quantity, cases in found.items():
         for case, values in cases.items():
             low, middle, high = np.quantile(values, [INTERVAL[0], 0.5, INTERVAL[1]]).tolist()
-            yield row(f"hardness_{length:g}_nm", case, middle, low, high)
+            yield row(quantity, case, middle, low, high)
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """Errors in per cent, values with their 68 % intervals; of the last run."""
-    found = {}
+    found = {"seeds": rows[-1]["seeds"]}
     for row in rows:
         name = f"{row['of']}_{row['quantity']}".replace(",", "").replace(".", "").replace(" ", "_")
         if row["quantity"].startswith(("left_out", "standard")):
@@ -236,3 +251,24 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
             ends = f" [{float(row['low']):.2g}, {float(row['high']):.2g}]" if row["low"] else ""
             found[name] = f"{float(row['value']):.2g}{ends}"
     return found
+
+
+def draw(axes: Axes) -> None:
+    """Mean stress of each body with its standard error over seeds; what the law and its prediction say of 5 nm."""
+    points, of_law = points_of(load("hardness.stack")), load("hardness.laws")
+    colors = ("#20242b", "#b5482a", "#d99a2b", "#4c9a5b", "#1f5fa8")
+    for thickness, color in zip(np.unique(points.thickness_nm), colors, strict=True):
+        name = {0: "titanium", np.inf: "silica"}.get(thickness, f"{thickness:g} nm of silica on titanium")
+        lengths = np.unique(points.length_nm)
+        of = [points.stress_GPa[(points.thickness_nm == thickness) & (points.length_nm == at)] for at in lengths]
+        error = [np.std(values, ddof=1) / len(values) ** 0.5 for values in of]
+        axes.errorbar(lengths, [np.mean(values) for values in of], error, fmt="o-", ms=3, color=color, label=name)
+    for case, color in (("metal as pressed", "#b5482a"), ("metal of H_macro", "#8a8f98")):
+        found = [row for row in of_law if row["of"] == case and row["quantity"].startswith("hardness")]
+        low, high = ([float(row[end]) for row in found] for end in ("low", "high"))
+        axes.fill_between(LENGTHS_NM, low, high, color=color, alpha=0.2, label=f"5 nm on {case}, law")
+    lengths, said = np.array(LENGTHS_NM), np.array([10.5, 0.7])
+    thickness = np.full_like(lengths, OXIDE_NM)
+    axes.plot(
+        lengths, prediction(said, lengths, thickness), "--", color="#8a8f98", label="5 nm on 0.7 GPa, said before"
+    )

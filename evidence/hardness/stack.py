@@ -308,6 +308,7 @@ def gates(body: Atoms) -> dict[str, float]:
     np.maximum.at(high, column[film], z[film])
     np.maximum.at(top, column[~film], z[~film])
     covered = np.isfinite(low)
+    low[~covered] = high[~covered] = 0
     middle = film & (np.abs(z - 0.5 * (low + high)[column]) < 0.25 * (high - low)[column])
     grams = np.array([MASSES_U[kind] for kind in body.types[middle]]).sum() / AVOGADRO
     volume_A3 = 0.5 * float(np.mean((high - low)[covered])) * float(np.prod(body.cell_A[:2])) * np.mean(covered)

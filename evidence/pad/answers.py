@@ -31,6 +31,7 @@ OXIDE = {"distribution": "fixed", "values": [5], "source": "TiO2 on titanium, Ki
 LITERATURE = {"gap_cutoff": {"origin": "literature", "values": [0.165, 0.3], "source": "Israelachvili, 13.13"}}
 SMALL = {"cells": 32, "draws": 12, "draw_cells": 2}  # an adhesive cell takes some ten times as long as a coupled one
 CLAMPED = {"contact": {"attraction": "clamped"}}
+TABLE_1 = {"extends": "table1", "contact": {"mechanics": "coupled", "attraction": "offset"}, "pad": {"cells": 64}}
 SEEDS = {"mesoscale/pad/cells.py": "FIRST_SEED = 1000", "mesoscale/device/release.py": "rng=0"}
 CASES: dict[str, dict[str, Any]] = {
     "default": {},
@@ -41,6 +42,8 @@ CASES: dict[str, dict[str, Any]] = {
     "small pad, attraction deforms": {"pad": SMALL, "contact": {"mechanics": "adhesive"}},
     "hardness of the glass": {"inputs": GLASS},
     "clamped, literature's D0, hardness of the glass": {**CLAMPED, "inputs": {**LITERATURE, **GLASS}},
+    "paper's inputs": TABLE_1,
+    "paper's inputs, film": TABLE_1,
     "film": {},  # on H_macro of the default
     "film, metal as pressed": {},
     "256 cells": {"pad": {"cells": 256}},
@@ -80,13 +83,13 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """A row for each case."""
     for case in given.cases:
         changed = CASES[case]
-        if case.startswith("film"):
-            changed = {"inputs": film_inputs("pressed" in case)}
+        if "film" in case:
+            changed = {**changed, "inputs": film_inputs("pressed" in case)}
         scene = {
             "extends": "reduced",
             "name": "answer",
             "compute": [],
-            "inputs": ATOMS | changed.get("inputs", {}),
+            "inputs": ({} if changed.get("extends") else ATOMS) | changed.get("inputs", {}),
             "contact": {"pixels": given.pixels} | changed.get("contact", {}),
             **{key: value for key, value in changed.items() if key not in ("inputs", "contact")},
         }
