@@ -3,8 +3,8 @@
 The runs are those of study `hardness.stack`. `constant` and eq. 4 (`paper`) know only the contact length L; `film` has
 the thickness t, and the hardness of glass and metal by themselves, which are the film of no and of all softening. An
 error is the root mean square of ln(predicted / found), one point (L, t) or one thickness left out of the fit; seeds are
-averaged. `prediction` has k and m of a prototype, written down before these runs. Uncertainty is by a bootstrap over
-the runs of a body; cross terms and state of the metal enter by the k of the runs that change them.
+averaged. `prediction` has k and m of a prototype, written down before these runs. Uncertainty is by the
+likelihood of all runs, since seeds are too few for a bootstrap; cross terms enter by the k of runs that change them.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -29,7 +29,8 @@ OTHERS = {"strong bond": {"bond_eV": "0.45"}, "crystal": {"metal": "crystal"}}
 LENGTHS_NM = (3.0, 5.0, 10.0, 15.0, 30.0, 100.0)
 OXIDE_NM = 5.0  # of TiO2 on the titanium of Kim et al. (2013)
 SOFT_GPA, SIZE_EFFECT = (0.7, 3.2), (3.7, 16.7)  # H_macro and H' (GPa nm^0.5) of scene reduced
-DRAWS, LEAST_POINTS = 400, 3
+DRAWS, TRIALS, LEAST_POINTS = 2000, 1_000_000, 3
+PRIOR = ((5, 15), (2, 10), (1e-3, 10), (0.5, 4))  # of H_film, H_base, k, m
 Law = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -152,14 +153,21 @@ def left_out(name: str, points: Points, by: str, alike: bool = False) -> float:
     return float(np.sqrt(np.mean(np.square(errors))))
 
 
-def resampled(points: Points, rng: np.random.Generator) -> Points:
-    """The points of as many runs of each body, drawn with replacement from its seeds."""
-    parts = []
-    for thickness in np.unique(points.thickness_nm):
-        body = points.take(points.thickness_nm == thickness)
-        seeds = np.unique(body.seed)
-        parts += [body.take(body.seed == seed) for seed in rng.choice(seeds, len(seeds))]
-    return Points(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+def likely(points: Points, rng: np.random.Generator) -> np.ndarray:
+    """Values of the law `film`, shape (draws, 4), by their likelihood; `PRIOR` is flat in the logarithms and in m.
+
+    The misfits of a run are one error, so that N runs of unknown scatter have the likelihood S^(-N/2), S the sum of
+    squares (the scatter's own prior is Jeffreys's).
+    """
+    low, high = np.array(PRIOR).T
+    values = rng.uniform([*np.log(low[:3]), low[3]], [*np.log(high[:3]), high[3]], (TRIALS, 4))
+    values[:, :3] = np.exp(values[:, :3])
+    squares = np.zeros(TRIALS)
+    for length, thickness, stress in zip(points.length_nm, points.thickness_nm, points.stress_GPa, strict=True):
+        squares += np.log(film(values.T, np.array(length), np.array(thickness)) / stress) ** 2
+    runs = len(set(zip(points.seed, points.thickness_nm, strict=True)))
+    weights = (squares / squares.min()) ** (-runs / 2)
+    return values[rng.choice(TRIALS, DRAWS, p=weights / weights.sum())]
 
 
 def changed_k(rows: Sequence[Mapping[str, str]], changed: Mapping[str, str]) -> float:
@@ -213,8 +221,7 @@ def rows(given: object) -> Iterator[dict[str, Any]]:
             factors[case] = changed_k(of_stack, changed)
             yield row("k_over_main", case, factors[case])
     best = fit("film", points)
-    draws = np.log([fit("film", resampled(points, rng)) for _ in range(DRAWS)])
-    draws = np.exp(draws.mean(axis=0) + (draws - draws.mean(axis=0)) * np.sqrt(seeds / (seeds - 1)))
+    draws = likely(points, rng)
     draws[:, 2] *= np.exp(rng.normal(0, np.linalg.norm([np.log(factor) for factor in factors.values()]), DRAWS))
     for name, value, column in zip(("H_film", "H_base", "k", "m"), best, draws.T, strict=True):
         yield row("film", name, float(value), *np.quantile(column, INTERVAL).tolist())

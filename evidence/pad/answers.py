@@ -59,23 +59,19 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def film_inputs(pressed: bool) -> dict[str, Any]:
-    """Inputs of an oxide film by the law of study `hardness.laws`; `pressed`: on its metal, not on H_macro."""
+    """Inputs of an oxide film, k and m those of the best fit of study `hardness.laws`; `pressed`: on its metal."""
     row = {found["of"]: found for found in load("hardness.laws") if found["quantity"] == "film"}
-
-    def between(name: str) -> dict[str, Any]:
-        ends = [float(row[name][end]) for end in ("low", "high")]
-        return {"origin": "literature", "values": ends, "source": "python -m evidence hardness.laws"}
-
-    rank = float(row["rank correlation of k and m"]["value"])
+    by = {"origin": "literature", "source": "python -m evidence hardness.laws"}
+    best = {name: {**by, "distribution": "fixed", "values": [float(row[name]["value"])]} for name in ("k", "m")}
+    base = {**by, "values": [float(row["H_base"][end]) for end in ("low", "high")]}
     return {
         "hardness": "film",
         "h_prime": None,
         "h_film": GLASS["h_macro"],
         "t_film": {"origin": "literature", **OXIDE},
-        "k_film": between("k"),
-        "m_film": between("m"),
-        "correlations": [{"first": "k_film", "second": "m_film", "rank": rank}],
-        **({"h_macro": between("H_base")} if pressed else {}),
+        "k_film": best["k"],
+        "m_film": best["m"],
+        **({"h_macro": base} if pressed else {}),
     }
 
 
