@@ -169,7 +169,7 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         values.setdefault((row["case"], row["quantity"]), []).append(float(row["value"]))
     for quantity, unit in GATES.items():
         if gate := values.get(("film", quantity)):
-            found[quantity.rsplit("_", 1)[0]] = f"{min(gate):.2g} to {max(gate):.2g} {unit}"
+            found[quantity] = f"{min(gate):.3g} to {max(gate):.3g} {unit}"
     for depth in DEPTHS_A:
         ends = [values.get(("flat", f"area_error_{end}_depth_{depth:g}_A")) for end in ("lowest", "highest")]
         if ends[0] and ends[1]:
