@@ -28,6 +28,8 @@ ELEMENTS = 128
 """The last places that adhesion holds are some 5 um long: release is within 0.4 % of that of 1024 elements.
 Close to sticking it is within 0.2 V of that of 512, where with 64 elements a switch sticks that opens at 0.7 V. The
 attraction that sticks is known to 1 to 4 %."""
+NEWTON = 12
+"""Steps to the balance of a free beam, each from that of the voltage before."""
 FREE_SHARE = 0.5
 """Off the pad is a beam that is nowhere below this share of its separation at rest; it pulls in from two thirds."""
 
@@ -92,6 +94,30 @@ def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw) -> BeamStates:
         float(pressure.max()) * 1e3,
         capacitance * 1e15,
     )
+
+
+def loop_fF(beam: Beam, settings: DeviceSettings, law: PadLaw, volts: Array) -> tuple[Array, Array]:
+    """Capacitance (fF) while the voltage rises, and on its way back, at voltages from 0 to one that closes the beam.
+
+    Raises
+    ------
+    NotComputed, InputError : see `solve_beam`.
+    """
+    moving, free = (_Moving(beam, LocalPad(law), settings.dielectric_nm / settings.permittivity) for _ in range(2))
+    pull_in, up = moving.pull_in_V(), []
+    for voltage in volts:
+        if voltage < pull_in:
+            for _ in range(NEWTON):
+                free.nodal = free.nodal + free.beam.step(free.nodal, lambda s, at=voltage**2: free.load(s, at))[0]
+            up.append(free.capacitance_F())
+        else:
+            moving.creep(float(voltage))
+            up.append(moving.capacitance_F())
+    down = [
+        moving.capacitance_F() if moving.creep(float(voltage)) else opened
+        for voltage, opened in zip(volts[::-1], up[::-1], strict=True)
+    ]
+    return 1e15 * np.array(up), 1e15 * np.array(down[::-1])
 
 
 def closed_beam(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> Callable[[float, float], bool]:

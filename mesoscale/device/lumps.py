@@ -239,28 +239,32 @@ def _paired_stiffness(beam: Beam) -> Array:
 
 @dataclass(frozen=True)
 class Study:
-    """How many lumps an electrode needs, and their errors beside the finite elements (1: what one has, one has not)."""
+    """How many lumps an electrode needs, their errors beside the finite elements, and what these say.
+
+    An error of 1 is that of a release which only one of both has.
+    """
 
     lumps: int
     pull_in: float
     release: float
     capacitance: float
+    pull_in_V: float
+    release_V: float
 
 
 def study_lumps(settings: DeviceSettings, law: PadLaw) -> Study:
-    """The fewest lumps of a bending electrode within the allowed errors, else the most; exact for a plate.
+    """The fewest lumps of a bending electrode within the allowed errors, else the most.
 
     Raises
     ------
     NotComputed, InputError : see `solve_beam`.
     """
-    if settings.spring_N_per_m is not None:
-        return Study(1, 0.0, 0.0, 0.0)
     wanted = solve_beam(settings, law)
     symmetric = settings.model_copy(update={"tilt_nm": 0.0})
-    study = Study(0, 1.0, 1.0, 1.0)
+    study = Study(0, 1.0, 1.0, 1.0, wanted.pull_in_V, wanted.release_V)
     for count in COUNTS:
-        study = Study(count, *_errors(solve_bent(lumped_beam(symmetric, count), symmetric, law), wanted))
+        errors = _errors(solve_bent(lumped_beam(symmetric, count), symmetric, law), wanted)
+        study = Study(count, *errors, wanted.pull_in_V, wanted.release_V)
         if max(study.pull_in, study.release) <= RELEASE and study.capacitance <= CAPACITANCE:
             break
     return study

@@ -1,4 +1,4 @@
-# Failure rate of the switch; only in scenes with failure.probability
+# Failure rate of the switch, and its circuit; on the page only in scenes with failure.probability
 
 
 rule failure:
@@ -28,3 +28,30 @@ rule find_failure_rate:
         "find how often the switch fails"
     script:
         "../scripts/find_failure_rate.py"
+
+
+rule circuit:
+    input:
+        f"{RESULTS}/device/circuit.json",
+
+
+rule make_circuit:
+    input:
+        **rules.find_failure_rate.input,
+    output:
+        models=directory(f"{RESULTS}/device/circuit"),
+        summary=f"{RESULTS}/device/circuit.json",
+        table=f"{RESULTS}/device/circuit.csv",
+        loop=f"{RESULTS}/device/loop.csv",
+        transient=f"{RESULTS}/device/transient.csv",
+    log:
+        f"{RESULTS}/logs/make_circuit.log",
+    threads: 1
+    params:
+        contact=settings("contact"),
+        design=DRAW_DESIGN,
+        device=settings("device"),
+    message:
+        "make the switch for circuit simulators"
+    script:
+        "../scripts/make_circuit.py"

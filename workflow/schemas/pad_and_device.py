@@ -1,6 +1,6 @@
 """Tables of pads and of the switch."""
 
-from workflow.schemas.inputs_and_law import BRANCH
+from workflow.schemas.inputs_and_law import BRANCH, INPUT_VALUES
 from workflow.schemas.table import Table, integer, number, text
 
 _CASE = text("case", "with_adhesion or without_adhesion")
@@ -135,6 +135,45 @@ TABLES = (
             number("attraction", "1", "factor on the attraction"),
             number("failing", "1", "probability of a failure by the response"),
             number("beyond", "1", "probability of a switch beyond the model"),
+        ),
+    ),
+    Table(
+        ("device/circuit.csv",),
+        "One switch for circuit simulators: a corner, or a draw of the joint distribution.",
+        (
+            text("switch", "name of its model in device/circuit"),
+            number("deviations", "1", "standard deviations from the central inputs to a corner; 0 for a draw"),
+            *INPUT_VALUES,
+            number("gap_cutoff_nm", "nm", "D0 of its pad"),
+            number("bow_nm", "nm", "bow of its electrode"),
+            number("pull_in_V", "V", "pull-in voltage"),
+            number("release_V", "V", "release voltage (0: stuck)"),
+        ),
+    ),
+    Table(
+        ("device/loop.csv",),
+        "One voltage of the slow loop: capacitance while it rises and while it falls.",
+        (
+            number("voltage_V", "V", "voltage"),
+            *(
+                number(f"{way}_{name}_fF", "fF", f"capacitance on the way {way}, {of}")
+                for way in ("up", "down")
+                for name, of in (
+                    ("central", "central switch"),
+                    ("q05", "5 % of the draws"),
+                    ("q95", "95 % of the draws"),
+                )
+            ),
+        ),
+    ),
+    Table(
+        ("device/transient.csv",),
+        "One time after a step of the voltage, which ends later.",
+        (
+            number("time_us", "us", "time"),
+            number("voltage_V", "V", "voltage"),
+            number("middle_nm", "nm", "separation of mid-span"),
+            number("capacitance_fF", "fF", "capacitance"),
         ),
     ),
     Table(

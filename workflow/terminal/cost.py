@@ -207,6 +207,7 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     **_each(5.0, "write_synthetic_scans"),
     **_each(8.5, "rank_sensitivity"),
     **_each(20.0, "rank_next_on_pad"),
+    **_each(60.0, "make_circuit"),
     **_each(180.0, "find_failure_rate"),
     **_each(1100.0, "measure_elastic_accuracy"),
     **dict.fromkeys(

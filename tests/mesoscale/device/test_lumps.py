@@ -152,7 +152,7 @@ def compiled(lumps, tmp_path):
     import openvaf_py
 
     path = tmp_path / "rough_switch.va"
-    path.write_text(verilog_switch(lumps, Study(4, 0.0, 0.0, 0.0), LAW, 256))
+    path.write_text(verilog_switch(lumps, Study(4, 0.0, 0.0, 0.0, 70.0, 6.0), LAW, 256))
     (module,) = openvaf_py.compile_va(str(path))
     inside = 3 + 4 * np.arange(lumps.count)  # after the terminals: mode, speed, closed, lost of each lump
 

@@ -6,6 +6,7 @@ Every module offers `describe(results) -> Section | None`; None where the scene 
 from workflow.report.stages import (
     adhesion,
     calibration,
+    circuit,
     contact,
     device,
     elastic,
@@ -21,7 +22,7 @@ from workflow.report.stages import (
 )
 
 PARTS = (
-    ("switch", "The switch", (pad, device, failure, adhesion, history)),
+    ("switch", "The switch", (pad, device, circuit, failure, adhesion, history)),
     ("contact", "The contact", (contact, uncertainty, sensitivity, model_form)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

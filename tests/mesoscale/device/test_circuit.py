@@ -1,0 +1,54 @@
+"""The switch for circuits: its corners, its slow loop, its transient."""
+
+import numpy as np
+import pytest
+
+from evidence.pad.rare_failures import CUTOFFS_NM, PADS, TABLE
+from mesoscale.device.beam import beam_of
+from mesoscale.device.beam_switch import loop_fF, solve_beam
+from mesoscale.device.circuit import CORNERS, DRAWS, Version, study_on_pad, transient, versions
+from mesoscale.errors import InputError
+from mesoscale.settings import DeviceSettings
+from tests.mesoscale.device.test_pad_export import pad
+
+BEAM = DeviceSettings()
+
+
+def test_corners_lie_beyond_the_draws_in_their_direction():
+    made = {version.row["switch"]: version.row for version in versions(TABLE, BEAM, CUTOFFS_NM, (PADS, None), 16)}
+    assert set(made) == {*CORNERS, *(name for name in made if name.startswith("draw_"))}
+    assert len(made) == len(CORNERS) + DRAWS
+    drawn = [row for name, row in made.items() if name.startswith("draw_")]
+    for fewer, more, answer in (("fast", "slow", "pull_in_V"), ("sticky", "loose", "release_V")):
+        middle = np.median([row[answer] for row in drawn])
+        assert made[fewer][answer] <= middle <= made[more][answer]
+        assert made[fewer][answer] < made[more][answer]
+
+
+def test_the_slow_loop_jumps_at_pull_in_and_release():
+    law = pad()
+    states = solve_beam(BEAM, law)
+    volts = np.linspace(0.0, 1.01 * states.pull_in_V, 101)
+    up, down = loop_fF(beam_of(BEAM, 128), BEAM, law, volts)
+    open_fF = 8.8541878128e-12 * 510e-6 * 123e-6 / (3490e-9 + 200e-9 / 7.9) * 1e15
+    assert up[0] == pytest.approx(open_fF, rel=1e-3)
+    assert volts[np.argmax(np.diff(up)) + 1] == pytest.approx(states.pull_in_V, abs=volts[1])
+    closed = volts[down > 1.1 * up]
+    assert closed[0] == pytest.approx(states.release_V, abs=volts[1])
+    assert (np.diff(up) > 0).all()
+
+
+def test_a_step_above_pull_in_closes_and_its_end_opens():
+    law = pad()
+    study, law = study_on_pad(BEAM, law)
+    row = {"switch": "central", "pull_in_V": study.pull_in_V, "release_V": study.release_V}
+    said, rows = transient(Version(row, BEAM, law), 16)
+    assert said["closing_us"] < 150.0
+    assert 0.0 < said["opening_us"] < 100.0
+    assert rows[0]["middle_nm"] == pytest.approx(3490.0, abs=0.01)
+    assert max(row["capacitance_fF"] for row in rows) > 10.0 * rows[0]["capacitance_fF"]
+
+
+def test_a_plate_on_a_spring_has_no_circuit():
+    with pytest.raises(InputError, match="circuits are made of bending electrodes"):
+        study_on_pad(DeviceSettings(spring_N_per_m=10.0), pad())
