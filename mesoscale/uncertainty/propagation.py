@@ -16,6 +16,7 @@ from mesoscale.uncertainty.collocation import interpolating_response, level1_res
 from mesoscale.uncertainty.designs import SAMPLE_SEED
 from mesoscale.uncertainty.surrogate import (
     Below,
+    Points,
     Response,
     Scatter,
     Surrogate,
@@ -132,7 +133,7 @@ class Change:
     closing: Response
     opening: Response
 
-    def __call__(self, x: Array) -> Array:
+    def __call__(self, x: Array | Points) -> Array:
         """Change at inputs x of shape (m, n)."""
         return self.opening(x) - self.closing(x)
 

@@ -60,10 +60,29 @@ class Surrogate:
         width = high - low
         return np.where(width > 0, 2 * (x - low) / np.where(width > 0, width, 1.0) - 1, 0.0)
 
-    def __call__(self, x: Array) -> Array:
+    def __call__(self, x: "Array | Points") -> Array:
         """Output at inputs x of shape (m, n)."""
-        total = basis_matrix(self.scaled(np.atleast_2d(x)), self.degrees) @ self.coefficients
+        points = x if isinstance(x, Points) else Points(np.atleast_2d(x))
+        total = points.basis(self) @ self.coefficients
         return np.exp(total) if self.transform == "log" else total
+
+
+class Points:
+    """Inputs at which several responses are wanted: those with the same terms share their basis."""
+
+    def __init__(self, x: Array):
+        self.x = x
+        self._bases: dict[tuple[bytes, bytes], Array] = {}
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+    def basis(self, response: Surrogate) -> Array:
+        """Terms of a response at the points, shape (m, terms)."""
+        key = response.ranges.tobytes(), response.degrees.tobytes()
+        if key not in self._bases:
+            self._bases[key] = basis_matrix(response.scaled(self.x), response.degrees)
+        return self._bases[key]
 
 
 @dataclass(frozen=True)
@@ -84,7 +103,7 @@ class Below:
         """Degrees of the drop's terms, shape (terms, n)."""
         return self.drop.degrees
 
-    def __call__(self, x: Array) -> Array:
+    def __call__(self, x: Array | Points) -> Array:
         """Output at inputs x of shape (m, n)."""
         return self.above(x) - self.drop(x)
 
@@ -92,9 +111,10 @@ class Below:
 Response = Surrogate | Below
 
 
-def evaluate(responses: Sequence[Callable[[Array], Array] | None], x: Array) -> Array:
+def evaluate(responses: Sequence[Callable[[Points], Array] | None], x: Array) -> Array:
     """Responses at inputs x (m, n), shape (m, responses); NaN where there is no response."""
-    return np.stack([response(x) if response else np.full(len(x), np.nan) for response in responses], axis=1)
+    points = Points(x)
+    return np.stack([response(points) if response else np.full(len(x), np.nan) for response in responses], axis=1)
 
 
 def uniform_moments(surrogate: Surrogate) -> tuple[float, float]:
