@@ -25,7 +25,7 @@ from mesoscale.inputs.hardness import HardnessLaw
 
 PREDICTION = {"k": 0.24, "m": 1.2}  # of a prototype with other films, written down before
 MAIN = {"wavelength_nm": "5.6", "metal": "polycrystal", "bond_eV": "0.28"}
-OTHERS = {"strong bond": {"bond_eV": "0.45"}, "crystal": {"metal": "crystal"}}
+OTHERS = {"strong bond": {"bond_eV": "0.45"}}  # not one crystal: as hard as the glass, it leaves no share of the film
 LENGTHS_NM = (3.0, 5.0, 10.0, 15.0, 30.0, 100.0)
 OXIDE_NM = 5.0  # of TiO2 on the titanium of Kim et al. (2013)
 SOFT_GPA, SIZE_EFFECT = (0.7, 3.2), (3.7, 16.7)  # H_macro and H' (GPa nm^0.5) of scene reduced
