@@ -101,9 +101,8 @@ def test_an_undamped_plate_takes_the_time_of_the_energy_integral():
 
     way = switch.gap_nm - 300.0
     exact = quad(lambda root: 2.0 * root / speed(root**2), 0.0, np.sqrt(way))[0]  # x = root^2: 1/v has a root at rest
-    motion = flight(volts, lumps, 1.5 * exact)
-    falling = motion.separation_nm[0][: int(motion.separation_nm[0].argmin())]
-    found = np.interp(-300.0, -falling, motion.time_us[: falling.size])
+    motion = flight(volts, lumps, 1.005 * exact)
+    found = np.interp(-300.0, -motion.separation_nm[0], motion.time_us)
     assert found == pytest.approx(exact, rel=1e-3)
 
 
@@ -117,11 +116,10 @@ def energies(lumps, motion, volts):
 
 def test_a_beam_in_flight_keeps_its_energy():
     lumps = replace(lumps_of(BEAM, 8), **VACUUM)
-    motion = flight(75.0, lumps, 12.0)
+    motion = flight(75.0, lumps, 10.4)
     moving, elastic, given = energies(lumps, motion, 75.0)
-    flying = motion.separation_nm.min(axis=0) > 250.0
-    assert flying.sum() > 50
-    assert abs(moving + elastic - given)[flying].max() < 2e-3 * given[flying].max()
+    assert 250.0 < motion.separation_nm.min() < 1000.0  # before it lands
+    assert abs(moving + elastic - given).max() < 2e-3 * given.max()
 
 
 def test_landing_takes_energy_and_gives_none():
