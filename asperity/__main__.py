@@ -33,7 +33,7 @@ TARGETS = {
     "sensitivity": "which input causes the spread",
     "device": "switch on single cells; tables and circuit models of the law",
     "failure": "how often the switch fails, down to one in a million",
-    "circuit": "the switch for circuit simulators: corners, draws, C-V loop, transient",
+    "circuit": "the switch for simulators: corners, draws, C-V loop, transient",
     "adhesion": "energy and pull-off of pads",
     "calibrate": "inputs narrowed by your measurements of contacts",
     "history": "cycle after cycle, with creep",

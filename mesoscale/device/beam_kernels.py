@@ -9,7 +9,7 @@ BANDS = 3
 """Half bandwidth of the beam's matrix: two nodes of an element have a deflection and a slope."""
 NM = 1e-9
 GPA = 1e9
-MOST_STEPS = 6000
+MOST_STEPS = 60000
 LARGEST_STEP_NM = 20.0
 """Step of a place of the creeping beam that is far from contact; in contact `LARGEST_CHANGE_NM`."""
 LARGEST_CHANGE_NM = 1.0
