@@ -1,13 +1,18 @@
 """Cells and draws of the pad from the files of their chunks."""
 
 from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from mesoscale.device.release import Model, cutoff_range, model_of
+from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.inputs.table import from_rows
 from mesoscale.pad.cells import grid_of_rows
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.draws import laws_of_rows, plan_draws
+from mesoscale.pad.memory import Flats, flats_of
 from mesoscale.pad.response import SampledPad
 from mesoscale.settings import ContactSettings
 from workflow.results import load_csv, load_h5, load_numbers
@@ -34,3 +39,32 @@ def load_draws(
     return [
         SampledPad(draw.values, draw.gap_cutoff_nm, cells, curve) for draw, curve in zip(draws, curves, strict=True)
     ]
+
+
+class Spread(NamedTuple):
+    """The pad over everything that is uncertain.
+
+    Attributes
+    ----------
+    inputs : of the pad.
+    cells, flats : at central inputs.
+    cutoffs_nm : range of D0.
+    model : of the pad at other inputs.
+    """
+
+    inputs: InputTable
+    cells: PadCells
+    flats: Flats
+    cutoffs_nm: tuple[float, float]
+    model: Model
+
+
+def load_spread(snakemake: Any, contact: ContactSettings) -> Spread:
+    """The pad of a job that has its inputs, grid, chunks and draws, and their `design`."""
+    inputs = from_rows(load_csv(snakemake.input.inputs))
+    middle, central = contact_of(inputs.medians(), contact)
+    flats, cutoff_nm = flats_of(middle, central), central.gap_cutoff_nm
+    cells = load_cells(snakemake.input.grid, snakemake.input.chunks, contact.length_nm**2)
+    draws = load_draws(snakemake.input.draws, inputs, contact, *snakemake.params.design)
+    model = model_of(cells, draws, inputs, flats, cutoff_nm)
+    return Spread(inputs, cells, flats, cutoff_range(cutoff_nm, draws), model)

@@ -26,9 +26,15 @@ SETTLED, BEYOND, FREE, UNSETTLED = range(4)
 
 
 @njit(cache=True)
+def least_gap_nm(dielectric_nm):
+    """Smallest electric gap: a place deeper than the dielectric allows counts as closed."""
+    return 0.1 * dielectric_nm + 0.1
+
+
+@njit(cache=True)
 def add_voltage(separation_nm, pressure, slope, dielectric_nm, squared_V2, permittivity):
-    """Take the electrostatic pull off; a place deeper than the dielectric allows counts as closed."""
-    least = 0.1 * dielectric_nm + 0.1
+    """Take the electrostatic pull off."""
+    least = least_gap_nm(dielectric_nm)
     for e in range(separation_nm.shape[0]):
         for g in range(separation_nm.shape[1]):
             electric_nm = max(separation_nm[e, g] + dielectric_nm, least)

@@ -103,7 +103,8 @@ def loop_fF(beam: Beam, settings: DeviceSettings, law: PadLaw, volts: Array) -> 
     ------
     NotComputed, InputError : see `solve_beam`.
     """
-    moving, free = (_Moving(beam, LocalPad(law), settings.dielectric_nm / settings.permittivity) for _ in range(2))
+    pad = LocalPad(law)
+    moving, free = (_Moving(beam, pad, settings.dielectric_nm / settings.permittivity) for _ in range(2))
     pull_in, up = moving.pull_in_V(), []
     for voltage in volts:
         if voltage < pull_in:

@@ -4,10 +4,9 @@ Corners lie some standard deviations out (`FAR`), in the direction of inputs, D0
 loose) or the pull-in (fast, slow) most: the slope of a plane through the switches of many draws.
 """
 
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,17 +14,16 @@ from scipy.special import ndtr, ndtri
 
 from mesoscale.device.beam import beam_of, lumped_beam
 from mesoscale.device.beam_switch import ELEMENTS, BeamStates, loop_fF, solve_bent
-from mesoscale.device.electrode import DEEPENED_BY
+from mesoscale.device.electrode import with_pad
 from mesoscale.device.lumps import COUNTS, Study, lumps_of, move, study_lumps
 from mesoscale.device.release import SOLVED, Model, Point, pad_at, point_of, values_at
-from mesoscale.errors import InputError, NotComputed
+from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.local import LocalPad
-from mesoscale.pad.memory import PadLaw, deepened
+from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
 
 Array = NDArray[np.float64]
-T = TypeVar("T")
 
 POINTS, DRAWS = 64, 16
 """Switches behind the corners, and those of them that are written."""
@@ -58,16 +56,6 @@ class Version:
     row: dict[str, Any]
     settings: DeviceSettings
     law: PadLaw
-
-
-def with_pad(solve: Callable[[PadLaw], T], law: PadLaw) -> tuple[T, PadLaw]:
-    """What `solve` says of a pad that is continued as far as the switch presses it, and this pad."""
-    for _ in range(DEEPENED_BY):
-        try:
-            return solve(law), law
-        except NotComputed:
-            law = deepened(law)
-    return solve(law), law
 
 
 def study_on_pad(settings: DeviceSettings, law: PadLaw) -> tuple[Study, PadLaw]:

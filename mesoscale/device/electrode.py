@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from contextlib import suppress
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import Flats, PadLaw, deepened, law_of
 from mesoscale.settings import DeviceSettings
+
+T = TypeVar("T")
 
 DEEPENED_BY = 2
 """How often the pressure to which a pad was computed is doubled by continuing its curves."""
@@ -55,19 +58,25 @@ def solve_deepened(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
     InputError : see `solve_electrode`; the hold voltage never closes the switch.
     NotComputed : it presses more than `2 ** DEEPENED_BY` times as hard as the pad was computed.
     """
-    times = 0
-    while True:
-        try:
-            state = {**solve_electrode(settings, law), "deepened": float(times > 0)}
-            break
-        except NotComputed:
-            times += 1
-            if times > DEEPENED_BY:
-                raise
-            law = deepened(law)
+    state, pad = with_pad(lambda pad: solve_electrode(settings, pad), law)
     if line := never_closes(settings, state["pull_in_V"]):
         raise InputError(line)
-    return state
+    return {**state, "deepened": float(pad is not law)}
+
+
+def with_pad(solve: Callable[[PadLaw], T], law: PadLaw) -> tuple[T, PadLaw]:
+    """What `solve` says of a pad that is continued as far as the switch presses it, and this pad.
+
+    Raises
+    ------
+    NotComputed : it presses more than `2 ** DEEPENED_BY` times as hard as the pad was computed.
+    """
+    for _ in range(DEEPENED_BY):
+        try:
+            return solve(law), law
+        except NotComputed:
+            law = deepened(law)
+    return solve(law), law
 
 
 def presser(settings: DeviceSettings) -> Callable[[NDArray[np.float64], NDArray[np.float64]], float]:

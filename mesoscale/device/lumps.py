@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from mesoscale.device.beam import Beam, lumped_beam
-from mesoscale.device.beam_kernels import NM
+from mesoscale.device.beam_kernels import NM, least_gap_nm
 from mesoscale.device.beam_switch import BeamStates, solve_beam, solve_bent
 from mesoscale.device.pad_export import FOLLOW_S, LEAK, START_NM
 from mesoscale.device.switch import GPA, VACUUM_PERMITTIVITY, switch_from_settings
@@ -93,7 +93,7 @@ class Lumps:
 
     def electric(self, separation_nm: Array) -> tuple[Array, Array]:
         """Capacitance (F, shape (...,)) and pull of 1 V (Pa, shape (..., n)) at separations of shape (..., n)."""
-        gap = np.maximum(separation_nm + self.dielectric_nm, 0.1 * self.dielectric_nm + 0.1) * NM
+        gap = np.maximum(separation_nm + self.dielectric_nm, least_gap_nm(self.dielectric_nm)) * NM
         edge = self.fringe / self.width_m
         capacitance = VACUUM_PERMITTIVITY * (1.0 / gap + edge * np.log(np.pi * self.width_m / gap)) @ self.area_m2
         return capacitance, 0.5 * VACUUM_PERMITTIVITY * (1.0 / gap**2 + edge / gap)

@@ -8,6 +8,7 @@ All internal voltages are zero for the open switch at rest, where simulators beg
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.device.beam_kernels import least_gap_nm
 from mesoscale.device.lumps import LEAST_NM, VISCOSITY, FREE_PATH_nm_Pa, Lumps, Study
 from mesoscale.device.pad_export import (
     FOLLOW_S,
@@ -35,7 +36,7 @@ def verilog_switch(lumps: Lumps, study: Study, law: PadLaw, cells: int) -> str:
         rest, area = f"{lumps.rest_nm[k]:.9g}", f"{lumps.area_m2[k]:.9g}"
         body.append(f"""
         s = {rest} - ({_sum("mode", shapes[k])});
-        electric = max(s + {lumps.dielectric_nm:.9g}, {_least(lumps):.9g}) * 1.0e-9;
+        electric = max(s + {lumps.dielectric_nm:.9g}, {least_gap_nm(lumps.dielectric_nm):.9g}) * 1.0e-9;
         capacitance = capacitance + {VACUUM_PERMITTIVITY} * {area} * (1.0 / electric
             + fringe / {lumps.width_m:.9g} * ln(`M_PI * {lumps.width_m:.9g} / electric));
         pull = 0.5 * {VACUUM_PERMITTIVITY} * volts * volts * (1.0 + fringe * electric / {lumps.width_m:.9g})
@@ -104,11 +105,6 @@ def _sum(name: str, weights: Array, of: str = "V({})") -> str:
 def _wrapped(terms: list[str]) -> str:
     """A sum, four terms a line; the plus that goes on in SPICE is a sign in Verilog-A."""
     return "".join(("\n+ " if k % 4 == 0 else " ") + term for k, term in enumerate(terms))
-
-
-def _least(lumps: Lumps) -> float:
-    """Smallest electric gap (nm), as the beam has it."""
-    return 0.1 * lumps.dielectric_nm + 0.1
 
 
 def _said(lumps: Lumps, study: Study) -> str:

@@ -74,9 +74,6 @@ class Points:
         self.x = x
         self._bases: dict[tuple[bytes, bytes], Array] = {}
 
-    def __len__(self) -> int:
-        return len(self.x)
-
     def basis(self, response: Surrogate) -> Array:
         """Terms of a response at the points, shape (m, terms)."""
         key = response.ranges.tobytes(), response.degrees.tobytes()
