@@ -8,8 +8,6 @@ from workflow.report.numbers import column, show
 from workflow.report.page import COMPUTED, Section, Table
 from workflow.report.verdict import volts
 
-CORNERS = ("fast", "slow", "sticky", "loose")
-
 
 def describe(results: Results) -> Section | None:
     """C-V loop with its band, transient, and failure rate; pull-in and release of the corners."""
@@ -18,11 +16,12 @@ def describe(results: Results) -> Section | None:
         return None
     circuit, rows = results.json("device/circuit.json"), results.csv("device/circuit.csv")
     study, said = circuit["lumps"], circuit["transient"]
+    corners = [row for row in rows if float(row["deviations"]) > 0]
     section = Section(
         "circuit",
         "In a circuit",
         "The folder device/circuit has the switch as Verilog-A: central, four corners and "
-        f"{len(rows) - len(CORNERS)} draws. {study['lumps']} pairs of lumps stand for the electrode. Beside finite "
+        f"{len(rows) - len(corners)} draws. {study['lumps']} pairs of lumps stand for the electrode. Beside finite "
         f"elements pull-in differs by {study['pull_in']:.1%}, release by {study['release']:.1%}.",
         COMPUTED,
         files=files,
@@ -40,12 +39,11 @@ def describe(results: Results) -> Section | None:
         ("opens after (µs)", _or_never(said["opening_us"])),
     ]
     section.blocks.append(Table(f"A step of {volts(said['drive_V'])}", ("mid-span", "value"), times))
-    corners = [
+    lines = [
         (row["switch"], show(float(row["deviations"])), volts(float(row["pull_in_V"])), volts(float(row["release_V"])))
-        for row in rows
-        if row["switch"] in CORNERS
+        for row in corners
     ]
-    section.blocks.append(Table("Corners", ("corner", "standard deviations out", "pull-in", "release"), corners))
+    section.blocks.append(Table("Corners", ("corner", "standard deviations out", "pull-in", "release"), lines))
     if said["deepest_nm"] < said["table_ends_nm"]:
         section.notes.append(
             f"The impact closes the pad to {show(said['deepest_nm'])} nm; its curves end at "
@@ -72,7 +70,7 @@ def _figure(results: Results) -> str:
         slow.legend()
         fast.plot(column(step, "time_us"), column(step, "middle_nm") / 1e3, color=BLUE, label="mid-span (µm)")
         fast.plot(column(step, "time_us"), column(step, "capacitance_fF") / 1e3, color=GREEN, label="capacitance (pF)")
-        fast.set(xlabel="time (µs)", title="step of the voltage")
+        fast.set(xlabel="time (µs)", title="step of the voltage", ylim=(None, 1.35 * fast.get_ylim()[1]))
         fast.legend(loc="upper right")
         usual = [row for row in failing if np.isclose(float(row["attraction"]), 1.0)]
         for key, color, label in (("failing", BLUE, "fails"), ("beyond", SOFT, "beyond the model")):
