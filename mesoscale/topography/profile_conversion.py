@@ -13,7 +13,7 @@ likelihood, with changes of the logarithmic slope from node to node held small.
 import numpy as np
 
 from mesoscale.topography.measurements.profiles import Profile
-from mesoscale.topography.spectrum import FLOOR, Spectrum, flat_window
+from mesoscale.topography.spectrum import FLOOR, Spectrum
 
 NODES_PER_DECADE = 10
 BINS_PER_DECADE = 20
@@ -25,18 +25,22 @@ BIAS = 0.25  # error of ln C that no averaging removes: its mean about the knee,
 QUADRATURE = 160
 ROUNDS = 60
 STEP_SIZES = 0.5 ** np.arange(14)
-HANN_COVER = 18 / 35  # independent modes per wave number under a Hann window, (sum w^2)^2 / (n sum w^4)
+# sine tapers (Riedel and Sidorenko 1995, doi:10.1109/78.365298): n of them give 2 n/(2 n + 1) independent modes per wave
+# number, and spread each over a variance of (n + 1)(2 n + 1)/24 wave numbers
+TAPERS = 3
+COVER = 2 * TAPERS / (2 * TAPERS + 1)
+SPREAD = np.sqrt((TAPERS + 1) * (2 * TAPERS + 1) / 24)
 
 
 def line_spectrum(profile: Profile) -> tuple[np.ndarray, np.ndarray]:
-    """Spectrum along a levelled profile, Hann window: k (m,) in 1/nm and C1 (m,) in nm^3.
+    """Spectrum along a levelled profile, mean over `TAPERS`: k (m,) in 1/nm and C1 (m,) in nm^3.
 
     The sum of C1 2 pi / L over positive and negative k is the mean square height.
     """
     n = len(profile.heights_nm)
-    window = flat_window(n, 0.0)
-    z = np.fft.rfft((profile.heights_nm - profile.heights_nm.mean()) * window)
-    c1 = np.abs(z) ** 2 * profile.step_nm**2 / (2 * np.pi * profile.length_nm * np.mean(window**2))
+    tapers = np.sqrt(2) * np.sin(np.pi * np.arange(1, TAPERS + 1)[:, None] * (np.arange(n) + 0.5) / n)
+    z = np.fft.rfft((profile.heights_nm - profile.heights_nm.mean()) * tapers)
+    c1 = np.mean(np.abs(z) ** 2, axis=0) * profile.step_nm**2 / (2 * np.pi * profile.length_nm)
     k = 2 * np.pi * np.fft.rfftfreq(n, profile.step_nm)
     last = n // 2 if n % 2 == 0 else len(k)  # at an even Nyquist number there is half a mode
     return k[1:last], np.maximum(c1[1:last], FLOOR)
@@ -60,7 +64,7 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     count = max(4, int(np.ceil(np.log(bins[-1] / bins[0]) / distance)) + 1)
     tail = int(TAIL_DECADES * NODES_PER_DECADE)
     nodes = np.log(bins[0]) + distance * np.arange(count + tail)
-    heights, covariance = _solve(nodes, bins, means, modes)
+    heights, covariance = _solve(nodes, measured)
     keep = (nodes >= np.log(low) - 1e-9) & (nodes <= np.log(high) + 1e-9)
     variance = np.diag(covariance)[keep]
     worth = 1 / variance
@@ -71,12 +75,16 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
 
 
 def binned_line(k: np.ndarray, c1: np.ndarray, low: float, high: float) -> Spectrum:
-    """C1 (nm^3) of a line's wave vectors k from `low` to `high` (1/nm) on bins, what the window adds taken out."""
-    step, nyquist = float(k[0]), float(k[-1])
+    """C1 (nm^3) of a line's wave vectors k from `low` to `high` (1/nm) on bins, as the tapers spread it (`spread`)."""
     inside = (k >= low) & (k <= high)
-    k, c1 = k[inside], c1[inside]
-    bins, modes, means = _binned(k, c1 / _blur(k, c1, step))
-    return Spectrum(bins, means, modes, step, nyquist, sharp=True)
+    bins, modes, means = _binned(k[inside], c1[inside])
+    return Spectrum(bins, means, modes, float(k[0]), float(k[-1]))
+
+
+def spread(k: np.ndarray, step: np.ndarray | float) -> np.ndarray:
+    """(2, m) wave vectors in 1/nm over which the tapers average those at k (m,), to second order in `step`, 2 pi / L."""
+    away = SPREAD * np.asarray(step)
+    return np.stack([np.maximum(k - away, 0.1 * k), k + away])
 
 
 def projected(q: np.ndarray, psd: np.ndarray, k: np.ndarray) -> np.ndarray:
@@ -100,18 +108,15 @@ def _binned(k: np.ndarray, c1: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
     _, index = np.unique(grid, return_inverse=True)
     count = np.bincount(index)
     centre = np.exp(np.bincount(index, np.log(k)) / count)
-    return centre, np.maximum(count * HANN_COVER, 0.5), np.bincount(index, c1) / count
+    return centre, np.maximum(count * COVER, 0.5), np.bincount(index, c1) / count
 
 
-def _blur(k: np.ndarray, c1: np.ndarray, step: float) -> np.ndarray:
-    """What the window adds to a falling spectrum: it spreads each wave number by a variance of a third."""
-    slope = np.clip(-np.polyfit(np.log(k), np.log(c1), 1)[0], 0.0, 6.0) if len(k) > 3 else 0.0
-    return 1 + slope * (slope + 1) / 6 * (step / k) ** 2
-
-
-def _solve(nodes: np.ndarray, k: np.ndarray, c1: np.ndarray, modes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarray]:
     """ln C at the nodes (ln q) with its covariance, by damped Fisher scoring."""
-    at, weight = _points(k, float(np.exp(nodes[-1])))
+    k, c1, modes = measured.q, measured.psd, measured.modes
+    parts = [_points(part, float(np.exp(nodes[-1]))) for part in spread(k, measured.spacing)]
+    at, weight = (np.concatenate(both, axis=1) for both in zip(*parts, strict=True))
+    weight /= len(parts)
     place = (np.log(at) - nodes[0]) / (nodes[1] - nodes[0])
     left = np.clip(place.astype(int), 0, len(nodes) - 2)
     right_share = np.clip(place - left, 0.0, 1.0)

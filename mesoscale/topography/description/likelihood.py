@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur, tip_bias
+from mesoscale.topography.profile_conversion import spread
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
 
 # relative error of C that no averaging removes: rest of tip, noise and window corrections, which act beyond the knee;
@@ -96,8 +97,10 @@ class _Data:
         # a line's C1(k) is the integral of 2 C(q) q over t, with q = k cosh t
         t, step = np.polynomial.legendre.leggauss(LINE_POINTS)
         t, step = LINE_REACH * (t + 1) / 2, LINE_REACH / 2 * step
-        self.line_q = self.q[self.line, None] * np.cosh(t)
-        self.line_log_q, self.line_weight = np.log(self.line_q), 2 * step * self.line_q
+        spacing = np.array([item.spectrum.spacing if item.line is None else item.line.spacing for item in spectra])
+        k = spread(self.q[self.line], spacing[self.scan[self.line]])
+        self.line_q = np.concatenate(k[:, :, None] * np.cosh(t), axis=1)
+        self.line_log_q, self.line_weight = np.log(self.line_q), self.line_q * np.concatenate([step, step])
         self.per_scan = np.bincount(self.scan, self.weight, self.scans)
 
     def ratio(self, log_q0: float, slope: float, level: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
