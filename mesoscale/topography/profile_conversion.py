@@ -25,8 +25,8 @@ BIAS = 0.25  # error of ln C that no averaging removes: its mean about the knee,
 QUADRATURE = 160
 ROUNDS = 60
 STEP_SIZES = 0.5 ** np.arange(14)
-# sine tapers (Riedel and Sidorenko 1995, doi:10.1109/78.365298): n of them give 2 n/(2 n + 1) independent modes per wave
-# number, and spread each over a variance of (n + 1)(2 n + 1)/24 wave numbers
+# sine tapers (Riedel and Sidorenko 1995, doi:10.1109/78.365298): n of them give 2 n/(2 n + 1) independent modes per
+# wave number, and spread each over a variance of (n + 1)(2 n + 1)/24 wave numbers
 TAPERS = 3
 COVER = 2 * TAPERS / (2 * TAPERS + 1)
 SPREAD = np.sqrt((TAPERS + 1) * (2 * TAPERS + 1) / 24)
@@ -59,7 +59,7 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
         the information left out.
     """
     measured = binned_line(*line_spectrum(profile), low, high)
-    bins, modes, means = measured.q, measured.modes, measured.psd
+    bins, modes = measured.q, measured.modes
     distance = np.log(10) / NODES_PER_DECADE
     count = max(4, int(np.ceil(np.log(bins[-1] / bins[0]) / distance)) + 1)
     tail = int(TAIL_DECADES * NODES_PER_DECADE)
@@ -82,7 +82,7 @@ def binned_line(k: np.ndarray, c1: np.ndarray, low: float, high: float) -> Spect
 
 
 def spread(k: np.ndarray, step: np.ndarray | float) -> np.ndarray:
-    """(2, m) wave vectors in 1/nm over which the tapers average those at k (m,), to second order in `step`, 2 pi / L."""
+    """(2, m) wave vectors in 1/nm that stand for those over which tapers average at k (m,); `step` is 2 pi / L."""
     away = SPREAD * np.asarray(step)
     return np.stack([np.maximum(k - away, 0.1 * k), k + away])
 
