@@ -41,6 +41,8 @@ MARGIN = 1.25
 """Over what the switch presses with: the mean of the few pilot cells is off by 15 %."""
 PILOT_STEP = 5.0
 """Pilot cells are closed in coarser steps than the pad: where the grid ends need not be known to better than that."""
+FEWEST_PILOT_STEPS = 4
+"""Where fewer reach the pressure, all steps are finer: a film of long waves is closed by little of its RMS height."""
 
 
 @dataclass(frozen=True)
@@ -188,14 +190,18 @@ def plan_grid(
     pressed_GPa : largest net pressure of a switch on a pad, from the closing curve of the pad: separations (nm), from
         near to far, and net pressures. The pilots are closed until they carry that, and `MARGIN` more.
     first_seed : of the pilot cells' surfaces.
-    step_nm : of separation in and near contact.
+    step_nm : of separation in and near contact, at most.
 
     Raises
     ------
     InputError : the pilot cells never reach the pressure.
     """
-    pilots = SideBySide(inputs, contact, range(first_seed, first_seed + settings.pilot_cells))
-    lowest, light = _close_pilots(pilots, wanted_GPa, pressed_GPa, step_nm * PILOT_STEP)
+    while True:
+        pilots = SideBySide(inputs, contact, range(first_seed, first_seed + settings.pilot_cells))
+        lowest, light = _close_pilots(pilots, wanted_GPa, pressed_GPa, step_nm * PILOT_STEP)
+        if pilots.first_contact_nm.max() - lowest > (FEWEST_PILOT_STEPS - 0.5) * PILOT_STEP * step_nm:
+            break
+        step_nm /= FEWEST_PILOT_STEPS
     top, typical = pilots.top_nm(step_nm), float(pilots.first_contact_nm.mean())
     near = lowest + step_nm * np.arange(np.ceil((top - lowest) / step_nm) + 1)
     if isinstance(inputs, FilmInputs):

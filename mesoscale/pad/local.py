@@ -15,7 +15,9 @@ DEPTHS = 96
 RISES = 1200
 """Separations above the deepest closing."""
 HIGHEST_RISE_NM = 60.0
-"""Beyond, closing and opening are the same attraction."""
+"""Beyond, closing and opening are the same attraction; more where the curves of a coarse film still differ."""
+SAME_GPa = 1e-9
+"""Difference of closing and opening below which they are the same, the accuracy of a beam's balance."""
 
 
 class LocalPad:
@@ -27,7 +29,8 @@ class LocalPad:
         self.at_nm = np.ascontiguousarray(law.separation_nm)
         self.closing = law.closing.sum(axis=0)
         self.depth_nm = np.linspace(law.depth_nm[0], law.depth_nm[-1], DEPTHS)
-        self.rise_nm = np.linspace(0.0, min(law.separation_nm[-1] - law.depth_nm[-1], HIGHEST_RISE_NM), RISES)
+        highest = min(law.separation_nm[-1] - law.depth_nm[-1], max(HIGHEST_RISE_NM, _reach_nm(law)))
+        self.rise_nm = np.linspace(0.0, highest, RISES)
         self.opening = np.array([law.opening_GPa(depth + self.rise_nm, depth) for depth in self.depth_nm])
 
     @property
@@ -49,6 +52,13 @@ class LocalPad:
         pressure, slope = np.empty_like(separation_nm), np.empty_like(separation_nm)
         pad_pressure(separation_nm, deepest_nm, pressure, slope, *self.tables)
         return pressure, slope
+
+
+def _reach_nm(law: PadLaw) -> float:
+    """Largest rise above a computed depth at which opening and closing still differ."""
+    apart = np.abs(law.opening.sum(axis=1) - law.closing.sum(axis=0)) > SAME_GPa  # not a number below the depth
+    last = apart.shape[1] - 1 - apart[:, ::-1].argmax(axis=1)
+    return float(np.max(np.where(apart.any(axis=1), law.separation_nm[last] - law.depth_nm, 0.0)))
 
 
 @njit(cache=True)

@@ -234,6 +234,26 @@ def test_a_film_of_two_kinds_of_places_carries_what_both_kinds_carry(monkeypatch
     assert of_kind[0].closing[:, 0].max() == 0.0 < expected[0, -1]
 
 
+def test_a_film_of_long_waves_is_closed_in_steps_that_fit_its_way():
+    """One wave to a cell: it carries the pressure after a fraction of a step of 0.05 RMS heights."""
+    long, contact = replace(MIDDLE, q0=0.001, rms=76.0), CONTACT.model_copy(update={"length_nm": 6000.0})
+    grid = plan_grid(long, contact, GRID, wanted_GPa, step_nm=0.05 * long.rms)
+    steps = -np.diff(grid.separation_nm)
+    assert steps[-1] < 0.05 * long.rms / 3
+    pilots = [-float(FilmPieces(long, contact).surface(FIRST_SEED + k).min()) for k in range(GRID.pilot_cells)]
+    assert np.sum(grid.separation_nm < max(pilots)) > 15
+
+
+def test_a_coarse_film_opens_to_where_it_closes_without_a_step():
+    """Ten times the lengths of the known pad: opening and closing differ up to 100 nm above the deepest closing."""
+    law, _ = exponential_law([22.0, 25.0])
+    coarse = replace(law, separation_nm=10 * law.separation_nm, depth_nm=10 * law.depth_nm)
+    rises = np.arange(0.5, 150.0, 0.5)
+    pressure = LocalPad(coarse)((220.0 + rises)[None], np.full((1, rises.size), 220.0))[0][0]
+    known = np.stack([coarse.opening_GPa(np.array([220.0 + rise]), 220.0)[0] for rise in rises])
+    assert pressure == pytest.approx(known, rel=1e-3, abs=2e-7)
+
+
 def test_a_D0_that_is_an_input_is_not_drawn_twice():
     drawn = {draw.gap_cutoff_nm for draw in plan_draws(input_table(), CONTACT, 6, 4)}
     assert len(drawn) == 6
