@@ -11,14 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from evidence.contact.draws import SECOND_LOSS, draw_inputs
+from evidence.contact.draws import SECOND_LOSS, draw_cutoff, draw_inputs
 from mesoscale.contact import Cycle, run_cycle
 from mesoscale.contact.energy import dissipated_energy, pull_off
 from mesoscale.contact.stability import violations
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
 
-D0_NM = (0.25, 0.36)
 GRIDS = (256, 512)
 Q1_PER_NM = 0.4
 
@@ -38,7 +37,7 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
 def _judged(number: int, pixels: int) -> dict[str, Any]:
     """Pull-off of one draw by both mechanics, and the laws that its adhesive cycles break."""
     inputs = draw_inputs(number)
-    cutoff = np.random.default_rng(np.random.SeedSequence([20130806, number])).uniform(*D0_NM)
+    cutoff = draw_cutoff(number)
     settings = ContactSettings(mechanics="adhesive", pixels=pixels, q1_per_nm=Q1_PER_NM, gap_cutoff_nm=cutoff)
     surface = random_surface(inputs, settings, number)
 

@@ -61,6 +61,7 @@ class AdhesiveContact(CoupledContact):
     REVERSIBLE = False
     FORCE_TOLERANCE = 1e-4
     SMALLEST_STEP = 1e-4
+    JUMP_STEP = 3e-3  # over the roughness: a step that jumps on the way to a separation is halved down to this
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
     MIXED = 12  # steps that are mixed
@@ -118,18 +119,23 @@ class AdhesiveContact(CoupledContact):
         return state
 
     def _balance(self, with_flow: bool) -> None:
-        """Energy that a step has lost in jumps; what flow takes up is no longer stored.
+        """Energy that a step has lost in jumps; what flow takes up is no longer stored."""
+        self.now = self.now._replace(net=self.force + self.attraction(self.separation))
+        lost = self.saved[0].lost + max(self._jump(with_flow), 0.0)
+        self.now = self.now._replace(lost=lost, energy=self.now.energy - (self.now.flowing if with_flow else 0.0))
 
-        A step loses what its energy falls by, beyond the work of its mean force. Up to a third of abs(F2 - F1) step / 2
-        may be the curvature of F (a parabola); beyond half of it the contact has jumped. Flow loses energy by itself.
+    def _jump(self, with_flow: bool) -> float:
+        """What the energy fell by in the last step, beyond the work of its mean force, if that was a jump; nN nm.
+
+        Up to a third of abs(F2 - F1) step / 2 may be the curvature of F (a parabola), with either sign; beyond half of
+        it the contact has jumped. Flow loses energy by itself, so steps that flow tell nothing.
         """
-        was, net = self.saved[0], self.force + self.attraction(self.separation)
-        lost, step = was.lost, self.separation - was.separation
-        if math.isfinite(step) and not with_flow:
-            loss = was.energy - self.now.energy - 0.5 * (was.net + net) * step
-            lost += loss if loss > 0.25 * abs((net - was.net) * step) else 0.0
-        stored = self.now.energy - (self.now.flowing if with_flow else 0.0)
-        self.now = self.now._replace(net=net, lost=lost, energy=stored)
+        was, now = self.saved[0], self.now
+        step = now.separation - was.separation
+        if not math.isfinite(step) or (with_flow and now.flowing > 0.0):
+            return 0.0
+        loss = was.energy - now.energy - 0.5 * (was.net + now.net) * step
+        return loss if abs(loss) > 0.25 * abs((now.net - was.net) * step) else 0.0
 
     def _expected(self, separation: float) -> np.ndarray:
         """Attraction of the sites if it goes on as in the last step."""
@@ -146,8 +152,17 @@ class AdhesiveContact(CoupledContact):
         return self.now.lost
 
     def away(self, separation: float) -> Row:
-        """The contact at a separation, where attraction may close it; on the way down it flows."""
-        moved = self.move_to(separation, self.flows and separation < self.separation)
+        """The contact at a separation, where attraction may close it; on the way down it flows.
+
+        Where it jumps it goes there in smaller steps. The force within a step that jumps is not known, so the loss is
+        known to half the jump of the force times the step.
+        """
+        start, with_flow = self.separation, self.flows and separation < self.separation
+        moved = self.move_to(separation, with_flow)
+        if self._jump(with_flow) and abs(separation - start) > self.JUMP_STEP * self.rms:
+            self.back()
+            self.away(0.5 * (start + separation))
+            return self.away(separation)
         self.unsettled += not moved.settled
         return moved.row(separation, self.attraction(separation))
 

@@ -180,21 +180,18 @@ class CoupledContact(Contact):
         """Solve with the hardness of each cluster until the clusters are those it belongs to.
 
         A larger cluster is softer and a softer one larger, so the rounds, which start from the clusters of the
-        separation before, mostly go one way. Returns the rounds and whether they settled.
+        separation before, mostly go one way. Attraction can hold clusters together that part once they are as soft as
+        one: then no state has the hardness of its clusters, and those that have touched in the last rounds keep the
+        lower one. Returns the rounds and whether they settled.
         """
-        settled = True
         for rounds in range(1, self.ROUNDS + 1):
             solved = self._solve()
             wanted = self._hardness_of(self._clusters()[0])
+            if rounds >= self.FALLING_ROUNDS:
+                wanted = np.minimum(wanted, self.limit)
             touching = self.pressure > 0.0
             if self.hardness.constant or np.array_equal(wanted[touching], self.limit[touching]):
                 return rounds, solved
-            settled = solved and bool(np.all(wanted[touching] <= self.limit[touching] * (1.0 + self.tolerance)))
-            if rounds >= self.FALLING_ROUNDS:
-                lower = np.minimum(wanted, self.limit)
-                if np.array_equal(lower[touching], self.limit[touching]):
-                    return rounds, settled
-                wanted = lower
             self.limit = wanted
         return self.ROUNDS, False
 
