@@ -2,7 +2,7 @@
 
 Each draw is closed and opened by both engines on grids of the same cell of 1 um^2, and judged by the invariants of
 `mesoscale.contact.stability`. Coupled plastic surfaces are closed twice: the second cycle must be elastic, but for the
-jumps that it reports. Adhesive ones have cells of 0.25 um^2, whose sites their attraction allows, and a D0 as tops of
+jumps that it reports. Adhesive ones have cells of 0.16 um^2, whose sites their attraction allows, and a D0 as tops of
 atoms have it.
 """
 
@@ -38,7 +38,7 @@ CASES = {
     "coupled, elastic": {"mechanics": "coupled", "model": "elastic"},
     "coupled, constant hardness": {"mechanics": "coupled"},
     "coupled, hardness of clusters": {"mechanics": "coupled"},
-    "adhesive": {"mechanics": "adhesive", "length_nm": 500.0, "max_force_nN": 1750.0, "q1_per_nm": 0.4},
+    "adhesive": {"mechanics": "adhesive", "length_nm": 400.0, "max_force_nN": 1120.0, "q1_per_nm": 0.4},
 }
 SECOND_LOSS = 0.01  # of the first cycle's dissipation, what a second one to the same load may lose
 
