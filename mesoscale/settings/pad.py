@@ -64,7 +64,7 @@ class AdhesionSettings(Settings):
         default=0, ge=0, le=1000, description="pads of each case, whose scatter is the band; 0: the stage is not run"
     )
     cells: int = Field(default=4, ge=2, le=10_000, description="cells of a pad, each with a surface of its own")
-    mechanics: tuple[Literal["asperity", "coupled"], ...] = Field(
+    mechanics: tuple[Literal["asperity", "coupled", "adhesive"], ...] = Field(
         default=("asperity", "coupled"), min_length=1, description="mechanics that are compared"
     )
     loads_MPa: tuple[Annotated[float, Field(gt=0, le=1e6)], ...] = Field(
