@@ -23,14 +23,15 @@ Q1_PER_NM = 0.4
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """How many draws, and on which grid."""
+    """Which draws, and on which grid."""
+    parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--draws", type=int, default=100)
     parser.add_argument("--pixels", type=int, default=GRIDS[-1], choices=GRIDS)
 
 
 def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """A row for each draw."""
-    for number in range(given.draws):
+    for number in range(given.first, given.first + given.draws):
         yield {"pixels": given.pixels, "draw": number, **_judged(number, given.pixels)}
 
 
@@ -65,6 +66,7 @@ def _judged(number: int, pixels: int) -> dict[str, Any]:
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """How far the coupled contact overestimates pull-off, and how many adhesive cycles broke a law."""
+    rows = list({(row["pixels"], row["draw"]): row for row in rows}.values())  # the last of each draw
     finest = max(int(row["pixels"]) for row in rows)
     fine = [row for row in rows if int(row["pixels"]) == finest]
     coupled, adhesive = (

@@ -82,12 +82,17 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """How many cycles, and how many of them broke a law."""
-    cycles = sum(int(row["draws"]) for row in rows)
+    """How many cycles, and how many of them broke a law; adhesive ones by themselves."""
+
+    def count(column: str, adhesive: bool) -> str:
+        return f"{sum(int(row[column]) for row in rows if (row['case'] == 'adhesive') == adhesive):,}"
+
     return {
-        "cycles": f"{cycles:,}",
-        "steps": f"{sum(int(row['steps']) for row in rows):,}",
-        "broken": str(sum(int(row["broken"]) for row in rows)),
+        "cycles": count("draws", False),
+        "steps": count("steps", False),
+        "broken": count("broken", False),
+        "adhesive_cycles": count("draws", True),
+        "adhesive_broken": count("broken", True),
     }
 
 

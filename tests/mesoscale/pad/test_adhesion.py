@@ -116,9 +116,9 @@ def test_every_mechanics_has_every_case():
     assert cases[5].contact.gap_cutoff_nm == pytest.approx(5.6 / 0.5)
 
 
-@pytest.mark.parametrize("mechanics", ["asperity", "coupled"])
+@pytest.mark.parametrize("mechanics", ["asperity", "coupled", "adhesive"])
 def test_pads_are_opened_from_their_loads(mechanics):
-    case = Case("none", INPUTS, SMALL.model_copy(update={"mechanics": mechanics}))
+    case = Case("none", INPUTS, SMALL.model_copy(update={"mechanics": mechanics, "gap_cutoff_nm": 0.3}))
     cells, loaded = close_to_loads(case, [5e-4, 5e-3], range(7, 9))
     pressed = cells.closing[:, 0].mean(axis=0)[cells.grid.depths[loaded]]
     # within a step of separation: 0.1 nm; where the first sites touch the load doubles within some 0.3 nm
