@@ -289,6 +289,14 @@ EXTREMES = {
     "near full contact": (SOFT, {"model": "elastic", "max_force_nN": 2.5e3, "gap_cutoff_nm": 0.6}),
     "more than carried": (replace(ROUGH, h_macro=0.5, h_prime=0.0), {"max_force_nN": 1e5}),
     "film on a softer base": (ROUGH, {"bodies": (((250.0, 0.2, 2.0), (5.0, 0.3, None)),)}),
+    "film a thousandth as hard as its base": (
+        replace(ROUGH, e_star=275.0, hamaker=1e-2),
+        {"bodies": (((0.25, 0.2, 2.0), (250.0, 0.3, None)),), "gap_cutoff_nm": 0.5},
+    ),
+    "film a thousand times as hard as its base": (
+        replace(SOFT, e_star=0.275, hamaker=0.1),
+        {"bodies": (((250.0, 0.2, 2.0), (0.25, 0.3, None)),), "gap_cutoff_nm": 1.0, "max_force_nN": 20.0},
+    ),
     "film on a harder base": (replace(ROUGH, e_star=260.0), {"bodies": (((60.0, 0.2, 2.0), (250.0, 0.2, None)),)}),
 }
 
