@@ -214,14 +214,8 @@ def _largest_drop(forces: list[float]) -> float:
 
 
 def _gaps(contact: Contact) -> np.ndarray:
-    """Distances from contact (nm), rising, at which the attraction of what does not touch is computed.
-
-    One that deforms the surface is largest, and jumps, within its range D0.
-    """
-    nearest, count = max(0.01 * contact.rms, 0.01), 20
-    if not contact.REVERSIBLE and contact.adhesion is not None:
-        nearest, count = min(nearest, 0.1 * contact.adhesion.cutoff), 30
-    return np.geomspace(max(4.0 * contact.rms, 10.0), nearest, count)[::-1]
+    """Distances from contact (nm), rising, at which the attraction of what does not touch is computed."""
+    return np.geomspace(max(4.0 * contact.rms, 10.0), max(0.01 * contact.rms, 0.01), 20)[::-1]
 
 
 def _branch(contact: Contact, rows: list[Row]) -> Branch:

@@ -62,9 +62,6 @@ class AdhesiveContact(CoupledContact):
     FORCE_TOLERANCE = 1e-4
     SMALLEST_STEP = 1e-4
     JUMP_STEP = 3e-3  # over the roughness: a step that jumps on the way to a separation is halved down to this
-    SUSPECT = (
-        0.1  # of abs(F2 - F1) step: a loss that is more may hide a jump; smooth steps on the default path lose 0.07
-    )
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
     MIXED = 12  # steps that are mixed
@@ -127,19 +124,18 @@ class AdhesiveContact(CoupledContact):
         lost = self.saved[0].lost + max(self._jump(with_flow), 0.0)
         self.now = self.now._replace(lost=lost, energy=self.now.energy - (self.now.flowing if with_flow else 0.0))
 
-    def _jump(self, with_flow: bool, least: float = 0.25) -> float:
+    def _jump(self, with_flow: bool) -> float:
         """What the energy fell by in the last step, beyond the work of its mean force, if that was a jump; nN nm.
 
         Up to a third of abs(F2 - F1) step / 2 may be the curvature of F (a parabola), with either sign; beyond half of
-        it (`least` of abs(F2 - F1) step) the contact has jumped. Flow loses energy by itself, so steps that flow tell
-        nothing.
+        it the contact has jumped. Flow loses energy by itself, so steps that flow tell nothing.
         """
         was, now = self.saved[0], self.now
         step = now.separation - was.separation
         if not math.isfinite(step) or (with_flow and now.flowing > 0.0):
             return 0.0
         loss = was.energy - now.energy - 0.5 * (was.net + now.net) * step
-        return loss if abs(loss) > least * abs((now.net - was.net) * step) else 0.0
+        return loss if abs(loss) > 0.25 * abs((now.net - was.net) * step) else 0.0
 
     def _expected(self, separation: float) -> np.ndarray:
         """Attraction of the sites if it goes on as in the last step."""
@@ -163,7 +159,7 @@ class AdhesiveContact(CoupledContact):
         """
         start, with_flow = self.separation, self.flows and separation < self.separation
         moved = self.move_to(separation, with_flow)
-        if self._jump(with_flow, self.SUSPECT) and abs(separation - start) > self.JUMP_STEP * self.rms:
+        if self._jump(with_flow) and abs(separation - start) > self.JUMP_STEP * self.rms:
             self.back()
             self.away(0.5 * (start + separation))
             return self.away(separation)
