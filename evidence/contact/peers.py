@@ -163,7 +163,7 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """Largest differences over the largest force, and times as much time, median and range."""
 
     def worst(column: str) -> str:
-        return f"{max(float(row[column]) for row in rows):.1%}"
+        return f"{max(float(row[column]) for row in rows):.0e}"
 
     def times(peer: str) -> str:
         ratios = [float(row[f"seconds_{peer}"]) / float(row["seconds"]) for row in rows]
