@@ -1,5 +1,8 @@
 """Contact curves at central inputs: figures 4 and 11."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from workflow.report.available import Results
@@ -72,7 +75,7 @@ def describe(results: Results) -> Section | None:
 
 def nominal_models(results: Results) -> str | None:
     """Figure 4: the three models of plasticity up to 1e4 nN."""
-    groups, _, curve_attributes = results.h5("curves/nominal.h5")
+    groups, attributes, curve_attributes = results.h5("curves/nominal.h5")
     present = [model for model in MODELS if f"{model}/closing" in groups]
     if not present:
         return None
@@ -92,7 +95,7 @@ def nominal_models(results: Results) -> str | None:
         axis.axhline(0, color=SOFT, linewidth=0.8)
         reach = float(curve_attributes[present[-1]]["first_contact_nm"])
         axis.set(xlim=(None, reach + 8), ylim=(min(-0.12 * top, 1.08 * deepest), 1.04 * top))
-        axis.set(xlabel="mean separation (nm)", ylabel="force on 1 µm² (µN)")
+        axis.set(xlabel="mean separation (nm)", ylabel=_force_on(attributes))
         axis.legend()
 
     return draw("fig4", "Force against mean separation for three models of plasticity", plot)
@@ -123,7 +126,7 @@ def nominal_loads(results: Results) -> str | None:
                         fitted = area * law.pressure(h, row, hamaker, *constants) / 1e3
                         panel.plot(h, fitted, "-", color=INK, linewidth=0.6)
             panel.axhline(0, color=SOFT, linewidth=0.8)
-            panel.set(xlabel="mean separation (nm)", ylabel="force on 1 µm² (µN)")
+            panel.set(xlabel="mean separation (nm)", ylabel=_force_on(attributes))
         contact = float(curve_attributes[loads[0]]["first_contact_nm"])
         highest = max(_load(load) for load in loads) / 1e3
         deepest = max(-float(_total(groups[f"{load}/opening"])[1].min()) for load in loads)
@@ -134,6 +137,11 @@ def nominal_loads(results: Results) -> str | None:
         axis.legend(title="largest load")
 
     return draw("fig11", "Closing and opening curves up to several largest loads", plot, (9.4, 4.0), columns=2)
+
+
+def _force_on(attributes: Mapping[str, Any]) -> str:
+    """The axis of the force on a cell."""
+    return f"force on {float(attributes['cell_area_nm2']) / 1e6:.3g} µm² (µN)"
 
 
 def _in_words(choice: object) -> str:
