@@ -40,8 +40,8 @@ FREE_PATH_nm_Pa = 67.3 * 101325.0
 RELEASE, CAPACITANCE = 0.01, 0.03
 """Allowed errors of lumps beside the finite elements: of release and pull-in, and of the held capacitance."""
 COUNTS = (8, 12, 16, 20, 24, 28, 32, 40, 48)
-LEAST_NM = 1.0
-"""Gas is no thinner."""
+LEAST_NM, LEAST_GAS = 1.0, 1e-6
+"""Thickness of the gas, and its density over that around: no less, or a step into nothing would not come back."""
 STEP = 1e-5
 """For derivatives (nm, nm/us)."""
 QUALITY = 1e3
@@ -102,8 +102,9 @@ class Lumps:
         """Pressure above that around (Pa), and the flow out (nm/us), of gas n; any shape."""
         s = np.maximum(separation_nm, LEAST_NM)
         excess = amount_nm / s - 1.0
-        thinner = 1.0 + 9.638 * (FREE_PATH_nm_Pa / (self.gas_Pa * np.maximum(1.0 + excess, 1e-6) * s)) ** 1.159
-        flow = self.gas_Pa * (1.0 + excess) * excess * (s * NM) ** 3 * thinner / (VISCOSITY * self.width_m**2)
+        dense = np.maximum(1.0 + excess, LEAST_GAS)
+        thinner = 1.0 + 9.638 * (FREE_PATH_nm_Pa / (self.gas_Pa * dense * s)) ** 1.159
+        flow = self.gas_Pa * dense * excess * (s * NM) ** 3 * thinner / (VISCOSITY * self.width_m**2)
         return self.gas_Pa * excess, 1e3 * flow
 
     def rates(self, state: Array, voltage: float, pad: LocalPad) -> Array:

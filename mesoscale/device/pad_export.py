@@ -232,13 +232,15 @@ def spice_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
     """SPICE subcircuit `rough_pad` (ngspice): node s 1 V = 1 nm, node force 1 V = 1 nN, positive = pushed away."""
     tables = tables_of(law, cubic=False)
     depths = tables.depth_nm
+    deepest, far = f"{START_NM:g} - V(near)", [piece.y[-1] for piece in tables.closing]
+    push, pull = (Piece(piece.x, piece.y - piece.y[-1]) for piece in tables.closing)
     weights, rises, places = [], [], np.append(depths, depths[-1] + FADE_NM)
     for k, pieces in enumerate(tables.opening):
         at = places[max(k - 1, 0) : k + 2]
         hat = Piece(at, (at == depths[k]).astype(float))
-        weights.append(f"Bweight{k} weight{k} 0 V = {_pwl('V(deepest)', hat)}")
-        for name, piece in zip(("push", "pull"), pieces, strict=True):
-            rises.append(f"B{name}{k} {name}{k} 0 V = {_pwl('V(risen)', piece)}")
+        weights.append(f"Bweight{k} weight{k} 0 V = {_pwl(deepest, hat)}")
+        for name, rise in zip(("push", "pull"), pieces, strict=True):
+            rises.append(f"B{name}{k} {name}{k} 0 V = {_pwl('V(risen)', rise)}")
     sums = {
         name: "".join(f"\n+   + V(weight{k})*V({name}{k})" for k in range(depths.size)) for name in ("push", "pull")
     }
@@ -246,24 +248,26 @@ def spice_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
     most = [piece.y.max() + MOST for piece in tables.closing]  # wild steps of a simulator stay finite
     return f"""* Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
 * {note(tables, cells)}
-* nodes     s      mean separation, 1 V = 1 nm
+* nodes     s      mean separation less rest, 1 V = 1 nm
 *           force  force on the moving electrode, 1 V = 1 nN, positive = pushed away
 * closed    by how much (nm) the pad has been closed so far below {START_NM:g} nm; a state
 * follow    time constant (s) of that state: much shorter than any motion; integrate by backward Euler
 *           (.options method=gear maxord=1), because what overshoots is remembered
+* Nodes are 0 for a pad that is far away, where simulators begin.
 .subckt rough_pad s force params: area={area_nm2:.12g} follow={FOLLOW_S:g}
-+   hamaker={law.flats.hamaker:.12g} offset_nm={law.flats.offset_nm:.12g}
++   hamaker={law.flats.hamaker:.12g} offset_nm={law.flats.offset_nm:.12g} rest=0
 Cclosed closed 0 {{{FOLLOWING:g}*follow}}
 Rleak closed 0 {1 / (FOLLOWING * LEAK):g}
-Bclosed 0 closed I = {FOLLOWING:g} * max({START_NM:g} - V(s) - V(closed), 0)
-Bdeepest deepest 0 V = min({START_NM:g} - V(closed), V(s))
-Brisen risen 0 V = V(s) - V(deepest)
-Bpush0c closing_push 0 V = {_pwl("V(deepest)", tables.closing[0], REACH_NM)}
-Bpull0c closing_pull 0 V = {_pwl("V(deepest)", tables.closing[1])}
+Bclosed 0 closed I = {FOLLOWING:g} * max({{{START_NM:g}-rest}} - V(s) - V(closed), 0)
+Bnear near 0 V = max(V(closed), {{{START_NM:g}-rest}} - V(s))
+Brisen risen 0 V = V(s) + V(near) + {{rest-{START_NM:g}}}
+Bpush0c closing_push 0 V = {_pwl(deepest, push, REACH_NM)}
+Bpull0c closing_pull 0 V = {_pwl(deepest, pull)}
 {lines}
-Bflats flats 0 V = {{hamaker/(6*3.14159265358979324)}} / pow(max(V(s), 1) + {{offset_nm}}, 3) + {FLOOR_GPa:g}
-Bforce force 0 V = {{area}} * (exp(min(V(closing_push){sums["push"]}, {most[0]:.4g})) - {tables.faint_GPa:.7g}
-+   - V(flats) * exp(min(V(closing_pull){sums["pull"]}, {most[1]:.4g})))
+Bforce force 0 V = {{area}} * (exp(min(V(closing_push){sums["push"]}
++   + {far[0]:.7g}, {most[0]:.4g})) - {tables.faint_GPa:.7g}
++   - ({{hamaker/(6*3.14159265358979324)}} / pow(max(V(s) + {{rest}}, 1) + {{offset_nm}}, 3) + {FLOOR_GPa:g})
++   * exp(min(V(closing_pull){sums["pull"]} + {far[1]:.7g}, {most[1]:.4g})))
 .ends rough_pad
 """
 

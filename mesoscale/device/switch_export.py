@@ -1,21 +1,24 @@
 """The whole switch for circuit simulators: `mesoscale.device.lumps` on the tables of `mesoscale.device.pad_export`.
 
-The module has the terminals `top` and `bottom` of the two electrodes, and `middle`: by how much mid-span has come down
-(1 V = 1 nm). Inside, voltages are nm and nm/us and currents pressures in Pa, so that the tolerances of simulators fit.
-All internal voltages are zero for the open switch at rest, where simulators begin.
+A netlist holds the electrode: its modes, and one instance of `rough_lump` for each pair of lumps. That lump is a SPICE
+subcircuit, which ngspice runs as it is, or a Verilog-A module with the same nodes, which is compiled once.
+
+Terminals are `top` and `bottom` of the two electrodes, and `middle`: by how much mid-span has come down (1 V = 1 nm).
+Inside, voltages are nm, nm/us, Pa and fC. All are zero for the open switch at rest, where simulators begin.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.device.beam_kernels import least_gap_nm
-from mesoscale.device.lumps import LEAST_NM, VISCOSITY, FREE_PATH_nm_Pa, Lumps, Study
+from mesoscale.device.lumps import LEAST_GAS, LEAST_NM, VISCOSITY, FREE_PATH_nm_Pa, Lumps, Study
 from mesoscale.device.pad_export import (
     FOLLOW_S,
     FOLLOWING,
     LEAK,
     START_NM,
     note,
+    spice_pad,
     tables_of,
     verilog_pressure,
 )
@@ -24,86 +27,112 @@ from mesoscale.pad.memory import PadLaw
 
 Array = NDArray[np.float64]
 
+LUMP = "top bottom moved drawn charge"
+"""Nodes of a lump: the electrodes; how far it has moved (nm); what draws it down (Pa); its charge (fC)."""
 
-def verilog_switch(lumps: Lumps, study: Study, law: PadLaw, cells: int) -> str:
-    """Verilog-A module `rough_switch`."""
-    tables = tables_of(law, cubic=True)
+
+def spice_switch(lumps: Lumps, study: Study, law: PadLaw, cells: int) -> str:
+    """SPICE netlist (ngspice) of the subcircuits `rough_switch`, `rough_lump` and `rough_pad`."""
     numbers, (stiffness, shapes) = range(lumps.count), lumps.modes
     share = shapes * (lumps.area_m2 / lumps.area_m2.sum())[:, None]
-    inside = ", ".join(f"{name}{k}" for k in numbers for name in ("mode", "speed", "closed", "lost"))
     body = []
     for k in numbers:
-        rest, area = f"{lumps.rest_nm[k]:.9g}", f"{lumps.area_m2[k]:.9g}"
-        body.append(f"""
-        s = {rest} - ({_sum("mode", shapes[k])});
-        electric = max(s + {lumps.dielectric_nm:.9g}, {least_gap_nm(lumps.dielectric_nm):.9g}) * 1.0e-9;
-        capacitance = capacitance + {VACUUM_PERMITTIVITY} * {area} * (1.0 / electric
-            + fringe / {lumps.width_m:.9g} * ln(`M_PI * {lumps.width_m:.9g} / electric));
-        pull = 0.5 * {VACUUM_PERMITTIVITY} * volts * volts * (1.0 + fringe * electric / {lumps.width_m:.9g})
-            / (electric * electric);
-        deepest = min({START_NM:.1f} - V(closed{k}), s);
-        lowest = min(lowest, deepest);
-        film = max(s, {LEAST_NM:.1f});
-        excess = ({rest} - V(lost{k})) / film - 1.0;
-        thinner = 1.0 + 9.638 * pow({FREE_PATH_nm_Pa:.9g} / (gas_Pa * max(1.0 + excess, 1.0e-6) * film), 1.159);
-        I(closed{k}) <+ {FOLLOWING:.1f} * (follow * ddt(V(closed{k})) + {LEAK:g} * V(closed{k})
-            - max({START_NM:.1f} - s - V(closed{k}), 0.0));
-        I(lost{k}) <+ 1.0e-6 * ddt(V(lost{k})) - 1.0e-24 * gas_Pa * (1.0 + excess) * excess * film * film * film
-            * thinner / (viscosity * {lumps.width_m**2:.9g});
-        drawn{k} = pull - 1.0e9 * pressure(s, deepest, hamaker, offset_nm) - gas_Pa * excess;""")
-    for k in numbers:
-        body.append(f"""
-        I(mode{k}) <+ 1.0e-6 * ddt(V(mode{k})) - V(speed{k});
-        I(speed{k}) <+ 1.0e-3 * mass * ddt(V(speed{k})) + {stiffness[k]:.12g} * (V(mode{k}) + loss * V(speed{k}))
-            - ({_sum("drawn", share[:, k], "{}")});""")
-    return f"""// An electrostatic switch on a rough contact (Asperity, docs/switch.md).
-// {_said(lumps, study)}
+        of = f"rest={lumps.rest_nm[k]:.9g} area={lumps.area_m2[k]:.9g}"
+        body.append(f"""Bmoved{k} moved{k} 0 V ={_sum("mode", shapes[k])}
+Xlump{k} top bottom moved{k} drawn{k} charge{k} rough_lump {of}
++   gas={{gas}} viscosity={{viscosity}} fringe={{fringe}}
+Cmode{k} mode{k} 0 1u
+Gmode{k} 0 mode{k} speed{k} 0 1
+Cspeed{k} speed{k} 0 {{1m*mass}}
+Bspeed{k} 0 speed{k} I ={_sum("drawn", share[:, k])}
++   - {stiffness[k]:.12g}*(V(mode{k}) + {{loss}}*V(speed{k}))""")
+    width, dielectric = lumps.width_m, lumps.dielectric_nm
+    electric = f"(1e-9*max({{rest+{dielectric:.9g}}} - V(moved), {least_gap_nm(dielectric):.9g}))"
+    film, dense = f"max({{rest}} - V(moved), {LEAST_NM:g})", f"max(1 + V(excess), {LEAST_GAS:g})"
+    return f"""* An electrostatic switch on a rough contact (Asperity, docs/switch.md).
+* {_said(lumps, study)}
+* top, bottom: the electrodes; middle: by how much (nm) mid-span has come down, 1 V = 1 nm.
+* Inside: nm, nm/us, Pa, fC. mass per area in kg/m2, loss in us, viscosity in Pa s, gas in Pa.
+* fringe: 0 as in Asperity's answer; 0.6366 for a thin strip over a plane.
+.subckt rough_switch top bottom middle params: fringe={lumps.fringe:.9g} gas={lumps.gas_Pa:.9g}
++   viscosity={VISCOSITY:g} mass={lumps.mass_kg_m2:.9g} loss={lumps.loss_us:.9g}
+{chr(10).join(body)}
+Bmiddle middle 0 V = V(moved{numbers[-1]})
+Bcharge charge 0 V ={_sum("charge", np.ones(lumps.count))}
+Ccharge charge sense 1f
+Vcharge sense 0 0
+Fcharge top bottom Vcharge 1
+.ends rough_switch
+
+* A pair of lumps; Verilog-A has the same.
+.subckt rough_lump {LUMP} params: rest=1 area=1 gas=1 viscosity=1 fringe=0
+Eup up 0 moved 0 -1
+Xpad up push rough_pad area=1e9 rest={{rest}}
+Bcharge charge 0 V = 1e15 * V(top,bottom) * {{area*{VACUUM_PERMITTIVITY}}} * (1 / {electric}
++   + {{fringe/{width:.9g}}} * ln({np.pi * width:.9g} / {electric}))
+Bexcess excess 0 V = ({{rest}} - V(lost)) / {film} - 1
+Clost lost 0 1u
+Blost 0 lost I = {{1e-24*gas/(viscosity*{width**2:.9g})}} * {dense} * V(excess) * {film}^3
++   * (1 + 9.638 * pow({{{FREE_PATH_nm_Pa:.9g}/gas}} / ({dense} * {film}), 1.159))
+Bdrawn drawn 0 V = {0.5 * VACUUM_PERMITTIVITY} * V(top,bottom)^2 * (1 + {{fringe/{width:.9g}}} * {electric})
++   / {electric}^2 - V(push) - {{gas}} * V(excess)
+.ends rough_lump
+
+{spice_pad(law, cells)}"""
+
+
+def verilog_lump(lumps: Lumps, law: PadLaw, cells: int) -> str:
+    """Verilog-A module `rough_lump`."""
+    tables, width = tables_of(law, cubic=True), f"{lumps.width_m:.9g}"
+    names = LUMP.replace(" ", ", ")
+    return f"""// A pair of lumps of an electrostatic switch on a rough contact (Asperity, docs/switch.md).
 // {note(tables, cells)}
-// top, bottom: the electrodes; middle: by how much (nm) mid-span has come down.
-// Inside: nm, nm/us and Pa. mass per area in kg/m2, loss in us, viscosity in Pa s, hamaker in 1e-18 J, follow in s.
-// fringe: 0 as in Asperity's answer; 0.6366 for a thin strip over a plane.
+// It takes the place of the SPICE subcircuit rough_lump: same nodes, same units. hamaker in 1e-18 J, follow in s.
 `include "disciplines.vams"
 `include "constants.vams"
 
-module rough_switch(top, bottom, middle);
-    inout top, bottom, middle;
-    electrical top, bottom, middle;
-    electrical {inside};
+module rough_lump({names});
+    inout {names};
+    electrical {names}, closed, lost;
 
-    parameter real fringe = {lumps.fringe:.9g} from [0:inf);
-    parameter real gas_Pa = {lumps.gas_Pa:.9g} from (0:inf);
+    parameter real rest = 1.0 from (0:inf);
+    parameter real area = 1.0 from (0:inf);
+    parameter real fringe = 0.0 from [0:inf);
+    parameter real gas = {lumps.gas_Pa:.9g} from (0:inf);
     parameter real viscosity = {VISCOSITY:g} from (0:inf);
-    parameter real mass = {lumps.mass_kg_m2:.9g} from (0:inf);
-    parameter real loss = {lumps.loss_us:.9g} from [0:inf);
     parameter real follow = {FOLLOW_S:g} from (0:inf);
     parameter real hamaker = {law.flats.hamaker:.12g} from [0:inf);
     parameter real offset_nm = {law.flats.offset_nm:.12g} from [0:inf);
 
-    real volts, capacitance, lowest, s, electric, pull, deepest, film, excess, thinner;
-    real {", ".join(f"drawn{k}" for k in numbers)};
+    real volts, s, electric, deepest, film, excess, dense, thinner;
 {verilog_pressure(tables)}
     analog begin
         volts = V(top, bottom);
-        capacitance = 0.0;
-        lowest = {START_NM:.1f};
-{"".join(body)}
-
-        I(top, bottom) <+ ddt(volts * capacitance);
-        V(middle) <+ {lumps.rest_nm[-1]:.9g} - s;
-        if (lowest < {tables.depth_nm[0]:.7g})
-            $strobe("rough_switch: closed to %g nm, the table ends at {tables.depth_nm[0]:.4g} nm", lowest);
+        s = rest - V(moved);
+        electric = max(s + {lumps.dielectric_nm:.9g}, {least_gap_nm(lumps.dielectric_nm):.9g}) * 1.0e-9;
+        deepest = min({START_NM:.1f} - V(closed), s);
+        film = max(s, {LEAST_NM:.1f});
+        excess = (rest - V(lost)) / film - 1.0;
+        dense = max(1.0 + excess, {LEAST_GAS:g});
+        thinner = 1.0 + 9.638 * pow({FREE_PATH_nm_Pa:.9g} / (gas * dense * film), 1.159);
+        I(closed) <+ {FOLLOWING:.1f} * (follow * ddt(V(closed)) + {LEAK:g} * V(closed)
+            - max({START_NM:.1f} - s - V(closed), 0.0));
+        I(lost) <+ 1.0e-6 * ddt(V(lost)) - 1.0e-24 * gas * dense * excess * film * film * film
+            * thinner / (viscosity * {lumps.width_m**2:.9g});
+        V(charge) <+ 1.0e15 * volts * area * {VACUUM_PERMITTIVITY} * (1.0 / electric
+            + fringe / {width} * ln(`M_PI * {width} / electric));
+        V(drawn) <+ 0.5 * {VACUUM_PERMITTIVITY} * volts * volts * (1.0 + fringe * electric / {width})
+            / (electric * electric) - 1.0e9 * pressure(s, deepest, hamaker, offset_nm) - gas * excess;
+        if (deepest < {tables.depth_nm[0]:.7g})
+            $strobe("rough_lump: closed to %g nm, the table ends at {tables.depth_nm[0]:.4g} nm", deepest);
     end
 endmodule
 """
 
 
-def _sum(name: str, weights: Array, of: str = "V({})") -> str:
-    """A weighted sum of nodes or variables."""
-    return _wrapped([f"{weight:+.12g}*{of.format(f'{name}{k}')}" for k, weight in enumerate(weights)])
-
-
-def _wrapped(terms: list[str]) -> str:
-    """A sum, four terms a line; the plus that goes on in SPICE is a sign in Verilog-A."""
+def _sum(name: str, weights: Array) -> str:
+    """A weighted sum of nodes, four a line; the first plus of a line goes on in SPICE, the second is a sign."""
+    terms = [f"{weight:+.12g}*V({name}{k})" for k, weight in enumerate(weights)]
     return "".join(("\n+ " if k % 4 == 0 else " ") + term for k, term in enumerate(terms))
 
 

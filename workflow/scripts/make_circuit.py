@@ -1,7 +1,8 @@
 """Make the switch for circuit simulators: central, corners and draws; its C-V loop and its transient.
 
 In: pad/inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN), pad/draws/*.csv.
-Out: device/circuit/*.va, device/circuit.json, device/circuit.csv, device/loop.csv (fF, V), device/transient.csv (us).
+Out: device/circuit/*.sub and *.va, device/circuit.json, device/circuit.csv, device/loop.csv (fF, V),
+device/transient.csv (us).
 """
 
 from dataclasses import asdict
@@ -9,7 +10,7 @@ from pathlib import Path
 
 from mesoscale.device.circuit import Version, loops, study_on_pad, transient, versions
 from mesoscale.device.lumps import lumps_of
-from mesoscale.device.switch_export import verilog_switch
+from mesoscale.device.switch_export import spice_switch, verilog_lump
 from mesoscale.pad.memory import law_of
 from mesoscale.settings import DeviceSettings
 from workflow.contact_settings import contact_settings
@@ -34,5 +35,6 @@ with job(snakemake) as run:
     write_json(snakemake.output.summary, {"lumps": asdict(study), "transient": said}, run.provenance)
     write_csv(snakemake.output.table, [version.row for version in spread])
     for version in (central, *spread):
-        text = verilog_switch(lumps_of(version.settings, study.lumps), study, version.law, pad.cells.count)
-        write_text(Path(snakemake.output.models) / f"{version.row['switch']}.va", text)
+        lumps, path = lumps_of(version.settings, study.lumps), Path(snakemake.output.models) / version.row["switch"]
+        write_text(path.with_suffix(".sub"), spice_switch(lumps, study, version.law, pad.cells.count))
+        write_text(path.with_suffix(".va"), verilog_lump(lumps, version.law, pad.cells.count))

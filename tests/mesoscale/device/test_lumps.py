@@ -1,5 +1,7 @@
 """The switch in motion: exact limits, energy, and the compiled Verilog-A beside the same equations in Python."""
 
+import shutil
+import subprocess
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +13,7 @@ from mesoscale.device.lumps import VISCOSITY, Study, lumps_of, move, study_lumps
 from mesoscale.device.pad_export import FOLLOW_S, START_NM
 from mesoscale.device.statistics import analytic_pull_in_V
 from mesoscale.device.switch import GPA, NM, switch_from_settings
-from mesoscale.device.switch_export import verilog_switch
+from mesoscale.device.switch_export import spice_switch, verilog_lump
 from mesoscale.errors import InputError
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
@@ -133,33 +135,32 @@ def test_landing_takes_energy_and_gives_none():
     assert lost[-1] > 0.0
 
 
-def values_of(lumps, law, state, volts):
-    """What the compiled module takes at a state of `Lumps.rates`."""
-    s, v, closed, amount = state.reshape(4, -1)
-    modes, speeds = np.linalg.solve(lumps.modes[1], np.stack([lumps.rest_nm - s, -v], axis=1)).T
-    values = {"fringe": lumps.fringe, "gas_Pa": lumps.gas_Pa, "viscosity": VISCOSITY, "mass": lumps.mass_kg_m2}
-    values |= {"loss": lumps.loss_us, "follow": FOLLOW_S, "mfactor": 1.0, "V(top,bottom)": volts, **vars(law.flats)}
-    for k in range(lumps.count):
-        values |= {f"V(mode{k})": modes[k], f"V(speed{k})": speeds[k]}
-        values |= {f"V(closed{k})": closed[k], f"V(lost{k})": lumps.rest_nm[k] - amount[k]}
-    return values
-
-
 def compiled(lumps, tmp_path):
-    """Rates of change, and charge, by the module that OpenVAF compiles."""
+    """Rates of change of `Lumps.rates`, and charge (C), by the module that OpenVAF compiles for one pair of lumps."""
     import openvaf_py
 
-    path = tmp_path / "rough_switch.va"
-    path.write_text(verilog_switch(lumps, Study(4, 0.0, 0.0, 0.0, 70.0, 6.0), LAW, 256))
+    path = tmp_path / "rough_lump.va"
+    path.write_text(verilog_lump(lumps, LAW, 256))
     (module,) = openvaf_py.compile_va(str(path))
-    inside = 3 + 4 * np.arange(lumps.count)  # after the terminals: mode, speed, closed, lost of each lump
+    stiffness, shapes = lumps.modes
+    share = shapes * (lumps.area_m2 / lumps.area_m2.sum())[:, None]
+    same = {"fringe": lumps.fringe, "gas": lumps.gas_Pa, "viscosity": VISCOSITY, "follow": FOLLOW_S, "mfactor": 1.0}
+    same |= {"V(charge)": 0.0, "V(drawn)": 0.0, **vars(LAW.flats)}
+
+    def of_one(k, s, closed, amount, volts):
+        values = same | {"rest": lumps.rest_nm[k], "area": lumps.area_m2[k], "V(top,bottom)": volts}
+        values |= {"V(moved)": lumps.rest_nm[k] - s, "V(closed)": closed, "V(lost)": lumps.rest_nm[k] - amount}
+        resistive = [pair[0] for pair in module.run_init_eval(values)[0]]
+        # after five terminals: the states, then the charge and what draws the lump down
+        return -resistive[5] / (1e3 * FOLLOW_S * 1e6), resistive[6], resistive[7], resistive[8]
 
     def rates(state, volts):
-        residuals, _ = module.run_init_eval(values_of(lumps, LAW, state, volts))
-        rest = np.array([resistive for resistive, _ in residuals])
-        modes, speeds = -rest[inside], -rest[inside + 1] * 1e-3 / lumps.mass_kg_m2
-        closed, lost = -rest[inside + 2] / (1e3 * FOLLOW_S * 1e6), -rest[inside + 3]
-        return np.concatenate([-lumps.modes[1] @ modes, -lumps.modes[1] @ speeds, closed, -lost]), residuals[0][1]
+        s, v, closed, amount = state.reshape(4, -1)
+        each = [of_one(k, s[k], closed[k], amount[k], volts) for k in range(lumps.count)]
+        closing, gained, charge, drawn = np.array(each).T
+        modes, speeds = np.linalg.solve(shapes, np.stack([lumps.rest_nm - s, -v], axis=1)).T
+        pushed = share.T @ drawn - stiffness * (modes + lumps.loss_us * speeds)
+        return np.concatenate([v, -shapes @ (pushed * 1e-3 / lumps.mass_kg_m2), closing, gained]), 1e-15 * charge.sum()
 
     return rates
 
@@ -196,6 +197,44 @@ def test_the_compiled_plate_closes_as_fast(tmp_path):
         for s, t in ((solved.y[0], solved.t), (motion.separation_nm[0], motion.time_us))
     ]
     assert times[0] == pytest.approx(times[1], rel=0.01)
+
+
+@pytest.mark.skipif(shutil.which("ngspice") is None, reason="ngspice is not installed (Debian package ngspice)")
+def test_ngspice_closes_the_switch_as_fast_and_as_deep(tmp_path):
+    """A step of 76 V on four pairs of lumps, through the impact; 15 s in ngspice."""
+    lumps = lumps_of(BEAM, 4)
+    (tmp_path / "central.sub").write_text(spice_switch(lumps, Study(4, 0.0, 0.0, 0.0, 70.0, 6.0), LAW, 256))
+    (tmp_path / "deck.cir").write_text(
+        """* a step
+.include central.sub
+Vdrive drive 0 PULSE(0 76 1u 10n 10n 150u)
+X1 drive 0 middle rough_switch
+.options method=gear reltol=1e-4 abstol=1e-3 vntol=1e-3
+.tran 10n 35.4u 0 5n
+.control
+set wr_singlescale
+set numdgt=12
+run
+wrdata out.txt v(middle) v(x1.charge)
+quit
+.endc
+.end
+"""
+    )
+    done = subprocess.run(["ngspice", "-b", "deck.cir"], cwd=tmp_path, capture_output=True, text=True, timeout=600)
+    time, middle, charge = np.loadtxt(tmp_path / "out.txt").T
+    assert time[-1] == pytest.approx(35.4e-6, rel=1e-6), done.stdout + done.stderr
+    motion = move(lumps, PAD, lambda t: 76.0, 34.4, precision=1e-3)
+    wanted = lumps.rest_nm[-1] - motion.separation_nm[-1]
+    for way in (1000.0, 2000.0, 3000.0, 3400.0, 3450.0):
+        found, known = (
+            np.interp(way, y[: np.argmax(y > way) + 1], t[: np.argmax(y > way) + 1])
+            for t, y in ((1e6 * time - 1.0, middle), (motion.time_us, wanted))
+        )
+        assert found == pytest.approx(known, rel=5e-3)
+    assert middle.max() == pytest.approx(wanted.max(), abs=1.0)
+    far = np.interp(21.0, 1e6 * time, charge)
+    assert far == pytest.approx(76e15 * np.interp(20.0, motion.time_us, motion.capacitance_F), rel=5e-3)
 
 
 HARD = {

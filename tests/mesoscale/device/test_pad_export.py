@@ -137,16 +137,17 @@ def by_spice(text, separation, deepest):
     """Pressure (GPa) of the SPICE subcircuit, by its tables alone."""
     tables = {
         name: (of, [float(value) for value in nodes.replace("\n+", "").split(",")])
-        for name, of, nodes in re.findall(r"^B\w+ (\w+) 0 V = pwl\(V\((\w+)\),(.*?)\)$", text, re.M | re.S)
+        for name, of, nodes in re.findall(r"^B\w+ (\w+) 0 V = pwl\(([^,]*),(.*?)\)$", text, re.M | re.S)
     }
-    at = {"deepest": deepest, "risen": separation - deepest}
+    at = {f"{START_NM:g} - V(near)": deepest, "V(risen)": separation - deepest}
     value = {name: float(np.interp(at[of], nodes[::2], nodes[1::2])) for name, (of, nodes) in tables.items()}
     count = sum(name.startswith("weight") for name in value)
+    ((*far, faint),) = re.findall(r"\+ (\S+), \S+\)\) - (\S+)\n", text)
+    far += re.findall(r"\+ (\S+), \S+\)\)\)\n.ends", text)
     push, pull = (
-        value[f"closing_{name}"] + sum(value[f"weight{k}"] * value[f"{name}{k}"] for k in range(count))
-        for name in ("push", "pull")
+        value[f"closing_{name}"] + sum(value[f"weight{k}"] * value[f"{name}{k}"] for k in range(count)) + float(away)
+        for name, away in zip(("push", "pull"), far, strict=True)
     )
-    (faint,) = re.findall(r"\) - (\S+)\n\+   - V\(flats\)", text)
     (hamaker,), (offset,) = re.findall(r"hamaker=(\S+)", text), re.findall(r"offset_nm=(\S+)", text)
     return np.exp(push) - float(faint) - np.exp(pull) * Flats(float(hamaker), float(offset)).pull_GPa(separation)
 

@@ -20,7 +20,7 @@ def describe(results: Results) -> Section | None:
     section = Section(
         "circuit",
         "In a circuit",
-        "The folder device/circuit has the switch as Verilog-A: central, four corners and "
+        "The folder device/circuit has the switch as SPICE netlists: central, four corners and "
         f"{len(rows) - len(corners)} draws. {study['lumps']} pairs of lumps stand for the electrode. Beside finite "
         f"elements pull-in differs by {study['pull_in']:.1%}, release by {study['release']:.1%}.",
         COMPUTED,
