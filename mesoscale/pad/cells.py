@@ -41,7 +41,7 @@ MARGIN = 1.25
 """Over what the switch presses with: the mean of the few pilot cells is off by 15 %."""
 PILOT_STEP = 5.0
 """Pilot cells are closed in coarser steps than the pad: where the grid ends need not be known to better than that."""
-FEWEST_PILOT_STEPS = 4
+FEWEST_PILOT_STEPS = 3
 """Where fewer reach the pressure, all steps are finer: a film of long waves is closed by little of its RMS height."""
 
 
