@@ -1,9 +1,5 @@
 """The exported law run by the tools it is meant for."""
 
-import importlib.util
-import shutil
-import subprocess
-
 import numpy as np
 import pytest
 
@@ -11,6 +7,7 @@ from mesoscale.device.contact_law import pressure_GPa, slope_GPa_nm
 from mesoscale.device.export import law_table, spice_subcircuit, spice_testbench, verilog_module
 from mesoscale.law.compact import Law
 from mesoscale.law.parameters import BRANCHES, PARAMETERS
+from tests.mesoscale.device.simulators import by_ngspice, needs_ngspice, needs_openvaf
 
 AREA = 1e6
 NOMINAL = {
@@ -37,20 +34,17 @@ def test_table_holds_both_branches_with_their_kinks_and_ordered_quantiles():
         assert all(row["pressure_q05_GPa"] <= row["pressure_q50_GPa"] <= row["pressure_q95_GPa"] for row in of_branch)
 
 
-@pytest.mark.skipif(shutil.which("ngspice") is None, reason="ngspice is not installed (Debian package ngspice)")
+@needs_ngspice
 def test_ngspice_reproduces_the_law(tmp_path):
     (tmp_path / "law.sub").write_text(spice_subcircuit(NOMINAL, AREA))
     deck = spice_testbench("law.sub", "out.txt", np.arange(0.0, 120.0, 0.25))
-    (tmp_path / "deck.cir").write_text(deck)
-    done = subprocess.run(["ngspice", "-b", "deck.cir"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    assert done.returncode == 0, done.stdout + done.stderr
-    separation, *forces = np.loadtxt(tmp_path / "out.txt").T
+    separation, *forces = by_ngspice(tmp_path, deck)
     assert separation.size >= 480
     for branch, force in zip(BRANCHES, forces, strict=True):
         np.testing.assert_allclose(force, AREA * pressure_GPa(separation, NOMINAL[branch]), rtol=1e-6)
 
 
-@pytest.mark.skipif(shutil.which("ngspice") is None, reason="ngspice is not installed (Debian package ngspice)")
+@needs_ngspice
 def test_spice_instance_parameters_replace_the_defaults(tmp_path):
     (tmp_path / "law.sub").write_text(spice_subcircuit(NOMINAL, AREA))
     other = Law(20.0, 3e-4, 1e-4, 2.0, hamaker=0.25)
@@ -58,16 +52,11 @@ def test_spice_instance_parameters_replace_the_defaults(tmp_path):
     deck = spice_testbench("law.sub", "out.txt", np.arange(0.0, 60.0, 0.5)).replace(
         "params: opening=0", f"params: opening=0 {settings} hamaker=0.25 area=2e6 landed=0.5 adhesion=1"
     )
-    (tmp_path / "deck.cir").write_text(deck)
-    subprocess.run(["ngspice", "-b", "deck.cir"], cwd=tmp_path, capture_output=True, check=True, timeout=60)
-    separation, closing, _ = np.loadtxt(tmp_path / "out.txt").T
+    separation, closing, _ = by_ngspice(tmp_path, deck)
     np.testing.assert_allclose(closing, AREA * pressure_GPa(separation, other), rtol=1e-6)
 
 
-@pytest.mark.skipif(
-    importlib.util.find_spec("openvaf_py") is None,
-    reason="no Verilog-A compiler is installed (Python package openvaf-py)",
-)
+@needs_openvaf
 def test_openvaf_compiles_the_module_and_gives_force_and_stiffness(tmp_path):
     import openvaf_py
 

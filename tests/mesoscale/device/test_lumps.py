@@ -1,7 +1,5 @@
 """The switch in motion: exact limits, energy, and the compiled Verilog-A beside the same equations in Python."""
 
-import shutil
-import subprocess
 from dataclasses import replace
 
 import numpy as np
@@ -17,8 +15,9 @@ from mesoscale.device.switch_export import spice_switch, verilog_lump
 from mesoscale.errors import InputError
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
+from tests.mesoscale.device.simulators import by_ngspice, needs_ngspice, needs_openvaf
 from tests.mesoscale.device.test_beam import made_up_law
-from tests.mesoscale.device.test_pad_export import needs_openvaf, pad
+from tests.mesoscale.device.test_pad_export import pad
 
 BEAM = DeviceSettings(hold_voltage_V=40.0)
 PLATE = DeviceSettings(spring_N_per_m=10.0)
@@ -199,12 +198,13 @@ def test_the_compiled_plate_closes_as_fast(tmp_path):
     assert times[0] == pytest.approx(times[1], rel=0.01)
 
 
-@pytest.mark.skipif(shutil.which("ngspice") is None, reason="ngspice is not installed (Debian package ngspice)")
+@needs_ngspice
 def test_ngspice_closes_the_switch_as_fast_and_as_deep(tmp_path):
     """A step of 76 V on four pairs of lumps, through the impact; 15 s in ngspice."""
     lumps = lumps_of(BEAM, 4)
     (tmp_path / "central.sub").write_text(spice_switch(lumps, Study(4, 0.0, 0.0, 0.0, 70.0, 6.0), LAW, 256))
-    (tmp_path / "deck.cir").write_text(
+    time, middle, charge = by_ngspice(
+        tmp_path,
         """* a step
 .include central.sub
 Vdrive drive 0 PULSE(0 76 1u 10n 10n 150u)
@@ -219,11 +219,9 @@ wrdata out.txt v(middle) v(x1.charge)
 quit
 .endc
 .end
-"""
+""",
     )
-    done = subprocess.run(["ngspice", "-b", "deck.cir"], cwd=tmp_path, capture_output=True, text=True, timeout=600)
-    time, middle, charge = np.loadtxt(tmp_path / "out.txt").T
-    assert time[-1] == pytest.approx(35.4e-6, rel=1e-6), done.stdout + done.stderr
+    assert time[-1] == pytest.approx(35.4e-6, rel=1e-6)
     motion = move(lumps, PAD, lambda t: 76.0, 34.4, precision=1e-3)
     wanted = lumps.rest_nm[-1] - motion.separation_nm[-1]
     for way in (1000.0, 2000.0, 3000.0, 3400.0, 3450.0):

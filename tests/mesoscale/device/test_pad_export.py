@@ -1,9 +1,6 @@
 """The exported pad with its memory, over two closings of different depth."""
 
-import importlib.util
 import re
-import shutil
-import subprocess
 
 import numpy as np
 import pytest
@@ -14,15 +11,11 @@ from mesoscale.pad.compact import CompactPad
 from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
 from tests.mesoscale.closed_form import tabulated
+from tests.mesoscale.device.simulators import by_ngspice, needs_ngspice, needs_openvaf
 
 AREA = 1e12
 HISTORY_NM = (60.0, 30.0, 26.0, 28.0, 33.0, 60.0, 30.0, 27.0, 22.0, 25.0, 30.0, 60.0)
 """Closed to 26 nm, opened, closed past it to 22 nm, opened again."""
-
-needs_openvaf = pytest.mark.skipif(
-    importlib.util.find_spec("openvaf_py") is None,
-    reason="no Verilog-A compiler is installed (Python package openvaf-py)",
-)
 
 
 def pad(hamaker=0.215, waves=0.0):
@@ -161,13 +154,14 @@ def test_the_tables_for_spice_hold_the_curves(waves):
         assert found == pytest.approx(wanted, abs=2.0 * (OF_WELL * well(law) + OF_NET * abs(wanted)))
 
 
-@pytest.mark.skipif(shutil.which("ngspice") is None, reason="ngspice is not installed (Debian package ngspice)")
+@needs_ngspice
 def test_ngspice_follows_a_history_of_two_closings(tmp_path):
     law = pad()
     (tmp_path / "pad.sub").write_text(spice_pad(law, 256))
     # a millisecond of motion and one of rest for every step; backward Euler, as what overshoots would be remembered
     points = " ".join(f"{2 * k + at}m {s:g}" for k, s in enumerate(HISTORY_NM) for at in (0.0, 1.0))
-    (tmp_path / "deck.cir").write_text(
+    time, force = by_ngspice(
+        tmp_path,
         f"""* two closings
 .include pad.sub
 .options reltol=1e-11 vntol=1e-12 abstol=1e-15 method=gear maxord=1
@@ -182,11 +176,8 @@ wrdata out.txt v(force)
 quit
 .endc
 .end
-"""
+""",
     )
-    done = subprocess.run(["ngspice", "-b", "deck.cir"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stdout + done.stderr
-    time, force = np.loadtxt(tmp_path / "out.txt").T
     at_rest = np.interp((2 * np.arange(len(HISTORY_NM)) + 0.99) * 1e-3, time, force) / AREA
     wanted = pressures(law)[2]
     np.testing.assert_allclose(at_rest, wanted, rtol=2.0 * OF_NET, atol=2.0 * OF_WELL * well(law))

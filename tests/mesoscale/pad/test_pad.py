@@ -239,9 +239,9 @@ def test_a_film_of_long_waves_is_closed_in_steps_that_fit_its_way():
     long, contact = replace(MIDDLE, q0=0.001, rms=76.0), CONTACT.model_copy(update={"length_nm": 6000.0})
     grid = plan_grid(long, contact, GRID, wanted_GPa, step_nm=0.05 * long.rms)
     steps = -np.diff(grid.separation_nm)
-    assert steps[-1] < 0.05 * long.rms / 2
+    assert steps[-1] <= 0.05 * long.rms / 3 + 1e-9
     pilots = [-float(FilmPieces(long, contact).surface(FIRST_SEED + k).min()) for k in range(GRID.pilot_cells)]
-    assert np.sum(grid.separation_nm < max(pilots)) > 12
+    assert np.sum(grid.separation_nm < max(pilots)) > 15
 
 
 def test_a_coarse_film_opens_to_where_it_closes_without_a_step():
