@@ -209,7 +209,7 @@ def run_lammps(
         subprocess.Popen(
             command,
             cwd=workspace.path,
-            env=_environment(),
+            env=environment(),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -253,7 +253,8 @@ def executable() -> Path:
     return program
 
 
-def _environment() -> dict[str, str]:
+def environment() -> dict[str, str]:
+    """Variables of a LAMMPS of one core that finds the libraries beside this Python."""
     library_path = [str(Path(sys.prefix) / "lib"), os.environ.get("LD_LIBRARY_PATH", "")]
     path = [str(Path(sys.prefix) / "bin"), os.environ.get("PATH", "")]
     return {

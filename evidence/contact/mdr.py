@@ -9,9 +9,7 @@ ours is a sphere's shape on a periodic half-space. Its adhesion fades where a st
 Mesarovic and Johnson (J. Mech. Phys. Solids 48 (2000) 2009).
 """
 
-import os
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -21,7 +19,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from atomistic.lammps import executable
+from atomistic.lammps import environment, executable
 from evidence.contact.draws import MIDDLE
 from mesoscale.contact import run_cycle
 from mesoscale.contact.energy import pull_off
@@ -146,8 +144,7 @@ def _path(work_of: float, strength: float, deepest: float, back: bool) -> tuple[
         back=STEPS_BACK if back else 0,
     )
     with tempfile.TemporaryDirectory() as folder:
-        libraries = {"LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib"), **os.environ}
         command = [str(executable()), "-log", "none", "-nocite"]
-        subprocess.run(command, input=script, cwd=folder, env=libraries, text=True, check=True, capture_output=True)
+        subprocess.run(command, input=script, cwd=folder, env=environment(), text=True, check=True, capture_output=True)
         place, force = np.loadtxt(Path(folder) / "path.txt").T
     return RADIUS - 0.5 * (place + RADIUS), force

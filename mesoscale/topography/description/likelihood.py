@@ -97,7 +97,7 @@ class _Data:
         # a line's C1(k) is the integral of 2 C(q) q over t, with q = k cosh t
         t, step = np.polynomial.legendre.leggauss(LINE_POINTS)
         t, step = LINE_REACH * (t + 1) / 2, LINE_REACH / 2 * step
-        spacing = np.array([item.spectrum.spacing if item.line is None else item.line.spacing for item in spectra])
+        spacing = np.array([item.spectrum.spacing for item in spectra])
         k = spread(self.q[self.line], spacing[self.scan[self.line]])
         self.line_q = np.concatenate(k[:, :, None] * np.cosh(t), axis=1)
         self.line_log_q, self.line_weight = np.log(self.line_q), self.line_q * np.concatenate([step, step])
