@@ -15,7 +15,9 @@ DEPTHS = 96
 RISES = 1200
 """Separations above the deepest closing."""
 HIGHEST_RISE_NM = 60.0
-"""Beyond, closing and opening are the same attraction; more where the curves of a coarse film still differ."""
+"""Beyond, closing and opening are the same attraction, but for coarse films."""
+COARSE_NM = 120.0
+"""Shallowest depth of a coarse film. Those of scene `paper` are at most 90 nm: its tables stay as they are."""
 SAME_GPa = 1e-9
 """Difference of closing and opening below which they are the same, the accuracy of a beam's balance."""
 
@@ -29,8 +31,9 @@ class LocalPad:
         self.at_nm = np.ascontiguousarray(law.separation_nm)
         self.closing = law.closing.sum(axis=0)
         self.depth_nm = np.linspace(law.depth_nm[0], law.depth_nm[-1], DEPTHS)
-        highest = min(law.separation_nm[-1] - law.depth_nm[-1], max(HIGHEST_RISE_NM, _reach_nm(law)))
-        self.rise_nm = np.linspace(0.0, highest, RISES)
+        shallow = law.depth_nm[-1]
+        highest = max(HIGHEST_RISE_NM, _reach_nm(law)) if shallow > COARSE_NM else HIGHEST_RISE_NM
+        self.rise_nm = np.linspace(0.0, min(law.separation_nm[-1] - shallow, highest), RISES)
         self.opening = np.array([law.opening_GPa(depth + self.rise_nm, depth) for depth in self.depth_nm])
 
     @property
