@@ -34,6 +34,7 @@ TARGETS = {
     "device": "switch on single cells; tables and circuit models of the law",
     "failure": "how often the switch fails, down to one in a million",
     "circuit": "the switch for simulators: corners, draws, C-V loop, transient",
+    "resistance": "electrical resistance of metal on metal against force",
     "adhesion": "energy and pull-off of pads",
     "calibrate": "inputs narrowed by your measurements of contacts",
     "history": "cycle after cycle, with creep",

@@ -9,6 +9,7 @@ from mesoscale.settings.inputs import TABLE_1, Correlation, InputRow, InputsSett
 from mesoscale.settings.law import LawSettings
 from mesoscale.settings.measurements import MeasurementsSettings, MeasurementTable
 from mesoscale.settings.pad import AdhesionSettings, PadGridSettings, PadSettings
+from mesoscale.settings.resistance import ResistanceSettings
 from mesoscale.settings.topography import InstrumentSettings, SyntheticScanSettings, TopographySettings
 from mesoscale.settings.uncertainty import UncertaintySettings
 
@@ -29,6 +30,7 @@ __all__ = [
     "PadGridSettings",
     "PadSettings",
     "ReadingSettings",
+    "ResistanceSettings",
     "Settings",
     "SyntheticScanSettings",
     "TopographySettings",

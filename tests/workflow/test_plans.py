@@ -61,6 +61,11 @@ def test_the_failure_rate_is_found_where_a_scene_asks_for_it(plan):
     assert "assemble_pad" not in plan("paper", "failure")
 
 
+def test_the_resistance_is_measured_where_a_scene_has_metals(plan):
+    assert "measure_resistance" not in plan("paper") | plan("ci")
+    assert plan("paper", "resistance") == {"collect_inputs", "measure_resistance"}
+
+
 def test_adhesion_is_computed_where_a_scene_asks_for_it(plan):
     assert "open_pads" not in plan("paper")
     wanted = {"collect_inputs", "collect_pad_inputs", "open_pads", "summarise_adhesion"}

@@ -31,6 +31,8 @@ def report_inputs():
     if SCENE.failure.probability is not None:
         files += ["device/failure.json", "device/failure.csv"]
         files += [f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "transient.csv")]
+    if SCENE.resistance.resistivities_nOhm_m is not None:
+        files += ["device/resistance.csv"]
     if SCENE.history.cycles > 0:
         files += [f"history/{name}" for name in ("cycles.csv", "dwell.csv", "curves.h5")]
     if SCENE.measurements.tables:

@@ -151,6 +151,19 @@ TABLES = (
         ),
     ),
     Table(
+        ("device/resistance.csv",),
+        "One surface of an ohmic contact under one force.",
+        (
+            integer("run", "number of the draw of the inputs"),
+            integer("seed", "seed of the surface"),
+            text("way", "closing, opening from the largest force, or closing again"),
+            number("force_nN", "nN", "repulsive force on the cell"),
+            number("stiffness_N_per_m", "N/m", "further force per further approach of the mean planes, elastic"),
+            number("contact_area_nm2", "nm^2", "area of contact"),
+            number("resistance_Ohm", "Ohm", "of constriction and film"),
+        ),
+    ),
+    Table(
         ("device/loop.csv",),
         "One voltage of the slow loop: capacitance while it rises and while it falls.",
         (

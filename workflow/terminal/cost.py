@@ -223,6 +223,8 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     "analyse_scans": lambda c, _: 4.0 + 4.8 * c.scene.topography.synthetic.pixels**2 / GRID,
     "judge_scans": lambda c, _: 3.0 + 3.0 * len(c.scene.topography.scans),
     "weigh_unseen_waves": lambda c, _: 24 * c.cycle_s,
+    # to eight forces, twice; the cycles to small forces are short
+    "measure_resistance": lambda c, _: c.cycles_s(4 * c.scene.resistance.runs),
     "compute_nominal": lambda c, _: 0.5 + c.cycles_s(NOMINAL[c.mechanics]),
     "compute_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, _design_runs(c))),
     "compute_direct_runs": lambda c, _: c.cycles_s(min(CHUNK_RUNS, c.scene.uncertainty.direct_runs)),

@@ -16,13 +16,14 @@ from workflow.report.stages import (
     inputs,
     model_form,
     pad,
+    resistance,
     sensitivity,
     topography,
     uncertainty,
 )
 
 PARTS = (
-    ("switch", "The switch", (pad, device, circuit, failure, adhesion, history)),
+    ("switch", "The switch", (pad, device, circuit, failure, resistance, adhesion, history)),
     ("contact", "The contact", (contact, uncertainty, sensitivity, model_form)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

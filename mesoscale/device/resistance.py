@@ -1,0 +1,129 @@
+"""Electrical resistance of a rough contact, by its incremental stiffness (docs/resistance.md).
+
+Current through the spots of a contact obeys the equations of a small further approach of its two elastic bodies:
+
+    1 / R = 2 / (E* (rho_1 + rho_2)) dF / d(delta)
+
+for any shape and number of spots (Barber, Proc. R. Soc. A 459 (2003) 53). The approach delta is that of the mean
+planes. The further approach is elastic: where asperities flow, its slope is that of the way back. Contact grows with
+the force, so that the force is convex in delta, and its slope lies between those of the chords to both sides.
+
+A film's resistance is added as if each spot had one potential, which is the least that spots and film have together;
+for one spot that is a film of its own, a twelfth of the spot's own resistance is missing at most (Holm, Electric
+Contacts, 1967: 0.27 rho / a at uniform current, 0.25 at one potential).
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.contact import Cycle, run_cycle
+from mesoscale.contact.cycle import Branch
+from mesoscale.device.release import SOLVED
+from mesoscale.errors import InputError
+from mesoscale.inputs.contact import ContactInputs, contact_of
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.memory import rows_at
+from mesoscale.settings import ContactSettings, ResistanceSettings
+from mesoscale.uncertainty.designs import random_runs
+
+Array = NDArray[np.float64]
+
+LEVELS = 8
+"""Forces at which the resistance is given, each twice the last."""
+
+
+@dataclass(frozen=True)
+class Stiffness:
+    """Incremental stiffness of a contact on an elastic way.
+
+    Attributes
+    ----------
+    force_nN : rising, shape (n,), as all that follows.
+    area_nm2 : of contact.
+    slope : dF/d(delta), N/m.
+    least, most : slopes of the chords below and above, N/m; 0 and infinite at the ends.
+    """
+
+    force_nN: Array
+    area_nm2: Array
+    slope: Array
+    least: Array
+    most: Array
+
+
+def stiffness_of(branch: Branch) -> Stiffness:
+    """Stiffness along an opening, or along a closing on which nothing flows."""
+    up = np.argsort(branch.separation_nm)[::-1]
+    force, approach, area = branch.repulsive_nN[up], -branch.separation_nm[up], branch.contact_area_nm2[up]
+    kept = (force > 0) & (np.diff(approach, prepend=-np.inf) > 0)
+    force, approach = force[kept], approach[kept]
+    chords = np.diff(force) / np.diff(approach)
+    least, most = np.concatenate([[0.0], chords]), np.concatenate([chords, [np.inf]])
+    return Stiffness(force, area[kept], np.gradient(force, approach, edge_order=2), least, most)
+
+
+def resistance_Ohm(slope: Array, area_nm2: Array, e_star_GPa: float, settings: ResistanceSettings) -> Array:
+    """Resistance (Ohm) of a contact of stiffness `slope` (N/m) and of its film; any shape."""
+    if settings.resistivities_nOhm_m is None:
+        raise InputError("resistance.resistivities_nOhm_m = null: give the resistivities of the two bodies in nOhm m")
+    # GPa nOhm m over N/m is Ohm
+    return e_star_GPa * sum(settings.resistivities_nOhm_m) / (2.0 * slope) + settings.film_Ohm_um2 / (area_nm2 * 1e-6)
+
+
+def resistance_rows(
+    table: InputTable,
+    contact: ContactSettings,
+    settings: ResistanceSettings,
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[dict[str, Any]]:
+    """Rows of device/resistance.csv: each surface at `LEVELS` forces while it closes, opens and closes again.
+
+    Raises
+    ------
+    InputError : no resistivities, or too many surfaces that cannot be computed.
+    """
+    runs, failed = random_runs(table, 0, settings.runs), []
+    for run in runs:
+        inputs, chosen = contact_of(run.values, contact)
+        try:
+            ways = _ways(inputs, chosen, run.seed)
+        except (InputError, ArithmeticError) as error:
+            failed.append(str(error))
+            if len(failed) > (1.0 - SOLVED) * len(runs):
+                raise InputError(f"resistance: of {len(runs)} surfaces, {len(failed)} failed: {failed[-1]}") from None
+            continue
+        for way, (force, slope, area) in ways.items():
+            ohm = resistance_Ohm(slope, area, inputs.e_star, settings)
+            for row in np.stack([force, slope, area, ohm], axis=1).tolist():
+                names = ("force_nN", "stiffness_N_per_m", "contact_area_nm2", "resistance_Ohm")
+                yield {"run": run.index, "seed": run.seed, "way": way, **dict(zip(names, row, strict=True))}
+        if progress:
+            progress((run.index + 1) / len(runs), f"{run.index + 1} of {len(runs)} surfaces")
+
+
+def _ways(inputs: ContactInputs, contact: ContactSettings, seed: int) -> dict[str, Array]:
+    """Force, stiffness (N/m) and area (nm2) of a surface that closes, opens and closes again; shape (3, levels)."""
+    forces: Array = np.array([contact.max_force_nN / 2.0**k for k in reversed(range(LEVELS))])
+    openings, cycle = [], None
+    for force in [*forces, *forces]:
+        cycle = _closed(inputs, contact, seed, float(force), cycle)
+        way = stiffness_of(cycle.opening)
+        openings.append(np.stack([way.force_nN, way.slope, way.area_nm2]))
+    ends = np.stack([opening[:, -1] for opening in openings], axis=1)
+    opened = rows_at(forces, openings[LEVELS - 1][0], openings[LEVELS - 1])
+    return {"closing": ends[:, :LEVELS], "opening": opened, "closing again": ends[:, LEVELS:]}
+
+
+def _closed(inputs: ContactInputs, contact: ContactSettings, seed: int, force_nN: float, before: Cycle | None) -> Cycle:
+    """A cycle up to a force, on the surface that the cycle before left."""
+    if before is None:
+        cycle = run_cycle(inputs, contact, seed, force_nN, keep_surface=True)
+    else:
+        cycle = run_cycle(inputs, contact, seed, force_nN, before.heights, contact_at="lowest", keep_surface=True)
+    if not cycle.converged:
+        raise InputError(f"a contact of {force_nN:.4g} nN did not settle")
+    return cycle

@@ -1,0 +1,155 @@
+"""Resistance of ohmic contacts: Holm's spot, the electrostatic problem solved directly, and Barber's bounds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mesoscale.contact import ContactInputs, run_cycle
+from mesoscale.contact.coupled.engine import CoupledContact
+from mesoscale.contact.surface import random_surface
+from mesoscale.device.resistance import LEVELS, resistance_Ohm, resistance_rows, stiffness_of
+from mesoscale.errors import InputError
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
+from mesoscale.settings import ContactSettings, ResistanceSettings
+from mesoscale.uncertainty.designs import random_runs
+
+GOLD = ResistanceSettings(resistivities_nOhm_m=(22.0, 22.0), runs=8)
+VALUES = {"hamaker": 0.0, "e_star": 91.0, "h_macro": 1.95, "h_prime": 8.375, "q0": 0.06, "hurst": 0.75, "rms": 3.0}
+INPUTS = ContactInputs(**VALUES)
+DISTRIBUTIONS = {name: Distribution("fixed", value) for name, value in VALUES.items()} | {
+    "e_star": Distribution("uniform", 80.0, 100.0),
+    "rms": Distribution("uniform", 2.0, 4.0),
+}
+TABLE = InputTable(
+    tuple(UncertainInput(name, "", given, "literature", "") for name, given in DISTRIBUTIONS.items()), np.eye(7)
+)
+LATTICE = 3.900264920001956  # of a square lattice of charges in their neutralising background: sum 1/r - integral
+
+
+def settings(pixels, length_nm, model="elastic"):
+    return ContactSettings(mechanics="coupled", pixels=pixels, length_nm=length_nm, model=model)
+
+
+def bowl(pixels, length_nm, radius_nm):
+    x = (np.arange(pixels) - pixels // 2 + 0.37) * length_nm / pixels  # its summit between the sites
+    return (x[:, None] ** 2 + x[None, :] ** 2) / (2.0 * radius_nm)
+
+
+def conducted(touching, length_nm):
+    """Conductance (S) times the sum of resistivities (Ohm nm) of spots at one potential, periodic; spots (N, N).
+
+    On each side a current density j of wave vector q makes a potential rho j / q; the mean of the potential is that of
+    the planes far away.
+    """
+    n = len(touching)
+    number = np.hypot(*np.meshgrid(np.fft.fftfreq(n, 1 / n), np.fft.fftfreq(n, 1 / n)))
+    number[0, 0] = np.inf
+    kernel = np.fft.ifft2(length_nm / (2.0 * np.pi * number)).real  # of a site of unit density
+    x, y = np.nonzero(touching)
+    potential = kernel[x[:, None] - x, y[:, None] - y]
+    return float(np.linalg.solve(potential, np.ones(x.size)).sum()) * (length_nm / n) ** 2
+
+
+def of_two(resistivities, film=0.0):
+    return ResistanceSettings(resistivities_nOhm_m=resistivities, film_Ohm_um2=film)
+
+
+@pytest.mark.parametrize("resistivities", [(22.0, 22.0), (1e-3, 1e9)])
+def test_one_round_spot_is_holms(resistivities):
+    """R = (rho_1 + rho_2) / 4a."""
+    pixels, length, radius, force = 512, 400.0, 1e3, 260.0
+    cycle = run_cycle(INPUTS, settings(pixels, length), 1, force, bowl(pixels, length, radius), contact_at="lowest")
+    way = stiffness_of(cycle.closing)
+    known = way.force_nN > 0.3 * force
+    spot_nm = (0.75 * way.force_nN * radius / INPUTS.e_star) ** (1 / 3)  # Hertz
+    ohm = resistance_Ohm(way.slope, way.area_nm2, INPUTS.e_star, of_two(resistivities))
+    alone = ohm + sum(resistivities) * LATTICE / (2.0 * np.pi * length)  # the neighbouring cells conduct, too
+    error = (alone * 4.0 * spot_nm / sum(resistivities) - 1.0)[known]  # scatters as sites come in one by one
+    assert known.sum() > 20
+    assert abs(error.mean()) < 0.01
+
+
+def test_many_spots_conduct_as_the_potential_says():
+    """Between the chords in all of 100 random contacts; the slope is off by the sites that come in between steps."""
+    errors = []
+    for seed in range(100):
+        rng = np.random.default_rng(seed)
+        chosen = settings(64, 200.0, ("elastic", "plastic")[seed % 2])
+        inputs = replace(INPUTS, rms=rng.uniform(0.5, 5.0), hurst=rng.uniform(0.4, 0.95))
+        cycle = run_cycle(inputs, chosen, seed, float(rng.uniform(100.0, 2000.0)), keep_surface=True)
+        way, branch = stiffness_of(cycle.opening), cycle.opening
+        contact = CoupledContact(cycle.heights.copy(), inputs, chosen)
+        for place in (-1, *rng.choice(np.arange(2, way.force_nN.size - 1), 2, replace=False)):
+            at = branch.separation_nm[branch.repulsive_nN == way.force_nN[place]][0]
+            contact.move_to(float(at - random_surface(inputs, chosen, seed).mean()), False)
+            assert contact.force == pytest.approx(way.force_nN[place], rel=1e-3)
+            direct = 0.5 * inputs.e_star * conducted(contact.fields()[0] > 0.0, 200.0)
+            assert way.least[place] * 0.9999 <= direct <= way.most[place] * 1.0001
+            errors.append(way.slope[place] / direct - 1.0)
+    assert np.median(np.abs(errors)) < 0.005
+    assert np.quantile(np.abs(errors), 0.95) < 0.1  # one site of few on 64 x 64; 0.05 was expected
+    assert abs(np.mean(errors)) < 0.01
+
+
+def test_rough_contacts_lie_within_barbers_bounds():
+    """Two smooth bowls, apart by the roughness' height, bound the force; tangents to the nearer bound the slope."""
+    chosen, smooth, force = settings(64, 200.0), bowl(64, 200.0, 400.0), 1500.0
+
+    def curve(heights, most):
+        branch = run_cycle(INPUTS, chosen, 1, most, heights, contact_at="lowest").closing
+        return stiffness_of(branch), heights.mean() - branch.separation_nm[branch.repulsive_nN > 0]
+
+    near, approach = curve(smooth, 12.0 * force)
+    for seed in range(100):
+        rough = random_surface(replace(INPUTS, rms=np.random.default_rng(seed).uniform(0.05, 0.3)), chosen, seed)
+        rough -= rough.min()
+        way, sunk = curve(smooth + rough, force)
+        high = np.interp(sunk, approach, near.force_nN)
+        low = np.interp(sunk - rough.max(), approach, near.force_nN, left=0.0)
+        assert (way.force_nN <= high * 1.001 + 1e-6).all()
+        assert (way.force_nN >= low * 0.999).all()
+        for k in np.arange(2, sunk.size - 1, 7):
+            rise, run = near.force_nN - way.force_nN[k], approach - sunk[k]
+            ahead, behind = run > 0.1, run < -0.1
+            first = way.force_nN[k] / sunk[k]  # the smooth bowl touches at 0
+            assert way.slope[k] <= (rise[ahead] / run[ahead]).min() * 1.001
+            assert way.slope[k] >= max((rise[behind] / run[behind]).max(initial=0.0), first) * 0.999
+
+
+def test_a_pressed_contact_conducts_better_and_keeps_it():
+    chosen = settings(64, 200.0, "plastic").model_copy(update={"max_force_nN": 1500.0})
+    rows = list(resistance_rows(TABLE, chosen, GOLD))
+    assert len(rows) == 3 * LEVELS * GOLD.runs
+    ohm = np.reshape([row["resistance_Ohm"] for row in rows], (GOLD.runs, 3, LEVELS))
+    closing, opening, again = np.median(ohm, axis=0)  # of a single surface, sites come and go
+    assert (np.diff(closing) < 1e-6).all()
+    assert (opening <= closing * 1.001).all()
+    assert opening[-1] == pytest.approx(closing[-1])
+    assert again == pytest.approx(opening, rel=0.1)
+    assert closing[-3] / opening[-3] > 1.1
+
+
+def test_closing_in_stages_is_closing_at_once():
+    chosen = settings(128, 400.0, "plastic").model_copy(update={"max_force_nN": 1500.0})
+    rows = list(resistance_rows(TABLE, chosen, GOLD))
+    run = next(row for row in rows if row["run"] == 2 and row["way"] == "closing" and row["force_nN"] > 700.0)
+    inputs, _ = contact_of(random_runs(TABLE, 2, 3)[0].values, chosen)
+    at_once = stiffness_of(run_cycle(inputs, chosen, run["seed"], run["force_nN"]).opening)
+    assert run["stiffness_N_per_m"] == pytest.approx(at_once.slope[-1], rel=0.01)
+
+
+def test_a_film_comes_on_top():
+    bare, covered = (
+        resistance_Ohm(np.array([1e4]), np.array([2000.0]), 91.0, of_two((22.0, 22.0), f)) for f in (0.0, 1.0)
+    )
+    assert bare[0] == pytest.approx(91e9 * 44e-9 / 2e4)
+    assert covered[0] - bare[0] == pytest.approx(1.0 / 2e-3)
+
+
+def test_what_is_refused():
+    with pytest.raises(InputError, match="give the resistivities of the two bodies"):
+        resistance_Ohm(np.ones(1), np.ones(1), 91.0, ResistanceSettings())
+    with pytest.raises(InputError, match=r"of 8 surfaces, 2 failed: a contact of .* nN did not settle"):
+        list(resistance_rows(TABLE, settings(64, 400.0).model_copy(update={"max_force_nN": 1e11}), GOLD))

@@ -1,0 +1,26 @@
+# Electrical resistance of metal on metal; only in scenes with resistance.resistivities_nOhm_m
+
+
+rule resistance:
+    input:
+        f"{RESULTS}/device/resistance.csv",
+
+
+rule measure_resistance:
+    input:
+        **SURFACE,
+        inputs=f"{RESULTS}/inputs.csv",
+    output:
+        f"{RESULTS}/device/resistance.csv",
+    log:
+        f"{RESULTS}/logs/measure_resistance.log",
+    threads: 1
+    resources:
+        mem_mb=CONTACT_MB,
+    params:
+        contact=settings("contact"),
+        resistance=settings("resistance"),
+    message:
+        "measure the resistance of closing and opening contacts"
+    script:
+        "../scripts/measure_resistance.py"
