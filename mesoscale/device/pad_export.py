@@ -234,17 +234,17 @@ def spice_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
     depths = tables.depth_nm
     deepest, far = f"{START_NM:g} - V(near)", [piece.y[-1] for piece in tables.closing]
     push, pull = (Piece(piece.x, piece.y - piece.y[-1]) for piece in tables.closing)
-    weights, rises, places = [], [], np.append(depths, depths[-1] + FADE_NM)
-    for k, pieces in enumerate(tables.opening):
-        at = places[max(k - 1, 0) : k + 2]
-        hat = Piece(at, (at == depths[k]).astype(float))
-        weights.append(f"Bweight{k} weight{k} 0 V = {_pwl(deepest, hat)}")
-        for name, rise in zip(("push", "pull"), pieces, strict=True):
-            rises.append(f"B{name}{k} {name}{k} 0 V = {_pwl('V(risen)', rise)}")
-    sums = {
-        name: "".join(f"\n+   + V(weight{k})*V({name}{k})" for k in range(depths.size)) for name in ("push", "pull")
-    }
-    lines = "\n".join([*weights, *rises])
+    places = np.append(depths, depths[-1] + FADE_NM)
+    logarithms = {}
+    for way, name in enumerate(("push", "pull")):
+        below = (push, pull)[way]
+        terms = [_pwl(deepest, below, 0.0 if way else REACH_NM)]
+        for k, pieces in enumerate(tables.opening):
+            at = places[max(k - 1, 0) : k + 2]
+            hat = Piece(at, (at == depths[k]).astype(float))
+            weight = _pwl(deepest, hat)
+            terms.append(f"({weight} > 0 ? {weight}*{_pwl('V(risen)', pieces[way])} : 0)")
+        logarithms[name] = "\n+   + ".join(terms)
     most = [piece.y.max() + MOST for piece in tables.closing]  # wild steps of a simulator stay finite
     return f"""* Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
 * {note(tables, cells)}
@@ -259,15 +259,18 @@ def spice_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
 Cclosed closed 0 {{{FOLLOWING:g}*follow}}
 Rleak closed 0 {1 / (FOLLOWING * LEAK):g}
 Bclosed 0 closed I = {FOLLOWING:g} * max({{{START_NM:g}-rest}} - V(s) - V(closed), 0)
-Bnear near 0 V = max(V(closed), {{{START_NM:g}-rest}} - V(s))
-Brisen risen 0 V = V(s) + V(near) + {{rest-{START_NM:g}}}
-Bpush0c closing_push 0 V = {_pwl(deepest, push, REACH_NM)}
-Bpull0c closing_pull 0 V = {_pwl(deepest, pull)}
-{lines}
-Bforce force 0 V = {{area}} * (exp(min(V(closing_push){sums["push"]}
-+   + {far[0]:.7g}, {most[0]:.4g})) - {tables.faint_GPa:.7g}
+Rnear near 0 1
+Bnear 0 near I = max(V(closed), {{{START_NM:g}-rest}} - V(s))
+Rrisen risen 0 1
+Brisen 0 risen I = V(s) + V(near) + {{rest-{START_NM:g}}}
+Rpush push 0 1
+Bpush 0 push I = {logarithms["push"]}
+Rpull pull 0 1
+Bpull 0 pull I = {logarithms["pull"]}
+Rforce force 0 1
+Bforce 0 force I = {{area}} * (exp(min(V(push) + {far[0]:.7g}, {most[0]:.4g})) - {tables.faint_GPa:.7g}
 +   - ({{hamaker/(6*3.14159265358979324)}} / pow(max(V(s) + {{rest}}, 1) + {{offset_nm}}, 3) + {FLOOR_GPa:g})
-+   * exp(min(V(closing_pull){sums["pull"]} + {far[1]:.7g}, {most[1]:.4g})))
++   * exp(min(V(pull) + {far[1]:.7g}, {most[1]:.4g})))
 .ends rough_pad
 """
 

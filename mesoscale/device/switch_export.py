@@ -1,14 +1,14 @@
 """The whole switch for circuit simulators: `mesoscale.device.lumps` on the tables of `mesoscale.device.pad_export`.
 
-A netlist holds the electrode: its modes, and one instance of `rough_lump` for each pair of lumps. That lump is a SPICE
-subcircuit, which ngspice runs as it is, or a Verilog-A module with the same nodes, which is compiled once.
+A netlist holds the electrode: its stiffness, and one instance of `rough_lump` for each pair of lumps. That lump is a
+SPICE subcircuit, which ngspice runs as it is, or a Verilog-A module with the same nodes, which is compiled once.
 
 Terminals are `top` and `bottom` of the two electrodes, and `middle`: by how much mid-span has come down (1 V = 1 nm).
-Inside, voltages are nm, nm/us, Pa and fC. All are zero for the open switch at rest, where simulators begin.
+Inside, voltages are nm, nm/us, Pa and fC. All are zero for the open switch at rest, where simulators begin. What
+follows from others is a current into 1 Ohm: voltage sources would double the equations.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesoscale.device.beam_kernels import least_gap_nm
 from mesoscale.device.lumps import LEAST_GAS, LEAST_NM, VISCOSITY, FREE_PATH_nm_Pa, Lumps, Study
@@ -25,40 +25,43 @@ from mesoscale.device.pad_export import (
 from mesoscale.device.switch import VACUUM_PERMITTIVITY
 from mesoscale.pad.memory import PadLaw
 
-Array = NDArray[np.float64]
-
+FORCE = 1e-5
+"""Current (A) of a pressure of 1 Pa on a lump: the `abstol` of a simulator is then small beside what moves it."""
 LUMP = "top bottom moved drawn charge"
-"""Nodes of a lump: the electrodes; how far it has moved (nm); what draws it down (Pa); its charge (fC)."""
+"""Nodes of a lump: the electrodes; how far it has moved (nm); what draws it down (Pa); its charge (fC), a
+current into 1 Ohm."""
 
 
 def spice_switch(lumps: Lumps, study: Study, law: PadLaw, cells: int) -> str:
     """SPICE netlist (ngspice) of the subcircuits `rough_switch`, `rough_lump` and `rough_pad`."""
-    numbers, (stiffness, shapes) = range(lumps.count), lumps.modes
-    share = shapes * (lumps.area_m2 / lumps.area_m2.sum())[:, None]
-    body = []
+    numbers, body, springs = range(lumps.count), [], FORCE * lumps.spring_Pa_nm
     for k in numbers:
+        held = "\n".join(f"G{k}_{j} speed{k} 0 bent{j} 0 {springs[k, j]:.12g}" for j in numbers)
         of = f"rest={lumps.rest_nm[k]:.9g} area={lumps.area_m2[k]:.9g}"
-        body.append(f"""Bmoved{k} moved{k} 0 V ={_sum("mode", shapes[k])}
-Xlump{k} top bottom moved{k} drawn{k} charge{k} rough_lump {of}
+        body.append(f"""Xlump{k} top bottom moved{k} drawn{k} charge rough_lump {of}
 +   gas={{gas}} viscosity={{viscosity}} fringe={{fringe}}
-Cmode{k} mode{k} 0 1u
-Gmode{k} 0 mode{k} speed{k} 0 1
-Cspeed{k} speed{k} 0 {{1m*mass}}
-Bspeed{k} 0 speed{k} I ={_sum("drawn", share[:, k])}
-+   - {stiffness[k]:.12g}*(V(mode{k}) + {{loss}}*V(speed{k}))""")
+Cmoved{k} moved{k} 0 1u
+Gmoved{k} 0 moved{k} speed{k} 0 1
+Gbent{k} 0 bent{k} moved{k} 0 1
+Gmore{k} 0 bent{k} speed{k} 0 {{loss}}
+Rbent{k} bent{k} 0 1
+Cspeed{k} speed{k} 0 {{{1e-3 * FORCE:g}*mass}}
+Gdrawn{k} 0 speed{k} drawn{k} 0 {FORCE:g}
+{held}""")
     width, dielectric = lumps.width_m, lumps.dielectric_nm
     electric = f"(1e-9*max({{rest+{dielectric:.9g}}} - V(moved), {least_gap_nm(dielectric):.9g}))"
     film, dense = f"max({{rest}} - V(moved), {LEAST_NM:g})", f"max(1 + V(excess), {LEAST_GAS:g})"
     return f"""* An electrostatic switch on a rough contact (Asperity, docs/switch.md).
 * {_said(lumps, study)}
 * top, bottom: the electrodes; middle: by how much (nm) mid-span has come down, 1 V = 1 nm.
-* Inside: nm, nm/us, Pa, fC. mass per area in kg/m2, loss in us, viscosity in Pa s, gas in Pa.
+* Inside: nm, nm/us, Pa, fC. What moves a lump: 1 A for {1.0 / FORCE:g} Pa.
+* mass per area in kg/m2, loss in us, viscosity in Pa s, gas in Pa.
 * fringe: 0 as in Asperity's answer; 0.6366 for a thin strip over a plane.
 .subckt rough_switch top bottom middle params: fringe={lumps.fringe:.9g} gas={lumps.gas_Pa:.9g}
 +   viscosity={VISCOSITY:g} mass={lumps.mass_kg_m2:.9g} loss={lumps.loss_us:.9g}
 {chr(10).join(body)}
-Bmiddle middle 0 V = V(moved{numbers[-1]})
-Bcharge charge 0 V ={_sum("charge", np.ones(lumps.count))}
+Emiddle middle 0 moved{numbers[-1]} 0 1
+Rcharge charge 0 1
 Ccharge charge sense 1f
 Vcharge sense 0 0
 Fcharge top bottom Vcharge 1
@@ -66,15 +69,18 @@ Fcharge top bottom Vcharge 1
 
 * A pair of lumps; Verilog-A has the same.
 .subckt rough_lump {LUMP} params: rest=1 area=1 gas=1 viscosity=1 fringe=0
-Eup up 0 moved 0 -1
+Gup 0 up 0 moved 1
+Rup up 0 1
 Xpad up push rough_pad area=1e9 rest={{rest}}
-Bcharge charge 0 V = 1e15 * V(top,bottom) * {{area*{VACUUM_PERMITTIVITY}}} * (1 / {electric}
+Bcharge 0 charge I = 1e15 * V(top,bottom) * {{area*{VACUUM_PERMITTIVITY}}} * (1 / {electric}
 +   + {{fringe/{width:.9g}}} * ln({np.pi * width:.9g} / {electric}))
-Bexcess excess 0 V = ({{rest}} - V(lost)) / {film} - 1
+Rexcess excess 0 1
+Bexcess 0 excess I = ({{rest}} - V(lost)) / {film} - 1
 Clost lost 0 1u
 Blost 0 lost I = {{1e-24*gas/(viscosity*{width**2:.9g})}} * {dense} * V(excess) * {film}^3
 +   * (1 + 9.638 * pow({{{FREE_PATH_nm_Pa:.9g}/gas}} / ({dense} * {film}), 1.159))
-Bdrawn drawn 0 V = {0.5 * VACUUM_PERMITTIVITY} * V(top,bottom)^2 * (1 + {{fringe/{width:.9g}}} * {electric})
+Rdrawn drawn 0 1
+Bdrawn 0 drawn I = {0.5 * VACUUM_PERMITTIVITY} * V(top,bottom)^2 * (1 + {{fringe/{width:.9g}}} * {electric})
 +   / {electric}^2 - V(push) - {{gas}} * V(excess)
 .ends rough_lump
 
@@ -119,7 +125,7 @@ module rough_lump({names});
             - max({START_NM:.1f} - s - V(closed), 0.0));
         I(lost) <+ 1.0e-6 * ddt(V(lost)) - 1.0e-24 * gas * dense * excess * film * film * film
             * thinner / (viscosity * {lumps.width_m**2:.9g});
-        V(charge) <+ 1.0e15 * volts * area * {VACUUM_PERMITTIVITY} * (1.0 / electric
+        I(charge) <+ -1.0e15 * volts * area * {VACUUM_PERMITTIVITY} * (1.0 / electric
             + fringe / {width} * ln(`M_PI * {width} / electric));
         V(drawn) <+ 0.5 * {VACUUM_PERMITTIVITY} * volts * volts * (1.0 + fringe * electric / {width})
             / (electric * electric) - 1.0e9 * pressure(s, deepest, hamaker, offset_nm) - gas * excess;
@@ -128,12 +134,6 @@ module rough_lump({names});
     end
 endmodule
 """
-
-
-def _sum(name: str, weights: Array) -> str:
-    """A weighted sum of nodes, four a line; the first plus of a line goes on in SPICE, the second is a sign."""
-    terms = [f"{weight:+.12g}*V({name}{k})" for k, weight in enumerate(weights)]
-    return "".join(("\n+ " if k % 4 == 0 else " ") + term for k, term in enumerate(terms))
 
 
 def _said(lumps: Lumps, study: Study) -> str:

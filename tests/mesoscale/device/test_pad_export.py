@@ -128,19 +128,18 @@ def apart(net, pull):
 
 def by_spice(text, separation, deepest):
     """Pressure (GPa) of the SPICE subcircuit, by its tables alone."""
-    tables = {
-        name: (of, [float(value) for value in nodes.replace("\n+", "").split(",")])
-        for name, of, nodes in re.findall(r"^B\w+ (\w+) 0 V = pwl\(([^,]*),(.*?)\)$", text, re.M | re.S)
-    }
     at = {f"{START_NM:g} - V(near)": deepest, "V(risen)": separation - deepest}
-    value = {name: float(np.interp(at[of], nodes[::2], nodes[1::2])) for name, (of, nodes) in tables.items()}
-    count = sum(name.startswith("weight") for name in value)
+
+    def logarithm(name):
+        (sums,) = re.findall(rf"^B{name} 0 {name} I = (.*?)^R", text, re.M | re.S)
+        nodes = [(of, [float(value) for value in row.replace("\n+", "").split(",")])
+                 for of, row in re.findall(r"pwl\(([^,]*),(.*?)\)", sums, re.S)]  # fmt: skip
+        closing, *opening = [float(np.interp(at[of], row[::2], row[1::2])) for of, row in nodes]
+        return closing + sum(weight * rise for weight, rise in zip(opening[1::3], opening[2::3], strict=True))
+
     ((*far, faint),) = re.findall(r"\+ (\S+), \S+\)\) - (\S+)\n", text)
     far += re.findall(r"\+ (\S+), \S+\)\)\)\n.ends", text)
-    push, pull = (
-        value[f"closing_{name}"] + sum(value[f"weight{k}"] * value[f"{name}{k}"] for k in range(count)) + float(away)
-        for name, away in zip(("push", "pull"), far, strict=True)
-    )
+    push, pull = (logarithm(name) + float(away) for name, away in zip(("push", "pull"), far, strict=True))
     (hamaker,), (offset,) = re.findall(r"hamaker=(\S+)", text), re.findall(r"offset_nm=(\S+)", text)
     return np.exp(push) - float(faint) - np.exp(pull) * Flats(float(hamaker), float(offset)).pull_GPa(separation)
 
