@@ -35,8 +35,8 @@ SPHERE_STEP_RMS = 0.25
 """Distance of the depths of closing for the memory under a sphere, in units of the RMS height: some eight of them."""
 RING_NM = 0.05
 """Step of the rings of a sphere."""
-HIGHEST_RISE_NM = 60.0
-"""The sphere is lifted this far in search of its largest pull."""
+LIFT_NM = 60.0
+"""The sphere is lifted so far at a time in search of its largest pull."""
 MOST_STEPS = 20_000
 
 
@@ -247,13 +247,16 @@ def press_sphere(law: PadLaw, deepest_nm: float, radius_nm: float, beyond_J_m2: 
     ends = float(law.separation_nm[-1])
     rings = np.arange(deepest_nm, ends, RING_NM)
     load = float(np.trapezoid(law.closing_GPa(rings), rings)) - beyond_J_m2
-    rises = np.arange(0.0, min(HIGHEST_RISE_NM, ends - deepest_nm), RING_NM)
-    touched = rings[rings <= law.depth_nm[-1]]
-    held = np.array([law.opening_GPa(ring + rises, ring) for ring in touched])
-    inner = np.trapezoid(held, touched, axis=0) if touched.size > 1 else np.zeros(rises.size)
-    outer = _integral_to_end(law, touched[-1] + rises)
-    per_area = inner + outer - beyond_J_m2
-    pull = max(-float(per_area.min()), 0.0)
+    touched, pull = rings[rings <= law.depth_nm[-1]], 0.0
+    for start in np.arange(0.0, ends - deepest_nm, LIFT_NM):
+        rises = np.arange(start, min(start + LIFT_NM, ends - deepest_nm), RING_NM)
+        held = np.array([law.opening_GPa(ring + rises, ring) for ring in touched])
+        inner = np.trapezoid(held, touched, axis=0) if touched.size > 1 else np.zeros(rises.size)
+        outer = _integral_to_end(law, touched[-1] + rises)
+        per_area = inner + outer - beyond_J_m2
+        pull = max(-float(per_area.min()), pull)
+        if per_area.argmin() < rises.size - 1:
+            break  # it pulls less from here on
     return PressedSphere(2 * np.pi * radius_nm * load, 2 * np.pi * radius_nm * pull, pull)
 
 

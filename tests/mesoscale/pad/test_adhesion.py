@@ -1,5 +1,7 @@
 """Energy and pull-off of pads, and a sphere on a film by Derjaguin's integral."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -99,6 +101,16 @@ def test_a_sphere_remembers_ring_by_ring():
     exact = -quad(lambda depth: memory(depth, depth), 20.0, 30.0)[0]
     # interpolated in logarithm between depths 0.5 nm apart
     assert sphere.work_J_m2 == pytest.approx(exact, rel=0.01)
+
+
+def test_a_sphere_on_a_coarse_film_is_lifted_until_it_pulls_less():
+    """Lengths of a known pad times 30: so are the energies per area, while pressures stay."""
+    law, beyond = law_without_memory()
+    coarse = replace(law, separation_nm=30 * law.separation_nm, depth_nm=30 * law.depth_nm)
+    fine, wide = (
+        press_sphere(pad, deepest, 1e5, times * beyond) for pad, deepest, times in ((law, 20.0, 1), (coarse, 600.0, 30))
+    )
+    assert wide.work_J_m2 == pytest.approx(30 * fine.work_J_m2, rel=5e-3)
 
 
 def test_every_mechanics_has_every_case():
