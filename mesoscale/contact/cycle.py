@@ -142,7 +142,7 @@ def run_cycle(
     contact = contact_on(surface, inputs, settings, numerics)
     capacity = contact.capacity
     first_contact = contact.touching_separation
-    approach = [contact.away(first_contact + gap) for gap in _gaps(contact)[::-1]]
+    approach = [row for gap in _gaps(contact)[::-1] for row in contact.way(first_contact + gap)]
     closing = trace(contact, numerics.force_steps, plastic, stop_force=min(force, capacity))
     reached = closing.reached and force <= capacity
     miss = abs(closing.rows[-1].force - force) / force
@@ -154,7 +154,7 @@ def run_cycle(
     if not contact.REVERSIBLE:
         path = reopen(contact, numerics.force_steps, last)
         opening, repeated, unconverged = path.rows, repeated + path.repeated, unconverged + path.unconverged
-        departure = [contact.away(opening[-1].separation + gap) for gap in _gaps(contact)]
+        departure = [row for gap in _gaps(contact) for row in contact.way(path.rows[-1].separation + gap)]
         unconverged += contact.unsettled
         remarks["jump_loss_aJ"] = float(contact.lost)
     elif changed > 0 and last.force > 0:

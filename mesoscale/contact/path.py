@@ -47,8 +47,8 @@ def trace(
     path = Path()
     final = stop_force
     separation = contact.touching_separation
-    path.rows.append(contact.away(separation))
-    force = path.rows[0].force
+    path.rows += contact.way(separation)
+    force = path.rows[-1].force
     scale = max(contact.rms, 1e-3 * contact.spacing)
     smallest = contact.SMALLEST_STEP * scale
     step = scale / 300.0

@@ -129,6 +129,10 @@ class Contact(ABC):
         """The contact where it does not touch."""
         return Row(separation, 0.0, self.attraction(separation), 0, 0, 0)
 
+    def way(self, separation: float) -> list[Row]:
+        """The same, after what has to be known of the way there."""
+        return [self.away(separation)]
+
     def opened(self, separations: np.ndarray) -> np.ndarray:
         """Repulsion and attraction (nN) on the way back over separations of a closing, without further flow.
 

@@ -62,6 +62,7 @@ class AdhesiveContact(CoupledContact):
     FORCE_TOLERANCE = 1e-4
     SMALLEST_STEP = 1e-4
     JUMP_STEP = 3e-3  # over the roughness: a step that jumps on the way to a separation is halved down to this
+    UNKNOWN = 0.02  # of what parts the fresh surface from its first touch: work that a step outside contact may leave open
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
     MIXED = 12  # steps that are mixed
@@ -73,6 +74,8 @@ class AdhesiveContact(CoupledContact):
         self.space = grid.Grid(surface.shape[0], settings.length_nm, float(inputs.e_star), settings.bodies)
         super().__init__(surface, inputs, settings, numerics)
         self._check_range()
+        law, gap = self.adhesion, self.heights + self.touching_separation
+        self.parting = -0.5 * law.cutoff * law.deformed(gap, np.ones_like(gap)) if law else 0.0  # nN nm, roughly
 
     def _check_range(self) -> None:
         """Refuse an attraction that falls off so fast that single sites jump (InputError)."""
@@ -121,21 +124,22 @@ class AdhesiveContact(CoupledContact):
     def _balance(self, with_flow: bool) -> None:
         """Energy that a step has lost in jumps; what flow takes up is no longer stored."""
         self.now = self.now._replace(net=self.force + self.attraction(self.separation))
-        lost = self.saved[0].lost + max(self._jump(with_flow), 0.0)
+        loss, smooth = self._loss(with_flow)
+        lost = self.saved[0].lost + (loss if loss > smooth else 0.0)
         self.now = self.now._replace(lost=lost, energy=self.now.energy - (self.now.flowing if with_flow else 0.0))
 
-    def _jump(self, with_flow: bool) -> float:
-        """What the energy fell by in the last step, beyond the work of its mean force, if that was a jump; nN nm.
+    def _loss(self, with_flow: bool) -> tuple[float, float]:
+        """What the energy fell by in the last step beyond the work of its mean force, and how much a jump exceeds.
 
-        Up to a third of abs(F2 - F1) step / 2 may be the curvature of F (a parabola), with either sign; beyond half of
-        it the contact has jumped. Flow loses energy by itself, so steps that flow tell nothing.
+        Both nN nm. Up to a third of abs(F2 - F1) step / 2 may be the curvature of F (a parabola), with either sign;
+        beyond half of it the contact has jumped. Flow loses energy by itself, so steps that flow tell nothing.
         """
         was, now = self.saved[0], self.now
         step = now.separation - was.separation
         if not math.isfinite(step) or (with_flow and now.flowing > 0.0):
-            return 0.0
+            return 0.0, 0.0
         loss = was.energy - now.energy - 0.5 * (was.net + now.net) * step
-        return loss if abs(loss) > 0.25 * abs((now.net - was.net) * step) else 0.0
+        return loss, 0.25 * abs((now.net - was.net) * step)
 
     def _expected(self, separation: float) -> np.ndarray:
         """Attraction of the sites if it goes on as in the last step."""
@@ -152,19 +156,29 @@ class AdhesiveContact(CoupledContact):
         return self.now.lost
 
     def away(self, separation: float) -> Row:
-        """The contact at a separation, where attraction may close it; on the way down it flows.
+        """The contact at a separation, where attraction may close it; on the way down it flows."""
+        return self._halving(separation, math.inf)[-1]
 
-        Where it jumps it goes there in smaller steps. The force within a step that jumps is not known, so the loss is
-        known to half the jump of the force times the step.
+    def way(self, separation: float) -> list[Row]:
+        """The same, with the steps on the way there that its work needs."""
+        return self._halving(separation, self.UNKNOWN * self.parting)
+
+    def _halving(self, separation: float, unknown: float) -> list[Row]:
+        """Rows to a separation. A step that jumps or leaves more than some work (nN nm) open is halved.
+
+        A peak of the force, or a jump amid a step, can leave just the loss that a smooth force has: then only the
+        change of the force tells that the step is too long. The force within a step that jumps is not known, so its
+        loss is known to half the jump of the force times the step.
         """
         start, with_flow = self.separation, self.flows and separation < self.separation
         moved = self.move_to(separation, with_flow)
-        if self._jump(with_flow) and abs(separation - start) > self.JUMP_STEP * self.rms:
+        loss, smooth = self._loss(with_flow)
+        coarse = abs(loss) > min(smooth, unknown) or smooth > unknown
+        if coarse and abs(separation - start) > self.JUMP_STEP * self.rms:
             self.back()
-            self.away(0.5 * (start + separation))
-            return self.away(separation)
+            return self._halving(0.5 * (start + separation), unknown) + self._halving(separation, unknown)
         self.unsettled += not moved.settled
-        return moved.row(separation, self.attraction(separation))
+        return [moved.row(separation, self.attraction(separation))]
 
     def opened(self, separations: np.ndarray) -> np.ndarray:
         """Repulsion and attraction (nN) on the way back over separations of a closing, shape (2, n).
