@@ -157,28 +157,24 @@ class AdhesiveContact(CoupledContact):
 
     def away(self, separation: float) -> Row:
         """The contact at a separation, where attraction may close it; on the way down it flows."""
-        return self._halving(separation, math.inf)[-1]
+        moved = self.move_to(separation, self.flows and separation < self.separation)
+        self.unsettled += not moved.settled
+        return moved.row(separation, self.attraction(separation))
 
     def way(self, separation: float) -> list[Row]:
-        """The same, with the steps on the way there that its work needs."""
-        return self._halving(separation, self.UNKNOWN * self.parting)
-
-    def _halving(self, separation: float, unknown: float) -> list[Row]:
-        """Rows to a separation. A step that jumps or leaves more than some work (nN nm) open is halved.
+        """The same, in steps whose work is known to `UNKNOWN`, and a jump as far as the force before and after is.
 
         A peak of the force, or a jump amid a step, can leave just the loss that a smooth force has: then only the
-        change of the force tells that the step is too long. The force within a step that jumps is not known, so its
-        loss is known to half the jump of the force times the step.
+        change of the force tells that the step is too long.
         """
-        start, with_flow = self.separation, self.flows and separation < self.separation
-        moved = self.move_to(separation, with_flow)
-        loss, smooth = self._loss(with_flow)
-        coarse = abs(loss) > min(smooth, unknown) or smooth > unknown
-        if coarse and abs(separation - start) > self.JUMP_STEP * self.rms:
+        start, unsettled = self.separation, self.unsettled
+        row = self.away(separation)
+        unknown = max(map(abs, self._loss(self.flows and separation < start)))
+        if unknown > self.UNKNOWN * self.parting and abs(separation - start) > self.JUMP_STEP * self.rms:
             self.back()
-            return self._halving(0.5 * (start + separation), unknown) + self._halving(separation, unknown)
-        self.unsettled += not moved.settled
-        return [moved.row(separation, self.attraction(separation))]
+            self.unsettled = unsettled
+            return self.way(0.5 * (start + separation)) + self.way(separation)
+        return [row]
 
     def opened(self, separations: np.ndarray) -> np.ndarray:
         """Repulsion and attraction (nN) on the way back over separations of a closing, shape (2, n).
@@ -235,7 +231,7 @@ class AdhesiveContact(CoupledContact):
             self.now = self.now._replace(pull=wanted, shift=self.space.displacement(-wanted))
             settled = super()._solve()
             pressure = self._spread()
-            moved = self.now.shift + self.space.displacement(pressure)
+            moved = self.now.shift + (self.space.displacement(pressure) if self.grid is None else self.displacement)
             reached = np.zeros_like(moved)
             energy = change = 0.0
             if law is not None:

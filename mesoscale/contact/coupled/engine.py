@@ -283,6 +283,7 @@ class CoupledContact(Contact):
 
     def _know_all(self) -> None:
         """Go over to the whole grid."""
+        self.matrix = self.matrix[:0, :0].copy()  # frees its memory
         self.grid = grid.Grid(self.n, self.length, self.e_star, self.bodies)
         pressure, limit = np.zeros(self.heights.size), np.full(self.heights.size, self._fresh_limit)
         pressure[self.sites], limit[self.sites] = self.pressure, self.limit
