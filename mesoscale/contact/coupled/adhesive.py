@@ -62,7 +62,7 @@ class AdhesiveContact(CoupledContact):
     FORCE_TOLERANCE = 1e-4
     SMALLEST_STEP = 1e-4
     JUMP_STEP = 3e-3  # over the roughness: a step that jumps on the way to a separation is halved down to this
-    UNKNOWN = 0.02  # of what parts the fresh surface from its first touch: work that a step outside contact may leave open
+    UNKNOWN = 0.02  # of what parts the fresh surface at first touch: work that a step outside contact may leave open
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
     MIXED = 12  # steps that are mixed
