@@ -39,7 +39,7 @@ def describe(results: Results) -> Section | None:
         axes.legend()
 
     section.add(
-        draw("resistance", "Resistance against force", plot, (5.6, 3.6)),
+        draw("resistance", "Resistance against force", plot),
         "A contact that has been pressed keeps its area: it conducts better when it opens and closes again.",
     )
     lines = [
