@@ -234,17 +234,15 @@ def spice_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
     depths = tables.depth_nm
     deepest, far = f"{START_NM:g} - V(near)", [piece.y[-1] for piece in tables.closing]
     push, pull = (Piece(piece.x, piece.y - piece.y[-1]) for piece in tables.closing)
-    places = np.append(depths, depths[-1] + FADE_NM)
-    logarithms = {}
-    for way, name in enumerate(("push", "pull")):
-        below = (push, pull)[way]
-        terms = [_pwl(deepest, below, 0.0 if way else REACH_NM)]
-        for k, pieces in enumerate(tables.opening):
-            at = places[max(k - 1, 0) : k + 2]
-            hat = Piece(at, (at == depths[k]).astype(float))
-            weight = _pwl(deepest, hat)
-            terms.append(f"({weight} > 0 ? {weight}*{_pwl('V(risen)', pieces[way])} : 0)")
-        logarithms[name] = "\n+   + ".join(terms)
+    weights, places = [], np.append(depths, depths[-1] + FADE_NM)
+    for k in range(depths.size):
+        at = places[max(k - 1, 0) : k + 2]
+        weights.append(_pwl(deepest, Piece(at, (at == depths[k]).astype(float))))
+    sums = []
+    for way, closed in enumerate((_pwl(deepest, push, REACH_NM), _pwl(deepest, pull))):
+        rises = (_pwl("V(risen)", pieces[way]) for pieces in tables.opening)
+        terms = [f"({weight} > 0 ? {weight}*{rise} : 0)" for weight, rise in zip(weights, rises, strict=True)]
+        sums.append("\n+   + ".join([closed, *terms]))
     most = [piece.y.max() + MOST for piece in tables.closing]  # wild steps of a simulator stay finite
     return f"""* Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
 * {note(tables, cells)}
@@ -264,9 +262,9 @@ Bnear 0 near I = max(V(closed), {{{START_NM:g}-rest}} - V(s))
 Rrisen risen 0 1
 Brisen 0 risen I = V(s) + V(near) + {{rest-{START_NM:g}}}
 Rpush push 0 1
-Bpush 0 push I = {logarithms["push"]}
+Bpush 0 push I = {sums[0]}
 Rpull pull 0 1
-Bpull 0 pull I = {logarithms["pull"]}
+Bpull 0 pull I = {sums[1]}
 Rforce force 0 1
 Bforce 0 force I = {{area}} * (exp(min(V(push) + {far[0]:.7g}, {most[0]:.4g})) - {tables.faint_GPa:.7g}
 +   - ({{hamaker/(6*3.14159265358979324)}} / pow(max(V(s) + {{rest}}, 1) + {{offset_nm}}, 3) + {FLOOR_GPa:g})

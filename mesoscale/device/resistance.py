@@ -44,15 +44,14 @@ class Stiffness:
     ----------
     force_nN : rising, shape (n,), as all that follows.
     area_nm2 : of contact.
+    approach_nm : of the mean planes.
     slope : dF/d(delta), N/m.
-    least, most : slopes of the chords below and above, N/m; 0 and infinite at the ends.
     """
 
     force_nN: Array
     area_nm2: Array
+    approach_nm: Array
     slope: Array
-    least: Array
-    most: Array
 
 
 def stiffness_of(branch: Branch) -> Stiffness:
@@ -61,9 +60,7 @@ def stiffness_of(branch: Branch) -> Stiffness:
     force, approach, area = branch.repulsive_nN[up], -branch.separation_nm[up], branch.contact_area_nm2[up]
     kept = (force > 0) & (np.diff(approach, prepend=-np.inf) > 0)
     force, approach = force[kept], approach[kept]
-    chords = np.diff(force) / np.diff(approach)
-    least, most = np.concatenate([[0.0], chords]), np.concatenate([chords, [np.inf]])
-    return Stiffness(force, area[kept], np.gradient(force, approach, edge_order=2), least, most)
+    return Stiffness(force, area[kept], approach, np.gradient(force, approach, edge_order=2))
 
 
 def resistance_Ohm(slope: Array, area_nm2: Array, e_star_GPa: float, settings: ResistanceSettings) -> Array:
