@@ -54,7 +54,8 @@ class ReadingSettings(Settings):
 class MaterialSettings(Settings):
     """An elastic layer of one of the two bodies, or its base."""
 
-    young_GPa: float = Field(gt=0, le=1e6, description="Young's modulus", json_schema_extra={"unit": "GPa"})
+    # the table of influences resolves the ratios of these bounds (tests/mesoscale/contact/test_layers.py)
+    young_GPa: float = Field(ge=1e-6, le=1e6, description="Young's modulus", json_schema_extra={"unit": "GPa"})
     poisson: float = Field(ge=0, lt=0.5, description="Poisson's ratio")
     thickness_nm: float | None = Field(
         default=None, ge=0, le=1e6, description="thickness, above 0; null: the base", json_schema_extra={"unit": "nm"}
