@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.linalg import expm
+from scipy.special import j0
 
 from mesoscale.contact import ContactInputs
 from mesoscale.contact.coupled import half_space, layers
@@ -110,6 +111,20 @@ def test_a_sphere_feels_the_film_when_thick_and_the_base_when_thin(thickness, fe
         return contact.force
 
     assert force(film) == pytest.approx(force(body(feels)), rel=0.02)
+
+
+def test_a_point_load_on_a_film_is_boussinesqs_and_what_the_film_adds():
+    # F / (pi r) (1/E_film - 1/E_base) and a Hankel transform that dies with depth; a film's displacement is local, so
+    # that the other cells add only their mean. Weights 1, 2, 1 take off the shortest wave, of which the site is made.
+    pixels, length, places = 256, 64.0, np.array([8, 12, 16, 24])
+    film, site, q = (body({**SILICA, "thickness_nm": 2.5}, NITRIDE),), length / pixels, np.linspace(1e-4, 16.0, 20001)
+    soft = layers.softness(film, q)
+    local = np.trapezoid((soft - soft[-1]) * j0(q * site * places[:, None]), q)
+    wanted = ((soft[-1] - 1) / (site * places) + local) / np.pi * site**2
+    table = (half_space.influence(pixels, length, film) - half_space.influence(pixels, length, ()))[0] * length
+    found = sum(share * table[places + shift] for shift, share in ((-1, 0.25), (0, 0.5), (1, 0.25)))
+    mean = 2 * (soft[0] - 1) / q[0] * (site / length) ** 2
+    np.testing.assert_allclose(found + mean, wanted, rtol=0.04, atol=1e-3 * wanted[0])
 
 
 def test_the_table_and_the_grid_are_the_same_bodies():
