@@ -23,6 +23,8 @@ Load = Callable[[Array], tuple[Array, Array]]
 """Pressure (Pa, positive: apart) and its derivative (Pa/m) at separations (m), all of shape (elements, points)."""
 
 GAUSS = np.polynomial.legendre.leggauss(4)
+MIDDLE, LANDING = 0.012, 0.56
+"""Shares of half the beam: of the last contact, 3 um of the default, and of what lands when the beam pulls in."""
 
 
 @dataclass(frozen=True)
@@ -102,17 +104,20 @@ def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
 def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
     """The same beam loaded at 2 `lumps` places only: one integration point at the end of each element but the last.
 
-    The places are those of Gauss in parts of the beam that shrink with the square of their distance from mid-span,
-    where the electrode lets go last. Their stiffness is exact where there is no tension.
+    The places are those of Gauss in parts of the beam. Within `LANDING` of mid-span, which opens last, the density of
+    parts is 1 / (x + `MIDDLE`) + 2 / `LANDING` at a share x of half the beam; what remains is one part.
+    Their stiffness is exact where there is no tension.
 
     Raises
     ------
-    InputError : see `beam_of`; the number of lumps is not even.
+    InputError : see `beam_of`; the number of lumps is not even, or less than 4.
     """
-    if lumps < 2 or lumps % 2:
-        raise InputError(f"a bending electrode needs an even number of lumps, not {lumps}")
-    half = settings.length_um * 1e-6 / 2.0
-    ends = half * (1.0 - np.linspace(1.0, 0.0, lumps // 2 + 1) ** 2)
+    if lumps < 4 or lumps % 2:
+        raise InputError(f"a bending electrode needs an even number of lumps, at least 4, not {lumps}")
+    half, share = settings.length_um * 1e-6 / 2.0, np.linspace(0.0, LANDING, 10001)
+    until = np.log1p(share / MIDDLE) + 2.0 * share / LANDING
+    landing = np.interp(np.linspace(until[-1], 0.0, lumps // 2), until, share)
+    ends = half * (1.0 - np.concatenate([[1.0], landing]))
     parts, (gauss, weights) = np.diff(ends)[:, None], np.polynomial.legendre.leggauss(2)
     at = (ends[:-1, None] + 0.5 * parts * (gauss + 1.0)).ravel()
     places = np.concatenate([[0.0], at, 2.0 * half - at[::-1], [2.0 * half]])

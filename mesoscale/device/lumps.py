@@ -61,6 +61,8 @@ class Lumps:
     mass_kg_m2 : mass per area.
     gas_Pa : pressure of the gas around.
     loss_us : a moving electrode resists as if it were displaced by so much more of its velocity.
+    drag_Pa_us_nm : pressure against a velocity, none in a switch. A large one lands the electrode softly and stops what
+        rings, so that a slow loop is that of `device/loop.csv`.
     fringe : see above.
     """
 
@@ -72,6 +74,7 @@ class Lumps:
     mass_kg_m2: float
     gas_Pa: float
     loss_us: float = 0.0
+    drag_Pa_us_nm: float = 0.0
     fringe: float = 0.0
 
     @property
@@ -113,7 +116,7 @@ class Lumps:
         deepest = np.minimum(START_NM - closed, s)
         pressure = pad(s[:, None], deepest[:, None])[0][:, 0] * GPA - voltage**2 * self.electric(s)[1]
         excess, flow = self.gas(s, amount)
-        pressure += excess - self.spring_Pa_nm @ (s - self.rest_nm + self.loss_us * v)
+        pressure += excess - self.drag_Pa_us_nm * v - self.spring_Pa_nm @ (s - self.rest_nm + self.loss_us * v)
         follow = (np.maximum(START_NM - s - closed, 0.0) - LEAK * closed) / (1e6 * FOLLOW_S)
         return np.concatenate([v, 1e-3 * pressure / self.mass_kg_m2, follow, -flow])
 

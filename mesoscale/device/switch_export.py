@@ -46,6 +46,7 @@ Gbent{k} 0 bent{k} moved{k} 0 1
 Gmore{k} 0 bent{k} speed{k} 0 {{loss}}
 Rbent{k} bent{k} 0 1
 Cspeed{k} speed{k} 0 {{{1e-3 * FORCE:g}*mass}}
+Gdrag{k} speed{k} 0 speed{k} 0 {{{FORCE:g}*drag}}
 Gdrawn{k} 0 speed{k} drawn{k} 0 {FORCE:g}
 {held}""")
     width, dielectric = lumps.width_m, lumps.dielectric_nm
@@ -56,9 +57,10 @@ Gdrawn{k} 0 speed{k} drawn{k} 0 {FORCE:g}
 * top, bottom: the electrodes; middle: by how much (nm) mid-span has come down, 1 V = 1 nm.
 * Inside: nm, nm/us, Pa, fC. What moves a lump: 1 A for {1.0 / FORCE:g} Pa.
 * mass per area in kg/m2, loss in us, viscosity in Pa s, gas in Pa.
+* drag: 0; a large one (3e4 Pa us/nm) lands the electrode softly, for loops so slow that nothing else matters.
 * fringe: 0 as in Asperity's answer; 0.6366 for a thin strip over a plane.
 .subckt rough_switch top bottom middle params: fringe={lumps.fringe:.9g} gas={lumps.gas_Pa:.9g}
-+   viscosity={VISCOSITY:g} mass={lumps.mass_kg_m2:.9g} loss={lumps.loss_us:.9g}
++   viscosity={VISCOSITY:g} mass={lumps.mass_kg_m2:.9g} loss={lumps.loss_us:.9g} drag={lumps.drag_Pa_us_nm:.9g}
 {chr(10).join(body)}
 Emiddle middle 0 moved{numbers[-1]} 0 1
 Rcharge charge 0 1

@@ -40,7 +40,7 @@ def test_few_lumps_pull_in_and_release_as_the_finite_elements(law):
     study = study_lumps(BEAM, law)
     assert max(study.pull_in, study.release) <= 0.01
     assert study.capacitance <= 0.03
-    assert study.lumps <= 32
+    assert study.lumps <= 28
 
 
 def test_tilt_hardly_changes_what_the_lumps_leave_out():
@@ -50,7 +50,7 @@ def test_tilt_hardly_changes_what_the_lumps_leave_out():
 
 
 def test_an_odd_number_of_lumps_is_refused():
-    with pytest.raises(InputError, match="even number of lumps, not 3"):
+    with pytest.raises(InputError, match="even number of lumps, at least 4, not 3"):
         lumps_of(BEAM, 3)
 
 
@@ -240,7 +240,7 @@ quit
 """,
     )
     assert time[-1] == pytest.approx(35.4e-6, rel=1e-6)
-    motion = move(lumps, PAD, lambda t: 76.0, 34.4, precision=1e-3)
+    motion = move(lumps, PAD, lambda t: 76.0, 34.4)
     wanted = lumps.rest_nm[-1] - motion.separation_nm[-1]
     for way in (1000.0, 2000.0, 3000.0, 3400.0, 3450.0):
         found, known = (

@@ -1,0 +1,158 @@
+"""Does a slow loop of the lumped switch pull in and let go as finite elements do, still, in motion and in ngspice?
+
+`fe`: 1,024 elements. `lumps`: so many pairs in balance. `moved`, `ngspice`: the fewest pairs whose release is within
+1 %, in a vacuum, with a drag that takes what rings; the voltage rises for 20 s and falls for 20 s. Folders hold results
+of target `pad`, with their cells at central inputs. Attraction is that of the scene times the column.
+"""
+
+import subprocess
+import tempfile
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from resource import RUSAGE_CHILDREN, getrusage
+from time import process_time
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import yaml
+
+from mesoscale.device.beam import lumped_beam
+from mesoscale.device.beam_switch import BeamStates, solve_beam, solve_bent
+from mesoscale.device.electrode import with_pad
+from mesoscale.device.lumps import RELEASE, Lumps, Study, lumps_of, move
+from mesoscale.device.switch_export import spice_switch
+from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.table import from_rows
+from mesoscale.pad.local import LocalPad
+from mesoscale.pad.memory import PadLaw, attracting, flats_of, law_of
+from mesoscale.settings import DeviceSettings
+from workflow.contact_settings import contact_settings
+from workflow.pad_files import load_cells
+from workflow.results import load_csv
+
+PAIRS = (4, 8, 12, 16, 20, 24, 28, 32, 48, 64)
+ELEMENTS = 1024
+RAMP_S, DRAG, OVER, STEP_MS = 20.0, 1e4, 1.02, 5
+"""Slow beside the drag (Pa us/nm): it takes the beam 0.8 ms to forget. Steps of 50 ms open a switch at 20 to 34 V."""
+NGSPICE = f"""* a slow loop
+.include switch.sub
+Vdrive drive 0 PWL(0 0 {RAMP_S:g} {{top:.9g}} {2 * RAMP_S:g} 0)
+X1 drive 0 middle rough_switch
+.options method=gear reltol=1e-4 abstol=1e-3 vntol=1e-3
+.tran {STEP_MS}m {2 * RAMP_S:g} 0 {STEP_MS}m
+.control
+set wr_singlescale
+set numdgt=12
+run
+wrdata out.txt v(drive) v(middle) v(x1.charge)
+quit
+.endc
+.end
+"""
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Results to take pads from."""
+    parser.add_argument("results", nargs="+", type=Path)
+
+
+def rows(given: Namespace) -> Iterator[dict[str, Any]]:
+    """A row for each scene, attraction and model."""
+    for folder in given.results:
+        device, scene_law = central_pad(folder)
+        for times in (1.0, 0.0):
+            same = {"scene": folder.name, "attraction": times}
+            started = process_time()
+            exact, law = with_pad(lambda pad, of=device: solve_beam(of, pad, ELEMENTS), attracting(scene_law, times))
+            yield same | _of("fe", ELEMENTS, exact, started)
+            enough = 0
+            for pairs in PAIRS:
+                started = process_time()
+                states = solve_bent(lumped_beam(device, pairs), device, law)
+                yield same | _of("lumps", pairs, states, started)
+                if not enough and abs(states.release_V / exact.release_V - 1.0) <= RELEASE:
+                    enough = pairs
+            if times:
+                still = {"gas_Pa": 1.0, "loss_us": 0.0, "drag_Pa_us_nm": DRAG}
+                lumps, top = replace(lumps_of(device, enough), **still), OVER * exact.pull_in_V
+                for by, loop in (("moved", _moved), ("ngspice", _by_ngspice)):
+                    yield same | {"by": by, "pairs": enough} | loop(lumps, law, top)
+
+
+def central_pad(results: Path) -> tuple[DeviceSettings, PadLaw]:
+    """The switch of a scene, and its pad at central inputs."""
+    scene = yaml.safe_load((results / "scene.yaml").read_text(encoding="utf-8"))["scene"]
+    described = results / "topography" / "parameters.json"
+    found = {"topography": described} if described.exists() else {}
+    contact = contact_settings(scene["contact"], SimpleNamespace(input=found))
+    middle, contact = contact_of(from_rows(load_csv(results / "pad" / "inputs.csv")).medians(), contact)
+    chunks = sorted(str(path) for path in (results / "pad" / "cells").glob("*.h5"))
+    cells = load_cells(str(results / "pad" / "grid.csv"), chunks, contact.length_nm**2)
+    return DeviceSettings.model_validate(scene["device"]), law_of(cells, flats_of(middle, contact))
+
+
+def _of(by: str, pairs: int, states: BeamStates, started: float) -> dict[str, Any]:
+    volts = {"pull_in_V": states.pull_in_V, "release_V": states.release_V, "held_fF": states.capacitance_fF}
+    return {"by": by, "pairs": pairs, **volts, "cpu_s": process_time() - started}
+
+
+def _loop(volts: Any, middle_nm: Any, held_fF: float, cpu_s: float) -> dict[str, Any]:
+    """Voltages at which mid-span leaves and comes back to half its separation at rest; `held_fF` at the top."""
+    top, half = int(np.argmax(volts)), 0.5 * middle_nm[0]
+    closed, opened = middle_nm[:top] < half, middle_nm[top:] > half
+    return {
+        "pull_in_V": float(volts[:top][closed.argmax()]) if closed.any() else 0.0,
+        "release_V": float(volts[top:][opened.argmax()]) if opened.any() else 0.0,
+        "held_fF": held_fF,
+        "cpu_s": cpu_s,
+    }
+
+
+def _moved(lumps: Lumps, law: PadLaw, top: float) -> dict[str, Any]:
+    ramp, started = 1e6 * RAMP_S, process_time()
+    motion = move(lumps, LocalPad(law), lambda t: top * (1.0 - abs(1.0 - t / ramp)), 2.0 * ramp, (ramp,))
+    held = 1e15 * float(np.interp(ramp, motion.time_us, motion.capacitance_F))
+    return _loop(motion.voltage_V, motion.separation_nm[-1], held, process_time() - started)
+
+
+def _by_ngspice(lumps: Lumps, law: PadLaw, top: float) -> dict[str, Any]:
+    started = getrusage(RUSAGE_CHILDREN).ru_utime
+    with tempfile.TemporaryDirectory() as folder:
+        netlist = spice_switch(lumps, Study(lumps.count, *[0.0] * 5), law, 1)
+        (Path(folder) / "switch.sub").write_text(netlist, encoding="utf-8")
+        (Path(folder) / "loop.cir").write_text(NGSPICE.format(top=top), encoding="utf-8")
+        subprocess.run(["ngspice", "-b", "loop.cir"], cwd=folder, check=True, capture_output=True)
+        _, volts, moved, charge = np.loadtxt(Path(folder) / "out.txt").T
+    top_at = int(np.argmax(volts))
+    cpu_s = getrusage(RUSAGE_CHILDREN).ru_utime - started
+    return _loop(volts, lumps.rest_nm[-1] - moved, float(charge[top_at] / volts[top_at]), cpu_s)
+
+
+def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """Largest errors of lumps in balance, and of the loops in motion."""
+
+    def error(row: Mapping[str, str], beside: str, column: str) -> float:
+        same = ("scene", "attraction") + (("pairs",) if beside != "fe" else ())
+        (other,) = (one for one in rows if one["by"] == beside and all(one[key] == row[key] for key in same))
+        return abs(float(row[column]) / float(other[column]) - 1.0)
+
+    def largest(by: str, beside: str, column: str, pairs: str = "") -> str:
+        kept = [row for row in rows if row["by"] == by and pairs in ("", row["pairs"])]
+        return f"{max(error(row, beside, column) for row in kept):.1%}"
+
+    spice = [row for row in rows if row["by"] == "ngspice"]
+    return {
+        **{f"release_{pairs}": largest("lumps", "fe", "release_V", str(pairs)) for pairs in PAIRS},
+        **{f"held_{pairs}": largest("lumps", "fe", "held_fF", str(pairs)) for pairs in PAIRS},
+        "pull_in": largest("lumps", "fe", "pull_in_V", "20"),
+        "spice_pull_in": largest("ngspice", "moved", "pull_in_V"),
+        "spice_release": largest("ngspice", "moved", "release_V"),
+        "spice_held": largest("ngspice", "moved", "held_fF"),
+        "fe_pull_in": largest("ngspice", "fe", "pull_in_V"),
+        "fe_release": largest("ngspice", "fe", "release_V"),
+        "pairs": ", ".join(f"{row['scene']} {row['pairs']}" for row in spice),
+        "cpu_s": f"{max(float(row['cpu_s']) for row in spice):.0f}",
+    }
