@@ -69,8 +69,8 @@ class Tables:
     of_net: float
 
 
-def tables_of(law: PadLaw, cubic: bool) -> Tables:
-    """Tables of the curves of a pad; `cubic` or straight pieces."""
+def tables_of(law: PadLaw, cubic: bool, looser: float = 1.0) -> Tables:
+    """Tables of the curves of a pad; `cubic` or straight pieces; `looser` times the errors that they may have."""
     wells = np.array([-min(np.nanmin(opened.sum(axis=0)), 0.0) for opened in law.opening])
     faint = max(FAINT * float(wells.min()), 1e2 * FLOOR_GPa)
     s = law.separation_nm
@@ -90,7 +90,7 @@ def tables_of(law: PadLaw, cubic: bool) -> Tables:
             return abs(np.exp(made[0]) - faint - flats * np.exp(made[1]) - net)
 
         allowed = np.minimum(OF_WELL * well, OF_PULL * pull) + OF_NET * abs(net) + FLOOR_GPa
-        at, made = _nodes(x, values, lambda made: missed(made) / allowed, nodes, cubic)
+        at, made = _nodes(x, values, lambda made: missed(made) / (looser * allowed), nodes, cubic)
         near = abs(net) < NEAR * well
         of_well, of_net = missed(made) / well, missed(made) / np.maximum(abs(net), faint)
         first, second = (Piece(x[at], row[at] - shift) for row, shift in zip(values, start, strict=True))

@@ -41,7 +41,8 @@ def rows():
 
 def test_every_choice_has_errors_and_times(rows):
     knobs = {row["knob"] for row in rows}
-    assert knobs == {"cells", "steps of separation", "pad.grid.depths", "elements of the beam"}
+    of_pad = {"cells", "steps of separation", "pad.grid.depths", "elements of the beam"}
+    assert knobs == of_pad | {"nodes of its tables", "pairs of lumps"}
     assert all(np.isfinite(row["cpu_s"]) for row in rows)
 
 
@@ -55,5 +56,12 @@ def test_errors_fall_towards_the_finest(rows):
     assert max(row["error"] for row in sticks[-2:]) < min(row["error"] for row in sticks[:2])
     assert elements[-1]["error"] <= elements[0]["error"] + 1e-9
     assert elements[-1]["error"] < 0.2
+    lumps, tables = (
+        [row["error"] for row in rows if row["knob"] == knob] for knob in ("pairs of lumps", "nodes of its tables")
+    )
+    assert lumps[-1] < 0.2
+    assert lumps[-1] < 0.5 * lumps[0]
+    assert tables[0] < 0.004  # allowed: 0.3 % of the well, and 0.05 % of the pressure
+    assert tables == sorted(tables)
     force = {row["value"]: row["error"] for row in rows if row["case"] == "force at the deepest closing"}
     assert force[2] < force[4]
