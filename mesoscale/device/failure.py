@@ -30,6 +30,8 @@ from mesoscale.settings import DeviceSettings
 from mesoscale.uncertainty.rare_events import LEAST, Corrected, Process, Sampled, correct, sample_event
 
 Array = NDArray[np.float64]
+Known = tuple[int, float]
+"""A number of the population that is known, and its value."""
 
 FIRST = 96
 """Switches of the first response."""
@@ -47,6 +49,8 @@ LEAST_TIMES, MOST_TIMES, STEP = 0.1, 30.0, 0.1
 SPAN = 1.5
 """Largest hold voltage of the curve, over that of the scene."""
 VOLTAGES = 5
+ROUGH = ndtri(np.array([0.02, 0.16, 0.5, 0.84, 0.98]))
+"""RMS heights among which the least is sought, as standard normal numbers of this input."""
 
 
 class Attracted:
@@ -169,6 +173,11 @@ class Population:
         return sample_event(lambda z: (self.carried(z, hold_V), np.full(len(z), 1e-9)), self.dimension, 0.0, 0)
 
 
+def _with(z: Array, known: Known | None) -> Array:
+    """The numbers (m, dimension) with the known one in place."""
+    return z if known is None else np.where(np.arange(z.shape[1]) == known[0], known[1], z)
+
+
 @dataclass(frozen=True)
 class Response:
     """What was learned of the reserve of a population, from a number of switches."""
@@ -182,13 +191,10 @@ class Response:
         mean, deviation = self.process(self.population.columns(z, np.full(len(z), hold_V)))
         return mean, np.hypot(deviation, self.population.pad_deviation)
 
-    def sample(self, times: float, hold_V: float, seed: int, known: int | None = None) -> Sampled:
-        """The failures with `times` the attraction; the number `known` stays at its median."""
-
-        def moments(z: Array) -> tuple[Array, Array]:
-            return self.moments(z if known is None else np.where(np.arange(z.shape[1]) == known, 0.0, z), hold_V)
-
-        return sample_event(moments, self.population.dimension, float(np.log(times)), seed)
+    def sample(self, times: float, hold_V: float, seed: int, known: Known | None = None) -> Sampled:
+        """The failures with `times` the attraction."""
+        dimension, threshold = self.population.dimension, float(np.log(times))
+        return sample_event(lambda z: self.moments(_with(z, known), hold_V), dimension, threshold, seed)
 
 
 def voltages(population: Population) -> Array:
@@ -253,7 +259,7 @@ def reserve_deviation(cells: PadCells, flats: Flats, settings: DeviceSettings, r
 def largest_hold_V(hold_V: Array, probability: Array, allowed: float) -> float | None:
     """Largest voltage (V) at which a probability that rises with it is allowed; None where even the least is too much.
 
-    The logarithm of the probability is interpolated; voltages and probabilities are of shape (n,).
+    The logarithm of the probability is interpolated; voltages, which rise, and probabilities are of shape (n,).
     """
     logarithm = np.log(np.maximum(np.maximum.accumulate(probability), LEAST))
     wanted = float(np.log(allowed))
@@ -264,6 +270,23 @@ def largest_hold_V(hold_V: Array, probability: Array, allowed: float) -> float |
     upper = int(np.argmax(logarithm > wanted))
     share = (wanted - logarithm[upper - 1]) / (logarithm[upper] - logarithm[upper - 1])
     return float(hold_V[upper - 1] + share * (hold_V[upper] - hold_V[upper - 1]))
+
+
+def least_rms_nm(response: Response, times: float, hold_V: float, allowed: float) -> float | None:
+    """Least RMS height (nm), all else varying, with which no more switches fail than allowed.
+
+    None where even the largest of `ROUGH` is too little, or where the film's roughness is no input.
+    """
+    population = response.population
+    if "rms" not in population.names:
+        return None
+    place = population.names.index("rms")
+    middle = np.zeros((ROUGH.size, population.dimension))
+    middle[:, place] = ROUGH
+    rms_nm = values_at(ndtr(middle), population.table, population.settings, *population.cutoffs_nm)[:, place]
+    failing = [response.sample(times, hold_V, 0, (place, z)).probability for z in ROUGH.tolist()]
+    smoothest = largest_hold_V(-rms_nm[::-1], np.array(failing[::-1]), allowed) if allowed > 0.0 else None
+    return None if smoothest is None else -smoothest
 
 
 def failure_rate(
@@ -299,7 +322,7 @@ def failure_rate(
             }
             for times in WORKS
         ]
-    laws = []
+    laws, beyond_hold = [], population.beyond(hold).probability
     for number, times in enumerate(WORKS):
         tell(0.8 + 0.2 * number / len(WORKS), f"{times:.2g} times the attraction")
         curve = [row for row in rows if row["attraction"] == times]
@@ -312,6 +335,7 @@ def failure_rate(
                 "failing": asdict(corrected(response, times, hold)),
                 "by_cells": ends,
                 "largest_hold_V": allowed_V,
+                "least_rms_nm": least_rms_nm(response, times, hold, allowed - beyond_hold),
                 "there": None if allowed_V is None else asdict(corrected(response, times, allowed_V)),
             }
         )
@@ -321,12 +345,12 @@ def failure_rate(
         "release_V": population.release_V,
         "allowed": allowed,
         "hold_V": hold,
-        "beyond": population.beyond(hold).probability,
+        "beyond": beyond_hold,
         "laws": laws,
         "control_attraction": judged,
         "control": sorted(
             (
-                {"name": name, "failing_if_known": response.sample(judged, hold, 0, k).probability}
+                {"name": name, "failing_if_known": response.sample(judged, hold, 0, (k, 0.0)).probability}
                 for k, name in enumerate(population.names)
                 if judged is not None
             ),

@@ -492,7 +492,14 @@ def _failure(root: Path) -> None:
         for times in (1 / 3, 1.0, 3.0)
     ]
     laws = [
-        {"attraction": times, "failing": failing, "by_cells": [1e-5, 1e-4], "largest_hold_V": largest, "there": None}
+        {
+            "attraction": times,
+            "failing": failing,
+            "by_cells": [1e-5, 1e-4],
+            "largest_hold_V": largest,
+            "least_rms_nm": 7.0,
+            "there": None,
+        }
         for times, largest in ((1 / 3, 100.0), (1.0, 71.0), (3.0, None))
     ]
     rate = {"release_V": 0.0, "allowed": 1e-6, "hold_V": 70.0, "beyond": 2e-6, "laws": laws, "switches": 160}

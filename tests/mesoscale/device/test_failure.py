@@ -5,15 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from evidence.pad.rare_failures import PADS, population
 from mesoscale.device.beam_switch import closed_beam, solve_beam
-from mesoscale.device.failure import STEP, Attracted, corrected, largest_hold_V, learn
+from mesoscale.device.failure import STEP, Attracted, corrected, largest_hold_V, learn, least_rms_nm
 from mesoscale.device.pad_switch import solve_on_pad
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError
 from mesoscale.pad.memory import attracting
-from mesoscale.settings import DeviceSettings
+from mesoscale.settings import DeviceSettings, FailureSettings
 from tests.mesoscale.device.test_beam import made_up_law
 
 BEAM = DeviceSettings(hold_voltage_V=80.0)
@@ -77,6 +78,12 @@ def test_the_probability_is_that_of_brute_force():
     one_in_a_million = corrected(response, 1.18, plates.hold_V)
     assert 1e-7 < one_in_a_million.probability < 1e-4
     assert one_in_a_million.variation < 0.3
+    least = least_rms_nm(response, 1.47, plates.hold_V, 0.01)
+    assert least is not None
+    assert least_rms_nm(response, 1.18, plates.hold_V, 0.01) <= least  # less attraction bears smoother films
+    fixed, given = np.random.default_rng(6).normal(size=(1000, plates.dimension)), plates.names.index("rms")
+    fixed[:, given] = (least - 9.0) / 0.8  # deviations of the study's input
+    assert 0.004 < plates.failed(fixed, plates.hold_V, 1.47).mean() < 0.025  # 1000 know 1 % to 30 %
 
 
 def test_a_closed_form_that_rises_with_the_separation_is_beyond_the_model():
@@ -93,3 +100,18 @@ def test_switches_beyond_the_model_and_windows_that_none_reaches_are_one_line():
         learn(hard, lambda *_: None)
     with pytest.raises(InputError, match=r"failure\.release_V = 60: 0 of \d+ switches release above it"):
         learn(replace(population(), release_V=60.0), lambda *_: None)
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({"probability": 0.0}, "greater than 0"),
+        ({"probability": 1.0}, "less than 1"),
+        ({"probability": 1e-6, "release_V": -1.0}, "greater than or equal to 0"),
+        ({"probability": 1e-6, "release_V": [5.0, 9.0]}, "valid number"),  # a window has one side
+    ],
+)
+def test_settings_of_failures_outside_their_range_are_one_line(given, line):
+    with pytest.raises(ValidationError, match=line) as refused:
+        FailureSettings.model_validate(given)
+    assert refused.value.error_count() == 1

@@ -24,17 +24,24 @@ def describe(results: Results) -> Section | None:
         files=["device/failure.json", "device/failure.csv"],
     )
     section.add(_curve(results), "Share that fails against hold voltage, by the response.")
-    header = ("attraction", f"failing at {volts(rate['hold_V'])} [95 %]", "by finite cells", "largest hold voltage")
+    header = (
+        "attraction",
+        f"failing at {volts(rate['hold_V'])} [95 %]",
+        "by finite cells",
+        "largest hold voltage",
+        "least RMS height",
+    )
     rows = [
         (
             f"{show(law['attraction'], 2)} times",
             f"{show(law['failing']['probability'], 2)} [{_interval(law['failing'])}]",
             " to ".join(show(end, 2) for end in law["by_cells"]),
             "none" if law["largest_hold_V"] is None else volts(law["largest_hold_V"]),
+            "none" if law["least_rms_nm"] is None else f"{show(law['least_rms_nm'], 2)} nm",
         )
         for law in rate["laws"]
     ]
-    section.blocks.append(Table("Failures, and the largest hold voltage that is allowed", header, rows))
+    section.blocks.append(Table("Failures; hold voltage and roughness that are allowed", header, rows))
     if rate["control"]:
         known = [(symbol(row["name"]), show(row["failing_if_known"], 2)) for row in rate["control"][:5]]
         header = (
