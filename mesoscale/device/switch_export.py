@@ -39,7 +39,7 @@ def spice_switch(lumps: Lumps, study: Study, law: PadLaw, cells: int) -> str:
         held = "\n".join(f"G{k}_{j} speed{k} 0 bent{j} 0 {springs[k, j]:.12g}" for j in numbers)
         of = f"rest={lumps.rest_nm[k]:.9g} area={lumps.area_m2[k]:.9g}"
         body.append(f"""Xlump{k} top bottom moved{k} drawn{k} charge rough_lump {of}
-+   gas={{gas}} viscosity={{viscosity}} fringe={{fringe}}
++   gas={{gas}} viscosity={{viscosity}} fringe={{fringe}} follow={{follow}}
 Cmoved{k} moved{k} 0 1u
 Gmoved{k} 0 moved{k} speed{k} 0 1
 Gbent{k} 0 bent{k} moved{k} 0 1
@@ -58,9 +58,11 @@ Gdrawn{k} 0 speed{k} drawn{k} 0 {FORCE:g}
 * Inside: nm, nm/us, Pa, fC. What moves a lump: 1 A for {1.0 / FORCE:g} Pa.
 * mass per area in kg/m2, loss in us, viscosity in Pa s, gas in Pa.
 * drag: 0; a large one (3e4 Pa us/nm) lands the electrode softly, for loops so slow that nothing else matters.
+* follow: s, until the pad remembers; 1e-5 for such loops.
 * fringe: 0 as in Asperity's answer; 0.6366 for a thin strip over a plane.
 .subckt rough_switch top bottom middle params: fringe={lumps.fringe:.9g} gas={lumps.gas_Pa:.9g}
 +   viscosity={VISCOSITY:g} mass={lumps.mass_kg_m2:.9g} loss={lumps.loss_us:.9g} drag={lumps.drag_Pa_us_nm:.9g}
++   follow={FOLLOW_S:g}
 {chr(10).join(body)}
 Emiddle middle 0 moved{numbers[-1]} 0 1
 Rcharge charge 0 1
@@ -70,10 +72,10 @@ Fcharge top bottom Vcharge 1
 .ends rough_switch
 
 * A pair of lumps; Verilog-A has the same.
-.subckt rough_lump {LUMP} params: rest=1 area=1 gas=1 viscosity=1 fringe=0
+.subckt rough_lump {LUMP} params: rest=1 area=1 gas=1 viscosity=1 fringe=0 follow={FOLLOW_S:g}
 Gup 0 up 0 moved 1
 Rup up 0 1
-Xpad up push rough_pad area=1e9 rest={{rest}}
+Xpad up push rough_pad area=1e9 rest={{rest}} follow={{follow}}
 Bcharge 0 charge I = 1e15 * V(top,bottom) * {{area*{VACUUM_PERMITTIVITY}}} * (1 / {electric}
 +   + {{fringe/{width:.9g}}} * ln({np.pi * width:.9g} / {electric}))
 Rexcess excess 0 1
