@@ -275,17 +275,17 @@ def largest_hold_V(hold_V: Array, probability: Array, allowed: float) -> float |
 def least_rms_nm(response: Response, times: float, hold_V: float, allowed: float) -> float | None:
     """Least RMS height (nm), all else varying, with which no more switches fail than allowed.
 
-    None where even the largest of `ROUGH` is too little, or where the film's roughness is no input.
+    None where even the largest of `ROUGH` is too little, where nothing is allowed, or where roughness is no input.
     """
     population = response.population
-    if "rms" not in population.names:
+    if "rms" not in population.names or allowed <= 0.0:
         return None
     place = population.names.index("rms")
     middle = np.zeros((ROUGH.size, population.dimension))
     middle[:, place] = ROUGH
     rms_nm = values_at(ndtr(middle), population.table, population.settings, *population.cutoffs_nm)[:, place]
     failing = [response.sample(times, hold_V, 0, (place, z)).probability for z in ROUGH.tolist()]
-    smoothest = largest_hold_V(-rms_nm[::-1], np.array(failing[::-1]), allowed) if allowed > 0.0 else None
+    smoothest = largest_hold_V(-rms_nm[::-1], np.array(failing[::-1]), allowed)
     return None if smoothest is None else -smoothest
 
 
