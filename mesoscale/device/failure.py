@@ -49,8 +49,8 @@ LEAST_TIMES, MOST_TIMES, STEP = 0.1, 30.0, 0.1
 SPAN = 1.5
 """Largest hold voltage of the curve, over that of the scene."""
 VOLTAGES = 5
-ROUGH = ndtri(np.array([0.02, 0.16, 0.5, 0.84, 0.98]))
-"""RMS heights among which the least is sought, as standard normal numbers of this input."""
+ROUGH = ndtri(np.array([0.98, 0.84, 0.5, 0.16, 0.02]))
+"""RMS heights among which the least is sought, from the roughest, as standard normal numbers of this input."""
 
 
 class Attracted:
@@ -256,20 +256,20 @@ def reserve_deviation(cells: PadCells, flats: Flats, settings: DeviceSettings, r
     return float(np.std([Attracted(settings, law, release_V, COARSE).reserve(0.01) for law in laws], ddof=1))
 
 
-def largest_hold_V(hold_V: Array, probability: Array, allowed: float) -> float | None:
-    """Largest voltage (V) at which a probability that rises with it is allowed; None where even the least is too much.
+def furthest_allowed(values: Array, probability: Array, allowed: float) -> float | None:
+    """The last of values, from the safest on, with an allowed probability of failure; None where the first has more.
 
-    The logarithm of the probability is interpolated; voltages, which rise, and probabilities are of shape (n,).
+    Between values, which rise or fall, the logarithm of the probability is interpolated; both of shape (n,).
     """
     logarithm = np.log(np.maximum(np.maximum.accumulate(probability), LEAST))
     wanted = float(np.log(allowed))
     if logarithm[0] > wanted:
         return None
     if logarithm[-1] <= wanted:
-        return float(hold_V[-1])
-    upper = int(np.argmax(logarithm > wanted))
-    share = (wanted - logarithm[upper - 1]) / (logarithm[upper] - logarithm[upper - 1])
-    return float(hold_V[upper - 1] + share * (hold_V[upper] - hold_V[upper - 1]))
+        return float(values[-1])
+    beyond = int(np.argmax(logarithm > wanted))
+    share = (wanted - logarithm[beyond - 1]) / (logarithm[beyond] - logarithm[beyond - 1])
+    return float(values[beyond - 1] + share * (values[beyond] - values[beyond - 1]))
 
 
 def least_rms_nm(response: Response, times: float, hold_V: float, allowed: float) -> float | None:
@@ -285,8 +285,7 @@ def least_rms_nm(response: Response, times: float, hold_V: float, allowed: float
     middle[:, place] = ROUGH
     rms_nm = values_at(ndtr(middle), population.table, population.settings, *population.cutoffs_nm)[:, place]
     failing = [response.sample(times, hold_V, 0, (place, z)).probability for z in ROUGH.tolist()]
-    smoothest = largest_hold_V(-rms_nm[::-1], np.array(failing[::-1]), allowed)
-    return None if smoothest is None else -smoothest
+    return furthest_allowed(rms_nm, np.array(failing), allowed)
 
 
 def failure_rate(
@@ -328,7 +327,7 @@ def failure_rate(
         curve = [row for row in rows if row["attraction"] == times]
         volts, share = (np.array([row[key] for row in curve]) for key in ("hold_V", "failing"))
         ends = [response.sample(times * np.exp(sign * 1.96 * cells_deviation), hold, 0).probability for sign in (-1, 1)]
-        allowed_V = largest_hold_V(volts, share + [row["beyond"] for row in curve], allowed)
+        allowed_V = furthest_allowed(volts, share + [row["beyond"] for row in curve], allowed)
         laws.append(
             {
                 "attraction": times,

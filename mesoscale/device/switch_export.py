@@ -146,5 +146,5 @@ def _said(lumps: Lumps, study: Study) -> str:
         return "the electrode: one plate on a spring"
     return (
         f"the electrode: {lumps.count} pairs of lumps; beside finite elements pull-in differs by {study.pull_in:.2%}, "
-        f"release by {study.release:.2%}, capacitance by {study.capacitance:.2%}"
+        f"release by {study.release:.2%}, capacitance by {study.capacitance:.2%}; these err by {study.reference:.2%}"
     )

@@ -514,6 +514,7 @@ def _failure(root: Path) -> None:
     ]
     _write(root / "device/resistance.csv", contacts)
     study = {"lumps": 24, "pull_in": 1e-4, "release": 3e-3, "capacitance": 0.01, "pull_in_V": 70.0, "release_V": 6.0}
+    study |= {"reference": 1e-3}
     said = {"drive_V": 77.0, "closing_us": 30.0, "bounce_nm": 12.0, "impact_m_s": 3.1, "opening_us": None}
     said |= {"deepest_nm": 18.0, "table_ends_nm": 19.0}
     write_json(root / "device/circuit.json", {"lumps": study, "transient": said}, PROVENANCE)

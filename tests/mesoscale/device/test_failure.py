@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from evidence.pad.rare_failures import PADS, population
 from mesoscale.device.beam_switch import closed_beam, solve_beam
-from mesoscale.device.failure import STEP, Attracted, corrected, largest_hold_V, learn, least_rms_nm
+from mesoscale.device.failure import STEP, Attracted, corrected, furthest_allowed, learn, least_rms_nm
 from mesoscale.device.pad_switch import solve_on_pad
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError
@@ -61,9 +61,12 @@ def test_a_gap_of_20_nm_is_told_or_refused():
     [(1e-4, 75.0), (1e-6, None), (0.5, 90.0), (1e-5, 70.0)],
     ids=["between", "none", "all", "least"],
 )
-def test_the_largest_hold_voltage_is_where_the_curve_meets_what_is_allowed(allowed, wanted):
-    found = largest_hold_V(np.array([70.0, 80.0, 90.0]), np.array([1e-5, 1e-3, 1e-2]), allowed)
+def test_the_furthest_value_is_where_the_curve_meets_what_is_allowed(allowed, wanted):
+    volts, probability = np.array([70.0, 80.0, 90.0]), np.array([1e-5, 1e-3, 1e-2])
+    found = furthest_allowed(volts, probability, allowed)
     assert found == (wanted if wanted is None else pytest.approx(wanted))
+    falling = furthest_allowed(100.0 - volts, probability, allowed)  # as heights, of which the least fail most
+    assert falling == (wanted if wanted is None else pytest.approx(100.0 - wanted))
 
 
 def test_the_probability_is_that_of_brute_force():

@@ -220,7 +220,7 @@ def test_the_compiled_plate_closes_as_fast(tmp_path):
 def test_ngspice_closes_the_switch_as_fast_and_as_deep(tmp_path):
     """A step of 76 V on four pairs of lumps, through the impact; 15 s in ngspice."""
     lumps = lumps_of(BEAM, 4)
-    (tmp_path / "central.sub").write_text(spice_switch(lumps, Study(4, 0.0, 0.0, 0.0, 70.0, 6.0), LAW, 256))
+    (tmp_path / "central.sub").write_text(spice_switch(lumps, Study(4, 0.0, 0.0, 0.0, 70.0, 6.0, 0.0), LAW, 256))
     time, middle, charge = by_ngspice(
         tmp_path,
         """* a step
