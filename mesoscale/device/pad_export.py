@@ -22,7 +22,10 @@ Array = NDArray[np.float64]
 START_NM = 200.0
 """Separation from which closing counts; a pad is not in contact so far out."""
 FOLLOWING = 1e3
-"""Conductance of following (S): large beside the 1e-12 S that simulators add to every node."""
+"""Conductance of following (S) in Verilog-A: large beside the 1e-12 S that simulators add to every node."""
+MEMORY_F = 1e-6
+"""Capacitance of the state in SPICE, whatever its time constant. With a slow memory a capacitance of its conductance
+drew kiloamperes at the landing, and ngspice shrank its steps to nothing."""
 FOLLOW_S = 1e-9
 """Time constant (s): much shorter than any motion."""
 LEAK = 1e-15
@@ -254,9 +257,9 @@ def spice_pad(law: PadLaw, cells: int, area_nm2: float = 1e12) -> str:
 * Nodes are 0 for a pad that is far away, where simulators begin.
 .subckt rough_pad s force params: area={area_nm2:.12g} follow={FOLLOW_S:g}
 +   hamaker={law.flats.hamaker:.12g} offset_nm={law.flats.offset_nm:.12g} rest=0
-Cclosed closed 0 {{{FOLLOWING:g}*follow}}
-Rleak closed 0 {1 / (FOLLOWING * LEAK):g}
-Bclosed 0 closed I = {FOLLOWING:g} * max({{{START_NM:g}-rest}} - V(s) - V(closed), 0)
+Cclosed closed 0 {MEMORY_F:g}
+Rleak closed 0 {{follow/{MEMORY_F * LEAK:g}}}
+Bclosed 0 closed I = {{{MEMORY_F:g}/follow}} * max({{{START_NM:g}-rest}} - V(s) - V(closed), 0)
 Rnear near 0 1
 Bnear 0 near I = max(V(closed), {{{START_NM:g}-rest}} - V(s))
 Rrisen risen 0 1

@@ -58,7 +58,7 @@ Gdrawn{k} 0 speed{k} drawn{k} 0 {FORCE:g}
 * Inside: nm, nm/us, Pa, fC. What moves a lump: 1 A for {1.0 / FORCE:g} Pa.
 * mass per area in kg/m2, loss in us, viscosity in Pa s, gas in Pa.
 * drag: 0; a large one (3e4 Pa us/nm) lands the electrode softly, for loops so slow that nothing else matters.
-* follow: s, until the pad remembers; 1e-5 for such loops.
+* follow: s, until the pad remembers; 1e-6 for such loops.
 * fringe: 0 as in Asperity's answer; 0.6366 for a thin strip over a plane.
 .subckt rough_switch top bottom middle params: fringe={lumps.fringe:.9g} gas={lumps.gas_Pa:.9g}
 +   viscosity={VISCOSITY:g} mass={lumps.mass_kg_m2:.9g} loss={lumps.loss_us:.9g} drag={lumps.drag_Pa_us_nm:.9g}
