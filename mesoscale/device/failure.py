@@ -51,6 +51,12 @@ SPAN = 1.5
 VOLTAGES = 5
 ROUGH = ndtri(np.array([0.98, 0.84, 0.5, 0.16, 0.02]))
 """RMS heights among which the least is sought, from the roughest, as standard normal numbers of this input."""
+SPRINGS = (0.5, 2.0)
+"""Springs among which the least is sought, over that of the scene."""
+SPRING_RUNS = 32
+"""Switches that are solved with each spring. They know a probability to some 25 %, and a spring to 1 or 2 %."""
+NEAR = 0.02
+"""Difference of logarithms to which attractions and springs are sought."""
 
 
 class Attracted:
@@ -128,6 +134,11 @@ class Population:
     def names(self) -> list[str]:
         """What the numbers stand for."""
         return [*self.table.names, "gap_cutoff_nm", "bow_nm", "tilt_nm"]
+
+    @property
+    def spring(self) -> str:
+        """The setting of the device that is its spring."""
+        return "thickness_um" if self.settings.spring_N_per_m is None else "spring_N_per_m"
 
     @property
     def hold_V(self) -> float:
@@ -288,6 +299,48 @@ def least_rms_nm(response: Response, times: float, hold_V: float, allowed: float
     return furthest_allowed(rms_nm, np.array(failing), allowed)
 
 
+def just_allowed(response: Response, hold_V: float, allowed: float) -> Sampled:
+    """The failures with that attraction with which just as many as allowed fail, whatever the law."""
+    low, high = float(np.log(LEAST_TIMES)), float(np.log(MOST_TIMES))
+    while high - low > NEAR:
+        middle = 0.5 * (low + high)
+        more = response.sample(float(np.exp(middle)), hold_V, 0).probability > allowed
+        low, high = (low, middle) if more else (middle, high)
+    return response.sample(float(np.exp(high)), hold_V, 0)
+
+
+def least_spring(response: Response, likely: Sampled, times: float, hold_V: float, allowed: float) -> float | None:
+    """Least spring, in the unit of its setting, all else varying, with which no more switches fail than allowed.
+
+    A weaker spring makes those fail that nearly fail with more attraction. So some of `likely` are solved with other
+    springs, and correct its probability as in `corrected`. None where even the largest of `SPRINGS` is too weak, or
+    where nothing is allowed or likely.
+
+    Parameters
+    ----------
+    likely : the failures with about the allowed probability; see `just_allowed`.
+    """
+    if allowed <= 0.0 or not len(likely.points):
+        return None
+    population = response.population
+    own = getattr(population.settings, population.spring)
+    rng = np.random.default_rng(np.random.SeedSequence([0, 0x5B1]))
+    chosen = rng.permutation(len(likely.points))[:SPRING_RUNS]
+
+    def too_many(logarithm: float) -> bool:
+        changed = population.settings.model_copy(update={population.spring: own * float(np.exp(logarithm))})
+        failed = replace(population, settings=changed).failed(likely.points[chosen], hold_V, times)
+        return likely.probability * float(np.mean(failed / likely.chance[chosen])) > allowed
+
+    low, high = np.log(SPRINGS).tolist()
+    if too_many(high):
+        return None
+    while high - low > NEAR:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if too_many(middle) else (low, middle)
+    return own * float(np.exp(high))
+
+
 def failure_rate(
     population: Population,
     cells: PadCells,
@@ -322,6 +375,7 @@ def failure_rate(
             for times in WORKS
         ]
     laws, beyond_hold = [], population.beyond(hold).probability
+    likely = just_allowed(response, hold, allowed - beyond_hold)
     for number, times in enumerate(WORKS):
         tell(0.8 + 0.2 * number / len(WORKS), f"{times:.2g} times the attraction")
         curve = [row for row in rows if row["attraction"] == times]
@@ -335,6 +389,7 @@ def failure_rate(
                 "by_cells": ends,
                 "largest_hold_V": allowed_V,
                 "least_rms_nm": least_rms_nm(response, times, hold, allowed - beyond_hold),
+                "least_spring": least_spring(response, likely, times, hold, allowed - beyond_hold),
                 "there": None if allowed_V is None else asdict(corrected(response, times, allowed_V)),
             }
         )
@@ -344,6 +399,7 @@ def failure_rate(
         "release_V": population.release_V,
         "allowed": allowed,
         "hold_V": hold,
+        "spring": population.spring,
         "beyond": beyond_hold,
         "laws": laws,
         "control_attraction": judged,

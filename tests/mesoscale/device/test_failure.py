@@ -9,7 +9,16 @@ from pydantic import ValidationError
 
 from evidence.pad.rare_failures import PADS, population
 from mesoscale.device.beam_switch import closed_beam, solve_beam
-from mesoscale.device.failure import STEP, Attracted, corrected, furthest_allowed, learn, least_rms_nm
+from mesoscale.device.failure import (
+    STEP,
+    Attracted,
+    corrected,
+    furthest_allowed,
+    just_allowed,
+    learn,
+    least_rms_nm,
+    least_spring,
+)
 from mesoscale.device.pad_switch import solve_on_pad
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError
@@ -89,6 +98,16 @@ def test_the_probability_is_that_of_brute_force():
     fixed, given = np.random.default_rng(6).normal(size=(1000, plates.dimension)), plates.names.index("rms")
     fixed[:, given] = (least - 9.0) / 0.8  # deviations of the study's input
     assert 0.004 < plates.failed(fixed, plates.hold_V, 1.47).mean() < 0.025  # 1000 know 1 % to 30 %
+    # so does less attraction bear weaker springs
+    likely = just_allowed(response, plates.hold_V, 0.01)
+    weaker, spring = (least_spring(response, likely, times, plates.hold_V, 0.01) for times in (1.32, 1.47))
+    assert weaker is not None
+    assert spring is not None
+    assert weaker < spring
+    for times, value in ((1.32, weaker), (1.47, spring)):
+        sprung = replace(plates, settings=plates.settings.model_copy(update={"spring_N_per_m": value}))
+        # the spring's 32 switches know 1 % to 25 %, brute force of 3000 to 18 %; twice both
+        assert 0.01 / 1.7 < sprung.failed(z, plates.hold_V, times).mean() < 0.01 * 1.7
 
 
 def test_a_closed_form_that_rises_with_the_separation_is_beyond_the_model():
