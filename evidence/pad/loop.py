@@ -167,6 +167,5 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         "fe_pull_in": largest("moved", "fe", "pull_in_V"),
         "fe_release": largest("moved", "fe", "release_V"),
         "pairs": ", ".join(f"{row['pairs']} on `{row['scene']}`" for row in spice),
-        "stopped": str(sum(row["by"] == "ngspice" for row in rows) - len(spice)),
         "cpu_s": f"{max(float(row['cpu_s']) for row in spice):.0f}",
     }
