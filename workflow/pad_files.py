@@ -5,7 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mesoscale.device.failure import Population, with_pad_scatter
 from mesoscale.device.release import Model, cutoff_range, model_of
+from mesoscale.errors import InputError
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import from_rows
@@ -14,7 +16,9 @@ from mesoscale.pad.curves import PadCells
 from mesoscale.pad.draws import laws_of_rows, plan_draws
 from mesoscale.pad.memory import Flats, flats_of
 from mesoscale.pad.response import SampledPad
-from mesoscale.settings import ContactSettings
+from mesoscale.settings import ContactSettings, DeviceSettings, FailureSettings
+from workflow.contact_settings import contact_settings
+from workflow.job import settings_from_job
 from workflow.results import load_csv, load_h5, load_numbers
 
 
@@ -68,3 +72,20 @@ def load_spread(snakemake: Any, contact: ContactSettings) -> Spread:
     draws = load_draws(snakemake.input.draws, inputs, contact, *snakemake.params.design)
     model = model_of(cells, draws, inputs, flats, cutoff_nm)
     return Spread(inputs, cells, flats, cutoff_range(cutoff_nm, draws), model)
+
+
+def load_population(snakemake: Any) -> tuple[Population, float, float]:
+    """All switches of a job that `load_spread` takes, the deviation of `with_pad_scatter`, the share that may fail.
+
+    Raises
+    ------
+    InputError : the scene allows no share.
+    """
+    asked = settings_from_job(FailureSettings, snakemake.params.failure)
+    if asked.probability is None:
+        raise InputError("failure.probability = null: give the share of the switches that may fail, such as 1e-6")
+    contact = contact_settings(snakemake.params.contact, snakemake)
+    device = settings_from_job(DeviceSettings, snakemake.params.device)
+    pad = load_spread(snakemake, contact)
+    population = Population(pad.inputs, device, pad.cutoffs_nm, pad.model, asked.release_V)
+    return *with_pad_scatter(population, pad.cells, pad.flats, contact.length_nm**2), asked.probability

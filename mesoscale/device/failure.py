@@ -5,7 +5,7 @@ factor on its attraction with which it just fails. It fails by itself where the 
 the attraction where it is below ln k. One response of the reserve serves all laws of attraction and hold voltages.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -27,7 +27,7 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import Flats, PadLaw, attracting, deepened, law_of
 from mesoscale.settings import DeviceSettings
-from mesoscale.uncertainty.rare_events import LEAST, Corrected, Process, Sampled, correct, sample_event
+from mesoscale.uncertainty.rare_events import LEAST, SAMPLES, Corrected, Process, Sampled, correct, sample_event
 
 Array = NDArray[np.float64]
 Known = tuple[int, float]
@@ -202,10 +202,12 @@ class Response:
         mean, deviation = self.process(self.population.columns(z, np.full(len(z), hold_V)))
         return mean, np.hypot(deviation, self.population.pad_deviation)
 
-    def sample(self, times: float, hold_V: float, seed: int, known: Known | None = None) -> Sampled:
+    def sample(
+        self, times: float, hold_V: float, seed: int, known: Known | None = None, samples: int = SAMPLES
+    ) -> Sampled:
         """The failures with `times` the attraction."""
         dimension, threshold = self.population.dimension, float(np.log(times))
-        return sample_event(lambda z: self.moments(_with(z, known), hold_V), dimension, threshold, seed)
+        return sample_event(lambda z: self.moments(_with(z, known), hold_V), dimension, threshold, seed, samples)
 
 
 def voltages(population: Population) -> Array:
@@ -215,6 +217,12 @@ def voltages(population: Population) -> Array:
 
 def learn(population: Population, tell: Callable[[float, str], None], seed: int = 0) -> Response:
     """The response of the reserve, from switches of the whole population and then from such as nearly fail."""
+    *_, last = learned(population, tell, seed)
+    return last
+
+
+def learned(population: Population, tell: Callable[[float, str], None], seed: int) -> Iterator[Response]:
+    """The response after each of the `ROUNDS`, the first of the whole population."""
     from scipy.stats import qmc  # slow to import
 
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0xFA11]))
@@ -242,19 +250,20 @@ def learn(population: Population, tell: Callable[[float, str], None], seed: int 
                 f"above it; accepted are at least {FEWEST}; lower it, or device.hold_voltage_V"
             )
         response = Response(population, Process(columns[known], reserves[known]), len(reserves))
+        yield response
         if number == ROUNDS:
-            return response
+            return
         hold_V, times = float(rng.uniform(low, high)), WORKS[number % len(WORKS)]
         likely = response.sample(times, hold_V, seed + number).points
         number += 1
         batches = [(likely[rng.permutation(len(likely))[:BATCH]], hold_V)]
 
 
-def corrected(response: Response, times: float, hold_V: float, seed: int = 0) -> Corrected:
-    """Probability of a failure with `times` the attraction, the response corrected by runs."""
+def corrected(response: Response, times: float, hold_V: float, seed: int = 0, runs: int = RUNS) -> Corrected:
+    """Probability of a failure with `times` the attraction, the response corrected by so many runs."""
     sampled = response.sample(times, hold_V, seed)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0xC0]))
-    chosen = rng.permutation(len(sampled.points))[:RUNS]
+    chosen = rng.permutation(len(sampled.points))[:runs]
     failed = response.population.failed(sampled.points[chosen], hold_V, times)
     return correct(sampled, failed, sampled.chance[chosen])
 
@@ -299,14 +308,14 @@ def least_rms_nm(response: Response, times: float, hold_V: float, allowed: float
     return furthest_allowed(rms_nm, np.array(failing), allowed)
 
 
-def just_allowed(response: Response, hold_V: float, allowed: float) -> Sampled:
-    """The failures with that attraction with which just as many as allowed fail, whatever the law."""
+def just_allowed(response: Response, hold_V: float, allowed: float) -> float:
+    """Factor on the attraction with which just as many as allowed fail by the response."""
     low, high = float(np.log(LEAST_TIMES)), float(np.log(MOST_TIMES))
     while high - low > NEAR:
         middle = 0.5 * (low + high)
         more = response.sample(float(np.exp(middle)), hold_V, 0).probability > allowed
         low, high = (low, middle) if more else (middle, high)
-    return response.sample(float(np.exp(high)), hold_V, 0)
+    return float(np.exp(high))
 
 
 def least_spring(response: Response, likely: Sampled, times: float, hold_V: float, allowed: float) -> float | None:
@@ -341,26 +350,32 @@ def least_spring(response: Response, likely: Sampled, times: float, hold_V: floa
     return own * float(np.exp(high))
 
 
+def with_pad_scatter(
+    population: Population, cells: PadCells, flats: Flats, cell_area_nm2: float
+) -> tuple[Population, float]:
+    """The population with its `pad_deviation`, and the deviation of the reserve by the finite number of cells."""
+    settings = population.settings
+    held = settings.model_copy(update={"hold_voltage_V": population.hold_V})
+    by_cells = reserve_deviation(cells, flats, held, population.release_V)
+    pad_cells = switch_from_settings(settings).area_m2 * 1e18 / cell_area_nm2
+    return replace(population, pad_deviation=by_cells * float(np.sqrt(cells.count / pad_cells))), by_cells
+
+
 def failure_rate(
-    population: Population,
-    cells: PadCells,
-    flats: Flats,
-    allowed: float,
-    cell_area_nm2: float,
-    tell: Callable[[float, str], None],
+    population: Population, cells_deviation: float, allowed: float, tell: Callable[[float, str], None]
 ) -> tuple[dict[str, Any], list[dict[str, float]]]:
     """Content of device/failure.json and rows of device/failure.csv.
+
+    Parameters
+    ----------
+    population, cells_deviation : of `with_pad_scatter`.
+    allowed : share of the switches that may fail.
 
     Raises
     ------
     InputError : no switch of the population is within the model, or none lets go above the asked voltage.
     """
-    settings, hold = population.settings, population.hold_V
-    held = settings.model_copy(update={"hold_voltage_V": hold})
-    cells_deviation = reserve_deviation(cells, flats, held, population.release_V)
-    pad_cells = switch_from_settings(settings).area_m2 * 1e18 / cell_area_nm2
-    population = replace(population, pad_deviation=cells_deviation * float(np.sqrt(cells.count / pad_cells)))
-    response = learn(population, tell)
+    hold, response = population.hold_V, learn(population, tell)
     rows = []
     for number, volts in enumerate(voltages(population).tolist()):
         tell(0.6 + 0.2 * number / VOLTAGES, f"hold voltage {volts:.3g} V")
@@ -375,7 +390,7 @@ def failure_rate(
             for times in WORKS
         ]
     laws, beyond_hold = [], population.beyond(hold).probability
-    likely = just_allowed(response, hold, allowed - beyond_hold)
+    likely = response.sample(just_allowed(response, hold, allowed - beyond_hold), hold, 0)
     for number, times in enumerate(WORKS):
         tell(0.8 + 0.2 * number / len(WORKS), f"{times:.2g} times the attraction")
         curve = [row for row in rows if row["attraction"] == times]

@@ -90,8 +90,13 @@ Moments = Callable[[Array], tuple[Array, Array]]
 """Mean and deviation (m,) of the reserve at standard normal points (m, n)."""
 
 
-def sample_event(moments: Moments, dimension: int, threshold: float, seed: int) -> Sampled:
-    """Subset simulation of the event that mean + deviation x (a standard normal number) is not above the threshold."""
+def sample_event(moments: Moments, dimension: int, threshold: float, seed: int, samples: int = SAMPLES) -> Sampled:
+    """Subset simulation of the event that mean + deviation x (a standard normal number) is not above the threshold.
+
+    Parameters
+    ----------
+    samples : points of each level.
+    """
     with needs("uncertainty"):
         import openturns as ot
 
@@ -106,7 +111,7 @@ def sample_event(moments: Moments, dimension: int, threshold: float, seed: int) 
     event = ot.ThresholdEvent(ot.CompositeRandomVector(function, inputs), ot.LessOrEqual(), threshold)
     subset = ot.SubsetSampling(event)
     subset.setMaximumOuterSampling(4)
-    subset.setBlockSize(SAMPLES // 4)
+    subset.setBlockSize(samples // 4)
     subset.setMinimumProbability(LEAST)
     subset.setKeepSample(True)
     try:

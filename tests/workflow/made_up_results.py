@@ -498,11 +498,13 @@ def _failure(root: Path) -> None:
             "by_cells": [1e-5, 1e-4],
             "largest_hold_V": largest,
             "least_rms_nm": 7.0,
+            "least_spring": None if largest is None else 3.9,
             "there": None,
         }
         for times, largest in ((1 / 3, 100.0), (1.0, 71.0), (3.0, None))
     ]
     rate = {"release_V": 0.0, "allowed": 1e-6, "hold_V": 70.0, "beyond": 2e-6, "laws": laws, "switches": 160}
+    rate |= {"spring": "thickness_um"}
     control = [{"name": "rms", "failing_if_known": 1e-7}, {"name": "hurst", "failing_if_known": 3e-5}]
     write_json(root / "device/failure.json", rate | {"control_attraction": 1.0, "control": control}, PROVENANCE)
     _write(root / "device/failure.csv", rows)

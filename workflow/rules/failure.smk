@@ -30,6 +30,29 @@ rule find_failure_rate:
         "../scripts/find_failure_rate.py"
 
 
+if SCENE.failure.probability is not None:
+    ACCURACY.append(f"{RESULTS}/accuracy/failure.csv")
+
+
+rule measure_failure_accuracy:
+    input:
+        **rules.find_failure_rate.input,
+    output:
+        f"{RESULTS}/accuracy/failure.csv",
+    log:
+        f"{RESULTS}/logs/measure_failure_accuracy.log",
+    threads: 1
+    params:
+        contact=settings("contact"),
+        design=DRAW_DESIGN,
+        device=settings("device"),
+        failure=settings("failure"),
+    message:
+        "study the error of the failure rate against run time"
+    script:
+        "../scripts/measure_failure_accuracy.py"
+
+
 rule circuit:
     input:
         f"{RESULTS}/device/circuit.json",

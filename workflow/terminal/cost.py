@@ -208,7 +208,7 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     **_each(8.5, "rank_sensitivity"),
     **_each(20.0, "rank_next_on_pad"),
     **_each(60.0, "make_circuit"),
-    **_each(180.0, "find_failure_rate"),
+    **_each(180.0, "find_failure_rate", "measure_failure_accuracy"),
     **_each(1100.0, "measure_elastic_accuracy"),
     **dict.fromkeys(
         ("make_glass", "make_counter_glass"), lambda c, _: _glass_steps(c.scene) / ATOM_STEPS_PER_CORE_SECOND

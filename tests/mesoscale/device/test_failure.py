@@ -99,7 +99,7 @@ def test_the_probability_is_that_of_brute_force():
     fixed[:, given] = (least - 9.0) / 0.8  # deviations of the study's input
     assert 0.004 < plates.failed(fixed, plates.hold_V, 1.47).mean() < 0.025  # 1000 know 1 % to 30 %
     # so does less attraction bear weaker springs
-    likely = just_allowed(response, plates.hold_V, 0.01)
+    likely = response.sample(just_allowed(response, plates.hold_V, 0.01), plates.hold_V, 0)
     weaker, spring = (least_spring(response, likely, times, plates.hold_V, 0.01) for times in (1.32, 1.47))
     assert weaker is not None
     assert spring is not None

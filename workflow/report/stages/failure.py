@@ -30,7 +30,9 @@ def describe(results: Results) -> Section | None:
         "by finite cells",
         "largest hold voltage",
         "least RMS height",
+        "least thickness of the beam" if rate["spring"] == "thickness_um" else "least spring",
     )
+    unit = "µm" if rate["spring"] == "thickness_um" else "N/m"
     rows = [
         (
             f"{show(law['attraction'], 2)} times",
@@ -38,10 +40,11 @@ def describe(results: Results) -> Section | None:
             " to ".join(show(end, 2) for end in law["by_cells"]),
             "none" if law["largest_hold_V"] is None else volts(law["largest_hold_V"]),
             "none" if law["least_rms_nm"] is None else f"{show(law['least_rms_nm'], 2)} nm",
+            "none" if law["least_spring"] is None else f"{show(law['least_spring'])} {unit}",
         )
         for law in rate["laws"]
     ]
-    section.blocks.append(Table("Failures; hold voltage and roughness that are allowed", header, rows))
+    section.blocks.append(Table("Failures; hold voltage, roughness and spring that are allowed", header, rows))
     if rate["control"]:
         known = [(symbol(row["name"]), show(row["failing_if_known"], 2)) for row in rate["control"][:5]]
         header = (
