@@ -332,12 +332,12 @@ def least_spring(response: Response, likely: Sampled, times: float, hold_V: floa
     if allowed <= 0.0 or not len(likely.points):
         return None
     population = response.population
-    own = getattr(population.settings, population.spring)
+    now = getattr(population.settings, population.spring)
     rng = np.random.default_rng(np.random.SeedSequence([0, 0x5B1]))
     chosen = rng.permutation(len(likely.points))[:SPRING_RUNS]
 
     def too_many(logarithm: float) -> bool:
-        changed = population.settings.model_copy(update={population.spring: own * float(np.exp(logarithm))})
+        changed = population.settings.model_copy(update={population.spring: now * float(np.exp(logarithm))})
         failed = replace(population, settings=changed).failed(likely.points[chosen], hold_V, times)
         return likely.probability * float(np.mean(failed / likely.chance[chosen])) > allowed
 
@@ -347,7 +347,7 @@ def least_spring(response: Response, likely: Sampled, times: float, hold_V: floa
     while high - low > NEAR:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if too_many(middle) else (low, middle)
-    return own * float(np.exp(high))
+    return now * float(np.exp(high))
 
 
 def with_pad_scatter(

@@ -47,8 +47,8 @@ def accuracy_points(
     tell(0.7, "samples")
     for samples in LEVELS:
         started = _clock()
-        found = [response.sample(times, hold, seed, samples=samples).probability for seed in range(SEEDS)]
-        error = float(np.std(found, ddof=1) / np.mean(found))
+        shares = [response.sample(times, hold, seed, samples=samples).probability for seed in range(SEEDS)]
+        error = float(np.std(shares, ddof=1) / np.mean(shares))
         metric, cost = f"relative deviation over {SEEDS} seeds", (_clock() - started) / SEEDS
         yield _row("failing by the response", "points of a level", samples, error, metric, "their mean", cost)
     tell(0.8, "corrections")
