@@ -32,6 +32,10 @@ POINTS = 64
 """Solved switches behind the interval: its ends are quantiles known to 3 % in probability."""
 SOLVED = 0.8
 """Share of the points that must be solved, since those that cannot be are no random part of them."""
+BLOCKS = 6
+"""Of the draws, each of which is left out once."""
+BLOCK_POINTS = 24
+"""Switches behind each: the first of those behind the interval."""
 SOLVED_TO_RANK = 0.5
 """The same where causes are only compared with each other."""
 FAR_NM = 300.0
@@ -221,8 +225,35 @@ def answer(
             "refused": refused,
             "response_error_V": error,
             "cells_error_V": cells_V,
+            "draws_error_V": draws_error_V(cells, draws, table, flats, points, cutoffs_nm[0], threads),
         },
     }
+
+
+def draws_error_V(
+    cells: PadCells,
+    draws: Sequence[SampledPad],
+    table: InputTable,
+    flats: Flats,
+    points: Sequence[Point],
+    gap_cutoff_nm: float,
+    threads: int = 1,
+) -> float | None:
+    """Standard error (V) of the median release by the number of draws and of their cells; None with too few draws.
+
+    The draws are left out block by block (delete-a-group jackknife, Kott, J. Off. Stat. 17 (2001) 521), and the medians
+    are those of the same points in all of them.
+    """
+    medians = []
+    for block in range(BLOCKS):
+        kept = [draw for k, draw in enumerate(draws) if k % BLOCKS != block]
+        try:
+            model = model_of(cells, kept, table, flats, gap_cutoff_nm)
+        except InputError:
+            return None
+        solved, _ = solve_points(points[:BLOCK_POINTS], model, threads)
+        medians.append(np.median([state["release_V"] for state in solved.values()]))
+    return float(np.sqrt((BLOCKS - 1) * np.var(medians)))
 
 
 def try_answer(

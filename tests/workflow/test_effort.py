@@ -70,7 +70,7 @@ def test_contributions_add_up_to_the_spread_of_the_answer(tmp_path):
     answer = {
         "release_V": {"std": 0.5},
         "sensitivity": [{"name": "rms", "share_of_variance": 0.7}],
-        "design": {"cells_error_V": 0.3, "response_error_V": 0.08, "points": 64, "draws": 24},
+        "design": {"cells_error_V": 0.3, "response_error_V": 0.08, "points": 64, "draws": 24, "draws_error_V": 0.1},
     }
     file = tmp_path / "device/pad_switch.json"
     file.parent.mkdir()
@@ -81,8 +81,11 @@ def test_contributions_add_up_to_the_spread_of_the_answer(tmp_path):
     assert found["largest"] == ["rms", 0.7]
     assert effort.knobs["pad.cells"].seconds == pytest.approx(1.0)
     assert effort.fixed_s == 5.0
-    file.write_text(json.dumps({"cells_computed": 100, "answer": None}))
-    assert contributions(Results(tmp_path, [file], "mine")) is None
+    assert found["variance_V2"]["pad.draws"] / 24 == pytest.approx(0.1**2)
+    answer["design"]["draws_error_V"] = None  # too few draws to tell
+    for unknown in (answer, None):
+        file.write_text(json.dumps({"cells_computed": 100, "answer": unknown}))
+        assert contributions(Results(tmp_path, [file], "mine")) is None
 
 
 @pytest.mark.parametrize(("error_GPa", "known"), [(None, False), (1.5, True)])
@@ -90,7 +93,7 @@ def test_one_glass_says_nothing_of_how_glasses_scatter(tmp_path, error_GPa, know
     answer = {
         "release_V": {"std": 0.5},
         "sensitivity": [{"name": "e_star", "share_of_variance": 0.1}],
-        "design": {"cells_error_V": 0.3, "response_error_V": 0.08, "points": 64, "draws": 24},
+        "design": {"cells_error_V": 0.3, "response_error_V": 0.08, "points": 64, "draws": 24, "draws_error_V": 0.1},
     }
     glasses = {"standard_error_of_mean_GPa": error_GPa, "std_GPa": 3.0, "structures_used": ["a01"]}
     files = [tmp_path / "device/pad_switch.json", tmp_path / "elastic/e_star.json"]

@@ -6,15 +6,14 @@ import numpy as np
 
 from workflow.report.available import Results
 
-DRAWS = 0.18
-"""Error that one draw leaves in the median release, over the deviation by the inputs: the draws of scene `paper` left
-out in six blocks. It falls with the root of their number."""
 MEDIAN = 1.25
 """Standard error of a median over that of a mean."""
 
 
 def contributions(results: Results) -> dict[str, Any] | None:
-    """What inputs and counts leave open of the release, from the results of a scene; None without an answer.
+    """What inputs and counts leave open of the release, from the results of a scene; None where the answer is missing.
+
+    It is taken for missing, too, where too few draws stand behind it to tell their error.
 
     Returns
     -------
@@ -24,13 +23,14 @@ def contributions(results: Results) -> dict[str, Any] | None:
     if not results.has("device/pad_switch.json"):
         return None
     pad = results.json("device/pad_switch.json")
-    if not (answer := pad.get("answer")):
+    answer = pad.get("answer")
+    if not answer or (draws_V := answer["design"].get("draws_error_V")) is None:
         return None
     design, shares = answer["design"], {row["name"]: row["share_of_variance"] for row in answer["sensitivity"]}
     total_V2, cells_V2 = answer["release_V"]["std"] ** 2, design["cells_error_V"] ** 2
     inputs_V2 = max(total_V2 - cells_V2, 0.0)
     counts = {"pad.cells": pad["cells_computed"], "pad.draws": design["draws"]}
-    variances = {"pad.cells": cells_V2 * counts["pad.cells"], "pad.draws": DRAWS**2 * inputs_V2}
+    variances = {"pad.cells": cells_V2 * counts["pad.cells"], "pad.draws": draws_V**2 * counts["pad.draws"]}
     if results.has("hardness/fit.json") and "budget" in (fit := results.json("hardness/fit.json")):
         # the mean over runs errs by the scatter between them; all runs of a seed are one of the count
         counts["hardness.seeds"] = len({point["seed"] for point in results.csv("hardness/points.csv")})

@@ -16,8 +16,11 @@ from mesoscale.device.pad_switch import PadStates
 from mesoscale.device.pressing import EDGE, pressing, pressure_to_compute
 from mesoscale.device.release import (
     _probability,
+    draws_error_V,
     first_order,
+    model_of,
     plan_points,
+    solve_points,
     try_answer,
 )
 from mesoscale.errors import InputError, NotComputed
@@ -50,8 +53,10 @@ def true_pad(values, gap_cutoff_nm, lifted=0.0):
     )  # fmt: skip
 
 
-def sampled(values, gap_cutoff_nm, cells=4, lifted=0.0):
+def sampled(values, gap_cutoff_nm, cells=4, lifted=0.0, higher=0.0):
+    """A pad of few cells; `higher`: by how much the logarithm of its repulsion differs from that of all cells."""
     compact = true_pad(values, gap_cutoff_nm, lifted)
+    compact = replace(compact, c0=compact.c0 - higher)
     s = np.linspace(0.05, 12.0, 600) * values["rms"]
     law = law_of_compact(compact, np.full(s.size, 0.05), s, depths=5)
     return SampledPad(values, gap_cutoff_nm, cells, law)
@@ -225,8 +230,9 @@ def test_refused_points_widen_the_probability_of_sticking():
     assert opened["high"] > closed["high"]
 
 
-def test_the_answer_keeps_its_causes_apart(pads):
-    """A plate on pads without scatter between cells: the cells' share is nothing, the inputs' nearly all."""
+@pytest.fixture(scope="module")
+def alike(pads):
+    """The central pad, of cells without scatter."""
     law = pads[0].law
     grid = PadGrid(law.separation_nm[::-1], np.flatnonzero(np.isin(law.separation_nm[::-1], law.depth_nm)))
     closing = np.tile(law.closing[:, ::-1], (16, 1, 1))
@@ -234,9 +240,39 @@ def test_the_answer_keeps_its_causes_apart(pads):
     for k, depth in enumerate(grid.depth_nm):
         above = law.separation_nm >= depth - 1e-9
         one[k][:, above] = true_pad(MIDDLE, 0.165).opening_GPa(law.separation_nm[above], depth)
-    cells = PadCells(grid, np.full(16, 30.0), closing, np.tile(one[:, :, ::-1], (16, 1, 1, 1)), np.ones(16, bool))
-    released = partial(releases_by_cells, PLATE, cells, law.flats)
-    state = try_answer(cells, pads[1:], TABLE, law.flats, PLATE, 0.165, released, 2)
+    return PadCells(grid, np.full(16, 30.0), closing, np.tile(one[:, :, ::-1], (16, 1, 1, 1)), np.ones(16, bool))
+
+
+def test_the_error_by_the_draws_is_how_answers_of_other_draws_scatter(pads, alike):
+    """Of answers by independent draws whose few cells scatter, and nothing where they do not."""
+    about = TABLE, pads[0].law.flats
+    points = plan_points(TABLE, PLATE, 0.165, 0.265, 24)[3][:8]
+    rng = np.random.default_rng(7)
+
+    def drawn(deviation):
+        units = qmc.LatinHypercube(4, rng=rng).random(24)
+        values = [dict(zip(TABLE.names, row, strict=True)) for row in TABLE.transform(units[:, :3]).tolist()]
+        higher = deviation * rng.normal(size=24)
+        return [
+            sampled(*row, higher=more) for *row, more in zip(values, 0.165 + 0.1 * units[:, 3], higher, strict=True)
+        ]
+
+    assert draws_error_V(alike, drawn(0.0), *about, points, 0.165) < 0.01
+    medians, errors = [], []
+    for _ in range(20):
+        draws = drawn(1.0)
+        solved, _ = solve_points(points, model_of(alike, draws, *about, 0.165))
+        medians.append(np.median([state["release_V"] for state in solved.values()]))
+        errors.append(draws_error_V(alike, draws, *about, points, 0.165))
+    assert np.sqrt(np.mean(np.square(errors))) == pytest.approx(np.std(medians, ddof=1), rel=0.5)
+    assert draws_error_V(alike, draws[:4], *about, points, 0.165) is None
+
+
+def test_the_answer_keeps_its_causes_apart(pads, alike):
+    """A plate on pads without scatter between cells: the cells' share is nothing, the inputs' nearly all."""
+    law = pads[0].law
+    released = partial(releases_by_cells, PLATE, alike, law.flats)
+    state = try_answer(alike, pads[1:], TABLE, law.flats, PLATE, 0.165, released, 2)
     assert state["answer_status"] == "ok"
     shares = {row["cause"]: row["share_of_variance"] for row in state["answer"]["causes"]}
     assert shares["cells"] < 1e-9
