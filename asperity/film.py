@@ -49,6 +49,8 @@ RECOMMENDED = {"mechanics": "coupled", "attraction": "offset"}
 CELLS = 64
 PIXELS = {128: 4.0, 256: 4.0, 512: 1.0, 1024: 1.0, 2048: 1.0}
 """Grids, and how far beyond a film's cut-off they must resolve: small ones are for films of long waves."""
+GROWN_PIXELS = 512
+"""Grid of cells that grow to hold a film's long waves: as that of usual ones, so that they cost no more."""
 TABLE_1 = InputsSettings()
 MATERIAL = {
     "e_star": PAPER_ROWS["e_star"],
@@ -111,7 +113,8 @@ class Film(_Shown):
                 arrays[name], described = record(measured, self.settings)
                 attributes[name] = {**_origin(source), **described}
                 self.measurements.append(measured)
-        pooled = pool(in_order(arrays, attributes), attributes, self.settings, cell_nm=None, cut_off=True)
+        records = in_order(arrays, attributes)
+        pooled = pool(records, attributes, self.settings, cell_nm=None, cut_off=True, pixels=GROWN_PIXELS)
         self._spectra = pooled.spectra
         self._levelled = {name: data["heights"] for name, data in arrays.items() if "heights" in data}
         rows = scan_rows(pooled.spectra, pooled.topography, attributes, None)
@@ -173,7 +176,8 @@ class Film(_Shown):
         """Close a cell of the film onto a flat up to a load, and open it: at central inputs, coupled asperities.
 
         The surface is the one of a scene's nominal curves: random, with the film's spectrum and heights. The cell has
-        a side of 1 um, or a longer one where the measurements are coarse (`description["cell_nm"]`).
+        a side of 1 um, or a longer one where the measurements are coarse or the film has long waves
+        (`description["cell_nm"]`).
 
         Parameters
         ----------

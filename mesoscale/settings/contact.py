@@ -89,7 +89,7 @@ class ContactSettings(Settings):
         ge=1,
         le=1e6,
         description="side of the square, periodic cell; with measured scans left out: it holds the shortest measured "
-        "waves (docs/topography.md, Cells), and max_force_nN grows with its area",
+        "waves and most of the RMS height (docs/topography.md, Cells), and max_force_nN grows with its area",
         json_schema_extra={"unit": "nm"},
     )
     max_force_nN: float = Field(

@@ -9,13 +9,14 @@ import numpy as np
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.curves import fit_curves, pooled_curve
-from mesoscale.topography.description.cell import finer_waves_doubt, refuse_coarse_measurements, suited_cell
+from mesoscale.topography.description.cell import finer_waves_doubt, grown_cell, refuse_coarse_measurements, suited_cell
 from mesoscale.topography.description.choice import (
     Choice,
     carried_on,
     choose,
     description_doubts,
     rows_of,
+    share_on_cells,
     surface_of,
 )
 from mesoscale.topography.description.doubts import Doubt
@@ -77,6 +78,7 @@ def pool(
     cell_nm: float | None,
     cut_off: bool = False,
     electrode_nm: float = math.inf,
+    pixels: int = 0,
 ) -> Pooled:
     """Describe the surface behind all records.
 
@@ -85,6 +87,9 @@ def pool(
     arrays, attributes : records by name (`records.record`).
     cell_nm : side of the surfaces that the contact model will make; None: the one that suits (`suited_cell`).
     cut_off : they end at the measured cut-off; the RMS height is then that of the waves before it.
+    electrode_nm : side of a square of the electrode's area.
+    pixels : grid points a side of these surfaces. Where they end at the cut-off, a side that is chosen grows with them
+        (`grown_cell`).
 
     Raises
     ------
@@ -105,17 +110,26 @@ def pool(
         refuse_different_films(pairs)
     quantiles = {name: data["quantiles"] for name, data in arrays.items() if "quantiles" in data}
     topography, spectra, lifted = parameters_of(images, quantiles if not_gaussian(tests) else {}, settings)
+    grows = cell_nm is None and cut_off
     cell_nm = suited_cell(spectra, electrode_nm) if cell_nm is None else cell_nm
     refuse_coarse_measurements(spectra, cell_nm)
     one = merge(spectra, lifted)
     if settings.scans:  # synthetic scans know their tip
         one = spectrum_with_radius_error(one, spectra)
     choice = choose(topography, one, tests, settings)
+    cutoff = cutoff_row(topography, spectra)
+    if grows:
+
+        def held(side_nm: float) -> float:
+            return share_on_cells(topography, one, choice, side_nm)[0]
+
+        shortest_nm = 2.0 * np.pi / max(cutoff["a"], cutoff.get("b", 0.0))
+        cell_nm = grown_cell(cell_nm, held, shortest_nm, pixels, electrode_nm)
     typical = settings.model_copy(update={"ranges": "interval"})
     surface = surface_of(choice, topography, one, list(quantiles.values()), settings, cell_nm)
     rows, film = (rows_of(choice, topography, one, asked, cell_nm) for asked in (settings, typical))
     if rows:
-        rows["q1"] = cutoff_row(topography, spectra)
+        rows["q1"] = cutoff
         film["rms_scatter"] = rms_scatter_row(topography, one if surface else None)
         if cut_off:
             rows["rms"], film["rms"] = (

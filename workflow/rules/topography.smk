@@ -87,6 +87,7 @@ rule pool_spectra:
         cell_nm=None if SCENE.cell_follows_film else SCENE.contact.length_nm,
         electrode_nm=1000 * SCENE.device.area_um2**0.5 if SCENE.cell_follows_film else None,
         cut_off=SCENE.inputs.prior_origins().get("q1") == "topography",
+        pixels=SCENE.contact.pixels,
     message:
         "describe the surface behind the spectra"
     script:

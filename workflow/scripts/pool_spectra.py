@@ -30,7 +30,8 @@ with job(snakemake) as run:
         typical = RoughSpectrum.from_rms(known["rms_nm"], known["q0"], known["slope"], known["q1"])
 
     given = snakemake.params
-    pooled = pool(arrays, attributes, settings, given.cell_nm, given.cut_off, given.electrode_nm or math.inf)
+    room_nm = given.electrode_nm or math.inf
+    pooled = pool(arrays, attributes, settings, given.cell_nm, given.cut_off, room_nm, given.pixels)
     rows = scan_rows(pooled.spectra, pooled.topography, attributes, truth)
     for row in rows:
         attributes[row["name"]] = {**attributes[row["name"]], **row}

@@ -1,7 +1,8 @@
 """The side of the cells that the contact is computed on: what measurements see of it, and what the device has room for.
 
-A cell holds the shortest waves that were measured several times. Waves longer than its side lift whole cells of a pad;
-waves shorter than the measured ones are an assumption, and its effect is stated.
+A cell holds the shortest waves that were measured several times, and as much of the film's RMS height as its grid and
+the electrode allow: cells without the long waves release too early (`python -m evidence pad.cell_side`). Waves shorter
+than the measured ones are an assumption, and its effect is stated.
 """
 
 import math
@@ -18,6 +19,9 @@ from mesoscale.topography.synthesis import synthesize_spectrum
 USUAL_NM = ContactSettings().length_nm
 FINEST_WAVES = 2.0  # the shortest measured wave goes at least so often into a cell
 SUITED_WAVES = 8.0  # and so often into a cell whose side is chosen
+HELD = 0.9  # of the RMS height of the film, that a cell holds whose side is chosen
+GROWN = 4.0  # times as long as without the long waves is a cell at most
+SITES_A_WAVE = 2.0  # that its grid has at least for the shortest wave of the surfaces: the Nyquist limit
 MANY_WAVES = 16.0  # so often, and the contact is mostly one of measured waves
 SURFACES, SITES = 8, 256  # of the first contact with and without finer waves
 
@@ -41,6 +45,25 @@ def suited_cell(spectra: Sequence[TrustedSpectrum], electrode_nm: float = math.i
             "correct the size of the device"
         )
     return min(max(USUAL_NM, float(f"{SUITED_WAVES * seen:.2g}")), electrode_nm)
+
+
+def grown_cell(
+    side_nm: float, held: Callable[[float], float], shortest_nm: float, pixels: int, room_nm: float
+) -> float:
+    """The side (nm), doubled until a cell holds `HELD` of the RMS height, as far as grid and electrode go along.
+
+    Parameters
+    ----------
+    side_nm : from `suited_cell`.
+    held : share of the mean square height on cells of a side (nm).
+    shortest_nm : shortest wave of the surfaces.
+    pixels : grid points a side of the cells.
+    room_nm : side of a square of the electrode's area.
+    """
+    most_nm = min(GROWN * side_nm, pixels * shortest_nm / SITES_A_WAVE, room_nm)
+    while held(side_nm) < HELD**2 and 2.0 * side_nm <= most_nm:
+        side_nm *= 2.0
+    return side_nm
 
 
 def refuse_coarse_measurements(spectra: Sequence[TrustedSpectrum], cell_nm: float) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.settings import TopographySettings
+from mesoscale.topography.description.cell import HELD
 from mesoscale.topography.description.confidence import QUANTILES, REACH
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.heights import HeightTest, common_heights, not_gaussian
@@ -253,14 +254,14 @@ def description_doubts(
     """Doubts of the measurements besides those of eq. 9, which only count where eq. 9 is used."""
     doubts = []
     share, whole = share_on_cells(topography, one, choice, cell_nm)
-    if share < LEAST_ON_CELLS:
+    if share < HELD**2:
         text = (
             f"a cell of {cell_nm:g} nm has {np.sqrt(share):.0%} of the RMS height; the rest, "
             f"{np.sqrt(whole * (1 - share)):.3g} nm, is in longer waves, which no stage has"
         )
         remedy = (
-            "a larger contact.length_nm holds more of them; on a wide electrode they lift and tilt whole cells: "
-            "device.bow_deviation_nm can stand for those as long as the electrode"
+            "a larger contact.length_nm with as many more contact.pixels holds more of them; on a wide electrode they "
+            "lift and tilt whole cells: device.bow_deviation_nm can stand for those as long as the electrode"
         )
         doubts.append(Doubt("waves_beyond_cell", text, remedy, "rms"))
     for name, values in attributes.items():
@@ -298,7 +299,6 @@ def description_doubts(
 
 
 SUMMED = 16  # longest waves that are summed one by one; beyond, sum and integral differ by less than a per cent
-LEAST_ON_CELLS = 0.5  # share of the mean square height that cells have without a word
 MOST_ANISOTROPIC = 2.0  # ratio of slopes; isotropic surfaces C ~ q^-2.5 to q^-4 without a plateau reach 1.4
 MOST_SKEWED = 0.3  # skewness that aligning lines may add without a word
 MOST_ALIGNED = 0.1  # share of the RMS height that aligning lines may take without a word
