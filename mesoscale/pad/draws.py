@@ -2,7 +2,9 @@
 
 The uncertainty of the inputs is shared by all cells of a pad; the randomness of the surfaces is not. So a draw is one
 set of inputs and of the cut-off D0, and its cells have that set in common. `mesoscale.pad.response` puts a closed form
-through all of them.
+through all of them. Where places of a film differ, their few cells scatter more than inputs move them: then all draws
+have the same surfaces and places (common random numbers), and what these have by themselves is in no ratio to the
+central curves.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -67,12 +69,13 @@ def plan_draws(table: InputTable, contact: ContactSettings, count: int, cells: i
     values = table.transform(units[:, :-1])
     low = contact_of(table.medians(), contact)[1].gap_cutoff_nm
     high = low if "gap_cutoff" in table.names else max(low, HIGHEST_GAP_CUTOFF_NM)
+    shared = "rms_scatter" in table.names
     return [
         Draw(
             k,
             dict(zip(table.names, row.tolist(), strict=True)),
             float(low + (high - low) * unit),
-            range(FIRST_DRAW_SEED + k * cells, FIRST_DRAW_SEED + (k + 1) * cells),
+            range(first := FIRST_DRAW_SEED + (0 if shared else k * cells), first + cells),
         )
         for k, (row, unit) in enumerate(zip(values, units[:, -1], strict=True))
     ]

@@ -10,7 +10,7 @@ from mesoscale.contact import ContactInputs
 from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import FilmInputs
-from mesoscale.inputs.table import input_table
+from mesoscale.inputs.table import film_table, input_table
 from mesoscale.pad.cells import FIRST_SEED, FilmPieces, PadGrid, close_cells, place_of, plan_grid
 from mesoscale.pad.curves import adhesion_by_cells, assemble
 from mesoscale.pad.draws import plan_draws
@@ -259,6 +259,12 @@ def test_a_D0_that_is_an_input_is_not_drawn_twice():
     assert len(drawn) == 6
     fixed = input_table(gap_cutoff=InputRow(distribution="fixed", values=(3.7,)))
     assert {draw.gap_cutoff_nm for draw in plan_draws(fixed, CONTACT, 6, 4)} == {3.7}
+
+
+def test_draws_of_unequal_places_have_the_same_surfaces():
+    assert len({draw.seeds for draw in plan_draws(input_table(), CONTACT, 6, 4)}) == 6
+    film = film_table(input_table(), {}, (0.2, 0.5))
+    assert len({draw.seeds for draw in plan_draws(film, CONTACT, 6, 4)}) == 1
 
 
 def test_a_pad_of_one_depth_opens_from_it_without_a_warning():
