@@ -55,12 +55,19 @@ class Stiffness:
 
 
 def stiffness_of(branch: Branch) -> Stiffness:
-    """Stiffness along an opening, or along a closing on which nothing flows."""
+    """Stiffness along an opening, or along a closing on which nothing flows.
+
+    The force is straight in the approach while the same sites touch. So where a neighbouring step has the same area,
+    the chord to it is the slope; elsewhere that of a parabola through three steps stands for it.
+    """
     up = np.argsort(branch.separation_nm)[::-1]
     force, approach, area = branch.repulsive_nN[up], -branch.separation_nm[up], branch.contact_area_nm2[up]
     kept = (force > 0) & (np.diff(approach, prepend=-np.inf) > 0)
-    force, approach = force[kept], approach[kept]
-    return Stiffness(force, area[kept], approach, np.gradient(force, approach, edge_order=2))
+    force, approach, area = force[kept], approach[kept], area[kept]
+    slope = np.gradient(force, approach, edge_order=2)
+    chords, same = np.diff(force) / np.diff(approach), np.diff(area) == 0
+    slope[:-1][same], slope[1:][same] = chords[same], chords[same]
+    return Stiffness(force, area, approach, slope)
 
 
 def resistance_Ohm(slope: Array, area_nm2: Array, e_star_GPa: float, settings: ResistanceSettings) -> Array:

@@ -72,7 +72,7 @@ def test_one_round_spot_is_holms(resistivities):
 
 
 def test_many_spots_conduct_as_the_potential_says():
-    """Between the chords in all of 100 random contacts; the slope is off by the sites that come in between steps."""
+    """Between the chords in all of 100 random contacts; the slope is off where sites come in on both sides."""
     errors = []
     for seed in range(100):
         rng = np.random.default_rng(seed)
@@ -91,7 +91,7 @@ def test_many_spots_conduct_as_the_potential_says():
             assert least[place] * 0.9999 <= direct <= most[place] * 1.0001
             errors.append(way.slope[place] / direct - 1.0)
     assert np.median(np.abs(errors)) < 0.005
-    assert np.quantile(np.abs(errors), 0.95) < 0.1  # one site of few on 64 x 64; 0.05 was expected
+    assert np.quantile(np.abs(errors), 0.95) < 0.05
     assert abs(np.mean(errors)) < 0.01
 
 
