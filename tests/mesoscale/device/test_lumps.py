@@ -11,11 +11,11 @@ from mesoscale.device.lumps import VISCOSITY, Study, lumps_of, move, study_lumps
 from mesoscale.device.pad_export import FOLLOW_S, START_NM
 from mesoscale.device.statistics import analytic_pull_in_V
 from mesoscale.device.switch import GPA, NM, switch_from_settings
-from mesoscale.device.switch_export import spice_switch, verilog_lump
+from mesoscale.device.switch_export import LUMP, spice_switch, verilog_lump
 from mesoscale.errors import InputError
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
-from tests.mesoscale.device.simulators import by_ngspice, needs_ngspice, needs_openvaf
+from tests.mesoscale.device.simulators import by_ngspice, compile_for_ngspice, needs_ngspice, needs_openvaf
 from tests.mesoscale.device.test_beam import made_up_law
 from tests.mesoscale.device.test_pad_export import pad
 
@@ -216,20 +216,36 @@ def test_the_compiled_plate_closes_as_fast(tmp_path):
     assert times[0] == pytest.approx(times[1], rel=0.01)
 
 
+def with_compiled_lump(netlist, folder, lumps):
+    """The netlist with the module that OpenVAF compiles for ngspice in the place of the subcircuit `rough_lump`."""
+    (folder / "rough_lump.va").write_text(verilog_lump(lumps, LAW, 256))
+    compile_for_ngspice(folder / "rough_lump.va")
+    names = ("rest", "area", "gas", "viscosity", "fringe", "follow")
+    head, _, rest = netlist.partition(".subckt rough_lump")
+    return f"""{head}.subckt rough_lump{rest.partition("params:")[0]}params: {" ".join(f"{name}=1" for name in names)}
+Nlump {LUMP} lump
+.model lump rough_lump {" ".join(f"{name}={{{name}}}" for name in names)}
+.ends rough_lump
+"""
+
+
 @needs_ngspice
-def test_ngspice_closes_the_switch_as_fast_and_as_deep(tmp_path):
+@pytest.mark.parametrize("compiled_lump", [False, True], ids=["SPICE", "OSDI"])
+def test_ngspice_closes_the_switch_as_fast_and_as_deep(tmp_path, compiled_lump):
     """A step of 76 V on four pairs of lumps, through the impact; 15 s in ngspice."""
     lumps = lumps_of(BEAM, 4)
-    (tmp_path / "central.sub").write_text(spice_switch(lumps, Study(4, 0.0, 0.0, 0.0, 70.0, 6.0, 0.0), LAW, 256))
+    netlist = spice_switch(lumps, Study(4, 0.0, 0.0, 0.0, 70.0, 6.0, 0.0), LAW, 256)
+    (tmp_path / "central.sub").write_text(with_compiled_lump(netlist, tmp_path, lumps) if compiled_lump else netlist)
     time, middle, charge = by_ngspice(
         tmp_path,
-        """* a step
+        f"""* a step
 .include central.sub
 Vdrive drive 0 PULSE(0 76 1u 10n 10n 150u)
 X1 drive 0 middle rough_switch
 .options method=gear reltol=1e-4 abstol=1e-3 vntol=1e-3
 .tran 10n 35.4u 0 5n
 .control
+{"pre_osdi rough_lump.osdi" if compiled_lump else ""}
 set wr_singlescale
 set numdgt=12
 run
