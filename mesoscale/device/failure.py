@@ -318,7 +318,9 @@ def just_allowed(response: Response, hold_V: float, allowed: float) -> float:
     return float(np.exp(high))
 
 
-def least_spring(response: Response, likely: Sampled, times: float, hold_V: float, allowed: float) -> float | None:
+def least_spring(
+    response: Response, likely: Sampled | None, times: float, hold_V: float, allowed: float
+) -> float | None:
     """Least spring, in the unit of its setting, all else varying, with which no more switches fail than allowed.
 
     A weaker spring makes those fail that nearly fail with more attraction. So some of `likely` are solved with other
@@ -327,9 +329,9 @@ def least_spring(response: Response, likely: Sampled, times: float, hold_V: floa
 
     Parameters
     ----------
-    likely : the failures with about the allowed probability; see `just_allowed`.
+    likely : the failures with about the allowed probability; see `just_allowed`; None where nothing is allowed.
     """
-    if allowed <= 0.0 or not len(likely.points):
+    if likely is None or not len(likely.points):
         return None
     population = response.population
     now = getattr(population.settings, population.spring)
@@ -390,7 +392,8 @@ def failure_rate(
             for times in WORKS
         ]
     laws, beyond_hold = [], population.beyond(hold).probability
-    likely = response.sample(just_allowed(response, hold, allowed - beyond_hold), hold, 0)
+    left = allowed - beyond_hold
+    likely = response.sample(just_allowed(response, hold, left), hold, 0) if left > 0.0 else None
     for number, times in enumerate(WORKS):
         tell(0.8 + 0.2 * number / len(WORKS), f"{times:.2g} times the attraction")
         curve = [row for row in rows if row["attraction"] == times]
@@ -403,8 +406,8 @@ def failure_rate(
                 "failing": asdict(corrected(response, times, hold)),
                 "by_cells": ends,
                 "largest_hold_V": allowed_V,
-                "least_rms_nm": least_rms_nm(response, times, hold, allowed - beyond_hold),
-                "least_spring": least_spring(response, likely, times, hold, allowed - beyond_hold),
+                "least_rms_nm": least_rms_nm(response, times, hold, left),
+                "least_spring": least_spring(response, likely, times, hold, left),
                 "there": None if allowed_V is None else asdict(corrected(response, times, allowed_V)),
             }
         )
