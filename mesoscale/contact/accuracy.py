@@ -46,6 +46,14 @@ def studies(settings: ContactSettings) -> Iterator[tuple[str, Choice, list[Case]
     steps = (5, 10, 20, 40, 80)
     yield "320 force steps", numerics(force_steps=320), [("force_steps", n, numerics(force_steps=n)) for n in steps]
 
+    if settings.mechanics == "adhesive":
+        works = (0.1, 0.05, 0.02, 0.01, 0.005)
+        yield (
+            "unknown work 0.001",
+            numerics(unknown_work=0.001),
+            [("unknown_work", w, numerics(unknown_work=w)) for w in works],
+        )
+
     if settings.mechanics == "asperity":  # coupled pressures need no flow to settle
         tolerances = (0.1, 0.03, 0.01, 1e-3, 1e-4)
         yield (

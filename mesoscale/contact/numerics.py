@@ -19,6 +19,8 @@ class Numerics:
     flow_floor_pixels : smallest s1 in pixels, so that the grid resolves the flow; 0: none.
     flow_tolerance : an asperity yields above its hardness times 1 + this (flow: return).
     max_sweeps : bound on the flow sweeps of one separation; reaching it raises a flag.
+    unknown_work : work that a step outside an adhesive contact may leave open, of what parts the fresh surface at
+        first touch.
     """
 
     force_steps: int = 40
@@ -29,6 +31,7 @@ class Numerics:
     flow_floor_pixels: float = 1.0
     flow_tolerance: float = 1e-3
     max_sweeps: int = 500
+    unknown_work: float = 0.02
 
 
 NUMERICS = Numerics()

@@ -62,7 +62,6 @@ class AdhesiveContact(CoupledContact):
     FORCE_TOLERANCE = 1e-4
     SMALLEST_STEP = 1e-4
     JUMP_STEP = 3e-3  # over the roughness: a step that jumps on the way to a separation is halved down to this
-    UNKNOWN = 0.02  # of what parts the fresh surface at first touch: work that a step outside contact may leave open
     STEPS = 500  # of the iteration
     CHANGE = 1e-5  # of the attraction in its last step, over the largest: demanded
     MIXED = 12  # steps that are mixed
@@ -74,6 +73,7 @@ class AdhesiveContact(CoupledContact):
         self.space = grid.Grid(surface.shape[0], settings.length_nm, float(inputs.e_star), settings.bodies)
         super().__init__(surface, inputs, settings, numerics)
         self._check_range()
+        self.unknown_work = numerics.unknown_work
         law, gap = self.adhesion, self.heights + self.touching_separation
         self.parting = -0.5 * law.cutoff * law.deformed(gap, np.ones_like(gap)) if law else 0.0  # nN nm, roughly
 
@@ -162,7 +162,7 @@ class AdhesiveContact(CoupledContact):
         return moved.row(separation, self.attraction(separation))
 
     def way(self, separation: float) -> list[Row]:
-        """The same, in steps whose work is known to `UNKNOWN`, and a jump as far as the force before and after is.
+        """The same, in steps whose work is known to `Numerics.unknown_work`, and a jump as far as the force before and after is.
 
         A peak of the force, or a jump amid a step, can leave just the loss that a smooth force has: then only the
         change of the force tells that the step is too long.
@@ -170,7 +170,7 @@ class AdhesiveContact(CoupledContact):
         start, unsettled = self.separation, self.unsettled
         row = self.away(separation)
         unknown = max(map(abs, self._loss(self.flows and separation < start)))
-        if unknown > self.UNKNOWN * self.parting and abs(separation - start) > self.JUMP_STEP * self.rms:
+        if unknown > self.unknown_work * self.parting and abs(separation - start) > self.JUMP_STEP * self.rms:
             self.back()
             self.unsettled = unsettled
             return self.way(0.5 * (start + separation)) + self.way(separation)
