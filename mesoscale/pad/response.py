@@ -10,6 +10,10 @@ logarithm of D0 over its smallest value, the closed form of `mesoscale.pad.compa
 and its other numbers are the same for all inputs. Every part is one least squares over all pads, in which a pad counts
 by its cells, so the scatter of a draw's few cells averages out as that of all cells together.
 
+Where places of a film differ, pads of few cells scatter by where they touch, and more than a pad's repulsion reaches in
+separation. Lines of ln p over s are then too flat (regression dilution). There the separation is fitted as a function
+of the repulsion, with a level and a slope that are linear in z and ln rms, and c0 and c1 are those of the same line.
+
 A straight line through the releases of the draws was tried instead: it foretells a draw left out less well, and gives
 neither curves nor held states.
 """
@@ -23,6 +27,7 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear, minimize_scalar
 
 from mesoscale.errors import InputError
+from mesoscale.inputs.definitions import RMS_SCATTER
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.carried import CarriedPad
 from mesoscale.pad.compact import CompactPad, UNIT_GPa, lift
@@ -65,7 +70,9 @@ class PadResponse:
     names : inputs besides the RMS height and the Hamaker constant, in the order of z.
     centre, half : z = (value - centre) / half, shape (n,).
     rms_nm, gap_cutoff_nm : where ln rms and d are zero.
-    closing : coefficients of c0 and of c1 (constant, z, ln rms), then c2, shape (2 n + 5,).
+    closing : coefficients of c0 and of c1 (constant, z, ln rms), then c2, shape (2 n + 5,); with `slopes` those of
+        s / rms at the mean -ln p, which comes last, and of its slope there.
+    slopes : smallest and largest slope of a pad by itself, where separations are fitted: no other pad goes beyond.
     opening : of b0, then b1 and b2, shape (n + 4,).
     attraction : of ln beta / A_H (with d), then m and n, shape (n + 5,).
     lifted : the same for all inputs.
@@ -78,6 +85,7 @@ class PadResponse:
     rms_nm: float
     gap_cutoff_nm: float
     closing: Array
+    slopes: tuple[float, float] | None
     opening: Array
     attraction: Array
     lifted: float
@@ -89,10 +97,14 @@ class PadResponse:
         size, rms = row.size, values["rms"]
         d = np.log(gap_cutoff_nm / self.gap_cutoff_nm)
         strength = float(row @ self.attraction[:size] + d * self.attraction[size])
+        c0, c1, c2 = float(row @ self.closing[:size]), float(row @ self.closing[size:-1]), float(self.closing[-1])
+        if self.slopes:
+            c1 = 1.0 / float(np.clip(c1, *self.slopes))
+            c0, c2 = c2 - c0 * c1, 0.0
         return CompactPad(
-            c0=float(row @ self.closing[:size]),
-            c1_per_nm=float(row @ self.closing[size:-1]) / rms,
-            c2_per_nm2=float(self.closing[-1]) / rms**2,
+            c0=c0,
+            c1_per_nm=c1 / rms,
+            c2_per_nm2=c2 / rms**2,
             b0_per_nm=float(row @ self.opening[:size]) / rms,
             b1_per_nm2=float(self.opening[-2]) / rms**2,
             b2_per_nm2=float(self.opening[-1]) / rms**2,
@@ -131,6 +143,9 @@ def fit_response(pads: Sequence[SampledPad], table: InputTable) -> PadResponse:
             share = np.sqrt(pad.cells / max(len(new[1]), 1))
             kept.append((*new, np.full(len(new[1]), share)))
     closing, opening, attraction = (_joined(part) for part in parts)
+    repulsion, slopes = _solve(*closing, 1)[0], None
+    if RMS_SCATTER.name in table.names:
+        repulsion, slopes = _positions(parts[0])
     lifted = _lifted(*attraction)
     return PadResponse(
         names,
@@ -138,7 +153,8 @@ def fit_response(pads: Sequence[SampledPad], table: InputTable) -> PadResponse:
         half,
         medians["rms"],
         least,
-        _solve(*closing, 1)[0],
+        repulsion,
+        slopes,
         _solve(*opening, 1)[0],
         _attraction(*attraction, lifted)[0],
         lifted,
@@ -155,9 +171,24 @@ def _joined(part: Sequence[tuple[Array, Array, Array]]) -> tuple[Array, Array, A
 def _solve(columns: Array, wanted: Array, weights: Array, signed: int) -> tuple[Array, float]:
     """Weighted least squares and its misfit; the last `signed` numbers are not negative: none grows on opening."""
     lowest = np.full(columns.shape[1], -np.inf)
-    lowest[-signed:] = 0.0
+    lowest[len(lowest) - signed :] = 0.0
     solved = lsq_linear(columns * weights[:, None], wanted * weights, (lowest, np.inf))
     return np.asarray(solved.x, float), float(solved.cost)
+
+
+def _positions(parts: Sequence[tuple[Array, Array, Array]]) -> tuple[Array, tuple[float, float]]:
+    """The line of each pad by s / rms over -ln p, and the range of slopes; from the equations of -ln p over s / rms."""
+    size = (parts[0][0].shape[1] - 1) // 2
+    middle = float(np.average(np.concatenate([levels for _, levels, _ in parts]), weights=_joined(parts)[2] ** 2))
+    columns, wanted, slopes = [], [], []
+    for over, levels, _ in parts:
+        row, at = over[:, :size], over[:, size]
+        columns.append(np.hstack([row, row * (levels - middle)[:, None]]))
+        wanted.append(at)
+        slopes.append(np.polyfit(levels, at, 1)[0])
+    weights = np.concatenate([share for *_, share in parts])
+    found = _solve(np.concatenate(columns), np.concatenate(wanted), weights, 0)[0]
+    return np.append(found, middle), (float(min(slopes)), float(max(slopes)))
 
 
 def _attraction(columns: Array, wanted: Array, weights: Array, lifted: float) -> tuple[Array, float]:
@@ -228,7 +259,7 @@ def law_of_compact(
 
     Raises
     ------
-    InputError : the form presses hardest where the pad is farthest away.
+    InputError : the form presses hardest where the pad is farthest away, or without end.
     """
     net = np.add(*compact.closing_GPa(separation_nm))
     deep = np.flatnonzero(net >= wanted_GPa)
@@ -236,6 +267,8 @@ def law_of_compact(
     if s.size == 1:
         raise InputError(f"separation {s[0]:.4g} nm: the closed form of the pad still presses there")
     load = compact.closing_GPa(s)[0]
+    if not 0.0 < load[0] < np.inf:
+        raise InputError(f"separation {s[0]:.4g} nm: the closed form of the pad carries {load[0]:.3g} GPa")
     shallow = np.flatnonzero(load > 1e-4 * load[0])[-1]
     # on the separations, so that every opening starts where closing ended
     depth = s[np.unique(np.linspace(0, shallow, depths).round().astype(int))]

@@ -25,6 +25,7 @@ from mesoscale.device.release import (
 )
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
+from mesoscale.inputs.table import film_table
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.compact import CompactPad
 from mesoscale.pad.curves import PadCells
@@ -79,6 +80,31 @@ def test_the_response_finds_a_closed_form_that_is_of_its_kind(pads, lifted):
     s = np.linspace(10.0, 30.0, 50)
     for ours, theirs in zip(state.opening_GPa(s, 9.0), wanted.opening_GPa(s, 9.0), strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=1e-6)
+
+
+def test_pads_that_scatter_by_where_they_touch_have_their_slope_and_level():
+    """Repulsion falls by 4 per RMS height from 5 ± 0.5 RMS heights on: lines over s would be flat."""
+    table = film_table(TABLE, {}, (0.2, 0.6))
+    rng = np.random.default_rng(3)
+    units = qmc.LatinHypercube(4, rng=rng).random(24)
+    pads = []
+    for row in table.transform(units).tolist():
+        values = dict(zip(table.names, row, strict=True))
+        at = 5.0 + 0.5 * rng.normal()
+        compact = replace(true_pad(values, 0.3), c0=7.0 - 4.0 * at, c1_per_nm=4.0 / values["rms"], c2_per_nm2=0.0)
+        s = np.linspace(at - 0.5, at + 3.0, 300) * values["rms"]
+        pads.append(SampledPad(values, 0.3, 4, law_of_compact(compact, np.full(s.size, 1.0), s, depths=5)))
+    found = fit_response(pads, table).at(table.medians(), 0.3)
+    rms = table.medians()["rms"]
+    assert found.c1_per_nm * rms == pytest.approx(4.0, rel=0.02)
+    assert (7.0 - found.c0) / (found.c1_per_nm * rms) == pytest.approx(5.0, abs=0.3)  # the mean of 24
+
+
+def test_a_form_beyond_all_numbers_is_refused():
+    s = np.linspace(0.05, 12.0, 600)
+    endless = SimpleNamespace(closing_GPa=lambda at: np.stack([np.where(at < 6.0, np.inf, 1e-3 / at), -1e-9 / at]))
+    with pytest.raises(InputError, match="the closed form of the pad carries inf GPa"):
+        law_of_compact(endless, np.full(s.size, 1.0), s)
 
 
 def test_too_few_draws_are_refused_with_the_number_that_is_enough(pads):
