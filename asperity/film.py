@@ -271,10 +271,13 @@ class Contact(_Shown):
         ------
         InputError : the pad never reaches the pressure that the switch presses with.
         """
-        device, pad = device or DeviceSettings(), pad or PadSettings(cells=CELLS)
+        device, pad = (
+            device or DeviceSettings(),
+            pad or PadSettings.model_validate({"cells": CELLS, "grid": {"pilot_cells": CELLS}}),
+        )
         inputs, settings = self._pad(pad.rms_scatter)
         held, area = pressing(device), settings.length_nm**2
-        grid = plan_grid(inputs, settings, pad.grid, pressure_to_compute(held), pressed_GPa=presser(held))
+        grid = plan_grid(inputs, settings, pad.piloted, pressure_to_compute(held), pressed_GPa=presser(held))
         seeds = range(FIRST_SEED, FIRST_SEED + pad.cells)
         cells = assemble(grid, list(close_cells(inputs, settings, grid, seeds, progress)), area)
         flats = flats_of(inputs, settings)

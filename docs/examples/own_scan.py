@@ -18,11 +18,12 @@ print("\n".join(film.lines()))
 # %% [markdown]
 # The first lines say what each measurement shows. Read the doubts before you go on: each has its remedy.
 #
-# Now close 1 µm² of the film on ruby. What you do not give about the material is the paper's.
+# Now close a cell of the film on ruby. It is 4 µm wide, since shorter ones lack the film's long waves. The paper's
+# material stands in for what you do not give.
 
 # %%
 diamond_on_ruby = {"e_star": 295.0, "h_macro": 16.5, "h_prime": 0.0}  # GPa
-contact = film.press(diamond_on_ruby, load_nN=7000)
+contact = film.press(diamond_on_ruby)
 print(contact)
 contact.plot().savefig("own_scan.png", dpi=120)
 
@@ -31,10 +32,9 @@ contact.plot().savefig("own_scan.png", dpi=120)
 # They are those of a scene with the same inputs: digit for digit, where linear algebra runs on one thread
 # (`OMP_NUM_THREADS=1`), as it does in a scene.
 #
-# A switch lands on many such places. Sixteen are enough for a first look; a scene takes 64 or more, and gives the
-# interval of the answer as well. Few tall grains carry this film, so 32 cells tell how far it must be closed.
+# A switch lands on many such places. Few tall grains carry this film, so 64 cells are pressed, which tell by themselves
+# how far they must be closed. A scene gives the interval of the answer as well.
 
 # %%
-pad = asp.PadSettings(cells=16, grid={"pilot_cells": 32})
-switch = contact.switch(asp.DeviceSettings(), pad)
+switch = contact.switch(asp.DeviceSettings())
 print("\n".join(switch.lines()))

@@ -163,7 +163,13 @@ class _Moving:
         self.nodal = np.zeros((beam.elements + 1, 2))
         self.deepest = np.full(beam.rest_m.shape, np.inf)
         law = pad.law
-        self.contact_nm = float(law.separation_nm[law.closing[0] > CONTACT_GPa].max())
+        touching = law.closing[0] > CONTACT_GPa
+        if not touching.any():
+            raise NotComputed(
+                f"device: the pad carries {law.closing[0].max() * 1e3:.3g} MPa at {law.separation_nm[0]:.4g} nm, where "
+                "its curves end; raise pad.cells, whose first ones say how far they are closed"
+            )
+        self.contact_nm = float(law.separation_nm[touching].max())
 
     def separation_nm(self) -> Array:
         """Local separations at the integration points."""

@@ -56,6 +56,11 @@ class PadSettings(Settings):
             raise ValueError(f"[{given[0]:g}, {given[1]:g}]: the first must not exceed the second")
         return given
 
+    @property
+    def piloted(self) -> PadGridSettings:
+        """The grid with no more pilots than cells: pilots are the first of them, and say how far all are closed."""
+        return self.grid.model_copy(update={"pilot_cells": min(self.grid.pilot_cells, self.cells)})
+
 
 class AdhesionSettings(Settings):
     """Energy and pull-off of pads against roughness, load and attraction (docs/adhesion.md); off by default."""

@@ -44,7 +44,7 @@ rule plan_pad:
         mem_mb=contact_MB(SCENE.contact, SCENE.pad.grid.pilot_cells),
     params:
         contact=settings("contact"),
-        grid=settings("pad")["grid"],
+        grid=SCENE.pad.piloted.model_dump(mode="json"),
         device=pressing(SCENE.device).model_dump(mode="json"),
     message:
         "choose the separations that the cells of the pad share"

@@ -6,7 +6,7 @@ import pytest
 from mesoscale.device.beam import beam_of
 from mesoscale.device.beam_switch import solve_beam
 from mesoscale.device.switch import VACUUM_PERMITTIVITY, beam_stiffness_N_per_m
-from mesoscale.errors import InputError
+from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
@@ -104,3 +104,10 @@ def test_a_beam_that_cannot_be_solved_is_refused_in_one_line(change, words):
     with pytest.raises(InputError, match=words) as caught:
         solve_beam(DEFAULT.model_copy(update=change), law, 32)
     assert "\n" not in str(caught.value)
+
+
+def test_a_pad_that_was_hardly_closed_is_refused_with_what_helps():
+    law = made_up_law()
+    law = PadLaw(law.separation_nm, law.closing * np.array([[1e-9], [1.0]]), law.depth_nm, law.opening, law.flats)
+    with pytest.raises(NotComputed, match=r"carries 6.3e-07 MPa at 15 nm, where its curves end; raise pad\.cells"):
+        solve_beam(DEFAULT, law)
