@@ -72,11 +72,11 @@ class PadResponse:
     rms_nm, gap_cutoff_nm : where ln rms and d are zero.
     closing : coefficients of c0 and of c1 (constant, z, ln rms), then c2, shape (2 n + 5,); with `slopes` those of
         s / rms at the mean -ln p, which comes last, and of its slope there.
-    slopes : smallest and largest slope of a pad by itself, where separations are fitted: no other pad goes beyond.
     opening : of b0, then b1 and b2, shape (n + 4,).
     attraction : of ln beta / A_H (with d), then m and n, shape (n + 5,).
     lifted : the same for all inputs.
     offset : whether the walls are D0 apart at touch (law `offset`).
+    slopes : smallest and largest slope of a pad by itself, where separations are fitted: no other pad goes beyond.
     """
 
     names: tuple[str, ...]
@@ -85,11 +85,11 @@ class PadResponse:
     rms_nm: float
     gap_cutoff_nm: float
     closing: Array
-    slopes: tuple[float, float] | None
     opening: Array
     attraction: Array
     lifted: float
     offset: bool
+    slopes: tuple[float, float] | None = None
 
     def at(self, values: Mapping[str, float], gap_cutoff_nm: float) -> CompactPad:
         """The closed form at one set of inputs."""
@@ -154,11 +154,11 @@ def fit_response(pads: Sequence[SampledPad], table: InputTable) -> PadResponse:
         medians["rms"],
         least,
         repulsion,
-        slopes,
         _solve(*opening, 1)[0],
         _attraction(*attraction, lifted)[0],
         lifted,
         any(pad.law.flats.offset_nm > 0 for pad in pads),
+        slopes,
     )
 
 
