@@ -187,8 +187,8 @@ def _positions(parts: Sequence[tuple[Array, Array, Array]]) -> tuple[Array, tupl
         wanted.append(at)
         slopes.append(np.polyfit(levels, at, 1)[0])
     weights = np.concatenate([share for *_, share in parts])
-    found = _solve(np.concatenate(columns), np.concatenate(wanted), weights, 0)[0]
-    return np.append(found, middle), (float(min(slopes)), float(max(slopes)))
+    coefficients = _solve(np.concatenate(columns), np.concatenate(wanted), weights, 0)[0]
+    return np.append(coefficients, middle), (float(min(slopes)), float(max(slopes)))
 
 
 def _attraction(columns: Array, wanted: Array, weights: Array, lifted: float) -> tuple[Array, float]:

@@ -201,3 +201,14 @@ def _told(cell):
         return 0.0
     found = re.match(r"[-−\d.e]+", cell)
     return float(found[0].replace("−", "-")) if found else math.nan
+
+
+def test_sliders_need_the_electrode_of_the_answer_only(results, tmp_path):
+    """A beam has its own, where the plate on the same pad could not be solved."""
+    shutil.copytree(results.root, tmp_path / "made_up")
+    file = tmp_path / "made_up/device/pad_switch.json"
+    content = json.loads(file.read_text(encoding="utf-8"))
+    files = [path for path in (tmp_path / "made_up").rglob("*") if path.is_file()]
+    for beam, known in ((content["beam"], True), (None, False)):
+        file.write_text(json.dumps({**content, "mean": None, "beam": beam}), encoding="utf-8")
+        assert (switch_data(Results(tmp_path / "made_up", files, "made_up")) is not None) is known

@@ -24,12 +24,12 @@ def switch_data(results: Results) -> dict[str, Any] | None:
     """Curves of the pad (GPa against nm, near to far), settings of the switch, and its sliders."""
     if not results.has("pad/curves.csv", "device/pad_switch.json", "scene.yaml"):
         return None
-    if results.json("device/pad_switch.json")["mean"] is None:
-        return None
     scene = load_mapping(results.root / "scene.yaml", "record of a run")["scene"]
     device = DeviceSettings(**scene["device"])
     switch = switch_from_settings(device)
     bends = device.spring_N_per_m is None and device.electrode_um2 is None
+    if results.json("device/pad_switch.json").get("beam" if bends else "mean") is None:
+        return None
     return {
         "device": device.model_dump(mode="json"),
         "bends": bends,
