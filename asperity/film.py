@@ -18,7 +18,7 @@ from mesoscale.device.pad_results import switch_on_pad
 from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
-from mesoscale.inputs.contact import contact_of
+from mesoscale.inputs.contact import FilmInputs, contact_of
 from mesoscale.inputs.definitions import definition
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import PAPER_ROWS, check_resolved, film_table, input_table
@@ -277,7 +277,13 @@ class Contact(_Shown):
         )
         inputs, settings = self._pad(pad.rms_scatter)
         held, area = pressing(device), settings.length_nm**2
-        grid = plan_grid(inputs, settings, pad.piloted, pressure_to_compute(held), pressed_GPa=presser(held))
+        grid = plan_grid(
+            inputs,
+            settings,
+            pad.piloted(isinstance(inputs, FilmInputs)),
+            pressure_to_compute(held),
+            pressed_GPa=presser(held),
+        )
         seeds = range(FIRST_SEED, FIRST_SEED + pad.cells)
         cells = assemble(grid, list(close_cells(inputs, settings, grid, seeds, progress)), area)
         flats = flats_of(inputs, settings)

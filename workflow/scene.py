@@ -100,6 +100,11 @@ class Scene(Settings):
         """Is the side of a cell chosen with the description of measured scans: does the scene not state it?"""
         return bool(self.topography.scans) and "length_nm" not in self.contact.model_fields_set
 
+    @property
+    def unequal_places(self) -> bool:
+        """Do the places of the film have RMS heights of their own, by topography or by `pad.rms_scatter`?"""
+        return self.pad.rms_scatter is not None or self.inputs.prior_origins().get("rms") == "topography"
+
     @model_validator(mode="after")
     def _measurements_for_a_calibration(self) -> "Scene":
         if "calibration" in self.inputs.origins() and not self.measurements.tables:

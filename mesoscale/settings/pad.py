@@ -14,6 +14,9 @@ Scatter = Annotated[float, Field(ge=0, le=2)]
 CELLS_PER_JOB = {"asperity": 64, "coupled": 32, "adhesive": 8}
 """Cells of a pad per job and file, by mechanics: coupled ones take seconds each."""
 DRAWS_PER_JOB = 12
+UNEQUAL_PILOTS = 64
+"""Of films of unequal places, whose roughest decide how far out and how deep a pad must be known: with eight, the pad
+of scene `reduced` released 0.2 V too low."""
 
 
 class PadGridSettings(Settings):
@@ -56,10 +59,10 @@ class PadSettings(Settings):
             raise ValueError(f"[{given[0]:g}, {given[1]:g}]: the first must not exceed the second")
         return given
 
-    @property
-    def piloted(self) -> PadGridSettings:
-        """The grid with no more pilots than cells: pilots are the first of them, and say how far all are closed."""
-        return self.grid.model_copy(update={"pilot_cells": min(self.grid.pilot_cells, self.cells)})
+    def piloted(self, unequal: bool) -> PadGridSettings:
+        """The grid with no more pilots than cells, of which they are the first; `UNEQUAL_PILOTS` of unequal places."""
+        wanted = max(self.grid.pilot_cells, UNEQUAL_PILOTS) if unequal else self.grid.pilot_cells
+        return self.grid.model_copy(update={"pilot_cells": min(wanted, self.cells)})
 
 
 class AdhesionSettings(Settings):

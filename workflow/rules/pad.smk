@@ -4,6 +4,7 @@ from mesoscale.uncertainty.chunks import chunk_bounds
 
 CELL_CHUNKS = chunk_bounds(SCENE.pad.cells, CELLS_PER_JOB[SCENE.contact.mechanics])
 DRAW_CHUNKS = chunk_bounds(SCENE.pad.draws, DRAWS_PER_JOB)
+PAD_GRID = SCENE.pad.piloted(SCENE.unequal_places)
 DRAW_DESIGN = (SCENE.pad.draws, SCENE.pad.draw_cells)
 
 
@@ -41,10 +42,10 @@ rule plan_pad:
     priority: 2  # first of all: the rest then fills the other cores while the pad is assembled
     threads: 1
     resources:
-        mem_mb=contact_MB(SCENE.contact, SCENE.pad.grid.pilot_cells),
+        mem_mb=contact_MB(SCENE.contact, PAD_GRID.pilot_cells),
     params:
         contact=settings("contact"),
-        grid=SCENE.pad.piloted.model_dump(mode="json"),
+        grid=PAD_GRID.model_dump(mode="json"),
         device=pressing(SCENE.device).model_dump(mode="json"),
     message:
         "choose the separations that the cells of the pad share"

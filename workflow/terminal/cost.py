@@ -237,7 +237,7 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
         10.0 * (2 * len(c.scene.measurements.tables) + 1 + c.scene.measurements.rounds)
         + c.cycles_s(c.scene.measurements.rounds * c.scene.measurements.local_runs)
     ),
-    "plan_pad": lambda c, _: c.cells_s(c.scene.pad.grid.pilot_cells * PILOT[c.mechanics]),
+    "plan_pad": lambda c, _: c.cells_s(c.scene.pad.piloted(c.scene.unequal_places).pilot_cells * PILOT[c.mechanics]),
     "close_cells": lambda c, _: c.cells_s(min(CELLS_PER_JOB[c.mechanics], c.scene.pad.cells)),
     "close_draws": lambda c, _: c.cells_s(
         min(DRAWS_PER_JOB, c.scene.pad.draws) * (c.scene.pad.draw_cells * DRAW[c.mechanics] + 2 * PILOT[c.mechanics])

@@ -162,7 +162,7 @@ class AdhesiveContact(CoupledContact):
         return moved.row(separation, self.attraction(separation))
 
     def way(self, separation: float) -> list[Row]:
-        """The same, in steps whose work is known to `Numerics.unknown_work`, and a jump as far as the force before and after is.
+        """The same, in steps whose work is known to `Numerics.unknown_work`, and a jump as far as the forces beside it.
 
         A peak of the force, or a jump amid a step, can leave just the loss that a smooth force has: then only the
         change of the force tells that the step is too long.

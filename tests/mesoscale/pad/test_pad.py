@@ -16,7 +16,7 @@ from mesoscale.pad.curves import adhesion_by_cells, assemble
 from mesoscale.pad.draws import plan_draws
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import Flats, PadLaw, deepened, flats_of, law_of
-from mesoscale.settings import ContactSettings, InputRow, PadGridSettings
+from mesoscale.settings import ContactSettings, InputRow, PadGridSettings, PadSettings
 
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
 CONTACT = ContactSettings(pixels=128)
@@ -283,3 +283,9 @@ def test_a_spectrum_beside_the_waves_of_a_cell_is_refused_in_one_line():
     longer = ContactSettings.model_validate({"pixels": 32, "surface": {"spectrum": {"q": [1e-5, 1e-4], "psd": [1, 1]}}})
     with pytest.raises(InputError, match=r"the spectrum has no wave from 0\.00628"):
         FilmPieces(MIDDLE, longer)
+
+
+def test_pilots_are_cells_and_many_of_unequal_places():
+    few, usual = (PadSettings.model_validate({"cells": cells, "grid": {"pilot_cells": 32}}) for cells in (16, 128))
+    assert [few.piloted(unequal).pilot_cells for unequal in (False, True)] == [16, 16]
+    assert [usual.piloted(unequal).pilot_cells for unequal in (False, True)] == [32, 64]
