@@ -114,7 +114,7 @@ def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Map
         grid = f"pixels: {pixels_for(film.description['inputs'].get('q1'), film.description['cell_nm'])}"
     mechanics = ", ".join(f"{key}: {value}" for key, value in RECOMMENDED.items())
     yield f"contact: {{{mechanics}, {grid}}}  # asperities share one elastic half-space"
-    yield f"pad: {{cells: {CELLS}, grid: {{pilot_cells: {CELLS}}}}}  # more cells: a surer answer"
+    yield f"pad: {{cells: {CELLS}}}  # more cells: a surer answer"
     yield "device:  # a published beam, where you gave nothing else"
     defaults = {key: getattr(DeviceSettings(), key) for key in SHOWN_OF_DEVICE}
     for name, value in (defaults | dict(device)).items():

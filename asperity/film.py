@@ -271,10 +271,7 @@ class Contact(_Shown):
         ------
         InputError : the pad never reaches the pressure that the switch presses with.
         """
-        device, pad = (
-            device or DeviceSettings(),
-            pad or PadSettings.model_validate({"cells": CELLS, "grid": {"pilot_cells": CELLS}}),
-        )
+        device, pad = device or DeviceSettings(), pad or PadSettings(cells=CELLS)
         inputs, settings = self._pad(pad.rms_scatter)
         held, area = pressing(device), settings.length_nm**2
         grid = plan_grid(

@@ -44,7 +44,7 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """The release of each pad."""
     scene, results = load_scene(given.scene), Path("results") / given.scene
     medians = from_rows(load_table(results / "pad/inputs.csv")).medians()
-    device = pressing(scene.device)
+    device, planned = pressing(scene.device), scene.pad.piloted(scene.unequal_places)
     for side in given.sides:
         described = _described(results, scene, side)
         height = described.film["rms"]
@@ -52,7 +52,7 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
         for spacing in given.spacings:
             grid_points = {"pixels": round(side / spacing), "surface": described.surface}
             inputs, contact = contact_of(values, ContactSettings(**dict(scene.contact) | grid_points).on_cell(side))
-            grid = plan_grid(inputs, contact, scene.pad.grid, pressure_to_compute(device), pressed_GPa=presser(device))
+            grid = plan_grid(inputs, contact, planned, pressure_to_compute(device), pressed_GPa=presser(device))
             count, flats = round(given.area / (side / 1000.0) ** 2), flats_of(inputs, contact)
             for repeat in range(given.repeats):
                 first = FIRST_SEED + APART * repeat

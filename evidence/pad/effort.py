@@ -49,7 +49,13 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     inputs, contact = contact_of(table.medians(), scene.contact)
     flats, area = flats_of(inputs, contact), contact.length_nm**2
     device = pressing(scene.device)
-    grid = plan_grid(inputs, contact, scene.pad.grid, pressure_to_compute(device), pressed_GPa=presser(device))
+    grid = plan_grid(
+        inputs,
+        contact,
+        scene.pad.piloted(scene.unequal_places),
+        pressure_to_compute(device),
+        pressed_GPa=presser(device),
+    )
     device = pressing(scene.device, DEVIATIONS)
     for repeat in range(1, given.repeats + 1):
         seeds = range(FIRST_SEED + APART * repeat, FIRST_SEED + APART * repeat + max(COUNTS)[0])

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.inputs.contact import ContactInputs, FilmInputs, contact_of
+from mesoscale.inputs.definitions import RMS_SCATTER
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
 from mesoscale.pad.curves import assemble
@@ -69,7 +70,7 @@ def plan_draws(table: InputTable, contact: ContactSettings, count: int, cells: i
     values = table.transform(units[:, :-1])
     low = contact_of(table.medians(), contact)[1].gap_cutoff_nm
     high = low if "gap_cutoff" in table.names else max(low, HIGHEST_GAP_CUTOFF_NM)
-    shared = "rms_scatter" in table.names
+    shared = RMS_SCATTER.name in table.names
     return [
         Draw(
             k,

@@ -143,9 +143,11 @@ def fit_response(pads: Sequence[SampledPad], table: InputTable) -> PadResponse:
             share = np.sqrt(pad.cells / max(len(new[1]), 1))
             kept.append((*new, np.full(len(new[1]), share)))
     closing, opening, attraction = (_joined(part) for part in parts)
-    repulsion, slopes = _solve(*closing, 1)[0], None
     if RMS_SCATTER.name in table.names:
-        repulsion, slopes = _positions(parts[0])
+        slopes = [np.polyfit(levels, columns[:, len(varied) + 2], 1)[0] for columns, levels, _ in parts[0]]
+        repulsion, reach = _positions(*closing), (float(min(slopes)), float(max(slopes)))
+    else:
+        repulsion, reach = _solve(*closing, 1)[0], None
     lifted = _lifted(*attraction)
     return PadResponse(
         names,
@@ -158,7 +160,7 @@ def fit_response(pads: Sequence[SampledPad], table: InputTable) -> PadResponse:
         _attraction(*attraction, lifted)[0],
         lifted,
         any(pad.law.flats.offset_nm > 0 for pad in pads),
-        slopes,
+        reach,
     )
 
 
@@ -176,19 +178,13 @@ def _solve(columns: Array, wanted: Array, weights: Array, signed: int) -> tuple[
     return np.asarray(solved.x, float), float(solved.cost)
 
 
-def _positions(parts: Sequence[tuple[Array, Array, Array]]) -> tuple[Array, tuple[float, float]]:
-    """The line of each pad by s / rms over -ln p, and the range of slopes; from the equations of -ln p over s / rms."""
-    size = (parts[0][0].shape[1] - 1) // 2
-    middle = float(np.average(np.concatenate([levels for _, levels, _ in parts]), weights=_joined(parts)[2] ** 2))
-    columns, wanted, slopes = [], [], []
-    for over, levels, _ in parts:
-        row, at = over[:, :size], over[:, size]
-        columns.append(np.hstack([row, row * (levels - middle)[:, None]]))
-        wanted.append(at)
-        slopes.append(np.polyfit(levels, at, 1)[0])
-    weights = np.concatenate([share for *_, share in parts])
-    coefficients = _solve(np.concatenate(columns), np.concatenate(wanted), weights, 0)[0]
-    return np.append(coefficients, middle), (float(min(slopes)), float(max(slopes)))
+def _positions(columns: Array, levels: Array, weights: Array) -> Array:
+    """Level and slope of s / rms over -ln p, and the mean of that, from the equations of -ln p over s / rms."""
+    size = (columns.shape[1] - 1) // 2
+    row, at = columns[:, :size], columns[:, size]
+    middle = float(np.average(levels, weights=weights**2))
+    turned = np.hstack([row, row * (levels - middle)[:, None]])
+    return np.append(_solve(turned, at, weights, 0)[0], middle)
 
 
 def _attraction(columns: Array, wanted: Array, weights: Array, lifted: float) -> tuple[Array, float]:

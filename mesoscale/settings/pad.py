@@ -23,7 +23,11 @@ class PadGridSettings(Settings):
     """Separations and depths that all cells of a pad share (docs/pad.md)."""
 
     pilot_cells: int = Field(
-        default=8, ge=2, le=1000, description="cells that are closed first, to find the range of separations"
+        default=8,
+        ge=2,
+        le=1000,
+        description="cells that are closed first, to find the range of separations; where places differ at least 64, "
+        "or all",
     )
     depths: int = Field(
         default=8,
