@@ -2,10 +2,12 @@
 
 One run is left alone; a second is killed with SIGKILL once in each stage and resumed. Both must end with the
 same results. The second run does without the melts and closings of the hardness stage, on which nothing else of this
-scene depends: `test_ownership` and `test_closing` kill those.
+scene depends: `test_ownership` and `test_closing` kill those. It takes over the quenched cell of the first, and draws no
+pads at other inputs, which are cells as those of the pad.
 """
 
 import json
+import shutil
 from pathlib import Path
 
 import h5py
@@ -19,6 +21,7 @@ STAGES = {
     "elastic": "scan_volumes",
     "topography": "analyse_scans",
     "inputs": "collect_inputs",
+    "pad": "close_cells",
     "curves": "compute_nominal",
     "law": "compute_runs",
     "uq": "propagate_uncertainty",
@@ -38,6 +41,7 @@ RESULTS = (
     "topography/parameters.json",
     "inputs.csv",
     "curves/nominal.h5",
+    "pad/curves.csv",
     "law/parameters.csv",
     "uq/outputs.csv",
     "uq/sensitivity.csv",
@@ -108,7 +112,9 @@ def test_a_deleted_stage_is_made_again_with_what_depends_on_it(finished):
 def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_workflow, tmp_path):
     workflow = make_workflow(tmp_path)
     scene = tmp_path / "killed.yaml"
-    scene.write_text("extends: ci\nname: killed\ncompute: [elastic, topography]\n")
+    scene.write_text("extends: ci\nname: killed\ncompute: [elastic, topography]\npad: {draws: 0}\n")
+    quenched = "elastic/quenched"
+    shutil.copytree(finished.folder / "results/ci" / quenched, tmp_path / "results/killed" / quenched)
     logs = tmp_path / "results/killed/logs"
     for job in STAGES.values():
         if not list(logs.glob(f"{job}*.log")):  # a run killed in another stage may have come this far

@@ -78,14 +78,33 @@ def test_the_furthest_value_is_where_the_curve_meets_what_is_allowed(allowed, wa
     assert falling == (wanted if wanted is None else pytest.approx(100.0 - wanted))
 
 
+def brute_force(plates, hold_V, times, about, known=()):
+    """Share of 600 plates that fail with `times` their attraction, solved one by one, and its standard error.
+
+    Parameters
+    ----------
+    about : where they are drawn, for more of them to fail; each counts with its likelihood, whatever the place.
+    known : place of a number and its value.
+    """
+    z = np.random.default_rng(5).normal(size=(600, plates.dimension))
+    drawn = [k for k in range(plates.dimension) if k not in known[:1]]
+    weights = np.exp(-z[:, drawn] @ about[drawn] - 0.5 * about[drawn] @ about[drawn])
+    z += about
+    if known:
+        z[:, known[0]] = known[1]
+    failing = weights * plates.failed(z, hold_V, times)
+    return failing.mean(), failing.std(ddof=1) / np.sqrt(len(z))
+
+
 def test_the_probability_is_that_of_brute_force():
-    """Some 1 % of the plates; brute force of 3000 knows it to 18 %, the other to its interval."""
+    """Some 1 % of the plates fail."""
     plates = population()
     response = learn(plates, lambda *_: None)
     found = corrected(response, 1.47, plates.hold_V)
-    z = np.random.default_rng(5).normal(size=(3000, plates.dimension))
-    share = plates.failed(z, plates.hold_V, 1.47).mean()
-    assert found.low * 0.64 < share < found.high * 1.36
+    about = response.sample(1.47, plates.hold_V, 0).points.mean(axis=0)
+    share, error = brute_force(plates, plates.hold_V, 1.47, about)
+    assert error < 0.12 * share
+    assert found.low - 2.0 * error < share < found.high + 2.0 * error
     assert found.runs + response.switches < 400
     one_in_a_million = corrected(response, 1.18, plates.hold_V)
     assert 1e-7 < one_in_a_million.probability < 1e-4
@@ -95,9 +114,8 @@ def test_the_probability_is_that_of_brute_force():
     assert smoother is not None
     assert least is not None
     assert smoother <= least
-    fixed, given = np.random.default_rng(6).normal(size=(1000, plates.dimension)), plates.names.index("rms")
-    fixed[:, given] = (least - 9.0) / 0.8  # deviations of the study's input
-    assert 0.004 < plates.failed(fixed, plates.hold_V, 1.47).mean() < 0.025  # 1000 know 1 % to 30 %
+    known = plates.names.index("rms"), (least - 9.0) / 0.8  # deviations of the study's input
+    assert 0.004 < brute_force(plates, plates.hold_V, 1.47, about, known)[0] < 0.025
     # so does less attraction bear weaker springs
     likely = response.sample(just_allowed(response, plates.hold_V, 0.01), plates.hold_V, 0)
     weaker, spring = (least_spring(response, likely, times, plates.hold_V, 0.01) for times in (1.32, 1.47))
@@ -106,8 +124,9 @@ def test_the_probability_is_that_of_brute_force():
     assert weaker < spring
     for times, value in ((1.32, weaker), (1.47, spring)):
         sprung = replace(plates, settings=plates.settings.model_copy(update={"spring_N_per_m": value}))
-        # the spring's 32 switches know 1 % to 25 %, brute force of 3000 to 18 %; twice both
-        assert 0.01 / 1.7 < sprung.failed(z, plates.hold_V, times).mean() < 0.01 * 1.7
+        share, error = brute_force(sprung, plates.hold_V, times, about)
+        # the spring's 32 switches know 1 % to 25 %
+        assert abs(np.log(share / 0.01)) < 2.0 * np.hypot(0.25, error / share)
 
 
 def test_a_closed_form_that_rises_with_the_separation_is_beyond_the_model():
