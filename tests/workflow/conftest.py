@@ -7,9 +7,14 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
+
+from tests.workflow.made_up_results import write_all
+from workflow.report.available import Results
+from workflow.report.render import render
 
 ROOT = Path(__file__).resolve().parents[2]
 SNAKEMAKE = [
@@ -109,6 +114,26 @@ def make_workflow():
 def workflow_in(tmp_path):
     """A workflow with an empty folder for its results."""
     return Workflow(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def made_up(tmp_path_factory):
+    """Folder of made-up results of every stage, and its files; a test that changes some takes a copy."""
+    root = tmp_path_factory.mktemp("results") / "made_up"
+    return root, write_all(root)
+
+
+@pytest.fixture(scope="session")
+def page_of(made_up):
+    """The page of the made-up results as those of a scene of some name."""
+
+    @cache
+    def page(scene: str) -> str:
+        drawn = render(Results(*made_up, scene))
+        assert "could not be drawn" not in drawn
+        return drawn
+
+    return page
 
 
 @pytest.fixture(autouse=True)

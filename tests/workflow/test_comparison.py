@@ -1,17 +1,17 @@
 """Two folders of results side by side on one page."""
 
 import re
+import shutil
 
 import pytest
 
-from tests.workflow.made_up_results import write_all
 from workflow.report.comparison import difference_of, main
 from workflow.results import load_csv, write_csv
 
 
-def test_page_of_two_scenes(tmp_path, capsys):
+def test_page_of_two_scenes(made_up, tmp_path, capsys):
     for name in ("one", "two"):
-        write_all(tmp_path / name)
+        shutil.copytree(made_up[0], tmp_path / name)
     path = tmp_path / "two/uq/samples.csv"
     rows = load_csv(path)
     write_csv(path, [{**row, "closing_d_c_nm": repr(float(row["closing_d_c_nm"]) + 5)} for row in rows])

@@ -2,8 +2,8 @@
 
 One run is left alone; a second is killed with SIGKILL once in each stage and resumed. Both must end with the
 same results. The second run does without the melts and closings of the hardness stage, on which nothing else of this
-scene depends: `test_ownership` and `test_closing` kill those. It takes over the quenched cell of the first, and draws no
-pads at other inputs, which are cells as those of the pad.
+scene depends: `test_ownership` and `test_closing` kill those. It takes over the quenched cell of the first run, and
+draws no pads at other inputs, which are cells as those of the pad.
 """
 
 import json

@@ -1,11 +1,11 @@
 """A folder of results from a stranger leads nowhere else, and a page loses no more than the part that fails."""
 
 import os
+import shutil
 import subprocess
 
 import pytest
 
-from tests.workflow.made_up_results import write_all
 from workflow import ownership
 from workflow.checksums import record, remove_unfinished
 from workflow.job import own_commit
@@ -15,10 +15,6 @@ from workflow.report.comparison import main as compare
 from workflow.results import load_csv, write_csv
 
 FAILED = rendering.failed
-
-
-def made_up(root):
-    return Results(root, [path for path in write_all(root) if path.name == "inputs.csv"], "made_up")
 
 
 @pytest.fixture
@@ -75,7 +71,7 @@ def test_logs_that_are_a_file_are_refused(results):
         ownership.inspect(results)
 
 
-def test_a_section_or_the_first_screen_that_fails_costs_itself(tmp_path, monkeypatch, capsys):
+def test_a_section_or_the_first_screen_that_fails_costs_itself(made_up, monkeypatch, capsys):
     monkeypatch.setattr(rendering, "failed", FAILED)
 
     def broken(results):
@@ -83,7 +79,8 @@ def test_a_section_or_the_first_screen_that_fails_costs_itself(tmp_path, monkeyp
 
     monkeypatch.setattr("workflow.report.stages.device.describe", broken)
     monkeypatch.setattr(rendering, "first_screen", lambda results, gates: 1 / 0)
-    page = rendering.render(made_up(tmp_path))
+    root, paths = made_up
+    page = rendering.render(Results(root, [path for path in paths if path.name == "inputs.csv"], "made_up"))
     assert "This part of the page could not be drawn (ZeroDivisionError" in page
     assert "<b>pull" not in page
     assert "first screen</b>" in page
@@ -93,9 +90,9 @@ def test_a_section_or_the_first_screen_that_fails_costs_itself(tmp_path, monkeyp
     assert "\x1b" not in said
 
 
-def test_comparison_names_a_damaged_result_and_what_it_cannot_read(tmp_path, capsys):
+def test_comparison_names_a_damaged_result_and_what_it_cannot_read(made_up, tmp_path, capsys):
     for name in ("one", "two"):
-        write_all(tmp_path / name)
+        shutil.copytree(made_up[0], tmp_path / name)
     given = [str(tmp_path / name) for name in ("one", "two", "page.html")]
     path = tmp_path / "two/uq/samples.csv"
     rows = load_csv(path)

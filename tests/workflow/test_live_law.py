@@ -9,10 +9,7 @@ from mesoscale.law.compact import Law, pressure
 from mesoscale.law.parameters import PARAMETERS
 from mesoscale.uncertainty.surrogate import from_json
 from tests.workflow.browser import WHOLE_NUMBERS, probed
-from tests.workflow.made_up_results import write_all
-from workflow.report.available import Results
 from workflow.report.numbers import OUTPUTS
-from workflow.report.render import render
 
 MOVE = (
     WHOLE_NUMBERS
@@ -54,11 +51,9 @@ def by_library(content, at):
     return np.transpose(columns)
 
 
-def test_every_slider_of_the_explorer_in_a_browser(tmp_path):
-    root = tmp_path / "results"
-    page = render(Results(root, write_all(root), "made_up"))
-    content = json.loads((root / "uq/surrogate.json").read_text())
-    found, _ = probed(page, tmp_path, 1280, MOVE, budget_ms=10000)
+def test_every_slider_of_the_explorer_in_a_browser(made_up, page_of, tmp_path):
+    content = json.loads((made_up[0] / "uq/surrogate.json").read_text())
+    found, _ = probed(page_of("made_up"), tmp_path, 1280, MOVE, budget_ms=10000)
     assert found["errors"] == []
     assert {move["moved"] for move in found["found"]} == {row["name"] for row in content["inputs"]}
     for move in found["found"]:

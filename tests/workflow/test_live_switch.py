@@ -19,10 +19,8 @@ from mesoscale.errors import InputError
 from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
 from tests.workflow.browser import WHOLE_NUMBERS, probed
-from tests.workflow.made_up_results import write_all
 from workflow.report.available import Results
 from workflow.report.live.device import switch_data
-from workflow.report.render import render
 
 LIVE = Path(__file__).parents[2] / "workflow" / "report" / "live"
 CASES = (
@@ -40,9 +38,8 @@ CASES = (
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    root = tmp_path_factory.mktemp("results") / "made_up"
-    return Results(root, write_all(root), "made_up")
+def results(made_up):
+    return Results(*made_up, "made_up")
 
 
 @pytest.fixture(scope="module")
@@ -178,8 +175,8 @@ window.addEventListener("load", async () => {
 )
 
 
-def test_every_slider_of_the_switch_in_a_browser(results, data, tmp_path):
-    found, _ = probed(render(results), tmp_path, 1280, MOVE, budget_ms=30000)
+def test_every_slider_of_the_switch_in_a_browser(page_of, data, tmp_path):
+    found, _ = probed(page_of("made_up"), tmp_path, 1280, MOVE, budget_ms=30000)
     assert found["errors"] == []
     assert [move["name"] for move in found["found"]] == [slider["name"] for slider in data["sliders"]]
     at_rest = {"name": "gap_um", "value": _chosen(data, {})["gap_um"], "table": found["rest"], "status": ""}

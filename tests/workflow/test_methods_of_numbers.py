@@ -4,30 +4,32 @@ import re
 
 import pytest
 
-from tests.workflow.made_up_results import DOUBT, write_all
+from tests.workflow.made_up_results import DOUBT
 from workflow.report.available import Results
 from workflow.report.comparison import comparison, spreads
-from workflow.report.render import render
 from workflow.report.stages import device, pad, sensitivity, uncertainty
 from workflow.report.verdict import verdict
 
 
 @pytest.fixture(scope="module", params=["paper", "own"])
-def results(request, tmp_path_factory):
-    root = tmp_path_factory.mktemp("results") / request.param
-    return Results(root, write_all(root), request.param)
+def results(request, made_up):
+    return Results(*made_up, request.param)
 
 
-def test_page_comparison_and_verdict_say_the_same(results):
+@pytest.fixture(scope="module")
+def page(results, page_of):
+    return page_of(results.scene)
+
+
+def test_page_comparison_and_verdict_say_the_same(results, page):
     words = verdict(results).outcome
-    assert f'<h1 id="answer-title">{words}</h1>' in render(results)
+    assert f'<h1 id="answer-title">{words}</h1>' in page
     assert words in comparison(results, results)
     assert spreads(results)["release voltage, 0 where it sticks", "V"][1] == verdict(results).release_V[0]
 
 
-def test_all_other_releases_are_in_one_folded_table(results):
+def test_all_other_releases_are_in_one_folded_table(results, page):
     """Seven releases and four probabilities stood on the page of scene paper."""
-    page = render(results)
     unfolded = re.sub(r"<details.*?</details>", "", page[page.index("<main>") : page.index("</main>")], flags=re.DOTALL)
     unfolded = re.sub(r"<svg.*?</svg>", "", unfolded, flags=re.DOTALL)
     volts = set(re.findall(r"[\d.]+ V\b", re.sub(r"<[^>]*>", "", unfolded)))
@@ -42,11 +44,10 @@ def _heads(block):
     return [row[0] for row in block.rows] if hasattr(block, "rows") else []
 
 
-def test_a_quantity_below_its_bar_is_grey_wherever_it_stands(results):
+def test_a_quantity_below_its_bar_is_grey_wherever_it_stands(results, page):
     for stage in (uncertainty, sensitivity):
         table = next(block for block in stage.describe(results).blocks if hasattr(block, "rows"))
         assert [row for row in table.faint] == ["C_r (10⁻⁴ GPa)"]
-    page = render(results)
     assert page.count('<tr class="faint">') == 2
     assert '"faint":["C_r_GPa"]' in page  # of the explorer
     assert comparison(results, results).count('<tr class="faint">') == 2  # closing and opening

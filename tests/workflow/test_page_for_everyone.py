@@ -5,9 +5,6 @@ from importlib.resources import files
 import pytest
 
 from tests.workflow.browser import probed
-from tests.workflow.made_up_results import write_all
-from workflow.report.available import Results
-from workflow.report.render import render
 
 CHECK = """
 window.addEventListener("load", () => setTimeout(async () => {
@@ -27,16 +24,10 @@ window.addEventListener("load", () => setTimeout(async () => {
 """
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory):
-    root = tmp_path_factory.mktemp("results") / "made_up"
-    return render(Results(root, write_all(root), "made_up"))
-
-
 @pytest.mark.parametrize(("width", "dark"), [(1280, False), (390, True)])
-def test_axe_finds_nothing_serious(page, tmp_path, width, dark):
+def test_axe_finds_nothing_serious(page_of, tmp_path, width, dark):
     checker = files("axe_core_python").joinpath("axe.min.js").read_text(encoding="utf-8")
-    found, _ = probed(page, tmp_path, width, checker + CHECK, budget_ms=30000, dark=dark)
+    found, _ = probed(page_of("made_up"), tmp_path, width, checker + CHECK, budget_ms=30000, dark=dark)
     assert [finding for finding in found["violations"] if finding[0] in ("serious", "critical")] == []
     assert found["errors"] == []
     assert [name for name in found["requests"] if not name.startswith("data:")] == []

@@ -9,23 +9,20 @@ import pytest
 from PIL import Image
 
 from tests.workflow.browser import CHROMIUM
-from tests.workflow.made_up_results import write_all
-from workflow.report.available import Results
-from workflow.report.render import render
 
 FULLNESS = 0.5  # of a sheet that has something on it, but for the last one
 DOTS_PER_INCH = 24
 
 
 @pytest.fixture(scope="module")
-def printed(tmp_path_factory):
+def printed(page_of, tmp_path_factory):
     """Headings and captions of the page, its text and its picture sheet by sheet."""
     if CHROMIUM is None:
         pytest.skip("no Chromium is installed (Debian package chromium)")
     if not (shutil.which("pdftoppm") and shutil.which("pdftotext")):
         pytest.skip("no pdftoppm and pdftotext are installed (Debian package poppler-utils)")
     folder = tmp_path_factory.mktemp("print")
-    page = render(Results(folder / "results", write_all(folder / "results"), "made_up"))
+    page = page_of("made_up")
     (folder / "report.html").write_text(page)
     pdf = folder / "report.pdf"
     options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder / 'profile'}"]

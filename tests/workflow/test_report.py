@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 from mesoscale.law.compact import Law, pressure
 from mesoscale.law.parameters import PARAMETERS
 from tests.workflow.browser import probed
-from tests.workflow.made_up_results import LAW, write_all
+from tests.workflow.made_up_results import LAW
 from workflow.report.available import Results
 from workflow.report.drawing import draw
 from workflow.report.gates import gates_of, trust
@@ -32,15 +32,8 @@ ON_TOP = ("model-form", "adhesion", "history", "calibration", "accuracy", "stabi
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory):
-    root = tmp_path_factory.mktemp("results") / "made_up"
-    return root, write_all(root)
-
-
-@pytest.fixture(scope="module")
-def page(files):
-    root, paths = files
-    return render(Results(root, paths, "paper"))
+def page(page_of):
+    return page_of("paper")
 
 
 class Outline(HTMLParser):
@@ -99,9 +92,9 @@ def test_shares_of_e_star_stand_beside_those_of_the_papers_way(page):
     assert "a03 crystal" not in page
 
 
-def test_page_is_self_contained_small_and_well_formed(files, page):
+def test_page_is_self_contained_small_and_well_formed(made_up, page):
     found = outline(page)
-    root, paths = files
+    root, paths = made_up
     results = {path.relative_to(root).as_posix() for path in paths}
     assert set(found.loaded) == set()
     linked = set(found.outside)
@@ -114,8 +107,8 @@ def test_page_is_self_contained_small_and_well_formed(files, page):
     assert found.labels == found.figures, "a figure without a text alternative"
 
 
-def test_only_what_exists_is_shown(files):
-    root, paths = files
+def test_only_what_exists_is_shown(made_up):
+    root, paths = made_up
     few = [path for path in paths if path.name in ("inputs.csv", "scene.yaml")]
     page = render(Results(root, few, "few"))
     assert re.findall(r'<section id="([^"]+)"', page) == ["answer", "part-from", "part-trust"]
@@ -123,8 +116,8 @@ def test_only_what_exists_is_shown(files):
     assert "<script" not in page
 
 
-def test_gates_tell_what_failed_and_text_is_escaped(files, page):
-    root, paths = files
+def test_gates_tell_what_failed_and_text_is_escaped(made_up, page):
+    root, paths = made_up
     found = {gate.stage: gate for gate in gates_of(Results(root, paths, "made_up"))}
     assert not found["hardness"].passed
     assert found["law"].passed
@@ -140,8 +133,8 @@ def test_gates_tell_what_failed_and_text_is_escaped(files, page):
     assert "<gave>" not in page
 
 
-def test_a_stage_that_no_input_comes_from_shows_no_red_gate(files):
-    root, paths = files
+def test_a_stage_that_no_input_comes_from_shows_no_red_gate(made_up):
+    root, paths = made_up
     results = Results(root, paths, "made_up")
     unused = [{**row, "origin": "literature"} for row in results.csv("inputs.csv")]
     results.csv = lambda name: unused if name == "inputs.csv" else Results.csv(results, name)
@@ -152,16 +145,15 @@ def test_a_stage_that_no_input_comes_from_shows_no_red_gate(files):
     assert trust(gates)[0] == "pass"
 
 
-def test_only_scene_paper_compares_with_the_paper(files, page):
-    root, paths = files
-    own = render(Results(root, paths, "own"))
+def test_only_scene_paper_compares_with_the_paper(page_of, page):
+    own = page_of("own")
     said = own[own.index("<body>") : own.index('id="provenance"')]
     assert not re.search(r"the paper|Table [123]|>paper<|> paper", said)
     assert len(re.findall(r"the paper|Table [123]", page)) > 20
 
 
-def test_same_results_give_the_same_page(files, page):
-    root, paths = files
+def test_same_results_give_the_same_page(made_up, page):
+    root, paths = made_up
     assert render(Results(root, paths, "paper")) == page
 
 
@@ -170,8 +162,8 @@ def test_synthetic_scans_and_unused_stages_are_named(page):
     assert "they are no measurement" in page
 
 
-def test_studies_recommend_the_cheapest_good_setting(files):
-    root, paths = files
+def test_studies_recommend_the_cheapest_good_setting(made_up):
+    root, paths = made_up
     (line,) = recommended("contact", Results(root, paths, "made_up").csv("accuracy/contact.csv"))
     # the larger of both outputs' errors, 3/steps^2: 20 steps come below 1 %
     assert line[:4] == ("contact", "force_steps", "20", "0.0075")
@@ -301,9 +293,9 @@ def test_calibration_says_what_was_learned_from_where_and_what_contradicts(page)
     assert "3 points of curves lie outside" in section
 
 
-def test_a_chain_that_has_not_converged_shows_no_posterior(files, tmp_path):
+def test_a_chain_that_has_not_converged_shows_no_posterior(made_up, tmp_path):
     root = tmp_path / "results"
-    shutil.copytree(files[0] / "calibration", root / "calibration")
+    shutil.copytree(made_up[0] / "calibration", root / "calibration")
     path = root / "calibration/posterior.json"
     content = json.loads(path.read_text())
     failed = {"passed": False, "reasons": ["the chain has not converged: R-hat 1.2, above 1.01"]}
