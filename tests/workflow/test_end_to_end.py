@@ -87,6 +87,11 @@ def test_every_part_of_the_page_is_drawn(finished):
     assert "could not be drawn" not in (finished.folder / "results/ci/report.html").read_text(encoding="utf-8")
 
 
+def test_the_pad_has_an_answer(finished):
+    state = json.loads((finished.folder / "results/ci/device/pad_switch.json").read_text(encoding="utf-8"))
+    assert state["answer_status"] == "ok"
+
+
 def test_every_h5_file_is_complete_and_has_units(finished):
     for path in (finished.folder / "results/ci").rglob("*.h5"):
         with h5py.File(path) as file:

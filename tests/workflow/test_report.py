@@ -24,6 +24,7 @@ from workflow.report.drawing import draw
 from workflow.report.gates import gates_of, trust
 from workflow.report.numbers import show
 from workflow.report.render import render
+from workflow.report.stages import pad
 from workflow.report.stages.inputs import _distribution
 from workflow.report.studies import recommended
 
@@ -143,6 +144,24 @@ def test_a_stage_that_no_input_comes_from_shows_no_red_gate(made_up):
     assert not gate.passed
     assert not gate.used
     assert trust(gates)[0] == "pass"
+
+
+@pytest.mark.parametrize("draws_V", [0.1, None])
+def test_draws_too_few_to_tell_their_error_cost_the_pad_one_table_alone(made_up, draws_V):
+    root, paths = made_up
+    results = Results(root, [path for path in paths if path.parent.name in ("pad", "device")], "made_up")
+    spread = {"std": 0.5, "quantiles": {"0.05": 6.0, "0.5": 7.0, "0.95": 8.0}}
+    answer = {
+        **dict.fromkeys(("release_V", "pull_in_V", "capacitance_fF"), spread),
+        "causes": [{"cause": "cells", "share_of_variance": 0.3}],
+        "sensitivity": [{"name": "rms", "share_of_variance": 0.7, "interval_shrinks_by": 0.4}],
+        "design": {"points": 64, "refused": [], "deepened": 0, "draws": 8, "draws_error_V": draws_V}
+        | {"cells_error_V": 0.3, "response_error_V": 0.1},
+    }
+    results.json = lambda name: Results.json(results, name) | ({"answer": answer} if "pad_switch" in name else {})
+    captions = [block.caption for block in pad.describe(results).blocks if hasattr(block, "caption")]
+    assert any("Behind the interval of the release" in caption for caption in captions)
+    assert any("What more computing would narrow" in caption for caption in captions) is (draws_V is not None)
 
 
 def test_only_scene_paper_compares_with_the_paper(page_of, page):

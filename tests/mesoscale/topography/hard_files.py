@@ -5,7 +5,7 @@ import tempfile
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -40,9 +40,12 @@ class FileCase:
     unit: str | None = None
 
 
+@cache
 def _line(seed: int) -> np.ndarray:
     surface = surface_patch(TRUTH, POINTS, LENGTH, np.random.default_rng(seed))
-    return np.stack([np.arange(POINTS) * LENGTH / POINTS, surface[:, POINTS // 2]], axis=1)
+    line = np.stack([np.arange(POINTS) * LENGTH / POINTS, surface[:, POINTS // 2]], axis=1)
+    line.setflags(write=False)  # of many cases
+    return line
 
 
 def _text(folder: Path, head: str = "x (nm), z (nm)", factor: float = 1.0, lines: int = 6) -> list[Path]:

@@ -45,7 +45,9 @@ def describe(results: Results) -> Section | None:
         "pads. The point at the right is the mean of all computed cells with its standard error.",
     )
     if answer := switch.get("answer"):
-        section.blocks += [*_answer(answer), _left_open(results)]
+        section.blocks += _answer(answer)
+        if parts := contributions(results):
+            section.blocks.append(_left_open(parts))
         section.notes.append(
             f"asperity plan {results.scene} --budget 1h shows minutes against this error, and counts for them."
         )
@@ -83,9 +85,8 @@ def _answer(answer: dict[str, Any]) -> list[Table]:
     ]
 
 
-def _left_open(results: Results) -> Table:
-    """What inputs and counts leave open of the release."""
-    parts: Any = contributions(results)
+def _left_open(parts: dict[str, Any]) -> Table:
+    """What inputs and counts leave open of the release, from `contributions`."""
     rows = [(name, f"{value:.2g}", "no count") for name, value in parts["fixed_V"].items()]
     for key, count in parts["counts"].items():
         rows.append((f"{COUNTED[key]}: {count}", f"{np.sqrt(parts['variance_V2'][key] / count):.2g}", key))
