@@ -1,4 +1,4 @@
-"""CSV tables: those of a user, and those of campaigns, which are read, written whole, or grown row by row."""
+"""CSV tables: those of a user, and those of campaigns, which are read, or grown row by row."""
 
 import csv
 import io
@@ -38,16 +38,6 @@ def load_table(path: Path) -> list[dict[str, str]]:
         return []
     with path.open(newline="", encoding="utf-8") as stream:
         return list(csv.DictReader(stream))
-
-
-def write_table(
-    path: Path, rows: Sequence[Mapping[str, Any]], digits: int | None = None, columns: Sequence[str] | None = None
-) -> None:
-    """Write a table whole; `columns` leaves out what a row has besides."""
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, columns or list(rows[0]), extrasaction="ignore", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(_rounded(row, digits) for row in rows)
 
 
 def grow_table(

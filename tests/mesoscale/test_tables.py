@@ -1,6 +1,6 @@
 import pytest
 
-from mesoscale.tables import grow_table, load_table, write_table
+from mesoscale.tables import grow_table, load_table
 
 
 def test_a_table_keeps_its_columns_as_it_grows(tmp_path):
@@ -21,8 +21,3 @@ def test_a_campaign_cut_short_has_its_rows(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         grow_table(tmp_path / "t.csv", rows(), columns=("b", "a"))
     assert load_table(tmp_path / "t.csv") == [{"b": "", "a": "1"}]
-
-
-def test_a_table_is_written_with_the_columns_asked_for(tmp_path):
-    write_table(tmp_path / "t.csv", [{"a": 0.123456, "b": 2}], 2, ("a",))
-    assert load_table(tmp_path / "t.csv") == [{"a": "0.12"}]
