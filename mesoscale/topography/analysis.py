@@ -5,11 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.description.profile_range import trusted_profile
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, trusted_range
 from mesoscale.topography.measurements.cleaning import Scan, clean, form_share
 from mesoscale.topography.measurements.loading import Measurement
-from mesoscale.topography.measurements.profiles import Profile, clean_profile
 from mesoscale.topography.spectrum import (
     FLAT_SHARE,
     HANN_SECTIONS,
@@ -68,14 +66,6 @@ def hann_spectrum(cleaned: Scan, sections: int = HANN_SECTIONS, flat: float = 0.
 def trusted(name: str, spectrum: Spectrum, rms_nm: float, settings: TopographySettings) -> TrustedSpectrum:
     """The spectrum of a scan of known RMS height with its trusted range for the tip of the settings."""
     return trusted_range(name, spectrum, settings.tip_radius_nm, rms_nm=rms_nm)
-
-
-def trusted_measurement(measured: Measurement, settings: TopographySettings) -> TrustedSpectrum:
-    """Spectrum and trusted range of a scan or a line profile by the limits of its instrument."""
-    if isinstance(measured.data, Profile):
-        return trusted_profile(clean_profile(measured.data, settings), measured)
-    cleaned = clean(measured.data, settings)
-    return limited_spectrum(cleaned.name, hann_spectrum(cleaned), cleaned, measured)
 
 
 def limited_spectrum(name: str, spectrum: Spectrum, cleaned: Scan, measured: Measurement) -> TrustedSpectrum:

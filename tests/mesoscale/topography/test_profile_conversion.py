@@ -5,12 +5,12 @@ import pytest
 from scipy.special import gamma
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.analysis import trusted_measurement
 from mesoscale.topography.description.one_spectrum import merge
 from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import Profile
 from mesoscale.topography.profile_conversion import binned_line, isotropic_spectrum, line_spectrum, projected, spread
+from mesoscale.topography.records import record, trusted_record
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.synthetic_scans import surface_patch
 
@@ -72,12 +72,12 @@ def test_lines_across_an_isotropic_surface_give_back_its_spectrum(slope):
 def test_profiles_alone_recover_the_surface():
     """Eight lines of two lengths through the whole analysis."""
     truth = RoughSpectrum.from_rms(6.0, 0.025, 2.84, 3.2)
-    spectra, settings = [], TopographySettings(tip_radius_nm=0)
+    spectra, settings = [], TopographySettings(scans=("a",), tip_radius_nm=0)
     for seed, (points, length) in enumerate([(2048, 8000.0), (2048, 2000.0)]):
         surface = surface_patch(truth, points, length, np.random.default_rng(seed))
         for number, line in enumerate(surface[:, :: points // 4].T):
             measured = Measurement(Profile(line, length, f"{seed}{number}"), 0.0, True)
-            spectra.append(trusted_measurement(measured, settings))
+            spectra.append(trusted_record(measured.data.name, *record(measured, settings), settings))
     result = analyse(spectra, settings)
     assert result.estimates["slope"].value == pytest.approx(2.84, abs=0.1)
     assert result.estimates["rms"].value == pytest.approx(6.0, rel=0.1)

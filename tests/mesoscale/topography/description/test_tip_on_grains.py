@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.analysis import trusted_measurement
 from mesoscale.topography.description.heights import common_heights, height_quantiles
 from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.description.tip_on_grains import tip_lift, with_lift_error, without_lift
 from mesoscale.topography.height_synthesis import Z, synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import Measurement
+from mesoscale.topography.records import record, trusted_record
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import radial_spectrum
 from mesoscale.topography.synthetic_scans import dilate
@@ -35,7 +35,8 @@ def images(heights, count=3):
 
 def analysed(heights):
     scans, lifts = zip(*images(heights), strict=True)
-    spectra = [trusted_measurement(Measurement(scan, RADIUS, True), SETTINGS) for scan in scans]
+    measured = [(scan.name, *record(Measurement(scan, RADIUS, True), SETTINGS)) for scan in scans]
+    spectra = [trusted_record(*each, SETTINGS) for each in measured]
     quantiles = {scan.name: height_quantiles(scan.heights_nm) for scan in scans}
     return spectra, quantiles, float(np.mean(lifts))
 
