@@ -114,14 +114,6 @@ def evaluate(responses: Sequence[Callable[[Points], Array] | None], x: Array) ->
     return np.stack([response(points) if response else np.full(len(x), np.nan) for response in responses], axis=1)
 
 
-def uniform_moments(surrogate: Surrogate) -> tuple[float, float]:
-    """Mean and variance of an identity surrogate for independent inputs, uniform over their ranges."""
-    norms = np.prod(1.0 / (2 * surrogate.degrees + 1), axis=1)
-    variances = surrogate.coefficients**2 * norms
-    constant = surrogate.degrees.sum(axis=1) == 0
-    return float(surrogate.coefficients[constant].sum()), float(variances[~constant].sum())
-
-
 def to_json(response: Response) -> dict[str, Any]:
     """The response as plain values; docs/uncertainty.md has a ten-line reader."""
     surrogate = response.drop if isinstance(response, Below) else response
