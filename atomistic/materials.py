@@ -238,6 +238,32 @@ class Eam(_Section):
     source: str
 
 
+class Bond(_Section):
+    """Morse bond of the metal and an ion of a film."""
+
+    D_eV: Positive
+    a_1_per_A: Positive
+    r0_A: Positive
+
+
+class BodyArea(_Section):
+    """Depth within which atoms touch, as calibrated on bodies of one kind, and the largest error of the area."""
+
+    depth_A: Positive
+    error: float = Field(ge=0, le=0.1)
+
+
+class FilmBase(_Section):
+    """What a metal below an oxide film is like: its grains, which make it soft, and how ions of the film act on it."""
+
+    grain_nm: Positive = Field(description="diameter of a sphere of the mean volume of a grain")
+    bonds: dict[Element, Bond] = Field(min_length=1)
+    repelled: tuple[Element, ...] = Field(description="ions that only repel it")
+    area_of_film: BodyArea
+    area_of_metal: BodyArea
+    source: str
+
+
 class PoissonRange(_Section):
     """Range of Poisson's ratio."""
 
@@ -263,6 +289,7 @@ class Material(_Section):
     polycrystal: Polycrystal | None = None
     single_crystal_GPa: SingleCrystal | None = None
     eam: Eam | None = None
+    film_base: FilmBase | None = None
     poisson_ratio: PoissonRange | None = None
 
     @property
@@ -270,7 +297,7 @@ class Material(_Section):
         """The formula in a word, as scenes and potentials name an oxide: SiO2."""
         return "".join(f"{element}{count if count > 1 else ''}" for element, count in self.formula.items())
 
-    def part(self, section: Literal["oxide_glass", "network_glass", "polycrystal", "eam"]) -> Any:
+    def part(self, section: Literal["oxide_glass", "network_glass", "polycrystal", "eam", "film_base"]) -> Any:
         """A section that a stage cannot do without.
 
         Raises
@@ -298,6 +325,8 @@ class Material(_Section):
                 raise ValueError(f"{key} has {', '.join(sorted(elements))}; it must have {', '.join(self.formula)}")
         if self.oxide_glass is not None and (len(self.formula) != 2 or "O" not in self.formula):
             raise ValueError(f"oxide_glass: needs a formula of one cation and O, got {self.formula_text}")
+        if self.film_base is not None and self.eam is None:
+            raise ValueError("film_base: needs the metal's potential; add a section eam")
         if self.eam is not None and len(self.formula) != 1:
             raise ValueError(f"eam: needs a formula of one element, got {self.formula_text}")
         return self

@@ -5,10 +5,11 @@ styles, and its twin with all energies halved is the same table times one half.
 """
 
 import io
+from collections.abc import Mapping
 from functools import cached_property
 from itertools import combinations_with_replacement
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, Protocol
 
 import numpy as np
 from pydantic import Field, ValidationError
@@ -225,6 +226,24 @@ class Potential(Settings):
         lines += ["neighbor 0.6 bin", "neigh_modify every 2 delay 0 check yes"]
         tables = {file: within.table(tuple(dict.fromkeys(of)), energy_scale) for file, within, of in bodies}
         return {**tables, "pairs": "\n".join(lines) + "\n"}
+
+
+class ForceField(Protocol):
+    """What of a `Potential` molecular dynamics uses: a metal, and an oxide on a metal, have it too."""
+
+    @property
+    def species(self) -> Mapping[str, Any]:
+        """What has the mass of each element."""
+        ...
+
+    def files(
+        self,
+        elements: tuple[str, ...],
+        energy_scale: float,
+        repelled: tuple[Potential, tuple[str, ...]] | None = None,
+    ) -> dict[str, str]:
+        """Files for LAMMPS by name."""
+        ...
 
 
 def contact_energy_and_force(r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from atomistic.hardness.plateau import Rows, find_hardness
-from atomistic.hardness.runs import PROTOCOL, Protocol
+from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
 from atomistic.settings import ClosingSettings
 
 DEFAULT = "default"
@@ -15,7 +15,14 @@ VARIATIONS = {  # choice and factor on it
     "wall_stiffness_fourfold": ("wall_stiffness_eV_A3", 4.0),
     "temperature_tenth": ("temperature_K", 0.1),
     "base_larger": ("base_over_contact", 1.5),
+    "bonds_weaker": ("bond_factor", 0.5),
+    "bonds_stronger": ("bond_factor", 1.5),
 }
+
+
+def variations(run: ClosingRun) -> list[str]:
+    """Those that mean something for a run: bonds of film and metal are of films only."""
+    return [name for name, (key, _) in VARIATIONS.items() if key != "bond_factor" or run.asperity.film_nm]
 
 
 def varied(name: str, closing: ClosingSettings) -> tuple[ClosingSettings, Protocol]:

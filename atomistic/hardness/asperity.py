@@ -52,11 +52,17 @@ def formula_of(glass: Atoms) -> np.ndarray:
 
 
 def neutralise(atoms: Atoms, formula: np.ndarray) -> Atoms:
-    """Remove the lowest atoms of each species that is in surplus of whole formula units."""
+    """Remove the lowest atoms of each species that is in surplus of whole formula units.
+
+    Parameters
+    ----------
+    formula : atoms of each type per unit; 0: of a metal, which is not in any.
+    """
     counts = np.bincount(atoms.types, minlength=len(formula) + 1)[1:]
-    units = int(np.min(counts // formula))
+    ions = formula > 0
+    units = int(np.min(counts[ions] // formula[ions], initial=len(atoms)))
     keep = np.ones(len(atoms), dtype=bool)
-    for kind, surplus in enumerate(counts - units * formula, 1):
+    for kind, surplus in enumerate(np.where(ions, counts - units * formula, 0), 1):
         of_kind = np.flatnonzero(atoms.types == kind)
         lowest = of_kind[np.argsort(atoms.positions_A[of_kind, 2], kind="stable")[:surplus]]
         keep[lowest] = False

@@ -8,25 +8,30 @@ from pathlib import Path
 import numpy as np
 
 from atomistic.errors import InputError
-from atomistic.hardness.contact_area import calibrated, contact_map, shares_in_contact
+from atomistic.hardness.asperity import cut_asperity, formula_of
+from atomistic.hardness.contact_area import Area, calibrated, contact_map, shares_in_contact
 from atomistic.hardness.glass import cations
+from atomistic.hardness.metal import Metal
 from atomistic.hardness.plateau import RULES, may_stop
 from atomistic.hardness.pressing import (
     Plan,
     base_thickness_nm,
+    lammps_seed,
     plan_closing,
     prepare_body,
     press_bodies,
 )
-from atomistic.hardness.readout import Geometry, Readout, Rows, slice_rows, witness_rows
+from atomistic.hardness.readout import BondKind, Geometry, Readout, Rows, slice_rows, witness_rows
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
+from atomistic.hardness.stack import Stack, check_film, film_properties, lay
 from atomistic.hardness.top_attraction import attract_top, bulk_density_per_A3
 from atomistic.lammps import Atoms, Progress, Workspace, run_lammps
 from atomistic.materials import Material
-from atomistic.potentials import Potential
+from atomistic.potentials import ForceField, Potential
 from atomistic.settings import ClosingSettings
 
 MAX_STRAIN = 0.01  # of a counterface whose cell differs from the asperity's
+NO_TOP: dict[str, float] = dict.fromkeys(("top_area_nm2", "top_force_over_hamaker", "top_work_over_hamaker"), np.nan)
 
 
 @dataclass(frozen=True)
@@ -59,6 +64,7 @@ def run_closing(
     progress: Progress | None = None,
     counter_glass: Atoms | None = None,
     counter_potential: Potential | None = None,
+    base: tuple[Metal, Atoms] | None = None,
 ) -> Closing:
     """Carry out a run, or go on with it if `work` holds its restart files; `work` is deleted at the end.
 
@@ -66,33 +72,41 @@ def run_closing(
     ----------
     material, glass : oxide of the asperity, and a cell of its glass.
     counter_glass, counter_potential : glass and potential of a counterface of oxide; None: those of the asperity.
+    base : metal below a film, and a cube of it, one wavelength wide.
+
+    Raises
+    ------
+    InputError : a film that its asperity does not allow, or a base that is not given.
     """
-    area, _ = calibrated(potential, counter_potential)
+    wavelength_nm = run.asperity.tiles * float(glass.cell_A[0]) / 10
+    area, _ = area_of(run, potential, counter_potential, base)
     plan = plan_closing(closing, run, protocol)
     identity = {
         "potential": [within.model_dump() for within in (potential, counter_potential or potential)],
         "run": [run.model_dump(), material.formula_text, closing.model_dump(), protocol.model_dump(), asdict(area)],
         "glass": [[g.cell_A.tolist(), g.positions_A.sum(axis=0).tolist()] for g in (glass, counter_glass or glass)],
     }
+    if base is not None:
+        identity["base"] = [base[0].material.model_dump(), base[1].positions_A.sum(axis=0).tolist()]
     place = (run.seed, run.asperity.tiles, round(1000 * run.asperity.amplitude_nm))
     aside = Workspace(work / "anneal", identity, "anneal.in")
-    base_nm = base_thickness_nm(closing, run.asperity.tiles * float(glass.cell_A[0]) / 10, protocol)
-    amplitude = run.asperity.amplitude_nm
-    bodies = [prepare_body(run, glass, potential, closing, protocol, aside, place, amplitude, base_nm, progress)]
+    body = cut_body(run, glass, potential, base_thickness_nm(closing, wavelength_nm, protocol), place, protocol, base)
+    bodies = [prepare_body(run, body.cut, body.formula, body.force, closing, protocol, aside, place, progress)]
+    above = None
     if closing.counterface != "flat":
-        relief = amplitude if closing.counterface == "asperity" else 0.0
-        counter, thickness = commensurate(counter_glass or glass, glass), protocol.counter_base_nm
-        aside = Workspace(work / "anneal_counter", identity, "anneal.in")
-        within = counter_potential or potential
-        upper = prepare_body(run, counter, within, closing, protocol, aside, (*place, 6), relief, thickness, progress)
-        bodies.append(upper)
+        relief = 10 * run.asperity.amplitude_nm if closing.counterface == "asperity" else 0.0
+        counter, thickness_A = commensurate(counter_glass or glass, glass), 10 * protocol.counter_base_nm
+        aside, place_above = Workspace(work / "anneal_counter", identity, "anneal.in"), (*place, 6)
+        cut = cut_asperity(counter, run.asperity.tiles, relief, thickness_A, lammps_seed(*place_above, 3))
+        force, formula = counter_potential or potential, formula_of(counter)
+        bodies.append(prepare_body(run, cut, formula, force, closing, protocol, aside, place_above, progress))
+        above = force if closing.interface == "repulsive" else None
     workspace = Workspace(work / "closing", identity, "closing.in")
-    kinds = [glass.elements.index(ion) + 1 for ion in cations(material, potential)]
+    bonds = bond_kinds(bodies[0].elements, material, potential, base)
 
     @cache
     def readout(geometry: Geometry) -> Readout:
-        cutoff = material.part("oxide_glass").cutoff_A
-        return Readout(workspace, plan.segment_steps, plan.timestep, protocol.samples, area, geometry, kinds, cutoff)
+        return Readout(workspace, plan.segment_steps, plan.timestep, protocol.samples, area, geometry, bonds)
 
     def read(geometry: Geometry, reached: Plan) -> Closing:
         relaxed = range(reached.segments + 1)
@@ -109,12 +123,117 @@ def run_closing(
         return may_stop(measured.curve, measured.witness, cell_nm2, closing.stop, protocol.approach_nm)
 
     geometry, reached = press_bodies(
-        run, bodies, potential, closing, protocol, plan, place, workspace, complete, progress, counter_potential
+        run, bodies, body.force, closing, protocol, plan, place, workspace, complete, progress, above
     )
-    result = read(geometry, reached)
-    tops = [attraction_row(readout(geometry), n, geometry) for n in range(reached.segments + 1)]
+    result, snapshots = read(geometry, reached), range(reached.segments + 1)
+    of_oxide = run.asperity.film_nm is None  # atoms of a metal pull otherwise: their tops say nothing of the oxide's
+    tops = [attraction_row(readout(geometry), n, geometry) if of_oxide else NO_TOP for n in snapshots]
+    if run.asperity.film_nm:
+        start, end = (readout(geometry).relaxed(n).frame for n in (0, reached.segments))
+        result.summary.update(film_properties(start, end, geometry.wavelength_A))
     shutil.rmtree(work)
     return replace(result, witness=[{**row, **top} for row, top in zip(result.witness, tops, strict=True)])
+
+
+@dataclass(frozen=True)
+class CutBody:
+    """What is annealed and pressed: atoms, those of each type in a unit of its formula, and their forces."""
+
+    cut: Atoms
+    formula: np.ndarray
+    force: ForceField
+
+
+def cut_body(
+    run: ClosingRun,
+    glass: Atoms,
+    potential: Potential,
+    base_nm: float,
+    place: tuple[int, ...],
+    protocol: Protocol,
+    base: tuple[Metal, Atoms] | None = None,
+) -> CutBody:
+    """The asperity of a run: of oxide, of the metal, or of the metal under a film.
+
+    Parameters
+    ----------
+    base_nm : thickness below the mean height.
+    place : numbers that tell the run's random numbers from those of others.
+    base : of `run_closing`.
+
+    Raises
+    ------
+    InputError : of `check_film`, or of a film without a base.
+    """
+    of, seed = run.asperity, lammps_seed(*place, 3)
+    amplitude_A, base_A, film_nm = 10 * of.amplitude_nm, 10 * base_nm, of.film_nm
+    if film_nm is None:
+        cut = cut_asperity(glass, of.tiles, amplitude_A, base_A, seed)
+        return CutBody(cut, formula_of(glass), potential)
+    if base is None:
+        raise InputError(f"asperity {of.name}: film_nm = {film_nm:g} needs a metal below; set hardness.base")
+    metal, cube = base
+    if film_nm == 0:
+        return CutBody(cut_asperity(cube, 1, amplitude_A, base_A, seed), np.zeros(1, int), metal)
+    check_film(film_nm, RULES.max_area_fraction**0.5 * of.tiles * float(glass.cell_A[0]) / 10)
+    cut = lay(cube, glass, of.tiles, amplitude_A, 10 * film_nm, base_A, seed)
+    return CutBody(cut, np.array([0, *formula_of(glass)]), Stack(potential, metal, protocol.bond_factor))
+
+
+def weld(
+    run: ClosingRun,
+    glass: Atoms,
+    potential: Potential,
+    closing: ClosingSettings,
+    base: tuple[Metal, Atoms],
+    work: Path,
+) -> tuple[Stack, Atoms]:
+    """The forces and the welded body of a run with a film, for checks."""
+    assert run.asperity.film_nm
+    place = (run.seed, 0)
+    base_nm = base_thickness_nm(closing, float(base[1].cell_A[0]) / 10)
+    body = cut_body(run, glass, potential, base_nm, place, PROTOCOL, base)
+    workspace = Workspace(work / "weld", {}, "anneal.in")
+    stack = Stack(potential, base[0])
+    return stack, prepare_body(run, body.cut, body.formula, body.force, closing, PROTOCOL, workspace, place)
+
+
+def area_of(
+    run: ClosingRun,
+    potential: Potential,
+    counter_potential: Potential | None = None,
+    base: tuple[Metal, Atoms] | None = None,
+) -> tuple[Area, float]:
+    """The definition of contact area that was calibrated on bodies of a run's kind, and its largest error.
+
+    Raises
+    ------
+    InputError : none was.
+    """
+    area, error = calibrated(potential, counter_potential)
+    if run.asperity.film_nm is None or base is None:
+        return area, error
+    of = base[0].below_films.area_of_film if run.asperity.film_nm else base[0].below_films.area_of_metal
+    return replace(area, depth_A=of.depth_A), of.error
+
+
+def bond_kinds(
+    elements: tuple[str, ...], material: Material, potential: Potential, base: tuple[Metal, Atoms] | None = None
+) -> list[BondKind]:
+    """What counts as a bond in a body: cation and anion of the oxide, neighbours in the metal.
+
+    Parameters
+    ----------
+    elements : of each type of the body.
+    """
+    kinds, (cation,) = [], cations(material, potential)
+    if base is not None and elements[0] == base[0].element:
+        kinds.append(BondKind((1, 1), base[0].bond_length_A))
+    ions = [n for n, element in enumerate(elements, 1) if element in potential.materials[material.formula_text]]
+    for n in ions:
+        if elements[n - 1] != cation:
+            kinds.append(BondKind((elements.index(cation) + 1, n), material.part("oxide_glass").cutoff_A))
+    return kinds
 
 
 def _read(readout: Readout, plan: Plan, held_A: float, geometry: Geometry) -> Closing:
@@ -146,11 +265,9 @@ def attraction_row(readout: Readout, segment: int, geometry: Geometry) -> dict[s
         shares = shares_in_contact(places[:, :2], in_contact, side, axis)
         density = bulk_density_per_A3(readout.relaxed(0).frame[:, 1:4], side[0] * side[1])
         top = attract_top(places[:, 2], shares, sample.area_A2, density)
-    return {
-        "top_area_nm2": top.area_A2 / 100 if top else np.nan,
-        "top_force_over_hamaker": 10 * top.force_per_A if top else np.nan,
-        "top_work_over_hamaker": top.work if top else np.nan,
-    }
+        found = (top.area_A2 / 100, 10 * top.force_per_A, top.work)
+        return dict(zip(NO_TOP, found, strict=True))
+    return NO_TOP
 
 
 def commensurate(counter: Atoms, glass: Atoms) -> Atoms:

@@ -15,7 +15,7 @@ from atomistic.constants import AVOGADRO
 from atomistic.errors import InputError
 from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
 from atomistic.materials import SEARCHED_A, SHORTEST_BOND_A, Material, OxideGlass
-from atomistic.potentials import Potential
+from atomistic.potentials import ForceField, Potential
 from atomistic.settings import GlassSettings
 
 NEAREST_START_A = 1.5  # random starts keep atoms this far apart
@@ -74,7 +74,7 @@ def _formula(material: Material, potential: Potential) -> Mapping[str, int]:
 
 def write_forcefield(
     workspace: Workspace,
-    potential: Potential,
+    potential: ForceField,
     elements: tuple[str, ...],
     energy_scale: float,
     repelled: tuple[Potential, tuple[str, ...]] | None = None,

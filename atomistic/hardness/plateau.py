@@ -5,7 +5,7 @@ and a top that stays lower after unloading).
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -50,6 +50,25 @@ class Rules:
 
 
 RULES = Rules()
+
+
+@dataclass(frozen=True)
+class FilmRules:
+    """What a film must be like: lengths of bonds, so that no film counts that came off its base.
+
+    Attributes
+    ----------
+    least_covered : share of the metal below film.
+    largest_gap_A : 95 % of the columns of atoms have less: twice a bond of metal and oxygen.
+    largest_slip_A : of the film over the metal below the contact, at the end: one bond.
+    """
+
+    least_covered: float = 0.95
+    largest_gap_A: float = 4.2
+    largest_slip_A: float = 2.1
+
+
+FILM_RULES = FilmRules()
 
 
 @dataclass(frozen=True)
@@ -247,15 +266,34 @@ def point(
     curve: Rows, witness: Rows, run: Mapping[str, Any], closing: ClosingSettings, potential: str
 ) -> dict[str, Any]:
     """Row of points.csv of a run, given its summary `run` and the name of its potential."""
-    copied = ("energy_scale", "asperity", "wavelength_nm", "amplitude_nm", "seed", "atoms", "restart_steps")
+    copied = ("energy_scale", "asperity", "wavelength_nm", "amplitude_nm", "film_nm", "seed", "atoms", "restart_steps")
+    hardness = find_hardness(curve, witness, run["wavelength_nm"] ** 2)
+    if run["film_nm"] and (fault := film_fault(run)):
+        hardness = replace(hardness, status=f"rejected: {fault}")
     return {
         "run": run["run"],
         "potential": potential,
         "geometry": geometry(closing),
         **{key: run[key] for key in (*copied, "lammps_cpu_s", "python_cpu_s")},
         "atom_steps": run["atoms"] * run["steps"],
-        **asdict(find_hardness(curve, witness, run["wavelength_nm"] ** 2)),
+        **asdict(hardness),
     }
+
+
+def film_fault(found: Mapping[str, Any], rules: FilmRules = FILM_RULES) -> str | None:
+    """Why a run does not count; None where its film is as it must be.
+
+    Parameters
+    ----------
+    found : summary of a run, with what `film_properties` found.
+    """
+    if found["covered_share"] < rules.least_covered:
+        return f"the film covers {found['covered_share']:.0%} of its base (gate {rules.least_covered:.0%})"
+    if found["gap_95_A"] > rules.largest_gap_A:
+        return f"a gap of {found['gap_95_A']:.1f} A between film and base (gate {rules.largest_gap_A:g} A)"
+    if found["slid_A"] > rules.largest_slip_A:
+        return f"the film slid by {found['slid_A']:.1f} A over its base (gate {rules.largest_slip_A:g} A)"
+    return None
 
 
 def _exponent(length: np.ndarray, stress: np.ndarray) -> float:

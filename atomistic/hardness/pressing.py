@@ -8,9 +8,7 @@ import numpy as np
 from atomistic.constants import EV_PER_A3_IN_GPA, KE_EV
 from atomistic.hardness.asperity import (
     STRAY_A,
-    cut_asperity,
     facing,
-    formula_of,
     remove_strays,
     with_vacuum,
 )
@@ -19,7 +17,7 @@ from atomistic.hardness.plateau import RULES
 from atomistic.hardness.readout import Geometry
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
 from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
-from atomistic.potentials import CONTACT_A, Potential
+from atomistic.potentials import CONTACT_A, ForceField, Potential
 from atomistic.settings import ClosingSettings
 
 
@@ -81,23 +79,26 @@ def base_thickness_nm(closing: ClosingSettings, wavelength_nm: float, protocol: 
 
 def prepare_body(
     run: ClosingRun,
-    glass: Atoms,
-    potential: Potential,
+    cut: Atoms,
+    formula: np.ndarray,
+    potential: ForceField,
     closing: ClosingSettings,
     protocol: Protocol,
     workspace: Workspace,
     place: tuple[int, ...],
-    amplitude_nm: float,
-    base_nm: float,
     progress: Progress | None = None,
 ) -> Atoms:
-    """Cut a body, anneal its surface, remove strays."""
+    """Anneal the surface of a body that was cut, which welds a film on it; remove strays.
+
+    Parameters
+    ----------
+    formula : of `neutralise`.
+    """
     plan = plan_closing(closing, run, protocol)
     done = workspace.segments_done(2)
-    write_forcefield(workspace, potential, glass.elements, run.energy_scale)
+    write_forcefield(workspace, potential, cut.elements, run.energy_scale)
     if not done:
-        cut = cut_asperity(glass, run.asperity.tiles, 10 * amplitude_nm, 10 * base_nm, _lammps_seed(*place, 3))
-        write_data(workspace / "cut.data", cut, _masses(potential, glass.elements))
+        write_data(workspace / "cut.data", cut, _masses(potential, cut.elements))
     hot = max(protocol.temperature_K, protocol.anneal_temperature_K * run.energy_scale)
 
     def on_step(step: int) -> None:
@@ -108,7 +109,7 @@ def prepare_body(
         variables = {
             "data": "cut.data",
             "pairs": "pairs",
-            "seed": _lammps_seed(*place, 4),
+            "seed": lammps_seed(*place, 4),
             "timestep": plan.timestep,
             "frozen": 10 * protocol.frozen_nm,
             "segment": range(done + 1, 3),
@@ -118,20 +119,20 @@ def prepare_body(
             "steps": [plan.anneal_steps] * (2 - done),
         }
         run_lammps("anneal.in", workspace, variables, on_step, closing.processes)
-    annealed = load_data(workspace / "annealed.data", glass.elements)
-    kept = remove_strays(annealed, formula_of(glass))
+    annealed = load_data(workspace / "annealed.data", cut.elements)
+    kept = remove_strays(annealed, formula)
     return with_vacuum(kept, float(annealed.cell_A[2]))
 
 
-def _mass_u(potential: Potential, atoms: Atoms) -> float:
+def _mass_u(potential: ForceField, atoms: Atoms) -> float:
     return sum(atoms.count(element) * potential.species[element].mass_u for element in atoms.elements)
 
 
-def _masses(potential: Potential, elements: tuple[str, ...]) -> dict[str, float]:
+def _masses(potential: ForceField, elements: tuple[str, ...]) -> dict[str, float]:
     return {ion: potential.species[ion].mass_u for ion in elements}
 
 
-def _lammps_seed(*entropy: int) -> int:
+def lammps_seed(*entropy: int) -> int:
     """A seed that LAMMPS accepts; neighbouring ones (it adds the segment's number) stay distinct."""
     return 1000 * (1 + int(np.random.SeedSequence(entropy).generate_state(1)[0] % 800_000))
 
@@ -139,7 +140,7 @@ def _lammps_seed(*entropy: int) -> int:
 def press_bodies(
     run: ClosingRun,
     bodies: list[Atoms],
-    potential: Potential,
+    potential: ForceField,
     closing: ClosingSettings,
     protocol: Protocol,
     plan: Plan,
@@ -154,7 +155,7 @@ def press_bodies(
     Parameters
     ----------
     complete : asked after every segment whether the run may end before its plan does.
-    counter_potential : of the second body, where it is another; the bodies then only repel each other.
+    counter_potential : of a second body that only repels the first; None: both adhere by one potential.
 
     Returns
     -------
@@ -168,8 +169,8 @@ def press_bodies(
     wavelength = float(lower.cell_A[0])
     geometry = Geometry(wavelength, len(lower), len(atoms), len(bodies))
     masses = _masses(potential, lower.elements)
-    if len(bodies) == 2 and closing.interface == "repulsive":
-        upper = (counter_potential or potential, bodies[1].elements)
+    if counter_potential is not None:
+        upper = (counter_potential, bodies[1].elements)
         write_forcefield(workspace, potential, lower.elements, run.energy_scale, repelled=upper)
         masses |= _masses(*upper)
     else:
@@ -185,7 +186,7 @@ def press_bodies(
     variables = {
         "data": "annealed.data",
         "pairs": "pairs",
-        "seed": _lammps_seed(*place, 5),
+        "seed": lammps_seed(*place, 5),
         "timestep": plan.timestep,
         "lower": len(lower),
         "frozen": 10 * protocol.frozen_nm,

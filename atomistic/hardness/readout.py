@@ -39,6 +39,19 @@ class Geometry:
 
 
 @dataclass(frozen=True)
+class BondKind:
+    """Bonds between atoms of two types; one of metal joins atoms of one type.
+
+    Attributes
+    ----------
+    length_A : first minimum of their g(r).
+    """
+
+    types: tuple[int, int]
+    length_A: float
+
+
+@dataclass(frozen=True)
 class Sample:
     """One moment of a closing.
 
@@ -69,7 +82,7 @@ class Readout:
     Parameters
     ----------
     per_average : samples of an average.
-    cation_types, cutoff_A : what counts as a bond; the first minimum of g(r).
+    bonds : what counts as one.
     """
 
     def __init__(
@@ -80,12 +93,11 @@ class Readout:
         per_average: int,
         area: Area,
         geometry: Geometry,
-        cation_types: list[int],
-        cutoff_A: float,
+        bonds: Sequence[BondKind],
     ) -> None:
         self._workspace, self._segment_steps, self._timestep_ps = workspace, segment_steps, timestep_ps
         self._per_average, self.area, self._geometry = per_average, area, geometry
-        self._cation_types, self._cutoff_A = cation_types, cutoff_A
+        self._bonds = bonds
         self._samples: dict[int, dict[int, Sample]] = {}
         self._ends: dict[int, np.ndarray] = {}
         self._relaxed: dict[int, Relaxed] = {}
@@ -117,7 +129,7 @@ class Readout:
         if segment not in self._relaxed:
             [(step, table)] = load_dump(self._workspace / f"relaxed.{segment}")
             frame, wavelength = table[:, 1:5], self._geometry.wavelength_A
-            near, far = (bonds_of(frame, self._cation_types, x * self._cutoff_A, wavelength) for x in (NEAR, FAR))
+            near, far = (bonds_of(frame, self._bonds, factor, wavelength) for factor in (NEAR, FAR))
             self._relaxed[segment] = Relaxed(step, frame, (near, far))
         return self._relaxed[segment]
 
@@ -234,15 +246,19 @@ def _exchanges(before: tuple[Bonds, Bonds], after: tuple[Bonds, Bonds]) -> int:
     return len(before[0] - after[1]) + len(after[0] - before[1])
 
 
-def bonds_of(frame: Frame, cation_types: list[int], cutoff_A: float, wavelength_A: float) -> Bonds:
-    """Pairs of a cation and an anion nearer to each other than `cutoff_A`, as rows of the frame."""
-    is_cation = np.isin(frame[:, 0], cation_types)
+def bonds_of(frame: Frame, kinds: Sequence[BondKind], factor: float, wavelength_A: float) -> Bonds:
+    """Pairs of atoms nearer to each other than `factor` times the length of a bond of theirs, as rows of the frame."""
     box = np.array([wavelength_A, wavelength_A, 0.0])  # 0: not periodic
     positions = frame[:, 1:4].copy()
     positions[:, :2] = np.mod(positions[:, :2], wavelength_A)
-    pairs = KDTree(positions, boxsize=box).query_pairs(cutoff_A, output_type="ndarray")
-    mixed = pairs[is_cation[pairs[:, 0]] != is_cation[pairs[:, 1]]]
-    return set(map(tuple, mixed.tolist()))
+    tree, found = KDTree(positions, boxsize=box), set()
+    for kind in kinds:
+        pairs = tree.query_pairs(factor * kind.length_A, output_type="ndarray")
+        first, second = frame[pairs[:, 0], 0].astype(int), frame[pairs[:, 1], 0].astype(int)
+        bonded = (first == kind.types[0]) & (second == kind.types[1])
+        bonded |= (first == kind.types[1]) & (second == kind.types[0])
+        found |= set(map(tuple, pairs[bonded].tolist()))
+    return found
 
 
 def _top(frame: Frame) -> float:

@@ -1,5 +1,7 @@
 """Which closing runs a scene asks for, and what all of them have in common (imports nothing heavy)."""
 
+import math
+
 from atomistic.settings import AsperitySettings, ClosingSettings, HardnessSettings, Settings
 
 SCALE_NAMES = {1.0: "full", 0.5: "halved"}
@@ -33,6 +35,7 @@ class Protocol(Settings):
     force_step_MPa : rise of the nominal stress at each step of controlled force (Kim et al. 2013).
     max_stress_GPa : nominal stress at the end of controlled force.
     damping_ps : controlled force: time in which the sample's motion as a whole is damped.
+    bond_factor : on the depth of the bonds of film and metal, which are assumed.
     """
 
     timestep_fs: float = 3.0
@@ -51,13 +54,14 @@ class Protocol(Settings):
     force_step_MPa: float = 20.0
     max_stress_GPa: float = 5.0
     damping_ps: float = 1.0
+    bond_factor: float = 1.0
 
 
 PROTOCOL = Protocol()
 
 
 def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
-    """Every asperity x seed x energy scale of the settings."""
+    """Every asperity x seed x energy scale of the settings; metals keep their energies, so that they have one scale."""
     return [
         ClosingRun(
             name=f"{asperity.name}_seed{seed}_{SCALE_NAMES.get(scale, f'x{scale:g}')}",
@@ -68,14 +72,20 @@ def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
         for asperity in settings.asperities
         for seed in settings.seeds
         for scale in settings.energy_scales
+        if asperity.film_nm != 0 or scale == max(settings.energy_scales)
     ]
 
 
 def smallest_run(settings: HardnessSettings) -> ClosingRun:
-    """The cheapest run of a scene at its highest energy scale."""
+    """The cheapest run of a scene at its highest energy scale: the thinnest film where there are films."""
     return min(
         planned_runs(settings),
-        key=lambda run: (run.asperity.tiles, run.asperity.amplitude_nm, -run.energy_scale),
+        key=lambda run: (
+            run.asperity.film_nm or math.inf,
+            run.asperity.tiles,
+            run.asperity.amplitude_nm,
+            -run.energy_scale,
+        ),
     )
 
 

@@ -48,13 +48,14 @@ def fit_size_effect(
     Content of fit.json (docs/hardness.md).
     """
     used = [point for point in points if point["status"] == "yield"]
+    oxide = [point for point in used if not point["film_nm"]]  # films count as runs; their law is fitted apart
     refused = [{"run": point["run"], "status": point["status"]} for point in points if point["status"] != "yield"]
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
     if len(used) < MIN_POINTS:
         reasons.append(f"{len(used)} of {len(points)} runs gave a defended hardness, {MIN_POINTS} are needed")
     elif len(used) < MIN_SHARE * len(points):
         reasons.append(f"only {len(used)} of {len(points)} runs gave a defended hardness (gate {MIN_SHARE:.0%})")
-    scales = {float(point["energy_scale"]) for point in used}
+    scales = {float(point["energy_scale"]) for point in oxide}
     if missing := sorted(set(energy_scales) - scales):
         reasons.append(f"no defended hardness at energy scale {', '.join(f'{scale:g}' for scale in missing)}")
     result: dict = {
@@ -66,18 +67,18 @@ def fit_size_effect(
         "inputs": {},
         "gate": {"passed": False, "reasons": reasons},
     }
-    if len(used) < 2:
-        result["gate"]["reasons"] = reasons or ["fewer than two points"]
+    if len(oxide) < 2:
+        result["gate"]["reasons"] = reasons or ["fewer than two runs of oxide throughout gave a defended hardness"]
         return result
-    free = {"together": used} | _by_scale(used)
+    free = {"together": oxide} | _by_scale(oxide)
     result["free_fit"] = {name: free_fit(group) for name, group in free.items()}
-    result["halved_over_full"] = scale_ratios(used)
-    result["size_effect_at_one_shape"] = same_shape_exponents(points)
+    result["halved_over_full"] = scale_ratios(oxide)
+    result["size_effect_at_one_shape"] = same_shape_exponents([point for point in points if not point["film_nm"]])
     # the error of the area lies anywhere within that of its calibration: a uniform distribution
     systematic = {"area": area_error / np.sqrt(3), **others}
-    h_macro, h_prime, h_film = literature_samples(used, fit.h_macro_GPa, systematic)
+    h_macro, h_prime, h_film = literature_samples(oxide, fit.h_macro_GPa, systematic)
     if fit.h_macro == "free":
-        h_macro, h_prime = free_samples(used, systematic)
+        h_macro, h_prime = free_samples(oxide, systematic)
     result["inputs"] = {
         "h_macro": {"distribution": "uniform", **_range(h_macro, fit), "unit": "GPa"},
         "h_prime": {
@@ -96,7 +97,7 @@ def fit_size_effect(
     }
     result["H_macro_GPa"] = _summary(h_macro)
     result["H_prime_GPa_nm0.5"] = _summary(h_prime)
-    result["budget"] = variance_budget(used, fit.h_macro_GPa, systematic)
+    result["budget"] = variance_budget(oxide, fit.h_macro_GPa, systematic)
     result["curve"] = band(h_macro, h_prime, result["budget"]["statistical"]["std"])
     if result["inputs"]["h_prime"]["a"] <= 0 or result["inputs"]["h_macro"]["a"] <= 0:
         reasons.append("the fit allows a hardness that falls with decreasing size or is negative: not identifiable")

@@ -7,16 +7,18 @@ from pathlib import Path
 
 import numpy as np
 
-from atomistic.constants import BOLTZMANN_EV_PER_K, KE_EV
+from atomistic.constants import BOLTZMANN_EV_PER_K, EV_PER_A3_IN_GPA, KE_EV
 from atomistic.hardness.glass import MELT_K, TIMESTEP_FS, write_forcefield
+from atomistic.hardness.metal import Metal
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL
+from atomistic.hardness.stack import Stack, lifted
 from atomistic.lammps import Atoms, Workspace, load_averages, load_data, run_lammps, write_data
-from atomistic.potentials import Potential
+from atomistic.potentials import ForceField, Potential
 
 
 def free_motion(
-    atoms: Atoms, potential: Potential, work: Path, timestep_fs: float, steps: int, energy_scale: float = 1.0
+    atoms: Atoms, potential: ForceField, work: Path, timestep_fs: float, steps: int, energy_scale: float = 1.0
 ) -> tuple[np.ndarray, Atoms]:
     """Run at constant energy; rows (step, potential, total energy in eV), and the atoms at the end."""
     shutil.rmtree(work, ignore_errors=True)
@@ -37,7 +39,7 @@ def free_motion(
     return record, end
 
 
-def heated(atoms: Atoms, potential: Potential, temperature_K: float) -> Atoms:
+def heated(atoms: Atoms, potential: ForceField, temperature_K: float) -> Atoms:
     """The same atoms with Maxwell velocities."""
     rng = np.random.default_rng(np.random.SeedSequence([17]))
     masses = np.array([potential.species[ion].mass_u for ion in atoms.elements])[atoms.types - 1]
@@ -96,6 +98,84 @@ def _of_body(potential: Potential, glass: Atoms, energy_scales: Sequence[float],
     return checks
 
 
+LIFT_A = 14.0  # beyond the cut-off of every pair
+SOFTER = 1e-3
+MOLTEN_METAL_K = 2800.0
+SEPARATION_J_M2 = (0.1, 10.0)  # of oxides on metals; weaker films fall off, stronger ones are part of the metal
+
+
+def film_checks(stack: Stack, body: Atoms, energy_scales: Sequence[float], work: Path) -> list[Check]:
+    """Checks of a film on its metal: the scene's thinnest one, welded.
+
+    Parameters
+    ----------
+    work : of `stability_checks`.
+    """
+    eam = stack.metal.eam
+    energies = ("A_eV", "B_eV", "F_outer_eV")
+    series = ("F_inner_eV", "F_middle_eV")
+    soft = eam.model_copy(
+        update={key: SOFTER * getattr(eam, key) for key in energies}
+        | {key: tuple(SOFTER * value for value in getattr(eam, key)) for key in series}
+    )
+    softer = Metal(stack.metal.material.model_copy(update={"eam": soft}))
+    closing_fs = PROTOCOL.timestep_fs
+    cases = [
+        *(
+            (f"room_x{scale:g}", stack, PROTOCOL.temperature_K, closing_fs / np.sqrt(scale), scale)
+            for scale in energy_scales
+        ),
+        ("cold", stack, 10.0, closing_fs, 1.0),
+        ("hot_as_in_anneal", stack, PROTOCOL.anneal_temperature_K, closing_fs, 1.0),
+        ("molten_base", stack, MOLTEN_METAL_K, TIMESTEP_FS, 1.0),
+        ("base_softer_by_1000", replace(stack, metal=softer), PROTOCOL.temperature_K, closing_fs, 1.0),
+        ("sliding_interface", replace(stack, bond_factor=SOFTER), PROTOCOL.temperature_K, closing_fs, 1.0),
+        ("bonds_fourfold", replace(stack, bond_factor=4.0), PROTOCOL.temperature_K, closing_fs, 1.0),
+    ]
+    checks: list[Check] = [
+        (
+            f"film_{label}",
+            f"film on {stack.metal.material.name}, {kelvin:g} K, energies x {scale:g}, {step:.3g} fs, 4 ps",
+            f"drift below {RULES.max_drift_meV_atom_ps} meV per atom and ps",
+            lambda f=force, k=kelvin, s=scale, h=float(step): _drift(body, f, work, k, s, h),
+        )
+        for label, force, kelvin, step, scale in cases
+    ]
+    low, high = SEPARATION_J_M2
+    checks += [
+        (
+            "film_off_its_base",
+            f"film lifted by {LIFT_A:g} A and by 2 A more",
+            "energies equal to 1e-6 eV: nothing holds it",
+            lambda: _off_its_base(stack, body, work),
+        ),
+        (
+            "film_work_of_separation",
+            f"film lifted off as it is, by {LIFT_A:g} A",
+            f"{low:g} to {high:g} J/m2",
+            lambda: _separation(stack, body, work),
+        ),
+    ]
+    return checks
+
+
+def _off_its_base(stack: Stack, body: Atoms, work: Path) -> tuple[bool, str]:
+    first, second = (_energy(stack, lifted(body, height), work) for height in (LIFT_A, LIFT_A + 2))
+    return abs(first - second) < 1e-6, f"differ by {abs(first - second):.1e} eV"
+
+
+def _separation(stack: Stack, body: Atoms, work: Path) -> tuple[bool, str]:
+    bound, free = (_energy(stack, lifted(body, height), work) for height in (0.0, LIFT_A))
+    found = (free - bound) / float(np.prod(body.cell_A[:2])) * EV_PER_A3_IN_GPA / 10
+    return SEPARATION_J_M2[0] < found < SEPARATION_J_M2[1], f"{found:.2f} J/m2"
+
+
+def _energy(stack: Stack, body: Atoms, work: Path) -> float:
+    """Of atoms at rest, eV."""
+    at_rest = replace(body, velocities_A_ps=None)
+    return float(free_motion(at_rest, stack, work / "lifted", 0.01, 1)[0][0, 1])
+
+
 def half_energy_identity(glass: Atoms, potential: Potential, work: Path) -> tuple[bool, str]:
     """E/2 at T moves like E at 2T with time x sqrt 2: checks table, masses, units and time step at once."""
     hot = heated(glass, potential, 600)
@@ -110,7 +190,7 @@ def half_energy_identity(glass: Atoms, potential: Potential, work: Path) -> tupl
 
 
 def _drift(
-    glass: Atoms, potential: Potential, work: Path, kelvin: float, scale: float, step_fs: float
+    glass: Atoms, potential: ForceField, work: Path, kelvin: float, scale: float, step_fs: float
 ) -> tuple[bool, str]:
     record, _ = free_motion(
         heated(glass, potential, kelvin), potential, work / "nve", step_fs, round(4000 / step_fs), scale

@@ -30,6 +30,13 @@ class AsperitySettings(Settings):
         description="wavelength lambda in glass cells, so that nothing is strained",
     )
     amplitude_nm: float = Field(gt=0, le=10, description="amplitude A", json_schema_extra={"unit": "nm"})
+    film_nm: float | None = Field(
+        default=None,
+        ge=0,
+        le=100,
+        description="thickness of the oxide on hardness.base; 0: the base without oxide; null: oxide throughout",
+        json_schema_extra={"unit": "nm"},
+    )
 
 
 class ClosingSettings(Settings):
@@ -116,6 +123,10 @@ class HardnessSettings(Settings):
     material: str = Field(
         default="SiO2", description="oxide of the asperity: formula of a file in config/materials with an oxide_glass"
     )
+    base: str | None = Field(
+        default=None,
+        description="metal below the films of asperities with a film_nm: a file in config/materials with a film_base",
+    )
     energy_scales: tuple[Annotated[float, Field(gt=0, le=2)], ...] = Field(
         default=(1.0, 0.5),
         min_length=1,
@@ -144,6 +155,15 @@ class HardnessSettings(Settings):
                 f"closing.counter_potential {self.closing.counter_potential!r:.60}: nothing is known of how atoms of "
                 "two potentials attract; set closing.interface to repulsive, or leave counter_potential out"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _films_have_a_base(self) -> "HardnessSettings":
+        films = [asperity.name for asperity in self.asperities if asperity.film_nm is not None]
+        if films and self.base is None:
+            raise ValueError(f"asperities: {films[0]} has a film_nm, but there is no base; name its metal (titanium)")
+        if self.base is not None and not films:
+            raise ValueError(f"base {self.base!r:.60}: no asperity has a film_nm; add it, or leave base out")
         return self
 
     @model_validator(mode="after")

@@ -3,7 +3,8 @@
 Bodies whose section is known: a flat slab of glass is pressed at 300 K by a flat, or by a second slab that only
 repels it.  Its frozen snapshots have the layer of atoms of a contact under load.  Tiled and cut by planes, by a sphere
 and by a wave of the slopes in use, they have a section that geometry gives exactly.  The potential's file then gets
-the largest error as `contact_area`; the distance at which atoms touch is chosen so that the error is smallest.
+the largest error as `contact_area`; the distance at which atoms touch is chosen so that the error is smallest. With
+`--base` the slabs are that metal, and a film of the glass on it; the metal's file gets both errors (`film_base`).
 """
 
 import tempfile
@@ -15,20 +16,23 @@ from pathlib import Path
 import numpy as np
 
 from atomistic.constants import EV_PER_A3_IN_GPA
-from atomistic.hardness.closing import commensurate
+from atomistic.hardness.asperity import cut_asperity, formula_of
+from atomistic.hardness.closing import CutBody, commensurate, cut_body
 from atomistic.hardness.contact_area import Area, contact_area
 from atomistic.hardness.glass import make_glass
-from atomistic.hardness.pressing import Plan, plan_closing, prepare_body, press_bodies
+from atomistic.hardness.metal import Metal, make_base
+from atomistic.hardness.pressing import lammps_seed, plan_closing, prepare_body, press_bodies
 from atomistic.hardness.readout import beyond_counterface
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
 from atomistic.lammps import Atoms, Workspace, load_averages, load_dump
-from atomistic.materials import load_materials, oxide_glasses
+from atomistic.materials import load_material, load_materials, oxide_glasses
 from atomistic.potentials import Potential, load_potential
 from atomistic.settings import AsperitySettings, ClosingSettings, GlassSettings
 from evidence.record import ROOT
 
 SLAB_TILES, SLAB_BASE_NM, SLAB_TRAVEL_A = 2, 2.0, (7.0, 12.0)  # against a wall, against a second slab
 STRESS_GPA = (6.0, 14.0)  # of the snapshots in use, at full energies: about the hardness
+SLAB_FILM_NM = 1.2
 LENGTHS_NM = (2.0, 3.0, 4.0, 6.0, 8.0)
 SLOPE = 0.6  # of the planes: that of eq. 6 with A / lambda = 0.1 halfway up is 0.63
 TRIALS = 24
@@ -40,6 +44,7 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--material", default="SiO2")
     parser.add_argument("--counter-potential", help="of a second slab, where it is another")
     parser.add_argument("--counter-material", default="TiO2", help="of a slab of another potential")
+    parser.add_argument("--base", help="metal of config/materials, for slabs of it and of a film on it")
     parser.add_argument("--touch", type=float, default=2.4, help="distance of atoms that touch, A")
     parser.add_argument("--energy-scales", type=float, nargs="+", default=[1.0, 0.5])
 
@@ -53,13 +58,19 @@ def rows(given: Namespace) -> Iterator[dict]:
         work = Path(folder)
         glass = make_glass(oxides[given.material], first, GlassSettings(), 1, work / "glass")
         slabs, cases = [(first, glass)] * 2, [*((scale, 1) for scale in given.energy_scales), (1.0, 2)]
+        if given.base:
+            for name, slab in on_metal(glass, first, given.base, work).items():
+                for row in cut_bodies(pressed_layers([slab], 1.0, area, work / name), area):
+                    yield {"potential": name, "energy_scale": 1.0, "bodies": 1, "touch_A": given.touch, **row}
+            return
         if given.counter_potential:
             second = load_potential(ROOT / "config" / "potentials" / f"{given.counter_potential}.yaml")
             edge, oxide = float(glass.cell_A[0]), oxides[given.counter_material]
             other = make_glass(oxide, second, GlassSettings(), 1, work / "counter_glass", edge_A=edge)
             slabs, cases = [(first, glass), (second, commensurate(other, glass))], [(1.0, 2)]
         for scale, bodies in cases:
-            layers = pressed_layers(slabs[:bodies], scale, area, work / f"{scale:g}_{bodies}")
+            cut = [slab_of(oxide, cell, k) for k, (oxide, cell) in enumerate(slabs[:bodies])]
+            layers = pressed_layers(cut, scale, area, work / f"{scale:g}_{bodies}")
             names = " on ".join(dict.fromkeys(slab[0].name for slab in slabs[:bodies]))
             for row in cut_bodies(layers, area):
                 yield {"potential": names, "energy_scale": scale, "bodies": bodies, "touch_A": given.touch, **row}
@@ -95,52 +106,59 @@ class Layer:
     depth: np.ndarray
 
 
-def pressed_layers(
-    slabs: Sequence[tuple[Potential, Atoms]], energy_scale: float, area: Area, work: Path
-) -> list[Layer]:
+def slab_of(potential: Potential, glass: Atoms, number: int) -> CutBody:
+    """A flat slab of glass."""
+    cut = cut_asperity(glass, SLAB_TILES, 0.0, 10 * SLAB_BASE_NM, lammps_seed(1, number, 3))
+    return CutBody(cut, formula_of(glass), potential)
+
+
+def on_metal(glass: Atoms, potential: Potential, base: str, work: Path) -> dict[str, CutBody]:
+    """Flat slabs of the metal, and of a film on it, by the name of their rows."""
+    metal = Metal(load_material(ROOT / "config" / "materials" / f"{base}.yaml"))
+    cube = make_base(metal, SLAB_TILES * float(glass.cell_A[0]), 1, work / "base")
+    found = {}
+    for name, film_nm in ((base, 0.0), (f"{potential.name} film on {base}", SLAB_FILM_NM)):
+        run = _flat_run(1.0, film_nm)
+        found[name] = cut_body(run, glass, potential, SLAB_BASE_NM, (1, 0), PROTOCOL, (metal, cube))
+    return found
+
+
+def _flat_run(energy_scale: float, film_nm: float | None = None) -> ClosingRun:
+    """Of a slab: no asperity."""
+    flat = AsperitySettings.model_construct(name="slab", tiles=SLAB_TILES, amplitude_nm=0.0, film_nm=film_nm)
+    return ClosingRun.model_construct(name="slab", asperity=flat, seed=1, energy_scale=energy_scale)
+
+
+def pressed_layers(slabs: Sequence[CutBody], energy_scale: float, area: Area, work: Path) -> list[Layer]:
     """Press a slab against a rigid flat (or, where there are two, against the second, which only repels it).
 
     Parameters
     ----------
-    slabs : potential and glass of each, in cells of one width.
+    slabs : of cells of one width.
     """
     bodies = len(slabs)
     closing = ClosingSettings(counterface="oxide" if bodies == 2 else "flat")
-    flat = AsperitySettings.model_construct(name="slab", tiles=SLAB_TILES, amplitude_nm=0.0)
-    run = ClosingRun.model_construct(name="slab", asperity=flat, seed=1, energy_scale=energy_scale)
+    run = _flat_run(energy_scale)
     plan = plan_closing(closing, run)
     start = plan.segments * plan.segment_steps  # from the clearance to first touch; the slab is pressed after it
     steps = start + round(SLAB_TRAVEL_A[bodies - 1] / (plan.speed * plan.timestep))
     plan = replace(plan, segments=-(-steps // plan.segment_steps))
     annealed = []
-    for k, (potential, glass) in enumerate(slabs):
+    for k, slab in enumerate(slabs):
         aside = Workspace(work / f"anneal{k}", {}, "anneal.in")
-        annealed.append(prepare_body(run, glass, potential, closing, PROTOCOL, aside, (1, k), 0.0, SLAB_BASE_NM))
-    return layers_of(run, annealed, [potential for potential, _ in slabs], closing, plan, area, work)
-
-
-def layers_of(
-    run: ClosingRun,
-    annealed: list[Atoms],
-    potentials: Sequence[Potential],
-    closing: ClosingSettings,
-    plan: Plan,
-    area: Area,
-    work: Path,
-) -> list[Layer]:
-    """The layers of prepared flat bodies, pressed until the plan ends; of snapshots about the hardness."""
+        annealed.append(prepare_body(run, slab.cut, slab.formula, slab.force, closing, PROTOCOL, aside, (1, k)))
     workspace = Workspace(work / "pressed", {}, "closing.in")
     geometry, _ = press_bodies(
         run,
         annealed,
-        potentials[0],
+        slabs[0].force,
         closing,
         PROTOCOL,
         plan,
         (1, 9),
         workspace,
         lambda geometry, segments: False,
-        counter_potential=potentials[-1],
+        counter_potential=slabs[1].force if bodies == 2 else None,  # pyright: ignore[reportArgumentType]
     )
     low, high = (run.energy_scale * stress for stress in STRESS_GPA)
     layers = []

@@ -2,8 +2,7 @@
 
 The potential is that of `config/materials/titanium.yaml`. Gates come first: lattice and elastic constants at 0 K by a
 sum over neighbours, the same energy by LAMMPS, the drift of the energy, the density of the polycrystal. Then
-asperities are pressed as the hardness stage presses those of oxide. Metals change no bonds that could be counted, so
-there is no witness of plasticity: hardness is the mean stress of the contact from 2 nm to 0.4 of the cell.
+asperities are pressed as the hardness stage presses them; hardness is the mean stress while the contact is judged.
 """
 
 import tempfile
@@ -16,52 +15,54 @@ import numpy as np
 from scipy.optimize import minimize
 
 from atomistic.constants import EV_PER_A3_IN_GPA
-from atomistic.hardness.contact_area import Area
-from atomistic.hardness.pressing import base_thickness_nm, plan_closing, prepare_body, press_bodies
-from atomistic.hardness.readout import Readout
+from atomistic.hardness.closing import run_closing
+from atomistic.hardness.metal import (
+    CUTOFF_A,
+    PLACES,
+    Metal,
+    crystal,
+    electron_density,
+    embedding_energy,
+    make_base,
+    pair_energy,
+)
+from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
 from atomistic.hardness.stability import drift_meV_atom_ps, free_motion, heated
-from atomistic.lammps import Atoms, Workspace
+from atomistic.lammps import Atoms
 from atomistic.materials import Eam, load_material
 from atomistic.settings import AsperitySettings, ClosingSettings
-from evidence.hardness import area as section
-from evidence.hardness.metals import PLACES, Metal, annealed, crystal, lattice_energy, polycrystal, square_crystal
+from evidence.hardness.choices import silica_and
 from evidence.record import ROOT
 
 STRAIN = 4e-3
 STEEPNESS = 0.1  # amplitude over wavelength, as in scene reduced
-CLOSING = ClosingSettings(speed_m_s=100, depth_over_amplitude=2.0)
-CRYSTAL_A, CRYSTAL_PS = 20.0, 3.0  # height of its cell, which is tiled, and anneal: it need only expand
-LEAST_NM, MOST_SHARE = 2.0, 0.4
-BINS_NM, BIN_NM = (1.5, 2.0, 2.5, 3.0, 3.5), 0.5  # of contact length
-DEPTHS_A = (0.5, 1.0, 1.5)
+CRYSTAL_A, EXPANDED = 20.0, 1.0043  # height of its cell, which is tiled; its edges at 300 K over those at 0 K
 MEASURED = {"a_A": 2.951, "c_A": 4.684, "C11_GPa": 162.4, "C12_GPa": 92.0, "C13_GPa": 69.0, "C33_GPa": 180.7}
 """Experiment at room temperature: Fisher and Renken (1964), and the lattice of any handbook."""
 
 
 def arguments(parser: ArgumentParser) -> None:
     """Which parts."""
-    parser.add_argument("parts", nargs="*", default=["gates", "area", "crystal", "polycrystal"])
+    parser.add_argument("parts", nargs="*", default=["gates", "crystal", "polycrystal"])
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2])
     parser.add_argument("--wavelength", type=float, default=5.6, help="of the asperity, nm")
-    parser.add_argument("--grain", type=float, default=3.0, help="nm")
 
 
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
-    """The gates, the error of the contact area, then the hardness of each body."""
+    """The gates, then the hardness of each body."""
     metal = titanium()
     edge = 10 * given.wavelength
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         if "gates" in given.parts:
             yield from gates(metal, work)
-        if "area" in given.parts:
-            yield from area_errors(metal, work)
         for kind in ("crystal", "polycrystal"):
             for seed in given.seeds if kind in given.parts else ():
-                body = made(metal, kind, edge, 10 * given.grain, seed, work / "bulk")
+                many = kind == "polycrystal"
+                body = make_base(metal, edge, seed, work / "bulk") if many else square_crystal(metal, edge, CRYSTAL_A)
                 yield row(kind, "density_over_crystal", density(metal, body), seed)
-                for name, value in press(metal, body, given.wavelength, seed, work / "press").items():
+                for name, value in press(metal, body, seed, work / "press").items():
                     yield row(kind, name, value, seed)
 
 
@@ -97,12 +98,12 @@ def gates(metal: Metal, work: Path) -> Iterator[dict[str, Any]]:
     for name, value in found.items():
         yield row("lattice", name, value)
     atoms = crystal(metal, (8, 5, 5))
-    record, _ = free_motion(atoms, metal, work / "still", 1.0, 1)  # pyright: ignore[reportArgumentType]
+    record, _ = free_motion(atoms, metal, work / "still", 1.0, 1)
     a, c = metal.eam.lattice_A
     alike = lattice_energy(metal.eam, np.diag([a, a * np.sqrt(3), c]), PLACES)
     yield row("lattice", "LAMMPS_less_sum_eV", record[0, 1] / len(atoms) - alike)
-    warm = heated(atoms, metal, 600)  # pyright: ignore[reportArgumentType]
-    record, _ = free_motion(warm, metal, work / "warm", PROTOCOL.timestep_fs, 3000)  # pyright: ignore[reportArgumentType]
+    warm = heated(atoms, metal, 600)
+    record, _ = free_motion(warm, metal, work / "warm", PROTOCOL.timestep_fs, 3000)
     yield row("lattice", "drift_meV_atom_ps", drift_meV_atom_ps(record, len(atoms), PROTOCOL.timestep_fs))
 
 
@@ -136,11 +137,36 @@ def constants(eam: Eam, a: float, c: float) -> dict[str, float]:
     return found
 
 
-def made(metal: Metal, kind: str, edge_A: float, grain_A: float, seed: int, work: Path) -> Atoms:
-    """A body at 300 K in a cell of square section."""
-    if kind == "crystal":
-        return annealed(metal, square_crystal(metal, edge_A, CRYSTAL_A), work, seed, CRYSTAL_PS)
-    return annealed(metal, polycrystal(metal, edge_A, grain_A, seed), work, seed)
+def square_crystal(metal: Metal, edge_A: float, height_A: float) -> Atoms:
+    """One crystal as wide as at 300 K, strained into a square cell by less than 0.5 %, about as wide as asked for.
+
+    Raises
+    ------
+    ValueError : no width within 15 % is that near a square.
+    """
+    a, c = metal.eam.lattice_A
+    pairs = [(n, round(n / np.sqrt(3))) for n in range(1, 80) if abs(n * a / edge_A - 1) < 0.15]
+    n, m = min(pairs, key=lambda pair: abs(pair[1] * np.sqrt(3) / pair[0] - 1))
+    if abs(m * np.sqrt(3) / n - 1) > 0.01:
+        raise ValueError(f"{edge_A:.1f} A: no crystal of a square section of about this width")
+    atoms = crystal(metal, (n, m, max(1, round(height_A / c))))
+    cell = EXPANDED * atoms.cell_A
+    cell[:2] = np.sqrt(cell[0] * cell[1])
+    return Atoms(atoms.elements, atoms.types, atoms.positions_A * cell / atoms.cell_A, cell)
+
+
+def press(metal: Metal, body: Atoms, seed: int, work: Path) -> dict[str, float]:
+    """Mean stress of an asperity cut out of a body and pressed by a flat, while the contact is judged."""
+    silica, oxide = silica_and("pmmcs")
+    wavelength_nm = float(body.cell_A[0]) / 10
+    asperity = AsperitySettings(name="metal", tiles=1, amplitude_nm=STEEPNESS * wavelength_nm, film_nm=0.0)
+    run = ClosingRun(name="metal", asperity=asperity, seed=seed, energy_scale=1.0)
+    no_glass = Atoms(("Si", "O"), np.zeros(0, int), np.zeros((0, 3)), body.cell_A)
+    closing = ClosingSettings(stop="window")
+    made = run_closing(run, silica, no_glass, oxide, closing, work, base=(metal, body))
+    length, stress = (np.array([row[f"contact_{key}"] for row in made.curve]) for key in ("length_nm", "stress_GPa"))
+    used = (length > RULES.min_length_nm) & (length < RULES.max_area_fraction**0.5 * wavelength_nm)
+    return {"hardness_GPa": float(np.mean(stress[used])), "averages": int(used.sum())}
 
 
 def density(metal: Metal, body: Atoms) -> float:
@@ -149,59 +175,20 @@ def density(metal: Metal, body: Atoms) -> float:
     return float(len(body) * a**2 * np.sqrt(3) * c / 4 / np.prod(body.cell_A))
 
 
-def area_errors(metal: Metal, work: Path) -> Iterator[dict[str, Any]]:
-    """Found over known area, minus 1, by the depth within which atoms touch (study `hardness.area`)."""
-    body = annealed(metal, polycrystal(metal, 28.0, 20.0, 1), work / "bulk", 1)
-    layers = section.pressed_layers([(metal, body)], 1.0, Area(), work / "area")  # pyright: ignore[reportArgumentType]
-    for depth in DEPTHS_A:
-        errors = [row["error"] for row in section.cut_bodies(layers, Area(depth_A=depth))]
-        for name, value in (("mean", np.mean(errors)), ("lowest", min(errors)), ("highest", max(errors))):
-            yield row("slab", f"area_error_{name}_depth_{depth:g}_A", float(value))
+def lattice_energy(eam: Eam, cell_A: np.ndarray, places: np.ndarray) -> float:
+    """Energy of an atom (eV) of a periodic cell by the sum over all neighbours: for gates, beside LAMMPS.
 
-
-def press(metal: Metal, body: Atoms, wavelength_nm: float, seed: int, work: Path) -> dict[str, float]:
-    """Cut an asperity, anneal it, press it by a flat; hardness by each depth of the contact area."""
-    run = ClosingRun(
-        name="metal",
-        asperity=AsperitySettings(name="metal", tiles=1, amplitude_nm=STEEPNESS * wavelength_nm),
-        seed=seed,
-        energy_scale=1.0,
-    )
-    base_nm = base_thickness_nm(CLOSING, float(body.cell_A[0]) / 10)
-    aside = Workspace(work / "anneal", identity(body), "anneal.in")
-    force: Any = metal  # has what of a `Potential` is used
-    cut = prepare_body(run, body, force, CLOSING, PROTOCOL, aside, (seed, 7), run.asperity.amplitude_nm, base_nm)
-    return pressed(run, cut, force, seed, work)
-
-
-def identity(body: Atoms) -> dict[str, Any]:
-    """What tells a body from the one pressed before in the same folder."""
-    return {"body": body.positions_A.tolist()}
-
-
-def pressed(run: ClosingRun, body: Atoms, force: Any, seed: int, work: Path) -> dict[str, float]:
-    """Press a prepared body by a flat, as deep as the plan goes."""
-    plan, workspace = plan_closing(CLOSING, run), Workspace(work / "closing", identity(body), "closing.in")
-    geometry, plan = press_bodies(run, [body], force, CLOSING, PROTOCOL, plan, (seed, 8), workspace, lambda *_: False)
-    found: dict[str, float] = {"atoms": len(body)}
-    for depth in DEPTHS_A:
-        readout = Readout(
-            workspace, plan.segment_steps, plan.timestep, PROTOCOL.samples, Area(depth_A=depth), geometry, [1], 3.0
-        )
-        curve = readout.curve(range(1, plan.segments + 1))
-        length, stress = (np.array([row[f"contact_{key}"] for row in curve]) for key in ("length_nm", "stress_GPa"))
-        share = length**2 / (geometry.wavelength_A / 10) ** 2
-        used = (length > LEAST_NM) & (share < MOST_SHARE)
-        label = "" if depth == DEPTHS_A[0] else f"_depth_{depth:g}_A"
-        found[f"hardness{label}_GPa"] = float(np.mean(stress[used]))
-        found[f"exponent{label}"] = float(np.polyfit(np.log(length[used]), np.log(stress[used]), 1)[0])
-        found[f"length{label}_nm"] = float(np.mean(length[used]))
-        for low in BINS_NM:
-            here = (length >= low) & (length < low + BIN_NM)
-            if here.any():
-                found[f"stress{label}_{low + BIN_NM / 2:g}_nm_GPa"] = float(np.mean(stress[here]))
-        if depth == DEPTHS_A[0]:
-            found["averages"] = int(used.sum())
-            found["drift_meV_atom"] = float(max(abs(row["energy_drift_meV_per_atom"]) for row in curve))
-            found["hottest_K"] = float(max(row["temperature_K"] for row in curve))
-    return found
+    Parameters
+    ----------
+    cell_A : rows are its edges, (3, 3). places : fractions of them, (atoms, 3).
+    """
+    heights = 1 / np.linalg.norm(np.linalg.inv(cell_A), axis=0)
+    ranges = [np.arange(-n, n + 1) for n in np.ceil(CUTOFF_A / heights).astype(int)]
+    shifts = np.stack(np.meshgrid(*ranges, indexing="ij"), axis=-1).reshape(-1, 3)
+    apart = (places[None, :, None] - places[:, None, None] + shifts) @ cell_A
+    r = np.linalg.norm(apart, axis=-1)
+    met = (r > 1e-6) & (r < CUTOFF_A)
+    r = np.where(met, r, 1.0)
+    density = np.where(met, electron_density(eam, r), 0.0).sum(axis=(1, 2))
+    pairs = np.where(met, pair_energy(eam, r), 0.0).sum() / 2
+    return float((embedding_energy(eam, density).sum() + pairs) / len(places))

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import KDTree
 
-from atomistic.hardness.closing import attraction_row
+from atomistic.hardness.closing import attraction_row, bond_kinds, cut_body
 from atomistic.hardness.contact_area import calibrated, contact_map, shares_in_contact
 from atomistic.hardness.glass import make_glass, write_forcefield
 from atomistic.hardness.plateau import RULES
@@ -65,15 +65,14 @@ def rows(given: Namespace) -> Iterator[dict]:
             plan = plan_closing(closing, run, PROTOCOL)
             place = (run.seed, run.asperity.tiles, round(1000 * run.asperity.amplitude_nm))
             base_nm = base_thickness_nm(closing, run.asperity.tiles * float(glass.cell_A[0]) / 10, PROTOCOL)
-            body = prepare_body(
-                run, glass, potential, closing, PROTOCOL, Workspace(work / "anneal", {}, "anneal.in"), place,
-                run.asperity.amplitude_nm, base_nm,
-            )  # fmt: skip
+            cut = cut_body(run, glass, potential, base_nm, place, PROTOCOL)
+            aside, bonds = Workspace(work / "anneal", {}, "anneal.in"), bond_kinds(glass.elements, material, potential)
+            body = prepare_body(run, cut.cut, cut.formula, potential, closing, PROTOCOL, aside, place)
             workspace = Workspace(work / "closing", {}, "closing.in")
 
-            def readout(geometry: Geometry, plan=plan, workspace=workspace) -> Readout:
+            def readout(geometry: Geometry, plan=plan, workspace=workspace, bonds=bonds) -> Readout:
                 steps = plan.segment_steps, plan.timestep, PROTOCOL.samples
-                return Readout(workspace, *steps, area, geometry, [1], material.part("oxide_glass").cutoff_A)
+                return Readout(workspace, *steps, area, geometry, bonds)
 
             def wide_enough(geometry: Geometry, segments: int, readout=readout) -> bool:
                 contact_nm2 = readout(geometry).curve(range(1, segments + 1))[-1]["contact_area_nm2"]

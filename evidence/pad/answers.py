@@ -1,8 +1,9 @@
 """What do the law of attraction, D0, mechanics, hardness, seeds and cells change in the default answer?
 
-Each row is scene `reduced` up to its pad, with one statement changed. What its atoms give is stated: E*, H' and D0 of
-its own runs. `pixels` of 256 make the rows cheap, and are the same for all that are compared. Rows with other seeds
-have other surfaces, other draws and other points. The pull is that of a large pad, closed to the largest pressure.
+Each row is scene `reduced` up to its pad with hardness by eq. 4, its default until 0.2.0, and one statement changed.
+What its atoms give is stated: E*, H' and D0 of its own runs; `film` has the law of films and its numbers instead.
+`pixels` of 256 make the rows cheap, and are the same for all that are compared. Rows with other seeds have other
+surfaces, other draws and other points. The pull is that of a large pad, closed to the largest pressure.
 """
 
 import json
@@ -14,8 +15,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from evidence.hardness.films import laws
 from evidence.pad.runs import results_of
-from evidence.record import ROOT, load
+from evidence.record import ROOT
 from mesoscale.tables import load_table
 
 ATOMS = {
@@ -23,6 +27,7 @@ ATOMS = {
     "h_prime": {"origin": "literature", "values": [3.7, 16.7], "source": "reduced"},
     "gap_cutoff": {"origin": "literature", "values": [0.274, 0.349], "source": "reduced"},
 }
+EQ_4 = {"hardness": "paper", **dict.fromkeys(("h_film", "t_film", "k_film", "m_film"))}
 GLASS = {  # the closing runs' own hardness, without the soft metal of eq. 4
     "h_macro": {"origin": "literature", "values": [8, 11], "source": "closing runs of full energies"},
     "h_prime": {"origin": "literature", "distribution": "fixed", "values": [0], "source": "no size effect"},
@@ -59,19 +64,17 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def film_inputs(pressed: bool) -> dict[str, Any]:
-    """Inputs of an oxide film, k and m those of the best fit of study `hardness.laws`; `pressed`: on its metal."""
-    row = {found["of"]: found for found in load("hardness.laws") if found["quantity"] == "film"}
-    by = {"origin": "literature", "source": "python -m evidence hardness.laws"}
-    best = {name: {**by, "distribution": "fixed", "values": [float(row[name]["value"])]} for name in ("k", "m")}
-    base = {**by, "values": [float(row["H_base"][end]) for end in ("low", "high")]}
+    """Inputs of an oxide film, H_film, k and m of the runs of scene `reduced`; `pressed`: on its metal."""
+    h_film, h_base, k, m = np.quantile(laws()["draws"], [0.16, 0.84], axis=0).T.tolist()
+    by = {"origin": "literature", "source": "python -m evidence hardness.films"}
     return {
         "hardness": "film",
         "h_prime": None,
-        "h_film": GLASS["h_macro"],
+        "h_film": {**by, "values": h_film},
         "t_film": {"origin": "literature", **OXIDE},
-        "k_film": best["k"],
-        "m_film": best["m"],
-        **({"h_macro": base} if pressed else {}),
+        "k_film": {**by, "values": k},
+        "m_film": {**by, "values": m},
+        **({"h_macro": {**by, "values": h_base}} if pressed else {}),
     }
 
 
@@ -85,7 +88,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
             "extends": "reduced",
             "name": "answer",
             "compute": [],
-            "inputs": ({} if changed.get("extends") else ATOMS) | changed.get("inputs", {}),
+            "inputs": ({} if changed.get("extends") else EQ_4 | ATOMS) | changed.get("inputs", {}),
             "contact": {"pixels": given.pixels} | changed.get("contact", {}),
             **{key: value for key, value in changed.items() if key not in ("inputs", "contact")},
         }

@@ -74,10 +74,28 @@ INPUTS = (
     ),
     InputDefinition("t_film", "thickness of the film", "t_film", "nm", 1e-3, 1e6, True, optional=True, hardness="film"),
     InputDefinition(
-        "k_film", "factor of softening by the base", "k", "1", 1e-6, 1e3, True, optional=True, hardness="film"
+        "k_film",
+        "factor of softening by the base",
+        "k",
+        "1",
+        1e-6,
+        1e3,
+        True,
+        "hardness",
+        optional=True,
+        hardness="film",
     ),
     InputDefinition(
-        "m_film", "exponent of softening by the base", "m", "1", 1e-2, 10.0, True, optional=True, hardness="film"
+        "m_film",
+        "exponent of softening by the base",
+        "m",
+        "1",
+        1e-2,
+        10.0,
+        True,
+        "hardness",
+        optional=True,
+        hardness="film",
     ),
 )
 """The inputs of the paper's Table 1 in its order, then the optional ones.

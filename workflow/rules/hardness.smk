@@ -1,4 +1,5 @@
-from atomistic.hardness.accuracy import VARIATIONS, varied
+from atomistic.hardness.accuracy import VARIATIONS, variations, varied
+from atomistic.hardness.cost import plan_rows
 from atomistic.hardness.runs import PROTOCOL, needs_counter_glass, planned_runs, smallest_run
 from atomistic.potentials import load_potential
 
@@ -39,12 +40,26 @@ if (own := HARDNESS["closing"]["counter_potential"]) is not None:
     COUNTER_POTENTIAL = potential_path("closing.counter_potential", own)
 MATERIAL_OF_ASPERITY = oxide_path("material", HARDNESS["material"])
 MATERIAL_OF_COUNTERFACE = oxide_path("closing.counter_material", HARDNESS["closing"]["counter_material"])
+BASE = None
+if (name := HARDNESS["base"]) is not None:
+    if name not in MATERIALS or MATERIALS[name].film_base is None:
+        known = ", ".join(sorted(key for key, material in MATERIALS.items() if material.film_base is not None))
+        refuse(f"{SCENE_GIVEN}: hardness.base = {name!r:.60}: no material with a film_base; known: {known}")
+    BASE = material_path(MATERIALS[name])
 CLOSINGS = {run.name: run for run in planned_runs(SCENE.hardness)}
 SMALLEST = smallest_run(SCENE.hardness)
 COUNTER_GLASS = needs_counter_glass(SCENE.hardness)
 if needed("hardness"):
     ACCURACY.append(f"{RESULTS}/accuracy/hardness.csv")
     STABILITY.append(f"{RESULTS}/stability/hardness.csv")
+
+
+if needed("hardness") and workflow.is_main_process:
+    try:
+        metal = MATERIALS[HARDNESS["base"]] if BASE else None
+        plan_rows(SCENE.hardness, OXIDES[HARDNESS["material"]], OXIDES[HARDNESS["closing"]["counter_material"]], metal)
+    except InputError as error:
+        refuse(f"{SCENE_GIVEN}: hardness.asperities: {error}")
 
 
 def of_run(pattern):
@@ -60,10 +75,18 @@ def of_counter(seed):
     return {"counter_glass": glass, "counter_potential": COUNTER_POTENTIAL}
 
 
+def of_base(run):
+    """As named inputs: the metal below a film, and the cube of it that is as wide as the asperity."""
+    if run.asperity.film_nm is None:
+        return {}
+    return {"base": f"{RESULTS}/hardness/base/{run.seed}_{run.asperity.tiles}.data", "metal": BASE}
+
+
 wildcard_constraints:
     run="|".join(CLOSINGS),
     variation="|".join(VARIATIONS),
     glass="\\d+",
+    tiles="\\d+",
 
 
 rule hardness:
@@ -109,9 +132,29 @@ use rule make_glass as make_counter_glass with:
         "melt and quench the counterface of glass {wildcards.glass}"
 
 
+rule make_base:
+    input:
+        material=BASE or [],
+        glass=f"{RESULTS}/hardness/glass/{{glass}}.data",
+    output:
+        atoms=f"{RESULTS}/hardness/base/{{glass}}_{{tiles}}.data",
+    log:
+        f"{RESULTS}/logs/make_base_{{glass}}_{{tiles}}.log",
+    priority: 95
+    params:
+        tiles=lambda wildcards: int(wildcards.tiles),
+        seed=lambda wildcards: int(wildcards.glass),
+        work=f"{RESULTS}/work/base_{{glass}}_{{tiles}}",
+    message:
+        "anneal metal {wildcards.glass}, {wildcards.tiles} glass cells wide"
+    script:
+        "../scripts/make_base.py"
+
+
 rule run_closing:
     input:
         unpack(lambda wildcards: of_counter(CLOSINGS[wildcards.run].seed)),
+        unpack(lambda wildcards: of_base(CLOSINGS[wildcards.run])),
         material=MATERIAL_OF_ASPERITY,
         potential=POTENTIAL,
         glass=lambda wildcards: f"{RESULTS}/hardness/glass/{CLOSINGS[wildcards.run].seed}.data",
@@ -157,6 +200,7 @@ rule fit_hardness:
     input:
         points=f"{RESULTS}/hardness/points.csv",
         witnesses=of_run("witness/{run}.csv"),
+        curves=of_run("closing/{run}.csv") if BASE else [],
         potential=POTENTIAL,
         counter_potentials=[COUNTER_POTENTIAL] if COUNTER_GLASS else [],
         glasses=[
@@ -179,6 +223,7 @@ rule fit_hardness:
 
 rule plan_hardness:
     input:
+        **({"base": BASE} if BASE else {}),
         material=MATERIAL_OF_ASPERITY,
         counter_material=MATERIAL_OF_COUNTERFACE,
     output:
@@ -215,7 +260,7 @@ use rule run_closing as vary_closing with:
 
 rule compare_closings:
     input:
-        summaries=[f"{RESULTS}/accuracy/hardness/{name}/{SMALLEST.name}.json" for name in VARIATIONS],
+        summaries=[f"{RESULTS}/accuracy/hardness/{name}/{SMALLEST.name}.json" for name in variations(SMALLEST)],
     output:
         table=f"{RESULTS}/accuracy/hardness.csv",
     log:
@@ -231,6 +276,7 @@ rule compare_closings:
 rule check_hardness_stability:
     input:
         **of_counter(SMALLEST.seed),
+        **(of_base(SMALLEST) if SMALLEST.asperity.film_nm else {}),
         potential=POTENTIAL,
         glass=f"{RESULTS}/hardness/glass/{SMALLEST.seed}.data",
     output:
@@ -241,6 +287,8 @@ rule check_hardness_stability:
         material=HARDNESS["material"],
         counter_material=HARDNESS["closing"]["counter_material"],
         energy_scales=HARDNESS["energy_scales"],
+        closing_run=SMALLEST.model_dump(mode="json"),
+        closing=HARDNESS["closing"],
         work=f"{RESULTS}/work/stability_hardness",
     message:
         "check the molecular dynamics in hard cases"

@@ -32,6 +32,12 @@ TABLES = (
             text("asperity", "name of the asperity in the scene"),
             number("wavelength_nm", "nm", "wavelength of the asperity, side of the cell"),
             number("amplitude_nm", "nm", "amplitude of the asperity"),
+            number(
+                "film_nm",
+                "nm",
+                "thickness of the film; 0: the metal below by itself; none: oxide throughout",
+                empty=True,
+            ),
             integer("seed", "seed of the glass and of the velocities"),
             integer("atoms", "number of atoms"),
             text("status", "yield, no_yield, or rejected: why"),
@@ -80,7 +86,7 @@ TABLES = (
         "One atom of a 0.8 nm slice through the peak, in a relaxed snapshot.",
         (
             _STEP,
-            integer("type", "kind of the atom (1: cation)"),
+            integer("type", "kind of the atom, in the order of the body's elements: metal, cation, oxygen"),
             number("x_nm", "nm", "position along the slice"),
             number("y_nm", "nm", "position across the slice"),
             number("z_nm", "nm", "height"),

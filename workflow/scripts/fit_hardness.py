@@ -1,13 +1,14 @@
 """Fit H(A) to the MD points, and the cut-off of the attraction to the tops.
 
-In:  points.csv (GPa, nm), witnesses of the runs, glass/*.json, potential (YAML), counter_potentials: one where the
-     counterface is of another oxide or potential.
-Out: fit.json (H_macro in GPa, H' in GPa nm^0.5, cut-off D0 of the attraction in nm, gate).
+In:  points.csv (GPa, nm), witnesses and curves of the runs, glass/*.json, potential (YAML), counter_potentials: one
+     where the counterface is of another oxide or potential.
+Out: fit.json (H_macro in GPa, H' in GPa nm^0.5, law of films, cut-off D0 of the attraction in nm, gate).
 """
 
 from pathlib import Path
 
 from atomistic.hardness.contact_area import calibrated
+from atomistic.hardness.film_law import fit_film_law
 from atomistic.hardness.size_effect import fit_size_effect
 from atomistic.hardness.top_attraction import gap_cutoff
 from atomistic.potentials import load_potential
@@ -22,8 +23,13 @@ with job(snakemake) as run:
     _, area_error = calibrated(load_potential(snakemake.input.potential), *counter)
     points = load_csv(snakemake.input.points)
     fit = fit_size_effect(points, glasses, settings, snakemake.params.energy_scales, area_error)
+    if any(point["film_nm"] for point in points):
+        curves = {Path(path).stem: load_numbers(path) for path in snakemake.input.curves}
+        fit["film"], reasons = fit_film_law(points, curves)
+        fit["inputs"] |= fit["film"].pop("inputs", {})
+        fit["gate"] = {"passed": fit["gate"]["passed"] and not reasons, "reasons": fit["gate"]["reasons"] + reasons}
     witnesses = {Path(path).stem: load_numbers(path) for path in snakemake.input.witnesses}
-    used = {point["run"]: int(point["seed"]) for point in points if point["status"] == "yield"}
+    used = {p["run"]: int(p["seed"]) for p in points if p["status"] == "yield" and not p["film_nm"]}
     if cutoff := gap_cutoff({name: witnesses[name] for name in used}, used):
         fit["tops"] = cutoff.pop("runs")
         fit["inputs"]["gap_cutoff"] = cutoff

@@ -1,4 +1,7 @@
-"""What the closing runs of a scene will cost.  In: materials (YAML).  Out: plan.csv."""
+"""What the closing runs of a scene will cost.
+
+In: materials (YAML), base: that of a metal below films.  Out: plan.csv.
+"""
 
 from atomistic.hardness.cost import plan_rows
 from atomistic.materials import load_material
@@ -9,4 +12,5 @@ from workflow.results import write_csv
 with job(snakemake) as run:
     settings = settings_from_job(HardnessSettings, snakemake.params.hardness)
     material, counter_material = (load_material(snakemake.input[key]) for key in ("material", "counter_material"))
-    write_csv(snakemake.output.plan, plan_rows(settings, material, counter_material))
+    base = load_material(snakemake.input.base) if snakemake.input.get("base") else None
+    write_csv(snakemake.output.plan, plan_rows(settings, material, counter_material, base))

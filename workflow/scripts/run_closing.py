@@ -1,7 +1,7 @@
 """Close one asperity against its counterface.
 
 In:  material, potential (YAML), glass (LAMMPS data file); counter_glass, counter_potential where the counterface is of
-     another oxide or potential.
+     another oxide or potential; base (LAMMPS data file), metal (YAML) where a metal lies below.
 Out: curve (GPa, nm), witness (bond exchanges, nm), snapshots (nm), summary.
 """
 
@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 from atomistic.hardness.closing import run_closing
+from atomistic.hardness.metal import Metal
 from atomistic.hardness.runs import ClosingRun, Protocol
 from atomistic.lammps import load_data
 from atomistic.materials import load_material
@@ -29,6 +30,10 @@ with job(snakemake) as run:
     if counter := snakemake.input.get("counter_glass"):
         counter_potential = load_potential(snakemake.input.counter_potential)
         counter_glass = load_data(counter, tuple(counter_potential.materials[settings.counter_material]))
+    base = None
+    if cube := snakemake.input.get("base"):
+        metal = Metal(load_material(snakemake.input.metal))
+        base = metal, load_data(cube, (metal.element,))
     started = time.perf_counter()
     closing = run_closing(
         closing_run,
@@ -41,6 +46,7 @@ with job(snakemake) as run:
         run.progress,
         counter_glass,
         counter_potential,
+        base,
     )
     lammps = resource.getrusage(resource.RUSAGE_CHILDREN)
     write_csv(snakemake.output.curve, closing.curve)
@@ -54,6 +60,7 @@ with job(snakemake) as run:
             "energy_scale": closing_run.energy_scale,
             "seed": closing_run.seed,
             "amplitude_nm": closing_run.asperity.amplitude_nm,
+            "film_nm": closing_run.asperity.film_nm,
             **closing.summary,
             "wall_s": time.perf_counter() - started,
             "lammps_cpu_s": lammps.ru_utime + lammps.ru_stime,

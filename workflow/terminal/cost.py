@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from scipy import fft
 
-from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, plan_rows
+from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, base_seconds, plan_rows
 from atomistic.hardness.glass import TIMESTEP_FS, total_ps
 from atomistic.materials import Material
 from mesoscale.settings import ContactSettings, HistorySettings
@@ -50,7 +50,7 @@ TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
 
 
 GROWS_BY = {  # the key that makes a rule's jobs many or long
-    **dict.fromkeys(("make_glass", "run_closing"), "hardness.seeds"),
+    **dict.fromkeys(("make_glass", "make_base", "run_closing"), "hardness.seeds"),
     **dict.fromkeys(("make_amorphous", "relax_amorphous", "scan_volumes"), "elastic.structures"),
     "measure_tensor": "elastic.tensor_structures",
     "compute_runs": "uncertainty.seeds",
@@ -81,17 +81,23 @@ class Costs:
 
     Parameters
     ----------
-    oxides : the glasses that hardness names by formula.
+    materials : those that hardness names: oxides by formula, metals by name.
     times : see TIMES.
     """
 
-    def __init__(self, scene: Scene, oxides: Mapping[str, Material], times: Path = TIMES) -> None:
+    def __init__(self, scene: Scene, materials: Mapping[str, Material], times: Path = TIMES) -> None:
         self.scene, self._times = scene, times
-        self.atom_steps: dict[str, float] = {}  # by closing run
+        self.closing_s: dict[str, float] = {}  # by closing run
+        self.base_s: dict[str, float] = {}  # by width of the metal below films, in glass cells
         if "hardness" in scene.stages():
             bodies = (scene.hardness.material, scene.hardness.closing.counter_material)
-            rows = plan_rows(scene.hardness, *(oxides[formula] for formula in bodies))
-            self.atom_steps = {str(row["run"]): float(row["atom_steps"]) for row in rows[:-1]}
+            oxide, counter = (materials[formula] for formula in bodies)
+            base = materials[scene.hardness.base] if scene.hardness.base else None
+            rows = plan_rows(scene.hardness, oxide, counter, base)
+            self.closing_s = {str(row["run"]): 3600 * float(row["core_hours"]) for row in rows[:-1]}
+            if base is not None:
+                widths = {asperity.tiles for asperity in scene.hardness.asperities}
+                self.base_s = {str(tiles): base_seconds(scene.hardness, oxide, base, tiles) for tiles in widths}
         self._sums = defaultdict(lambda: [0.0, 0.0])  # seconds and their first guess, by rule
         with suppress(OSError, ValueError):  # no run yet, or one that was killed
             for rule, (took, guess) in json.loads(times.read_text()).items():
@@ -213,7 +219,8 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     **dict.fromkeys(
         ("make_glass", "make_counter_glass"), lambda c, _: _glass_steps(c.scene) / ATOM_STEPS_PER_CORE_SECOND
     ),
-    "run_closing": lambda c, job: c.atom_steps[job["run"]] / ATOM_STEPS_PER_CORE_SECOND,
+    "make_base": lambda c, job: c.base_s[job["tiles"]],
+    "run_closing": lambda c, job: c.closing_s[job["run"]],
     "make_amorphous": lambda c, _: 1.3 * _quenches(c.scene.elastic.glass) * c.scene.elastic.glass.formula_units / 4,
     "relax_amorphous": lambda c, _: c.scf_s(8.0 * (1 + c.scene.elastic.dft.relaxation_steps)),
     "scan_volumes": lambda c, _: c.scf_s(9.0 * len(c.scene.elastic.strains), tight=False),

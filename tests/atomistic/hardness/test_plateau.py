@@ -130,7 +130,7 @@ def test_a_lowering_that_recovers_is_no_onset():
 
 def test_a_point_names_what_was_pressed_and_what_it_cost():
     facts = {
-        "run": "r", "energy_scale": 1.0, "amplitude_nm": 0.4, "asperity": "small",
+        "run": "r", "energy_scale": 1.0, "amplitude_nm": 0.4, "film_nm": None, "asperity": "small",
         "wavelength_nm": 6.0, "seed": 1, "atoms": 100, "steps": 1000, "restart_steps": 250,
         "lammps_cpu_s": 9.0, "python_cpu_s": 0.1,
     }  # fmt: skip

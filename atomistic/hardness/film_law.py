@@ -1,0 +1,215 @@
+"""How a metal below softens a film, H = H_base + (H_film - H_base) / (1 + k (L/t)^m), fitted to closing runs.
+
+L is the contact length and t the thickness of the film. Runs of oxide throughout are films of infinite thickness, runs
+of the metal by itself films of none. Beside it stand the two laws that know no film, a constant and eq. 4 of Kim et al.
+(2013), each judged by the runs that its fit had not.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.stats import rankdata
+
+from atomistic.hardness.plateau import RULES
+
+INTERVAL = (0.16, 0.5, 0.84)
+QUANTILES = 200
+BOND = 0.0  # TODO
+BIN_NM = 0.5  # of contact length: a run has one mean stress in each
+LEAST_POINTS, LEAST_THICKNESSES = 3, 2
+DRAWS, TRIALS = 2000, 400_000
+PRIOR = ((2, 20), (0.5, 15), (1e-3, 10), (0.5, 4))  # of H_film, H_base, k, m
+LENGTHS_OVER_THICKNESS = np.geomspace(0.5, 10, 30)
+Law = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+
+
+class FilmPoints(NamedTuple):
+    """Mean stress of the contact at its length, by seed and thickness (0: metal by itself, inf: oxide throughout).
+
+    Attributes
+    ----------
+    seed, thickness_nm, length_nm, stress_GPa : shape (points,).
+    """
+
+    seed: np.ndarray
+    thickness_nm: np.ndarray
+    length_nm: np.ndarray
+    stress_GPa: np.ndarray
+
+    def take(self, kept: np.ndarray) -> "FilmPoints":
+        """Some of the points."""
+        return FilmPoints(*(column[kept] for column in self))
+
+    @property
+    def film(self) -> np.ndarray:
+        """Which are of films."""
+        return (self.thickness_nm > 0) & np.isfinite(self.thickness_nm)
+
+
+def points_of(runs: Sequence[tuple[Mapping[str, str], Sequence[Mapping[str, float]]]]) -> FilmPoints:
+    """The points of runs of one energy scale.
+
+    Parameters
+    ----------
+    runs : row of points.csv and curve of each; only runs with a defended hardness count.
+    """
+    found = []
+    for point, curve in runs:
+        if point["status"] != "yield":
+            continue
+        thickness = float(point["film_nm"]) if point["film_nm"] else np.inf
+        found += [(float(point["seed"]), thickness, *of) for of in mean_stresses(curve, float(point["wavelength_nm"]))]
+    return FilmPoints(*np.array(found).reshape(-1, 4).T)
+
+
+def mean_stresses(curve: Sequence[Mapping[str, float]], wavelength_nm: float) -> list[tuple[float, float]]:
+    """Mean contact length (nm) and stress (GPa) in every bin of length, while the contact is judged."""
+    length, stress = (np.array([row[f"contact_{key}"] for row in curve]) for key in ("length_nm", "stress_GPa"))
+    widest, means = RULES.max_area_fraction**0.5 * wavelength_nm, []
+    for low in np.arange(RULES.min_length_nm, widest, BIN_NM):
+        here = (length >= low) & (length < min(low + BIN_NM, widest)) & (stress > 0)
+        if here.any():
+            means.append((float(np.mean(length[here])), float(np.mean(stress[here]))))
+    return means
+
+
+def too_few(points: FilmPoints) -> str | None:
+    """Why no law of films can be fitted; None where it can."""
+    films, thicknesses = int(points.film.sum()), len(np.unique(points.thickness_nm[points.film]))
+    if films < LEAST_POINTS or thicknesses < LEAST_THICKNESSES:
+        return (
+            f"{films} mean stresses of films of {thicknesses} thicknesses: a law of films needs {LEAST_POINTS} of "
+            f"{LEAST_THICKNESSES}; add thicknesses (film_nm) or seeds"
+        )
+    for thickness, name, how in ((np.inf, "oxide throughout", "without film_nm"), (0.0, "metal", "with film_nm: 0")):
+        if not np.any(points.thickness_nm == thickness):
+            return f"no defended run of the {name}: a law of films lies between both; add an asperity {how}"
+    return None
+
+
+def constant(values: np.ndarray, length: np.ndarray, thickness: np.ndarray) -> np.ndarray:
+    """Values: H."""
+    return np.broadcast_to(values[0], length.shape)
+
+
+def paper(values: np.ndarray, length: np.ndarray, thickness: np.ndarray) -> np.ndarray:
+    """Eq. 4 of Kim et al. (2013); values: H_macro, H'."""
+    return values[0] + values[1] / np.sqrt(length)
+
+
+def film(values: np.ndarray, length: np.ndarray, thickness: np.ndarray) -> np.ndarray:
+    """Values: H_film, H_base, k, m."""
+    h_film, h_base, k, m = values
+    return h_base + (h_film - h_base) / (1 + k * (length / np.maximum(thickness, 1e-9)) ** m)
+
+
+LAWS: dict[str, tuple[Law, tuple[float, ...]]] = {
+    "constant": (constant, (6.0,)),
+    "paper": (paper, (3.0, 5.0)),
+    "film": (film, (9.0, 5.0, 0.3, 1.2)),
+}
+
+
+def fit(name: str, points: FilmPoints) -> np.ndarray:
+    """Values of a law by least squares of ln H; all are positive."""
+    law, start = LAWS[name]
+
+    def misfit(logs: np.ndarray) -> np.ndarray:
+        found = law(np.exp(logs), points.length_nm, points.thickness_nm)
+        return np.log(found / points.stress_GPa)
+
+    return np.exp(least_squares(misfit, np.log(start), bounds=(np.log(1e-3), np.log(50.0))).x)
+
+
+def left_out(name: str, points: FilmPoints) -> float:
+    """Root mean square error of a law, of ln H, at the films of a thickness that its fit had not, one at a time.
+
+    The laws without film are fitted to the other films, `film` to oxide and metal besides.
+    """
+    law, errors = LAWS[name][0], []
+    for thickness in np.unique(points.thickness_nm[points.film]):
+        same = points.thickness_nm == thickness
+        values = fit(name, points.take(~same & (points.film | (name == "film"))))
+        of = points.take(same)
+        errors += np.log(law(values, of.length_nm, of.thickness_nm) / of.stress_GPa).tolist()
+    return float(np.sqrt(np.mean(np.square(errors))))
+
+
+def likely(points: FilmPoints, rng: np.random.Generator, draws: int = DRAWS) -> np.ndarray:
+    """H_film, H_base, k and m by their likelihood, shape (draws, 4); `PRIOR` is flat in the logarithms and in m.
+
+    The misfits of a run are one error, so that N runs of unknown scatter have the likelihood S^(-N/2), S the sum of
+    squares (the scatter's own prior is Jeffreys's): seeds are too few for a bootstrap.
+    """
+    low, high = np.array(PRIOR).T
+    values = rng.uniform([*np.log(low[:3]), low[3]], [*np.log(high[:3]), high[3]], (TRIALS, 4))
+    values[:, :3] = np.exp(values[:, :3])
+    squares = np.zeros(TRIALS)
+    for _, thickness, length, stress in zip(*points, strict=True):
+        squares += np.log(film(values.T, length, thickness) / stress) ** 2
+    runs = len(set(zip(points.seed, points.thickness_nm, strict=True)))
+    weights = (squares / squares.min()) ** (-runs / 2)
+    return values[rng.choice(TRIALS, draws, p=weights / weights.sum())]
+
+
+def fit_film_law(
+    points: Sequence[Mapping[str, str]], curves: Mapping[str, Sequence[Mapping[str, float]]]
+) -> tuple[dict[str, Any], list[str]]:
+    """The law of films of a scene; energy scales weigh the same, and the metal, which has one, belongs to each.
+
+    Parameters
+    ----------
+    points : rows of points.csv. curves : rows of the closing runs, by run.
+
+    Returns
+    -------
+    entry : `film` of fit.json: inputs, hardness of the metal as pressed, L/t of the runs, error of each law at the
+        thickness left out, and the film's share of the difference between both hardnesses against L/t.
+    reasons : why there is none.
+    """
+    scales = sorted({float(point["energy_scale"]) for point in points if not _of_metal(point)})
+    by_scale = [
+        points_of(
+            [
+                (point, curves[point["run"]])
+                for point in points
+                if float(point["energy_scale"]) == scale or _of_metal(point)
+            ]
+        )
+        for scale in scales
+    ]
+    if reasons := [reason for of_scale in by_scale if (reason := too_few(of_scale))]:
+        return {}, list(dict.fromkeys(reasons))
+    rng = np.random.default_rng(np.random.SeedSequence([43]))
+    draws = np.concatenate([likely(of_scale, rng, DRAWS // len(by_scale)) for of_scale in by_scale])
+    draws[:, 2] *= np.exp(rng.normal(0, BOND, len(draws)))
+    _, base, k, m = draws.T
+    ratios = np.concatenate([of.length_nm[of.film] / of.thickness_nm[of.film] for of in by_scale])
+    shares = 1 / (1 + k * LENGTHS_OVER_THICKNESS[:, None] ** m)
+    rank = float(np.corrcoef(rankdata([k, m], axis=1))[0, 1])
+    inputs = {"k_film": _samples(k) | {"correlation": {"m_film": rank}}, "m_film": _samples(m)}
+    low, middle, high = np.quantile(shares, INTERVAL, axis=1)
+    return {
+        "inputs": inputs,
+        "base_GPa": dict(zip(("low", "median", "high"), np.quantile(base, INTERVAL).tolist(), strict=True)),
+        "length_over_thickness": [float(ratios.min()), float(ratios.max())],
+        "left_out": {
+            name: float(np.sqrt(np.mean([left_out(name, of_scale) ** 2 for of_scale in by_scale]))) for name in LAWS
+        },
+        "share": [
+            {"length_over_thickness": at, "low": one, "median": two, "high": three}
+            for at, one, two, three in zip(LENGTHS_OVER_THICKNESS.tolist(), low, middle, high, strict=True)
+        ],
+    }, []
+
+
+def _of_metal(point: Mapping[str, str]) -> bool:
+    return bool(point["film_nm"]) and float(point["film_nm"]) == 0
+
+
+def _samples(values: np.ndarray) -> dict[str, Any]:
+    """An input's distribution: its quantiles, each as likely as the others."""
+    shares = (np.arange(QUANTILES) + 0.5) / QUANTILES
+    return {"distribution": "samples", "values": np.quantile(values, shares).tolist(), "unit": "1"}

@@ -1,0 +1,229 @@
+"""The metal below an oxide film: its embedded-atom potential for LAMMPS, and dense bodies of many grains.
+
+The functions are those of X. W. Zhou, R. A. Johnson and H. N. G. Wadley, Phys. Rev. B 69, 144113 (2004).
+"""
+
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial import KDTree
+from scipy.spatial.transform import Rotation
+
+from atomistic.errors import InputError
+from atomistic.hardness.glass import write_forcefield
+from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
+from atomistic.materials import Eam, FilmBase, Material
+from atomistic.potentials import Potential
+
+POINTS = 5000
+CUTOFF_A = 7.0  # all functions of titanium are below 2e-6 eV there; at the authors' 6.56 A lies a shell of neighbours
+MOST_DENSITY = 4.0  # end of the table of embedding, over the density of the crystal
+TOO_NEAR = 0.75  # of the nearest distance: of two atoms of different grains that are nearer one is left out
+ANNEAL_K, ANNEAL_PS, FINAL_K, TIMESTEP_FS = 900.0, 10.0, 300.0, 3.0
+MAX_STRAIN = 0.01  # of the dense body, brought to the width of the asperity
+ANNEALED_DENSITY = 0.972  # of grains after the anneal, over the crystal at 0 K (study hardness.metal)
+WIDENINGS = 3  # the number of atoms follows the width to 0.1 %
+PLACES = np.array([[0, 0, 0], [1 / 2, 1 / 2, 0], [1 / 2, 5 / 6, 1 / 2], [0, 1 / 3, 1 / 2]])
+"""Atoms of the cell with edges a, a sqrt(3) and c."""
+
+
+def pair_energy(eam: Eam, r: np.ndarray) -> np.ndarray:
+    """Energy of a pair (eV) at a distance (Å)."""
+    x = r / eam.r_A
+    repulsion = eam.A_eV * np.exp(-eam.alpha * (x - 1)) / (1 + (x - eam.kappa) ** 20)
+    return repulsion - eam.B_eV * np.exp(-eam.beta * (x - 1)) / (1 + (x - eam.lambda_) ** 20)
+
+
+def electron_density(eam: Eam, r: np.ndarray) -> np.ndarray:
+    """Electron density of an atom at a distance (Å)."""
+    x = r / eam.r_A
+    return eam.f * np.exp(-eam.beta * (x - 1)) / (1 + (x - eam.lambda_) ** 20)
+
+
+def embedding_energy(eam: Eam, density: np.ndarray) -> np.ndarray:
+    """Energy (eV) of an atom in an electron density."""
+    inner = np.polyval(eam.F_inner_eV[::-1], density / (0.85 * eam.rho) - 1)
+    middle = np.polyval(eam.F_middle_eV[::-1], density / eam.rho - 1)
+    power = np.maximum(density / eam.rho, 1e-9) ** eam.eta
+    outer = eam.F_outer_eV * (1 - np.log(power)) * power
+    return np.where(density < 0.85 * eam.rho, inner, np.where(density < 1.15 * eam.rho, middle, outer))
+
+
+@dataclass(frozen=True)
+class Metal:
+    """A metal, pressed as the oxide of a `Potential` is."""
+
+    material: Material
+
+    @property
+    def element(self) -> str:
+        """Its chemical symbol."""
+        return next(iter(self.material.formula))
+
+    @property
+    def eam(self) -> Eam:
+        """Its potential."""
+        return self.material.part("eam")
+
+    @property
+    def below_films(self) -> FilmBase:
+        """Its grains, and how atoms of a film act on it."""
+        return self.material.part("film_base")
+
+    @property
+    def bond_length_A(self) -> float:
+        """Half-way between the first and second neighbours of a dense packing."""
+        return 0.5 * (1 + np.sqrt(2)) * self.eam.r_A
+
+    @property
+    def species(self) -> Mapping[str, Any]:
+        """What has the mass of its atoms, by element."""
+        return {self.element: self.eam}
+
+    def setfl(self) -> str:
+        """The potential for LAMMPS's `pair_style eam/alloy`."""
+        eam = self.eam
+        density, r = np.linspace(0, MOST_DENSITY * eam.rho, POINTS), np.linspace(0, CUTOFF_A, POINTS)
+        text = io.StringIO()
+        text.write(f"{self.material.name}\n{eam.source}\n\n1 {self.element}\n")
+        text.write(f"{POINTS} {density[1]:.16g} {POINTS} {r[1]:.16g} {CUTOFF_A}\n0 {eam.mass_u} {eam.r_A} any\n")
+        np.savetxt(text, embedding_energy(eam, density), fmt="%.16g")
+        np.savetxt(text, electron_density(eam, r), fmt="%.16g")
+        np.savetxt(text, r * pair_energy(eam, r), fmt="%.16g")
+        return text.getvalue()
+
+    def files(
+        self,
+        elements: tuple[str, ...],
+        energy_scale: float,
+        repelled: tuple[Potential, tuple[str, ...]] | None = None,
+    ) -> dict[str, str]:
+        """What LAMMPS needs, as `Potential.files`; metals keep their energies in the twin with halved ones.
+
+        Raises
+        ------
+        InputError : a counterface of atoms.
+        """
+        if repelled is not None or len(elements) > 1:
+            raise InputError(
+                f"hardness.closing.counterface: {self.element} without a film is pressed by a flat only, since nothing "
+                "is known of how its atoms meet others; set film_nm above 0, or counterface to flat"
+            )
+        lines = ("pair_style eam/alloy", f"pair_coeff * * {METAL_FILE} {self.element}", *NEIGHBOURS)
+        return {METAL_FILE: self.setfl(), "pairs": "\n".join(lines) + "\n"}
+
+
+METAL_FILE = "metal.eam"
+NEIGHBOURS = ("neighbor 1.0 bin", "neigh_modify every 2 delay 0 check yes")
+
+
+def crystal(metal: Metal, repeats: tuple[int, int, int]) -> Atoms:
+    """A hexagonal crystal with its axis upright, in cells of a, a sqrt(3) and c."""
+    a, c = metal.eam.lattice_A
+    cell = np.array([a, a * np.sqrt(3), c])
+    offsets = np.stack(np.meshgrid(*map(np.arange, repeats), indexing="ij"), axis=-1).reshape(-1, 3)
+    positions = (offsets[:, None] + PLACES).reshape(-1, 3) * cell
+    return Atoms((metal.element,), np.ones(len(positions), int), positions, cell * repeats)
+
+
+def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms:
+    """A cube of grains of random places and orientations (Voronoi cells); dense only after `annealed`.
+
+    Parameters
+    ----------
+    grain_A : diameter of a sphere of the mean volume of a grain.
+    """
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 41]))
+    grains = max(1, round(edge_A**3 / (np.pi / 6 * grain_A**3)))
+    centres = rng.uniform(0, edge_A, (grains, 3))
+    images = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3) * edge_A
+    nearest = KDTree((centres[:, None] + images).reshape(-1, 3))
+    reach = min(3 * grain_A, 0.9 * edge_A)  # of a grain from its centre
+    cells = np.ceil(2 * reach / crystal(metal, (1, 1, 1)).cell_A).astype(int)
+    one = crystal(metal, (int(cells[0]), int(cells[1]), int(cells[2])))
+    grown = []
+    for k, centre in enumerate(centres):
+        turn = Rotation.random(rng=rng)
+        places = turn.apply(one.positions_A - one.cell_A / 2 + rng.uniform(-1, 1, 3)) + centre
+        grown.append(places[nearest.query(places)[1] == k * len(images) + len(images) // 2])
+    positions = np.mod(np.concatenate(grown), edge_A)
+    near = KDTree(positions, boxsize=edge_A).query_pairs(TOO_NEAR * metal.eam.r_A)
+    positions = np.delete(positions, sorted({max(pair) for pair in near}), axis=0)
+    return Atoms((metal.element,), np.ones(len(positions), int), positions, np.full(3, edge_A))
+
+
+def make_base(metal: Metal, edge_A: float, seed: int, work: Path, progress: Progress | None = None) -> Atoms:
+    """A cube of grains, annealed at zero pressure and cooled to 300 K in the same time; resumes in `work` after a kill.
+
+    Grain boundaries are cut too wide and close in the anneal, so that the cube starts wider than it comes out.
+
+    Parameters
+    ----------
+    edge_A : of the cube that comes out: the wavelength of the asperity that is cut out of it.
+
+    Raises
+    ------
+    InputError : the material has no potential or no grains, or its cube came out of another width than foreseen.
+    """
+    elements, grain_A = (metal.element,), 10 * metal.below_films.grain_nm
+    segments = _segments()
+    identity = {"metal": metal.material.model_dump(), "edge": edge_A, "seed": seed, "segments": segments}
+    workspace = Workspace(work, identity, "glass.in")
+    done = workspace.segments_done(len(segments))
+    write_forcefield(workspace, metal, elements, 1.0)
+    if not done:
+        write_data(
+            workspace / "start.data", _wide_enough(metal, edge_A, grain_A, seed), {elements[0]: metal.eam.mass_u}
+        )
+
+    def on_step(step: int) -> None:
+        if progress is not None:
+            progress(step / base_steps(), f"{step * TIMESTEP_FS / 1000:.0f} ps of annealing the metal")
+
+    if left := segments[done:]:
+        variables = {
+            "data": "start.data",
+            "pairs": "pairs",
+            "seed": 1 + seed,
+            "timestep": TIMESTEP_FS / 1000,
+            "segment": range(done + 1, len(segments) + 1),
+            "previous": range(done, len(segments)),
+            "ensemble": ["npt"] * len(left),
+            **{key: [of[k] for of in left] for k, key in enumerate(("from", "to", "steps"))},
+        }
+        run_lammps("glass.in", workspace, variables, on_step)
+    body = load_data(workspace / "glass.data", elements)
+    workspace.remove()
+    factor = edge_A / body.cell_A[0]
+    if abs(factor - 1) > MAX_STRAIN:
+        raise InputError(
+            f"{metal.material.name}: its cube would be strained by {factor - 1:+.1%} to the {edge_A:.1f} A of the "
+            f"asperity (gate {MAX_STRAIN:.0%}); take a wider asperity (tiles)"
+        )
+    return replace(body, positions_A=factor * body.positions_A, cell_A=factor * body.cell_A)
+
+
+def _segments() -> list[tuple[float, float, int]]:
+    """Temperatures at both ends (K), and steps, of anneal, cooling and rest."""
+    steps = round(1000 * ANNEAL_PS / TIMESTEP_FS)
+    return [(ANNEAL_K, ANNEAL_K, steps), (ANNEAL_K, FINAL_K, steps), (FINAL_K, FINAL_K, steps // 3)]
+
+
+def base_steps() -> int:
+    """MD steps of `make_base`."""
+    return sum(steps for *_, steps in _segments())
+
+
+def _wide_enough(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms:
+    """Grains in a cube whose atoms fill one of `edge_A` once they are dense."""
+    a, c = metal.eam.lattice_A
+    volume_A3 = a**2 * np.sqrt(3) * c / (len(PLACES) * ANNEALED_DENSITY)  # of an atom
+    start_A, atoms = edge_A, polycrystal(metal, edge_A, grain_A, seed)
+    for _ in range(WIDENINGS):
+        start_A *= edge_A / (len(atoms) * volume_A3) ** (1 / 3)
+        atoms = polycrystal(metal, start_A, grain_A, seed)
+    return atoms

@@ -1,0 +1,179 @@
+"""Which law of hardness foretells films on titanium, and what of the paper's fall from 10 to 2 GPa is the film's?
+
+The closing runs of a scene with films, as `reduced`: oxide throughout, the metal by itself, and films of some
+thicknesses. Each row is the mean stress of a run at a contact length. The constant and eq. 4 (`paper`) know only the
+contact length L; `film` has the thickness t, and the hardness of oxide and metal by themselves. An error is the root
+mean square of ln(predicted / found) at a thickness that the fit had not. `prediction` has k and m of a prototype,
+written down before any of these runs.
+
+`slope` is the paper's hardness of a run: the contact stress where the slope of force against travel drops, by the two
+straight lines that fit best.
+"""
+
+import os
+import subprocess
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from scipy.optimize import least_squares
+
+from atomistic.hardness.film_law import LAWS, FilmPoints, film, fit, left_out, likely, mean_stresses, paper
+from atomistic.hardness.size_effect import SYSTEMATIC
+from evidence.record import ROOT, load
+from mesoscale.tables import load_table
+
+PREDICTION = (0.24, 1.2)  # k and m of a prototype with other films, written down before
+MAIN = "reduced"
+LENGTHS_NM = (3.0, 5.0, 10.0, 15.0, 30.0, 100.0)
+OXIDE_NM = 5.0  # of TiO2 on the titanium of Kim et al. (2013)
+SOFT_GPA, SIZE_EFFECT = (0.7, 3.2), (3.7, 16.7)  # H_macro, and H' (GPa nm^0.5) of eq. 4 fitted to a glass
+LEAST_SIDE = 4  # points on either side of the drop of the slope
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """The scene: about an hour of one core."""
+    parser.add_argument("scene", nargs="?", default=MAIN, help="name, or file as evidence/scenes/films_by_force.yaml")
+    parser.add_argument("--cores", type=int, default=os.cpu_count())
+
+
+def rows(given: Namespace) -> Iterator[dict[str, Any]]:
+    """Run the scene and gather the mean stresses of every run."""
+    name = given.scene.rpartition("/")[2].removesuffix(".yaml")
+    command = ["snakemake", "--cores", str(given.cores), "--config", f"scene={given.scene}"]
+    target = f"results/{name}/hardness/points.csv"
+    subprocess.run([sys.executable, "-m", *command, "--", target], cwd=ROOT, check=True)
+    folder = ROOT / "results" / name / "hardness"
+    for point in load_table(folder / "points.csv"):
+        curve = [
+            {key: float(row[key]) for key in row} for row in load_table(folder / "closing" / f"{point['run']}.csv")
+        ]
+        drop = slope_drop(curve)
+        for length, stress in mean_stresses(curve, float(point["wavelength_nm"])):
+            copied = ("geometry", "seed", "energy_scale", "film_nm", "status", "contact_length_nm", "hardness_GPa")
+            yield {
+                "scene": name,
+                **{key: point[key] for key in copied},
+                **dict(zip(("slope_length_nm", "slope_GPa"), drop, strict=True)),
+                "length_nm": length,
+                "stress_GPa": stress,
+            }
+
+
+def slope_drop(curve: Sequence[Mapping[str, float]]) -> tuple[float, float]:
+    """Contact length (nm) and stress (GPa) where the slope of force against travel drops; NaN where it does not."""
+    column = {key: np.array([row[key] for row in curve]) for key in curve[0]}
+    touching = column["force_nN"] > 0.05 * column["force_nN"].max()
+    x, y = column["displacement_nm"][touching], column["force_nN"][touching]
+    best, found = np.inf, (np.nan, np.nan)
+    for k in range(LEAST_SIDE, len(x) - LEAST_SIDE):
+        lines = [np.polyfit(x[part], y[part], 1) for part in (slice(None, k), slice(k, None))]
+        misfit = sum(
+            np.sum((np.polyval(line, x[part]) - y[part]) ** 2)
+            for line, part in zip(lines, (slice(None, k), slice(k, None)), strict=True)
+        )
+        if misfit < best:
+            best = misfit
+            drops = lines[1][0] < lines[0][0]
+            at = float(column["contact_length_nm"][touching][k]), float(column["contact_stress_GPa"][touching][k])
+            found = at if drops else (np.nan, np.nan)
+    return found
+
+
+def points_of(rows: Sequence[Mapping[str, str]], scene: str = MAIN, scale: float = 1.0) -> FilmPoints:
+    """The points of a scene at one energy scale; the metal, which has one scale, belongs to each."""
+    kept = [
+        (float(row["seed"]), float(row["film_nm"] or "inf"), float(row["length_nm"]), float(row["stress_GPa"]))
+        for row in rows
+        if row["scene"] == scene and (float(row["energy_scale"]) == scale or row["film_nm"] in ("0", "0.0"))
+    ]
+    return FilmPoints(*np.array(kept).reshape(-1, 4).T)
+
+
+def foretold(points: FilmPoints) -> float:
+    """Error of the law with k and m of the prototype, at the thickness left out."""
+    errors = []
+    for thickness in np.unique(points.thickness_nm[points.film]):
+        same = points.thickness_nm == thickness
+        others, of = points.take(~same), points.take(same)
+
+        def misfit(logs: np.ndarray, at: FilmPoints = others) -> np.ndarray:
+            return np.log(film(np.array([*np.exp(logs), *PREDICTION]), at.length_nm, at.thickness_nm) / at.stress_GPa)
+
+        found = np.array([*np.exp(least_squares(misfit, np.log([9.0, 5.0])).x), *PREDICTION])
+        errors += np.log(film(found, of.length_nm, of.thickness_nm) / of.stress_GPa).tolist()
+    return float(np.sqrt(np.mean(np.square(errors))))
+
+
+@cache
+def laws() -> dict[str, Any]:
+    """Fit of the law `film` to the runs with full energies, its draws, and hardness over 5 nm in three cases."""
+    points, rng = points_of(load("hardness.films")), np.random.default_rng(43)
+    draws = likely(points, rng)
+    shared = np.exp(rng.normal(0, np.linalg.norm([0.03 / np.sqrt(3), *SYSTEMATIC.values()]), len(draws)))
+    soft, size = rng.uniform(*SOFT_GPA, len(draws)), rng.uniform(*SIZE_EFFECT, len(draws))
+    h_film, h_base, k, m = draws.T
+    hardness = {}
+    for length in LENGTHS_NM:
+        at = (np.array(length), np.array(OXIDE_NM))
+        hardness[length] = {
+            "metal_as_pressed": shared * film(np.array([h_film, h_base, k, m]), *at),
+            "metal_of_H_macro": film(np.array([shared * h_film, soft, k, m]), *at),
+            "eq_4": paper(np.array([soft, size]), *at),
+        }
+    return {"points": points, "draws": draws, "best": fit("film", points), "hardness": hardness}
+
+
+def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """Errors of the laws, values with 68 % intervals, and the paper's hardness over ours."""
+    of = laws()
+    found = {"runs": str(len({(row["scene"], row["seed"], row["energy_scale"], row["film_nm"]) for row in rows}))}
+    for label, scale in (("", 1.0), ("_halved", 0.5)):
+        points = points_of(rows, scale=scale)
+        for name in LAWS:
+            found[f"{name}_left_out{label}"] = f"{100 * left_out(name, points):.0f} %"
+        found[f"prediction_left_out{label}"] = f"{100 * foretold(points):.0f} %"
+        for name, value in zip(("H_film", "H_base", "k", "m"), fit("film", points), strict=True):
+            found[f"{name}{label}"] = f"{value:.2g}"
+    for name, value, column in zip(("H_film", "H_base", "k", "m"), of["best"], of["draws"].T, strict=True):
+        found[name] = f"{value:.2g}{_interval(column)}"
+    for length, cases in of["hardness"].items():
+        for case, values in cases.items():
+            found[f"{case}_{length:g}_nm"] = f"{np.median(values):.2g}{_interval(values)}"
+    for case, values in of["hardness"][3.0].items():
+        fall = values / of["hardness"][15.0][case]
+        found[f"{case}_fall"] = f"{np.median(fall):.2g}{_interval(fall)}"
+    for scene in sorted({row["scene"] for row in rows}):
+        runs = {
+            (row["seed"], row["energy_scale"], row["film_nm"]): row
+            for row in rows
+            if row["scene"] == scene and row["status"] == "yield" and row["slope_GPa"] not in ("", "nan")
+        }
+        if runs:
+            ratios = [float(row["slope_GPa"]) / float(row["hardness_GPa"]) for row in runs.values()]
+            found[f"{scene}_slope_over_plateau"] = f"{np.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
+    return found
+
+
+def _interval(values: np.ndarray) -> str:
+    low, high = np.quantile(values, [0.16, 0.84])
+    return f" [{low:.2g}, {high:.2g}]"
+
+
+def draw(axes: Axes) -> None:
+    """Mean stress of each body over seeds; what the law says of 5 nm, and what was said before."""
+    of = laws()
+    points, colors = of["points"], ("#20242b", "#b5482a", "#d99a2b", "#4c9a5b", "#1f5fa8")
+    for thickness, color in zip(np.unique(points.thickness_nm), colors, strict=True):
+        name = {0: "titanium", np.inf: "silica"}.get(thickness, f"{thickness:g} nm of silica on titanium")
+        same = points.take(points.thickness_nm == thickness)
+        axes.plot(same.length_nm, same.stress_GPa, "o", ms=3, color=color, label=name)
+    for case, color in (("metal_as_pressed", "#b5482a"), ("metal_of_H_macro", "#8a8f98")):
+        low, high = np.array([np.quantile(of["hardness"][at][case], [0.16, 0.84]) for at in LENGTHS_NM]).T
+        axes.fill_between(LENGTHS_NM, low, high, color=color, alpha=0.2, label=f"5 nm, {case.replace('_', ' ')}")
+    lengths, said = np.array(LENGTHS_NM), np.array([10.5, 0.7, *PREDICTION])
+    axes.plot(lengths, film(said, lengths, np.full(6, OXIDE_NM)), "--", color="#8a8f98", label="said before, 0.7 GPa")

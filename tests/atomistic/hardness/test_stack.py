@@ -1,0 +1,261 @@
+"""A film of oxide on a metal: its forces, how it lies, and a tiny one pressed for real, resumed after a kill."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+from scipy.spatial import KDTree
+
+from atomistic.errors import InputError
+from atomistic.hardness.accuracy import variations
+from atomistic.hardness.closing import area_of, bond_kinds, cut_body, run_closing
+from atomistic.hardness.cost import atoms_per_nm3, plan_rows
+from atomistic.hardness.glass import make_glass
+from atomistic.hardness.metal import TOO_NEAR, Metal, make_base, polycrystal
+from atomistic.hardness.plateau import film_fault, point
+from atomistic.hardness.readout import BondKind, bonds_of
+from atomistic.hardness.runs import PROTOCOL, ClosingRun, planned_runs, smallest_run
+from atomistic.hardness.stability import film_checks
+from atomistic.hardness.stack import GAP_A, Stack, check_film, film_properties, lay
+from atomistic.lammps import Atoms
+from atomistic.materials import load_material
+from atomistic.settings import AsperitySettings, ClosingSettings, GlassSettings, HardnessSettings
+
+TITANIUM = Path(__file__).parents[3] / "config" / "materials" / "titanium.yaml"
+GLASS = GlassSettings(atoms=240, melt_ps=0.5, quench_rate_K_ps=2000, rest_ps=0.3)
+QUICK = PROTOCOL.model_copy(update={"base_over_contact": 0.0, "frozen_nm": 0.3, "thermostat_nm": 0.3})
+CLOSING = ClosingSettings(base_nm=1.2, speed_m_s=400, depth_over_amplitude=1.7, anneal_ps=0.1)
+
+
+@pytest.fixture(scope="module")
+def metal():
+    return Metal(load_material(TITANIUM))
+
+
+@pytest.fixture(scope="module")
+def glass(potential, oxides, tmp_path_factory):
+    return make_glass(oxides["SiO2"], potential, GLASS, 1, tmp_path_factory.mktemp("glass") / "work")
+
+
+@pytest.fixture(scope="module")
+def base(metal, glass, tmp_path_factory):
+    """A cube as wide as two glass cells, hardly annealed."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("atomistic.hardness.metal.ANNEAL_PS", 0.5)
+        patch.setattr("atomistic.hardness.metal.MAX_STRAIN", 0.05)
+        return metal, make_base(metal, 2 * float(glass.cell_A[0]), 1, tmp_path_factory.mktemp("base") / "work")
+
+
+def run_of(film_nm, scale=1.0):
+    asperity = AsperitySettings(name="tiny", tiles=2, amplitude_nm=0.25, film_nm=film_nm)
+    return ClosingRun(name="tiny", asperity=asperity, seed=1, energy_scale=scale)
+
+
+def test_grains_fill_the_cell_and_keep_apart(metal):
+    body = polycrystal(metal, 40.0, 35.0, 1)
+    assert body.positions_A.min() >= 0
+    assert not KDTree(body.positions_A, boxsize=body.cell_A).query_pairs(TOO_NEAR * metal.eam.r_A)
+    assert 0.88 < len(body) / 40.0**3 * 1e3 / atoms_per_nm3(metal.eam) < 1.0  # grain boundaries close in the anneal
+    neighbours = KDTree(body.positions_A, boxsize=body.cell_A).query_ball_point(body.positions_A, metal.bond_length_A)
+    assert np.median([len(found) - 1 for found in neighbours]) == 12  # of hexagonal packing
+
+
+def test_the_cube_has_the_width_asked_for_and_the_density_of_a_metal(glass, base):
+    metal, cube = base
+    np.testing.assert_allclose(cube.cell_A[:2], 2 * glass.cell_A[0])
+    assert 0.93 < len(cube) / np.prod(cube.cell_A) * 1e3 / atoms_per_nm3(metal.eam) < 1.0
+
+
+def test_the_bond_of_metal_and_oxide_has_its_depth_and_the_force_of_its_energy(metal, potential):
+    stack, r = Stack(potential, metal), np.linspace(1.5, 6.0, 2001)
+    energy, force = stack.bond("O", r)
+    assert energy.min() == pytest.approx(-0.28, rel=1e-4)
+    np.testing.assert_allclose(force[1:-1], -np.gradient(energy, r)[1:-1], atol=2e-4)
+    np.testing.assert_allclose(Stack(potential, metal, 0.5).bond("O", r)[0], 0.5 * energy)
+
+
+def test_each_pair_of_types_has_its_force(metal, potential):
+    def commands(*elements, **repelled):
+        text = Stack(potential, metal).files(elements, 1.0, **repelled)["pairs"]
+        return [line.removeprefix("pair_coeff ") for line in text.splitlines() if line.startswith("pair_coeff")]
+
+    own = [
+        "1 2 table cross contact 6.5",
+        "1 3 table cross O 6.5",
+        "2 2 table table Si_Si 6.5",
+        "2 3 table table Si_O 6.5",
+        "3 3 table table O_O 6.5",
+    ]
+    assert commands("Ti", "Si", "O") == ["* * eam/alloy metal.eam Ti NULL NULL", *own]
+    above = commands("Ti", "Si", "O", repelled=(potential, ("Si", "O")))
+    assert set(own) < set(above)
+    assert "1 5 table table contact 6.5" in above
+    assert "3 4 table table contact 6.5" in above
+    assert "4 5 table table_above Si_O 6.5" in above
+    adhering = commands("Ti", "Si", "O", "Si", "O")
+    assert "1 5 table cross O 6.5" in adhering
+    assert "3 4 table table Si_O 6.5" in adhering
+
+
+def test_halved_energies_leave_the_metal(metal, potential):
+    full, half = (Stack(potential, metal).files(("Ti", "Si", "O"), scale) for scale in (1.0, 0.5))
+    assert full["metal.eam"] == half["metal.eam"]
+    one, other = (np.loadtxt(files["cross"].splitlines()[5:9]) for files in (full, half))
+    np.testing.assert_allclose(other[:, 2:], one[:, 2:] / 2)
+
+
+def test_an_ion_without_cross_terms_is_refused(metal, potential):
+    with pytest.raises(InputError, match="titanium: film_base has no cross terms with N, so that no film with it lies"):
+        Stack(potential, metal).files(("Ti", "Si", "N"), 1.0)
+
+
+def test_a_film_lies_on_its_metal_with_its_thickness(glass, base):
+    body = lay(base[1], glass, 2, 2.5, 8.0, 12.0, 1)
+    film = body.types > 1
+    counts = np.bincount(body.types)[2:]
+    assert counts[1] == 2 * counts[0]  # neutral
+    x, y, z = body.positions_A[film].T
+    assert z.max() < 12.0 + 2.5 + GAP_A + 8.0
+    side = float(body.cell_A[0])
+    top = np.hypot(x - side / 4, y - side / 4) < 4.0  # about the peak
+    assert z[top].min() > 12.0 + 1.0
+    volume_A3 = side**2 * 8.0
+    density = len(glass) / np.prod(glass.cell_A)  # some atoms of so small a film go for its neutrality
+    assert film.sum() / volume_A3 == pytest.approx(density, rel=0.12)
+
+
+def test_a_film_that_came_off_or_slid_does_not_count():
+    rng = np.random.default_rng(2)
+    metal = np.column_stack([np.ones(4000), rng.uniform(0, 40, (4000, 2)), rng.uniform(0, 20, 4000)])
+    film = np.column_stack([np.full(4000, 2), rng.uniform(0, 40, (4000, 2)), rng.uniform(21.5, 30, 4000)])
+    start = np.concatenate([metal, film])
+    assert film_fault(film_properties(start, start, 40.0)) is None
+    slid, off, bare = start.copy(), start.copy(), start.copy()
+    slid[4000:, 1] += 3.0
+    assert film_properties(start, slid, 40.0)["slid_A"] == pytest.approx(3.0)
+    assert film_fault(film_properties(start, slid, 40.0)) == "the film slid by 3.0 A over its base (gate 2.1 A)"
+    off[4000:, 3] += 6.0
+    assert "a gap of" in str(film_fault(film_properties(off, off, 40.0)))
+    bare = bare[(bare[:, 0] == 1) | (bare[:, 1] > 8)]
+    assert "the film covers 80% of its base" in str(film_fault(film_properties(bare, bare, 40.0)))
+
+
+def test_bonds_of_a_metal_are_its_neighbours(metal):
+    a = metal.eam.r_A
+    frame = np.array([[1, 0, 0, 0], [1, a, 0, 0], [1, 0, np.sqrt(2) * a, 0], [2, 0, 0, 1.6]])
+    kinds = [BondKind((1, 1), metal.bond_length_A)]
+    assert bonds_of(frame, kinds, 1.0, 50.0) == {(0, 1)}
+    assert bonds_of(frame, kinds, 1.2, 50.0) == {(0, 1), (0, 2)}
+
+
+def test_a_film_is_pressed_and_keeps_its_energy(potential, oxides, glass, base, tmp_path):
+    run = run_of(0.4)
+    kinds = bond_kinds(("Ti", "Si", "O"), oxides["SiO2"], potential, base)
+    assert [kind.types for kind in kinds] == [(1, 1), (2, 3)]
+    closing = run_closing(run, oxides["SiO2"], glass, potential, CLOSING, tmp_path / "work", QUICK, base=base)
+    column = {name: np.array([row[name] for row in closing.curve]) for name in closing.curve[0]}
+    assert column["force_nN"].max() > 1
+    assert np.abs(column["energy_drift_meV_per_atom"]).max() < 3
+    assert {row["type"] for row in closing.snapshots} == {1, 2, 3}
+    assert all(np.isnan(row["top_force_over_hamaker"]) for row in closing.witness)
+    assert closing.summary["covered_share"] > 0.9
+    assert closing.summary["slid_A"] < 2.1
+    summary = {**closing.summary, "run": "tiny", "energy_scale": 1.0, "asperity": "tiny", "amplitude_nm": 0.25}
+    summary |= {"film_nm": 0.4, "seed": 1, "lammps_cpu_s": 1.0, "python_cpu_s": 1.0, "slid_A": 5.0}
+    row = point(closing.curve, closing.witness, summary, CLOSING, "pmmcs")
+    assert row["status"] == "rejected: the film slid by 5.0 A over its base (gate 2.1 A)"
+
+
+def test_the_metal_is_pressed_by_a_flat_only(potential, oxides, glass, base, tmp_path):
+    closing = run_closing(run_of(0.0), oxides["SiO2"], glass, potential, CLOSING, tmp_path / "work", QUICK, base=base)
+    assert max(row["force_nN"] for row in closing.curve) > 1
+    assert {row["type"] for row in closing.snapshots} == {1}
+    oxide = CLOSING.model_copy(update={"counterface": "oxide"})
+    with pytest.raises(InputError, match="Ti without a film is pressed by a flat only"):
+        run_closing(run_of(0.0), oxides["SiO2"], glass, potential, oxide, tmp_path / "other", QUICK, base=base)
+
+
+def test_a_film_is_pressed_by_atoms(potential, oxides, glass, base, tmp_path):
+    asperity = CLOSING.model_copy(update={"counterface": "asperity"})
+    thin = QUICK.model_copy(update={"counter_base_nm": 1.0})
+    closing = run_closing(run_of(0.4), oxides["SiO2"], glass, potential, asperity, tmp_path / "work", thin, base=base)
+    assert max(row["force_nN"] for row in closing.curve) > 0.5
+    assert min(row["force_nN"] for row in closing.curve) >= 0  # they only repel each other
+
+
+def test_hard_cases_of_a_film_hold(potential, metal, glass, base, tmp_path):
+    body = lay(base[1], glass, 2, 0.0, 6.0, 10.0, 1)
+    settled = Atoms(body.elements, body.types, body.positions_A, body.cell_A)
+    checks = {case: check for case, *_, check in film_checks(Stack(potential, metal), settled, (1.0,), tmp_path)}
+    assert len(checks) >= 9
+    assert checks["film_off_its_base"]()[0]
+
+
+def test_the_area_of_each_kind_of_body_is_its_own(potential, base, metal):
+    assert area_of(run_of(0.4), potential, base=base)[1] == metal.below_films.area_of_film.error
+    assert area_of(run_of(0.0), potential, base=base)[1] == metal.below_films.area_of_metal.error
+    assert area_of(run_of(None), potential, base=base)[1] == potential.contact_area.error
+
+
+def test_a_film_thinner_than_a_layer_or_thicker_than_the_widest_contact_is_refused(potential, glass, base):
+    check_film(0.6, 3.5)
+    for thickness in (0.1, 4.0):
+        with pytest.raises(
+            InputError, match=r"whose widest judged contact is 3\.5 nm, accepted are 0\.3 \(one layer\)"
+        ):
+            check_film(thickness, 3.5)
+    with pytest.raises(InputError, match="film_nm = 9: on an asperity"):
+        cut_body(run_of(9.0), glass, potential, 1.2, (1,), QUICK, base)
+    with pytest.raises(InputError, match=r"asperity tiny: film_nm = 0\.4 needs a metal below; set hardness\.base"):
+        cut_body(run_of(0.4), glass, potential, 1.2, (1,), QUICK)
+
+
+def stacked_settings(**changed):
+    asperities = [
+        {"name": "oxide", "tiles": 2, "amplitude_nm": 0.5},
+        {"name": "metal", "tiles": 2, "amplitude_nm": 0.5, "film_nm": 0},
+        {"name": "thick", "tiles": 2, "amplitude_nm": 0.5, "film_nm": 2},
+        {"name": "thin", "tiles": 2, "amplitude_nm": 0.5, "film_nm": 0.6},
+    ]
+    return HardnessSettings.model_validate({"base": "titanium", "seeds": [1], "asperities": asperities, **changed})
+
+
+def test_the_metal_has_one_energy_scale_and_the_thinnest_film_shows_the_accuracy():
+    runs = planned_runs(stacked_settings())
+    assert [run.name for run in runs if run.asperity.name == "metal"] == ["metal_seed1_full"]
+    assert len(runs) == 7
+    smallest = smallest_run(stacked_settings())
+    assert smallest.name == "thin_seed1_full"
+    assert "bonds_weaker" in variations(smallest)
+    assert "bonds_weaker" not in variations(run_of(None))
+
+
+def test_the_plan_prices_the_metal_and_refuses_a_film_too_thick(oxides):
+    titanium = load_material(TITANIUM)
+    rows = {row["run"]: row for row in plan_rows(stacked_settings(), oxides["SiO2"], oxides["SiO2"], titanium)}
+    assert rows["thick_seed1_full"]["atoms"] > rows["thin_seed1_full"]["atoms"] > rows["metal_seed1_full"]["atoms"]
+    thick = stacked_settings(asperities=[{"name": "a", "tiles": 2, "amplitude_nm": 0.5, "film_nm": 5}])
+    with pytest.raises(InputError, match="film_nm = 5: on an asperity whose widest judged contact is 3"):
+        plan_rows(thick, oxides["SiO2"], oxides["SiO2"], titanium)
+
+
+def test_films_and_their_metal_belong_together():
+    with pytest.raises(ValidationError, match="thin has a film_nm, but there is no base; name its metal"):
+        stacked_settings(base=None, asperities=[{"name": "thin", "tiles": 2, "amplitude_nm": 0.5, "film_nm": 0.6}])
+    with pytest.raises(ValidationError, match="no asperity has a film_nm; add it, or leave base out"):
+        stacked_settings(asperities=[{"name": "oxide", "tiles": 2, "amplitude_nm": 0.5}])
+
+
+def test_metals_are_checked_on_loading(tmp_path):
+    text = TITANIUM.read_text()
+    path = tmp_path / "titanium.yaml"
+    path.write_text(text.replace("formula: {Ti: 1}", "formula: {Ti: 1, O: 2}"))
+    with pytest.raises(InputError, match="eam: needs a formula of one element, got TiO2"):
+        load_material(path)
+    path.write_text(text.replace("  eta: 0.558572\n", ""))
+    with pytest.raises(InputError, match=r"eam\.eta: Field required"):
+        load_material(path)
+    path.write_text(text.replace("  area_of_metal: {depth_A: 0.5, error: 0.025}\n", ""))
+    with pytest.raises(InputError, match=r"film_base\.area_of_metal: Field required"):
+        load_material(path)
