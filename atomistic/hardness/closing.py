@@ -21,7 +21,7 @@ from atomistic.hardness.pressing import (
     prepare_body,
     press_bodies,
 )
-from atomistic.hardness.readout import BondKind, Geometry, Readout, Rows, slice_rows, witness_rows
+from atomistic.hardness.readout import Bond, Geometry, Readout, Rows, slice_rows, witness_rows
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
 from atomistic.hardness.stack import Stack, check_film, film_properties, lay
 from atomistic.hardness.top_attraction import attract_top, bulk_density_per_A3
@@ -102,11 +102,11 @@ def run_closing(
         bodies.append(prepare_body(run, cut, formula, force, closing, protocol, aside, place_above, progress))
         above = force if closing.interface == "repulsive" else None
     workspace = Workspace(work / "closing", identity, "closing.in")
-    bonds = bond_kinds(bodies[0].elements, material, potential, base)
+    bond = oxide_bond(bodies[0].elements, material, potential)
 
     @cache
     def readout(geometry: Geometry) -> Readout:
-        return Readout(workspace, plan.segment_steps, plan.timestep, protocol.samples, area, geometry, bonds)
+        return Readout(workspace, plan.segment_steps, plan.timestep, protocol.samples, area, geometry, bond)
 
     def read(geometry: Geometry, reached: Plan) -> Closing:
         relaxed = range(reached.segments + 1)
@@ -217,23 +217,13 @@ def area_of(
     return replace(area, depth_A=of.depth_A), of.error
 
 
-def bond_kinds(
-    elements: tuple[str, ...], material: Material, potential: Potential, base: tuple[Metal, Atoms] | None = None
-) -> list[BondKind]:
-    """What counts as a bond in a body: cation and anion of the oxide, neighbours in the metal.
-
-    Parameters
-    ----------
-    elements : of each type of the body.
-    """
-    kinds, (cation,) = [], cations(material, potential)
-    if base is not None and elements[0] == base[0].element:
-        kinds.append(BondKind((1, 1), base[0].bond_length_A))
-    ions = [n for n, element in enumerate(elements, 1) if element in potential.materials[material.formula_text]]
-    for n in ions:
-        if elements[n - 1] != cation:
-            kinds.append(BondKind((elements.index(cation) + 1, n), material.part("oxide_glass").cutoff_A))
-    return kinds
+def oxide_bond(elements: tuple[str, ...], material: Material, potential: Potential) -> Bond | None:
+    """What counts as a bond in a body with these elements of its types; None: it has no oxide."""
+    ions = tuple(potential.materials[material.formula_text])
+    if not set(ions) <= set(elements):
+        return None
+    cation, anion = sorted(ions, key=cations(material, potential).__contains__, reverse=True)
+    return Bond(elements.index(cation) + 1, elements.index(anion) + 1, material.part("oxide_glass").cutoff_A)
 
 
 def _read(readout: Readout, plan: Plan, held_A: float, geometry: Geometry) -> Closing:

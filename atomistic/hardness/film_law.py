@@ -13,10 +13,11 @@ from scipy.optimize import least_squares
 from scipy.stats import rankdata
 
 from atomistic.hardness.plateau import RULES
+from atomistic.hardness.size_effect import MIN_SHARE, SYSTEMATIC, Point, cost_of
 
 INTERVAL = (0.16, 0.5, 0.84)
 QUANTILES = 200
-BOND = 0.0  # TODO
+BOND = 0.5  # TODO
 BIN_NM = 0.5  # of contact length: a run has one mean stress in each
 LEAST_POINTS, LEAST_THICKNESSES = 3, 2
 DRAWS, TRIALS = 2000, 400_000
@@ -48,19 +49,19 @@ class FilmPoints(NamedTuple):
         return (self.thickness_nm > 0) & np.isfinite(self.thickness_nm)
 
 
-def points_of(runs: Sequence[tuple[Mapping[str, str], Sequence[Mapping[str, float]]]]) -> FilmPoints:
-    """The points of runs of one energy scale.
+def points_of(points: Sequence[Point], curves: Mapping[str, Sequence[Mapping[str, float]]]) -> FilmPoints:
+    """The mean stresses of sound runs with the highest energies.
 
     Parameters
     ----------
-    runs : row of points.csv and curve of each; only runs with a defended hardness count.
+    points : rows of points.csv. curves : rows of the closing runs, by run.
     """
-    found = []
-    for point, curve in runs:
-        if point["status"] != "yield":
-            continue
-        thickness = float(point["film_nm"]) if point["film_nm"] else np.inf
-        found += [(float(point["seed"]), thickness, *of) for of in mean_stresses(curve, float(point["wavelength_nm"]))]
+    found, highest = [], max(float(point["energy_scale"]) for point in points)
+    for point in points:
+        if point["sound"] == "True" and float(point["energy_scale"]) == highest:
+            thickness = float(point["film_nm"]) if point["film_nm"] else np.inf
+            stresses = mean_stresses(curves[point["run"]], float(point["wavelength_nm"]))
+            found += [(float(point["seed"]), thickness, *of) for of in stresses]
     return FilmPoints(*np.array(found).reshape(-1, 4).T)
 
 
@@ -154,62 +155,64 @@ def likely(points: FilmPoints, rng: np.random.Generator, draws: int = DRAWS) -> 
     return values[rng.choice(TRIALS, draws, p=weights / weights.sum())]
 
 
-def fit_film_law(
-    points: Sequence[Mapping[str, str]], curves: Mapping[str, Sequence[Mapping[str, float]]]
-) -> tuple[dict[str, Any], list[str]]:
-    """The law of films of a scene; energy scales weigh the same, and the metal, which has one, belongs to each.
+def fit_films(
+    points: Sequence[Point],
+    curves: Mapping[str, Sequence[Mapping[str, float]]],
+    glasses: Sequence[Mapping[str, Any]],
+    area_error: float,
+) -> dict[str, Any]:
+    """Fit the law to the runs of a scene with films, and judge whether it may be used.
 
     Parameters
     ----------
-    points : rows of points.csv. curves : rows of the closing runs, by run.
+    points, curves : of `points_of`.
+    glasses : properties of the glasses, each with its gate.
+    area_error : largest error of the contact area by the calibrations in use, as a fraction.
 
     Returns
     -------
-    entry : `film` of fit.json: inputs, hardness of the metal as pressed, L/t of the runs, error of each law at the
-        thickness left out, and the film's share of the difference between both hardnesses against L/t.
-    reasons : why there is none.
+    Content of fit.json (docs/hardness.md): the inputs H_film, k and m with their rank correlations, and in `film` what
+    the runs say of the metal, how well each law foretells a thickness that its fit had not, the range of L/t, and the
+    film's share of the difference between both hardnesses against L/t.
     """
-    scales = sorted({float(point["energy_scale"]) for point in points if not _of_metal(point)})
-    by_scale = [
-        points_of(
-            [
-                (point, curves[point["run"]])
-                for point in points
-                if float(point["energy_scale"]) == scale or _of_metal(point)
-            ]
-        )
-        for scale in scales
-    ]
-    if reasons := [reason for of_scale in by_scale if (reason := too_few(of_scale))]:
-        return {}, list(dict.fromkeys(reasons))
+    reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
+    unsound = [{"run": point["run"], "status": point["status"]} for point in points if point["sound"] != "True"]
+    sound = len(points) - len(unsound)
+    if sound < MIN_SHARE * len(points):
+        reasons.append(f"only {sound} of {len(points)} runs are sound (gate {MIN_SHARE:.0%})")
+    of = points_of(points, curves)
+    if few := too_few(of):
+        reasons.append(few)
+    counts = {"points_used": sound, "points_total": len(points), "points_rejected": unsound, "cost": cost_of(points)}
+    result = {"method": "film", **counts, "inputs": {}, "gate": {"passed": not reasons, "reasons": reasons}}
+    if few:
+        return result
     rng = np.random.default_rng(np.random.SeedSequence([43]))
-    draws = np.concatenate([likely(of_scale, rng, DRAWS // len(by_scale)) for of_scale in by_scale])
-    draws[:, 2] *= np.exp(rng.normal(0, BOND, len(draws)))
-    _, base, k, m = draws.T
-    ratios = np.concatenate([of.length_nm[of.film] / of.thickness_nm[of.film] for of in by_scale])
-    shares = 1 / (1 + k * LENGTHS_OVER_THICKNESS[:, None] ** m)
-    rank = float(np.corrcoef(rankdata([k, m], axis=1))[0, 1])
-    inputs = {"k_film": _samples(k) | {"correlation": {"m_film": rank}}, "m_film": _samples(m)}
-    low, middle, high = np.quantile(shares, INTERVAL, axis=1)
-    return {
-        "inputs": inputs,
+    draws = likely(of, rng)
+    shared = rng.normal(size=(2, DRAWS)) * [[np.linalg.norm([area_error / 3**0.5, *SYSTEMATIC.values()])], [BOND]]
+    draws *= np.exp([shared[0], shared[0], shared[1], 0 * shared[1]]).T
+    h_film, base, k, m = draws.T
+    ranks = np.corrcoef(rankdata([h_film, k, m], axis=1))
+    low, middle, high = np.quantile(1 / (1 + k * LENGTHS_OVER_THICKNESS[:, None] ** m), INTERVAL, axis=1)
+    ratios = of.length_nm[of.film] / of.thickness_nm[of.film]
+    result["inputs"] = {
+        "h_film": _samples(h_film, "GPa"),
+        "k_film": _samples(k, "1") | {"correlation": {"h_film": float(ranks[0, 1])}},
+        "m_film": _samples(m, "1") | {"correlation": {"h_film": float(ranks[0, 2]), "k_film": float(ranks[1, 2])}},
+    }
+    result["film"] = {
         "base_GPa": dict(zip(("low", "median", "high"), np.quantile(base, INTERVAL).tolist(), strict=True)),
+        "left_out": {name: left_out(name, of) for name in LAWS},
         "length_over_thickness": [float(ratios.min()), float(ratios.max())],
-        "left_out": {
-            name: float(np.sqrt(np.mean([left_out(name, of_scale) ** 2 for of_scale in by_scale]))) for name in LAWS
-        },
         "share": [
             {"length_over_thickness": at, "low": one, "median": two, "high": three}
             for at, one, two, three in zip(LENGTHS_OVER_THICKNESS.tolist(), low, middle, high, strict=True)
         ],
-    }, []
+    }
+    return result
 
 
-def _of_metal(point: Mapping[str, str]) -> bool:
-    return bool(point["film_nm"]) and float(point["film_nm"]) == 0
-
-
-def _samples(values: np.ndarray) -> dict[str, Any]:
+def _samples(values: np.ndarray, unit: str) -> dict[str, Any]:
     """An input's distribution: its quantiles, each as likely as the others."""
     shares = (np.arange(QUANTILES) + 0.5) / QUANTILES
-    return {"distribution": "samples", "values": np.quantile(values, shares).tolist(), "unit": "1"}
+    return {"distribution": "samples", "values": np.quantile(values, shares).tolist(), "unit": unit}

@@ -75,11 +75,6 @@ class Metal:
         return self.material.part("film_base")
 
     @property
-    def bond_length_A(self) -> float:
-        """Half-way between the first and second neighbours of a dense packing."""
-        return 0.5 * (1 + np.sqrt(2)) * self.eam.r_A
-
-    @property
     def species(self) -> Mapping[str, Any]:
         """What has the mass of its atoms, by element."""
         return {self.element: self.eam}

@@ -78,12 +78,14 @@ class Hardness:
     Attributes
     ----------
     status : yield, no_yield, or "rejected: why".
+    sound : whether energy, temperature, film and range of contact are as they must be, whatever became of the plateau.
     plateau_exponent : n of stress ~ length^n on the plateau.
     same_shape_GPa, same_shape_length_nm : mean stress and contact length where the contact is `SAME_SHAPE` of the
         wavelength wide.
     """
 
     status: str
+    sound: bool = False
     contact_length_nm: float = float("nan")
     contact_area_nm2: float = float("nan")
     hardness_GPa: float = float("nan")
@@ -120,13 +122,16 @@ class Onset:
     p_value: float = float("nan")
 
 
-def plastic_onset(witness: Rows, apart_nm: float, rules: Rules = RULES) -> Onset:
+def plastic_onset(witness: Rows, apart_nm: float, rules: Rules = RULES, by_bonds: bool = True) -> Onset:
     """First witness of plasticity among the relaxed snapshots; the bodies are apart for the first `apart_nm` of travel.
 
+    The top must stay `min_lowering_A` lower than in the last snapshot before contact, from then on. Where a metal lies
+    below this is all (`by_bonds` False): its grain boundaries change neighbours at rest too.
+
     The background is the mean number of new exchanges between the snapshots before contact.  The onset is the
-    first snapshot with `min_exchanges` more new exchanges than the background and its two-sigma Poisson noise
-    allow, from which on the top stays `min_lowering_A` lower.  Its p value is that of the exact test for two
-    Poisson counts (Przyborowski and Wilenski 1940), which knows that the background is an estimate.
+    first snapshot with `min_exchanges` more new exchanges than the background and its two-sigma Poisson noise allow.
+    Its p value is that of the exact test for two Poisson counts (Przyborowski and Wilenski 1940), which knows that the
+    background is an estimate.
     """
     displacement = np.array([row["displacement_nm"] for row in witness])
     new = np.array([row["new_exchanges"] for row in witness])
@@ -136,11 +141,14 @@ def plastic_onset(witness: Rows, apart_nm: float, rules: Rules = RULES) -> Onset
     if not np.any(before):
         return Onset(None, float("nan"))
     background = float(np.mean(new[before]))
-    limit = background + max(rules.min_exchanges, 2 * np.sqrt(background))
+    limit = background + max(rules.min_exchanges, 2 * np.sqrt(background)) if by_bonds else 0.0
+    lowering -= lowering[apart][-1]
     lasting = np.minimum.accumulate(lowering[::-1])[::-1] >= rules.min_lowering_A
     onsets = np.flatnonzero((new >= limit) & lasting & ~apart)
     if len(onsets) == 0:
         return Onset(None, background)
+    if not by_bonds:
+        return Onset(float(displacement[onsets[0]]), background)
     from scipy.special import bdtrc  # half a second to import, which plans do without
 
     count, earlier, snapshots = int(new[onsets[0]]), int(np.sum(new[before])), int(np.sum(before))
@@ -154,6 +162,7 @@ def find_hardness(
     cell_area_nm2: float,
     approach_nm: float = PROTOCOL.approach_nm,
     rules: Rules = RULES,
+    on_metal: bool = False,
 ) -> Hardness:
     """Hardness of a closing run.
 
@@ -162,6 +171,8 @@ def find_hardness(
     curve, witness : rows of `Closing.curve` and `Closing.witness`.
     cell_area_nm2 : cross-section of the simulation cell.
     approach_nm : travel before a flat can touch.
+    on_metal : a metal, or a film on one: stress that changes with the contact is what its law describes, so that no
+        plateau is asked for.
     """
     column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
     length, stress, travel = (
@@ -177,7 +188,7 @@ def find_hardness(
     window = _first_stretch((length >= rules.min_length_nm) & (fraction <= rules.max_area_fraction))
     # counterfaces of atoms start farther apart than the approach
     apart = np.max(travel[np.cumsum(fraction) == 0], initial=approach_nm)
-    onset = plastic_onset(witness, float(apart), rules)
+    onset = plastic_onset(witness, float(apart), rules, by_bonds=not on_metal)
     measured: dict[str, Any] = {
         "drift_meV_atom_ps": drift,
         "warming_K": warming,
@@ -189,6 +200,7 @@ def find_hardness(
         return Hardness(f"rejected: warms by {warming:.0f} K", **measured)
     if np.sum(window) < rules.min_points:
         return Hardness("rejected: contact too small for the window of lengths", **measured)
+    measured["sound"] = True
     low, high = (share * np.sqrt(cell_area_nm2) for share in SAME_SHAPE)
     if np.any(alike := window & (length >= low) & (length < high)):
         measured["same_shape_GPa"] = float(np.mean(stress[alike]))
@@ -210,7 +222,7 @@ def find_hardness(
     }
     if np.sum(beyond) < rules.min_points:
         return Hardness("rejected: too few averages between onset and the end of the window", **measured)
-    first = settled(stress[beyond])
+    first = 0 if on_metal else settled(stress[beyond])
     plateau, lengths = stress[beyond][first:], length[beyond][first:]
     exponent = _exponent(lengths, plateau)
     low, high = interval_of_mean(plateau)
@@ -225,7 +237,7 @@ def find_hardness(
         "plateau_exponent": exponent,
         "plateau_points": len(plateau),
     }
-    if exponent > rules.max_exponent:
+    if exponent > rules.max_exponent and not on_metal:
         status = f"rejected: stress still rises as length^{exponent:.2f} beyond the onset"
     elif fraction[-1] < rules.stop_area_fraction:
         status = (
@@ -267,9 +279,9 @@ def point(
 ) -> dict[str, Any]:
     """Row of points.csv of a run, given its summary `run` and the name of its potential."""
     copied = ("energy_scale", "asperity", "wavelength_nm", "amplitude_nm", "film_nm", "seed", "atoms", "restart_steps")
-    hardness = find_hardness(curve, witness, run["wavelength_nm"] ** 2)
+    hardness = find_hardness(curve, witness, run["wavelength_nm"] ** 2, on_metal=run["film_nm"] is not None)
     if run["film_nm"] and (fault := film_fault(run)):
-        hardness = replace(hardness, status=f"rejected: {fault}")
+        hardness = replace(hardness, status=f"rejected: {fault}", sound=False)
     return {
         "run": run["run"],
         "potential": potential,

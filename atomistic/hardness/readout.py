@@ -39,15 +39,11 @@ class Geometry:
 
 
 @dataclass(frozen=True)
-class BondKind:
-    """Bonds between atoms of two types; one of metal joins atoms of one type.
+class Bond:
+    """What joins cation and anion, by their types in a body; `length_A` is the first minimum of their g(r)."""
 
-    Attributes
-    ----------
-    length_A : first minimum of their g(r).
-    """
-
-    types: tuple[int, int]
+    cation: int
+    anion: int
     length_A: float
 
 
@@ -82,7 +78,7 @@ class Readout:
     Parameters
     ----------
     per_average : samples of an average.
-    bonds : what counts as one.
+    bond : what counts as one; None: nothing does.
     """
 
     def __init__(
@@ -93,11 +89,11 @@ class Readout:
         per_average: int,
         area: Area,
         geometry: Geometry,
-        bonds: Sequence[BondKind],
+        bond: Bond | None,
     ) -> None:
         self._workspace, self._segment_steps, self._timestep_ps = workspace, segment_steps, timestep_ps
         self._per_average, self.area, self._geometry = per_average, area, geometry
-        self._bonds = bonds
+        self._bond = bond
         self._samples: dict[int, dict[int, Sample]] = {}
         self._ends: dict[int, np.ndarray] = {}
         self._relaxed: dict[int, Relaxed] = {}
@@ -129,7 +125,7 @@ class Readout:
         if segment not in self._relaxed:
             [(step, table)] = load_dump(self._workspace / f"relaxed.{segment}")
             frame, wavelength = table[:, 1:5], self._geometry.wavelength_A
-            near, far = (bonds_of(frame, self._bonds, factor, wavelength) for factor in (NEAR, FAR))
+            near, far = (bonds_of(frame, self._bond, factor, wavelength) for factor in (NEAR, FAR))
             self._relaxed[segment] = Relaxed(step, frame, (near, far))
         return self._relaxed[segment]
 
@@ -246,19 +242,17 @@ def _exchanges(before: tuple[Bonds, Bonds], after: tuple[Bonds, Bonds]) -> int:
     return len(before[0] - after[1]) + len(after[0] - before[1])
 
 
-def bonds_of(frame: Frame, kinds: Sequence[BondKind], factor: float, wavelength_A: float) -> Bonds:
-    """Pairs of atoms nearer to each other than `factor` times the length of a bond of theirs, as rows of the frame."""
+def bonds_of(frame: Frame, bond: Bond | None, factor: float, wavelength_A: float) -> Bonds:
+    """Pairs of cation and anion nearer to each other than `factor` times the length of a bond, as rows of the frame."""
+    if bond is None:
+        return set()
     box = np.array([wavelength_A, wavelength_A, 0.0])  # 0: not periodic
     positions = frame[:, 1:4].copy()
     positions[:, :2] = np.mod(positions[:, :2], wavelength_A)
-    tree, found = KDTree(positions, boxsize=box), set()
-    for kind in kinds:
-        pairs = tree.query_pairs(factor * kind.length_A, output_type="ndarray")
-        first, second = frame[pairs[:, 0], 0].astype(int), frame[pairs[:, 1], 0].astype(int)
-        bonded = (first == kind.types[0]) & (second == kind.types[1])
-        bonded |= (first == kind.types[1]) & (second == kind.types[0])
-        found |= set(map(tuple, pairs[bonded].tolist()))
-    return found
+    pairs = KDTree(positions, boxsize=box).query_pairs(factor * bond.length_A, output_type="ndarray")
+    kinds = np.sort(frame[pairs, 0], axis=1)
+    bonded = np.all(kinds == sorted((bond.cation, bond.anion)), axis=1)
+    return set(map(tuple, pairs[bonded].tolist()))
 
 
 def _top(frame: Frame) -> float:

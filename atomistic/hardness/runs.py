@@ -61,7 +61,10 @@ PROTOCOL = Protocol()
 
 
 def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
-    """Every asperity x seed x energy scale of the settings; metals keep their energies, so that they have one scale."""
+    """Every asperity x seed x energy scale of the settings; films and their metal at the highest scale alone.
+
+    A metal keeps its energies, and oxide with halved ones is no harder than it: no effect of a film would be left.
+    """
     return [
         ClosingRun(
             name=f"{asperity.name}_seed{seed}_{SCALE_NAMES.get(scale, f'x{scale:g}')}",
@@ -72,7 +75,7 @@ def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
         for asperity in settings.asperities
         for seed in settings.seeds
         for scale in settings.energy_scales
-        if asperity.film_nm != 0 or scale == max(settings.energy_scales)
+        if asperity.film_nm is None or scale == max(settings.energy_scales)
     ]
 
 

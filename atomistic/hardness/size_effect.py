@@ -48,14 +48,13 @@ def fit_size_effect(
     Content of fit.json (docs/hardness.md).
     """
     used = [point for point in points if point["status"] == "yield"]
-    oxide = [point for point in used if not point["film_nm"]]  # films count as runs; their law is fitted apart
     refused = [{"run": point["run"], "status": point["status"]} for point in points if point["status"] != "yield"]
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
     if len(used) < MIN_POINTS:
         reasons.append(f"{len(used)} of {len(points)} runs gave a defended hardness, {MIN_POINTS} are needed")
     elif len(used) < MIN_SHARE * len(points):
         reasons.append(f"only {len(used)} of {len(points)} runs gave a defended hardness (gate {MIN_SHARE:.0%})")
-    scales = {float(point["energy_scale"]) for point in oxide}
+    scales = {float(point["energy_scale"]) for point in used}
     if missing := sorted(set(energy_scales) - scales):
         reasons.append(f"no defended hardness at energy scale {', '.join(f'{scale:g}' for scale in missing)}")
     result: dict = {
@@ -63,22 +62,22 @@ def fit_size_effect(
         "points_used": len(used),
         "points_total": len(points),
         "points_rejected": refused,
-        "cost": _cost(points),
+        "cost": cost_of(points),
         "inputs": {},
         "gate": {"passed": False, "reasons": reasons},
     }
-    if len(oxide) < 2:
-        result["gate"]["reasons"] = reasons or ["fewer than two runs of oxide throughout gave a defended hardness"]
+    if len(used) < 2:
+        result["gate"]["reasons"] = reasons or ["fewer than two points"]
         return result
-    free = {"together": oxide} | _by_scale(oxide)
+    free = {"together": used} | _by_scale(used)
     result["free_fit"] = {name: free_fit(group) for name, group in free.items()}
-    result["halved_over_full"] = scale_ratios(oxide)
-    result["size_effect_at_one_shape"] = same_shape_exponents([point for point in points if not point["film_nm"]])
+    result["halved_over_full"] = scale_ratios(used)
+    result["size_effect_at_one_shape"] = same_shape_exponents(points)
     # the error of the area lies anywhere within that of its calibration: a uniform distribution
     systematic = {"area": area_error / np.sqrt(3), **others}
-    h_macro, h_prime, h_film = literature_samples(oxide, fit.h_macro_GPa, systematic)
+    h_macro, h_prime, h_film = literature_samples(used, fit.h_macro_GPa, systematic)
     if fit.h_macro == "free":
-        h_macro, h_prime = free_samples(oxide, systematic)
+        h_macro, h_prime = free_samples(used, systematic)
     result["inputs"] = {
         "h_macro": {"distribution": "uniform", **_range(h_macro, fit), "unit": "GPa"},
         "h_prime": {
@@ -97,7 +96,7 @@ def fit_size_effect(
     }
     result["H_macro_GPa"] = _summary(h_macro)
     result["H_prime_GPa_nm0.5"] = _summary(h_prime)
-    result["budget"] = variance_budget(oxide, fit.h_macro_GPa, systematic)
+    result["budget"] = variance_budget(used, fit.h_macro_GPa, systematic)
     result["curve"] = band(h_macro, h_prime, result["budget"]["statistical"]["std"])
     if result["inputs"]["h_prime"]["a"] <= 0 or result["inputs"]["h_macro"]["a"] <= 0:
         reasons.append("the fit allows a hardness that falls with decreasing size or is negative: not identifiable")
@@ -105,7 +104,7 @@ def fit_size_effect(
     return result
 
 
-def _cost(points: Sequence[Point]) -> dict[str, float]:
+def cost_of(points: Sequence[Point]) -> dict[str, float]:
     """What the runs took, and the share of the Python around LAMMPS in it."""
     total = {key: sum(float(point[key]) for point in points) for key in ("atom_steps", "lammps_cpu_s", "python_cpu_s")}
     return {**total, "python_cpu_share": total["python_cpu_s"] / (total["lammps_cpu_s"] + total["python_cpu_s"])}

@@ -80,8 +80,8 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """Largest and mean error of each pair of bodies, where the distance of touch is that in use."""
     groups: dict[str, list[float]] = {}
     for row in rows:
-        if row["touch_A"] == ("2.55" if " on " in row["potential"] else "2.4"):
-            name = {"pmmcs on matsui_akaogi": "oxides"}.get(row["potential"], row["potential"])
+        name = {"pmmcs on matsui_akaogi": "oxides"}.get(row["potential"], row["potential"].replace(" ", "_"))
+        if row["touch_A"] == ("2.55" if name == "oxides" else "2.4"):
             name += "_halved" * (float(row["energy_scale"]) == 0.5)
             name += "_pair" * (row["bodies"] == "2" and name != "oxides")
             groups.setdefault(name, []).append(abs(float(row["error"])))

@@ -1,6 +1,6 @@
 """Which law of hardness foretells films on titanium, and what of the paper's fall from 10 to 2 GPa is the film's?
 
-The closing runs of a scene with films, as `reduced`: oxide throughout, the metal by itself, and films of some
+The closing runs of a scene with films, as `films`: oxide throughout, the metal by itself, and films of some
 thicknesses. Each row is the mean stress of a run at a contact length. The constant and eq. 4 (`paper`) know only the
 contact length L; `film` has the thickness t, and the hardness of oxide and metal by themselves. An error is the root
 mean square of ln(predicted / found) at a thickness that the fit had not. `prediction` has k and m of a prototype,
@@ -28,7 +28,7 @@ from evidence.record import ROOT, load
 from mesoscale.tables import load_table
 
 PREDICTION = (0.24, 1.2)  # k and m of a prototype with other films, written down before
-MAIN = "reduced"
+MAIN = "films"
 LENGTHS_NM = (3.0, 5.0, 10.0, 15.0, 30.0, 100.0)
 OXIDE_NM = 5.0  # of TiO2 on the titanium of Kim et al. (2013)
 SOFT_GPA, SIZE_EFFECT = (0.7, 3.2), (3.7, 16.7)  # H_macro, and H' (GPa nm^0.5) of eq. 4 fitted to a glass
@@ -54,7 +54,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         ]
         drop = slope_drop(curve)
         for length, stress in mean_stresses(curve, float(point["wavelength_nm"])):
-            copied = ("geometry", "seed", "energy_scale", "film_nm", "status", "contact_length_nm", "hardness_GPa")
+            copied = ("geometry", "seed", "film_nm", "sound", "status", "contact_length_nm", "hardness_GPa")
             yield {
                 "scene": name,
                 **{key: point[key] for key in copied},
@@ -84,12 +84,12 @@ def slope_drop(curve: Sequence[Mapping[str, float]]) -> tuple[float, float]:
     return found
 
 
-def points_of(rows: Sequence[Mapping[str, str]], scene: str = MAIN, scale: float = 1.0) -> FilmPoints:
-    """The points of a scene at one energy scale; the metal, which has one scale, belongs to each."""
+def points_of(rows: Sequence[Mapping[str, str]], scene: str = MAIN) -> FilmPoints:
+    """The points of the sound runs of a scene."""
     kept = [
         (float(row["seed"]), float(row["film_nm"] or "inf"), float(row["length_nm"]), float(row["stress_GPa"]))
         for row in rows
-        if row["scene"] == scene and (float(row["energy_scale"]) == scale or row["film_nm"] in ("0", "0.0"))
+        if row["scene"] == scene and row["sound"] == "True"
     ]
     return FilmPoints(*np.array(kept).reshape(-1, 4).T)
 
@@ -131,14 +131,14 @@ def laws() -> dict[str, Any]:
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     """Errors of the laws, values with 68 % intervals, and the paper's hardness over ours."""
     of = laws()
-    found = {"runs": str(len({(row["scene"], row["seed"], row["energy_scale"], row["film_nm"]) for row in rows}))}
-    for label, scale in (("", 1.0), ("_halved", 0.5)):
-        points = points_of(rows, scale=scale)
-        for name in LAWS:
-            found[f"{name}_left_out{label}"] = f"{100 * left_out(name, points):.0f} %"
-        found[f"prediction_left_out{label}"] = f"{100 * foretold(points):.0f} %"
-        for name, value in zip(("H_film", "H_base", "k", "m"), fit("film", points), strict=True):
-            found[f"{name}{label}"] = f"{value:.2g}"
+    runs = {(row["seed"], row["film_nm"]): row["sound"] for row in rows if row["scene"] == MAIN}
+    found = {"runs": str(len(runs)), "sound": f"{list(runs.values()).count('True') / len(runs):.0%}"}
+    points = points_of(rows)
+    for name in LAWS:
+        found[f"{name}_left_out"] = f"{100 * left_out(name, points):.0f} %"
+    found["prediction_left_out"] = f"{100 * foretold(points):.0f} %"
+    ratios = points.length_nm[points.film] / points.thickness_nm[points.film]
+    found["range"] = f"{ratios.min():.1f} to {ratios.max():.1f}"
     for name, value, column in zip(("H_film", "H_base", "k", "m"), of["best"], of["draws"].T, strict=True):
         found[name] = f"{value:.2g}{_interval(column)}"
     for length, cases in of["hardness"].items():
@@ -149,7 +149,7 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         found[f"{case}_fall"] = f"{np.median(fall):.2g}{_interval(fall)}"
     for scene in sorted({row["scene"] for row in rows}):
         runs = {
-            (row["seed"], row["energy_scale"], row["film_nm"]): row
+            (row["seed"], row["film_nm"]): row
             for row in rows
             if row["scene"] == scene and row["status"] == "yield" and row["slope_GPa"] not in ("", "nan")
         }

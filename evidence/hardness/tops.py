@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import KDTree
 
-from atomistic.hardness.closing import attraction_row, bond_kinds, cut_body
+from atomistic.hardness.closing import attraction_row, cut_body, oxide_bond
 from atomistic.hardness.contact_area import calibrated, contact_map, shares_in_contact
 from atomistic.hardness.glass import make_glass, write_forcefield
 from atomistic.hardness.plateau import RULES
@@ -66,13 +66,13 @@ def rows(given: Namespace) -> Iterator[dict]:
             place = (run.seed, run.asperity.tiles, round(1000 * run.asperity.amplitude_nm))
             base_nm = base_thickness_nm(closing, run.asperity.tiles * float(glass.cell_A[0]) / 10, PROTOCOL)
             cut = cut_body(run, glass, potential, base_nm, place, PROTOCOL)
-            aside, bonds = Workspace(work / "anneal", {}, "anneal.in"), bond_kinds(glass.elements, material, potential)
+            aside, bond = Workspace(work / "anneal", {}, "anneal.in"), oxide_bond(glass.elements, material, potential)
             body = prepare_body(run, cut.cut, cut.formula, potential, closing, PROTOCOL, aside, place)
             workspace = Workspace(work / "closing", {}, "closing.in")
 
-            def readout(geometry: Geometry, plan=plan, workspace=workspace, bonds=bonds) -> Readout:
+            def readout(geometry: Geometry, plan=plan, workspace=workspace, bond=bond) -> Readout:
                 steps = plan.segment_steps, plan.timestep, PROTOCOL.samples
-                return Readout(workspace, *steps, area, geometry, bonds)
+                return Readout(workspace, *steps, area, geometry, bond)
 
             def wide_enough(geometry: Geometry, segments: int, readout=readout) -> bool:
                 contact_nm2 = readout(geometry).curve(range(1, segments + 1))[-1]["contact_area_nm2"]

@@ -309,6 +309,15 @@ def _hardness(root: Path) -> None:
                 **{"length_min_nm": 2.4, "length_max_nm": 4.4},
             }
         },
+        "film": {
+            "base_GPa": {"low": 4, "median": 5, "high": 6},
+            "left_out": {"film": 0.08, "paper": 0.2, "constant": 0.21},
+            "length_over_thickness": [1.1, 5.6],
+            "share": [
+                {"length_over_thickness": x, "low": 0.3 / x, "median": 0.4 / x, "high": 0.5 / x}
+                for x in (0.5, 2.0, 10.0)
+            ],
+        },
         "cost": {"atom_steps": 2e9, "lammps_cpu_s": 1500, "python_cpu_s": 30, "python_cpu_share": 0.02},
     }
     write_json(root / "hardness/fit.json", fit, PROVENANCE)

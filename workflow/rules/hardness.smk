@@ -201,6 +201,7 @@ rule fit_hardness:
         points=f"{RESULTS}/hardness/points.csv",
         witnesses=of_run("witness/{run}.csv"),
         curves=of_run("closing/{run}.csv") if BASE else [],
+        metal=BASE or [],
         potential=POTENTIAL,
         counter_potentials=[COUNTER_POTENTIAL] if COUNTER_GLASS else [],
         glasses=[

@@ -1,6 +1,6 @@
 """Tables of the hardness stage."""
 
-from workflow.schemas.table import Table, integer, number, text
+from workflow.schemas.table import Table, boolean, integer, number, text
 
 _STEP = integer("step", "MD step")
 _DISPLACEMENT = number("displacement_nm", "nm", "travel of the counterface since the start")
@@ -41,6 +41,7 @@ TABLES = (
             integer("seed", "seed of the glass and of the velocities"),
             integer("atoms", "number of atoms"),
             text("status", "yield, no_yield, or rejected: why"),
+            boolean("sound", "whether energy, temperature, film and range of contact are as they must be"),
             number("contact_length_nm", "nm", "square root of the contact area, mean over the plateau"),
             number("contact_area_nm2", "nm²", "square of contact_length_nm"),
             number("hardness_GPa", "GPa", "mean contact stress of the plateau"),

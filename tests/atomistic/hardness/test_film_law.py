@@ -8,34 +8,28 @@ import pytest
 from atomistic.hardness import film_law
 
 TRUE = (10.0, 4.0, 0.3, 1.5)  # H_film, H_base, k, m
+COST = {"atom_steps": "1e6", "lammps_cpu_s": "0.9", "python_cpu_s": "0.1"}
+GLASSES = [{"gate": {"passed": True, "reasons": []}}]
 FILMS = ("", "0", "0.6", "1", "2")
 
 
-def made_up(films=FILMS, seeds=(1, 2), noise=0.0, scales=(1.0,), of_seed=0.0):
+def made_up(films=FILMS, seeds=(1, 2), noise=0.0, of_seed=0.0):
     """Rows of points.csv and curves: stress by the law over contacts of 2 to 3.5 nm on a wavelength of 5 nm."""
     rng, points, curves = np.random.default_rng(1), [], {}
-    for film, seed, scale in product(films, seeds, scales):
-        if film == "0" and scale != 1:
-            continue
-        thickness = float(film) if film else np.inf
-        run, length = f"{film}_{seed}_{scale}", np.linspace(1.0, 4.5, 60)
-        values = np.array([scale * TRUE[0], *TRUE[1:]])
-        stress = film_law.film(values, length, np.array(thickness)) * np.exp(of_seed * rng.normal())
+    for film, seed in product(films, seeds):
+        thickness, run, length = float(film or "inf"), f"{film}_{seed}", np.linspace(1.0, 4.5, 60)
+        stress = film_law.film(np.array(TRUE), length, np.array(thickness)) * np.exp(of_seed * rng.normal())
         stress = stress * np.exp(noise * rng.normal(size=60))
-        points.append({"run": run, "film_nm": film, "seed": str(seed), "energy_scale": str(scale)})
-        points[-1] |= {"status": "yield", "wavelength_nm": "5"}
+        points.append({"run": run, "film_nm": film, "seed": str(seed), "energy_scale": "1.0", "sound": "True"})
+        points[-1] |= {"status": "yield", "wavelength_nm": "5", **COST}
         curves[run] = [
             {"contact_length_nm": at, "contact_stress_GPa": of} for at, of in zip(length, stress, strict=True)
         ]
     return points, curves
 
 
-def points_of(points, curves):
-    return film_law.points_of([(point, curves[point["run"]]) for point in points])
-
-
 def test_a_made_up_law_is_found_and_foretells_the_thickness_left_out():
-    points = points_of(*made_up())
+    points = film_law.points_of(*made_up())
     assert points.length_nm.min() > 2
     assert points.length_nm.max() < 5 / np.sqrt(2)  # beyond, the contact takes up half of the cell
     np.testing.assert_allclose(film_law.fit("film", points), TRUE, rtol=0.01)  # means of bins
@@ -49,7 +43,7 @@ def test_the_interval_of_k_and_m_holds_the_truth():
     share, held = 1 / (1 + TRUE[2] * 2 ** TRUE[3]), 0
     for series in range(12):
         rng = np.random.default_rng(series)
-        points = points_of(*made_up())
+        points = film_law.points_of(*made_up())
         runs = np.unique(np.column_stack([points.seed, np.nan_to_num(points.thickness_nm, posinf=99)]), axis=0)
         factors = {tuple(run): np.exp(0.05 * rng.normal()) for run in runs}
         keys = zip(points.seed, np.nan_to_num(points.thickness_nm, posinf=99), strict=True)
@@ -60,17 +54,22 @@ def test_the_interval_of_k_and_m_holds_the_truth():
     assert held >= 8  # 12 draws of 0.9: fewer than 8 in less than one case in 200
 
 
-def test_both_energy_scales_and_the_metal_of_one_give_one_law():
-    entry, reasons = film_law.fit_film_law(*made_up(scales=(1.0, 0.5), noise=0.02, of_seed=0.02))
-    assert reasons == []
-    assert entry["base_GPa"]["low"] < 4 < entry["base_GPa"]["high"]
-    assert np.median(entry["inputs"]["m_film"]["values"]) == pytest.approx(1.5, abs=0.5)
-    assert entry["inputs"]["k_film"]["correlation"]["m_film"] < 0
-    assert entry["length_over_thickness"][0] < 1.2
-    assert entry["length_over_thickness"][1] > 5
-    shares = [row["median"] for row in entry["share"]]
+def test_the_fit_hands_on_joint_inputs_and_says_where_it_was_measured():
+    fit = film_law.fit_films(*made_up(noise=0.02, of_seed=0.02), GLASSES, 0.03)
+    assert fit["gate"] == {"passed": True, "reasons": []}
+    assert fit["points_used"] == fit["points_total"] == 10
+    inputs, film = fit["inputs"], fit["film"]
+    assert list(inputs) == ["h_film", "k_film", "m_film"]
+    assert np.median(inputs["h_film"]["values"]) == pytest.approx(10, rel=0.1)
+    assert np.std(np.log(inputs["h_film"]["values"])) > 0.2  # errors that all runs share: shape, potential, rate
+    assert np.median(inputs["m_film"]["values"]) == pytest.approx(1.5, abs=0.5)
+    assert inputs["m_film"]["correlation"]["k_film"] < -0.2
+    assert film["base_GPa"]["low"] < 4 < film["base_GPa"]["high"]
+    assert film["length_over_thickness"][0] < 1.2
+    assert film["length_over_thickness"][1] > 5
+    shares = [row["median"] for row in film["share"]]
     assert shares == sorted(shares, reverse=True)
-    assert entry["left_out"]["film"] < entry["left_out"]["paper"]
+    assert film["left_out"]["film"] < film["left_out"]["paper"]
 
 
 @pytest.mark.parametrize(
@@ -83,14 +82,24 @@ def test_both_energy_scales_and_the_metal_of_one_give_one_law():
     ],
 )
 def test_runs_that_cannot_show_a_law_say_why(films, reason):
-    entry, reasons = film_law.fit_film_law(*made_up(films))
-    assert entry == {}
-    assert reason in reasons[0]
+    fit = film_law.fit_films(*made_up(films), GLASSES, 0.03)
+    assert fit["inputs"] == {}
+    assert not fit["gate"]["passed"]
+    assert reason in fit["gate"]["reasons"][0]
 
 
-def test_refused_runs_do_not_count():
+def test_unsound_runs_and_glasses_count_against_the_fit():
     points, curves = made_up()
     for point in points:
-        if point["film_nm"] == "2":
-            point["status"] = "rejected: the film slid"
-    assert 2.0 not in points_of(points, curves).thickness_nm
+        if point["film_nm"] in ("0.6", "1", "2"):
+            point |= {"sound": "False", "status": "rejected: the film slid"}
+    fit = film_law.fit_films(points, curves, [{"gate": {"passed": False, "reasons": ["SiO2 glass: density"]}}], 0.03)
+    assert fit["gate"]["reasons"][:2] == ["SiO2 glass: density", "only 4 of 10 runs are sound (gate 50%)"]
+    assert fit["points_rejected"][0]["status"] == "rejected: the film slid"
+
+
+def test_halved_energies_do_not_enter():
+    points, curves = made_up()
+    half = {**points[0], "run": "half", "energy_scale": "0.5"}
+    of = film_law.points_of([*points, half], {**curves, "half": curves[points[0]["run"]]})
+    assert len(of.seed) == len(film_law.points_of(points, curves).seed)

@@ -27,7 +27,6 @@ def point(hardness, length, scale=1.0, asperity="a", status="yield", spread=0.05
         "contact_length_nm": str(length),
         "wavelength_nm": "6",
         "amplitude_nm": "0.6",
-        "film_nm": "",
         "same_shape_GPa": str(hardness),
         "same_shape_length_nm": str(1.1 * length),
         "atom_steps": "1e6",

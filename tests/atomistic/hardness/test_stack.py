@@ -9,12 +9,12 @@ from scipy.spatial import KDTree
 
 from atomistic.errors import InputError
 from atomistic.hardness.accuracy import variations
-from atomistic.hardness.closing import area_of, bond_kinds, cut_body, run_closing
+from atomistic.hardness.closing import area_of, cut_body, oxide_bond, run_closing
 from atomistic.hardness.cost import atoms_per_nm3, plan_rows
 from atomistic.hardness.glass import make_glass
 from atomistic.hardness.metal import TOO_NEAR, Metal, make_base, polycrystal
-from atomistic.hardness.plateau import film_fault, point
-from atomistic.hardness.readout import BondKind, bonds_of
+from atomistic.hardness.plateau import film_fault, plastic_onset, point
+from atomistic.hardness.readout import Bond, bonds_of
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, planned_runs, smallest_run
 from atomistic.hardness.stability import film_checks
 from atomistic.hardness.stack import GAP_A, Stack, check_film, film_properties, lay
@@ -57,7 +57,7 @@ def test_grains_fill_the_cell_and_keep_apart(metal):
     assert body.positions_A.min() >= 0
     assert not KDTree(body.positions_A, boxsize=body.cell_A).query_pairs(TOO_NEAR * metal.eam.r_A)
     assert 0.88 < len(body) / 40.0**3 * 1e3 / atoms_per_nm3(metal.eam) < 1.0  # grain boundaries close in the anneal
-    neighbours = KDTree(body.positions_A, boxsize=body.cell_A).query_ball_point(body.positions_A, metal.bond_length_A)
+    neighbours = KDTree(body.positions_A, boxsize=body.cell_A).query_ball_point(body.positions_A, 3.5)
     assert np.median([len(found) - 1 for found in neighbours]) == 12  # of hexagonal packing
 
 
@@ -141,18 +141,26 @@ def test_a_film_that_came_off_or_slid_does_not_count():
     assert "the film covers 80% of its base" in str(film_fault(film_properties(bare, bare, 40.0)))
 
 
-def test_bonds_of_a_metal_are_its_neighbours(metal):
-    a = metal.eam.r_A
-    frame = np.array([[1, 0, 0, 0], [1, a, 0, 0], [1, 0, np.sqrt(2) * a, 0], [2, 0, 0, 1.6]])
-    kinds = [BondKind((1, 1), metal.bond_length_A)]
-    assert bonds_of(frame, kinds, 1.0, 50.0) == {(0, 1)}
-    assert bonds_of(frame, kinds, 1.2, 50.0) == {(0, 1), (0, 2)}
+def test_bonds_join_cation_and_anion_of_the_film_alone(potential, oxides):
+    bond = oxide_bond(("Ti", "Si", "O"), oxides["SiO2"], potential)
+    assert bond == Bond(2, 3, 2.2)
+    frame = np.array([[1, 0, 0, 0], [2, 3, 0, 0], [3, 4.6, 0, 0], [3, 1.6, 0, 0], [1, 1.5, 0, 0]])
+    assert bonds_of(frame, bond, 1.0, 50.0) == {(1, 2), (1, 3)}
+    assert oxide_bond(("Ti",), oxides["SiO2"], potential) is None
+    assert bonds_of(frame, None, 1.0, 50.0) == set()
+
+
+def test_where_a_metal_lies_below_the_lasting_lowering_is_the_witness():
+    """Its grain boundaries change bonds at rest, and the film settles before contact: both count for nothing."""
+    lowering = (0.0, 0.12, 0.13, 0.14, 0.2, 0.3)
+    rows = [{"displacement_nm": 0.1 * k, "new_exchanges": 80, "lowering_nm": low} for k, low in enumerate(lowering)]
+    onset = plastic_onset(rows, 0.1, by_bonds=False)
+    assert onset.displacement_nm == pytest.approx(0.4)
+    assert plastic_onset(rows, 0.1).displacement_nm is None
 
 
 def test_a_film_is_pressed_and_keeps_its_energy(potential, oxides, glass, base, tmp_path):
     run = run_of(0.4)
-    kinds = bond_kinds(("Ti", "Si", "O"), oxides["SiO2"], potential, base)
-    assert [kind.types for kind in kinds] == [(1, 1), (2, 3)]
     closing = run_closing(run, oxides["SiO2"], glass, potential, CLOSING, tmp_path / "work", QUICK, base=base)
     column = {name: np.array([row[name] for row in closing.curve]) for name in closing.curve[0]}
     assert column["force_nN"].max() > 1
@@ -221,10 +229,12 @@ def stacked_settings(**changed):
     return HardnessSettings.model_validate({"base": "titanium", "seeds": [1], "asperities": asperities, **changed})
 
 
-def test_the_metal_has_one_energy_scale_and_the_thinnest_film_shows_the_accuracy():
+def test_films_have_one_energy_scale_and_the_thinnest_film_shows_the_accuracy():
     runs = planned_runs(stacked_settings())
-    assert [run.name for run in runs if run.asperity.name == "metal"] == ["metal_seed1_full"]
-    assert len(runs) == 7
+    assert [run.name for run in runs if run.asperity.name != "oxide"] == [
+        f"{name}_seed1_full" for name in ("metal", "thick", "thin")
+    ]
+    assert len(runs) == 5
     smallest = smallest_run(stacked_settings())
     assert smallest.name == "thin_seed1_full"
     assert "bonds_weaker" in variations(smallest)

@@ -43,11 +43,18 @@ def describe(results: Results) -> Section | None:
         ),
         "Figure 8",
     )
+    if film := fit.get("film"):
+        section.add(
+            film_share(film),
+            "What a film keeps of the difference between its own hardness and the metal's, against contact length over "
+            "thickness: the law in use, with its 68 % interval. Grey: where the runs lie.",
+        )
     lines = [
         (
             row["run"],
             show(row.get("energy_scale")),
             row.get("geometry", ""),
+            show(row.get("film_nm")) if row.get("film_nm") else "–",
             show(row.get("wavelength_nm")),
             show(row.get("contact_length_nm")),
             _range(row, "hardness"),
@@ -58,11 +65,12 @@ def describe(results: Results) -> Section | None:
         for row in points
     ]
     header = (
-        "run", "energy scale", "geometry", "λ (nm)", "contact length (nm)", "hardness (GPa)",
+        "run", "energy scale", "geometry", "film (nm)", "λ (nm)", "contact length (nm)", "hardness (GPa)",
         "bond exchanges per 0.1 nm: before → onset → after", "p of the onset", "status",
     )  # fmt: skip
-    if len({line[2] for line in lines}) == 1:  # one geometry: its column says nothing
-        header, *lines = ((*line[:2], *line[3:]) for line in (header, *lines))
+    for place in (3, 2):  # one film, or one geometry: its column says nothing
+        if len({line[place] for line in lines}) == 1:
+            header, *lines = ((*line[:place], *line[place + 1 :]) for line in (header, *lines))
     section.blocks.append(Table("Every run and what became of it", header, lines))
     section.notes += _fit_notes(fit)
     section.files += ["hardness/points.csv", "hardness/fit.json"]
@@ -148,6 +156,22 @@ def hardness_size(results: Results) -> str | None:
     return draw("fig8", "Hardness of single asperities against contact length", plot)
 
 
+def film_share(film: dict[str, Any]) -> str | None:
+    """The law of films against contact length over thickness."""
+
+    def plot(axis):
+        at, low, middle, high = (
+            column(film["share"], key) for key in ("length_over_thickness", "low", "median", "high")
+        )
+        axis.fill_between(at, low, high, color=GREEN, alpha=0.18, linewidth=0, label="68 % interval")
+        axis.plot(at, middle, color=GREEN, label="1 / (1 + k (L/t)^m)")
+        axis.axvspan(*film["length_over_thickness"], color=SOFT, alpha=0.13, linewidth=0, label="runs")
+        axis.set(xlabel="contact length over thickness L/t", ylabel="share of the film", ylim=(0, 1.05), xscale="log")
+        axis.legend()
+
+    return draw("film_share", "Share of the film in the hardness, against contact length over thickness", plot)
+
+
 def _draw_paper(axis) -> None:
     length = np.linspace(1.5, 20, 200)
     low, high = 0.7 + 1.95 / np.sqrt(length), 3.2 + 14.8 / np.sqrt(length)
@@ -184,6 +208,17 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
         if isinstance(entry := fit.get(key), dict):
             span = f"{show(entry['median'])} [{show(entry['low'])}, {show(entry['high'])}] {unit}"
             notes.append(f"{label} in use, {origin}: {span} (median and 68 % interval).")
+    if film := fit.get("film"):
+        base, (low, high) = film["base_GPa"], film["length_over_thickness"]
+        errors = {name: f"{100 * error:.0f} %" for name, error in film["left_out"].items()}
+        notes.append(
+            f"At a film thickness that its fit had not, the law film errs by {errors['film']}, eq. 4 by "
+            f"{errors['paper']}, a constant by {errors['constant']}."
+        )
+        notes.append(
+            f"The metal as pressed has {show(base['median'])} [{show(base['low'])}, {show(base['high'])}] GPa. "
+            f"Runs have L/t from {show(low)} to {show(high)}; wider contacts extrapolate the law."
+        )
     if cutoff := fit.get("inputs", {}).get("gap_cutoff"):
         notes.append(
             f"The tops of {len(fit['tops'])} runs attract a smooth body like a flat with the cut-off D₀ of "
