@@ -255,8 +255,8 @@ def attraction_row(readout: Readout, segment: int, geometry: Geometry) -> dict[s
         shares = shares_in_contact(places[:, :2], in_contact, side, axis)
         density = bulk_density_per_A3(readout.relaxed(0).frame[:, 1:4], side[0] * side[1])
         top = attract_top(places[:, 2], shares, sample.area_A2, density)
-        found = (top.area_A2 / 100, 10 * top.force_per_A, top.work)
-        return dict(zip(NO_TOP, found, strict=True))
+        values = (top.area_A2 / 100, 10 * top.force_per_A, top.work)
+        return dict(zip(NO_TOP, values, strict=True))
     return NO_TOP
 
 

@@ -56,13 +56,13 @@ def points_of(points: Sequence[Point], curves: Mapping[str, Sequence[Mapping[str
     ----------
     points : rows of points.csv. curves : rows of the closing runs, by run.
     """
-    found, highest = [], max(float(point["energy_scale"]) for point in points)
+    rows, highest = [], max(float(point["energy_scale"]) for point in points)
     for point in points:
         if point["sound"] == "True" and float(point["energy_scale"]) == highest:
             thickness = float(point["film_nm"]) if point["film_nm"] else np.inf
             stresses = mean_stresses(curves[point["run"]], float(point["wavelength_nm"]))
-            found += [(float(point["seed"]), thickness, *of) for of in stresses]
-    return FilmPoints(*np.array(found).reshape(-1, 4).T)
+            rows += [(float(point["seed"]), thickness, *of) for of in stresses]
+    return FilmPoints(*np.array(rows).reshape(-1, 4).T)
 
 
 def mean_stresses(curve: Sequence[Mapping[str, float]], wavelength_nm: float) -> list[tuple[float, float]]:
@@ -118,8 +118,8 @@ def fit(name: str, points: FilmPoints) -> np.ndarray:
     law, start = LAWS[name]
 
     def misfit(logs: np.ndarray) -> np.ndarray:
-        found = law(np.exp(logs), points.length_nm, points.thickness_nm)
-        return np.log(found / points.stress_GPa)
+        foretold = law(np.exp(logs), points.length_nm, points.thickness_nm)
+        return np.log(foretold / points.stress_GPa)
 
     return np.exp(least_squares(misfit, np.log(start), bounds=(np.log(1e-3), np.log(50.0))).x)
 

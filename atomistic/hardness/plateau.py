@@ -292,19 +292,19 @@ def point(
     }
 
 
-def film_fault(found: Mapping[str, Any], rules: FilmRules = FILM_RULES) -> str | None:
+def film_fault(summary: Mapping[str, Any], rules: FilmRules = FILM_RULES) -> str | None:
     """Why a run does not count; None where its film is as it must be.
 
     Parameters
     ----------
-    found : summary of a run, with what `film_properties` found.
+    summary : of a run, with what `film_properties` found.
     """
-    if found["covered_share"] < rules.least_covered:
-        return f"the film covers {found['covered_share']:.0%} of its base (gate {rules.least_covered:.0%})"
-    if found["gap_95_A"] > rules.largest_gap_A:
-        return f"a gap of {found['gap_95_A']:.1f} A between film and base (gate {rules.largest_gap_A:g} A)"
-    if found["slid_A"] > rules.largest_slip_A:
-        return f"the film slid by {found['slid_A']:.1f} A over its base (gate {rules.largest_slip_A:g} A)"
+    if summary["covered_share"] < rules.least_covered:
+        return f"the film covers {summary['covered_share']:.0%} of its base (gate {rules.least_covered:.0%})"
+    if summary["gap_95_A"] > rules.largest_gap_A:
+        return f"a gap of {summary['gap_95_A']:.1f} A between film and base (gate {rules.largest_gap_A:g} A)"
+    if summary["slid_A"] > rules.largest_slip_A:
+        return f"the film slid by {summary['slid_A']:.1f} A over its base (gate {rules.largest_slip_A:g} A)"
     return None
 
 

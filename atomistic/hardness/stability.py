@@ -166,8 +166,8 @@ def _off_its_base(stack: Stack, body: Atoms, work: Path) -> tuple[bool, str]:
 
 def _separation(stack: Stack, body: Atoms, work: Path) -> tuple[bool, str]:
     bound, free = (_energy(stack, lifted(body, height), work) for height in (0.0, LIFT_A))
-    found = (free - bound) / float(np.prod(body.cell_A[:2])) * EV_PER_A3_IN_GPA / 10
-    return SEPARATION_J_M2[0] < found < SEPARATION_J_M2[1], f"{found:.2f} J/m2"
+    separation = (free - bound) / float(np.prod(body.cell_A[:2])) * EV_PER_A3_IN_GPA / 10
+    return SEPARATION_J_M2[0] < separation < SEPARATION_J_M2[1], f"{separation:.2f} J/m2"
 
 
 def _energy(stack: Stack, body: Atoms, work: Path) -> float:
