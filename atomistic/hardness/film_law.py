@@ -127,14 +127,32 @@ def fit(name: str, points: FilmPoints) -> np.ndarray:
 def left_out(name: str, points: FilmPoints) -> float:
     """Root mean square error of a law, of ln H, at the films of a thickness that its fit had not, one at a time.
 
-    The laws without film are fitted to the other films, `film` to oxide and metal besides.
+    The laws without film are fitted to the other films, `film` to oxide and metal besides. Seeds are averaged.
     """
-    law, errors = LAWS[name][0], []
+
+    def foretell(others: FilmPoints, at: FilmPoints) -> np.ndarray:
+        return LAWS[name][0](fit(name, others), at.length_nm, at.thickness_nm)
+
+    return error_left_out(points, foretell, name == "film")
+
+
+def error_left_out(
+    points: FilmPoints, foretell: Callable[[FilmPoints, FilmPoints], np.ndarray], knows_bodies: bool
+) -> float:
+    """`left_out` of any prediction.
+
+    Parameters
+    ----------
+    foretell : hardness (GPa) at the second points, from the first.
+    knows_bodies : whether it takes runs of oxide and metal besides films.
+    """
+    errors = []
     for thickness in np.unique(points.thickness_nm[points.film]):
         same = points.thickness_nm == thickness
-        values = fit(name, points.take(~same & (points.film | (name == "film"))))
-        of = points.take(same)
-        errors += np.log(law(values, of.length_nm, of.thickness_nm) / of.stress_GPa).tolist()
+        at = points.take(same)
+        wrong = np.log(foretell(points.take(~same & (points.film | knows_bodies)), at) / at.stress_GPa)
+        bins = (at.length_nm // BIN_NM).astype(int)
+        errors += [float(np.mean(wrong[bins == one])) for one in np.unique(bins)]
     return float(np.sqrt(np.mean(np.square(errors))))
 
 

@@ -22,7 +22,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.optimize import least_squares
 
-from atomistic.hardness.film_law import LAWS, FilmPoints, film, fit, left_out, likely, mean_stresses, paper
+from atomistic.hardness.film_law import (
+    LAWS,
+    FilmPoints,
+    error_left_out,
+    film,
+    fit,
+    left_out,
+    likely,
+    mean_stresses,
+    paper,
+)
 from atomistic.hardness.size_effect import SYSTEMATIC
 from evidence.record import ROOT, load
 from mesoscale.tables import load_table
@@ -94,19 +104,15 @@ def points_of(rows: Sequence[Mapping[str, str]], scene: str = MAIN) -> FilmPoint
     return FilmPoints(*np.array(kept).reshape(-1, 4).T)
 
 
-def foretold(points: FilmPoints) -> float:
-    """Error of the law with k and m of the prototype, at the thickness left out."""
-    errors = []
-    for thickness in np.unique(points.thickness_nm[points.film]):
-        same = points.thickness_nm == thickness
-        others, of = points.take(~same), points.take(same)
+def prediction(others: FilmPoints, at: FilmPoints) -> np.ndarray:
+    """The law with k and m of the prototype; oxide and metal by the other runs."""
 
-        def misfit(logs: np.ndarray, at: FilmPoints = others) -> np.ndarray:
-            return np.log(film(np.array([*np.exp(logs), *PREDICTION]), at.length_nm, at.thickness_nm) / at.stress_GPa)
+    def misfit(logs: np.ndarray) -> np.ndarray:
+        values = np.array([*np.exp(logs), *PREDICTION])
+        return np.log(film(values, others.length_nm, others.thickness_nm) / others.stress_GPa)
 
-        found = np.array([*np.exp(least_squares(misfit, np.log([9.0, 5.0])).x), *PREDICTION])
-        errors += np.log(film(found, of.length_nm, of.thickness_nm) / of.stress_GPa).tolist()
-    return float(np.sqrt(np.mean(np.square(errors))))
+    values = np.array([*np.exp(least_squares(misfit, np.log([9.0, 5.0])).x), *PREDICTION])
+    return film(values, at.length_nm, at.thickness_nm)
 
 
 @cache
@@ -136,7 +142,7 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     points = points_of(rows)
     for name in LAWS:
         found[f"{name}_left_out"] = f"{100 * left_out(name, points):.0f} %"
-    found["prediction_left_out"] = f"{100 * foretold(points):.0f} %"
+    found["prediction_left_out"] = f"{100 * error_left_out(points, prediction, True):.0f} %"
     ratios = points.length_nm[points.film] / points.thickness_nm[points.film]
     found["range"] = f"{ratios.min():.1f} to {ratios.max():.1f}"
     for name, value, column in zip(("H_film", "H_base", "k", "m"), of["best"], of["draws"].T, strict=True):
