@@ -120,7 +120,7 @@ def laws() -> dict[str, Any]:
     """Fit of the law `film` to the runs with full energies, its draws, and hardness over 5 nm in three cases."""
     points, rng = points_of(load("hardness.films")), np.random.default_rng(43)
     draws = likely(points, rng)
-    shared = np.exp(rng.normal(0, np.linalg.norm([0.03 / np.sqrt(3), *SYSTEMATIC.values()]), len(draws)))
+    shared = np.exp(rng.normal(0, np.linalg.norm([0.05 / np.sqrt(3), *SYSTEMATIC.values()]), len(draws)))
     soft, size = rng.uniform(*SOFT_GPA, len(draws)), rng.uniform(*SIZE_EFFECT, len(draws))
     h_film, h_base, k, m = draws.T
     hardness = {}

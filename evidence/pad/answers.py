@@ -16,10 +16,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import yaml
 
-from evidence.hardness.films import laws
+from atomistic.hardness.size_effect import SYSTEMATIC, literature_samples
+from evidence.hardness.films import SOFT_GPA, laws
 from evidence.pad.runs import results_of
-from evidence.record import ROOT
+from evidence.record import ROOT, load
 from mesoscale.tables import load_table
 
 ATOMS = {
@@ -32,7 +34,7 @@ GLASS = {  # the closing runs' own hardness, without the soft metal of eq. 4
     "h_macro": {"origin": "literature", "values": [8, 11], "source": "closing runs of full energies"},
     "h_prime": {"origin": "literature", "distribution": "fixed", "values": [0], "source": "no size effect"},
 }
-OXIDE = {"distribution": "fixed", "values": [5], "source": "TiO2 on titanium, Kim et al. (2013)"}
+AREA = 0.05  # largest error of the contact area of silica
 LITERATURE = {"gap_cutoff": {"origin": "literature", "values": [0.165, 0.3], "source": "Israelachvili, 13.13"}}
 SMALL = {"cells": 32, "draws": 12, "draw_cells": 2}  # an adhesive cell takes some ten times as long as a coupled one
 CLAMPED = {"contact": {"attraction": "clamped"}}
@@ -64,17 +66,22 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def film_inputs(pressed: bool) -> dict[str, Any]:
-    """Inputs of an oxide film, H_film, k and m of the runs of scene `reduced`; `pressed`: on its metal."""
-    h_film, h_base, k, m = np.quantile(laws()["draws"], [0.16, 0.84], axis=0).T.tolist()
-    by = {"origin": "literature", "source": "python -m evidence hardness.films"}
+    """Inputs of an oxide film as scene `reduced` has them; `pressed`: on titanium as scene `films` presses it."""
+    runs = [row for row in load("hardness.sizes") if row["scene"] == "reduced"]
+    _, _, hardness = literature_samples(runs, SOFT_GPA, {"area": AREA / 3**0.5, **SYSTEMATIC})
+    film, base, _, _ = laws()["draws"].T
+    by = {"origin": "literature", "source": "python -m evidence hardness.films, hardness.sizes"}
+
+    def row(values: np.ndarray) -> dict[str, Any]:
+        return {**by, "values": np.quantile(values, [0.16, 0.84]).tolist()}
+
+    given = yaml.safe_load((ROOT / "config" / "scenes" / "reduced.yaml").read_text(encoding="utf-8"))["inputs"]
     return {
         "hardness": "film",
         "h_prime": None,
-        "h_film": {**by, "values": h_film},
-        "t_film": {"origin": "literature", **OXIDE},
-        "k_film": {**by, "values": k},
-        "m_film": {**by, "values": m},
-        **({"h_macro": {**by, "values": h_base}} if pressed else {}),
+        "h_film": row(film if pressed else hardness),  # oxide with halved energies is softer than that metal
+        **{name: given[name] for name in ("t_film", "k_film", "m_film")},
+        **({"h_macro": row(base)} if pressed else {}),
     }
 
 
