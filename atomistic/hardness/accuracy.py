@@ -41,7 +41,10 @@ def compare(
     The scatter of a single run (`hardness_lo`, `hardness_hi`) limits what a difference means.
     """
     hardnesses = {
-        name: find_hardness(curves[name], witnesses[name], run["wavelength_nm"] ** 2) for name, run in runs.items()
+        name: find_hardness(
+            curves[name], witnesses[name], run["wavelength_nm"] ** 2, on_metal=run.get("film_nm") is not None
+        )
+        for name, run in runs.items()
     }
     for name, hardness in hardnesses.items():
         key, run = VARIATIONS[name][0], runs[name]

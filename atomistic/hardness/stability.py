@@ -98,7 +98,7 @@ def _of_body(potential: Potential, glass: Atoms, energy_scales: Sequence[float],
     return checks
 
 
-LIFT_A = 14.0  # beyond the cut-off of every pair
+LIFT_A = 60.0  # beyond the cut-off of every pair, also of ions that went into the metal
 SOFTER = 1e-3
 MOLTEN_METAL_K = 2800.0
 SEPARATION_J_M2 = (0.1, 10.0)  # of oxides on metals; weaker films fall off, stronger ones are part of the metal
