@@ -23,6 +23,7 @@ from matplotlib.axes import Axes
 from scipy.optimize import least_squares
 
 from atomistic.hardness.film_law import (
+    BIN_NM,
     LAWS,
     FilmPoints,
     error_left_out,
@@ -170,13 +171,17 @@ def _interval(values: np.ndarray) -> str:
 
 
 def draw(axes: Axes) -> None:
-    """Mean stress of each body over seeds; what the law says of 5 nm, and what was said before."""
+    """Mean stress over seeds with its standard error; what the law says of 5 nm, and what was said before."""
     of = laws()
     points, colors = of["points"], ("#20242b", "#b5482a", "#d99a2b", "#4c9a5b", "#1f5fa8")
     for thickness, color in zip(np.unique(points.thickness_nm), colors, strict=True):
         name = {0: "titanium", np.inf: "silica"}.get(thickness, f"{thickness:g} nm of silica on titanium")
         same = points.take(points.thickness_nm == thickness)
-        axes.plot(same.length_nm, same.stress_GPa, "o", ms=3, color=color, label=name)
+        bins = (same.length_nm // BIN_NM).astype(int)
+        each = [same.take(bins == one) for one in np.unique(bins) if np.sum(bins == one) > 1]
+        error = [np.std(of_bin.stress_GPa, ddof=1) / len(of_bin.seed) ** 0.5 for of_bin in each]
+        means = [[np.mean(of_bin.length_nm), np.mean(of_bin.stress_GPa)] for of_bin in each]
+        axes.errorbar(*np.transpose(means), error, fmt="o-", ms=3, color=color, label=name)
     for case, color in (("metal_as_pressed", "#b5482a"), ("metal_of_H_macro", "#8a8f98")):
         low, high = np.array([np.quantile(of["hardness"][at][case], [0.16, 0.84]) for at in LENGTHS_NM]).T
         axes.fill_between(LENGTHS_NM, low, high, color=color, alpha=0.2, label=f"5 nm, {case.replace('_', ' ')}")
