@@ -5,7 +5,7 @@ Nobody published how atoms of the two potentials act on each other. The file of 
 """
 
 import io
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations_with_replacement
 from typing import Any
@@ -16,6 +16,7 @@ from atomistic.errors import InputError
 from atomistic.hardness.asperity import cut_asperity, formula_of, neutralise, profile
 from atomistic.hardness.metal import METAL_FILE, NEIGHBOURS, Metal
 from atomistic.lammps import Atoms
+from atomistic.materials import Material
 from atomistic.potentials import TABLE_POINTS, TABLE_START_A, Potential, contact_energy_and_force
 
 GAP_A = 1.6  # between the surfaces that are laid on each other
@@ -58,19 +59,14 @@ class Stack:
         _, *ions = elements
         above, of_above = repelled or (self.oxide, ())
         base, end = self.metal.below_films, self.oxide.cutoff_A
-        known = {**dict.fromkeys(base.bonds, "bond"), **dict.fromkeys(base.repelled, "contact")}
-        if foreign := [ion for ion in ions if ion not in known]:
-            raise InputError(
-                f"material {self.metal.material.name}: film_base has no cross terms with {foreign[0]}, so that no film "
-                f"with it lies on the metal; known are those with {' and '.join(known)}"
-            )
+        check_ions(self.metal.material, ions)
 
         def pair(i: int, j: int) -> str:
             (below, first), (other, second) = types[i - 1], types[j - 1]
             if below != other:
                 return f"table contact {end}"
             if below == "table" and i == METAL_TYPE:
-                return f"cross {second if known[second] == 'bond' else 'contact'} {end}"
+                return f"cross {second if second in base.bonds else 'contact'} {end}"
             order, within = (ions, self.oxide) if below == "table" else (list(of_above), above)
             first, second = sorted((first, second), key=order.index)
             return f"{below} {first}_{second} {within.cutoff_A}"
@@ -109,6 +105,22 @@ class Stack:
         of = self.metal.below_films.bonds[ion]
         depth, decay = self.bond_factor * of.D_eV, np.exp(-of.a_1_per_A * (r - of.r0_A))
         return depth * ((1 - decay) ** 2 - 1), -2 * depth * of.a_1_per_A * (1 - decay) * decay
+
+
+def check_ions(metal: Material, ions: Iterable[str]) -> None:
+    """Refuse a film with an ion of which the metal's file does not say how it acts on the metal.
+
+    Raises
+    ------
+    InputError : of that ion.
+    """
+    base = metal.part("film_base")
+    known = (*base.bonds, *base.repelled)
+    if foreign := [ion for ion in ions if ion not in known]:
+        raise InputError(
+            f"material {metal.name}: film_base has no cross terms with {foreign[0]}, so that no film with it lies on "
+            f"the metal; known are those with {' and '.join(known)}"
+        )
 
 
 def check_film(film_nm: float, widest_nm: float) -> None:

@@ -162,6 +162,12 @@ class HardnessSettings(Settings):
         films = [asperity.name for asperity in self.asperities if asperity.film_nm is not None]
         if films and self.base is None:
             raise ValueError(f"asperities: {films[0]} has a film_nm, but there is no base; name its metal (titanium)")
+        bare = [asperity.name for asperity in self.asperities if asperity.film_nm == 0]
+        if bare and self.closing.counterface != "flat":
+            raise ValueError(
+                f"asperities: {bare[0]} is metal without a film (film_nm: 0), which only a flat presses: nothing is "
+                "known of how its atoms meet others; leave it out, or set closing.counterface to flat"
+            )
         if self.base is not None and not films:
             raise ValueError(f"base {self.base!r:.60}: no asperity has a film_nm; add it, or leave base out")
         return self

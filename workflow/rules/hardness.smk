@@ -1,6 +1,7 @@
 from atomistic.hardness.accuracy import VARIATIONS, variations, varied
 from atomistic.hardness.cost import plan_rows
 from atomistic.hardness.runs import PROTOCOL, needs_counter_glass, planned_runs, smallest_run
+from atomistic.hardness.stack import check_ions
 from atomistic.potentials import load_potential
 
 HARDNESS = settings("hardness")
@@ -57,6 +58,8 @@ if needed("hardness"):
 if needed("hardness") and workflow.is_main_process:
     try:
         metal = MATERIALS[HARDNESS["base"]] if BASE else None
+        if metal is not None:
+            check_ions(metal, load_potential(POTENTIAL).materials.get(HARDNESS["material"], {}))
         plan_rows(SCENE.hardness, OXIDES[HARDNESS["material"]], OXIDES[HARDNESS["closing"]["counter_material"]], metal)
     except InputError as error:
         refuse(f"{SCENE_GIVEN}: hardness.asperities: {error}")

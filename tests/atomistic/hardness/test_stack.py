@@ -253,6 +253,8 @@ def test_the_plan_prices_the_metal_and_refuses_a_film_too_thick(oxides):
 def test_films_and_their_metal_belong_together():
     with pytest.raises(ValidationError, match="thin has a film_nm, but there is no base; name its metal"):
         stacked_settings(base=None, asperities=[{"name": "thin", "tiles": 2, "amplitude_nm": 0.5, "film_nm": 0.6}])
+    with pytest.raises(ValidationError, match="which only a flat presses: nothing is known of how"):
+        stacked_settings(closing={"counterface": "asperity"})
     with pytest.raises(ValidationError, match="no asperity has a film_nm; add it, or leave base out"):
         stacked_settings(asperities=[{"name": "oxide", "tiles": 2, "amplitude_nm": 0.5}])
 
