@@ -99,7 +99,7 @@ def _of_body(potential: Potential, glass: Atoms, energy_scales: Sequence[float],
 
 
 LIFT_A = 60.0  # beyond the cut-off of every pair, also of ions that went into the metal
-SOFTER = 1e-3
+SOFTER, SOLID_K = 1e-3, 1.0  # a metal with such energies is a gas where it is warmer
 MOLTEN_METAL_K = 2800.0
 SEPARATION_J_M2 = (0.1, 10.0)  # of oxides on metals; weaker films fall off, stronger ones are part of the metal
 
@@ -128,7 +128,7 @@ def film_checks(stack: Stack, body: Atoms, energy_scales: Sequence[float], work:
         ("cold", stack, 10.0, closing_fs, 1.0),
         ("hot_as_in_anneal", stack, PROTOCOL.anneal_temperature_K, closing_fs, 1.0),
         ("molten_base", stack, MOLTEN_METAL_K, TIMESTEP_FS, 1.0),
-        ("base_softer_by_1000", replace(stack, metal=softer), PROTOCOL.temperature_K, closing_fs, 1.0),
+        ("base_softer_by_1000", replace(stack, metal=softer), SOLID_K, closing_fs, 1.0),
         ("sliding_interface", replace(stack, bond_factor=SOFTER), PROTOCOL.temperature_K, closing_fs, 1.0),
         ("bonds_fourfold", replace(stack, bond_factor=4.0), PROTOCOL.temperature_K, closing_fs, 1.0),
     ]

@@ -101,10 +101,15 @@ class Stack:
         return text.getvalue()
 
     def bond(self, ion: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Energy (eV) and force (eV/Å) of the metal and an ion; below 1e-3 of its depth at the cut-off."""
-        of = self.metal.below_films.bonds[ion]
-        depth, decay = self.bond_factor * of.D_eV, np.exp(-of.a_1_per_A * (r - of.r0_A))
-        return depth * ((1 - decay) ** 2 - 1), -2 * depth * of.a_1_per_A * (1 - decay) * decay
+        """Energy (eV) and force (eV/Å) of the metal and an ion, shifted so that both vanish at the cut-off."""
+        of, end = self.metal.below_films.bonds[ion], np.array([self.oxide.cutoff_A])
+
+        def morse(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            depth, decay = self.bond_factor * of.D_eV, np.exp(-of.a_1_per_A * (x - of.r0_A))
+            return depth * ((1 - decay) ** 2 - 1), -2 * depth * of.a_1_per_A * (1 - decay) * decay
+
+        (energy, force), (energy_end, force_end) = morse(r), morse(end)
+        return energy - energy_end + force_end * (r - end), force - force_end
 
 
 def check_ions(metal: Material, ions: Iterable[str]) -> None:

@@ -48,7 +48,7 @@ LEAST_SIDE, LEAST_LENGTH_NM = 4, 1.0  # points on either side of the drop of the
 
 def arguments(parser: ArgumentParser) -> None:
     """The scene: about an hour of one core."""
-    parser.add_argument("scene", nargs="?", default=MAIN, help="name, or file as evidence/scenes/films_by_force.yaml")
+    parser.add_argument("scene", nargs="?", default=MAIN, help="name, or a file")
     parser.add_argument("--cores", type=int, default=os.cpu_count())
 
 
