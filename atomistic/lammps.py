@@ -52,8 +52,13 @@ class Atoms:
         return Atoms(self.elements, self.types[keep], self.positions_A[keep], self.cell_A, velocities)
 
 
-def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) -> None:
-    """Write a LAMMPS data file (atom_style atomic, units metal)."""
+def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float], below_A: float = 0.0) -> None:
+    """Write a LAMMPS data file (atom_style atomic, units metal).
+
+    Parameters
+    ----------
+    below_A : room below z = 0, for a body that may sink.
+    """
     lines = [
         f"{'-'.join(atoms.elements)}",
         "",
@@ -61,7 +66,8 @@ def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) ->
         f"{len(atoms.elements)} atom types",
         "",
     ]
-    lines += [f"0 {length!r} {axis}lo {axis}hi" for axis, length in zip("xyz", atoms.cell_A.tolist(), strict=True)]
+    x, y, z = atoms.cell_A.tolist()
+    lines += [f"0 {x!r} xlo xhi", f"0 {y!r} ylo yhi", f"{-below_A if below_A else 0} {z!r} zlo zhi"]
     lines += ["", "Masses", ""]
     lines += [f"{k} {masses_u[element]} # {element}" for k, element in enumerate(atoms.elements, 1)]
     lines += ["", "Atoms # atomic", ""]

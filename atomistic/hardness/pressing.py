@@ -20,6 +20,8 @@ from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, 
 from atomistic.potentials import CONTACT_A, ForceField, Potential
 from atomistic.settings import ClosingSettings
 
+SINKS_A = 5.0  # a piston of atoms sinks a little at first; one that left its box would stop the run
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -177,7 +179,7 @@ def press_bodies(
         write_forcefield(workspace, potential, atoms.elements, run.energy_scale)
         masses |= _masses(potential, atoms.elements)
     if not workspace.segments_done(1):
-        write_data(workspace / "annealed.data", atoms, masses)
+        write_data(workspace / "annealed.data", atoms, masses, SINKS_A if closing.control == "force" else 0.0)
 
     def on_step(step: int) -> None:
         if progress is not None:

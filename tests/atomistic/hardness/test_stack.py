@@ -194,6 +194,17 @@ def test_a_film_is_pressed_by_atoms(potential, oxides, glass, base, tmp_path):
     assert min(row["force_nN"] for row in closing.curve) >= 0  # they only repel each other
 
 
+def test_a_film_is_pressed_by_force(potential, oxides, glass, base, tmp_path):
+    """The force at the end is that of its step; the run ends where the contact has taken up its share of the cell."""
+    force = CLOSING.model_copy(update={"control": "force", "dwell_ps": 0.2})
+    steps = {"force_step_MPa": 60.0, "max_stress_GPa": 3.0, "segment_force_steps": 5}
+    short = QUICK.model_copy(update=steps)
+    closing = run_closing(run_of(0.4), oxides["SiO2"], glass, potential, force, tmp_path / "work", short, base=base)
+    nominal = [row["nominal_stress_GPa"] for row in closing.curve]
+    assert nominal[-1] == pytest.approx(0.06 * len(nominal), rel=0.3)  # the sample still swings
+    assert np.abs([row["energy_drift_meV_per_atom"] for row in closing.curve]).max() < 3
+
+
 def test_hard_cases_of_a_film_hold(potential, metal, glass, base, tmp_path):
     body = lay(base[1], glass, 2, 0.0, 6.0, 10.0, 1)
     settled = Atoms(body.elements, body.types, body.positions_A, body.cell_A)
