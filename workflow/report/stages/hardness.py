@@ -34,8 +34,8 @@ def describe(results: Results) -> Section | None:
     )
     section.add(
         hardness_size(results),
-        "Hardness against contact length. Green: in use, with its 68 % interval; dark green: the part of it that is "
-        "scatter between runs."
+        f"Hardness against contact length. Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval; dark green: "
+        "the part of it that is scatter between runs."
         + (
             " Grey: the range that the paper's Table 1 spans; crosses: the two values its text gives."
             if results.beside_paper
@@ -75,6 +75,14 @@ def describe(results: Results) -> Section | None:
     section.notes += _fit_notes(fit)
     section.files += ["hardness/points.csv", "hardness/fit.json"]
     return section
+
+
+def _use_of_eq_4(results: Results) -> str:
+    """Whether the scene takes eq. 4, in words."""
+    if not results.has("inputs.csv"):
+        return ""
+    names = {row["parameter"] for row in results.csv("inputs.csv")}
+    return ", in use" if "h_prime" in names else ", which this scene does not take"
 
 
 def contact_stress(results: Results) -> str | None:
