@@ -5,8 +5,8 @@ styles, and its twin with all energies halved is the same table times one half.
 """
 
 import io
-from collections.abc import Mapping
-from functools import cached_property
+from collections.abc import Callable, Mapping
+from functools import cached_property, partial
 from itertools import combinations_with_replacement
 from pathlib import Path
 from typing import Annotated, Any, Literal, Protocol
@@ -187,31 +187,24 @@ class Potential(Settings):
         energy_scale : factor on every energy and force; 0.5 gives the twin with halved energies.
         coulomb : False leaves the Coulomb sum to LAMMPS.
         """
-        r = np.sqrt(np.linspace(TABLE_START_A**2, self.cutoff_A**2, TABLE_POINTS))
-        lines = io.StringIO()
-        lines.write(f"# {' '.join(self.description.split())}; energies x {energy_scale}; eV, Angstrom\n")
-        sections = {
-            f"{first}_{second}": self.energy_and_force(first, second, r, coulomb)
+        title = f"{' '.join(self.description.split())}; energies x {energy_scale}"
+        sections: dict[str, EnergyAndForce] = {
+            f"{first}_{second}": partial(self.energy_and_force, first, second, coulomb=coulomb)
             for first, second in combinations_with_replacement(elements, 2)
         }
-        for name, (energy, force) in {**sections, "contact": contact_energy_and_force(r)}.items():
-            lines.write(f"\n{name}\n")
-            lines.write(f"N {TABLE_POINTS} RSQ {TABLE_START_A} {self.cutoff_A}\n\n")
-            rows = np.column_stack([np.arange(1, TABLE_POINTS + 1), r, energy_scale * energy, energy_scale * force])
-            np.savetxt(lines, rows, fmt="%d %.12g %.12g %.12g")
-        return lines.getvalue()
+        return pair_table(title, sections, self.cutoff_A, energy_scale)
 
     def files(
         self,
         elements: tuple[str, ...],
         energy_scale: float,
-        repelled: "tuple[Potential, tuple[str, ...]] | None" = None,
+        repelled: "Repelled | None" = None,
     ) -> dict[str, str]:
         """What LAMMPS needs by the name of its file: tables, and in `pairs` the commands that use them.
 
         Parameters
         ----------
-        elements, repelled : of `write_forcefield`.
+        elements : of each LAMMPS type; an element may stand for several types.
         """
         bodies: list[tuple[str, Potential, tuple[str, ...]]] = [("table", self, elements)]
         if repelled is not None:
@@ -228,6 +221,10 @@ class Potential(Settings):
         return {**tables, "pairs": "\n".join(lines) + "\n"}
 
 
+Repelled = tuple[Potential, tuple[str, ...]]
+"""Potential and elements of a second body, whose types follow, and which only repels the first."""
+
+
 class ForceField(Protocol):
     """What of a `Potential` molecular dynamics uses: a metal, and an oxide on a metal, have it too."""
 
@@ -240,10 +237,37 @@ class ForceField(Protocol):
         self,
         elements: tuple[str, ...],
         energy_scale: float,
-        repelled: tuple[Potential, tuple[str, ...]] | None = None,
+        repelled: Repelled | None = None,
     ) -> dict[str, str]:
         """Files for LAMMPS by name."""
         ...
+
+
+def masses_u(force: ForceField, elements: tuple[str, ...]) -> dict[str, float]:
+    """Mass of each element."""
+    return {element: force.species[element].mass_u for element in elements}
+
+
+EnergyAndForce = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+def pair_table(title: str, sections: Mapping[str, EnergyAndForce], cutoff_A: float, energy_scale: float) -> str:
+    """LAMMPS `pair_style table` file of these sections and of `contact` (`contact_energy_and_force`).
+
+    Parameters
+    ----------
+    sections : energy (eV) and force (eV/Å) at distances (Å), by name.
+    energy_scale : factor on all of them.
+    """
+    r = np.sqrt(np.linspace(TABLE_START_A**2, cutoff_A**2, TABLE_POINTS))
+    lines = io.StringIO()
+    lines.write(f"# {title}; eV, Angstrom\n")
+    for name, of in {**sections, "contact": contact_energy_and_force}.items():
+        energy, force = of(r)
+        lines.write(f"\n{name}\nN {TABLE_POINTS} RSQ {TABLE_START_A} {cutoff_A}\n\n")
+        rows = np.column_stack([np.arange(1, TABLE_POINTS + 1), r, energy_scale * energy, energy_scale * force])
+        np.savetxt(lines, rows, fmt="%d %.12g %.12g %.12g")
+    return lines.getvalue()
 
 
 def contact_energy_and_force(r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -4,9 +4,10 @@ A glass cell is periodic, and cubic unless it takes the edge of another; bodies 
 wavelength is a whole number of cells and nothing is strained.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -15,7 +16,7 @@ from atomistic.constants import AVOGADRO
 from atomistic.errors import InputError
 from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
 from atomistic.materials import SEARCHED_A, SHORTEST_BOND_A, Material, OxideGlass
-from atomistic.potentials import ForceField, Potential
+from atomistic.potentials import ForceField, Potential, Repelled, masses_u
 from atomistic.settings import GlassSettings
 
 NEAREST_START_A = 1.5  # random starts keep atoms this far apart
@@ -77,7 +78,7 @@ def write_forcefield(
     potential: ForceField,
     elements: tuple[str, ...],
     energy_scale: float,
-    repelled: tuple[Potential, tuple[str, ...]] | None = None,
+    repelled: Repelled | None = None,
 ) -> None:
     """Write the tables of a potential and the commands that use them (file `pairs`) into a workspace.
 
@@ -86,7 +87,7 @@ def write_forcefield(
     Parameters
     ----------
     elements : of each LAMMPS type; an element may stand for several types.
-    repelled : potential and elements of a second body, whose types follow, and which only repels the first.
+    repelled : a second body; None: there is none that only repels.
     """
     for file, text in potential.files(elements, energy_scale, repelled).items():
         (workspace / file).write_text(text, encoding="utf-8")
@@ -127,34 +128,62 @@ def make_glass(
         "edge": edge_A,
         "constants": [MELT_K, FINAL_K, TIMESTEP_FS, segment_steps],
     }
-    workspace = Workspace(work, identity, "glass.in")
-    masses = {ion: potential.species[ion].mass_u for ion in elements}
-    segments = schedule(settings, "npt" if edge_A is None else "npt_height", segment_steps)
+    return run_segments(
+        Workspace(work, identity, "glass.in"),
+        potential,
+        elements,
+        lambda: random_start(material, potential, settings, seed, edge_A),
+        schedule(settings, "npt" if edge_A is None else "npt_height", segment_steps),
+        1 + int(np.random.SeedSequence([seed, 2]).generate_state(1)[0] % 900_000_000),
+        TIMESTEP_FS,
+        "melt and quench",
+        progress,
+    )
+
+
+def run_segments(
+    workspace: Workspace,
+    force: ForceField,
+    elements: tuple[str, ...],
+    start: Callable[[], Atoms],
+    segments: Sequence[Mapping[str, Any]],
+    seed: int,
+    timestep_fs: float,
+    doing: str,
+    progress: Progress | None,
+) -> Atoms:
+    """Carry out the segments of a periodic cell (glass.in), or go on after a kill; deletes the workspace at the end.
+
+    Parameters
+    ----------
+    start : makes the cell, where nothing is done yet.
+    segments : ensemble, temperatures `from` and `to` (K) and steps of each.
+    doing : what this is, for the progress.
+    """
     done = workspace.segments_done(len(segments))
-    write_forcefield(workspace, potential, elements, 1.0)
+    write_forcefield(workspace, force, elements, 1.0)
     if not done:
-        write_data(workspace / "start.data", random_start(material, potential, settings, seed, edge_A), masses)
+        write_data(workspace / "start.data", start(), masses_u(force, elements))
     total = sum(segment["steps"] for segment in segments)
 
     def on_step(step: int) -> None:
         if progress is not None:
-            progress(step / total, f"{step * TIMESTEP_FS / 1000:.0f} ps of melt and quench")
+            progress(step / total, f"{step * timestep_fs / 1000:.0f} ps of {doing}")
 
-    if done < len(segments):
-        left = segments[done:]
+    if left := segments[done:]:
         variables = {
             "data": "start.data",
             "pairs": "pairs",
-            "seed": 1 + int(np.random.SeedSequence([seed, 2]).generate_state(1)[0] % 900_000_000),
-            "timestep": TIMESTEP_FS / 1000,
+            "seed": seed,
+            "timestep": timestep_fs / 1000,
             "segment": range(done + 1, len(segments) + 1),
             "previous": range(done, len(segments)),
             **{key: [segment[key] for segment in left] for key in ("ensemble", "from", "to", "steps")},
         }
         run_lammps("glass.in", workspace, variables, on_step)
-    glass = load_data(workspace / "glass.data", elements)
+    end = load_data(workspace / "glass.data", elements)
     workspace.remove()
-    return glass
+    return end
 
 
 def total_ps(settings: GlassSettings) -> float:

@@ -14,10 +14,10 @@ from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 
 from atomistic.errors import InputError
-from atomistic.hardness.glass import write_forcefield
-from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
+from atomistic.hardness.glass import run_segments
+from atomistic.lammps import Atoms, Progress, Workspace
 from atomistic.materials import Eam, FilmBase, Material
-from atomistic.potentials import Potential
+from atomistic.potentials import Repelled
 
 POINTS = 5000
 CUTOFF_A = 7.0  # all functions of titanium are below 2e-6 eV there; at the authors' 6.56 A lies a shell of neighbours
@@ -95,7 +95,7 @@ class Metal:
         self,
         elements: tuple[str, ...],
         energy_scale: float,
-        repelled: tuple[Potential, tuple[str, ...]] | None = None,
+        repelled: Repelled | None = None,
     ) -> dict[str, str]:
         """What LAMMPS needs, as `Potential.files`; metals keep their energies in the twin with halved ones.
 
@@ -164,35 +164,19 @@ def make_base(metal: Metal, edge_A: float, seed: int, work: Path, progress: Prog
     ------
     InputError : the material has no potential or no grains, or its cube came out of another width than foreseen.
     """
-    elements, grain_A = (metal.element,), 10 * metal.below_films.grain_nm
     segments = _segments()
     identity = {"metal": metal.material.model_dump(), "edge": edge_A, "seed": seed, "segments": segments}
-    workspace = Workspace(work, identity, "glass.in")
-    done = workspace.segments_done(len(segments))
-    write_forcefield(workspace, metal, elements, 1.0)
-    if not done:
-        write_data(
-            workspace / "start.data", _wide_enough(metal, edge_A, grain_A, seed), {elements[0]: metal.eam.mass_u}
-        )
-
-    def on_step(step: int) -> None:
-        if progress is not None:
-            progress(step / base_steps(), f"{step * TIMESTEP_FS / 1000:.0f} ps of annealing the metal")
-
-    if left := segments[done:]:
-        variables = {
-            "data": "start.data",
-            "pairs": "pairs",
-            "seed": 1 + seed,
-            "timestep": TIMESTEP_FS / 1000,
-            "segment": range(done + 1, len(segments) + 1),
-            "previous": range(done, len(segments)),
-            "ensemble": ["npt"] * len(left),
-            **{key: [of[k] for of in left] for k, key in enumerate(("from", "to", "steps"))},
-        }
-        run_lammps("glass.in", workspace, variables, on_step)
-    body = load_data(workspace / "glass.data", elements)
-    workspace.remove()
+    body = run_segments(
+        Workspace(work, identity, "glass.in"),
+        metal,
+        (metal.element,),
+        lambda: _wide_enough(metal, edge_A, seed),
+        segments,
+        1 + seed,
+        TIMESTEP_FS,
+        "annealing the metal",
+        progress,
+    )
     factor = edge_A / body.cell_A[0]
     if abs(factor - 1) > MAX_STRAIN:
         raise InputError(
@@ -202,20 +186,21 @@ def make_base(metal: Metal, edge_A: float, seed: int, work: Path, progress: Prog
     return replace(body, positions_A=factor * body.positions_A, cell_A=factor * body.cell_A)
 
 
-def _segments() -> list[tuple[float, float, int]]:
-    """Temperatures at both ends (K), and steps, of anneal, cooling and rest."""
+def _segments() -> list[dict[str, Any]]:
+    """Anneal, cooling and rest, as `run_segments` takes them."""
     steps = round(1000 * ANNEAL_PS / TIMESTEP_FS)
-    return [(ANNEAL_K, ANNEAL_K, steps), (ANNEAL_K, FINAL_K, steps), (FINAL_K, FINAL_K, steps // 3)]
+    parts = [(ANNEAL_K, ANNEAL_K, steps), (ANNEAL_K, FINAL_K, steps), (FINAL_K, FINAL_K, steps // 3)]
+    return [{"ensemble": "npt", "from": start, "to": end, "steps": count} for start, end, count in parts]
 
 
 def base_steps() -> int:
     """MD steps of `make_base`."""
-    return sum(steps for *_, steps in _segments())
+    return sum(segment["steps"] for segment in _segments())
 
 
-def _wide_enough(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms:
+def _wide_enough(metal: Metal, edge_A: float, seed: int) -> Atoms:
     """Grains in a cube whose atoms fill one of `edge_A` once they are dense."""
-    a, c = metal.eam.lattice_A
+    grain_A, (a, c) = 10 * metal.below_films.grain_nm, metal.eam.lattice_A
     volume_A3 = a**2 * np.sqrt(3) * c / (len(PLACES) * ANNEALED_DENSITY)  # of an atom
     start_A, atoms = edge_A, polycrystal(metal, edge_A, grain_A, seed)
     for _ in range(WIDENINGS):

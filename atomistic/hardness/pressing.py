@@ -17,7 +17,7 @@ from atomistic.hardness.plateau import RULES
 from atomistic.hardness.readout import Geometry
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
 from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
-from atomistic.potentials import CONTACT_A, ForceField, Potential
+from atomistic.potentials import CONTACT_A, ForceField, Potential, masses_u
 from atomistic.settings import ClosingSettings
 
 SINKS_A = 5.0  # a piston of atoms sinks a little at first; one that left its box would stop the run
@@ -100,7 +100,7 @@ def prepare_body(
     done = workspace.segments_done(2)
     write_forcefield(workspace, potential, cut.elements, run.energy_scale)
     if not done:
-        write_data(workspace / "cut.data", cut, _masses(potential, cut.elements))
+        write_data(workspace / "cut.data", cut, masses_u(potential, cut.elements))
     hot = max(protocol.temperature_K, protocol.anneal_temperature_K * run.energy_scale)
 
     def on_step(step: int) -> None:
@@ -128,10 +128,6 @@ def prepare_body(
 
 def _mass_u(potential: ForceField, atoms: Atoms) -> float:
     return sum(atoms.count(element) * potential.species[element].mass_u for element in atoms.elements)
-
-
-def _masses(potential: ForceField, elements: tuple[str, ...]) -> dict[str, float]:
-    return {ion: potential.species[ion].mass_u for ion in elements}
 
 
 def lammps_seed(*entropy: int) -> int:
@@ -170,14 +166,14 @@ def press_bodies(
         atoms, ceiling = lower, float(lower.cell_A[2]) + 1
     wavelength = float(lower.cell_A[0])
     geometry = Geometry(wavelength, len(lower), len(atoms), len(bodies))
-    masses = _masses(potential, lower.elements)
+    masses = masses_u(potential, lower.elements)
     if counter_potential is not None:
         upper = (counter_potential, bodies[1].elements)
         write_forcefield(workspace, potential, lower.elements, run.energy_scale, repelled=upper)
-        masses |= _masses(*upper)
+        masses |= masses_u(*upper)
     else:
         write_forcefield(workspace, potential, atoms.elements, run.energy_scale)
-        masses |= _masses(potential, atoms.elements)
+        masses |= masses_u(potential, atoms.elements)
     if not workspace.segments_done(1):
         write_data(workspace / "annealed.data", atoms, masses, SINKS_A if closing.control == "force" else 0.0)
 

@@ -14,7 +14,7 @@ from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL
 from atomistic.hardness.stack import Stack, lifted
 from atomistic.lammps import Atoms, Workspace, load_averages, load_data, run_lammps, write_data
-from atomistic.potentials import ForceField, Potential
+from atomistic.potentials import ForceField, Potential, masses_u
 
 
 def free_motion(
@@ -24,7 +24,7 @@ def free_motion(
     shutil.rmtree(work, ignore_errors=True)
     workspace = Workspace(work, {}, "nve.in")
     write_forcefield(workspace, potential, atoms.elements, energy_scale)
-    write_data(workspace / "start.data", atoms, {ion: potential.species[ion].mass_u for ion in atoms.elements})
+    write_data(workspace / "start.data", atoms, masses_u(potential, atoms.elements))
     every = max(1, steps // 50)
     variables = {
         "data": "start.data",

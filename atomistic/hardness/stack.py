@@ -4,9 +4,9 @@ Nobody published how atoms of the two potentials act on each other. The file of 
 (`film_base`): a Morse bond with oxygen and a short-range repulsion of the cation. Target `accuracy` varies its depth.
 """
 
-import io
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations_with_replacement
 from typing import Any
 
@@ -17,7 +17,7 @@ from atomistic.hardness.asperity import cut_asperity, formula_of, neutralise, pr
 from atomistic.hardness.metal import METAL_FILE, NEIGHBOURS, Metal
 from atomistic.lammps import Atoms
 from atomistic.materials import Material
-from atomistic.potentials import TABLE_POINTS, TABLE_START_A, Potential, contact_energy_and_force
+from atomistic.potentials import Morse, Potential, Repelled, pair_table
 
 GAP_A = 1.6  # between the surfaces that are laid on each other
 COLUMN_A = 4.0  # of the map of gaps
@@ -48,7 +48,7 @@ class Stack:
         self,
         elements: tuple[str, ...],
         energy_scale: float,
-        repelled: tuple[Potential, tuple[str, ...]] | None = None,
+        repelled: Repelled | None = None,
     ) -> dict[str, str]:
         """What LAMMPS needs, as `Potential.files`; the scale is on the oxide and its bonds, the metal keeps its own.
 
@@ -90,26 +90,16 @@ class Stack:
 
     def _cross(self, energy_scale: float) -> str:
         """Table of the metal with each ion that it binds, and of the repulsion of the others."""
-        end, text = self.oxide.cutoff_A, io.StringIO()
-        r = np.sqrt(np.linspace(TABLE_START_A**2, end**2, TABLE_POINTS))
-        sections = {ion: self.bond(ion, r) for ion in self.metal.below_films.bonds}
-        text.write("# metal with the ions of a film; eV, Angstrom\n")
-        for name, (energy, force) in {**sections, "contact": contact_energy_and_force(r)}.items():
-            text.write(f"\n{name}\nN {TABLE_POINTS} RSQ {TABLE_START_A} {end}\n\n")
-            columns = [np.arange(1, TABLE_POINTS + 1), r, energy_scale * energy, energy_scale * force]
-            np.savetxt(text, np.column_stack(columns), fmt="%d %.12g %.12g %.12g")
-        return text.getvalue()
+        sections = {ion: partial(self.bond, ion) for ion in self.metal.below_films.bonds}
+        return pair_table("metal with the ions of a film", sections, self.oxide.cutoff_A, energy_scale)
 
     def bond(self, ion: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Energy (eV) and force (eV/Å) of the metal and an ion, shifted so that both vanish at the cut-off."""
-        of, end = self.metal.below_films.bonds[ion], np.array([self.oxide.cutoff_A])
-
-        def morse(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            depth, decay = self.bond_factor * of.D_eV, np.exp(-of.a_1_per_A * (x - of.r0_A))
-            return depth * ((1 - decay) ** 2 - 1), -2 * depth * of.a_1_per_A * (1 - decay) * decay
-
-        (energy, force), (energy_end, force_end) = morse(r), morse(end)
-        return energy - energy_end + force_end * (r - end), force - force_end
+        base, end = self.metal.below_films, np.array([self.oxide.cutoff_A])
+        given = base.bonds[ion].model_dump() | {"D_eV": self.bond_factor * base.bonds[ion].D_eV}
+        morse = Morse(term="morse", **given, source=base.source, confidence="low")
+        (energy, slope), (energy_end, slope_end) = morse.energy_and_slope(r), morse.energy_and_slope(end)
+        return energy - energy_end - slope_end * (r - end), slope_end - slope
 
 
 def check_ions(metal: Material, ions: Iterable[str]) -> None:

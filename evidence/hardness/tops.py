@@ -33,7 +33,7 @@ from atomistic.hardness.top_attraction import (
 )
 from atomistic.lammps import Atoms, Workspace, run_lammps, write_data
 from atomistic.materials import load_materials, oxide_glasses
-from atomistic.potentials import Potential, load_potential
+from atomistic.potentials import Potential, load_potential, masses_u
 from atomistic.settings import ClosingSettings, GlassSettings, HardnessSettings
 from evidence.record import ROOT
 
@@ -183,7 +183,7 @@ def pulled(top: Atoms, area_A2: float, density: float, potential: Potential, ene
     with tempfile.TemporaryDirectory() as folder:
         workspace = Workspace(Path(folder) / "pull", {}, "relax.in")
         box = np.array([top.cell_A[0], top.cell_A[1], highest + 40.0])
-        masses = {ion: potential.species[ion].mass_u for ion in top.elements}
+        masses = masses_u(potential, top.elements)
         write_data(workspace / "top.data", replace(top, positions_A=lifted, cell_A=box, velocities_A_ps=None), masses)
         write_forcefield(workspace, potential, top.elements, energy_scale)
         variables = {
