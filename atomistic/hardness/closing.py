@@ -189,13 +189,12 @@ def weld(
     work: Path,
 ) -> tuple[Stack, Atoms]:
     """The forces and the welded body of a run with a film, for checks."""
-    assert run.asperity.film_nm
     place = (run.seed, 0)
     base_nm = base_thickness_nm(closing, float(base[1].cell_A[0]) / 10)
     body = cut_body(run, glass, potential, base_nm, place, PROTOCOL, base)
+    assert isinstance(body.force, Stack)
     workspace = Workspace(work / "weld", {}, "anneal.in")
-    stack = Stack(potential, base[0])
-    return stack, prepare_body(run, body.cut, body.formula, body.force, closing, PROTOCOL, workspace, place)
+    return body.force, prepare_body(run, body.cut, body.formula, body.force, closing, PROTOCOL, workspace, place)
 
 
 def area_of(

@@ -10,12 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.stats import rankdata
 
 from atomistic.hardness.plateau import RULES
-from atomistic.hardness.size_effect import MIN_SHARE, SYSTEMATIC, Point, cost_of
+from atomistic.hardness.size_effect import MIN_SHARE, SYSTEMATIC, Point, cost_of, spearman, summary
 
-INTERVAL = (0.16, 0.5, 0.84)
 QUANTILES = 200
 BOND = 0.5
 """Standard deviation of ln k by the assumed bonds of film and metal: films with bonds half and 1.5 times as deep have
@@ -49,6 +47,16 @@ class FilmPoints(NamedTuple):
     def film(self) -> np.ndarray:
         """Which are of films."""
         return (self.thickness_nm > 0) & np.isfinite(self.thickness_nm)
+
+    @property
+    def bin(self) -> np.ndarray:
+        """Which bin of contact length each is of."""
+        return (self.length_nm // BIN_NM).astype(int)
+
+    @property
+    def length_over_thickness(self) -> np.ndarray:
+        """L/t of the points of films."""
+        return (self.length_nm / np.where(self.film, self.thickness_nm, np.inf))[self.film]
 
 
 def points_of(points: Sequence[Point], curves: Mapping[str, Sequence[Mapping[str, float]]]) -> FilmPoints:
@@ -153,13 +161,12 @@ def error_left_out(
         same = points.thickness_nm == thickness
         at = points.take(same)
         wrong = np.log(foretell(points.take(~same & (points.film | knows_bodies)), at) / at.stress_GPa)
-        bins = (at.length_nm // BIN_NM).astype(int)
-        errors += [float(np.mean(wrong[bins == one])) for one in np.unique(bins)]
+        errors += [float(np.mean(wrong[at.bin == one])) for one in np.unique(at.bin)]
     return float(np.sqrt(np.mean(np.square(errors))))
 
 
-def likely(points: FilmPoints, rng: np.random.Generator, draws: int = DRAWS) -> np.ndarray:
-    """H_film, H_base, k and m by their likelihood, shape (draws, 4); `PRIOR` is flat in the logarithms and in m.
+def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
+    """H_film, H_base, k and m by their likelihood, shape (`DRAWS`, 4); `PRIOR` is flat in the logarithms and in m.
 
     The misfits of a run are one error, so that N runs of unknown scatter have the likelihood S^(-N/2), S the sum of
     squares (the scatter's own prior is Jeffreys's): seeds are too few for a bootstrap.
@@ -172,7 +179,7 @@ def likely(points: FilmPoints, rng: np.random.Generator, draws: int = DRAWS) -> 
         squares += np.log(film(values.T, length, thickness) / stress) ** 2
     runs = len(set(zip(points.seed, points.thickness_nm, strict=True)))
     weights = (squares / squares.min()) ** (-runs / 2)
-    return values[rng.choice(TRIALS, draws, p=weights / weights.sum())]
+    return values[rng.choice(TRIALS, DRAWS, p=weights / weights.sum())]
 
 
 def fit_films(
@@ -212,21 +219,17 @@ def fit_films(
     shared = rng.normal(size=(2, DRAWS)) * [[np.linalg.norm([area_error / 3**0.5, *SYSTEMATIC.values()])], [BOND]]
     draws *= np.exp([shared[0], shared[0], shared[1], 0 * shared[1]]).T
     h_film, base, k, m = draws.T
-    ranks = np.corrcoef(rankdata([h_film, k, m], axis=1))
-    low, middle, high = np.quantile(1 / (1 + k * LENGTHS_OVER_THICKNESS[:, None] ** m), INTERVAL, axis=1)
-    ratios = of.length_nm[of.film] / of.thickness_nm[of.film]
     result["inputs"] = {
         "h_film": _samples(h_film, "GPa"),
-        "k_film": _samples(k, "1") | {"correlation": {"h_film": float(ranks[0, 1])}},
-        "m_film": _samples(m, "1") | {"correlation": {"h_film": float(ranks[0, 2]), "k_film": float(ranks[1, 2])}},
+        "k_film": _samples(k, "1") | {"correlation": {"h_film": spearman(h_film, k)}},
+        "m_film": _samples(m, "1") | {"correlation": {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}},
     }
     result["film"] = {
-        "base_GPa": dict(zip(("low", "median", "high"), np.quantile(base, INTERVAL).tolist(), strict=True)),
+        "base_GPa": summary(base),
         "left_out": {name: left_out(name, of) for name in LAWS},
-        "length_over_thickness": [float(ratios.min()), float(ratios.max())],
+        "length_over_thickness": [float(of.length_over_thickness.min()), float(of.length_over_thickness.max())],
         "share": [
-            {"length_over_thickness": at, "low": one, "median": two, "high": three}
-            for at, one, two, three in zip(LENGTHS_OVER_THICKNESS.tolist(), low, middle, high, strict=True)
+            {"length_over_thickness": at, **summary(1 / (1 + k * at**m))} for at in LENGTHS_OVER_THICKNESS.tolist()
         ],
     }
     return result

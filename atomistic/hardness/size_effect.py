@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.special import stdtrit
+from scipy.stats import rankdata
 
 from atomistic.settings import FitSettings
 
@@ -85,7 +86,7 @@ def fit_size_effect(
             "a": float(np.quantile(h_prime, INTERVAL[0])),
             "b": float(np.quantile(h_prime, INTERVAL[1])),
             "unit": "GPa nm^0.5",
-            "correlation": {"h_macro": _spearman(h_macro, h_prime)},
+            "correlation": {"h_macro": spearman(h_macro, h_prime)},
         },
         "h_film": {
             "distribution": "uniform",
@@ -94,8 +95,8 @@ def fit_size_effect(
             "unit": "GPa",
         },
     }
-    result["H_macro_GPa"] = _summary(h_macro)
-    result["H_prime_GPa_nm0.5"] = _summary(h_prime)
+    result["H_macro_GPa"] = summary(h_macro)
+    result["H_prime_GPa_nm0.5"] = summary(h_prime)
     result["budget"] = variance_budget(used, fit.h_macro_GPa, systematic)
     result["curve"] = band(h_macro, h_prime, result["budget"]["statistical"]["std"])
     if result["inputs"]["h_prime"]["a"] <= 0 or result["inputs"]["h_macro"]["a"] <= 0:
@@ -194,7 +195,7 @@ def free_fit(points: Sequence[Point]) -> dict:
     if len({point["contact_length_nm"] for point in points}) < 3:
         return {"points": len(points), "identifiable": False}
     h_macro, h_prime = free_samples(points, {})
-    macro, prime = _summary(h_macro), _summary(h_prime)
+    macro, prime = summary(h_macro), summary(h_prime)
     return {
         "points": len(points),
         "H_macro_GPa": macro,
@@ -255,7 +256,7 @@ def scale_ratios(points: Sequence[Point]) -> list[dict]:
             np.mean(hardness) + rng.normal(size=2000) * np.sqrt(np.mean(spread**2) / len(hardness) + _scatter(hardness))
             for hardness, spread, _, _ in groups
         ]
-        rows.append({"asperity": asperity, "scales": [scales[0], scales[-1]], **_summary(means[0] / means[1])})
+        rows.append({"asperity": asperity, "scales": [scales[0], scales[-1]], **summary(means[0] / means[1])})
     return rows
 
 
@@ -315,14 +316,15 @@ def _range(h_macro: np.ndarray, fit: FitSettings) -> dict[str, float]:
     return {"a": float(np.quantile(h_macro, INTERVAL[0])), "b": float(np.quantile(h_macro, INTERVAL[1]))}
 
 
-def _summary(samples: np.ndarray) -> dict[str, float]:
+def summary(samples: np.ndarray) -> dict[str, float]:
+    """Median and 68 % interval."""
     low, middle, high = np.quantile(samples, [INTERVAL[0], 0.5, INTERVAL[1]]).tolist()
     return {"median": middle, "low": low, "high": high}
 
 
-def _spearman(first: np.ndarray, second: np.ndarray) -> float:
-    one, other = (np.argsort(np.argsort(values, kind="stable"), kind="stable") for values in (first, second))
-    return float(np.corrcoef(one, other)[0, 1])
+def spearman(first: np.ndarray, second: np.ndarray) -> float:
+    """Rank correlation."""
+    return float(np.corrcoef(rankdata(first), rankdata(second))[0, 1])
 
 
 def _rng(stream: int) -> np.random.Generator:

@@ -23,7 +23,6 @@ from matplotlib.axes import Axes
 from scipy.optimize import least_squares
 
 from atomistic.hardness.film_law import (
-    BIN_NM,
     LAWS,
     FilmPoints,
     error_left_out,
@@ -35,6 +34,7 @@ from atomistic.hardness.film_law import (
     paper,
 )
 from atomistic.hardness.size_effect import SYSTEMATIC
+from evidence.hardness.metal import titanium
 from evidence.record import ROOT, load
 from mesoscale.tables import load_table
 
@@ -118,8 +118,8 @@ def prediction(others: FilmPoints, at: FilmPoints) -> np.ndarray:
 def laws() -> dict[str, Any]:
     """Fit of the law `film`, its draws, and hardness over 5 nm in three cases, with k and m of the prototype."""
     points, rng = points_of(load("hardness.films")), np.random.default_rng(43)
-    draws = likely(points, rng)
-    shared = np.exp(rng.normal(0, np.linalg.norm([0.05 / np.sqrt(3), *SYSTEMATIC.values()]), len(draws)))
+    draws, area = likely(points, rng), titanium().below_films.area_of_film.error
+    shared = np.exp(rng.normal(0, np.linalg.norm([area / np.sqrt(3), *SYSTEMATIC.values()]), len(draws)))
     soft, size = rng.uniform(*SOFT_GPA, len(draws)), rng.uniform(*SIZE_EFFECT, len(draws))
     h_film, h_base, *_ = draws.T
     k, m = rng.normal(PREDICTION, ITS_ERROR, (len(draws), 2)).T
@@ -143,7 +143,7 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     for name in LAWS:
         found[f"{name}_left_out"] = f"{100 * left_out(name, points):.0f} %"
     found["prediction_left_out"] = f"{100 * error_left_out(points, prediction, True):.0f} %"
-    ratios = points.length_nm[points.film] / points.thickness_nm[points.film]
+    ratios = points.length_over_thickness
     found["range"] = f"{ratios.min():.1f} to {ratios.max():.1f}"
     for name, value, column in zip(("H_film", "H_base", "k", "m"), of["best"], of["draws"].T, strict=True):
         found[name] = f"{value:.2g}{_interval(column)}"
@@ -177,8 +177,7 @@ def draw(axes: Axes) -> None:
     for thickness, color in zip(np.unique(points.thickness_nm), colors, strict=True):
         name = {0: "titanium", np.inf: "silica"}.get(thickness, f"{thickness:g} nm of silica on titanium")
         same = points.take(points.thickness_nm == thickness)
-        bins = (same.length_nm // BIN_NM).astype(int)
-        each = [same.take(bins == one) for one in np.unique(bins) if np.sum(bins == one) > 1]
+        each = [same.take(same.bin == one) for one in np.unique(same.bin) if np.sum(same.bin == one) > 1]
         error = [np.std(of_bin.stress_GPa, ddof=1) / len(of_bin.seed) ** 0.5 for of_bin in each]
         means = [[np.mean(of_bin.length_nm), np.mean(of_bin.stress_GPa)] for of_bin in each]
         axes.errorbar(*np.transpose(means), error, fmt="o-", ms=3, color=color, label=name)

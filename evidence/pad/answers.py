@@ -18,7 +18,9 @@ from typing import Any
 import numpy as np
 import yaml
 
+from atomistic.hardness.contact_area import calibrated
 from atomistic.hardness.size_effect import SYSTEMATIC, literature_samples
+from evidence.hardness.choices import silica_and
 from evidence.hardness.films import SOFT_GPA, laws
 from evidence.pad.runs import results_of
 from evidence.record import ROOT, load
@@ -34,7 +36,6 @@ GLASS = {  # the closing runs' own hardness, without the soft metal of eq. 4
     "h_macro": {"origin": "literature", "values": [8, 11], "source": "closing runs of full energies"},
     "h_prime": {"origin": "literature", "distribution": "fixed", "values": [0], "source": "no size effect"},
 }
-AREA = 0.05  # largest error of the contact area of silica
 LITERATURE = {"gap_cutoff": {"origin": "literature", "values": [0.165, 0.3], "source": "Israelachvili, 13.13"}}
 SMALL = {"cells": 32, "draws": 12, "draw_cells": 2}  # an adhesive cell takes some ten times as long as a coupled one
 CLAMPED = {"contact": {"attraction": "clamped"}}
@@ -67,8 +68,9 @@ def arguments(parser: ArgumentParser) -> None:
 
 def film_inputs(pressed: bool) -> dict[str, Any]:
     """Inputs of an oxide film as scene `reduced` has them; `pressed`: on titanium as scene `films` presses it."""
+    _, area_error = calibrated(silica_and("pmmcs")[1])
     runs = [row for row in load("hardness.sizes") if row["scene"] == "reduced"]
-    _, _, hardness = literature_samples(runs, SOFT_GPA, {"area": AREA / 3**0.5, **SYSTEMATIC})
+    _, _, hardness = literature_samples(runs, SOFT_GPA, {"area": area_error / 3**0.5, **SYSTEMATIC})
     film, base, _, _ = laws()["draws"].T
     by = {"origin": "literature", "source": "python -m evidence hardness.films, hardness.sizes"}
 

@@ -1,7 +1,5 @@
 from atomistic.hardness.accuracy import VARIATIONS, variations, varied
-from atomistic.hardness.cost import plan_rows
 from atomistic.hardness.runs import PROTOCOL, needs_counter_glass, planned_runs, smallest_run
-from atomistic.hardness.stack import check_ions
 from atomistic.potentials import load_potential
 
 HARDNESS = settings("hardness")
@@ -56,6 +54,9 @@ if needed("hardness"):
 
 
 if needed("hardness") and workflow.is_main_process:
+    from atomistic.hardness.cost import plan_rows  # jobs do without
+    from atomistic.hardness.stack import check_ions
+
     try:
         metal = MATERIALS[HARDNESS["base"]] if BASE else None
         if metal is not None:
