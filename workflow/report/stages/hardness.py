@@ -34,8 +34,13 @@ def describe(results: Results) -> Section | None:
     )
     section.add(
         hardness_size(results),
-        f"Hardness against contact length. Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval; dark green: "
-        "the part of it that is scatter between runs."
+        "Hardness against contact length."
+        + (
+            f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval; dark green: the part of it that is scatter "
+            "between runs."
+            if fit.get("curve")
+            else ""
+        )
         + (
             " Grey: the range that the paper's Table 1 spans; crosses: the two values its text gives."
             if results.beside_paper
