@@ -94,11 +94,6 @@ class Bench:
         """The switch of the default settings."""
         return SwitchModel.of(DeviceSettings(), LawSettings(), CONTACT.length_nm**2)
 
-    def verdicts(self, *tables: Measurements, prior: InputTable | None = None) -> list[str]:
-        """What is said of each table."""
-        result = self.calibrated(*tables, prior=prior)
-        return [row["verdict"] for row in learned(result, tables, CONTACT.max_force_nN)]
-
     def column(self, result: Calibration, name: str) -> Array:
         """Samples of one input."""
         return result.x[:, self.table.names.index(name)]
@@ -146,6 +141,11 @@ def _curves(bench: Bench, zero_nm: float = 0.0) -> Measurements:
     return Measurements("closing_curves", columns, names, False, 0.0, "curves")
 
 
+def _verdicts(result: Calibration, *tables: Measurements) -> list[str]:
+    """What is said of each table."""
+    return [row["verdict"] for row in learned(result, tables, CONTACT.max_force_nN)]
+
+
 def _unless(**statements: object) -> list[str]:
     """Names of the statements that do not hold."""
     return [name.replace("_", " ") for name, holds in statements.items() if not holds]
@@ -183,7 +183,7 @@ def _two_modes() -> list[str]:
 
 def _contradicting(bench: Bench) -> list[str]:
     tables = (values_of("hardness", [3.9, 4.0, 4.1], 0.1), values_of("modulus", [130.0], 2.0))
-    first, second = bench.verdicts(*tables)
+    first, second = _verdicts(bench.calibrated(*tables), *tables)
     return _unless(the_other_agrees="agrees" in first, named="contradicts" in second)
 
 
@@ -208,8 +208,8 @@ def _outlier(bench: Bench) -> list[str]:
 def _excluded_truth(bench: Bench) -> list[str]:
     prior = bench.prior_with(h_macro=Distribution("uniform", 3.0, 3.2), h_prime=Distribution("uniform", 8.0, 14.8))
     data = values_of("hardness", [1.5 + 8 * 100**-0.25] * 4, 0.1)
-    (verdict,) = bench.verdicts(data, prior=prior)
     result = bench.calibrated(data, prior=prior)
+    (verdict,) = _verdicts(result, data)
     return _unless(
         at_the_edge_of_h_prime=np.quantile(bench.column(result, "h_prime"), 0.05) < 8.2,
         said="contradicts the prior" in verdict,
@@ -304,7 +304,7 @@ def _correlated(bench: Bench) -> list[str]:
 
 
 def _far_zero(bench: Bench) -> list[str]:
-    near, far = (bench.calibrated(_curves(bench, zero), steps=400).posterior for zero in (0.0, 1e5))
+    near, far = (bench.posterior(_curves(bench, zero)) for zero in (0.0, 1e5))
     x = bench.table.sample(30, 2)
     a, b = near.log_likelihood(x), far.log_likelihood(x)
     return _unless(same_likelihood=np.abs((a - a[0]) - (b - b[0])).max() < 1e-3)
