@@ -18,6 +18,8 @@ run: setup
 plan: setup
 	@$(RUN) asperity plan "$(SCENE)" $(TARGET)
 
+# a core for each worker: libraries whose threads wait for each other there took twice as long
+test: export OMP_NUM_THREADS := 1
 test: setup
 	$(RUN) pytest --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 
