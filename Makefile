@@ -11,7 +11,7 @@ RUN := $(UV) run --locked --no-sync
 # trust the system's certificates, so that set-up works behind a TLS-inspecting proxy
 export UV_SYSTEM_CERTS := 1
 
-.PHONY: run plan test bench lint docs floors setup
+.PHONY: run plan test bench lint docs floors setup docs-setup
 run: setup
 	@$(RUN) asperity run $(if $(HOURS),--hours "$(HOURS)") "$(SCENE)" $(TARGET)
 
@@ -34,8 +34,7 @@ lint: setup
 	$(RUN) pyright
 	$(RUN) lint-imports --no-cache
 
-docs: setup
-	@$(UV) sync --locked --quiet --inexact --group docs
+docs: docs-setup
 	@rm -rf docs/api docs/_build
 	$(RUN) sphinx-build -W --keep-going -q -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
@@ -44,6 +43,9 @@ floors: | $(UV)
 	.ci/floors
 
 setup: .venv/.asperity-ready
+
+docs-setup: setup
+	@$(UV) sync --locked --quiet --inexact --group docs
 
 .venv/.asperity-ready: pyproject.toml uv.lock | $(UV)
 	@echo "setting up the environment (about 1.5 GB, once)"
