@@ -90,21 +90,25 @@ def film_inputs(pressed: bool) -> dict[str, Any]:
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """A row for each case."""
     for case in given.cases:
-        changed = CASES[case]
-        if "film" in case:
-            changed = {**changed, "inputs": film_inputs("pressed" in case)}
-        scene = {
-            "extends": "reduced",
-            "name": "answer",
-            "compute": [],
-            "inputs": ({} if changed.get("extends") else EQ_4 | ATOMS) | changed.get("inputs", {}),
-            "contact": {"pixels": given.pixels} | changed.get("contact", {}),
-            **{key: value for key, value in changed.items() if key not in ("inputs", "contact")},
-        }
         with tempfile.TemporaryDirectory() as folder:
             tree = _other_seeds(Path(folder), case[-1]) if case.startswith("other") else ROOT
-            with results_of(scene, "pad", tree) as results:
+            with results_of(scene_of(case, given.pixels), "pad", tree) as results:
                 yield {"case": case, "pixels": given.pixels, **_answer(results)}
+
+
+def scene_of(case: str, pixels: int) -> dict[str, Any]:
+    """The scene of a case."""
+    changed = CASES[case]
+    if "film" in case:
+        changed = {**changed, "inputs": film_inputs("pressed" in case)}
+    return {
+        "extends": "reduced",
+        "name": "answer",
+        "compute": [],
+        "inputs": ({} if changed.get("extends") else EQ_4 | ATOMS) | changed.get("inputs", {}),
+        "contact": {"pixels": pixels} | changed.get("contact", {}),
+        **{key: value for key, value in changed.items() if key not in ("inputs", "contact")},
+    }
 
 
 def _other_seeds(tree: Path, number: str) -> Path:
