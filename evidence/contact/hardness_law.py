@@ -8,8 +8,7 @@ errors, those of `film less eq. 4` of the paired difference. Numbers are those o
 
 - `d_c_nm`: separation at first contact on closing, as in `law/parameters.csv`. The surface decides it, not the law.
 - `d_c_change_nm`: separation at last contact on opening less `d_c_nm`.
-- `hysteresis_mJ_m2`: work of closing less the work that opening gives back, per area of the cell: the area between both
-  curves of the net pressure.
+- `hysteresis_mJ_m2`: area between the curves of net pressure of closing and opening, the work lost per area of cell.
 - `pull_off_kPa`: largest net attraction on opening, per area of the cell. A pad of many cells pulls less.
 
 At median inputs the film is harder than eq. 4 where contacts are 5 to 30 nm wide (Table 1: up to 50 nm), and softer
