@@ -239,7 +239,7 @@ class Eam(_Section):
 
 
 class Bond(_Section):
-    """Morse bond of the metal and an ion of a film."""
+    """Morse bond of an atom of the base and an ion of a film."""
 
     D_eV: Positive
     a_1_per_A: Positive
@@ -254,13 +254,19 @@ class BodyArea(_Section):
 
 
 class FilmBase(_Section):
-    """What a metal below an oxide film is like: its grains, which make it soft, and how ions of the film act on it."""
+    """What a body below an oxide film is like, and how ions of the film act on its atoms.
 
-    grain_nm: Positive = Field(description="diameter of a sphere of the mean volume of a grain")
-    bonds: dict[Element, Bond] = Field(min_length=1)
-    repelled: tuple[Element, ...] = Field(description="ions that only repel it")
+    A pair names the atom of the base first.
+    """
+
+    grain_nm: Positive | None = Field(
+        default=None, description="of a metal, whose grains make it soft: diameter of a sphere of their mean volume"
+    )
+    timestep_factor: float = Field(default=1.0, gt=0, le=1, description="on the time step of a closing")
+    bonds: dict[ElementPair, Bond] = Field(min_length=1)
+    repelled: tuple[ElementPair, ...] = Field(description="pairs that only repel each other")
     area_of_film: BodyArea
-    area_of_metal: BodyArea
+    area_of_base: BodyArea
     source: str
 
 
@@ -325,8 +331,10 @@ class Material(_Section):
                 raise ValueError(f"{key} has {', '.join(sorted(elements))}; it must have {', '.join(self.formula)}")
         if self.oxide_glass is not None and (len(self.formula) != 2 or "O" not in self.formula):
             raise ValueError(f"oxide_glass: needs a formula of one cation and O, got {self.formula_text}")
-        if self.film_base is not None and self.eam is None:
-            raise ValueError("film_base: needs the metal's potential; add a section eam")
+        if self.film_base is not None and (self.eam is None) == (self.network_glass is None):
+            raise ValueError("film_base: needs the potential of its body; add a section eam or network_glass")
+        if self.film_base is not None and (self.eam is None) != (self.film_base.grain_nm is None):
+            raise ValueError("film_base: grain_nm is of a metal, and every metal needs it")
         if self.eam is not None and len(self.formula) != 1:
             raise ValueError(f"eam: needs a formula of one element, got {self.formula_text}")
         return self

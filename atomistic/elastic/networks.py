@@ -7,7 +7,6 @@ every atom has its valence, and none that the ensemble already has.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations_with_replacement, product
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +15,9 @@ from ase import Atoms
 from ase.data import atomic_numbers
 
 from atomistic.constants import AMU_PER_A3_IN_G_CM3
+from atomistic.covalent import core_commands, random_places, tersoff_table
 from atomistic.errors import InputError
-from atomistic.materials import SEARCHED_A, Core, Material, NetworkGlass, Supercell, Tersoff
+from atomistic.materials import SEARCHED_A, Material, NetworkGlass, Supercell, Tersoff
 from atomistic.settings import NitrideGlassSettings
 
 START_DISTANCE_A = 1.4  # random start: nothing closer than this
@@ -151,26 +151,6 @@ def no_insulator(gap_eV: float, criteria: NetworkGlass) -> list[str]:
     return [f"gap {gap_eV:.2f} eV: no insulator"] if gap_eV < criteria.gap_eV else []
 
 
-def tersoff_table(parameters: Tersoff) -> str:
-    """Tersoff parameters in the format of LAMMPS (and ASE), one line per triplet.
-
-    A pair's own parameters come from the mixing rules of Tersoff, PRB 39, 5566 (1989); `chi` scales the
-    attraction of unlike (and, if given, like) pairs.  The cutoff of a triplet i j k is that of i–k.
-    """
-    elements = parameters.elements
-    chi = {frozenset(pair.split("-")): value for pair, value in parameters.chi.items()}
-    lines = ["# m gamma lambda3 c d costheta0 n beta lambda2 B R D lambda1 A"]
-    for i, j, k in product(elements, repeat=3):
-        p, q, r = elements[i], elements[j], elements[k]
-        inner, outer = np.sqrt(p.R * r.R), np.sqrt(p.S * r.S)
-        attraction = np.sqrt(p.B * q.B) * chi.get(frozenset((i, j)), 1.0)
-        numbers = [3, 1, 0, p.c, p.d, p.h, p.n, p.beta, (p.mu + q.mu) / 2, attraction]
-        numbers += [(inner + outer) / 2, (outer - inner) / 2]
-        numbers += [(p.lambda_ + q.lambda_) / 2, np.sqrt(p.A * q.A)]
-        lines.append(" ".join([i, j, k, *(f"{float(x):.10g}" for x in numbers)]))
-    return "\n".join(lines) + "\n"
-
-
 def tersoff_calculator(parameters: Tersoff):
     """The same potential as an ASE calculator (slow, but in-process: Hessians, checks on crystals)."""
     from ase.calculators.tersoff import Tersoff, TersoffParameters
@@ -182,17 +162,6 @@ def tersoff_calculator(parameters: Tersoff):
     return Tersoff(table)
 
 
-def core_commands(cores: Mapping[str, Core], elements: Sequence[str]) -> str:
-    """LAMMPS commands of the soft cores k (r_c − r)², every pair without one at zero."""
-    by_pair = {frozenset(pair.split("-")): core for pair, core in cores.items()}
-    lines = []
-    for i, j in combinations_with_replacement(range(len(elements)), 2):
-        core = by_pair.get(frozenset((elements[i], elements[j])))
-        k_eV_A2, r_A = (core.k_eV_A2, core.r_A) if core else (0.0, 1.0)
-        lines.append(f"pair_coeff {i + 1} {j + 1} harmonic/cut {k_eV_A2} {r_A}")
-    return "\n".join(lines) + "\n"
-
-
 def random_structure(
     formula: Mapping[str, int], units: int, density_g_cm3: float, seed: int, edges: Sequence[float] = (1, 1, 1)
 ) -> Atoms:
@@ -202,17 +171,8 @@ def random_structure(
     shape = np.asarray(edges, float)
     edge = shape * (atoms.get_masses().sum() * AMU_PER_A3_IN_G_CM3 / density_g_cm3 / shape.prod()) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 5]))
-    placed = np.empty((len(symbols), 3))
-    for k in range(len(placed)):
-        while True:
-            trial = rng.uniform(0, edge, 3)
-            apart = placed[:k] - trial
-            apart -= edge * np.round(apart / edge)
-            if not np.any(np.einsum("ij,ij->i", apart, apart) < START_DISTANCE_A**2):
-                placed[k] = trial
-                break
     atoms.set_cell(edge)
-    atoms.positions = placed
+    atoms.positions = random_places(len(symbols), edge, START_DISTANCE_A, rng)
     return atoms
 
 
@@ -294,7 +254,7 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
     }
     workspace = Workspace(work, identity, "nitride.in")
     (workspace / "potential.tersoff").write_text(tersoff_table(network.tersoff), encoding="utf-8")
-    (workspace / "cores.in").write_text(core_commands(network.cores, elements), encoding="utf-8")
+    (workspace / "cores.in").write_text("\n".join(core_commands(network.cores, elements)) + "\n", encoding="utf-8")
     write_data(
         workspace / "start.data",
         LammpsAtoms(elements, types, start.positions, np.diag(start.cell.array)),

@@ -10,8 +10,8 @@ import numpy as np
 from atomistic.errors import InputError
 from atomistic.hardness.asperity import cut_asperity, formula_of
 from atomistic.hardness.contact_area import Area, calibrated, contact_map, shares_in_contact
+from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import cations
-from atomistic.hardness.metal import Metal
 from atomistic.hardness.plateau import RULES, may_stop
 from atomistic.hardness.pressing import (
     Plan,
@@ -22,8 +22,8 @@ from atomistic.hardness.pressing import (
     press_bodies,
 )
 from atomistic.hardness.readout import Bond, Geometry, Readout, Rows, slice_rows, witness_rows
-from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
-from atomistic.hardness.stack import Stack, check_film, film_properties, lay
+from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
+from atomistic.hardness.stack import Stack, check_film, cut_base, film_properties, lay
 from atomistic.hardness.top_attraction import attract_top, bulk_density_per_A3
 from atomistic.lammps import Atoms, Progress, Workspace, run_lammps
 from atomistic.materials import Material
@@ -64,7 +64,7 @@ def run_closing(
     progress: Progress | None = None,
     counter_glass: Atoms | None = None,
     counter_potential: Potential | None = None,
-    base: tuple[Metal, Atoms] | None = None,
+    base: tuple[Base, Atoms] | None = None,
 ) -> Closing:
     """Carry out a run, or go on with it if `work` holds its restart files; `work` is deleted at the end.
 
@@ -72,7 +72,7 @@ def run_closing(
     ----------
     material, glass : oxide of the asperity, and a cell of its glass.
     counter_glass, counter_potential : glass and potential of a counterface of oxide; None: those of the asperity.
-    base : metal below a film, and a cube of it, one wavelength wide.
+    base : what lies below a film, and a cell of it (`Base.make`).
 
     Raises
     ------
@@ -80,6 +80,8 @@ def run_closing(
     """
     wavelength_nm = run.asperity.tiles * float(glass.cell_A[0]) / 10
     area, _ = area_of(run, potential, counter_potential, base)
+    if run.asperity.film_nm is not None and base is not None:
+        protocol = slowed(protocol, base[0].below_films.timestep_factor)
     plan = plan_closing(closing, run, protocol)
     identity = {
         "potential": [within.model_dump() for within in (potential, counter_potential or potential)],
@@ -128,9 +130,9 @@ def run_closing(
     result, snapshots = read(geometry, reached), range(reached.segments + 1)
     of_oxide = run.asperity.film_nm is None  # atoms of a metal pull otherwise: their tops say nothing of the oxide's
     tops = [attraction_row(readout(geometry), n, geometry) if of_oxide else NO_TOP for n in snapshots]
-    if run.asperity.film_nm:
+    if run.asperity.film_nm and base is not None:
         start, end = (readout(geometry).relaxed(n).frame for n in (0, reached.segments))
-        result.summary.update(film_properties(start, end, geometry.wavelength_A))
+        result.summary.update(film_properties(start, end, geometry.wavelength_A, len(base[0].elements)))
     shutil.rmtree(work)
     return replace(result, witness=[{**row, **top} for row, top in zip(result.witness, tops, strict=True)])
 
@@ -151,9 +153,9 @@ def cut_body(
     base_nm: float,
     place: tuple[int, ...],
     protocol: Protocol,
-    base: tuple[Metal, Atoms] | None = None,
+    base: tuple[Base, Atoms] | None = None,
 ) -> CutBody:
-    """The asperity of a run: of oxide, of the metal, or of the metal under a film.
+    """The asperity of a run: of oxide, of the base, or of the base under a film.
 
     Parameters
     ----------
@@ -171,13 +173,14 @@ def cut_body(
         cut = cut_asperity(glass, of.tiles, amplitude_A, base_A, seed)
         return CutBody(cut, formula_of(glass), potential)
     if base is None:
-        raise InputError(f"asperity {of.name}: film_nm = {film_nm:g} needs a metal below; set hardness.base")
-    metal, cube = base
+        raise InputError(f"asperity {of.name}: film_nm = {film_nm:g} needs a body below; set hardness.base")
+    below, cell = base
     if film_nm == 0:
-        return CutBody(cut_asperity(cube, 1, amplitude_A, base_A, seed), np.zeros(1, int), metal)
+        return CutBody(cut_base(cell, glass, of.tiles, amplitude_A, base_A, seed), formula_of(cell), below)
     check_film(film_nm, RULES.max_area_fraction**0.5 * of.tiles * float(glass.cell_A[0]) / 10)
-    cut = lay(cube, glass, of.tiles, amplitude_A, 10 * film_nm, base_A, seed)
-    return CutBody(cut, np.array([0, *formula_of(glass)]), Stack(potential, metal, protocol.bond_factor))
+    cut = lay(cell, glass, of.tiles, amplitude_A, 10 * film_nm, base_A, seed)
+    formula = np.array([*(0 for _ in below.elements), *formula_of(glass)])
+    return CutBody(cut, formula, Stack(potential, below, protocol.bond_factor))
 
 
 def weld(
@@ -185,23 +188,24 @@ def weld(
     glass: Atoms,
     potential: Potential,
     closing: ClosingSettings,
-    base: tuple[Metal, Atoms],
+    base: tuple[Base, Atoms],
     work: Path,
 ) -> tuple[Stack, Atoms]:
     """The forces and the welded body of a run with a film, for checks."""
     place = (run.seed, 0)
-    base_nm = base_thickness_nm(closing, float(base[1].cell_A[0]) / 10)
-    body = cut_body(run, glass, potential, base_nm, place, PROTOCOL, base)
+    protocol = slowed(PROTOCOL, base[0].below_films.timestep_factor)
+    base_nm = base_thickness_nm(closing, run.asperity.tiles * float(glass.cell_A[0]) / 10)
+    body = cut_body(run, glass, potential, base_nm, place, protocol, base)
     assert isinstance(body.force, Stack)
     workspace = Workspace(work / "weld", {}, "anneal.in")
-    return body.force, prepare_body(run, body.cut, body.formula, body.force, closing, PROTOCOL, workspace, place)
+    return body.force, prepare_body(run, body.cut, body.formula, body.force, closing, protocol, workspace, place)
 
 
 def area_of(
     run: ClosingRun,
     potential: Potential,
     counter_potential: Potential | None = None,
-    base: tuple[Metal, Atoms] | None = None,
+    base: tuple[Base, Atoms] | None = None,
 ) -> tuple[Area, float]:
     """The definition of contact area that was calibrated on bodies of a run's kind, and its largest error.
 
@@ -212,7 +216,7 @@ def area_of(
     area, error = calibrated(potential, counter_potential)
     if run.asperity.film_nm is None or base is None:
         return area, error
-    of = base[0].below_films.area_of_film if run.asperity.film_nm else base[0].below_films.area_of_metal
+    of = base[0].below_films.area_of_film if run.asperity.film_nm else base[0].below_films.area_of_base
     return replace(area, depth_A=of.depth_A), of.error
 
 
@@ -222,7 +226,8 @@ def oxide_bond(elements: tuple[str, ...], material: Material, potential: Potenti
     if not set(ions) <= set(elements):
         return None
     cation, anion = sorted(ions, key=cations(material, potential).__contains__, reverse=True)
-    return Bond(elements.index(cation) + 1, elements.index(anion) + 1, material.part("oxide_glass").cutoff_A)
+    types = {element: kind for kind, element in enumerate(elements, 1)}  # the last of an element is the film's
+    return Bond(types[cation], types[anion], material.part("oxide_glass").cutoff_A)
 
 
 def _read(readout: Readout, plan: Plan, held_A: float, geometry: Geometry) -> Closing:

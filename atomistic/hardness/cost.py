@@ -1,22 +1,20 @@
 """What closing runs will cost, before they are run: atoms, steps, core-hours."""
 
-import numpy as np
-
 from atomistic.hardness.asperity import MEAN_HEIGHT
-from atomistic.hardness.metal import base_steps
+from atomistic.hardness.film_base import Base
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.pressing import base_thickness_nm, plan_closing
-from atomistic.hardness.runs import PROTOCOL, planned_runs
+from atomistic.hardness.runs import PROTOCOL, planned_runs, slowed
 from atomistic.hardness.stack import check_film
-from atomistic.materials import Eam, Material
+from atomistic.materials import Material
 from atomistic.settings import HardnessSettings
 
 ATOM_STEPS_PER_CORE_SECOND = 1.3e6  # tabulated pair potential: 12 runs of scene reduced took 31 core-minutes
-METAL_ATOM_STEPS_PER_CORE_SECOND = 0.6e6  # embedded atoms, and pairs beside them
+BASE_ATOM_STEPS_PER_CORE_SECOND = 0.6e6  # embedded atoms or a Tersoff potential, and pairs beside them
 
 
 def plan_rows(
-    settings: HardnessSettings, material: Material, counter_material: Material, base: Material | None = None
+    settings: HardnessSettings, material: Material, counter_material: Material, base: Base | None = None
 ) -> list[dict[str, float | str]]:
     """One row per closing run, and their sum in the last.
 
@@ -25,7 +23,7 @@ def plan_rows(
     Parameters
     ----------
     material, counter_material : oxides of the asperity and of a counterface of atoms.
-    base : metal below films.
+    base : what lies below films.
 
     Raises
     ------
@@ -37,15 +35,18 @@ def plan_rows(
     rows: list[dict[str, float | str]] = []
     edge_nm = (settings.glass.atoms / density) ** (1 / 3)
     for run in planned_runs(settings):
-        plan, closing = plan_closing(settings.closing, run), settings.closing
-        wavelength, amplitude = run.asperity.tiles * edge_nm, run.asperity.amplitude_nm
-        film, below = run.asperity.film_nm, base_thickness_nm(closing, wavelength) + MEAN_HEIGHT * amplitude
-        speed, metal = ATOM_STEPS_PER_CORE_SECOND, 0.0
+        film, closing, protocol = run.asperity.film_nm, settings.closing, PROTOCOL
         if film is not None and base is not None:
-            speed, metal = METAL_ATOM_STEPS_PER_CORE_SECOND, atoms_per_nm3(base.part("eam"))
+            protocol = slowed(PROTOCOL, base.below_films.timestep_factor)
+        plan = plan_closing(closing, run, protocol)
+        wavelength, amplitude = run.asperity.tiles * edge_nm, run.asperity.amplitude_nm
+        below = base_thickness_nm(closing, wavelength) + MEAN_HEIGHT * amplitude
+        speed, of_base = ATOM_STEPS_PER_CORE_SECOND, 0.0
+        if film is not None and base is not None:
+            speed, of_base = BASE_ATOM_STEPS_PER_CORE_SECOND, base.atoms_per_nm3
             if film:
                 check_film(film, RULES.max_area_fraction**0.5 * wavelength)
-        atoms = wavelength**2 * (density * below if film is None else density * film + metal * below)
+        atoms = wavelength**2 * (density * below if film is None else density * film + of_base * below)
         if closing.counterface != "flat":
             relief = amplitude if closing.counterface == "asperity" else 0
             thickness = PROTOCOL.counter_base_nm + MEAN_HEIGHT * relief
@@ -68,13 +69,7 @@ def plan_rows(
     return [*rows, {"run": "all", **total}]
 
 
-def atoms_per_nm3(eam: Eam) -> float:
-    """Of the hexagonal crystal."""
-    a, c = eam.lattice_A
-    return 4e3 / (a**2 * np.sqrt(3) * c)
-
-
-def base_seconds(settings: HardnessSettings, material: Material, base: Material, tiles: int) -> float:
-    """Of one core, for a cube of metal as wide as so many glass cells."""
-    edge_nm = tiles * (settings.glass.atoms / material.part("oxide_glass").quenched.atoms_per_nm3) ** (1 / 3)
-    return edge_nm**3 * atoms_per_nm3(base.part("eam")) * base_steps() / METAL_ATOM_STEPS_PER_CORE_SECOND
+def base_seconds(settings: HardnessSettings, material: Material, base: Base, tiles: int) -> float:
+    """Of one core, for a cell of the base as wide as so many glass cells."""
+    edge_A = 10 * (settings.glass.atoms / material.part("oxide_glass").quenched.atoms_per_nm3) ** (1 / 3)
+    return base.make_atom_steps(edge_A, tiles) / BASE_ATOM_STEPS_PER_CORE_SECOND

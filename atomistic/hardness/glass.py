@@ -13,6 +13,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from atomistic.constants import AVOGADRO
+from atomistic.covalent import random_places
 from atomistic.errors import InputError
 from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
 from atomistic.materials import SEARCHED_A, SHORTEST_BOND_A, Material, OxideGlass
@@ -51,15 +52,7 @@ def random_start(
     mass_g = sum(n * potential.species[ion].mass_u for n, ion in zip(counts, elements, strict=True)) / AVOGADRO
     length = edge_A or (mass_g / reference.density_g_cm3 * 1e24) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 1]))
-    placed = np.empty((sum(counts), 3))
-    for k in range(len(placed)):
-        while True:
-            trial = rng.uniform(0, length, 3)
-            apart = placed[:k] - trial
-            apart -= length * np.round(apart / length)
-            if not np.any(np.einsum("ij,ij->i", apart, apart) < NEAREST_START_A**2):
-                break
-        placed[k] = trial
+    placed = random_places(sum(counts), np.full(3, length), NEAREST_START_A, rng)
     types = rng.permutation(np.repeat(np.arange(1, len(elements) + 1), counts))
     return Atoms(elements, types, placed, np.full(3, length))
 

@@ -1,4 +1,4 @@
-"""The metal below an oxide film: its embedded-atom potential for LAMMPS, and dense bodies of many grains.
+"""A metal below an oxide film: its embedded-atom potential for LAMMPS, and dense bodies of many grains.
 
 The functions are those of X. W. Zhou, R. A. Johnson and H. N. G. Wadley, Phys. Rev. B 69, 144113 (2004).
 """
@@ -14,10 +14,10 @@ from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 
 from atomistic.errors import InputError
+from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import run_segments
 from atomistic.lammps import Atoms, Progress, Workspace
-from atomistic.materials import Eam, FilmBase, Material
-from atomistic.potentials import Repelled
+from atomistic.materials import Eam
 
 POINTS = 5000
 CUTOFF_A = 7.0  # all functions of titanium are below 2e-6 eV there; at the authors' 6.56 A lies a shell of neighbours
@@ -54,15 +54,16 @@ def embedding_energy(eam: Eam, density: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Metal:
-    """A metal, pressed as the oxide of a `Potential` is."""
+class Metal(Base):
+    """A metal below films, or by itself."""
 
-    material: Material
+    styles = ("eam/alloy",)
+    molten_K = 2800.0
 
     @property
     def element(self) -> str:
         """Its chemical symbol."""
-        return next(iter(self.material.formula))
+        return self.elements[0]
 
     @property
     def eam(self) -> Eam:
@@ -70,14 +71,32 @@ class Metal:
         return self.material.part("eam")
 
     @property
-    def below_films(self) -> FilmBase:
-        """Its grains, and how atoms of a film act on it."""
-        return self.material.part("film_base")
-
-    @property
     def species(self) -> Mapping[str, Any]:
         """What has the mass of its atoms, by element."""
         return {self.element: self.eam}
+
+    @property
+    def atoms_per_nm3(self) -> float:
+        """Of the hexagonal crystal."""
+        a, c = self.eam.lattice_A
+        return 4e3 / (a**2 * np.sqrt(3) * c)
+
+    def softened(self, factor: float) -> "Metal":
+        """The same metal with all energies times a factor: for checks."""
+        single, several = ("A_eV", "B_eV", "F_outer_eV"), ("F_inner_eV", "F_middle_eV")
+        eam = self.eam.model_copy(
+            update={key: factor * getattr(self.eam, key) for key in single}
+            | {key: tuple(factor * value for value in getattr(self.eam, key)) for key in several}
+        )
+        return Metal(self.material.model_copy(update={"eam": eam}))
+
+    def commands(self, above: int) -> list[str]:
+        """Commands of its own atoms, type 1."""
+        return [f"pair_coeff * * eam/alloy {METAL_FILE} {' '.join([self.element, *['NULL'] * above])}"]
+
+    def tables(self) -> dict[str, str]:
+        """The potential."""
+        return {METAL_FILE: self.setfl()}
 
     def setfl(self) -> str:
         """The potential for LAMMPS's `pair_style eam/alloy`."""
@@ -91,29 +110,16 @@ class Metal:
         np.savetxt(text, r * pair_energy(eam, r), fmt="%.16g")
         return text.getvalue()
 
-    def files(
-        self,
-        elements: tuple[str, ...],
-        energy_scale: float,
-        repelled: Repelled | None = None,
-    ) -> dict[str, str]:
-        """What LAMMPS needs, as `Potential.files`; metals keep their energies in the twin with halved ones.
+    def make(self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None) -> Atoms:
+        """`make_base`, as wide as an asperity of so many glass cells."""
+        return make_base(self, tiles * edge_A, seed, work, progress)
 
-        Raises
-        ------
-        InputError : a counterface of atoms.
-        """
-        if repelled is not None or len(elements) > 1:
-            raise InputError(
-                f"hardness.closing.counterface: {self.element} without a film is pressed by a flat only, since nothing "
-                "is known of how its atoms meet others; set film_nm above 0, or counterface to flat"
-            )
-        lines = ("pair_style eam/alloy", f"pair_coeff * * {METAL_FILE} {self.element}", *NEIGHBOURS)
-        return {METAL_FILE: self.setfl(), "pairs": "\n".join(lines) + "\n"}
+    def make_atom_steps(self, edge_A: float, tiles: int) -> float:
+        """Atoms times MD steps of `make`."""
+        return (tiles * edge_A / 10) ** 3 * self.atoms_per_nm3 * sum(segment["steps"] for segment in _segments())
 
 
 METAL_FILE = "metal.eam"
-NEIGHBOURS = ("neighbor 1.0 bin", "neigh_modify every 2 delay 0 check yes")
 
 
 def crystal(metal: Metal, repeats: tuple[int, int, int]) -> Atoms:
@@ -193,15 +199,10 @@ def _segments() -> list[dict[str, Any]]:
     return [{"ensemble": "npt", "from": start, "to": end, "steps": count} for start, end, count in parts]
 
 
-def base_steps() -> int:
-    """MD steps of `make_base`."""
-    return sum(segment["steps"] for segment in _segments())
-
-
 def _wide_enough(metal: Metal, edge_A: float, seed: int) -> Atoms:
     """Grains in a cube whose atoms fill one of `edge_A` once they are dense."""
-    grain_A, (a, c) = 10 * metal.below_films.grain_nm, metal.eam.lattice_A
-    volume_A3 = a**2 * np.sqrt(3) * c / (len(PLACES) * ANNEALED_DENSITY)  # of an atom
+    assert metal.below_films.grain_nm is not None  # of a Material
+    grain_A, volume_A3 = 10 * metal.below_films.grain_nm, 1e3 / (metal.atoms_per_nm3 * ANNEALED_DENSITY)
     start_A, atoms = edge_A, polycrystal(metal, edge_A, grain_A, seed)
     for _ in range(WIDENINGS):
         start_A *= edge_A / (len(atoms) * volume_A3) ** (1 / 3)

@@ -127,7 +127,8 @@ def prepare_body(
 
 
 def _mass_u(potential: ForceField, atoms: Atoms) -> float:
-    return sum(atoms.count(element) * potential.species[element].mass_u for element in atoms.elements)
+    masses = np.array([potential.species[element].mass_u for element in atoms.elements])
+    return float(masses[atoms.types - 1].sum())
 
 
 def lammps_seed(*entropy: int) -> int:

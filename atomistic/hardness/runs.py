@@ -35,7 +35,7 @@ class Protocol(Settings):
     force_step_MPa : rise of the nominal stress at each step of controlled force (Kim et al. 2013).
     max_stress_GPa : nominal stress at the end of controlled force.
     damping_ps : controlled force: time in which the sample's motion as a whole is damped.
-    bond_factor : on the depth of the bonds of film and metal, which are assumed.
+    bond_factor : on the depth of the bonds of film and base, which are assumed.
     """
 
     timestep_fs: float = 3.0
@@ -60,10 +60,15 @@ class Protocol(Settings):
 PROTOCOL = Protocol()
 
 
-def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
-    """Every asperity x seed x energy scale of the settings; films and their metal at the highest scale alone.
+def slowed(protocol: Protocol, factor: float) -> Protocol:
+    """The protocol with a shorter time step, for bodies whose bonds vibrate faster than those of the oxide."""
+    return protocol.model_copy(update={"timestep_fs": factor * protocol.timestep_fs})
 
-    A metal keeps its energies, and oxide with halved ones is no harder than it: no effect of a film would be left.
+
+def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
+    """Every asperity x seed x energy scale of the settings; films and their base at the highest scale alone.
+
+    A base keeps its energies, and oxide with halved ones is no harder than titanium: no effect of a film would be left.
     """
     return [
         ClosingRun(

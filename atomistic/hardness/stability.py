@@ -9,7 +9,6 @@ import numpy as np
 
 from atomistic.constants import BOLTZMANN_EV_PER_K, EV_PER_A3_IN_GPA, KE_EV
 from atomistic.hardness.glass import MELT_K, TIMESTEP_FS, write_forcefield
-from atomistic.hardness.metal import Metal
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL
 from atomistic.hardness.stack import Stack, lifted
@@ -98,28 +97,21 @@ def _of_body(potential: Potential, glass: Atoms, energy_scales: Sequence[float],
     return checks
 
 
-LIFT_A = 60.0  # beyond the cut-off of every pair, also of ions that went into the metal
-SOFTER, SOLID_K = 1e-3, 1.0  # a metal with such energies is a gas where it is warmer
-MOLTEN_METAL_K = 2800.0
-SEPARATION_J_M2 = (0.1, 10.0)  # of oxides on metals; weaker films fall off, stronger ones are part of the metal
+LIFT_A = 60.0  # beyond the cut-off of every pair, also of ions that went into the base
+SOFTER, SOLID_K = 1e-3, 1.0  # a body with such energies is a gas where it is warmer
+SEPARATION_J_M2 = (0.1, 10.0)  # weaker films fall off, stronger ones are part of the base
 
 
 def film_checks(stack: Stack, body: Atoms, energy_scales: Sequence[float], work: Path) -> list[Check]:
-    """Checks of a film on its metal: the scene's thinnest one, welded.
+    """Checks of a film on its base: the scene's thinnest one, welded.
 
     Parameters
     ----------
     work : of `stability_checks`.
     """
-    eam = stack.metal.eam
-    energies = ("A_eV", "B_eV", "F_outer_eV")
-    series = ("F_inner_eV", "F_middle_eV")
-    soft = eam.model_copy(
-        update={key: SOFTER * getattr(eam, key) for key in energies}
-        | {key: tuple(SOFTER * value for value in getattr(eam, key)) for key in series}
-    )
-    softer = Metal(stack.metal.material.model_copy(update={"eam": soft}))
-    closing_fs = PROTOCOL.timestep_fs
+    base = stack.base
+    factor = base.below_films.timestep_factor
+    closing_fs = factor * PROTOCOL.timestep_fs
     cases = [
         *(
             (f"room_x{scale:g}", stack, PROTOCOL.temperature_K, closing_fs / np.sqrt(scale), scale)
@@ -127,15 +119,15 @@ def film_checks(stack: Stack, body: Atoms, energy_scales: Sequence[float], work:
         ),
         ("cold", stack, 10.0, closing_fs, 1.0),
         ("hot_as_in_anneal", stack, PROTOCOL.anneal_temperature_K, closing_fs, 1.0),
-        ("molten_base", stack, MOLTEN_METAL_K, TIMESTEP_FS, 1.0),
-        ("base_softer_by_1000", replace(stack, metal=softer), SOLID_K, closing_fs, 1.0),
+        ("molten_base", stack, base.molten_K, factor * TIMESTEP_FS, 1.0),
+        ("base_softer_by_1000", replace(stack, base=base.softened(SOFTER)), SOLID_K, closing_fs, 1.0),
         ("sliding_interface", replace(stack, bond_factor=SOFTER), PROTOCOL.temperature_K, closing_fs, 1.0),
         ("bonds_fourfold", replace(stack, bond_factor=4.0), PROTOCOL.temperature_K, closing_fs, 1.0),
     ]
     checks: list[Check] = [
         (
             f"film_{label}",
-            f"film on {stack.metal.material.name}, {kelvin:g} K, energies x {scale:g}, {step:.3g} fs, 4 ps",
+            f"film on {base.material.name}, {kelvin:g} K, energies x {scale:g}, {step:.3g} fs, 4 ps",
             f"drift below {RULES.max_drift_meV_atom_ps} meV per atom and ps",
             lambda f=force, k=kelvin, s=scale, h=float(step): _drift(body, f, work, k, s, h),
         )
@@ -160,12 +152,14 @@ def film_checks(stack: Stack, body: Atoms, energy_scales: Sequence[float], work:
 
 
 def _off_its_base(stack: Stack, body: Atoms, work: Path) -> tuple[bool, str]:
-    first, second = (_energy(stack, lifted(body, height), work) for height in (LIFT_A, LIFT_A + 2))
+    first, second = (
+        _energy(stack, lifted(body, height, len(stack.base.elements)), work) for height in (LIFT_A, LIFT_A + 2)
+    )
     return abs(first - second) < 1e-6, f"differ by {abs(first - second):.1e} eV"
 
 
 def _separation(stack: Stack, body: Atoms, work: Path) -> tuple[bool, str]:
-    bound, free = (_energy(stack, lifted(body, height), work) for height in (0.0, LIFT_A))
+    bound, free = (_energy(stack, lifted(body, height, len(stack.base.elements)), work) for height in (0.0, LIFT_A))
     separation = (free - bound) / float(np.prod(body.cell_A[:2])) * EV_PER_A3_IN_GPA / 10
     return SEPARATION_J_M2[0] < separation < SEPARATION_J_M2[1], f"{separation:.2f} J/m2"
 

@@ -1,7 +1,7 @@
-"""A film of oxide glass on a metal: its force field, how it is laid and welded, and what it must look like.
+"""A film of oxide glass on another body: its force field, how it is laid and welded, and what it must look like.
 
-Nobody published how atoms of the two potentials act on each other. The file of the metal states an assumption
-(`film_base`): a Morse bond with oxygen and a short-range repulsion of the cation. Target `accuracy` varies its depth.
+Nobody published how atoms of the two potentials act on each other. The file of the base states an assumption
+(`film_base`): Morse bonds of some pairs and a short-range repulsion of the others. Target `accuracy` varies the depth.
 """
 
 from collections.abc import Iterable, Mapping
@@ -14,7 +14,9 @@ import numpy as np
 
 from atomistic.errors import InputError
 from atomistic.hardness.asperity import cut_asperity, formula_of, neutralise, profile
-from atomistic.hardness.metal import METAL_FILE, NEIGHBOURS, Metal
+from atomistic.hardness.film_base import NEIGHBOURS, Base
+from atomistic.hardness.metal import Metal
+from atomistic.hardness.network import Network
 from atomistic.lammps import Atoms
 from atomistic.materials import Material
 from atomistic.potentials import Morse, Potential, Repelled, pair_table
@@ -22,13 +24,12 @@ from atomistic.potentials import Morse, Potential, Repelled, pair_table
 GAP_A = 1.6  # between the surfaces that are laid on each other
 COLUMN_A = 4.0  # of the map of gaps
 LEAST_FILM_NM = 0.3  # one layer of tetrahedra
-METAL_TYPE = 1
-SLIP_DEPTH_A = 6.0  # of the metal below the contact whose way is compared with that of the film
+SLIP_DEPTH_A = 6.0  # of the base below the contact whose way is compared with that of the film
 
 
 @dataclass(frozen=True)
 class Stack:
-    """Oxide on metal, as a force field: type 1 is the metal, the types of the oxide follow.
+    """Oxide on a base, as a force field: the types of the base come first, those of the oxide follow.
 
     Attributes
     ----------
@@ -36,13 +37,13 @@ class Stack:
     """
 
     oxide: Potential
-    metal: Metal
+    base: Base
     bond_factor: float = 1.0
 
     @property
     def species(self) -> Mapping[str, Any]:
         """What has the mass of each element."""
-        return {**self.oxide.species, **self.metal.species}
+        return {**self.oxide.species, **self.base.species}
 
     def files(
         self,
@@ -50,38 +51,43 @@ class Stack:
         energy_scale: float,
         repelled: Repelled | None = None,
     ) -> dict[str, str]:
-        """What LAMMPS needs, as `Potential.files`; the scale is on the oxide and its bonds, the metal keeps its own.
+        """What LAMMPS needs, as `Potential.files`; the scale is on the oxide and its bonds, the base keeps its own.
 
         Raises
         ------
-        InputError : an ion without cross terms to the metal.
+        InputError : an ion without cross terms to the base.
         """
-        _, *ions = elements
+        below = len(self.base.elements)
+        ions = elements[below:]
         above, of_above = repelled or (self.oxide, ())
-        base, end = self.metal.below_films, self.oxide.cutoff_A
-        check_ions(self.metal.material, ions)
+        end = self.oxide.cutoff_A
+        check_ions(self.base.material, ions)
 
         def pair(i: int, j: int) -> str:
-            (below, first), (other, second) = types[i - 1], types[j - 1]
-            if below != other:
+            (body, first), (other, second) = types[i - 1], types[j - 1]
+            if body == "base" and other == "table":
+                name = f"{first}-{second}"
+                return f"cross {name if name in self.base.below_films.bonds else 'contact'} {end}"
+            if body != other:
                 return f"table contact {end}"
-            if below == "table" and i == METAL_TYPE:
-                return f"cross {second if second in base.bonds else 'contact'} {end}"
-            order, within = (ions, self.oxide) if below == "table" else (list(of_above), above)
+            order, within = (list(ions), self.oxide) if body == "table" else (list(of_above), above)
             first, second = sorted((first, second), key=order.index)
-            return f"{below} {first}_{second} {within.cutoff_A}"
+            return f"{body} {first}_{second} {within.cutoff_A}"
 
-        types = [("table", element) for element in elements] + [("table_above", element) for element in of_above]
-        nothing = " ".join(["NULL"] * (len(types) - 1))
+        types = [
+            *(("base", element) for element in self.base.elements),
+            *(("table", element) for element in ions),
+            *(("table_above", element) for element in of_above),
+        ]
         lines = [
-            "pair_style hybrid table linear 4000 eam/alloy",
-            f"pair_coeff * * eam/alloy {METAL_FILE} {self.metal.element} {nothing}",
+            f"pair_style hybrid/overlay table linear 4000 {' '.join(self.base.styles)}",
+            *self.base.commands(len(types) - below),
         ]
         for i, j in combinations_with_replacement(range(1, len(types) + 1), 2):
-            if j > METAL_TYPE:
+            if j > below:
                 lines.append(f"pair_coeff {i} {j} table {pair(i, j)}")
         files = {
-            METAL_FILE: self.metal.setfl(),
+            **self.base.tables(),
             "table": self.oxide.table(tuple(dict.fromkeys(ions)), energy_scale),
             "cross": self._cross(energy_scale),
             "pairs": "\n".join([*lines, *NEIGHBOURS]) + "\n",
@@ -89,37 +95,49 @@ class Stack:
         return files | ({"table_above": above.table(tuple(dict.fromkeys(of_above)), energy_scale)} if of_above else {})
 
     def _cross(self, energy_scale: float) -> str:
-        """Table of the metal with each ion that it binds, and of the repulsion of the others."""
-        sections = {ion: partial(self.bond, ion) for ion in self.metal.below_films.bonds}
-        return pair_table("metal with the ions of a film", sections, self.oxide.cutoff_A, energy_scale)
+        """Table of the base with each ion that it binds, and of the repulsion of the others."""
+        sections = {pair: partial(self.bond, pair) for pair in self.base.below_films.bonds}
+        return pair_table("base with the ions of a film", sections, self.oxide.cutoff_A, energy_scale)
 
-    def bond(self, ion: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Energy (eV) and force (eV/Å) of the metal and an ion, shifted so that both vanish at the cut-off."""
-        base, end = self.metal.below_films, np.array([self.oxide.cutoff_A])
-        given = base.bonds[ion].model_dump() | {"D_eV": self.bond_factor * base.bonds[ion].D_eV}
-        morse = Morse(term="morse", **given, source=base.source, confidence="low")
+    def bond(self, pair: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Energy (eV) and force (eV/Å) of an atom of the base and an ion, shifted to vanish at the cut-off."""
+        below, end = self.base.below_films, np.array([self.oxide.cutoff_A])
+        given = below.bonds[pair].model_dump() | {"D_eV": self.bond_factor * below.bonds[pair].D_eV}
+        morse = Morse(term="morse", **given, source=below.source, confidence="low")
         (energy, slope), (energy_end, slope_end) = morse.energy_and_slope(r), morse.energy_and_slope(end)
         return energy - energy_end - slope_end * (r - end), slope_end - slope
 
 
-def check_ions(metal: Material, ions: Iterable[str]) -> None:
-    """Refuse a film with an ion of which the metal's file does not say how it acts on the metal.
+def base_of(material: Material) -> Base:
+    """The body below a film, by what its material's file holds: a metal, or a glass of covalent bonds.
+
+    Raises
+    ------
+    InputError : nothing is known of films on the material.
+    """
+    material.part("film_base")
+    return Metal(material) if material.eam is not None else Network(material)
+
+
+def check_ions(base: Material, ions: Iterable[str]) -> None:
+    """Refuse a film with an ion of which the base's file does not say how it acts on each of its atoms.
 
     Raises
     ------
     InputError : of that ion.
     """
-    base = metal.part("film_base")
-    known = (*base.bonds, *base.repelled)
-    if foreign := [ion for ion in ions if ion not in known]:
+    below = base.part("film_base")
+    known = (*below.bonds, *below.repelled)
+    missing = [f"{element}-{ion}" for ion in ions for element in base.formula if f"{element}-{ion}" not in known]
+    if missing:
         raise InputError(
-            f"material {metal.name}: film_base has no cross terms with {foreign[0]}, so that no film with it lies on "
-            f"the metal; known are those with {' and '.join(known)}"
+            f"material {base.name}: film_base has no cross terms {missing[0]}, so that no film with that ion lies on "
+            f"it; known are {' and '.join(known)}"
         )
 
 
 def check_film(film_nm: float, widest_nm: float) -> None:
-    """Refuse a film that is no layer, or so thick that no contact of its asperity feels the metal.
+    """Refuse a film that is no layer, or so thick that no contact of its asperity feels the base.
 
     Parameters
     ----------
@@ -132,37 +150,45 @@ def check_film(film_nm: float, widest_nm: float) -> None:
     if not LEAST_FILM_NM <= film_nm <= widest_nm:
         raise InputError(
             f"film_nm = {film_nm:g}: on an asperity whose widest judged contact is {widest_nm:.1f} nm, accepted are "
-            f"{LEAST_FILM_NM:g} (one layer) to {widest_nm:.1f} nm, beyond which no contact feels the metal; or take "
+            f"{LEAST_FILM_NM:g} (one layer) to {widest_nm:.1f} nm, beyond which no contact feels the base; or take "
             "more tiles"
         )
 
 
-def lay(metal: Atoms, glass: Atoms, tiles: int, amplitude_A: float, film_A: float, base_A: float, seed: int) -> Atoms:
-    """An asperity of metal under a film of glass of the same shape, not yet welded.
+def lay(base: Atoms, glass: Atoms, tiles: int, amplitude_A: float, film_A: float, base_A: float, seed: int) -> Atoms:
+    """An asperity of a base under a film of glass of the same shape, not yet welded.
 
     Parameters
     ----------
-    metal, glass : cells of the metal (one wavelength wide) and of the glass (`tiles` to the wavelength).
+    base, glass : cells of the base (one wavelength wide, or as many to it as those of the glass) and of the glass
+        (`tiles` to the wavelength).
     """
-    below = cut_asperity(metal, 1, amplitude_A, base_A, seed)
+    below = cut_base(base, glass, tiles, amplitude_A, base_A, seed)
     film = cut_asperity(glass, tiles, amplitude_A, base_A + GAP_A + film_A, seed)
     x, y, z = film.positions_A.T
     floor = base_A + GAP_A + profile(x, y, float(film.cell_A[0]), amplitude_A)
     film = neutralise(film.take(z > floor), formula_of(glass))
     return Atoms(
-        (*metal.elements, *film.elements),
-        np.concatenate([below.types, film.types + len(metal.elements)]),
+        (*base.elements, *film.elements),
+        np.concatenate([below.types, film.types + len(base.elements)]),
         np.concatenate([below.positions_A, film.positions_A]),
         film.cell_A,
     )
 
 
-def film_properties(start: np.ndarray, end: np.ndarray, wavelength_A: float) -> dict[str, float]:
-    """How the film lies on its metal before the closing, and how far it has slid over it at the end.
+def cut_base(base: Atoms, glass: Atoms, tiles: int, amplitude_A: float, base_A: float, seed: int) -> Atoms:
+    """An asperity of the base by itself, as wide as so many cells of the glass."""
+    of_base = round(tiles * float(glass.cell_A[0] / base.cell_A[0]))
+    return cut_asperity(base, of_base, amplitude_A, base_A, seed)
+
+
+def film_properties(start: np.ndarray, end: np.ndarray, wavelength_A: float, below: int) -> dict[str, float]:
+    """How the film lies on its base before the closing, and how far it has slid over it at the end.
 
     Parameters
     ----------
     start, end : rows (type, x, y, z) of the same atoms, relaxed without their counterface; Å.
+    below : the types of the base.
 
     Returns
     -------
@@ -171,7 +197,7 @@ def film_properties(start: np.ndarray, end: np.ndarray, wavelength_A: float) -> 
     number = max(1, int(wavelength_A // COLUMN_A))
     places = (np.mod(start[:, 1:3] / wavelength_A, 1) * number).astype(int)
     column = places[:, 0] + number * places[:, 1]
-    z, film = start[:, 3], start[:, 0] > METAL_TYPE
+    z, film = start[:, 3], start[:, 0] > below
     low, top = np.full(number**2, np.inf), np.full(number**2, -np.inf)
     np.minimum.at(low, column[film], z[film])
     np.maximum.at(top, column[~film], z[~film])
@@ -179,8 +205,8 @@ def film_properties(start: np.ndarray, end: np.ndarray, wavelength_A: float) -> 
     moved = end[:, 1:3] - start[:, 1:3]
     moved -= wavelength_A * np.round(moved / wavelength_A)
     near = np.hypot(*(start[:, 1:3] - wavelength_A / 4).T) < wavelength_A / 4
-    below = near & ~film & (z > z[near & ~film].max() - SLIP_DEPTH_A)
-    slid = np.median(moved[near & film], axis=0) - np.median(moved[below], axis=0)
+    beneath = near & ~film & (z > z[near & ~film].max() - SLIP_DEPTH_A)
+    slid = np.median(moved[near & film], axis=0) - np.median(moved[beneath], axis=0)
     return {
         "covered_share": float(np.mean(np.isfinite(low))),
         "gap_95_A": float(np.quantile((low - top)[both], 0.95)),
@@ -188,7 +214,12 @@ def film_properties(start: np.ndarray, end: np.ndarray, wavelength_A: float) -> 
     }
 
 
-def lifted(body: Atoms, height_A: float) -> Atoms:
-    """The stack with its film lifted off by a height: for checks."""
-    shift = np.where(body.types > METAL_TYPE, height_A, 0.0)[:, None] * [0, 0, 1]
+def lifted(body: Atoms, height_A: float, below: int) -> Atoms:
+    """The stack with its film lifted off by a height: for checks.
+
+    Parameters
+    ----------
+    below : the types of the base.
+    """
+    shift = np.where(body.types > below, height_A, 0.0)[:, None] * [0, 0, 1]
     return replace(body, positions_A=body.positions_A + shift, cell_A=body.cell_A + np.array([0, 0, height_A]))

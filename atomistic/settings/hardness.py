@@ -125,7 +125,8 @@ class HardnessSettings(Settings):
     )
     base: str | None = Field(
         default=None,
-        description="metal below the films of asperities with a film_nm: a file in config/materials with a film_base",
+        description="body below the films of asperities with a film_nm: titanium, silicon_nitride, or another file "
+        "in config/materials with a film_base",
     )
     energy_scales: tuple[Annotated[float, Field(gt=0, le=2)], ...] = Field(
         default=(1.0, 0.5),
@@ -161,11 +162,13 @@ class HardnessSettings(Settings):
     def _films_have_a_base(self) -> "HardnessSettings":
         films = [asperity.name for asperity in self.asperities if asperity.film_nm is not None]
         if films and self.base is None:
-            raise ValueError(f"asperities: {films[0]} has a film_nm, but there is no base; name its metal (titanium)")
+            raise ValueError(
+                f"asperities: {films[0]} has a film_nm, but there is no base; name what lies below (titanium)"
+            )
         bare = [asperity.name for asperity in self.asperities if asperity.film_nm == 0]
         if bare and self.closing.counterface != "flat":
             raise ValueError(
-                f"asperities: {bare[0]} is metal without a film (film_nm: 0), which only a flat presses: nothing is "
+                f"asperities: {bare[0]} is a base without a film (film_nm: 0), which only a flat presses: nothing is "
                 "known of how its atoms meet others; leave it out, or set closing.counterface to flat"
             )
         if self.base is not None and not films:

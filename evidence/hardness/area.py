@@ -19,11 +19,12 @@ from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.asperity import cut_asperity, formula_of
 from atomistic.hardness.closing import CutBody, commensurate, cut_body
 from atomistic.hardness.contact_area import Area, contact_area
+from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import make_glass
-from atomistic.hardness.metal import Metal, make_base
 from atomistic.hardness.pressing import lammps_seed, plan_closing, prepare_body, press_bodies
 from atomistic.hardness.readout import beyond_counterface
-from atomistic.hardness.runs import PROTOCOL, ClosingRun
+from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
+from atomistic.hardness.stack import base_of
 from atomistic.lammps import Atoms, Workspace, load_averages, load_dump
 from atomistic.materials import load_material, load_materials, oxide_glasses
 from atomistic.potentials import Potential, load_potential
@@ -59,8 +60,10 @@ def rows(given: Namespace) -> Iterator[dict]:
         glass = make_glass(oxides[given.material], first, GlassSettings(), 1, work / "glass")
         slabs, cases = [(first, glass)] * 2, [*((scale, 1) for scale in given.energy_scales), (1.0, 2)]
         if given.base:
-            for name, slab in on_metal(glass, first, given.base, work).items():
-                for row in cut_bodies(pressed_layers([slab], 1.0, area, work / name), area):
+            below = base_of(load_material(ROOT / "config" / "materials" / f"{given.base}.yaml"))
+            protocol = slowed(PROTOCOL, below.below_films.timestep_factor)
+            for name, slab in on_base(glass, first, below, work).items():
+                for row in cut_bodies(pressed_layers([slab], 1.0, area, work / name, protocol), area):
                     yield {"potential": name, "energy_scale": 1.0, "bodies": 1, "touch_A": given.touch, **row}
             return
         if given.counter_potential:
@@ -112,14 +115,13 @@ def slab_of(potential: Potential, glass: Atoms, number: int) -> CutBody:
     return CutBody(cut, formula_of(glass), potential)
 
 
-def on_metal(glass: Atoms, potential: Potential, base: str, work: Path) -> dict[str, CutBody]:
-    """Flat slabs of the metal, and of a film on it, by the name of their rows."""
-    metal = Metal(load_material(ROOT / "config" / "materials" / f"{base}.yaml"))
-    cube = make_base(metal, SLAB_TILES * float(glass.cell_A[0]), 1, work / "base")
+def on_base(glass: Atoms, potential: Potential, below: Base, work: Path) -> dict[str, CutBody]:
+    """Flat slabs of the base, and of a film on it, by the name of their rows."""
+    cell, base = below.make(float(glass.cell_A[0]), SLAB_TILES, 1, work / "base"), below.material.name
     found = {}
     for name, film_nm in ((base, 0.0), (f"{potential.name} film on {base}", SLAB_FILM_NM)):
         run = _flat_run(1.0, film_nm)
-        found[name] = cut_body(run, glass, potential, SLAB_BASE_NM, (1, 0), PROTOCOL, (metal, cube))
+        found[name] = cut_body(run, glass, potential, SLAB_BASE_NM, (1, 0), PROTOCOL, (below, cell))
     return found
 
 
@@ -129,7 +131,9 @@ def _flat_run(energy_scale: float, film_nm: float | None = None) -> ClosingRun:
     return ClosingRun.model_construct(name="slab", asperity=flat, seed=1, energy_scale=energy_scale)
 
 
-def pressed_layers(slabs: Sequence[CutBody], energy_scale: float, area: Area, work: Path) -> list[Layer]:
+def pressed_layers(
+    slabs: Sequence[CutBody], energy_scale: float, area: Area, work: Path, protocol: Protocol = PROTOCOL
+) -> list[Layer]:
     """Press a slab against a rigid flat (or, where there are two, against the second, which only repels it).
 
     Parameters
@@ -139,21 +143,21 @@ def pressed_layers(slabs: Sequence[CutBody], energy_scale: float, area: Area, wo
     bodies = len(slabs)
     closing = ClosingSettings(counterface="oxide" if bodies == 2 else "flat")
     run = _flat_run(energy_scale)
-    plan = plan_closing(closing, run)
+    plan = plan_closing(closing, run, protocol)
     start = plan.segments * plan.segment_steps  # from the clearance to first touch; the slab is pressed after it
     steps = start + round(SLAB_TRAVEL_A[bodies - 1] / (plan.speed * plan.timestep))
     plan = replace(plan, segments=-(-steps // plan.segment_steps))
     annealed = []
     for k, slab in enumerate(slabs):
         aside = Workspace(work / f"anneal{k}", {}, "anneal.in")
-        annealed.append(prepare_body(run, slab.cut, slab.formula, slab.force, closing, PROTOCOL, aside, (1, k)))
+        annealed.append(prepare_body(run, slab.cut, slab.formula, slab.force, closing, protocol, aside, (1, k)))
     workspace = Workspace(work / "pressed", {}, "closing.in")
     geometry, _ = press_bodies(
         run,
         annealed,
         slabs[0].force,
         closing,
-        PROTOCOL,
+        protocol,
         plan,
         (1, 9),
         workspace,

@@ -55,13 +55,13 @@ if needed("hardness"):
 
 if needed("hardness") and workflow.is_main_process:
     from atomistic.hardness.cost import plan_rows  # jobs do without
-    from atomistic.hardness.stack import check_ions
+    from atomistic.hardness.stack import base_of, check_ions
 
     try:
-        metal = MATERIALS[HARDNESS["base"]] if BASE else None
-        if metal is not None:
-            check_ions(metal, load_potential(POTENTIAL).materials.get(HARDNESS["material"], {}))
-        plan_rows(SCENE.hardness, OXIDES[HARDNESS["material"]], OXIDES[HARDNESS["closing"]["counter_material"]], metal)
+        below = base_of(MATERIALS[HARDNESS["base"]]) if BASE else None
+        if below is not None:
+            check_ions(below.material, load_potential(POTENTIAL).materials.get(HARDNESS["material"], {}))
+        plan_rows(SCENE.hardness, OXIDES[HARDNESS["material"]], OXIDES[HARDNESS["closing"]["counter_material"]], below)
     except InputError as error:
         refuse(f"{SCENE_GIVEN}: hardness.asperities: {error}")
 
@@ -80,10 +80,10 @@ def of_counter(seed):
 
 
 def of_base(run):
-    """As named inputs: the metal below a film, and the cube of it that is as wide as the asperity."""
+    """As named inputs: what lies below a film, and the cell of it that fits the asperity."""
     if run.asperity.film_nm is None:
         return {}
-    return {"base": f"{RESULTS}/hardness/base/{run.seed}_{run.asperity.tiles}.data", "metal": BASE}
+    return {"base": f"{RESULTS}/hardness/base/{run.seed}_{run.asperity.tiles}.data", "base_material": BASE}
 
 
 wildcard_constraints:
@@ -150,7 +150,7 @@ rule make_base:
         seed=lambda wildcards: int(wildcards.glass),
         work=f"{RESULTS}/work/base_{{glass}}_{{tiles}}",
     message:
-        "anneal metal {wildcards.glass}, {wildcards.tiles} glass cells wide"
+        "make base {wildcards.glass}, {wildcards.tiles} glass cells wide"
     script:
         "../scripts/make_base.py"
 
@@ -205,7 +205,7 @@ rule fit_hardness:
         points=f"{RESULTS}/hardness/points.csv",
         witnesses=of_run("witness/{run}.csv"),
         curves=of_run("closing/{run}.csv") if BASE else [],
-        metal=BASE or [],
+        base_material=BASE or [],
         potential=POTENTIAL,
         counter_potentials=[COUNTER_POTENTIAL] if COUNTER_GLASS else [],
         glasses=[

@@ -35,7 +35,7 @@ TABLES = (
             number(
                 "film_nm",
                 "nm",
-                "thickness of the film; 0: the metal below by itself; none: oxide throughout",
+                "thickness of the film; 0: the body below by itself; none: oxide throughout",
                 empty=True,
             ),
             integer("seed", "seed of the glass and of the velocities"),
@@ -87,7 +87,9 @@ TABLES = (
         "One atom of a 0.8 nm slice through the peak, in a relaxed snapshot.",
         (
             _STEP,
-            integer("type", "kind of the atom, in the order of the body's elements: metal, cation, oxygen"),
+            integer(
+                "type", "kind of the atom, in the order of the body's elements: those below a film, cation, oxygen"
+            ),
             number("x_nm", "nm", "position along the slice"),
             number("y_nm", "nm", "position across the slice"),
             number("z_nm", "nm", "height"),

@@ -1,7 +1,7 @@
 """Molecular dynamics of a scene in hard cases.
 
 In:  potential (YAML), glass (LAMMPS data file); counter_glass, counter_potential where the counterface is of another
-     oxide or potential; base (LAMMPS data file), metal (YAML) where a film lies on a metal.
+     oxide or potential; base (LAMMPS data file), base_material (YAML) where a film lies on another body.
 Out: stability/hardness.csv.
 """
 
@@ -9,9 +9,9 @@ import shutil
 from pathlib import Path
 
 from atomistic.hardness.closing import weld
-from atomistic.hardness.metal import Metal
 from atomistic.hardness.runs import ClosingRun
 from atomistic.hardness.stability import film_checks, stability_checks
+from atomistic.hardness.stack import base_of
 from atomistic.lammps import load_data
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
@@ -31,8 +31,8 @@ with job(snakemake) as run:
         bodies.append((potential, load_data(glass_file, tuple(potential.materials[formula]))))
     checks = stability_checks(bodies, params.energy_scales, work)
     if given.get("base"):
-        metal = Metal(load_material(given.metal))
-        base = metal, load_data(given.base, (metal.element,))
+        below = base_of(load_material(given.base_material))
+        base = below, load_data(given.base, below.elements)
         film = settings_from_job(ClosingRun, params.closing_run)
         closing, (potential, glass) = settings_from_job(ClosingSettings, params.closing), bodies[0]
         checks += film_checks(*weld(film, glass, potential, closing, base, work), params.energy_scales, work)

@@ -1,7 +1,7 @@
 """Fit H(A) to the MD points, or the law of films to their curves, and the cut-off of the attraction to the tops.
 
 In:  points.csv (GPa, nm), witnesses and curves of the runs, glass/*.json, potential (YAML), counter_potentials: one
-     where the counterface is of another oxide or potential, metal (YAML): below films.
+     where the counterface is of another oxide or potential, base_material (YAML): below films.
 Out: fit.json (H_macro in GPa, H' in GPa nm^0.5, law of films, cut-off D0 of the attraction in nm, gate).
 """
 
@@ -24,8 +24,8 @@ with job(snakemake) as run:
     _, area_error = calibrated(load_potential(snakemake.input.potential), *counter)
     points = load_csv(snakemake.input.points)
     if snakemake.input.curves:
-        metal = load_material(snakemake.input.metal).part("film_base")
-        area_error = max(area_error, metal.area_of_film.error, metal.area_of_metal.error)
+        below = load_material(snakemake.input.base_material).part("film_base")
+        area_error = max(area_error, below.area_of_film.error, below.area_of_base.error)
         curves = {Path(path).stem: load_numbers(path) for path in snakemake.input.curves}
         fit = fit_films(points, curves, glasses, area_error)
     else:

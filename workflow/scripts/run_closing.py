@@ -1,7 +1,7 @@
 """Close one asperity against its counterface.
 
 In:  material, potential (YAML), glass (LAMMPS data file); counter_glass, counter_potential where the counterface is of
-     another oxide or potential; base (LAMMPS data file), metal (YAML) where a metal lies below.
+     another oxide or potential; base (LAMMPS data file), base_material (YAML) where another body lies below.
 Out: curve (GPa, nm), witness (bond exchanges, nm), snapshots (nm), summary.
 """
 
@@ -10,8 +10,8 @@ import time
 from pathlib import Path
 
 from atomistic.hardness.closing import run_closing
-from atomistic.hardness.metal import Metal
 from atomistic.hardness.runs import ClosingRun, Protocol
+from atomistic.hardness.stack import base_of
 from atomistic.lammps import load_data
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
@@ -31,9 +31,9 @@ with job(snakemake) as run:
         counter_potential = load_potential(snakemake.input.counter_potential)
         counter_glass = load_data(counter, tuple(counter_potential.materials[settings.counter_material]))
     base = None
-    if cube := snakemake.input.get("base"):
-        metal = Metal(load_material(snakemake.input.metal))
-        base = metal, load_data(cube, (metal.element,))
+    if cell := snakemake.input.get("base"):
+        below = base_of(load_material(snakemake.input.base_material))
+        base = below, load_data(cell, below.elements)
     started = time.perf_counter()
     closing = run_closing(
         closing_run,

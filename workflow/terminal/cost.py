@@ -19,6 +19,7 @@ from scipy import fft
 
 from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, base_seconds, plan_rows
 from atomistic.hardness.glass import TIMESTEP_FS, total_ps
+from atomistic.hardness.stack import base_of
 from atomistic.materials import Material
 from mesoscale.settings import ContactSettings, HistorySettings
 from mesoscale.settings.history import DWELL_STEPS
@@ -81,18 +82,18 @@ class Costs:
 
     Parameters
     ----------
-    materials : those that hardness names: oxides by formula, metals by name.
+    materials : those that hardness names: oxides by formula, bodies below films by name.
     times : see TIMES.
     """
 
     def __init__(self, scene: Scene, materials: Mapping[str, Material], times: Path = TIMES) -> None:
         self.scene, self._times = scene, times
         self.closing_s: dict[str, float] = {}  # by closing run
-        self.base_s: dict[str, float] = {}  # by width of the metal below films, in glass cells
+        self.base_s: dict[str, float] = {}  # of the body below films, by its width in glass cells
         if "hardness" in scene.stages():
             bodies = (scene.hardness.material, scene.hardness.closing.counter_material)
             oxide, counter = (materials[formula] for formula in bodies)
-            base = materials[scene.hardness.base] if scene.hardness.base else None
+            base = base_of(materials[scene.hardness.base]) if scene.hardness.base else None
             rows = plan_rows(scene.hardness, oxide, counter, base)
             self.closing_s = {str(row["run"]): 3600 * float(row["core_hours"]) for row in rows[:-1]}
             if base is not None:

@@ -1,0 +1,160 @@
+"""A covalent glass below an oxide film: silicon nitride by its Tersoff potential, melted and quenched.
+
+The schedule is that of the elastic stage (`atomistic/elastic/networks.py`), in cells as wide as those of the oxide.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from atomistic.constants import AVOGADRO
+from atomistic.covalent import core_commands, random_places, tersoff_table
+from atomistic.errors import InputError
+from atomistic.hardness.film_base import Base
+from atomistic.hardness.glass import NEAREST_START_A, run_segments
+from atomistic.lammps import Atoms, Progress, Workspace
+from atomistic.materials import Core, NetworkGlass, Tersoff
+
+MELT_K, FREE_BELOW_K, FINAL_K = 5000.0, 2500.0, 300.0
+MELT_PS, QUENCH_K_PS, REST_PS = 3.0, 100.0, 3.0
+TIMESTEP_FS = 1.0
+FILE = "base.tersoff"
+
+
+@dataclass(frozen=True)
+class Network(Base):
+    """A glass of covalent bonds below films, or by itself."""
+
+    styles = ("tersoff", "harmonic/cut")
+    molten_K = MELT_K
+
+    @property
+    def network(self) -> NetworkGlass:
+        """Its potential, and what it must look like."""
+        return self.material.part("network_glass")
+
+    @property
+    def species(self) -> Mapping[str, Any]:
+        """What has the mass of its atoms, by element."""
+        return {element: SimpleNamespace(mass_u=mass) for element, mass in self.network.masses_u.items()}
+
+    @property
+    def atoms_per_nm3(self) -> float:
+        """At the density of its start."""
+        unit_u = sum(count * self.network.masses_u[element] for element, count in self.material.formula.items())
+        atoms = sum(self.material.formula.values())
+        return atoms * self.network.start_density_g_cm3 * AVOGADRO / unit_u * 1e-21
+
+    def softened(self, factor: float) -> "Network":
+        """The same glass with all energies times a factor."""
+        network = self.network.model_copy(update={"tersoff": self._tersoff(factor), "cores": self._cores(factor)})
+        return Network(self.material.model_copy(update={"network_glass": network}))
+
+    def _tersoff(self, factor: float) -> Tersoff:
+        atoms = {
+            element: atom.model_copy(update={"A": factor * atom.A, "B": factor * atom.B})
+            for element, atom in self.network.tersoff.elements.items()
+        }
+        return self.network.tersoff.model_copy(update={"elements": atoms})
+
+    def _cores(self, factor: float) -> dict[str, Core]:
+        return {
+            pair: core.model_copy(update={"k_eV_A2": factor * core.k_eV_A2})
+            for pair, core in self.network.cores.items()
+        }
+
+    def commands(self, above: int) -> list[str]:
+        """Commands of its own atoms, the first types."""
+        types = " ".join([*self.elements, *["NULL"] * above])
+        return [f"pair_coeff * * tersoff {FILE} {types}", *core_commands(self.network.cores, self.elements)]
+
+    def tables(self) -> dict[str, str]:
+        """The Tersoff potential."""
+        return {FILE: tersoff_table(self.network.tersoff)}
+
+    def make(self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None) -> Atoms:
+        """A cell as wide as one of the oxide's glass, its height at zero pressure and 300 K; resumes in `work`.
+
+        Raises
+        ------
+        InputError : its density or coordination is not that of the material's file.
+        """
+        segments = _segments()
+        identity = {"network": self.material.model_dump(), "edge": edge_A, "seed": seed, "segments": segments}
+        glass = run_segments(
+            Workspace(work, identity, "glass.in"),
+            self,
+            self.elements,
+            lambda: self._random_start(edge_A, seed),
+            segments,
+            1 + seed,
+            TIMESTEP_FS,
+            f"melt and quench of {self.material.name}",
+            progress,
+        )
+        if reasons := self.faults(glass):
+            raise InputError(f"{self.material.name}: {'; '.join(reasons)}; take another seed or a wider glass cell")
+        return glass
+
+    def make_atom_steps(self, edge_A: float, tiles: int) -> float:
+        """Atoms times MD steps of `make`."""
+        return (edge_A / 10) ** 3 * self.atoms_per_nm3 * sum(segment["steps"] for segment in _segments())
+
+    def _random_start(self, edge_A: float, seed: int) -> Atoms:
+        formula = self.material.formula
+        units = max(1, round((edge_A / 10) ** 3 * self.atoms_per_nm3 / sum(formula.values())))
+        counts = [units * count for count in formula.values()]
+        rng = np.random.default_rng(np.random.SeedSequence([seed, 47]))
+        cell = np.full(3, edge_A)
+        places = random_places(sum(counts), cell, NEAREST_START_A, rng)
+        return Atoms(self.elements, rng.permutation(np.repeat(np.arange(1, len(counts) + 1), counts)), places, cell)
+
+    def properties(self, glass: Atoms) -> dict[str, float]:
+        """Density (g/cm3), median bond of unlike atoms (Å), and the mean coordination of each element by them."""
+        masses = np.array([self.network.masses_u[element] for element in glass.elements])
+        pairs = KDTree(np.mod(glass.positions_A, glass.cell_A), boxsize=glass.cell_A).query_pairs(
+            self.network.cutoff_A, output_type="ndarray"
+        )
+        unlike = pairs[glass.types[pairs[:, 0]] != glass.types[pairs[:, 1]]]
+        apart = glass.positions_A[unlike[:, 0]] - glass.positions_A[unlike[:, 1]]
+        apart -= glass.cell_A * np.round(apart / glass.cell_A)
+        neighbours = np.bincount(unlike.ravel(), minlength=len(glass))
+        density = float(masses[glass.types - 1].sum()) / AVOGADRO / (float(np.prod(glass.cell_A)) * 1e-24)
+        return {
+            "density_g_cm3": density,
+            "bond_A": float(np.median(np.linalg.norm(apart, axis=1))),
+            **{
+                f"coordination_{element}": float(neighbours[glass.types == kind].mean())
+                for kind, element in enumerate(glass.elements, 1)
+            },
+        }
+
+    def faults(self, glass: Atoms) -> list[str]:
+        """What of a glass is not as its material's file says."""
+        found, accepted = self.properties(glass), {"density_g_cm3": self.network.density_g_cm3}
+        accepted |= {f"coordination_{element}": of for element, of in self.network.coordination.items()}
+        return [
+            f"{name} {found[name]:.3g} outside {low:g} to {high:g}"
+            for name, (low, high) in accepted.items()
+            if not low <= found[name] <= high
+        ]
+
+
+def _segments() -> list[dict[str, Any]]:
+    """Melt and quench, as `run_segments` takes them: at constant volume, below `FREE_BELOW_K` the height is free."""
+    parts = [
+        ("nvt", 1.5 * MELT_K, MELT_K, 0.2 * MELT_PS),
+        ("nvt", MELT_K, MELT_K, 0.8 * MELT_PS),
+        ("nvt", MELT_K, FREE_BELOW_K, (MELT_K - FREE_BELOW_K) / QUENCH_K_PS),
+        ("npt_height", FREE_BELOW_K, FINAL_K, (FREE_BELOW_K - FINAL_K) / QUENCH_K_PS),
+        ("npt_height", FINAL_K, FINAL_K, REST_PS),
+    ]
+    return [
+        {"ensemble": ensemble, "from": start, "to": end, "steps": round(1000 * duration_ps / TIMESTEP_FS)}
+        for ensemble, start, end, duration_ps in parts
+    ]
