@@ -42,7 +42,7 @@ def compare(
     """
     hardnesses = {
         name: find_hardness(
-            curves[name], witnesses[name], run["wavelength_nm"] ** 2, on_metal=run.get("film_nm") is not None
+            curves[name], witnesses[name], run["wavelength_nm"] ** 2, on_base=run.get("film_nm") is not None
         )
         for name, run in runs.items()
     }

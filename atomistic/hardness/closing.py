@@ -122,7 +122,9 @@ def run_closing(
         if curve[-1]["contact_area_nm2"] < RULES.stop_area_fraction * cell_nm2:
             return False
         measured = read(geometry, replace(plan, segments=segments))
-        return may_stop(measured.curve, measured.witness, cell_nm2, closing.stop, protocol.approach_nm)
+        on_base = run.asperity.film_nm is not None
+        curve, witness = measured.curve, measured.witness
+        return may_stop(curve, witness, cell_nm2, closing.stop, protocol.approach_nm, on_base=on_base)
 
     geometry, reached = press_bodies(
         run, bodies, body.force, closing, protocol, plan, place, workspace, complete, progress, above

@@ -1,7 +1,7 @@
-"""How a metal below softens a film, H = H_base + (H_film - H_base) / (1 + k (L/t)^m), fitted to closing runs.
+"""How the body below changes the hardness of a film, H = H_base + (H_film - H_base) / (1 + k (L/t)^m), fitted to runs.
 
 L is the contact length and t the thickness of the film. Runs of oxide throughout are films of infinite thickness, runs
-of the metal by itself films of none. Beside it stand the two laws that know no film, a constant and eq. 4 of Kim et al.
+of the base by itself films of none. Beside it stand the two laws that know no film, a constant and eq. 4 of Kim et al.
 (2013), each judged by the runs that its fit had not.
 """
 
@@ -21,13 +21,13 @@ stresses that differ by 4 % with a scatter of 10 % (accuracy/hardness.csv of sce
 BIN_NM = 0.5  # of contact length: a run has one mean stress in each
 LEAST_POINTS, LEAST_THICKNESSES = 3, 2
 DRAWS, TRIALS = 2000, 400_000
-PRIOR = ((2, 20), (0.5, 15), (1e-3, 10), (0.5, 4))  # of H_film, H_base, k, m
+PRIOR = ((2, 20), (0.5, 50), (1e-3, 10), (0.5, 4))  # of H_film, H_base, k, m
 LENGTHS_OVER_THICKNESS = np.geomspace(0.5, 10, 30)
 Law = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 class FilmPoints(NamedTuple):
-    """Mean stress of the contact at its length, by seed and thickness (0: metal by itself, inf: oxide throughout).
+    """Mean stress of the contact at its length, by seed and thickness (0: base by itself, inf: oxide throughout).
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ def too_few(points: FilmPoints) -> str | None:
             f"{films} mean stresses of films of {thicknesses} thicknesses: a law of films needs {LEAST_POINTS} of "
             f"{LEAST_THICKNESSES}; add thicknesses (film_nm) or seeds"
         )
-    for thickness, name, how in ((np.inf, "oxide throughout", "without film_nm"), (0.0, "metal", "with film_nm: 0")):
+    for thickness, name, how in ((np.inf, "oxide throughout", "without film_nm"), (0.0, "base", "with film_nm: 0")):
         if not np.any(points.thickness_nm == thickness):
             return f"no defended run of the {name}: a law of films lies between both; add an asperity {how}"
     return None
@@ -137,7 +137,7 @@ def fit(name: str, points: FilmPoints) -> np.ndarray:
 def left_out(name: str, points: FilmPoints) -> float:
     """Root mean square error of a law, of ln H, at the films of a thickness that its fit had not, one at a time.
 
-    The laws without film are fitted to the other films, `film` to oxide and metal besides. Seeds are averaged.
+    The laws without film are fitted to the other films, `film` to oxide and base besides. Seeds are averaged.
     """
 
     def foretell(others: FilmPoints, at: FilmPoints) -> np.ndarray:
@@ -154,7 +154,7 @@ def error_left_out(
     Parameters
     ----------
     foretell : hardness (GPa) at the second points, from the first.
-    knows_bodies : whether it takes runs of oxide and metal besides films.
+    knows_bodies : whether it takes runs of oxide and base besides films.
     """
     errors = []
     for thickness in np.unique(points.thickness_nm[points.film]):
@@ -199,7 +199,7 @@ def fit_films(
     Returns
     -------
     Content of fit.json (docs/hardness.md): the inputs H_film, k and m with their rank correlations, and in `film` what
-    the runs say of the metal, how well each law foretells a thickness that its fit had not, the range of L/t, and the
+    the runs say of the base, how well each law foretells a thickness that its fit had not, the range of L/t, and the
     film's share of the difference between both hardnesses against L/t.
     """
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]

@@ -162,7 +162,7 @@ def find_hardness(
     cell_area_nm2: float,
     approach_nm: float = PROTOCOL.approach_nm,
     rules: Rules = RULES,
-    on_metal: bool = False,
+    on_base: bool = False,
 ) -> Hardness:
     """Hardness of a closing run.
 
@@ -171,7 +171,7 @@ def find_hardness(
     curve, witness : rows of `Closing.curve` and `Closing.witness`.
     cell_area_nm2 : cross-section of the simulation cell.
     approach_nm : travel before a flat can touch.
-    on_metal : a metal, or a film on one: stress that changes with the contact is what its law describes, so that no
+    on_base : a base, or a film on one: stress that changes with the contact is what its law describes, so that no
         plateau is asked for.
     """
     column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
@@ -188,7 +188,7 @@ def find_hardness(
     window = _first_stretch((length >= rules.min_length_nm) & (fraction <= rules.max_area_fraction))
     # counterfaces of atoms start farther apart than the approach
     apart = np.max(travel[np.cumsum(fraction) == 0], initial=approach_nm)
-    onset = plastic_onset(witness, float(apart), rules, by_bonds=not on_metal)
+    onset = plastic_onset(witness, float(apart), rules, by_bonds=not on_base)
     measured: dict[str, Any] = {
         "drift_meV_atom_ps": drift,
         "warming_K": warming,
@@ -222,7 +222,7 @@ def find_hardness(
     }
     if np.sum(beyond) < rules.min_points:
         return Hardness("rejected: too few averages between onset and the end of the window", **measured)
-    first = 0 if on_metal else settled(stress[beyond])
+    first = 0 if on_base else settled(stress[beyond])
     plateau, lengths = stress[beyond][first:], length[beyond][first:]
     exponent = _exponent(lengths, plateau)
     low, high = interval_of_mean(plateau)
@@ -237,7 +237,7 @@ def find_hardness(
         "plateau_exponent": exponent,
         "plateau_points": len(plateau),
     }
-    if exponent > rules.max_exponent and not on_metal:
+    if exponent > rules.max_exponent and not on_base:
         status = f"rejected: stress still rises as length^{exponent:.2f} beyond the onset"
     elif fraction[-1] < rules.stop_area_fraction:
         status = (
@@ -256,19 +256,21 @@ def may_stop(
     stop: str = "settled",
     approach_nm: float = PROTOCOL.approach_nm,
     rules: Rules = RULES,
+    on_base: bool = False,
 ) -> bool:
     """Is a run complete: has the contact left its window, or is the interval of its plateau narrow enough?
 
     Parameters
     ----------
     stop : settled, or window: only at the end of the window.
+    on_base : of `find_hardness`.
     """
     fraction = np.array([float(row["contact_area_nm2"]) for row in curve[-rules.min_points :]]) / cell_area_nm2
     if np.all(fraction > rules.max_area_fraction):
         return True
     if stop == "window" or fraction[-1] < rules.stop_area_fraction:
         return False
-    hardness = find_hardness(curve, witness, cell_area_nm2, approach_nm, rules)
+    hardness = find_hardness(curve, witness, cell_area_nm2, approach_nm, rules, on_base)
     half = 0.5 * (hardness.hardness_hi - hardness.hardness_lo) / hardness.hardness_GPa
     narrow = hardness.plateau_points >= rules.stop_points and half <= rules.stop_interval
     return hardness.plateau_exponent <= rules.max_exponent and narrow
@@ -279,7 +281,7 @@ def point(
 ) -> dict[str, Any]:
     """Row of points.csv of a run, given its summary `run` and the name of its potential."""
     copied = ("energy_scale", "asperity", "wavelength_nm", "amplitude_nm", "film_nm", "seed", "atoms", "restart_steps")
-    hardness = find_hardness(curve, witness, run["wavelength_nm"] ** 2, on_metal=run["film_nm"] is not None)
+    hardness = find_hardness(curve, witness, run["wavelength_nm"] ** 2, on_base=run["film_nm"] is not None)
     if run["film_nm"] and (fault := film_fault(run)):
         hardness = replace(hardness, status=f"rejected: {fault}", sound=False)
     return {

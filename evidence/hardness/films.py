@@ -1,5 +1,7 @@
 """Which law of hardness foretells films on titanium, and what of the paper's fall from 10 to 2 GPa is the film's?
 
+The dielectric of the paper, silica on silicon nitride, is pressed by scene `nitride`.
+
 The closing runs of a scene with films, as `films`: oxide throughout, the metal by itself, and films of some
 thicknesses. Each row is the mean stress of a run at a contact length. The constant and eq. 4 (`paper`) know only the
 contact length L; `film` has the thickness t, and the hardness of oxide and metal by themselves. An error is the root
@@ -39,7 +41,7 @@ from evidence.record import ROOT, load
 from mesoscale.tables import load_table
 
 PREDICTION, ITS_ERROR = (0.24, 1.2), (0.06, 0.2)  # k and m of a prototype with other films, written down before
-MAIN = "films"
+MAIN, OTHER = "films", "nitride"  # scenes: the electrode, the dielectric
 LENGTHS_NM = (3.0, 5.0, 10.0, 15.0, 30.0, 100.0)
 OXIDE_NM = 5.0  # of TiO2 on the titanium of Kim et al. (2013)
 SOFT_GPA, SIZE_EFFECT = (0.7, 3.2), (3.7, 16.7)  # H_macro, and H' (GPa nm^0.5) of eq. 4 fitted to a glass
@@ -153,6 +155,8 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     for case, values in of["hardness"][3.0].items():
         fall = values / of["hardness"][15.0][case]
         found[f"{case}_fall"] = f"{np.median(fall):.2g}{_interval(fall)}"
+    for thickness, mean in mean_of_bodies(points_of(rows, OTHER)).items():
+        found[f"{OTHER}_{thickness:g}".replace(".", "_")] = mean
     for scene in sorted({row["scene"] for row in rows}):
         runs = {
             (row["seed"], row["film_nm"]): row
@@ -165,6 +169,17 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     return found
 
 
+def mean_of_bodies(points: FilmPoints) -> dict[float, str]:
+    """Mean stress of each body, by thickness of its film, over runs, with its standard error; GPa."""
+    means = {}
+    for thickness in np.unique(points.thickness_nm):
+        same = points.take(points.thickness_nm == thickness)
+        runs = [float(np.mean(same.stress_GPa[same.seed == seed])) for seed in np.unique(same.seed)]
+        error = np.std(runs, ddof=1) / len(runs) ** 0.5 if len(runs) > 1 else np.nan
+        means[float(thickness)] = f"{np.mean(runs):.1f} ± {error:.1f} GPa"
+    return means
+
+
 def _interval(values: np.ndarray) -> str:
     low, high = np.quantile(values, [0.16, 0.84])
     return f" [{low:.2g}, {high:.2g}]"
@@ -173,14 +188,17 @@ def _interval(values: np.ndarray) -> str:
 def draw(axes: Axes) -> None:
     """Mean stress over seeds with its standard error; what the law says of 5 nm, and what was said before."""
     of = laws()
-    points, colors = of["points"], ("#20242b", "#b5482a", "#d99a2b", "#4c9a5b", "#1f5fa8")
-    for thickness, color in zip(np.unique(points.thickness_nm), colors, strict=True):
-        name = {0: "titanium", np.inf: "silica"}.get(thickness, f"{thickness:g} nm of silica on titanium")
-        same = points.take(points.thickness_nm == thickness)
-        each = [same.take(same.bin == one) for one in np.unique(same.bin) if np.sum(same.bin == one) > 1]
-        error = [np.std(of_bin.stress_GPa, ddof=1) / len(of_bin.seed) ** 0.5 for of_bin in each]
-        means = [[np.mean(of_bin.length_nm), np.mean(of_bin.stress_GPa)] for of_bin in each]
-        axes.errorbar(*np.transpose(means), error, fmt="o-", ms=3, color=color, label=name)
+    colors = ("#20242b", "#b5482a", "#d99a2b", "#4c9a5b", "#1f5fa8")
+    on_nitride = points_of(load("hardness.films"), OTHER)
+    on_nitride = on_nitride.take(np.isfinite(on_nitride.thickness_nm))  # its silica is that of the other scene
+    for points, base, style in ((of["points"], "titanium", "o-"), (on_nitride, "silicon nitride", "s:")):
+        for thickness, color in zip(np.unique(points.thickness_nm), colors, strict=False):
+            name = {0: base, np.inf: "silica"}.get(thickness, f"{thickness:g} nm of silica on {base}")
+            same = points.take(points.thickness_nm == thickness)
+            each = [same.take(same.bin == one) for one in np.unique(same.bin) if np.sum(same.bin == one) > 1]
+            error = [np.std(of_bin.stress_GPa, ddof=1) / len(of_bin.seed) ** 0.5 for of_bin in each]
+            means = [[np.mean(of_bin.length_nm), np.mean(of_bin.stress_GPa)] for of_bin in each]
+            axes.errorbar(*np.transpose(means), error, fmt=style, ms=3, color=color, label=name)
     for case, color in (("metal_as_pressed", "#b5482a"), ("metal_of_H_macro", "#8a8f98")):
         low, high = np.array([np.quantile(of["hardness"][at][case], [0.16, 0.84]) for at in LENGTHS_NM]).T
         axes.fill_between(LENGTHS_NM, low, high, color=color, alpha=0.2, label=f"5 nm, {case.replace('_', ' ')}")

@@ -1,8 +1,10 @@
-"""How hard is titanium by itself, as a crystal and as a polycrystal, and does its potential give its crystal?
+"""How hard is titanium by itself: a crystal, one with dislocations, a polycrystal? Does its potential give its crystal?
 
 The potential is that of `config/materials/titanium.yaml`. Gates come first: lattice and elastic constants at 0 K by a
 sum over neighbours, the same energy by LAMMPS, the drift of the energy, the density of the polycrystal. Then
 asperities are pressed as the hardness stage presses them; hardness is the mean stress while the contact is judged.
+Dislocations are loops about discs of missing basal planes, closed by an anneal; `disordered_share` of the atoms have
+not the twelve neighbours of a hexagonal crystal.
 """
 
 import tempfile
@@ -13,12 +15,16 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
+from scipy.spatial import KDTree
 
 from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.closing import run_closing
+from atomistic.hardness.glass import run_segments
 from atomistic.hardness.metal import (
     CUTOFF_A,
+    FINAL_K,
     PLACES,
+    TIMESTEP_FS,
     Metal,
     crystal,
     electron_density,
@@ -29,7 +35,7 @@ from atomistic.hardness.metal import (
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
 from atomistic.hardness.stability import drift_meV_atom_ps, free_motion, heated
-from atomistic.lammps import Atoms
+from atomistic.lammps import Atoms, Workspace
 from atomistic.materials import Eam, load_material
 from atomistic.settings import AsperitySettings, ClosingSettings
 from evidence.hardness.choices import silica_and
@@ -37,14 +43,17 @@ from evidence.record import ROOT
 
 STRAIN = 4e-3
 STEEPNESS = 0.1  # amplitude over wavelength, as in scene reduced
+LOOPS, LOOP_A, LOOP_K, LOOP_PS = 2, 10.0, 600.0, 15.0  # in a crystal twice as high as wide ones are; radius
+FIRST_SHELL_A = 3.5  # between the first and the second neighbours of the crystal at 300 K
 CRYSTAL_A, EXPANDED = 20.0, 1.0043  # height of its cell, which is tiled; its edges at 300 K over those at 0 K
+KINDS = ("crystal", "dislocated", "polycrystal")
 MEASURED = {"a_A": 2.951, "c_A": 4.684, "C11_GPa": 162.4, "C12_GPa": 92.0, "C13_GPa": 69.0, "C33_GPa": 180.7}
 """Experiment at room temperature: Fisher and Renken (1964), and the lattice of any handbook."""
 
 
 def arguments(parser: ArgumentParser) -> None:
     """Which parts."""
-    parser.add_argument("parts", nargs="*", default=["gates", "crystal", "polycrystal"])
+    parser.add_argument("parts", nargs="*", default=["gates", *KINDS])
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2])
     parser.add_argument("--wavelength", type=float, default=5.6, help="of the asperity, nm")
 
@@ -57,11 +66,16 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         work = Path(folder)
         if "gates" in given.parts:
             yield from gates(metal, work)
-        for kind in ("crystal", "polycrystal"):
+        for kind in KINDS:
             for seed in given.seeds if kind in given.parts else ():
-                many = kind == "polycrystal"
-                body = make_base(metal, edge, seed, work / "bulk") if many else square_crystal(metal, edge, CRYSTAL_A)
+                if kind == "polycrystal":
+                    body = make_base(metal, edge, seed, work / "bulk")
+                elif kind == "dislocated":
+                    body = dislocated(metal, square_crystal(metal, edge, 2 * CRYSTAL_A), seed, work / "bulk")
+                else:
+                    body = square_crystal(metal, edge, CRYSTAL_A)
                 yield row(kind, "density_over_crystal", density(metal, body), seed)
+                yield row(kind, "disordered_share", disordered_share(body), seed)
                 for name, value in press(metal, body, seed, work / "press").items():
                     yield row(kind, name, value, seed)
 
@@ -73,7 +87,7 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         found.setdefault(f"{row['body']}_{row['quantity']}", []).append(float(row["value"]))
     shown = ("lattice_a_A", "lattice_c_A", "lattice_C11_GPa", "lattice_C12_GPa", "lattice_C13_GPa", "lattice_C33_GPa")
     texts = {name: f"{found[name][-1]:.4g}" for name in shown if name in found}
-    for kind in ("crystal", "polycrystal"):
+    for kind in KINDS:
         if values := found.get(f"{kind}_hardness_GPa"):
             ends = dict.fromkeys(f"{value:.2g}" for value in (min(values), max(values)))
             texts[f"{kind}_hardness_GPa"] = f"{' to '.join(ends)} GPa"
@@ -153,6 +167,33 @@ def square_crystal(metal: Metal, edge_A: float, height_A: float) -> Atoms:
     cell = EXPANDED * atoms.cell_A
     cell[:2] = np.sqrt(cell[0] * cell[1])
     return Atoms(atoms.elements, atoms.types, atoms.positions_A * cell / atoms.cell_A, cell)
+
+
+def dislocated(metal: Metal, whole: Atoms, seed: int, work: Path) -> Atoms:
+    """A crystal from which discs of basal planes are missing, annealed so that they close and leave loops."""
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 53]))
+    spacing = whole.cell_A[2] / round(whole.cell_A[2] / (EXPANDED * metal.eam.lattice_A[1] / 2))  # of basal planes
+    plane = np.round(whole.positions_A[:, 2] / spacing).astype(int)
+    missing = np.zeros(len(whole), bool)
+    for k in range(LOOPS):
+        centre = rng.uniform(0, whole.cell_A)
+        apart = whole.positions_A[:, :2] - centre[:2]
+        apart -= whole.cell_A[:2] * np.round(apart / whole.cell_A[:2])
+        at = round((k + 0.5) / LOOPS * whole.cell_A[2] / spacing)
+        missing |= (np.hypot(*apart.T) < LOOP_A) & (plane == at)
+    steps = round(1000 * LOOP_PS / TIMESTEP_FS)
+    parts = [(LOOP_K, LOOP_K), (LOOP_K, FINAL_K), (FINAL_K, FINAL_K)]
+    segments = [{"ensemble": "npt_height", "from": start, "to": end, "steps": steps} for start, end in parts]
+    workspace = Workspace(work, {"seed": seed}, "glass.in")
+    start = whole.take(~missing)
+    return run_segments(workspace, metal, whole.elements, lambda: start, segments, seed, TIMESTEP_FS, "anneal", None)
+
+
+def disordered_share(body: Atoms) -> float:
+    """Share of the atoms without twelve nearest neighbours."""
+    places = np.mod(body.positions_A, body.cell_A)
+    neighbours = KDTree(places, boxsize=body.cell_A).query_ball_point(places, FIRST_SHELL_A, return_length=True)
+    return float(np.mean(neighbours != 13))  # itself among them
 
 
 def press(metal: Metal, body: Atoms, seed: int, work: Path) -> dict[str, float]:

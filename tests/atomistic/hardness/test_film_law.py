@@ -78,7 +78,7 @@ def test_the_fit_hands_on_joint_inputs_and_says_where_it_was_measured():
         (FILMS[:2], "0 mean stresses of films of 0 thicknesses"),
         (FILMS[:3], "of films of 1 thicknesses"),
         (FILMS[1:], "no defended run of the oxide throughout"),
-        ((FILMS[0], *FILMS[2:]), "no defended run of the metal"),
+        ((FILMS[0], *FILMS[2:]), "no defended run of the base"),
     ],
 )
 def test_runs_that_cannot_show_a_law_say_why(films, reason):

@@ -1,4 +1,4 @@
-"""A film of oxide on a metal: its forces, how it lies, and a tiny one pressed for real, resumed after a kill."""
+"""A film of oxide on a metal or a nitride: its forces, how it lies, and tiny ones pressed for real."""
 
 from pathlib import Path
 
@@ -10,19 +10,21 @@ from scipy.spatial import KDTree
 from atomistic.errors import InputError
 from atomistic.hardness.accuracy import variations
 from atomistic.hardness.closing import area_of, cut_body, oxide_bond, run_closing
-from atomistic.hardness.cost import atoms_per_nm3, plan_rows
+from atomistic.hardness.cost import plan_rows
 from atomistic.hardness.glass import make_glass
 from atomistic.hardness.metal import TOO_NEAR, Metal, make_base, polycrystal
+from atomistic.hardness.network import Network
 from atomistic.hardness.plateau import film_fault, plastic_onset, point
 from atomistic.hardness.readout import Bond, bonds_of
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, planned_runs, smallest_run
-from atomistic.hardness.stability import film_checks
-from atomistic.hardness.stack import GAP_A, Stack, check_film, film_properties, lay
+from atomistic.hardness.stability import film_checks, free_motion
+from atomistic.hardness.stack import GAP_A, Stack, base_of, check_film, cut_base, film_properties, lay
 from atomistic.lammps import Atoms
 from atomistic.materials import load_material
 from atomistic.settings import AsperitySettings, ClosingSettings, GlassSettings, HardnessSettings
 
-TITANIUM = Path(__file__).parents[3] / "config" / "materials" / "titanium.yaml"
+MATERIALS = Path(__file__).parents[3] / "config" / "materials"
+TITANIUM, NITRIDE = MATERIALS / "titanium.yaml", MATERIALS / "silicon_nitride.yaml"
 GLASS = GlassSettings(atoms=240, melt_ps=0.5, quench_rate_K_ps=2000, rest_ps=0.3)
 QUICK = PROTOCOL.model_copy(update={"base_over_contact": 0.0, "frozen_nm": 0.3, "thermostat_nm": 0.3})
 CLOSING = ClosingSettings(base_nm=1.2, speed_m_s=400, depth_over_amplitude=1.7, anneal_ps=0.1)
@@ -47,6 +49,17 @@ def base(metal, glass, tmp_path_factory):
         return metal, make_base(metal, 2 * float(glass.cell_A[0]), 1, tmp_path_factory.mktemp("base") / "work")
 
 
+@pytest.fixture(scope="module")
+def nitride(glass, tmp_path_factory):
+    """A cell as wide as one of the glass, melted and quenched in a moment."""
+    network = Network(load_material(NITRIDE))
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in (("MELT_PS", 0.3), ("QUENCH_K_PS", 3000.0), ("REST_PS", 0.3)):
+            patch.setattr(f"atomistic.hardness.network.{name}", value)
+        patch.setattr(Network, "faults", lambda network, glass: [])
+        return network, network.make(float(glass.cell_A[0]), 2, 1, tmp_path_factory.mktemp("nitride") / "work")
+
+
 def run_of(film_nm, scale=1.0):
     asperity = AsperitySettings(name="tiny", tiles=2, amplitude_nm=0.25, film_nm=film_nm)
     return ClosingRun(name="tiny", asperity=asperity, seed=1, energy_scale=scale)
@@ -56,7 +69,7 @@ def test_grains_fill_the_cell_and_keep_apart(metal):
     body = polycrystal(metal, 40.0, 35.0, 1)
     assert body.positions_A.min() >= 0
     assert not KDTree(body.positions_A, boxsize=body.cell_A).query_pairs(TOO_NEAR * metal.eam.r_A)
-    assert 0.88 < len(body) / 40.0**3 * 1e3 / atoms_per_nm3(metal.eam) < 1.0  # grain boundaries close in the anneal
+    assert 0.88 < len(body) / 40.0**3 * 1e3 / metal.atoms_per_nm3 < 1.0  # grain boundaries close in the anneal
     neighbours = KDTree(body.positions_A, boxsize=body.cell_A).query_ball_point(body.positions_A, 3.5)
     assert np.median([len(found) - 1 for found in neighbours]) == 12  # of hexagonal packing
 
@@ -64,17 +77,17 @@ def test_grains_fill_the_cell_and_keep_apart(metal):
 def test_the_cube_has_the_width_asked_for_and_the_density_of_a_metal(glass, base):
     metal, cube = base
     np.testing.assert_allclose(cube.cell_A[:2], 2 * glass.cell_A[0])
-    assert 0.93 < len(cube) / np.prod(cube.cell_A) * 1e3 / atoms_per_nm3(metal.eam) < 1.0
+    assert 0.93 < len(cube) / np.prod(cube.cell_A) * 1e3 / metal.atoms_per_nm3 < 1.0
 
 
 def test_the_bond_of_metal_and_oxide_has_its_depth_and_the_force_of_its_energy(metal, potential):
     stack, r = Stack(potential, metal), np.linspace(1.5, 6.0, 2001)
-    energy, force = stack.bond("O", r)
+    energy, force = stack.bond("Ti-O", r)
     assert energy.min() == pytest.approx(-0.28, rel=0.01)  # shifted
-    at_end = stack.bond("O", np.array([potential.cutoff_A]))
+    at_end = stack.bond("Ti-O", np.array([potential.cutoff_A]))
     np.testing.assert_allclose(at_end, 0, atol=1e-15)
     np.testing.assert_allclose(force[1:-1], -np.gradient(energy, r)[1:-1], atol=2e-4)
-    np.testing.assert_allclose(Stack(potential, metal, 0.5).bond("O", r)[0], 0.5 * energy)
+    np.testing.assert_allclose(Stack(potential, metal, 0.5).bond("Ti-O", r)[0], 0.5 * energy)
 
 
 def test_each_pair_of_types_has_its_force(metal, potential):
@@ -84,7 +97,7 @@ def test_each_pair_of_types_has_its_force(metal, potential):
 
     own = [
         "1 2 table cross contact 6.5",
-        "1 3 table cross O 6.5",
+        "1 3 table cross Ti-O 6.5",
         "2 2 table table Si_Si 6.5",
         "2 3 table table Si_O 6.5",
         "3 3 table table O_O 6.5",
@@ -96,8 +109,46 @@ def test_each_pair_of_types_has_its_force(metal, potential):
     assert "3 4 table table contact 6.5" in above
     assert "4 5 table table_above Si_O 6.5" in above
     adhering = commands("Ti", "Si", "O", "Si", "O")
-    assert "1 5 table cross O 6.5" in adhering
+    assert "1 5 table cross Ti-O 6.5" in adhering
     assert "3 4 table table Si_O 6.5" in adhering
+
+
+def test_a_nitride_has_its_own_silicon_and_bonds_both_ways(potential):
+    stack = Stack(potential, Network(load_material(NITRIDE)))
+    lines = stack.files(("Si", "N", "Si", "O"), 1.0)["pairs"].splitlines()
+    own = [line.removeprefix("pair_coeff ") for line in lines if line.startswith("pair_coeff")]
+    assert lines[0] == "pair_style hybrid/overlay table linear 4000 tersoff harmonic/cut"
+    assert own == [
+        "* * tersoff base.tersoff Si N NULL NULL",
+        "1 1 harmonic/cut 4.0 2.9",
+        "2 2 harmonic/cut 4.0 2.75",
+        "1 3 table cross contact 6.5",
+        "1 4 table cross Si-O 6.5",
+        "2 3 table cross N-Si 6.5",
+        "2 4 table cross contact 6.5",
+        "3 3 table table Si_Si 6.5",
+        "3 4 table table Si_O 6.5",
+        "4 4 table table O_O 6.5",
+    ]
+
+
+def test_a_softer_base_has_the_energies_times_the_factor(metal, glass, base, nitride, tmp_path):
+    for body, cell in (base, nitride):
+        energies = [
+            free_motion(cell, force, tmp_path / "still", 0.01, 1)[0][0, 1] for force in (body, body.softened(0.1))
+        ]
+        assert energies[1] == pytest.approx(0.1 * energies[0], rel=1e-6)
+
+
+def test_a_glass_of_the_base_is_judged_by_its_file(nitride):
+    network, cell = nitride
+    found = network.properties(cell)
+    assert found["density_g_cm3"] == pytest.approx(3.1, abs=0.5)
+    assert found["bond_A"] == pytest.approx(1.75, abs=0.05)
+    assert found["coordination_Si"] * 3 == pytest.approx(found["coordination_N"] * 4, rel=1e-9)  # bonds have two ends
+    thin = Atoms(cell.elements, cell.types, 1.24 * cell.positions_A, 1.24 * cell.cell_A)  # some bonds are too long now
+    assert any(fault.startswith("density_g_cm3") for fault in network.faults(thin))
+    assert network.properties(thin)["coordination_N"] < found["coordination_N"]
 
 
 def test_halved_energies_leave_the_metal(metal, potential):
@@ -108,7 +159,7 @@ def test_halved_energies_leave_the_metal(metal, potential):
 
 
 def test_an_ion_without_cross_terms_is_refused(metal, potential):
-    with pytest.raises(InputError, match="titanium: film_base has no cross terms with N, so that no film with it lies"):
+    with pytest.raises(InputError, match="titanium: film_base has no cross terms Ti-N, so that no film with that ion"):
         Stack(potential, metal).files(("Ti", "Si", "N"), 1.0)
 
 
@@ -132,15 +183,15 @@ def test_a_film_that_came_off_or_slid_does_not_count():
     metal = np.column_stack([np.ones(4000), rng.uniform(0, 40, (4000, 2)), rng.uniform(0, 20, 4000)])
     film = np.column_stack([np.full(4000, 2), rng.uniform(0, 40, (4000, 2)), rng.uniform(21.5, 30, 4000)])
     start = np.concatenate([metal, film])
-    assert film_fault(film_properties(start, start, 40.0)) is None
+    assert film_fault(film_properties(start, start, 40.0, 1)) is None
     slid, off, bare = start.copy(), start.copy(), start.copy()
     slid[4000:, 1] += 3.0
-    assert film_properties(start, slid, 40.0)["slid_A"] == pytest.approx(3.0)
-    assert film_fault(film_properties(start, slid, 40.0)) == "the film slid by 3.0 A over its base (gate 2.1 A)"
+    assert film_properties(start, slid, 40.0, 1)["slid_A"] == pytest.approx(3.0)
+    assert film_fault(film_properties(start, slid, 40.0, 1)) == "the film slid by 3.0 A over its base (gate 2.1 A)"
     off[4000:, 3] += 6.0
-    assert "a gap of" in str(film_fault(film_properties(off, off, 40.0)))
+    assert "a gap of" in str(film_fault(film_properties(off, off, 40.0, 1)))
     bare = bare[(bare[:, 0] == 1) | (bare[:, 1] > 8)]
-    assert "the film covers 80% of its base" in str(film_fault(film_properties(bare, bare, 40.0)))
+    assert "the film covers 80% of its base" in str(film_fault(film_properties(bare, bare, 40.0, 1)))
 
 
 def test_bonds_join_cation_and_anion_of_the_film_alone(potential, oxides):
@@ -177,12 +228,24 @@ def test_a_film_is_pressed_and_keeps_its_energy(potential, oxides, glass, base, 
     assert row["status"] == "rejected: the film slid by 5.0 A over its base (gate 2.1 A)"
 
 
+def test_a_film_on_nitride_and_nitride_itself_are_pressed(potential, oxides, glass, nitride, tmp_path):
+    quick = CLOSING.model_copy(update={"speed_m_s": 800, "depth_over_amplitude": 1.5})
+    for film_nm, types in ((0.4, {1, 2, 3, 4}), (0.0, {1, 2})):
+        work = tmp_path / f"{film_nm:g}"
+        closing = run_closing(run_of(film_nm), oxides["SiO2"], glass, potential, quick, work, QUICK, base=nitride)
+        assert max(row["force_nN"] for row in closing.curve) > 1
+        assert {row["type"] for row in closing.snapshots} == types
+        assert np.abs([row["energy_drift_meV_per_atom"] for row in closing.curve]).max() < 3
+    silicon, nitrogen = np.bincount(cut_base(nitride[1], glass, 2, 2.5, 12.0, 1).types)[1:]
+    assert 4 * silicon == 3 * nitrogen
+
+
 def test_the_metal_is_pressed_by_a_flat_only(potential, oxides, glass, base, tmp_path):
     closing = run_closing(run_of(0.0), oxides["SiO2"], glass, potential, CLOSING, tmp_path / "work", QUICK, base=base)
     assert max(row["force_nN"] for row in closing.curve) > 1
     assert {row["type"] for row in closing.snapshots} == {1}
     oxide = CLOSING.model_copy(update={"counterface": "oxide"})
-    with pytest.raises(InputError, match="Ti without a film is pressed by a flat only"):
+    with pytest.raises(InputError, match="titanium without a film is pressed by a flat only"):
         run_closing(run_of(0.0), oxides["SiO2"], glass, potential, oxide, tmp_path / "other", QUICK, base=base)
 
 
@@ -215,7 +278,7 @@ def test_hard_cases_of_a_film_hold(potential, metal, glass, base, tmp_path):
 
 def test_the_area_of_each_kind_of_body_is_its_own(potential, base, metal):
     assert area_of(run_of(0.4), potential, base=base)[1] == metal.below_films.area_of_film.error
-    assert area_of(run_of(0.0), potential, base=base)[1] == metal.below_films.area_of_metal.error
+    assert area_of(run_of(0.0), potential, base=base)[1] == metal.below_films.area_of_base.error
     assert area_of(run_of(None), potential, base=base)[1] == potential.contact_area.error
 
 
@@ -228,7 +291,7 @@ def test_a_film_thinner_than_a_layer_or_thicker_than_the_widest_contact_is_refus
             check_film(thickness, 3.5)
     with pytest.raises(InputError, match="film_nm = 9: on an asperity"):
         cut_body(run_of(9.0), glass, potential, 1.2, (1,), QUICK, base)
-    with pytest.raises(InputError, match=r"asperity tiny: film_nm = 0\.4 needs a metal below; set hardness\.base"):
+    with pytest.raises(InputError, match=r"asperity tiny: film_nm = 0\.4 needs a body below; set hardness\.base"):
         cut_body(run_of(0.4), glass, potential, 1.2, (1,), QUICK)
 
 
@@ -255,7 +318,7 @@ def test_films_have_one_energy_scale_and_the_thinnest_film_shows_the_accuracy():
 
 
 def test_the_plan_prices_the_metal_and_refuses_a_film_too_thick(oxides):
-    titanium = load_material(TITANIUM)
+    titanium = base_of(load_material(TITANIUM))
     rows = {row["run"]: row for row in plan_rows(stacked_settings(), oxides["SiO2"], oxides["SiO2"], titanium)}
     assert rows["thick_seed1_full"]["atoms"] > rows["thin_seed1_full"]["atoms"] > rows["metal_seed1_full"]["atoms"]
     thick = stacked_settings(asperities=[{"name": "a", "tiles": 2, "amplitude_nm": 0.5, "film_nm": 5}])
@@ -264,7 +327,7 @@ def test_the_plan_prices_the_metal_and_refuses_a_film_too_thick(oxides):
 
 
 def test_films_and_their_metal_belong_together():
-    with pytest.raises(ValidationError, match="thin has a film_nm, but there is no base; name its metal"):
+    with pytest.raises(ValidationError, match="thin has a film_nm, but there is no base; name what lies below"):
         stacked_settings(base=None, asperities=[{"name": "thin", "tiles": 2, "amplitude_nm": 0.5, "film_nm": 0.6}])
     with pytest.raises(ValidationError, match="which only a flat presses: nothing is known of how"):
         stacked_settings(closing={"counterface": "asperity"})
@@ -278,9 +341,12 @@ def test_metals_are_checked_on_loading(tmp_path):
     path.write_text(text.replace("formula: {Ti: 1}", "formula: {Ti: 1, O: 2}"))
     with pytest.raises(InputError, match="eam: needs a formula of one element, got TiO2"):
         load_material(path)
+    path.write_text(text.replace("  grain_nm: 3.0", "  # grain_nm: 3.0"))
+    with pytest.raises(InputError, match="grain_nm is of a metal, and every metal needs it"):
+        load_material(path)
     path.write_text(text.replace("  eta: 0.558572\n", ""))
     with pytest.raises(InputError, match=r"eam\.eta: Field required"):
         load_material(path)
-    path.write_text(text.replace("  area_of_metal: {depth_A: 0.5, error: 0.025}\n", ""))
-    with pytest.raises(InputError, match=r"film_base\.area_of_metal: Field required"):
+    path.write_text(text.replace("  area_of_base: {depth_A: 0.5, error: 0.025}\n", ""))
+    with pytest.raises(InputError, match=r"film_base\.area_of_base: Field required"):
         load_material(path)

@@ -51,8 +51,8 @@ def describe(results: Results) -> Section | None:
     if film := fit.get("film"):
         section.add(
             film_share(film),
-            "What a film keeps of the difference between its own hardness and the metal's, against contact length over "
-            "thickness: the law in use, with its 68 % interval. Grey: where the runs lie.",
+            "What a film keeps of the difference between its own hardness and that of the body below, against contact "
+            "length over thickness: the law in use, with its 68 % interval. Grey: where the runs lie.",
         )
     lines = [
         (
@@ -229,7 +229,7 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
             f"{errors['paper']}, a constant by {errors['constant']}."
         )
         notes.append(
-            f"The metal as pressed has {show(base['median'])} [{show(base['low'])}, {show(base['high'])}] GPa. "
+            f"The body below as pressed has {show(base['median'])} [{show(base['low'])}, {show(base['high'])}] GPa. "
             f"Runs have L/t from {show(low)} to {show(high)}; wider contacts extrapolate the law."
         )
     if cutoff := fit.get("inputs", {}).get("gap_cutoff"):
