@@ -136,12 +136,12 @@ class Network(Base):
 
     def faults(self, glass: Atoms) -> list[str]:
         """What of a glass is not as its material's file says."""
-        found, accepted = self.properties(glass), {"density_g_cm3": self.network.density_g_cm3}
+        measured, accepted = self.properties(glass), {"density_g_cm3": self.network.density_g_cm3}
         accepted |= {f"coordination_{element}": of for element, of in self.network.coordination.items()}
         return [
-            f"{name} {found[name]:.3g} outside {low:g} to {high:g}"
+            f"{name} {measured[name]:.3g} outside {low:g} to {high:g}"
             for name, (low, high) in accepted.items()
-            if not low <= found[name] <= high
+            if not low <= measured[name] <= high
         ]
 
 

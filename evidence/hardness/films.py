@@ -155,29 +155,44 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     for case, values in of["hardness"][3.0].items():
         fall = values / of["hardness"][15.0][case]
         found[f"{case}_fall"] = f"{np.median(fall):.2g}{_interval(fall)}"
-    for thickness, mean in mean_of_bodies(points_of(rows, OTHER)).items():
-        found[f"{OTHER}_{thickness:g}".replace(".", "_")] = mean
+    for thickness, stresses in ends_of_bodies(points_of(rows, OTHER)).items():
+        found[f"{OTHER}_{thickness:g}".replace(".", "_")] = stresses
     for scene in sorted({row["scene"] for row in rows}):
         runs = {
             (row["seed"], row["film_nm"]): row
             for row in rows
             if row["scene"] == scene and row["status"] == "yield" and row["slope_GPa"] not in ("", "nan")
         }
+        if scene not in (MAIN, OTHER) and (ratios := over_flat(points, points_of(rows, scene))):
+            found[f"{scene}_over_flat"] = f"{np.mean(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
         if runs:
             ratios = [float(row["slope_GPa"]) / float(row["hardness_GPa"]) for row in runs.values()]
             found[f"{scene}_slope_over_plateau"] = f"{np.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
     return found
 
 
-def mean_of_bodies(points: FilmPoints) -> dict[float, str]:
-    """Mean stress of each body, by thickness of its film, over runs, with its standard error; GPa."""
-    means = {}
+def over_flat(flat: FilmPoints, other: FilmPoints) -> list[float]:
+    """Mean stress over that of the same body pressed by a flat at constant speed, a ratio for each run.
+
+    Both are taken at the contact lengths that both runs reached.
+    """
+    ratios = []
+    for seed, thickness in sorted(set(zip(other.seed, other.thickness_nm, strict=True))):
+        same = [of.take((of.seed == seed) & (of.thickness_nm == thickness)) for of in (other, flat)]
+        if len(both := np.intersect1d(same[0].bin, same[1].bin)):
+            means = [np.mean([of.stress_GPa[of.bin == one].mean() for one in both]) for of in same]
+            ratios.append(float(means[0] / means[1]))
+    return ratios
+
+
+def ends_of_bodies(points: FilmPoints) -> dict[float, str]:
+    """Stress of each body at its smallest and its largest contacts, by thickness of its film: means over runs, GPa."""
+    ends = {}
     for thickness in np.unique(points.thickness_nm):
         same = points.take(points.thickness_nm == thickness)
-        runs = [float(np.mean(same.stress_GPa[same.seed == seed])) for seed in np.unique(same.seed)]
-        error = np.std(runs, ddof=1) / len(runs) ** 0.5 if len(runs) > 1 else np.nan
-        means[float(thickness)] = f"{np.mean(runs):.1f} ± {error:.1f} GPa"
-    return means
+        means = [np.mean(same.stress_GPa[same.bin == one]) for one in (same.bin.min(), same.bin.max())]
+        ends[float(thickness)] = " to ".join(f"{mean:.0f}" for mean in means) + " GPa"
+    return ends
 
 
 def _interval(values: np.ndarray) -> str:
@@ -197,8 +212,9 @@ def draw(axes: Axes) -> None:
             same = points.take(points.thickness_nm == thickness)
             each = [same.take(same.bin == one) for one in np.unique(same.bin) if np.sum(same.bin == one) > 1]
             error = [np.std(of_bin.stress_GPa, ddof=1) / len(of_bin.seed) ** 0.5 for of_bin in each]
-            means = [[np.mean(of_bin.length_nm), np.mean(of_bin.stress_GPa)] for of_bin in each]
-            axes.errorbar(*np.transpose(means), error, fmt=style, ms=3, color=color, label=name)
+            length = [np.mean(of_bin.length_nm) for of_bin in each]
+            stress = [np.mean(of_bin.stress_GPa) for of_bin in each]
+            axes.errorbar(length, stress, error, fmt=style, ms=3, color=color, label=name)
     for case, color in (("metal_as_pressed", "#b5482a"), ("metal_of_H_macro", "#8a8f98")):
         low, high = np.array([np.quantile(of["hardness"][at][case], [0.16, 0.84]) for at in LENGTHS_NM]).T
         axes.fill_between(LENGTHS_NM, low, high, color=color, alpha=0.2, label=f"5 nm, {case.replace('_', ' ')}")

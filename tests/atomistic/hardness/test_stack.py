@@ -17,8 +17,8 @@ from atomistic.hardness.network import Network
 from atomistic.hardness.plateau import film_fault, plastic_onset, point
 from atomistic.hardness.readout import Bond, bonds_of
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, planned_runs, smallest_run
-from atomistic.hardness.stability import film_checks, free_motion
-from atomistic.hardness.stack import GAP_A, Stack, base_of, check_film, cut_base, film_properties, lay
+from atomistic.hardness.stability import LIFT_A, film_checks, free_motion
+from atomistic.hardness.stack import GAP_A, Stack, base_of, check_film, cut_base, film_properties, lay, lifted
 from atomistic.lammps import Atoms
 from atomistic.materials import load_material
 from atomistic.settings import AsperitySettings, ClosingSettings, GlassSettings, HardnessSettings
@@ -130,6 +130,24 @@ def test_a_nitride_has_its_own_silicon_and_bonds_both_ways(potential):
         "3 4 table table Si_O 6.5",
         "4 4 table table O_O 6.5",
     ]
+
+
+def test_a_film_far_off_leaves_the_energies_of_both_bodies(potential, glass, base, nitride, tmp_path):
+    """Each type has its own forces, also where base and film both have silicon."""
+
+    def energy(atoms, force):
+        return free_motion(atoms, force, tmp_path / "still", 0.01, 1)[0][0, 1]
+
+    for body, cell in (base, nitride):
+        below = len(body.elements)
+        apart = lifted(lay(cell, glass, 2, 2.5, 6.0, 10.0, 1), LIFT_A, below)
+        of_base, of_film = apart.types <= below, apart.types > below
+        parts = [
+            Atoms(body.elements, apart.types[of_base], apart.positions_A[of_base], apart.cell_A),
+            Atoms(glass.elements, apart.types[of_film] - below, apart.positions_A[of_film], apart.cell_A),
+        ]
+        whole = energy(apart, Stack(potential, body))
+        assert whole == pytest.approx(energy(parts[0], body) + energy(parts[1], potential), rel=1e-9)
 
 
 def test_a_softer_base_has_the_energies_times_the_factor(metal, glass, base, nitride, tmp_path):
