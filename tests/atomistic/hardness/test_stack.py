@@ -230,9 +230,31 @@ def test_where_a_metal_lies_below_the_lasting_lowering_is_the_witness():
     assert plastic_onset(rows, 0.1).displacement_nm is None
 
 
-def test_a_film_is_pressed_and_keeps_its_energy(potential, oxides, glass, base, tmp_path):
-    run = run_of(0.4)
-    closing = run_closing(run, oxides["SiO2"], glass, potential, CLOSING, tmp_path / "work", QUICK, base=base)
+@pytest.fixture(scope="module")
+def pressed(potential, oxides, glass, base, tmp_path_factory):
+    """A film on titanium, pressed."""
+    work = tmp_path_factory.mktemp("pressed") / "work"
+    return run_closing(run_of(0.4), oxides["SiO2"], glass, potential, CLOSING, work, QUICK, base=base)
+
+
+def test_a_film_that_is_stopped_goes_on_as_if_it_had_not_been(pressed, potential, oxides, glass, base, tmp_path):
+    class Stopped(Exception):
+        pass
+
+    def stop(share, doing):
+        if (tmp_path / "work" / "closing" / "restart.2").exists():
+            raise Stopped
+
+    given = (run_of(0.4), oxides["SiO2"], glass, potential, CLOSING, tmp_path / "work", QUICK)
+    with pytest.raises(Stopped):
+        run_closing(*given, stop, base=base)
+    resumed = run_closing(*given, base=base)
+    for part in ("curve", "witness", "snapshots", "summary"):
+        np.testing.assert_equal(getattr(resumed, part), getattr(pressed, part))  # bit for bit; NaN where no stress is
+
+
+def test_a_film_is_pressed_and_keeps_its_energy(pressed):
+    closing = pressed
     column = {name: np.array([row[name] for row in closing.curve]) for name in closing.curve[0]}
     assert column["force_nN"].max() > 1
     assert np.abs(column["energy_drift_meV_per_atom"]).max() < 3
