@@ -185,7 +185,8 @@ def find_hardness(
     temperature = column["temperature_K"]
     warming = float(np.max(temperature) - np.mean(temperature[:4]))
     fraction = column["contact_area_nm2"] / cell_area_nm2
-    window = _first_stretch((length >= rules.min_length_nm) & (fraction <= rules.max_area_fraction))
+    # what comes back after the contact was too wide is not used; one that shrinks for a moment goes on
+    window = (length >= rules.min_length_nm) & (np.maximum.accumulate(fraction) <= rules.max_area_fraction)
     # counterfaces of atoms start farther apart than the approach
     apart = np.max(travel[np.cumsum(fraction) == 0], initial=approach_nm)
     onset = plastic_onset(witness, float(apart), rules, by_bonds=not on_base)
@@ -315,15 +316,6 @@ def _exponent(length: np.ndarray, stress: np.ndarray) -> float:
     if np.any(stress <= 0):
         return float("nan")
     return float(np.polyfit(np.log(length), np.log(stress), 1)[0])
-
-
-def _first_stretch(mask: np.ndarray) -> np.ndarray:
-    """The mask up to its first end: what comes back after the window was left is not used."""
-    if not np.any(mask):
-        return mask
-    start = int(np.argmax(mask))
-    end = start + int(np.argmin(np.append(mask[start:], False)))
-    return np.isin(np.arange(len(mask)), np.arange(start, end))
 
 
 def interval_of_mean(values: np.ndarray) -> tuple[float, float]:

@@ -73,6 +73,17 @@ def test_elastic_rise_beyond_an_onset_is_rejected():
     assert find(curve(lambda length: 4 * length), witness()).status.startswith("rejected: stress still rises")
 
 
+def test_a_contact_that_shrinks_for_a_moment_is_judged_on():
+    length = np.maximum(0, 3.2 * (TRAVEL - 0.25))
+    first = int(np.argmax(length >= RULES.min_length_nm))
+    length[first + 1] = RULES.min_length_nm - 0.01
+    rows = curve(plateau, length)
+    assert find(rows, witness()).plateau_points == find(curve(plateau), witness()).plateau_points - 1
+    too_wide = (RULES.max_area_fraction * CELL_AREA) ** 0.5 + 0.1
+    length[-12] = too_wide  # what comes after it is not used, however wide
+    assert find(curve(plateau, length), witness()).plateau_points < find(rows, witness()).plateau_points
+
+
 def test_gates():
     assert find(curve(plateau, drift=0.5), witness()).status.startswith("rejected: energy drifts")
     hot = curve(plateau, temperature=400.0)
