@@ -58,9 +58,9 @@ class FilmRules:
 
     Attributes
     ----------
-    least_covered : share of the metal below film.
+    least_covered : share of the base below film.
     largest_gap_A : 95 % of the columns of atoms have less: twice a bond of metal and oxygen.
-    largest_slip_A : of the film over the metal below the contact, at the end: one bond.
+    largest_slip_A : of the film over its base below the contact, at the end: one bond.
     """
 
     least_covered: float = 0.95
