@@ -21,7 +21,7 @@ stresses that differ by 4 % with a scatter of 10 % (accuracy/hardness.csv of sce
 BIN_NM = 0.5  # of contact length: a run has one mean stress in each
 LEAST_POINTS, LEAST_THICKNESSES = 3, 2
 DRAWS, TRIALS = 2000, 400_000
-PRIOR = ((2, 20), (0.5, 50), (1e-3, 10), (0.5, 4))  # of H_film, H_base, k, m
+PRIOR = ((2, 20), (0.5, 100), (1e-3, 10), (0.5, 4))  # of H_film, H_base, k, m
 LENGTHS_OVER_THICKNESS = np.geomspace(0.5, 10, 30)
 Law = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 

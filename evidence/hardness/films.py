@@ -155,7 +155,10 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     for case, values in of["hardness"][3.0].items():
         fall = values / of["hardness"][15.0][case]
         found[f"{case}_fall"] = f"{np.median(fall):.2g}{_interval(fall)}"
-    for thickness, stresses in ends_of_bodies(points_of(rows, OTHER)).items():
+    other = points_of(rows, OTHER)
+    for name in ("film", "paper"):
+        found[f"{OTHER}_{name}_left_out"] = f"{100 * left_out(name, other):.0f} %"
+    for thickness, stresses in ends_of_bodies(other).items():
         found[f"{OTHER}_{thickness:g}".replace(".", "_")] = stresses
     for scene in sorted({row["scene"] for row in rows}):
         runs = {
