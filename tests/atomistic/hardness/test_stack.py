@@ -289,9 +289,11 @@ def test_the_metal_is_pressed_by_a_flat_only(potential, oxides, glass, base, tmp
         run_closing(run_of(0.0), oxides["SiO2"], glass, potential, oxide, tmp_path / "other", QUICK, base=base)
 
 
-def test_a_film_is_pressed_by_atoms(potential, oxides, glass, base, tmp_path):
-    asperity = CLOSING.model_copy(update={"counterface": "asperity"})
+@pytest.mark.parametrize("below", ["base", "nitride"])
+def test_a_film_is_pressed_by_atoms(below, request, potential, oxides, glass, tmp_path):
+    asperity = CLOSING.model_copy(update={"counterface": "asperity", "speed_m_s": 800})
     thin = QUICK.model_copy(update={"counter_base_nm": 1.0})
+    base = request.getfixturevalue(below)
     closing = run_closing(run_of(0.4), oxides["SiO2"], glass, potential, asperity, tmp_path / "work", thin, base=base)
     assert max(row["force_nN"] for row in closing.curve) > 0.5
     assert min(row["force_nN"] for row in closing.curve) >= 0  # they only repel each other
