@@ -170,7 +170,8 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
             for row in rows
             if row["scene"] == scene and row["status"] == "yield" and row["slope_GPa"] not in ("", "nan")
         }
-        if scene not in (MAIN, OTHER) and (ratios := over_flat(points, points_of(rows, scene))):
+        flat = other if scene.startswith(OTHER) else points
+        if scene not in (MAIN, OTHER) and (ratios := over_flat(flat, points_of(rows, scene))):
             found[f"{scene}_over_flat"] = f"{np.mean(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
         if runs:
             ratios = [float(row["slope_GPa"]) / float(row["hardness_GPa"]) for row in runs.values()]
