@@ -172,7 +172,8 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         }
         flat = other if scene.startswith(OTHER) else points
         if scene not in (MAIN, OTHER) and (ratios := over_flat(flat, points_of(rows, scene))):
-            found[f"{scene}_over_flat"] = f"{np.mean(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
+            span = f"{min(ratios):.2f} to {max(ratios):.2f}" if len(ratios) > 1 else "one run"
+            found[f"{scene}_over_flat"] = f"{np.mean(ratios):.2f} ({span})"
         if runs:
             ratios = [float(row["slope_GPa"]) / float(row["hardness_GPa"]) for row in runs.values()]
             found[f"{scene}_slope_over_plateau"] = f"{np.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
