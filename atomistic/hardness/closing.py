@@ -80,7 +80,8 @@ def run_closing(
     """
     wavelength_nm = run.asperity.tiles * float(glass.cell_A[0]) / 10
     area, _ = area_of(run, potential, counter_potential, base)
-    if run.asperity.film_nm is not None and base is not None:
+    on_base = run.asperity.film_nm is not None
+    if on_base and base is not None:
         protocol = slowed(protocol, base[0].below_films.timestep_factor)
     plan = plan_closing(closing, run, protocol)
     identity = {
@@ -122,7 +123,6 @@ def run_closing(
         if curve[-1]["contact_area_nm2"] < RULES.stop_area_fraction * cell_nm2:
             return False
         measured = read(geometry, replace(plan, segments=segments))
-        on_base = run.asperity.film_nm is not None
         curve, witness = measured.curve, measured.witness
         return may_stop(curve, witness, cell_nm2, closing.stop, protocol.approach_nm, on_base=on_base)
 
@@ -130,8 +130,8 @@ def run_closing(
         run, bodies, body.force, closing, protocol, plan, place, workspace, complete, progress, above
     )
     result, snapshots = read(geometry, reached), range(reached.segments + 1)
-    of_oxide = run.asperity.film_nm is None  # atoms of a metal pull otherwise: their tops say nothing of the oxide's
-    tops = [attraction_row(readout(geometry), n, geometry) if of_oxide else NO_TOP for n in snapshots]
+    # atoms of a base pull otherwise: their tops say nothing of the oxide's
+    tops = [NO_TOP if on_base else attraction_row(readout(geometry), n, geometry) for n in snapshots]
     if run.asperity.film_nm and base is not None:
         start, end = (readout(geometry).relaxed(n).frame for n in (0, reached.segments))
         result.summary.update(film_properties(start, end, geometry.wavelength_A, len(base[0].elements)))

@@ -36,16 +36,15 @@ def plan_rows(
     edge_nm = (settings.glass.atoms / density) ** (1 / 3)
     for run in planned_runs(settings):
         film, closing, protocol = run.asperity.film_nm, settings.closing, PROTOCOL
-        if film is not None and base is not None:
-            protocol = slowed(PROTOCOL, base.below_films.timestep_factor)
-        plan = plan_closing(closing, run, protocol)
         wavelength, amplitude = run.asperity.tiles * edge_nm, run.asperity.amplitude_nm
         below = base_thickness_nm(closing, wavelength) + MEAN_HEIGHT * amplitude
         speed, of_base = ATOM_STEPS_PER_CORE_SECOND, 0.0
         if film is not None and base is not None:
+            protocol = slowed(PROTOCOL, base.below_films.timestep_factor)
             speed, of_base = BASE_ATOM_STEPS_PER_CORE_SECOND, base.atoms_per_nm3
             if film:
                 check_film(film, RULES.max_area_fraction**0.5 * wavelength)
+        plan = plan_closing(closing, run, protocol)
         atoms = wavelength**2 * (density * below if film is None else density * film + of_base * below)
         if closing.counterface != "flat":
             relief = amplitude if closing.counterface == "asperity" else 0

@@ -205,19 +205,39 @@ def schedule(settings: GlassSettings, ensemble: str, segment_steps: int) -> list
     return [*segments, {"ensemble": ensemble, "from": end, "to": end, "steps": steps(settings.rest_ps)}]
 
 
+def density_g_cm3(atoms: Atoms, force: ForceField) -> float:
+    """Density of a periodic cell."""
+    return mass_u(force, atoms) / AVOGADRO / (float(np.prod(atoms.cell_A)) * 1e-24)
+
+
+def mass_u(force: ForceField, atoms: Atoms) -> float:
+    """Mass of all atoms."""
+    masses = np.array([force.species[element].mass_u for element in atoms.elements])
+    return float(masses[atoms.types - 1].sum())
+
+
+def unlike_neighbours(atoms: Atoms, kind: np.ndarray, reach_A: float) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of atoms of different kinds within a distance, shape (pairs, 2), and their distances (Å).
+
+    Parameters
+    ----------
+    kind : of each atom.
+    """
+    places = np.mod(atoms.positions_A, atoms.cell_A)
+    pairs = KDTree(places, boxsize=atoms.cell_A).query_pairs(reach_A, output_type="ndarray")
+    pairs = pairs[kind[pairs[:, 0]] != kind[pairs[:, 1]]]
+    apart = places[pairs[:, 0]] - places[pairs[:, 1]]
+    apart -= atoms.cell_A * np.round(apart / atoms.cell_A)
+    return pairs, np.linalg.norm(apart, axis=1)
+
+
 def glass_properties(material: Material, potential: Potential, atoms: Atoms) -> dict:
     """Density, coordination and bond length of a glass, with the gate that compares them to its material file."""
     reference: OxideGlass = material.part("oxide_glass")
     formula, sources = material.formula_text, "; ".join(material.sources[name] for name in reference.sources)
-    mass_g = sum(atoms.count(ion) * potential.species[ion].mass_u for ion in atoms.elements) / AVOGADRO
-    density = mass_g / (float(np.prod(atoms.cell_A)) * 1e-24)
+    density = density_g_cm3(atoms, potential)
     is_cation = np.isin(atoms.types, [atoms.elements.index(ion) + 1 for ion in cations(material, potential)])
-    tree = KDTree(atoms.positions_A, boxsize=atoms.cell_A)
-    close = tree.query_pairs(SEARCHED_A, output_type="ndarray")
-    mixed = close[is_cation[close[:, 0]] != is_cation[close[:, 1]]]
-    distance = atoms.positions_A[mixed[:, 0]] - atoms.positions_A[mixed[:, 1]]
-    distance -= atoms.cell_A * np.round(distance / atoms.cell_A)
-    r = np.sqrt(np.einsum("ij,ij->i", distance, distance))
+    _, r = unlike_neighbours(atoms, is_cation, SEARCHED_A)
     edges = np.arange(SHORTEST_BOND_A, SEARCHED_A, 0.02)
     middle = 0.5 * (edges[1:] + edges[:-1])
     density_of_r = np.histogram(r, edges)[0] / middle**2

@@ -111,8 +111,34 @@ class Metal(Base):
         return text.getvalue()
 
     def make(self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None) -> Atoms:
-        """`make_base`, as wide as an asperity of so many glass cells."""
-        return make_base(self, tiles * edge_A, seed, work, progress)
+        """A cube of grains as wide as the asperity, annealed at zero pressure and cooled to 300 K in the same time.
+
+        Grain boundaries are cut too wide and close in the anneal, so that the cube starts wider than it comes out.
+
+        Raises
+        ------
+        InputError : the material has no potential or no grains, or its cube came out of another width than foreseen.
+        """
+        wide_A, segments = tiles * edge_A, _segments()
+        identity = {"metal": self.material.model_dump(), "edge": wide_A, "seed": seed, "segments": segments}
+        body = run_segments(
+            Workspace(work, identity, "glass.in"),
+            self,
+            self.elements,
+            lambda: _wide_enough(self, wide_A, seed),
+            segments,
+            1 + seed,
+            TIMESTEP_FS,
+            "annealing the metal",
+            progress,
+        )
+        factor = wide_A / body.cell_A[0]
+        if abs(factor - 1) > MAX_STRAIN:
+            raise InputError(
+                f"{self.material.name}: its cube would be strained by {factor - 1:+.1%} to the {wide_A:.1f} A of the "
+                f"asperity (gate {MAX_STRAIN:.0%}); take a wider asperity (tiles)"
+            )
+        return replace(body, positions_A=factor * body.positions_A, cell_A=factor * body.cell_A)
 
     def make_atom_steps(self, edge_A: float, tiles: int) -> float:
         """Atoms times MD steps of `make`."""
@@ -155,41 +181,6 @@ def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms
     near = KDTree(positions, boxsize=edge_A).query_pairs(TOO_NEAR * metal.eam.r_A)
     positions = np.delete(positions, sorted({max(pair) for pair in near}), axis=0)
     return Atoms((metal.element,), np.ones(len(positions), int), positions, np.full(3, edge_A))
-
-
-def make_base(metal: Metal, edge_A: float, seed: int, work: Path, progress: Progress | None = None) -> Atoms:
-    """A cube of grains, annealed at zero pressure and cooled to 300 K in the same time; resumes in `work` after a kill.
-
-    Grain boundaries are cut too wide and close in the anneal, so that the cube starts wider than it comes out.
-
-    Parameters
-    ----------
-    edge_A : of the cube that comes out: the wavelength of the asperity that is cut out of it.
-
-    Raises
-    ------
-    InputError : the material has no potential or no grains, or its cube came out of another width than foreseen.
-    """
-    segments = _segments()
-    identity = {"metal": metal.material.model_dump(), "edge": edge_A, "seed": seed, "segments": segments}
-    body = run_segments(
-        Workspace(work, identity, "glass.in"),
-        metal,
-        (metal.element,),
-        lambda: _wide_enough(metal, edge_A, seed),
-        segments,
-        1 + seed,
-        TIMESTEP_FS,
-        "annealing the metal",
-        progress,
-    )
-    factor = edge_A / body.cell_A[0]
-    if abs(factor - 1) > MAX_STRAIN:
-        raise InputError(
-            f"{metal.material.name}: its cube would be strained by {factor - 1:+.1%} to the {edge_A:.1f} A of the "
-            f"asperity (gate {MAX_STRAIN:.0%}); take a wider asperity (tiles)"
-        )
-    return replace(body, positions_A=factor * body.positions_A, cell_A=factor * body.cell_A)
 
 
 def _segments() -> list[dict[str, Any]]:

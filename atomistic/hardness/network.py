@@ -10,13 +10,12 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from atomistic.constants import AVOGADRO
 from atomistic.covalent import core_commands, random_places, tersoff_table
 from atomistic.errors import InputError
 from atomistic.hardness.film_base import Base
-from atomistic.hardness.glass import NEAREST_START_A, run_segments
+from atomistic.hardness.glass import NEAREST_START_A, density_g_cm3, run_segments, unlike_neighbours
 from atomistic.lammps import Atoms, Progress, Workspace
 from atomistic.materials import Core, NetworkGlass, Tersoff
 
@@ -116,18 +115,11 @@ class Network(Base):
 
     def properties(self, glass: Atoms) -> dict[str, float]:
         """Density (g/cm3), median bond of unlike atoms (Å), and the mean coordination of each element by them."""
-        masses = np.array([self.network.masses_u[element] for element in glass.elements])
-        pairs = KDTree(np.mod(glass.positions_A, glass.cell_A), boxsize=glass.cell_A).query_pairs(
-            self.network.cutoff_A, output_type="ndarray"
-        )
-        unlike = pairs[glass.types[pairs[:, 0]] != glass.types[pairs[:, 1]]]
-        apart = glass.positions_A[unlike[:, 0]] - glass.positions_A[unlike[:, 1]]
-        apart -= glass.cell_A * np.round(apart / glass.cell_A)
-        neighbours = np.bincount(unlike.ravel(), minlength=len(glass))
-        density = float(masses[glass.types - 1].sum()) / AVOGADRO / (float(np.prod(glass.cell_A)) * 1e-24)
+        bonds, lengths_A = unlike_neighbours(glass, glass.types, self.network.cutoff_A)
+        neighbours = np.bincount(bonds.ravel(), minlength=len(glass))
         return {
-            "density_g_cm3": density,
-            "bond_A": float(np.median(np.linalg.norm(apart, axis=1))),
+            "density_g_cm3": density_g_cm3(glass, self),
+            "bond_A": float(np.median(lengths_A)),
             **{
                 f"coordination_{element}": float(neighbours[glass.types == kind].mean())
                 for kind, element in enumerate(glass.elements, 1)

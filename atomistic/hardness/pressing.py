@@ -12,7 +12,7 @@ from atomistic.hardness.asperity import (
     remove_strays,
     with_vacuum,
 )
-from atomistic.hardness.glass import write_forcefield
+from atomistic.hardness.glass import mass_u, write_forcefield
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.readout import Geometry
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
@@ -126,11 +126,6 @@ def prepare_body(
     return with_vacuum(kept, float(annealed.cell_A[2]))
 
 
-def _mass_u(potential: ForceField, atoms: Atoms) -> float:
-    masses = np.array([potential.species[element].mass_u for element in atoms.elements])
-    return float(masses[atoms.types - 1].sum())
-
-
 def lammps_seed(*entropy: int) -> int:
     """A seed that LAMMPS accepts; neighbouring ones (it adds the segment's number) stay distinct."""
     return 1000 * (1 + int(np.random.SeedSequence(entropy).generate_state(1)[0] % 800_000))
@@ -198,7 +193,7 @@ def press_bodies(
         "control": closing.control,
         "force_step": protocol.force_step_MPa / 1000 / EV_PER_A3_IN_GPA * wavelength**2,
         "dwell": max(1, plan.dwell_steps),
-        "damping": KE_EV * _mass_u(potential, lower) / protocol.damping_ps,
+        "damping": KE_EV * mass_u(potential, lower) / protocol.damping_ps,
         "start": float(np.max(lower.positions_A[:, 2]) + clearance_A(closing, protocol)),
         "sample": plan.sample_steps,
         "steps": plan.segment_steps,

@@ -189,7 +189,7 @@ def over_flat(flat: FilmPoints, other: FilmPoints) -> list[float]:
     for seed, thickness in sorted(set(zip(other.seed, other.thickness_nm, strict=True))):
         same = [of.take((of.seed == seed) & (of.thickness_nm == thickness)) for of in (other, flat)]
         if len(both := np.intersect1d(same[0].bin, same[1].bin)):
-            means = [np.mean([of.stress_GPa[of.bin == one].mean() for one in both]) for of in same]
+            means = [np.mean(of.stress_GPa[np.isin(of.bin, both)]) for of in same]
             ratios.append(float(means[0] / means[1]))
     return ratios
 

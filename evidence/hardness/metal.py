@@ -29,7 +29,6 @@ from atomistic.hardness.metal import (
     crystal,
     electron_density,
     embedding_energy,
-    make_base,
     pair_energy,
 )
 from atomistic.hardness.plateau import RULES
@@ -69,7 +68,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         for kind in KINDS:
             for seed in given.seeds if kind in given.parts else ():
                 if kind == "polycrystal":
-                    body = make_base(metal, edge, seed, work / "bulk")
+                    body = metal.make(edge, 1, seed, work / "bulk")
                 elif kind == "dislocated":
                     body = dislocated(metal, square_crystal(metal, edge, 2 * CRYSTAL_A), seed, work / "bulk")
                 else:

@@ -12,7 +12,7 @@ from atomistic.hardness.accuracy import variations
 from atomistic.hardness.closing import area_of, cut_body, oxide_bond, run_closing
 from atomistic.hardness.cost import plan_rows
 from atomistic.hardness.glass import make_glass
-from atomistic.hardness.metal import TOO_NEAR, Metal, make_base, polycrystal
+from atomistic.hardness.metal import TOO_NEAR, Metal, polycrystal
 from atomistic.hardness.network import Network
 from atomistic.hardness.plateau import film_fault, plastic_onset, point
 from atomistic.hardness.readout import Bond, bonds_of
@@ -46,7 +46,7 @@ def base(metal, glass, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("atomistic.hardness.metal.ANNEAL_PS", 0.5)
         patch.setattr("atomistic.hardness.metal.MAX_STRAIN", 0.05)
-        return metal, make_base(metal, 2 * float(glass.cell_A[0]), 1, tmp_path_factory.mktemp("base") / "work")
+        return metal, metal.make(float(glass.cell_A[0]), 2, 1, tmp_path_factory.mktemp("base") / "work")
 
 
 @pytest.fixture(scope="module")
@@ -254,17 +254,16 @@ def test_a_film_that_is_stopped_goes_on_as_if_it_had_not_been(pressed, potential
 
 
 def test_a_film_is_pressed_and_keeps_its_energy(pressed):
-    closing = pressed
-    column = {name: np.array([row[name] for row in closing.curve]) for name in closing.curve[0]}
+    column = {name: np.array([row[name] for row in pressed.curve]) for name in pressed.curve[0]}
     assert column["force_nN"].max() > 1
     assert np.abs(column["energy_drift_meV_per_atom"]).max() < 3
-    assert {row["type"] for row in closing.snapshots} == {1, 2, 3}
-    assert all(np.isnan(row["top_force_over_hamaker"]) for row in closing.witness)
-    assert closing.summary["covered_share"] > 0.9
-    assert closing.summary["slid_A"] < 2.1
-    summary = {**closing.summary, "run": "tiny", "energy_scale": 1.0, "asperity": "tiny", "amplitude_nm": 0.25}
+    assert {row["type"] for row in pressed.snapshots} == {1, 2, 3}
+    assert all(np.isnan(row["top_force_over_hamaker"]) for row in pressed.witness)
+    assert pressed.summary["covered_share"] > 0.9
+    assert pressed.summary["slid_A"] < 2.1
+    summary = {**pressed.summary, "run": "tiny", "energy_scale": 1.0, "asperity": "tiny", "amplitude_nm": 0.25}
     summary |= {"film_nm": 0.4, "seed": 1, "lammps_cpu_s": 1.0, "python_cpu_s": 1.0, "slid_A": 5.0}
-    row = point(closing.curve, closing.witness, summary, CLOSING, "pmmcs")
+    row = point(pressed.curve, pressed.witness, summary, CLOSING, "pmmcs")
     assert row["status"] == "rejected: the film slid by 5.0 A over its base (gate 2.1 A)"
 
 
