@@ -17,6 +17,8 @@ RENAMED = {
     "contact.surface.kurtosis": "contact.surface.moments.kurtosis",
     "pad.pilot_cells": "pad.grid.pilot_cells",
     "pad.depths": "pad.grid.depths",
+    "device.bow_deviation_nm": "device.spread.bow_nm",
+    "device.tilt_deviation_nm": "device.spread.tilt_nm",
 }
 REPLACED = {
     "device.landed_fraction": "gap_um, bow_nm and tilt_nm say what is in contact",

@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping
 
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
-from mesoscale.device.statistics import least_pull_in_V, never_closes
 from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.table import check_literature
+from mesoscale.settings import DeviceSettings
 from mesoscale.settings.contact import base_modulus
 from workflow.scene import ROOT, Scene
 from workflow.terminal.cost import history_s
@@ -97,9 +97,7 @@ def _stages(scene: Scene) -> Iterator[str]:
             f"device: an electrode of {device.area_um2:g} um^2 (electrode_um2, or length_um times width_um) is smaller "
             f"than one cell of {side_um:g} um (contact.length_nm); take a larger electrode or a smaller cell"
         )
-    if device.touching_at_rest:
-        yield device.touching_at_rest
-    elif line := never_closes(device, least_pull_in_V(device)):
+    if line := _no_switch(device):
         yield line
     synthetic = scene.topography.synthetic
     if "topography" in scene.stages() and not (
@@ -108,6 +106,22 @@ def _stages(scene: Scene) -> Iterator[str]:
         yield "topography.scans: empty, and synthetic.small_scans and large_scans are 0: nothing to analyse; give scans"
     if "elastic" in scene.stages() and scene.elastic.dft.engine == "pyscf":
         yield from _unknown_bases(scene)
+
+
+def _no_switch(device: DeviceSettings) -> str:
+    """One line on a device that is no switch; empty where nothing is known against it."""
+    ordinary = {"hold_voltage_V", "residual_stress_MPa", "temperature_C", "ends", "stopper_nm", "dimple_nm", "spread"}
+    if device.touching_at_rest or not device.bends or not ordinary & device.model_fields_set:
+        return device.touching_at_rest
+    from mesoscale.device.pressing import pull_in_V  # takes a second
+    from mesoscale.device.spread import check_spread
+    from mesoscale.device.statistics import never_closes
+
+    try:
+        check_spread(device)
+        return never_closes(device, pull_in_V(device))
+    except InputError as error:
+        return str(error)
 
 
 def _unknown_bases(scene: Scene) -> Iterator[str]:

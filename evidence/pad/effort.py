@@ -16,7 +16,7 @@ import numpy as np
 
 from mesoscale.device import release
 from mesoscale.device.electrode import presser
-from mesoscale.device.pressing import DEVIATIONS, pressing, pressure_to_compute
+from mesoscale.device.pressing import hardest, pressing, pressure_to_compute
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad import draws as pad_draws
@@ -56,7 +56,7 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
         pressure_to_compute(device),
         pressed_GPa=presser(device),
     )
-    device = pressing(scene.device, DEVIATIONS)
+    device = hardest(pressing(scene.device, spread=True))
     for repeat in range(1, given.repeats + 1):
         seeds = range(FIRST_SEED + APART * repeat, FIRST_SEED + APART * repeat + max(COUNTS)[0])
         closed = list(close_cells(inputs, contact, grid, seeds))

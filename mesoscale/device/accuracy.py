@@ -98,7 +98,7 @@ def _release_V(law: PadLaw, device: DeviceSettings, elements: int | None = None)
     """Release (0: stuck; NaN: not computed), and the wall and processor time it took."""
     started = _clock()
     try:
-        if device.spring_N_per_m is not None:
+        if not device.bends:
             release = solve_on_pad(switch_from_settings(device), law, device.hold_voltage_V).release_V
         elif elements is None:
             release = solve_deepened(device, law)["release_V"]
@@ -170,7 +170,7 @@ def _depths(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
 
 def _elements(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
     """Elements of the bending electrode."""
-    if device.spring_N_per_m is not None:
+    if not device.bends:
         return
     wanted, _ = _release_V(law, device, FINEST_ELEMENTS)
     for elements in ELEMENTS:
@@ -193,7 +193,7 @@ def _circuit(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
         nodes = sum(pieces[0].x.size for pieces in [tables.closing, *tables.opening])
         metric, cost = "largest error, of the well", _clock() - started
         yield _row("pressure in a circuit", "nodes of its tables", nodes, tables.of_well, metric, "the curves", cost)
-    if device.spring_N_per_m is not None:
+    if not device.bends:
         return
     flat, reference = device.model_copy(update={"tilt_nm": 0.0}), f"{FINEST_ELEMENTS} elements"
     wanted, _ = _release_V(law, flat, FINEST_ELEMENTS)

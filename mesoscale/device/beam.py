@@ -1,10 +1,13 @@
-"""A fixed-fixed beam over a dielectric: bending, tension and local loads, by cubic Hermite elements.
+"""A clamped or cantilever beam over a dielectric: bending, tension, stretching and local loads, by Hermite elements.
 
-The separation s(x) of beam and dielectric is s = rest + u. In balance, for every virtual deflection v,
+The separation s(x) of beam and dielectric is s = rest + u, with z0 its shape at rest and z = z0 + u. In balance, for
+every virtual deflection v,
 
-    int EI u'' v'' + N u' v' dx = int b [p(s) - q(s)] v dx
+    int EI u'' v'' + N0 u' v' + (N - N0) z' v' dx = int b [p(s) - q(s)] v dx
+    N = N0 + EA / (2 L) int (z'^2 - z0'^2) dx
 
-with p the contact pressure (positive: apart) and q the electrostatic pull. Nodal values are exact for uniform loads.
+with p the contact pressure (positive: apart) and q the electrostatic pull. N is one number for the whole beam.
+Nodal values are exact for uniform loads without tension.
 """
 
 from collections.abc import Callable
@@ -14,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.beam_kernels import NM, deflect, newton_step
+from mesoscale.device.beam_kernels import NM, deflect, elongation, newton_step
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
 
@@ -25,30 +28,44 @@ Load = Callable[[Array], tuple[Array, Array]]
 GAUSS = np.polynomial.legendre.leggauss(4)
 MIDDLE, LANDING = 0.012, 0.56
 """Shares of half the beam: of the last contact, 3 um of the default, and of what lands when the beam pulls in."""
+AT_REST, RESTS_NM = 200, 1e-6
+"""Newton steps of a beam that heat or its stress moves to rest, and the last of them."""
 
 
 @dataclass(frozen=True)
 class Beam:
-    """A clamped beam and its shape at rest.
+    """A beam and its shape at rest.
 
     Attributes
     ----------
     width_m : width of the electrode.
     bending_N_m2 : EI.
-    tension_N : axial force.
+    tension_N : axial force at rest.
+    stretching_N_m : growth of the axial force with the length of the bent beam; 0 of a cantilever.
+    cantilever : whether the last end is free.
+    rest_nodal : height of the shape at rest over its ends (m) and slope at the nodes, shape (nodes, 2).
     rest_m : separation at rest at the integration points, shape (elements, points).
     sizes_m : lengths of the elements, shape (elements,).
     within : places of the integration points in their elements, from 0 to 1, shape (points,).
     weights_m : length that each integration point stands for, shape (elements, points).
+    wired, lands : 1 over the electrode, and over the pad; else 0; shape (elements, points).
+    dimple_nm, stopper_nm : heights of what lands on the pad, and of what stands elsewhere.
     """
 
     width_m: float
     bending_N_m2: float
     tension_N: float
+    stretching_N_m: float
+    cantilever: bool
+    rest_nodal: Array
     rest_m: Array
     sizes_m: Array
     within: Array
     weights_m: Array
+    wired: Array
+    lands: Array
+    dimple_nm: float = 0.0
+    stopper_nm: float = 0.0
 
     @property
     def elements(self) -> int:
@@ -61,20 +78,45 @@ class Beam:
         return float(self.sizes_m.sum())
 
     @property
+    def contact_m(self) -> float:
+        """Length of the part over the pad."""
+        return float((self.weights_m * self.lands).sum())
+
+    @property
     def at_m(self) -> Array:
         """Positions of the integration points along the beam, shape (elements, points)."""
         return (np.cumsum(self.sizes_m) - self.sizes_m)[:, None] + self.sizes_m[:, None] * self.within
 
     @cached_property
-    def mechanics(self) -> tuple[Array, Array, Array]:
-        """Hermite's shapes, stiffness of the elements, and weights of the points times the width, for the kernels."""
+    def mechanics(self) -> tuple[Array, Array, Array, Array, float, float, Array, int]:
+        """Hermite's shapes, elements against bending and unit tension, weights times width, and what `newton_step`
+        takes after them."""
         shapes = np.array([_shapes(size, self.within) for size in self.sizes_m])
-        stiffness = np.array([_stiffness(size, self.bending_N_m2, self.tension_N) for size in self.sizes_m])
-        return shapes, stiffness, self.width_m * self.weights_m
+        bending, pulled = (np.array(parts) for parts in zip(*map(_stiffness, self.sizes_m.tolist()), strict=True))
+        unknowns = 2 * self.elements - (0 if self.cantilever else 2)
+        return (
+            shapes,
+            self.bending_N_m2 * bending,
+            pulled,
+            self.width_m * self.weights_m,
+            self.tension_N,
+            self.stretching_N_m,
+            self.rest_nodal,
+            unknowns,
+        )
+
+    @property
+    def places(self) -> tuple[Array, Array, float, float]:
+        """What is over electrode and pad, for the kernels."""
+        return self.wired, self.lands, self.dimple_nm, self.stopper_nm
 
     def deflection_m(self, nodal: Array) -> Array:
         """Deflection at the integration points from nodal values (nodes, 2), shape (elements, points)."""
         return deflect(nodal, self.mechanics[0])
+
+    def axial_N(self, nodal: Array) -> float:
+        """Axial force of the bent beam."""
+        return self.tension_N + self.stretching_N_m * elongation(nodal, self.mechanics[2], self.rest_nodal)
 
     def step(self, nodal: Array, load: Load, inertia: float = 0.0, other: Array | None = None) -> tuple[Array, Array]:
         """One Newton step towards balance, and the answer to another load on top, both of shape (nodes, 2).
@@ -86,19 +128,21 @@ class Beam:
         """
         pressure, slope = load(self.rest_m + self.deflection_m(nodal))
         other = np.zeros_like(pressure) if other is None else other
-        return newton_step(nodal, pressure, slope, other, inertia, *self.mechanics)
+        return newton_step(nodal, pressure, slope, other, inertia, *self.mechanics)[:2]
 
 
 def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
-    """The beam that the settings describe, with its bow and tilt at rest.
+    """The beam that the settings describe, as it rests at its temperature.
 
     Raises
     ------
     InputError : it touches the dielectric at rest.
     """
-    size = settings.length_um * 1e-6 / elements
-    sizes, weights = np.full(elements, size), np.broadcast_to(0.5 * size * GAUSS[1], (elements, GAUSS[1].size))
-    return _beam(settings, sizes, 0.5 * (GAUSS[0] + 1.0), weights)
+    # nodes at the ends of electrode and pad, so that no element is in part over them
+    ends = np.unique([0.0, *settings.electrode, *settings.contact, 1.0])
+    parts = np.maximum(np.rint(np.diff(ends) * elements), 1).astype(int)
+    sizes = np.repeat(settings.length_um * 1e-6 * np.diff(ends) / parts, parts)
+    return _beam(settings, sizes, 0.5 * (GAUSS[0] + 1.0), 0.5 * sizes[:, None] * GAUSS[1])
 
 
 def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
@@ -110,10 +154,13 @@ def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
 
     Raises
     ------
-    InputError : see `beam_of`; the number of lumps is not even, or less than 4.
+    InputError : see `beam_of`; the number of lumps is not even, or less than 4; the beam is no clamped one, or has
+        parts without electrode or pad.
     """
     if lumps < 4 or lumps % 2:
         raise InputError(f"a bending electrode needs an even number of lumps, at least 4, not {lumps}")
+    if line := no_lumps(settings):
+        raise InputError(line)
     half, share = settings.length_um * 1e-6 / 2.0, np.linspace(0.0, LANDING, 10001)
     until = np.log1p(share / MIDDLE) + 2.0 * share / LANDING
     landing = np.interp(np.linspace(until[-1], 0.0, lumps // 2), until, share)
@@ -125,16 +172,128 @@ def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
     return _beam(settings, np.diff(places), np.ones(1), np.concatenate([carried, carried[::-1], [0.0]])[:, None])
 
 
+def no_lumps(settings: DeviceSettings) -> str:
+    """One line on an electrode that has no lumps, which are those of a symmetric beam; empty where it has."""
+    if settings.ends == "clamped" and settings.electrode == settings.contact == (0.0, 1.0):
+        return ""
+    return (
+        "device.ends, electrode, contact: circuits are made of beams clamped at both ends, with electrode and pad all "
+        "along; take clamped, [0, 1] and [0, 1], or leave the circuit out"
+    )
+
+
 def _beam(settings: DeviceSettings, sizes: Array, within: Array, weights: Array) -> Beam:
     """The beam of the settings on these elements."""
     if touching := settings.touching_at_rest:
         raise InputError(touching)
-    width, thickness = settings.width_um * 1e-6, settings.thickness_um * 1e-6
-    bending = settings.youngs_modulus_GPa * 1e9 * width * thickness**3 / 12.0
-    tension = settings.residual_stress_MPa * 1e6 * (1.0 - settings.poisson_ratio) * width * thickness
-    flat = Beam(width, bending, tension, np.zeros(weights.shape), sizes, within, weights)
-    shape = settings.shape_at_rest_nm(flat.at_m / (settings.length_um * 1e-6))
-    return replace(flat, rest_m=settings.gap_um * 1e-6 + NM * shape)
+    width, thickness, length = (1e-6 * of for of in (settings.width_um, settings.thickness_um, settings.length_um))
+    section, cantilever = width * thickness, settings.ends == "cantilever"
+    ends = np.concatenate([[0.0], np.cumsum(sizes)])
+    flat = Beam(
+        width,
+        1e9 * settings.bending_GPa * section * thickness**2 / 12.0,
+        0.0 if cantilever else 1e6 * settings.residual_stress_MPa * (1.0 - settings.poisson_ratio) * section,
+        # edges of the beam are free, so that it stretches with E, however wide it is
+        0.0
+        if cantilever
+        else 1.0 / (length / (1e9 * settings.youngs_modulus_GPa * section) + 1e-6 * settings.anchor_um_per_N),
+        cantilever,
+        NM * np.stack([settings.shape_at_rest_nm(ends / length), settings.slope_at_rest_nm(ends / length) / length], 1),
+        np.zeros(weights.shape),
+        sizes,
+        within,
+        weights,
+        np.zeros(weights.shape),
+        np.zeros(weights.shape),
+        settings.dimple_nm,
+        settings.stopper_nm,
+    )
+    share = flat.at_m / length
+    masks = [((a <= share) & (share <= b)).astype(float) for a, b in (settings.electrode, settings.contact)]
+    stated = replace(
+        flat,
+        rest_m=settings.gap_um * 1e-6 + NM * settings.shape_at_rest_nm(share),
+        wired=masks[0],
+        lands=masks[1],
+    )
+    return _at_rest(stated, settings)
+
+
+def euler_MPa(settings: DeviceSettings) -> float:
+    """Compression under which a flat clamped beam buckles (positive), pi^2 E t^2 / (3 L^2)."""
+    slender = settings.thickness_um / settings.length_um
+    return float(1e3 * np.pi**2 * settings.bending_GPa * slender**2 / 3.0)
+
+
+def rests_as_stated(settings: DeviceSettings) -> bool:
+    """Whether neither heat nor buckling moves the beam away from its stated shape."""
+    axial = settings.residual_stress_MPa * (1.0 - settings.poisson_ratio)
+    return settings.ends == "cantilever" or (settings.heating_MPa == 0.0 and axial > -euler_MPa(settings))
+
+
+def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
+    """The beam where it comes to rest: heat moves it, and a compression beyond Euler's buckles it to its side.
+
+    The shape that is stated balances the stated stress; it need not be stable.
+
+    Raises
+    ------
+    InputError : it does not come to rest, or stands on the dielectric.
+    """
+    if rests_as_stated(settings):
+        return stated
+    newton_MPa = settings.width_um * settings.thickness_um * 1e-6
+    heat = settings.heating_MPa * newton_MPa
+    _, bending, pulled, _, _, stretching, rest, unknowns = stated.mechanics
+    freedoms = slice(2, 2 + unknowns)
+    bends, pulls = (assembled(parts)[freedoms, freedoms] for parts in (bending, pulled))
+    z0, share = rest.ravel()[freedoms], np.concatenate([[0.0], np.cumsum(stated.sizes_m)]) / stated.length_m
+    beyond = -(stated.tension_N + heat) - euler_MPa(settings) * newton_MPa
+    u = np.zeros(unknowns)
+    if beyond > 0.0:  # on the side of the height that a flat beam would have
+        height = 2.0 / np.pi * stated.length_m * np.sqrt(beyond / (stated.stretching_N_m * stated.length_m))
+        mode = np.stack(
+            [0.5 * (1.0 - np.cos(2.0 * np.pi * share)), np.pi / stated.length_m * np.sin(2 * np.pi * share)]
+        )
+        u = (1.0 if settings.buckled == "up" else -1.0) * height * mode.T.ravel()[freedoms] - z0
+    for _ in range(AT_REST):
+        gradient = pulls @ (z0 + u)
+        more = heat + stretching * (0.5 * u @ pulls @ u + z0 @ pulls @ u)
+        left = bends @ u + stated.tension_N * (pulls @ u) + more * gradient
+        stiffness = bends + (stated.tension_N + more) * pulls + stretching * np.outer(gradient, gradient)
+        change = -np.linalg.solve(stiffness, left)
+        u = u + change
+        if abs(change[::2]).max() < RESTS_NM * NM:
+            break
+    else:
+        raise InputError(
+            f"device.residual_stress_MPa = {settings.residual_stress_MPa:.4g}: the beam does not come to rest at "
+            f"{settings.temperature_C:.4g} C; state its bow_nm at rest, or a stress that does not buckle it"
+        )
+    moved = np.zeros((stated.elements + 1, 2))
+    moved.ravel()[freedoms] = u
+    rested = replace(
+        stated,
+        rest_nodal=rest + moved,
+        rest_m=stated.rest_m + stated.deflection_m(moved),
+        tension_N=stated.tension_N + more,
+    )
+    lowest = rested.rest_m / NM - np.where(rested.lands > 0, rested.dimple_nm, rested.stopper_nm)
+    if lowest.min() <= 0.0:
+        raise InputError(
+            f"device.residual_stress_MPa = {settings.residual_stress_MPa:.4g} at temperature_C = "
+            f"{settings.temperature_C:.4g}: the beam stands on the dielectric at rest; lower the compression, take "
+            "buckled: up, or raise gap_um"
+        )
+    return rested
+
+
+def assembled(parts: Array) -> Array:
+    """The matrix of all nodes from those of the elements, shape (2 nodes, 2 nodes)."""
+    whole = np.zeros((2 * len(parts) + 2, 2 * len(parts) + 2))
+    for place, part in enumerate(parts):
+        whole[2 * place : 2 * place + 4, 2 * place : 2 * place + 4] += part
+    return whole
 
 
 def _shapes(size: float, x: Array) -> Array:
@@ -143,8 +302,8 @@ def _shapes(size: float, x: Array) -> Array:
     return np.stack(shapes)
 
 
-def _stiffness(size: float, bending: float, tension: float) -> Array:
-    """Bending and tension of an element, shape (4, 4)."""
+def _stiffness(size: float) -> tuple[Array, Array]:
+    """An element against bending (EI = 1) and under a tension of 1, shape (4, 4) each."""
     h = size
     bend = np.array([[12, 6 * h], [6 * h, 4 * h**2]])
     pull = np.array([[36, 3 * h], [3 * h, 4 * h**2]])
@@ -154,4 +313,4 @@ def _stiffness(size: float, bending: float, tension: float) -> Array:
     turned = np.array([[1, -1], [-1, 1]])
     bend = np.block([[bend, across], [across.T, turned * bend]])
     pull = np.block([[pull, drawn], [drawn.T, turned * pull]])
-    return bending / h**3 * bend + tension / (30.0 * h) * pull
+    return bend / h**3, pull / (30.0 * h)

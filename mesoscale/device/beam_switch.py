@@ -1,8 +1,9 @@
 """A switch whose electrode bends: where it lands, how hard, and when it lets go.
 
 The beam of `mesoscale.device.beam` meets the pad place by place, and every place remembers its own deepest closing.
-The landed area is a result. The way down is followed by the separation of mid-span, past pull-in to contact. From there
-the beam creeps to the balance at the hold voltage, and then the voltage is lowered until no place is in contact.
+The landed area is a result. The way down is followed by the place that comes down farthest, past pull-in to contact.
+From just beyond pull-in the beam creeps to the balance at the hold voltage, as it snaps. Then the voltage is lowered
+until no place is in contact.
 """
 
 from collections.abc import Callable
@@ -12,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.device.beam import Beam, beam_of
-from mesoscale.device.beam_kernels import BEYOND, GPA, NM, SETTLED, UNSETTLED, add_voltage, creep
+from mesoscale.device.beam_kernels import BEYOND, GPA, NM, SETTLED, UNSETTLED, add_loads, creep, least_gap_nm
+from mesoscale.device.statistics import never_closes
 from mesoscale.device.switch import VACUUM_PERMITTIVITY
 from mesoscale.errors import InputError, NotComputed
-from mesoscale.pad.local import LocalPad
+from mesoscale.pad.local import HIGHEST_RISE_NM, LocalPad
 from mesoscale.pad.memory import PadLaw, attracting
 from mesoscale.settings import DeviceSettings
 
@@ -30,6 +32,8 @@ Close to sticking it is within 0.2 V of that of 512, where with 64 elements a sw
 attraction that sticks is known to 1 to 4 %."""
 NEWTON = 12
 """Steps to the balance of a free beam, each from that of the voltage before."""
+DOWN = 81
+"""Separations of the way down, from rest to touch."""
 FREE_SHARE = 0.5
 """Off the pad is a beam that is nowhere below this share of its separation at rest; it pulls in from two thirds."""
 
@@ -40,14 +44,16 @@ class BeamStates:
 
     Attributes
     ----------
+    rest_nm : separation at rest of the place that comes down farthest.
     pull_in_V, hold_V, release_V : voltages; release 0 where it sticks.
     stuck : whether it stays closed without voltage.
-    landed_share : share of the electrode in contact while held.
+    landed_share : share of the contact part in contact while held.
     landed_at_release : share in contact just before it lets go (at 0 V where it sticks).
     largest_MPa : largest contact pressure of any place while held.
     capacitance_fF : while held, of the bent beam as a plate over the pad, place by place.
     """
 
+    rest_nm: float
     pull_in_V: float
     hold_V: float
     release_V: float
@@ -71,20 +77,24 @@ def solve_beam(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) 
 
 def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw) -> BeamStates:
     """As `solve_beam`, of any beam."""
-    moving = _Moving(beam, LocalPad(law), settings.dielectric_nm / settings.permittivity)
-    pull_in = moving.pull_in_V()
+    moving = _Moving(beam, LocalPad(law), settings)
+    rest = moving.flat_nm + float(beam.rest_nodal[moving.leading(), 0]) / NM
+    pull_in = moving.snap_V()
     hold = settings.hold_voltage_V or pull_in
+    if line := never_closes(settings, pull_in):
+        raise InputError(line)
     closed = moving.creep(hold)
     share = moving.landed_share()
     if not closed or share == 0:
         raise InputError(
-            f"device.hold_voltage_V = {hold:.4g}: the beam does not land (pull-in is at {pull_in:.4g} V); raise it, or "
-            "lower gap_um, bow_nm or tilt_nm"
+            f"device: at {hold:.4g} V the beam does not land on the pad (pull-in is at {pull_in:.4g} V); lower gap_um, "
+            "bow_nm, tilt_nm or stopper_nm, or raise dimple_nm or hold_voltage_V"
         )
-    pressure = moving.pad(moving.separation_nm(), moving.deepest)[0]
+    pressure = moving.pressure_GPa()
     capacitance = moving.capacitance_F()
     release, at_release = moving.open(hold)
     return BeamStates(
+        rest,
         pull_in,
         hold,
         release,
@@ -96,6 +106,16 @@ def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw) -> BeamStates:
     )
 
 
+def free_pull_in_V(settings: DeviceSettings, elements: int = 64) -> float:
+    """Pull-in of the beam over a bare dielectric.
+
+    Raises
+    ------
+    InputError : it touches before it pulls in, or at rest.
+    """
+    return _Moving(beam_of(settings, elements), None, settings).snap_V()
+
+
 def loop_fF(beam: Beam, settings: DeviceSettings, law: PadLaw, volts: Array) -> tuple[Array, Array]:
     """Capacitance (fF) while the voltage rises, and on its way back, at voltages from 0 to one that closes the beam.
 
@@ -104,8 +124,8 @@ def loop_fF(beam: Beam, settings: DeviceSettings, law: PadLaw, volts: Array) -> 
     NotComputed, InputError : see `solve_beam`.
     """
     pad = LocalPad(law)
-    moving, free = (_Moving(beam, pad, settings.dielectric_nm / settings.permittivity) for _ in range(2))
-    pull_in, up = moving.pull_in_V(), []
+    moving, free = (_Moving(beam, pad, settings) for _ in range(2))
+    pull_in, up = moving.snap_V(), []
     for voltage in volts:
         if voltage < pull_in:
             for _ in range(NEWTON):
@@ -130,12 +150,12 @@ def closed_beam(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS)
     ------
     InputError : see `solve_beam`; the function raises NotComputed, too.
     """
-    first = _Moving(beam_of(settings, elements), LocalPad(law), settings.dielectric_nm / settings.permittivity)
-    hold = max(first.pull_in_V(), settings.hold_voltage_V or 0.0)
+    first = _Moving(beam_of(settings, elements), LocalPad(law), settings)
+    hold = max(first.snap_V(), settings.hold_voltage_V or 0.0)
     bare = LocalPad(attracting(law, 0.0))
 
     def closed(voltage: float, times: float) -> bool:
-        moving = _Moving(first.beam, first.pad.attracting(times, bare), first.dielectric_nm)
+        moving = _Moving(first.beam, first.local.attracting(times, bare), settings)
         moving.nodal = first.nodal.copy()
         return moving.creep(hold) and moving.creep(voltage)
 
@@ -150,18 +170,24 @@ def press_GPa(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -
     NotComputed : the beam presses harder than the pad was computed for.
     InputError : the beam does not pull in.
     """
-    moving = _Moving(beam_of(settings, elements), LocalPad(law), settings.dielectric_nm / settings.permittivity)
-    moving.creep(max(moving.pull_in_V(), settings.hold_voltage_V or 0.0))
+    moving = _Moving(beam_of(settings, elements), LocalPad(law), settings)
+    moving.creep(max(moving.snap_V(), settings.hold_voltage_V or 0.0))
     return float(law.closing_GPa(moving.deepest.min()))
 
 
 class _Moving:
-    """A beam on a pad with what it remembers."""
+    """A beam on a pad with what it remembers; without a pad it moves freely until it touches."""
 
-    def __init__(self, beam: Beam, pad: LocalPad, dielectric_nm: float):
-        self.beam, self.pad, self.dielectric_nm = beam, pad, dielectric_nm
+    def __init__(self, beam: Beam, pad: LocalPad | None, settings: DeviceSettings):
+        self.beam, self.pad = beam, pad
+        self.dielectric_nm = settings.dielectric_nm / settings.permittivity
+        self.flat_nm = 1e3 * settings.gap_um
+        self.edge_per_nm = settings.fringe / (1e3 * settings.width_um)
         self.nodal = np.zeros((beam.elements + 1, 2))
         self.deepest = np.full(beam.rest_m.shape, np.inf)
+        self.touch_nm = self.contact_nm = 0.0
+        if pad is None:
+            return
         law = pad.law
         touching = law.closing[0] > CONTACT_GPa
         if not touching.any():
@@ -169,69 +195,97 @@ class _Moving:
                 f"device: the pad carries {law.closing[0].max() * 1e3:.3g} MPa at {law.separation_nm[0]:.4g} nm, where "
                 "its curves end; raise pad.cells, whose first ones say how far they are closed"
             )
+        self.touch_nm = float(law.separation_nm[law.closing[0] > 0].max())
         self.contact_nm = float(law.separation_nm[touching].max())
+
+    @property
+    def local(self) -> LocalPad:
+        """The pad, which is there."""
+        assert self.pad is not None
+        return self.pad
 
     def separation_nm(self) -> Array:
         """Local separations at the integration points."""
         return (self.beam.rest_m + self.beam.deflection_m(self.nodal)) / NM
 
+    def electric(self, squared_V2: float) -> tuple[float, float, float, float]:
+        """What `add_loads` takes of the voltage."""
+        return self.dielectric_nm, squared_V2, VACUUM_PERMITTIVITY, self.edge_per_nm
+
     def load(self, separation_m: Array, squared_V2: float) -> tuple[Array, Array]:
-        """Pressure (Pa) and slope (Pa/m) of pad and voltage together."""
+        """Pressure (Pa) and slope (Pa/m) of pad, stoppers and voltage together."""
         s = separation_m / NM
-        pressure, slope = self.pad(s, self.deepest)
-        add_voltage(s, pressure, slope, self.dielectric_nm, squared_V2, VACUUM_PERMITTIVITY)
+        pressure, slope = np.zeros_like(s), np.zeros_like(s)
+        if self.pad is not None:
+            pressure, slope = self.pad(s - self.beam.dimple_nm, self.deepest)
+        add_loads(s, pressure, slope, self.electric(squared_V2), self.beam.places)
         return pressure * GPA, slope * GPA / NM
 
     def pull_Pa(self) -> Array:
         """Electrostatic pull of 1 V."""
         s = self.separation_nm()
-        pressure, slope = np.zeros_like(s), np.zeros_like(s)
-        add_voltage(s, pressure, slope, self.dielectric_nm, 1.0, VACUUM_PERMITTIVITY)
+        pressure, slope, nowhere = np.zeros_like(s), np.zeros_like(s), np.ones_like(s)
+        add_loads(s, pressure, slope, self.electric(1.0), (self.beam.wired, nowhere, 0.0, 0.0))
         return pressure * GPA
 
+    def pressure_GPa(self) -> Array:
+        """Net pressure of the pad, 0 beside it."""
+        return self.beam.lands * self.local(self.separation_nm() - self.beam.dimple_nm, self.deepest)[0]
+
     def landed_share(self) -> float:
-        """Share of the electrode that is pushed."""
-        pushed = self.pad(self.separation_nm(), self.deepest)[0] > CONTACT_GPa
-        return float((pushed * self.beam.weights_m).sum() / self.beam.length_m)
+        """Share of the contact part that is pushed."""
+        pushed = self.pressure_GPa() > CONTACT_GPa
+        return float((pushed * self.beam.weights_m).sum() / self.beam.contact_m)
 
     def capacitance_F(self) -> float:
-        """Of the beam as a row of plates."""
-        gaps = (self.separation_nm() + self.dielectric_nm) * NM
-        return float(VACUUM_PERMITTIVITY * self.beam.width_m * (self.beam.weights_m / gaps).sum())
+        """Of the beam as a row of plates, with the field at the sides."""
+        gaps = np.maximum(self.separation_nm() + self.dielectric_nm, least_gap_nm(self.dielectric_nm)) * NM
+        width = self.beam.width_m
+        sides = self.edge_per_nm / NM * np.log(np.pi * width / gaps)
+        return float(VACUUM_PERMITTIVITY * width * (self.beam.wired * self.beam.weights_m * (1.0 / gaps + sides)).sum())
 
-    def pull_in_V(self) -> float:
-        """Largest voltage on the way down, by lowering mid-span; the beam is left just above contact.
+    def over_nm(self) -> Array:
+        """Local separations over what the beam touches first: the pad, or stoppers beside it."""
+        touched = np.where(self.beam.lands > 0, self.beam.dimple_nm + self.touch_nm, self.beam.stopper_nm)
+        return self.separation_nm() - touched
+
+    def leading(self) -> int:
+        """The node that a small voltage brings down farthest."""
+        _, per_V2 = self.beam.step(self.nodal, lambda s: self.load(s, 0.0), 0.0, self.pull_Pa())
+        return int(np.argmin(per_V2[:, 0]))
+
+    def snap_V(self) -> float:
+        """Pull-in, the largest voltage on the way down; the beam is left just beyond, from where it snaps.
 
         Raises
         ------
         InputError : the beam closes without snapping.
         """
-        middle = self.beam.elements // 2
-        rest = float(self.separation_nm()[middle].mean())
-        law = self.pad.law
-        touch = float(law.separation_nm[law.closing[0] > 0].max())
-        steps = np.linspace(rest, 0.25 * rest, 61)[1:]
-        near = np.geomspace(steps[-1], touch + 5.0, 40)[1:]
-        squared, kept = 0.0, []
-        for target in rest - np.concatenate([steps, near]):
+        at = self.leading()
+        way = float(self.over_nm()[max(at - 1, 0) : at + 1].mean())
+        squared, kept, states = 0.0, [0.0], [self.nodal]
+        for target in np.linspace(0.0, way, DOWN)[1:]:
             for _ in range(30):
-                unit = self.pull_Pa()
-                change, per_V2 = self.beam.step(self.nodal, lambda s, at=squared: self.load(s, at), 0.0, unit)
-                wanted = -target * NM - self.nodal[middle, 0]
-                more = (wanted - change[middle, 0]) / per_V2[middle, 0]
+                change, per_V2 = self.beam.step(
+                    self.nodal, lambda s, now=squared: self.load(s, now), 0.0, self.pull_Pa()
+                )
+                wanted = -target * NM - self.nodal[at, 0]
+                more = (wanted - change[at, 0]) / per_V2[at, 0]
                 self.nodal = self.nodal + change + more * per_V2
                 squared += more
                 if abs(more) < 1e-9 * abs(squared) and abs(wanted) < 1e-6 * NM:
                     break
             kept.append(squared)
-            if self.separation_nm().min() < touch:
+            states.append(self.nodal)
+            if self.over_nm().min() < 0.0:
                 break
-        top = int(np.argmax(kept[: steps.size]))
-        if not 0 < top < steps.size - 1 or top + 1 >= len(kept):
+        top = int(np.argmax(kept[:-1]))
+        if not 0 < top < len(kept) - 2:
             raise InputError(
-                "device: the beam touches the dielectric before it pulls in; lower bow_nm, tilt_nm or "
-                "residual_stress_MPa, or raise gap_um"
+                "device: the beam touches the dielectric before it pulls in; lower bow_nm, tilt_nm, dimple_nm, "
+                "stopper_nm or residual_stress_MPa, or raise gap_um"
             )
+        self.nodal = states[top + 1]
         # the top of a parabola through three equal steps
         a, b, c = kept[top - 1 : top + 2]
         return float(np.sqrt(b + (a - c) ** 2 / (8.0 * (2.0 * b - a - c))))
@@ -244,17 +298,21 @@ class _Moving:
         NotComputed : the balance is below the computed closing of the pad.
         InputError : no balance within the allowed number of steps.
         """
+        over_pad = self.beam.rest_m[self.beam.lands > 0] / NM - self.beam.dimple_nm
+        free = FREE_SHARE * float(over_pad.min())
         ended = creep(
             self.nodal,
             self.deepest,
             self.beam.rest_m,
             self.beam.mechanics,
-            self.pad.tables,
-            (self.dielectric_nm, voltage**2, VACUUM_PERMITTIVITY),
+            self.beam.places,
+            self.local.tables,
+            self.electric(voltage**2),
             self.contact_nm,
-            FREE_SHARE * float(self.beam.rest_m.min()) / NM,
+            min(self.contact_nm + HIGHEST_RISE_NM, free),
+            free,
         )
-        law = self.pad.law
+        law = self.local.law
         if ended == BEYOND:
             raise NotComputed(
                 f"device.hold_voltage_V = {voltage:.4g}: the beam presses the pad below "

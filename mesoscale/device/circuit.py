@@ -1,7 +1,7 @@
 """What a device engineer simulates: the switch in motion, its spread as draws, and its corners.
 
-Corners lie some standard deviations out (`FAR`), in the direction of inputs, D0 and bow that moves the release (sticky,
-loose) or the pull-in (fast, slow) most: the slope of a plane through the switches of many draws.
+Corners lie some standard deviations out (`FAR`), in the direction of inputs, D0 and properties that moves the release
+(sticky, loose) or the pull-in (fast, slow) most: the slope of a plane through the switches of many draws.
 """
 
 from contextlib import suppress
@@ -17,11 +17,13 @@ from mesoscale.device.beam_switch import ELEMENTS, BeamStates, loop_fF, solve_be
 from mesoscale.device.electrode import with_pad
 from mesoscale.device.lumps import COUNTS, Study, lumps_of, move, study_lumps
 from mesoscale.device.release import SOLVED, Model, Point, pad_at, point_of, values_at
+from mesoscale.device.spread import varied
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
+from mesoscale.settings.device import SPREAD
 
 Array = NDArray[np.float64]
 
@@ -49,8 +51,8 @@ class Version:
 
     Attributes
     ----------
-    row : its name, inputs, D0 and bow, pull-in and release, for device/circuit.csv.
-    settings, law : its geometry, without tilt, and its pad.
+    row : its name, inputs, D0 and properties, pull-in and release, for device/circuit.csv.
+    settings, law : its properties, without tilt, and its pad.
     """
 
     row: dict[str, Any]
@@ -65,7 +67,7 @@ def study_on_pad(settings: DeviceSettings, law: PadLaw) -> tuple[Study, PadLaw]:
     ------
     InputError : a plate on a spring, which has no corners; see `solve_beam`.
     """
-    if settings.spring_N_per_m is not None:
+    if not settings.bends:
         raise InputError("device.spring_N_per_m: circuits are made of bending electrodes; set it to null")
     return with_pad(lambda pad: study_lumps(settings, pad), law)
 
@@ -81,7 +83,7 @@ def versions(
     """
     from scipy.stats import qmc  # slow to import
 
-    count, given = len(table.rows) + 3, (table, settings, cutoffs_nm, model)
+    count, given = len(table.rows) + 1 + len(varied(settings)), (table, settings, cutoffs_nm, model)
     units = qmc.LatinHypercube(count, rng=0).random(POINTS)
     made = [_version(f"draw_{k + 1:02d}", row, *given, lumps) for k, row in enumerate(units)]
     solved = [k for k, version in enumerate(made) if version is not None]
@@ -123,7 +125,8 @@ def _version(
         states, law = with_pad(solve, pad_at(point, model))
     except InputError:
         return None
-    inputs = {**point.values, "gap_cutoff_nm": point.gap_cutoff_nm, "bow_nm": device.bow_nm}
+    properties = {name: getattr(device, name) for name in SPREAD if name != "tilt_nm"}
+    inputs = {**point.values, "gap_cutoff_nm": point.gap_cutoff_nm, **properties}
     row = {"switch": name, "deviations": far, **inputs, "pull_in_V": states.pull_in_V, "release_V": states.release_V}
     return Version(row, device, law)
 

@@ -31,7 +31,7 @@ def solve_electrode(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
     ------
     InputError : see `solve_beam` and `solve_on_pad`.
     """
-    if settings.spring_N_per_m is None:
+    if settings.bends:
         beam = solve_beam(settings, law)
         return {
             "pull_in_V": beam.pull_in_V,
@@ -87,7 +87,7 @@ def presser(settings: DeviceSettings) -> Callable[[NDArray[np.float64], NDArray[
     """
 
     def pressed_GPa(separation_nm: NDArray[np.float64], net_GPa: NDArray[np.float64]) -> float:
-        if settings.spring_N_per_m is not None:
+        if not settings.bends:
             return 0.0  # a plate presses with less than its voltage alone
         closing = np.stack([np.maximum(net_GPa, 0.0), np.minimum(net_GPa, 0.0)])
         law = PadLaw(separation_nm, closing, separation_nm[:1], closing[None], Flats(0.0, 0.0))

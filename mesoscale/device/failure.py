@@ -18,9 +18,9 @@ from mesoscale.device.beam_switch import ELEMENTS, closed_beam
 from mesoscale.device.electrode import DEEPENED_BY, RESAMPLES
 from mesoscale.device.pad_results import WORKS
 from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.pressing import held_V
+from mesoscale.device.pressing import held_V, pull_in_V
 from mesoscale.device.release import Model, Point, carried_share, pad_at, point_of, values_at
-from mesoscale.device.statistics import least_pull_in_V
+from mesoscale.device.spread import varied
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import InputTable
@@ -82,7 +82,7 @@ class Attracted:
         """
         while True:
             try:
-                if self.settings.spring_N_per_m is not None:
+                if not self.settings.bends:
                     law = attracting(self.laws[-1], times)
                     plate = solve_on_pad(switch_from_settings(self.settings), law, self.settings.hold_voltage_V)
                     return plate.stuck or plate.release_V < self.release_V
@@ -109,7 +109,7 @@ class Attracted:
 
 @dataclass(frozen=True)
 class Population:
-    """All switches that the scene allows, as standard normal numbers z: inputs, D0, bow and tilt.
+    """All switches that the scene allows, as standard normal numbers z: inputs, D0 and properties of the device.
 
     Attributes
     ----------
@@ -128,17 +128,17 @@ class Population:
     @property
     def dimension(self) -> int:
         """Number of standard normal numbers."""
-        return len(self.table.rows) + 3
+        return len(self.names)
 
     @property
     def names(self) -> list[str]:
         """What the numbers stand for."""
-        return [*self.table.names, "gap_cutoff_nm", "bow_nm", "tilt_nm"]
+        return [*self.table.names, "gap_cutoff_nm", *varied(self.settings)]
 
     @property
     def spring(self) -> str:
         """The setting of the device that is its spring."""
-        return "thickness_um" if self.settings.spring_N_per_m is None else "spring_N_per_m"
+        return "thickness_um" if self.settings.bends else "spring_N_per_m"
 
     @property
     def hold_V(self) -> float:
@@ -212,7 +212,8 @@ class Response:
 
 def voltages(population: Population) -> Array:
     """Hold voltages of the curve: from pull-in, or that of the scene, to `SPAN` times that of the scene."""
-    return np.linspace(min(population.hold_V, least_pull_in_V(population.settings)), SPAN * population.hold_V, VOLTAGES)
+    hold_V = population.hold_V
+    return np.linspace(min(hold_V, pull_in_V(population.settings)), SPAN * hold_V, VOLTAGES)
 
 
 def learn(population: Population, tell: Callable[[float, str], None], seed: int = 0) -> Response:
@@ -359,7 +360,7 @@ def with_pad_scatter(
     settings = population.settings
     held = settings.model_copy(update={"hold_voltage_V": population.hold_V})
     by_cells = reserve_deviation(cells, flats, held, population.release_V)
-    pad_cells = switch_from_settings(settings).area_m2 * 1e18 / cell_area_nm2
+    pad_cells = settings.pad_um2 * 1e6 / cell_area_nm2
     return replace(population, pad_deviation=by_cells * float(np.sqrt(cells.count / pad_cells))), by_cells
 
 

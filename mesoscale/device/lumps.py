@@ -3,14 +3,17 @@
 The lumps of a bending electrode are pairs of places, mirrored at mid-span, with the exact stiffness of the beam between
 them; a plate is one lump. For each lump, s its separation, A its area, b the width of the electrode,
 
-    rho t s'' = p_pad(s, deepest) - eps0 V^2 / 2 [1 / e^2 + fringe / (b e)] + P0 (n / s - 1) - K (s - rest) / A
+    rho t s'' = p_pad(s, deepest) - eps0 V^2 / 2 [1 / e^2 + fringe / (b e)] + P0 (n / s - 1)
+                - [K u + (S / 2) (z.D z - z0.D z0) D z] / A
     n'  = -(P - P0) P s^3 / (P0 mu b^2),    P = P0 n / s,    mu = viscosity / (1 + 9.638 Kn^1.159)
     Q   = V eps0 sum A [1 / e + fringe / b ln(pi b / e)],    e = s + t / eps_r
 
+with u = s - rest, z = z0 + u the height over the anchors, z0 that at rest, z.D z / 2 the elongation of the beam, and S
+its stretching stiffness, EA / L where anchors are rigid.
 The gas of a long strip: small slow motion feels the incompressible film, mu b^3 / s^3 per length, and fast motion the
 spring P0 A / s of trapped gas, the two limits of Blech, J. Lubr. Technol. 105 (1983) 615. Viscosity in narrow gaps is
 that of Veijola et al., Sens. Actuators A 48 (1995) 239, Kn the mean free path over s. A fringe of 2 / pi is that of a
-thin strip over a plane (Palmer, Trans. AIEE 56 (1937) 363); the other models of the switch have none.
+thin strip over a plane (Palmer, Trans. AIEE 56 (1937) 363).
 """
 
 from collections.abc import Callable
@@ -21,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from mesoscale.device.beam import Beam, lumped_beam
+from mesoscale.device.beam import Beam, assembled, lumped_beam
 from mesoscale.device.beam_kernels import NM, least_gap_nm
 from mesoscale.device.beam_switch import BeamStates, solve_beam, solve_bent
 from mesoscale.device.pad_export import FOLLOW_S, LEAK, START_NM
@@ -58,7 +61,10 @@ class Lumps:
     Attributes
     ----------
     rest_nm, area_m2 : separation at rest and area of the lumps, from the ends to mid-span, shape (n,).
-    stiffness_N_m : forces that hold the lumps at displacements, shape (n, n).
+    stiffness_N_m : forces that hold the lumps at small displacements, but for what they stretch, shape (n, n).
+    drawn_m : D, twice the elongation of the beam (m) by the squares of heights (m), in 1/m, shape (n, n).
+    height_nm : z0, height at rest over the anchors, shape (n,).
+    stretching_N_m : S; 0 of a plate.
     width_m, dielectric_nm : of the electrode; thickness of the dielectric over its permittivity.
     mass_kg_m2 : mass per area.
     gas_Pa : pressure of the gas around.
@@ -71,6 +77,9 @@ class Lumps:
     rest_nm: Array
     area_m2: Array
     stiffness_N_m: Array
+    drawn_m: Array
+    height_nm: Array
+    stretching_N_m: float
     width_m: float
     dielectric_nm: float
     mass_kg_m2: float
@@ -90,10 +99,25 @@ class Lumps:
         return self.stiffness_N_m * NM / self.area_m2[:, None]
 
     @cached_property
+    def sloped(self) -> Array:
+        """D in 1/nm times the stretching stiffness in Pa/nm of each lump, shape (n, n)."""
+        return self.stretching_N_m * NM**2 * self.drawn_m / self.area_m2[:, None]
+
+    def held_Pa(self, bent_nm: Array) -> tuple[Array, Array]:
+        """Pressure of the bent electrode on its lumps, shape (n,), and its derivatives (Pa/nm), shape (n, n)."""
+        z = self.height_nm + bent_nm
+        drawn = self.drawn_m @ z
+        longer_nm = 0.5 * NM * (z @ drawn - self.height_nm @ self.drawn_m @ self.height_nm)
+        pull = self.sloped @ z
+        slopes = self.spring_Pa_nm + longer_nm * self.sloped + np.outer(pull, NM * drawn)
+        return self.spring_Pa_nm @ bent_nm + longer_nm * pull, slopes
+
+    @cached_property
     def modes(self) -> tuple[Array, Array]:
         """Stiffness (Pa/nm) of the modes of vibration, (n,), and their shapes of mean square 1, (lumps, modes)."""
         root = np.sqrt(self.area_m2)
-        stiffness, vectors = np.linalg.eigh(self.stiffness_N_m * NM / np.outer(root, root))
+        at_rest = self.held_Pa(np.zeros(self.count))[1] * self.area_m2[:, None]
+        stiffness, vectors = np.linalg.eigh(0.5 * (at_rest + at_rest.T) / np.outer(root, root))
         return stiffness, vectors * np.sqrt(self.area_m2.sum()) / root[:, None]
 
     def electric(self, separation_nm: Array) -> tuple[Array, Array]:
@@ -118,14 +142,16 @@ class Lumps:
         deepest = np.minimum(START_NM - closed, s)
         pressure = pad(s[:, None], deepest[:, None])[0][:, 0] * GPA - voltage**2 * self.electric(s)[1]
         excess, flow = self.gas(s, amount)
-        pressure += excess - self.drag_Pa_us_nm * v - self.spring_Pa_nm @ (s - self.rest_nm + self.loss_us * v)
+        pressure += excess - self.drag_Pa_us_nm * v - self.held_Pa(s - self.rest_nm + self.loss_us * v)[0]
         follow = (np.maximum(START_NM - s - closed, 0.0) - LEAK * closed) / (1e6 * FOLLOW_S)
         return np.concatenate([v, 1e-3 * pressure / self.mass_kg_m2, follow, -flow])
 
     def slopes(self, state: Array, voltage: float, pad: LocalPad) -> Array:
         """Derivatives of the rates, shape (4 n, 4 n): by differences, as but for the spring all is local to a lump."""
         n, here = self.count, self.rates(state, voltage, pad)
-        slopes, spring = np.zeros((4, n, 4, n)), -1e-3 * self.spring_Pa_nm / self.mass_kg_m2
+        s, v = state.reshape(4, -1)[:2]
+        held = self.held_Pa(s - self.rest_nm + self.loss_us * v)[1]
+        slopes, spring = np.zeros((4, n, 4, n)), -1e-3 * held / self.mass_kg_m2
         for k, elastic in enumerate((1.0, self.loss_us, 0.0, 0.0)):
             step = STEP * np.eye(4)[k].repeat(n)
             change = ((self.rates(state + step, voltage, pad) - here) / STEP).reshape(4, n)
@@ -214,13 +240,17 @@ def lumps_of(settings: DeviceSettings, lumps: int = 0) -> Lumps:
         "dielectric_nm": switch.dielectric_nm,
         "mass_kg_m2": 1e3 * settings.density_g_cm3 * 1e-6 * settings.thickness_um,
         "gas_Pa": 1e3 * settings.gas_kPa,
+        "fringe": settings.fringe if settings.bends else 0.0,
     }
-    if settings.spring_N_per_m is not None:
-        one = np.array([switch.gap_nm]), np.array([switch.area_m2]), np.array([[switch.spring_N_per_m]])
-        return _with_loss(Lumps(*one, **common))
+    if not settings.bends:
+        one, nothing = np.array([[switch.spring_N_per_m]]), np.zeros((1, 1))
+        plate = np.array([switch.gap_nm]), np.array([switch.area_m2]), one, nothing, nothing[0], 0.0
+        return _with_loss(Lumps(*plate, **common))
     beam = lumped_beam(settings.model_copy(update={"tilt_nm": 0.0}), lumps)
     area = 2.0 * beam.width_m * beam.weights_m[:lumps, 0]
-    return _with_loss(Lumps(beam.rest_m[:lumps, 0] / NM, area, _paired_stiffness(beam), **common))
+    rest_nm, height_nm = beam.rest_m[:lumps, 0] / NM, beam.rest_nodal[1 : lumps + 1, 0] / NM
+    elastic = *_paired_stiffness(beam), height_nm, beam.stretching_N_m
+    return _with_loss(Lumps(rest_nm, area, *elastic, **common))
 
 
 def _with_loss(lumps: Lumps) -> Lumps:
@@ -229,18 +259,21 @@ def _with_loss(lumps: Lumps) -> Lumps:
     return replace(lumps, loss_us=1e6 / (QUALITY * float(slowest)))
 
 
-def _paired_stiffness(beam: Beam) -> Array:
-    """Stiffness of a lumped beam against equal displacements of its mirrored places, shape (n, n); slopes are free."""
-    whole = np.zeros((2 * beam.elements + 2, 2 * beam.elements + 2))
-    for place, element in enumerate(beam.mechanics[1]):
-        whole[2 * place : 2 * place + 4, 2 * place : 2 * place + 4] += element
-    free = whole[2:-2, 2:-2]
-    places, slopes = free[::2], free[1::2]
-    stiffness = places[:, ::2] - places[:, 1::2] @ np.linalg.solve(slopes[:, 1::2], slopes[:, ::2])
-    half = len(stiffness) // 2
-    paired = np.vstack([np.eye(half), np.eye(half)[::-1]])
-    folded = paired.T @ stiffness @ paired
-    return 0.5 * (folded + folded.T)
+def _paired_stiffness(beam: Beam) -> tuple[Array, Array]:
+    """Stiffness and D of a lumped beam against equal displacements of its mirrored places, shape (n, n) each.
+
+    Slopes follow the displacements as they do at rest, without what stretches the beam.
+    """
+    _, bends, pulled, *_ = beam.mechanics
+    drawn, free = assembled(pulled)[2:-2, 2:-2], assembled(bends)[2:-2, 2:-2]
+    free = free + beam.tension_N * drawn
+    follow = -np.linalg.solve(free[1::2, 1::2], free[1::2, ::2])
+    whole = np.empty((len(free), len(follow)))
+    whole[::2], whole[1::2] = np.eye(len(follow)), follow
+    half = len(follow) // 2
+    paired = whole @ np.vstack([np.eye(half), np.eye(half)[::-1]])
+    stiffness, folded = (paired.T @ of @ paired for of in (free, drawn))
+    return 0.5 * (stiffness + stiffness.T), 0.5 * (folded + folded.T)
 
 
 @dataclass(frozen=True)

@@ -40,13 +40,13 @@ def switch_on_pad(
     """
     switch = switch_from_settings(settings)
     content: dict[str, Any] = {
-        "electrode": "bending" if settings.spring_N_per_m is None else "flat",
+        "electrode": "bending" if settings.bends else "flat",
         "cells_computed": cells.count,
-        "cells_of_pad": switch.area_m2 * 1e18 / cell_area_nm2,
+        "cells_of_pad": settings.pad_um2 * 1e6 / cell_area_nm2,
         "unsettled_cells": int((~cells.settled).sum()),
         "spring_pressure_kPa": switch.spring_N_per_m * switch.gap_nm * NM / switch.area_m2 * 1e-3,
     }
-    law, bends = law_of(cells, flats), settings.spring_N_per_m is None
+    law, bends = law_of(cells, flats), settings.bends
     reasons, plate, beam = [], None, None
     if content["unsettled_cells"]:
         reasons.append(f"{content['unsettled_cells']} cells in which flow did not come to rest")
@@ -101,7 +101,7 @@ def _release_V(settings: DeviceSettings, law: PadLaw, times: float) -> float | N
     """Release at `times` the attraction; None where the held state was not computed."""
     scaled = attracting(law, times)
     try:
-        if settings.spring_N_per_m is None:
+        if settings.bends:
             return solve_beam(settings, scaled).release_V
         return solve_on_pad(switch_from_settings(settings), scaled, settings.hold_voltage_V).release_V
     except InputError:

@@ -7,16 +7,16 @@ from numpy.typing import NDArray
 
 from mesoscale.device.statistics import analytic_pull_in_V
 from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, switch_from_settings
+from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
-from mesoscale.settings.device import LARGEST_BOW_NM
+from mesoscale.settings.device import SPREAD, SpreadSettings
 
-CLAMPED = 1.25
-"""Square of a clamped beam's pull-in voltage over that of the plate of its mid-span stiffness (70.1 beside 56.9)."""
 EDGE = 2.5
 """Local over electrostatic pressure to which pads are computed at least. The edge of what has landed bears the beam,
 too, and presses with 1.6 to 2.3 of it on pads of Table 1."""
-DEVIATIONS = 1.0
-"""Bow (of its deviations) for which draws are computed; points that press harder use the closed form beyond."""
+FAR_OUT = 0.84
+"""Probability, one standard deviation out, of a device that presses harder; draws are computed for it."""
+EXACT = SpreadSettings(**dict.fromkeys(SPREAD))
 
 
 @dataclass(frozen=True)
@@ -38,28 +38,66 @@ class LargestPressure:
         return EDGE * VACUUM_PERMITTIVITY * self.voltage_V**2 / (2.0 * electric**2) / GPA
 
 
-def pressing(settings: DeviceSettings, deviations: float = 0.0) -> DeviceSettings:
-    """The switch that a pad is computed for, without what does not press.
+def pressing(settings: DeviceSettings, spread: bool = False) -> DeviceSettings:
+    """The switch that a pad is computed for, without what does not press; with its `spread` for `hardest`."""
+    kept = settings.spread.model_copy(update={"tilt_nm": None}) if spread else EXACT
+    return settings.model_copy(update={"tilt_nm": 0.0, "adhesion_scale": 1.0, "spread": kept})
 
-    Parameters
-    ----------
-    deviations : bow to allow for beyond the scene's, in its standard deviations.
+
+def hardest(settings: DeviceSettings) -> DeviceSettings:
+    """The switch held with the voltage that presses as a device one standard deviation out.
+
+    Each property departs alone to the side where the device presses harder; what they add, adds by squares. A property
+    with which the device does not pull in adds nothing.
     """
-    bow = max(settings.bow_nm, 0.0) + deviations * settings.bow_deviation_nm
-    rest = {"tilt_nm": 0.0, "bow_deviation_nm": 0.0, "tilt_deviation_nm": 0.0, "adhesion_scale": 1.0}
-    return settings.model_copy(update={"bow_nm": min(bow, LARGEST_BOW_NM), **rest})
+    from mesoscale.device.spread import properties_at, varied, with_properties  # reads distributions: not for rules
+
+    names, middle = varied(settings), np.full((1, len(varied(settings))), 0.5)
+    held, more = held_V(settings), 0.0
+    thin = switch_from_settings(settings).dielectric_nm
+    for place in range(len(names)):
+        ratios = [1.0]
+        for probability in (FAR_OUT, 1.0 - FAR_OUT):
+            units = middle.copy()
+            units[0, place] = probability
+            device = with_properties(settings, properties_at(settings, units)[0])
+            try:
+                ratios.append((held_V(device) * thin / (held * switch_from_settings(device).dielectric_nm)) ** 2)
+            except InputError:
+                continue
+        more += (max(ratios) - 1.0) ** 2
+    return settings.model_copy(update={"hold_voltage_V": held * float(np.sqrt(1.0 + np.sqrt(more))), "spread": EXACT})
 
 
 def pressure_to_compute(settings: DeviceSettings) -> LargestPressure:
-    """Least pressure to which the pad of a switch is computed."""
+    """Least pressure to which the pad of a switch is computed.
+
+    Raises
+    ------
+    InputError : see `held_V`.
+    """
     return LargestPressure(held_V(settings), switch_from_settings(settings).dielectric_nm)
 
 
 def held_V(settings: DeviceSettings) -> float:
-    """Voltage with which the switch is held closed: as set, or that of its pull-in without contact."""
-    switch = switch_from_settings(settings)
-    if settings.hold_voltage_V is not None:
-        return settings.hold_voltage_V
-    if settings.spring_N_per_m is not None:
-        return analytic_pull_in_V(switch)
-    return float(np.sqrt(CLAMPED * (1.0 + settings.bow_nm / switch.gap_nm) ** 3)) * analytic_pull_in_V(switch)
+    """Voltage with which the switch is held closed: as set, or that of its pull-in without contact.
+
+    Raises
+    ------
+    InputError : see `pull_in_V`.
+    """
+    return settings.hold_voltage_V or pull_in_V(settings)
+
+
+def pull_in_V(settings: DeviceSettings) -> float:
+    """Pull-in of the switch without contact.
+
+    Raises
+    ------
+    InputError : a beam that does not pull in, or that stands on the dielectric.
+    """
+    if not settings.bends:
+        return analytic_pull_in_V(switch_from_settings(settings))
+    from mesoscale.device.beam_switch import free_pull_in_V  # compiles: not for rules
+
+    return free_pull_in_V(settings)

@@ -1,9 +1,9 @@
-"""The answer: release voltage and probability of sticking, with what cells, inputs, D0 and geometry leave open.
+"""The answer: release voltage and probability of sticking, with what cells, inputs, D0 and the device leave open.
 
-The switch is solved at points that fill the joint distribution of the inputs, D0, bow and tilt, each on the pad that
-`mesoscale.pad.carried` gives there. A point that cannot be solved has its reason, and the probability's interval counts
-it both ways. The finite number of computed cells is a separate cause: it is no property of the switch, and resampling
-the cells of the central pad tells its part.
+The switch is solved at points that fill the joint distribution of the inputs, D0 and properties of the device, each on
+the pad that `mesoscale.pad.carried` gives there. A point that cannot be solved has its reason, and the probability's
+interval counts it both ways. The finite number of computed cells is a separate cause: it is no property of the switch,
+and resampling the cells of the central pad tells its part.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from mesoscale.device.electrode import solve_deepened
 from mesoscale.device.pressing import pressure_to_compute
+from mesoscale.device.spread import properties_at, varied, with_properties
 from mesoscale.device.statistics import describe, probability
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
@@ -39,6 +40,9 @@ BLOCK_POINTS = 24
 SOLVED_TO_RANK = 0.5
 """The same where causes are only compared with each other."""
 FAR_NM = 300.0
+REACH_RMS, REACH_GPa = 60.0, 1e-10
+"""Largest reach of a pad that is looked at, in RMS heights, and the push that ends it: 0.1 Pa, a ten-thousandth of what
+counts as landed."""
 FALLS = 1e4
 """A pad has lost contact far out: its repulsion is there below this part of its largest."""
 LEAST_SHARE = 1e-6
@@ -53,7 +57,7 @@ class Point:
     Attributes
     ----------
     values : inputs by name.
-    device : settings with its bow and tilt.
+    device : settings with its own properties.
     """
 
     values: dict[str, float]
@@ -67,41 +71,34 @@ def plan_points(
     """Names and causes of what varies, its probabilities at the points, shape (points, k), and the points."""
     from scipy.stats import qmc  # slow to import
 
-    inputs = len(table.rows)
-    units = qmc.LatinHypercube(inputs + 3, rng=0).random(count)
+    device = varied(settings)
+    names = [*table.names, "gap_cutoff_nm", *device]
+    causes = ["inputs"] * len(table.names) + ["gap_cutoff"]
+    causes += [f"device_{getattr(settings.spread, name).varies}" for name in device]
+    units = qmc.LatinHypercube(len(names), rng=0).random(count)
     values = values_at(units, table, settings, low_nm, high_nm)
     points = [point_of(row, table.names, settings) for row in values]
-    bends = settings.spring_N_per_m is None
-    columns = [
-        *((k, name, "inputs") for k, name in enumerate(table.names) if np.ptp(values[:, k]) > 0),
-        *([(inputs, "gap_cutoff_nm", "gap_cutoff")] if high_nm > low_nm else []),
-        *([(inputs + 1, "bow_nm", "geometry")] if bends and settings.bow_deviation_nm > 0 else []),
-        *([(inputs + 2, "tilt_nm", "geometry")] if bends and settings.tilt_deviation_nm > 0 else []),
-    ]
-    chosen = [k for k, _, _ in columns]
-    return [name for _, name, _ in columns], [cause for _, _, cause in columns], units[:, chosen], points
+    chosen = np.flatnonzero(np.ptp(values, axis=0) > 0)
+    return [names[k] for k in chosen], [causes[k] for k in chosen], units[:, chosen], points
 
 
 def values_at(units: Array, table: InputTable, settings: DeviceSettings, low_nm: float, high_nm: float) -> Array:
-    """Inputs, D0, bow and tilt (nm) at probabilities; both of shape (m, inputs + 3)."""
-    from scipy.special import ndtri
-
+    """Inputs, D0 (nm) and the `varied` properties of the device at probabilities; both of shape (m, k)."""
     inputs = len(table.rows)
     return np.column_stack(
         [
             table.transform(units[:, :inputs]),
             low_nm + (high_nm - low_nm) * units[:, inputs],
-            settings.bow_nm + settings.bow_deviation_nm * ndtri(units[:, inputs + 1]),
-            np.abs(settings.tilt_nm + settings.tilt_deviation_nm * ndtri(units[:, inputs + 2])),
+            properties_at(settings, units[:, inputs + 1 :]),
         ]
     )
 
 
 def point_of(row: Array, names: Sequence[str], settings: DeviceSettings) -> Point:
     """The switch of a row of `values_at`."""
-    *values, cutoff_nm, bow_nm, tilt_nm = row.tolist()
-    shape = {"bow_nm": bow_nm, "tilt_nm": tilt_nm}
-    return Point(dict(zip(names, values, strict=True)), cutoff_nm, settings.model_copy(update=shape))
+    inputs = len(names)
+    values = dict(zip(names, row[:inputs].tolist(), strict=True))
+    return Point(values, float(row[inputs]), with_properties(settings, row[inputs + 1 :]))
 
 
 def cutoff_range(gap_cutoff_nm: float, draws: Sequence[SampledPad]) -> tuple[float, float]:
@@ -118,7 +115,7 @@ def released_on_pad(
     cutoffs_nm: tuple[float, float],
     count: int,
 ) -> tuple[Array, Array]:
-    """Inputs (m, n) and release voltages (m,) of switches over inputs, D0 and geometry; 0 V where one sticks.
+    """Inputs (m, n) and release voltages (m,) of switches over inputs, D0 and devices; 0 V where one sticks.
 
     Parameters
     ----------
@@ -182,7 +179,7 @@ def answer(
     variance = float(noisy.var()) or 1.0
     shares = first * float(release.var()) / variance
     return {
-        "electrode": "bending" if settings.spring_N_per_m is None else "flat",
+        "electrode": "bending" if settings.bends else "flat",
         "release_V": describe(noisy),
         "stuck": _probability(int(stuck.sum()), stuck.size, len(refused)),
         "pull_in_V": describe(solved_values["pull_in_V"]),
@@ -193,7 +190,7 @@ def answer(
             for cause, share in (
                 *(
                     (cause, float(sum(s for s, c in zip(shares, causes, strict=True) if c == cause)))
-                    for cause in ("inputs", "gap_cutoff", "geometry")
+                    for cause in ("inputs", "gap_cutoff", "device_common", "device_each")
                 ),
                 ("cells", cells_V**2 / variance),
             )
@@ -336,10 +333,13 @@ def _form_at(point: Point, model: Model) -> tuple[CompactPad | CarriedPad, Array
     """The closed form at a point with the factors of the central curves, and separations for it (nm)."""
     response, factors = model
     compact = response.at(point.values, point.gap_cutoff_nm)
-    step = 0.01 * point.values["rms"]
-    near = np.arange(step, 8.0 * point.values["rms"], step)
-    s = np.concatenate([near, np.geomspace(near[-1], max(FAR_NM, 2.0 * near[-1]), 24)[1:]])
-    return CarriedPad(compact, factors) if factors else compact, s
+    form = CarriedPad(compact, factors) if factors else compact
+    rms = point.values["rms"]
+    # as far as the roughest place of the film touches: beyond the last separation a pad is two flats
+    tried = np.arange(1.0, REACH_RMS, 0.5) * rms
+    reach = tried[np.flatnonzero(form.closing_GPa(tried)[0] > REACH_GPa)[-1:]].max(initial=8.0 * rms)
+    near = np.arange(0.01 * rms, reach + rms, 0.01 * rms)
+    return form, np.concatenate([near, np.geomspace(near[-1], max(FAR_NM, 2.0 * near[-1]), 24)[1:]])
 
 
 def first_order(units: Array, values: Array) -> tuple[Array, float]:

@@ -4,10 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, Switch, SwitchStates, switch_from_settings
+from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, Switch, SwitchStates
 from mesoscale.law.compact import Law
 from mesoscale.settings import DeviceSettings
 
+PULL_IN = 1e-3
+"""Error of pull-in by the number of elements."""
 QUANTILES = (0.05, 0.16, 0.25, 0.5, 0.75, 0.84, 0.95)
 
 
@@ -76,20 +78,13 @@ def analytic_pull_in_V(switch: Switch) -> float:
     return float(np.sqrt(8 * switch.spring_N_per_m * gap**3 / (27 * VACUUM_PERMITTIVITY * switch.area_m2)))
 
 
-def least_pull_in_V(settings: DeviceSettings) -> float:
-    """Pull-in of the switch as a plate at the gap of its middle; that of the beam itself is 12 % above."""
-    switch = switch_from_settings(settings)
-    bow_nm = settings.bow_nm if settings.spring_N_per_m is None else 0.0
-    return analytic_pull_in_V(switch) * max(1.0 + bow_nm / switch.gap_nm, 0.0) ** 1.5
-
-
 def never_closes(settings: DeviceSettings, pull_in_V: float) -> str:
     """One line on a hold voltage below pull-in, which never closes the switch; empty where there is none.
 
     A switch that is closed by more and then held by less has the deepest closing, and so the release, of the former.
     """
     hold = settings.hold_voltage_V
-    if hold is None or hold >= pull_in_V:
+    if hold is None or hold >= (1.0 - PULL_IN) * pull_in_V:
         return ""
     return (
         f"device.hold_voltage_V = {hold:.4g}: never closes this switch, which pulls in at {pull_in_V:.4g} V; give the "

@@ -10,7 +10,7 @@ follows from others is a current into 1 Ohm: voltage sources would double the eq
 
 import numpy as np
 
-from mesoscale.device.beam_kernels import least_gap_nm
+from mesoscale.device.beam_kernels import NM, least_gap_nm
 from mesoscale.device.lumps import LEAST_GAS, LEAST_NM, VISCOSITY, FREE_PATH_nm_Pa, Lumps, Study
 from mesoscale.device.pad_export import (
     FOLLOW_S,
@@ -35,8 +35,17 @@ current into 1 Ohm."""
 def spice_switch(lumps: Lumps, study: Study, law: PadLaw, cells: int) -> str:
     """SPICE netlist (ngspice) of the subcircuits `rough_switch`, `rough_lump` and `rough_pad`."""
     numbers, body, springs = range(lumps.count), [], FORCE * lumps.spring_Pa_nm
+    drawn, heights = lumps.drawn_m * NM, lumps.height_nm
+    sloped = FORCE * lumps.stretching_N_m * NM / lumps.area_m2
     for k in numbers:
         held = "\n".join(f"G{k}_{j} speed{k} 0 bent{j} 0 {springs[k, j]:.12g}" for j in numbers)
+        if lumps.stretching_N_m:
+            held += "\n" + "\n".join(f"Gslope{k}_{j} 0 slope{k} bent{j} 0 {drawn[k, j]:.12g}" for j in numbers)
+            held += f"""
+Islope{k} 0 slope{k} {-(drawn[k] @ heights):.12g}
+Rslope{k} slope{k} 0 1
+Bstretch{k} speed{k} 0 I = {sloped[k]:.12g} * V(longer) * V(slope{k})
+Blonger{k} 0 longer I = 0.5 * (V(bent{k}) + {-heights[k]:.9g}) * V(slope{k})"""
         of = f"rest={lumps.rest_nm[k]:.9g} area={lumps.area_m2[k]:.9g}"
         body.append(f"""Xlump{k} top bottom moved{k} drawn{k} charge rough_lump {of}
 +   gas={{gas}} viscosity={{viscosity}} fringe={{fringe}} follow={{follow}}
@@ -49,6 +58,8 @@ Cspeed{k} speed{k} 0 {{{1e-3 * FORCE:g}*mass}}
 Gdrag{k} speed{k} 0 speed{k} 0 {{{FORCE:g}*drag}}
 Gdrawn{k} 0 speed{k} drawn{k} 0 {FORCE:g}
 {held}""")
+    # longer: by how much (nm) the beam is longer than at rest; slopes are those of its elongation
+    longer = ["Rlonger longer 0 1", f"Ilonger longer 0 {0.5 * heights @ drawn @ heights:.12g}"]
     width, dielectric = lumps.width_m, lumps.dielectric_nm
     electric = f"(1e-9*max({{rest+{dielectric:.9g}}} - V(moved), {least_gap_nm(dielectric):.9g}))"
     film, dense = f"max({{rest}} - V(moved), {LEAST_NM:g})", f"max(1 + V(excess), {LEAST_GAS:g})"
@@ -59,11 +70,11 @@ Gdrawn{k} 0 speed{k} drawn{k} 0 {FORCE:g}
 * mass per area in kg/m2, loss in us, viscosity in Pa s, gas in Pa.
 * drag: 0; a large one (3e4 Pa us/nm) lands the electrode softly, for loops so slow that nothing else matters.
 * follow: s, until the pad remembers; 1e-6 for such loops.
-* fringe: 0 as in Asperity's answer; 0.6366 for a thin strip over a plane.
+* fringe: of the field at the sides; 0.6366 for a thin strip over a plane.
 .subckt rough_switch top bottom middle params: fringe={lumps.fringe:.9g} gas={lumps.gas_Pa:.9g}
 +   viscosity={VISCOSITY:g} mass={lumps.mass_kg_m2:.9g} loss={lumps.loss_us:.9g} drag={lumps.drag_Pa_us_nm:.9g}
 +   follow={FOLLOW_S:g}
-{chr(10).join(body)}
+{chr(10).join([*body, *longer])}
 Emiddle middle 0 moved{numbers[-1]} 0 1
 Rcharge charge 0 1
 Ccharge charge sense 1f

@@ -10,7 +10,7 @@ import numpy as np
 from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import BY_NAME, RMS_SCATTER
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
-from mesoscale.settings import TABLE_1, InputRow, InputsSettings
+from mesoscale.settings import TABLE_1, DistributionRow, InputRow, InputsSettings
 from mesoscale.settings.contact import AttractionLaw
 from mesoscale.tables import foreign_table
 
@@ -41,7 +41,7 @@ def collect(
     rows, pairs = [], {(pair.first, pair.second): pair.rank for pair in settings.correlations}
     for name, row in settings.rows(law).items():
         if row.origin == "literature":
-            given, source, where = _literature(name, row), row.source or "scene", f"inputs.{name}"
+            given, source, where = stated_distribution(name, row), row.source or "scene", f"inputs.{name}"
         else:
             source = files[row.origin]
             entry = _from_stage(name, row.origin, stages[row.origin], source)
@@ -108,7 +108,7 @@ def check_literature(settings: InputsSettings) -> dict[str, tuple[float, float]]
     rows, spans = settings.priors().rows(), {}
     for name, row in rows.items():
         if row.origin == "literature":
-            spans[name] = _check_range(name, _literature(name, row), f"inputs.{name}")
+            spans[name] = _check_range(name, stated_distribution(name, row), f"inputs.{name}")
     correlation_matrix(list(rows), {(pair.first, pair.second): pair.rank for pair in settings.correlations})
     return spans
 
@@ -161,10 +161,16 @@ def input_table(topography: Mapping[str, Any] | None = None, **rows: InputRow) -
     return collect(settings, stages, {"topography": "measured roughness"})
 
 
-def _literature(name: str, row: InputRow) -> Distribution:
+def stated_distribution(name: str, row: DistributionRow, section: str = "inputs") -> Distribution:
+    """The distribution that a row of a section of the scene states.
+
+    Raises
+    ------
+    InputError : samples that cannot be read.
+    """
     if isinstance(row.values, tuple):
         return Distribution(row.distribution, **dict(zip(NUMBERS, row.values, strict=False)))
-    return Distribution("samples", values=_read_samples(name, row.values or ""))
+    return Distribution("samples", values=_read_samples(name, row.values or "", f"{section}.{name}"))
 
 
 def _distribution(entry: Mapping[str, Any], where: str) -> Distribution:
@@ -193,14 +199,14 @@ def _from_stage(name: str, origin: str, content: Mapping[str, Any], source: str)
     return entry
 
 
-def _read_samples(name: str, file: str) -> np.ndarray:
-    rows = foreign_table(file, f"inputs.{name}.values = {file}")[1]
+def _read_samples(name: str, file: str, key: str) -> np.ndarray:
+    rows = foreign_table(file, f"{key}.values = {file}")[1]
     try:
         values = np.array([float(row[name]) for row in rows])
     except (KeyError, TypeError, ValueError):
-        raise InputError(f"inputs.{name}.values = {file}: needs a column {name} with one number a row") from None
+        raise InputError(f"{key}.values = {file}: needs a column {name} with one number a row") from None
     if values.size < 2 or not np.isfinite(values).all():
-        raise InputError(f"inputs.{name}.values = {file}: {values.size} samples; at least 2, all finite, are needed")
+        raise InputError(f"{key}.values = {file}: {values.size} samples; at least 2, all finite, are needed")
     return np.sort(values)
 
 

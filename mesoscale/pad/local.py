@@ -18,6 +18,9 @@ HIGHEST_RISE_NM = 60.0
 """Beyond, closing and opening are the same attraction, but for coarse films."""
 COARSE_NM = 120.0
 """Shallowest depth of a coarse film. Those of scene `paper` are at most 90 nm: its tables stay as they are."""
+FADE_NM = 1.0
+"""Rise over which a difference between the end of closing and the start of opening fades, where push and pull nearly
+cancel."""
 SAME_GPa = 1e-9
 """Difference of closing and opening below which they are the same, the accuracy of a beam's balance."""
 
@@ -87,9 +90,11 @@ def pad_pressure(
                 place = min(max(np.searchsorted(at_nm, deep) - 1, 0), last - 1)
                 portion = (deep - at_nm[place]) / (at_nm[place + 1] - at_nm[place])
                 ended = closing[place] + portion * (closing[place + 1] - closing[place])
-                scale = ended / start if start > 0.0 and 0.5 * start < ended < 2.0 * start else 1.0
-                pressure[e, g] = scale * (low + part * (high - low))
-                slope[e, g] = scale * (high - low) / rise_step
+                alike = start > 0.0 and 0.5 * start < ended < 2.0 * start
+                scale, shift = (ended / start, 0.0) if alike else (1.0, ended - start)
+                fading = shift if risen < FADE_NM else 0.0
+                pressure[e, g] = scale * (low + part * (high - low)) + fading * (1.0 - risen / FADE_NM)
+                slope[e, g] = scale * (high - low) / rise_step - fading / FADE_NM
             elif s > at_nm[last]:
                 pressure[e, g] = -hamaker / (6.0 * np.pi * (s + offset_nm) ** 3)
                 slope[e, g] = -3.0 * pressure[e, g] / (s + offset_nm)

@@ -269,7 +269,10 @@ def law_of_compact(
     # on the separations, so that every opening starts where closing ended
     depth = s[np.unique(np.linspace(0, shallow, depths).round().astype(int))]
     opening = np.full((depth.size, 2, s.size), np.nan)
+    closing = np.stack(compact.closing_GPa(s))
     for k, deepest in enumerate(depth):
         above = s >= deepest - 1e-9
         opening[k][:, above] = compact.opening_GPa(s[above], deepest)
-    return PadLaw(s, np.stack(compact.closing_GPa(s)), depth, opening, compact.flats)
+        # what was flattened never pushes harder than it did on the way down, as a fitted rebound may
+        opening[k, 0, above] = np.minimum(opening[k, 0, above], closing[0, above])
+    return PadLaw(s, closing, depth, opening, compact.flats)

@@ -5,7 +5,7 @@ from mesoscale.settings.contact import ContactSettings, ReadingSettings
 from mesoscale.settings.device import DeviceSettings
 from mesoscale.settings.failure import FailureSettings
 from mesoscale.settings.history import HistorySettings
-from mesoscale.settings.inputs import TABLE_1, Correlation, InputRow, InputsSettings
+from mesoscale.settings.inputs import TABLE_1, Correlation, DistributionRow, InputRow, InputsSettings
 from mesoscale.settings.law import LawSettings
 from mesoscale.settings.measurements import MeasurementsSettings, MeasurementTable
 from mesoscale.settings.pad import AdhesionSettings, PadGridSettings, PadSettings
@@ -19,6 +19,7 @@ __all__ = [
     "ContactSettings",
     "Correlation",
     "DeviceSettings",
+    "DistributionRow",
     "FailureSettings",
     "HistorySettings",
     "InputRow",

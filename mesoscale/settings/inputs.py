@@ -1,7 +1,7 @@
 """Settings of the uncertain inputs."""
 
 import math
-from typing import Any, Literal, cast
+from typing import Any, Literal, Self, cast
 
 from pydantic import Field, create_model, field_validator, model_validator
 
@@ -17,14 +17,9 @@ FORMS = (
 )
 
 
-class InputRow(Settings):
-    """One uncertain input: where its distribution comes from and, for literature, what it is."""
+class DistributionRow(Settings):
+    """A distribution as a scene states it."""
 
-    origin: Literal["literature", "hardness", "elastic", "topography", "calibration"] = Field(
-        default="literature",
-        description="where the distribution comes from: this file; the result of that stage; or the calibration with "
-        "the scene's measurements, whose prior is stated here or, without values, by the stage that computes the input",
-    )
     distribution: Literal["uniform", "normal", "truncated_normal", "samples", "fixed"] = Field(
         default="uniform", description="form of the distribution that `values` state"
     )
@@ -45,16 +40,16 @@ class InputRow(Settings):
         return tuple(numbers)
 
     @model_validator(mode="after")
-    def _complete(self) -> "InputRow":
+    def _complete(self) -> Self:
+        self._check_values()
+        return self
+
+    def _check_values(self) -> None:
         values, kind = self.values, self.distribution
         if values is None:
-            if self.origin == "literature":
-                raise ValueError(f"origin literature needs values: {FORMS}")
-            return self
-        if self.origin not in ("literature", "calibration"):
-            raise ValueError(f"origin {self.origin} takes no values; that stage gives them")
+            raise ValueError(f"origin literature needs values: {FORMS}")
         if kind == "samples" and isinstance(values, str):
-            return self
+            return
         if kind == "samples" or isinstance(values, str) or len(values) != NUMBERS[kind]:
             raise ValueError(f"values = {values!r:.60} are none of distribution {kind}; accepted are {FORMS}")
         if kind == "uniform" and not values[0] <= values[1]:
@@ -63,13 +58,31 @@ class InputRow(Settings):
             raise ValueError(f"{kind} with deviation {values[1]:g}: it must be >= 0")
         if kind == "truncated_normal" and not values[2] < values[3]:
             raise ValueError(f"truncation {values[2]:g} .. {values[3]:g}: low must lie below high")
-        return self
 
     @property
     def reaches(self) -> float | None:
         """The largest number that it states as an end, or its mean; None of samples and of a stage's distribution."""
         place = {"uniform": 1, "truncated_normal": 3}.get(self.distribution, 0)
         return self.values[place] if isinstance(self.values, tuple) else None
+
+
+class InputRow(DistributionRow):
+    """One uncertain input: where its distribution comes from and, for literature, what it is."""
+
+    origin: Literal["literature", "hardness", "elastic", "topography", "calibration"] = Field(
+        default="literature",
+        description="where the distribution comes from: this file; the result of that stage; or the calibration with "
+        "the scene's measurements, whose prior is stated here or, without values, by the stage that computes the input",
+    )
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        if self.values is None and self.origin != "literature":
+            return self
+        if self.origin not in ("literature", "calibration"):
+            raise ValueError(f"origin {self.origin} takes no values; that stage gives them")
+        self._check_values()
+        return self
 
 
 class Correlation(Settings):

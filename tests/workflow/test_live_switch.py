@@ -73,18 +73,22 @@ def _law(curves, values, adhesion):
 
 def by_library(data, chosen):
     """What the library says of the switch at these values of the sliders."""
-    device = DeviceSettings(**data["device"])
+    device = DeviceSettings(**{key: data["device"][key] for key in DeviceSettings.model_fields if key != "spread"})
     width = chosen["area_um2"] / device.length_um
-    stiffness = beam_stiffness_N_per_m(device.model_copy(update={"width_um": width}))  # proportional to the modulus
+    # the slider multiplies all that is elastic, tension among it
+    stiffer = chosen["spring_N_per_m"] / beam_stiffness_N_per_m(device) * device.width_um / width
     settings = device.model_copy(
         update={
             "gap_um": chosen["gap_um"],
             "bow_nm": chosen["bow_nm"],
             "width_um": width,
-            "youngs_modulus_GPa": device.youngs_modulus_GPa * chosen["spring_N_per_m"] / stiffness,
+            "youngs_modulus_GPa": device.youngs_modulus_GPa * stiffer,
+            "residual_stress_MPa": device.residual_stress_MPa * stiffer,
         }
     )
-    plate, hold = switch_from_settings(settings), settings.hold_voltage_V
+    # a bow stiffens the beam, which the slider of the stiffness has already
+    plate = switch_from_settings(settings.model_copy(update={"bow_nm": device.bow_nm}))
+    hold = settings.hold_voltage_V
     law = _law(data["curves"], _numbers(data["curves"]["mean"]), chosen["adhesion"])
     return {
         "flat": _or_none(lambda: asdict(solve_on_pad(plate, law, hold))),

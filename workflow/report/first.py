@@ -83,7 +83,12 @@ def _device(results: Results) -> str:
         return ""
     device = DeviceSettings(**load_mapping(results.root / "scene.yaml", "record of a run")["scene"]["device"])
     rough = "".join(f"l4 {3 * (-1) ** k * (1 + k * 7 % 3) / 2:g}" for k in range(70))
-    if device.spring_N_per_m is None:
+    anchors = "M10 40h12v110H10zM378 40h12v110h-12z"
+    if device.ends == "cantilever" and device.bends:
+        anchors = "M10 40h12v110H10z"
+        metal = '<path class="metal" d="M20 40h30q110 0 190 44q50 20 100 20"/>'
+        size = f"cantilever of {device.length_um:g} × {device.width_um:g} µm"
+    elif device.bends:
         metal = '<path class="metal" d="M20 40h30q25 0 60 42q20 22 90 22t90-22q35-42 60-42h30"/>'
         size = f"beam of {device.length_um:g} × {device.width_um:g} µm, bending"
     else:
@@ -94,8 +99,8 @@ def _device(results: Results) -> str:
     hold = f"held at {device.hold_voltage_V:g} V" if device.hold_voltage_V else "held at its pull-in voltage"
     return (
         f'<svg class="device" viewBox="0 0 400 190" role="img" aria-label="The switch: {size}">'
-        '<path class="rest" d="M20 40H380"/><path class="anchor" d="M10 40h12v110H10zM378 40h12v110h-12z"/>'
-        f'{metal}<path class="rough" d="M60 116{rough}V138H60z"/>'
+        '<path class="rest" d="M20 40H380"/>'
+        f'<path class="anchor" d="{anchors}"/>{metal}<path class="rough" d="M60 116{rough}V138H60z"/>'
         '<rect class="anchor" x="60" y="138" width="280" height="12"/>'
         f'<text x="200" y="24" class="mid">{size}</text>'
         f'<text x="200" y="62" class="mid">gap {device.gap_um:g} µm</text>'

@@ -17,8 +17,15 @@ from workflow.report.page import Gate
 
 NAMES = {
     "gap_cutoff_nm": ("D₀", "the pull-off of the contact, which tells D₀"),
+    "thickness_um": ("thickness", "the thickness of the electrode"),
+    "gap_um": ("gap", "the gap at rest"),
+    "youngs_modulus_GPa": ("E of the beam", "Young's modulus of the electrode"),
+    "residual_stress_MPa": ("stress", "the residual stress of the electrode"),
+    "dielectric_nm": ("dielectric", "the thickness of the dielectric"),
+    "permittivity": ("permittivity", "the permittivity of the dielectric"),
     "bow_nm": ("bow", "the bow of the electrode at rest"),
     "tilt_nm": ("tilt", "the tilt of the electrode at rest"),
+    "temperature_C": ("temperature", "the temperature of the switch"),
 }
 CELLS = "number of cells"
 DECIDED = 0.95

@@ -1,4 +1,4 @@
-from mesoscale.device.pressing import DEVIATIONS, pressing
+from mesoscale.device.pressing import pressing
 from mesoscale.settings.pad import CELLS_PER_JOB, DRAWS_PER_JOB
 from mesoscale.uncertainty.chunks import chunk_bounds
 
@@ -90,7 +90,7 @@ rule close_draws:
     params:
         contact=settings("contact"),
         design=DRAW_DESIGN,
-        device=pressing(SCENE.device, DEVIATIONS).model_dump(mode="json"),
+        device=pressing(SCENE.device, spread=True).model_dump(mode="json"),
         bounds=lambda wildcards: DRAW_CHUNKS[wildcards.chunk],
     message:
         f"close and open pads at other inputs, chunk {{wildcards.chunk}} of {len(DRAW_CHUNKS)}"

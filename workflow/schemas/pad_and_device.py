@@ -1,5 +1,6 @@
 """Tables of pads and of the switch."""
 
+from mesoscale.settings.device import SPREAD, unit_of
 from workflow.schemas.inputs_and_law import BRANCH, INPUT_VALUES
 from workflow.schemas.table import Table, integer, number, text
 
@@ -145,7 +146,7 @@ TABLES = (
             number("deviations", "1", "standard deviations from the central inputs to a corner; 0 for a draw"),
             *INPUT_VALUES,
             number("gap_cutoff_nm", "nm", "D0 of its pad"),
-            number("bow_nm", "nm", "bow of its electrode"),
+            *(number(name, unit_of(name), f"device.{name} of its electrode") for name in SPREAD if name != "tilt_nm"),
             number("pull_in_V", "V", "pull-in voltage"),
             number("release_V", "V", "release voltage (0: stuck)"),
         ),

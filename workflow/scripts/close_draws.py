@@ -4,7 +4,7 @@ In: pad/inputs.csv.  Out: pad/draws/chunk_NNN.csv (MPa against nm).
 """
 
 from mesoscale.device.electrode import presser
-from mesoscale.device.pressing import pressure_to_compute
+from mesoscale.device.pressing import hardest, pressure_to_compute
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad.draws import close_draws, draw_rows, plan_draws
 from mesoscale.settings import DeviceSettings
@@ -16,7 +16,7 @@ with job(snakemake) as run:
     contact = contact_settings(snakemake.params.contact, snakemake)
     table, design = from_rows(load_csv(snakemake.input.inputs)), snakemake.params.design
     draws = plan_draws(table, contact, *design)[slice(*snakemake.params.bounds)]
-    device = settings_from_job(DeviceSettings, snakemake.params.device)
+    device = hardest(settings_from_job(DeviceSettings, snakemake.params.device))
     laws = close_draws(draws, contact, pressure_to_compute(device), presser(device), run.progress)
     write_csv(
         snakemake.output[0],

@@ -261,7 +261,7 @@ def description_doubts(
         )
         remedy = (
             "a larger contact.length_nm with as many more contact.pixels holds more of them; on a wide electrode they "
-            "lift and tilt whole cells: device.bow_deviation_nm can stand for those as long as the electrode"
+            "lift and tilt whole cells: device.spread.bow_nm can stand for those as long as the electrode"
         )
         doubts.append(Doubt("waves_beyond_cell", text, remedy, "rms"))
     for name, values in attributes.items():

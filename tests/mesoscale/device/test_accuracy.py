@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from mesoscale.device import accuracy
+from mesoscale.device.electrode import presser
 from mesoscale.device.pressing import pressure_to_compute
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
@@ -30,7 +31,7 @@ def rows():
     """The table, whose beams go to 256 elements here."""
     inputs = ContactInputs(**TABLE.medians())
     wanted = pressure_to_compute(DEVICE)
-    grid = plan_grid(inputs, CONTACT, GRID, wanted, step_nm=0.2)
+    grid = plan_grid(inputs, CONTACT, GRID, wanted, step_nm=0.2, pressed_GPa=presser(DEVICE))
     seeds = range(FIRST_SEED, FIRST_SEED + 16)
     cells = assemble(grid, list(close_cells(inputs, CONTACT, grid, seeds)), CONTACT.length_nm**2)
     with pytest.MonkeyPatch.context() as patch:

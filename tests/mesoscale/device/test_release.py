@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.special import ndtri
 from scipy.stats import qmc
 
 from mesoscale.device import pad_results
@@ -13,7 +14,7 @@ from mesoscale.device.beam_kernels import BANDS, solve_bands
 from mesoscale.device.beam_switch import BeamStates, press_GPa
 from mesoscale.device.electrode import presser, releases_by_cells, solve_deepened
 from mesoscale.device.pad_switch import PadStates
-from mesoscale.device.pressing import EDGE, pressing, pressure_to_compute
+from mesoscale.device.pressing import EDGE, EXACT, FAR_OUT, hardest, held_V, pressing, pressure_to_compute
 from mesoscale.device.release import (
     _probability,
     draws_error_V,
@@ -33,6 +34,7 @@ from mesoscale.pad.draws import Draw, draw_rows, laws_of_rows
 from mesoscale.pad.memory import Flats
 from mesoscale.pad.response import SampledPad, fit_response, law_of_compact
 from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.settings.device import SpreadRow, SpreadSettings
 
 RANGES = {"hamaker": (0.18, 0.25), "e_star": (80.0, 100.0), "rms": (6.0, 12.0)}
 TABLE = InputTable(
@@ -49,7 +51,7 @@ def true_pad(values, gap_cutoff_nm, lifted=0.0):
     rms = values["rms"]
     strength = values["hamaker"] * np.exp(-1.5 + 0.1 * z - 1.2 * np.log(gap_cutoff_nm / 0.165))
     return CompactPad(
-        -4.0 + 0.2 * z + 0.3 * size, 3.0 / rms, 0.05 / rms**2, (2.5 + 0.3 * z) / rms, 0.2 / rms**2, 0.05 / rms**2,
+        -4.0 + 0.2 * z + 0.3 * size, 3.0 / rms, 0.05 / rms**2, (3.5 + 0.3 * z) / rms, 0.2 / rms**2, 0.05 / rms**2,
         strength, 0.95, 0.5, lifted, values["hamaker"], gap_cutoff_nm,
     )  # fmt: skip
 
@@ -140,7 +142,7 @@ def test_geometry_counts_only_where_the_electrode_bends():
     names, _, _, points = plan_points(TABLE, DeviceSettings(), 0.165, 0.3)
     assert {"bow_nm", "tilt_nm"} < set(names)
     assert len({point.device.bow_nm for point in points}) == len(points)
-    assert "geometry" not in plan_points(TABLE, PLATE, 0.165, 0.3)[1]
+    assert not {"bow_nm", "thickness_um"} & set(plan_points(TABLE, PLATE, 0.165, 0.3)[0])
     assert "gap_cutoff" not in plan_points(TABLE, PLATE, 0.165, 0.165)[1]
 
 
@@ -149,9 +151,19 @@ def test_pads_are_computed_to_more_than_the_plate_can_press():
     plate, beam = pressure_to_compute(PLATE)(s), pressure_to_compute(DeviceSettings())(s)
     assert (beam > plate).all()
     assert plate[0] > plate[1]
-    assert (pressure_to_compute(pressing(DeviceSettings(), 1.0))(s) > beam).all()
-    tilted = DeviceSettings(tilt_nm=50.0, tilt_deviation_nm=1.0)
-    assert pressing(tilted, 1.0) == pressing(DeviceSettings(tilt_deviation_nm=2.0), 1.0)
+    assert (pressure_to_compute(hardest(pressing(DeviceSettings(), spread=True)))(s) > beam).all()
+    tilted = DeviceSettings(tilt_nm=50.0, spread=SpreadSettings(tilt_nm=None))
+    assert pressing(tilted, spread=True) == pressing(DeviceSettings(), spread=True)
+
+
+def test_the_hardest_device_is_one_deviation_out_in_all_that_presses():
+    """Of a plate the pressure goes with the cube of the gap; what adds up, adds by squares."""
+    wide = SpreadRow(distribution="normal", values=(0.0, 0.1), relative=True)
+    gap, thin = PLATE.gap_um * 1e3, PLATE.dielectric_nm / PLATE.permittivity
+    of_gap = ((gap * (1 + 0.1 * ndtri(FAR_OUT)) + thin) / (gap + thin)) ** 3 - 1
+    alone = PLATE.model_copy(update={"spread": EXACT.model_copy(update={"gap_um": wide})})
+    assert held_V(hardest(alone)) ** 2 / held_V(PLATE) ** 2 == pytest.approx(1 + of_gap, rel=1e-6)
+    assert hardest(PLATE.model_copy(update={"spread": EXACT})).hold_voltage_V == pytest.approx(held_V(PLATE))
 
 
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
@@ -175,7 +187,7 @@ def test_a_pad_that_was_closed_far_too_little_stays_refused():
         solve_deepened(DeviceSettings(), law_of_compact(smooth, np.full(s.size, 0.001), s))
 
 
-@pytest.mark.parametrize("change", [{}, {"bow_nm": 500.0}, {"residual_stress_MPa": 50.0}, {"hold_voltage_V": 110.0}])
+@pytest.mark.parametrize("change", [{}, {"bow_nm": 500.0}, {"residual_stress_MPa": 50.0}, {"hold_voltage_V": 120.0}])
 def test_pilots_know_what_the_beam_will_press_with(change):
     """From a closing curve that ends too early, within the 15 % by which pilot cells are off."""
     settings = DeviceSettings().model_copy(update=change)
@@ -197,7 +209,7 @@ def test_a_pad_closed_nearly_to_its_mean_plane_asks_for_nothing_deeper():
 @pytest.mark.parametrize(("settings", "stuck", "passed"), [(DeviceSettings(), 0, True), (DeviceSettings(), 12, False)])
 def test_the_gate_judges_the_electrode_that_the_answer_has(monkeypatch, settings, stuck, passed):
     """A flat plate that sticks on half of the resampled pads says nothing of an electrode that bends."""
-    state = BeamStates(60.0, 60.0, 7.0, False, 0.5, 0.02, 5.0, 100.0)
+    state = BeamStates(3490.0, 60.0, 60.0, 7.0, False, 0.5, 0.02, 5.0, 100.0)
     flat = [PadStates(60.0, 20.0, 5.0, float(k % 2), k % 2 == 0, 9.0) for k in range(pad_results.RESAMPLES)]
     monkeypatch.setattr(pad_results, "solve_beam", lambda *_: state)
     monkeypatch.setattr(pad_results, "solve_on_pad", lambda *_: flat[1])
@@ -212,7 +224,7 @@ def test_the_gate_judges_the_electrode_that_the_answer_has(monkeypatch, settings
 
 
 def test_a_plate_that_cannot_be_solved_says_nothing_of_an_electrode_that_bends(monkeypatch):
-    state = BeamStates(60.0, 60.0, 7.0, False, 0.5, 0.02, 5.0, 100.0)
+    state = BeamStates(3490.0, 60.0, 60.0, 7.0, False, 0.5, 0.02, 5.0, 100.0)
 
     def refused(*_):
         raise NotComputed("deepest closing 18.5 nm: the pad was computed for 11.8 .. 18.2 nm")
@@ -311,15 +323,21 @@ def test_the_answer_keeps_its_causes_apart(pads, alike):
     assert state["answer"]["central"]["gap_cutoff_nm"] == pytest.approx(middle)
 
 
-def test_banded_systems_are_solved_with_row_exchanges():
+def test_banded_systems_with_a_border_are_solved_with_row_exchanges():
+    """Even where the band without its border is singular."""
     rng = np.random.default_rng(0)
     n = 20
-    full = np.triu(np.tril(rng.normal(size=(n, n)), BANDS), -BANDS)
-    full[np.arange(n), np.arange(n)] *= 1e-3
-    bands, right = np.zeros((n, 3 * BANDS + 1)), rng.normal(size=(n, 2))
-    for i in range(n):
-        for j in range(max(i - BANDS, 0), min(i + BANDS + 1, n)):
-            bands[i, j - i + BANDS] = full[i, j]
-    wanted = np.linalg.solve(full, right)
-    solve_bands(bands, right)
-    np.testing.assert_allclose(right, wanted, rtol=1e-8)
+    for singular in (False, True):
+        full = np.triu(np.tril(rng.normal(size=(n + 1, n + 1)), BANDS), -BANDS)
+        full[np.arange(n), np.arange(n)] *= 1e-3
+        full[:, n], full[n] = rng.normal(size=n + 1), rng.normal(size=n + 1)
+        if singular:
+            full[n - 1, :n] = 0.0
+        bands, sides = np.zeros((n, 3 * BANDS + 1)), rng.normal(size=(n, 2))
+        for i in range(n):
+            for j in range(max(i - BANDS, 0), min(i + BANDS + 1, n)):
+                bands[i, j - i + BANDS] = full[i, j]
+        wanted = np.linalg.solve(full, np.vstack([sides, np.zeros(2)]))[:n]
+        bordered = np.column_stack([sides, full[:n, n]])
+        solve_bands(bands, full[n, :n].copy(), full[n, n], bordered)
+        np.testing.assert_allclose(bordered[:, :2], wanted, rtol=1e-7)

@@ -5,19 +5,19 @@ const GAUSS_WEIGHT = [0.34785484513745385, 0.6521451548625461, 0.652145154862546
 const BANDS = 3; // on either side of the diagonal
 const WIDTH = 3 * BANDS + 1; // with room for row exchanges
 const BEAM = {
-  elements: 128, contact_GPa: 1e-6, steps: 6000, largestStep_nm: 20, largestChange_nm: 1, shareOfWay: 0.25,
+  elements: 128, contact_GPa: 1e-6, steps: 60000, largestStep_nm: 100, largestChange_nm: 0.25, shareOfWay: 0.25,
   patience: 10, settled_nm: 1e-3, settled_Pa: 1, releaseTolerance: 1e-3, depths: 96, rises: 1200, highestRise_nm: 60,
-  freeShare: 0.5,
+  freeShare: 0.5, down: 81, fade_nm: 1,
 };
 
 class Beam {
-  constructor(device) { // lengths in the units of the device settings
-    const { length_um, width_um, thickness_um, youngs_modulus_GPa, residual_stress_MPa, poisson_ratio } = device;
-    const [width, thickness] = [width_um * 1e-6, thickness_um * 1e-6];
-    this.length = length_um * 1e-6;
+  constructor(device) { // lengths in the units of the device settings; the rest in N and m
+    const width = device.width_um * 1e-6;
+    this.length = device.length_um * 1e-6;
     this.width = width;
-    this.bending = (youngs_modulus_GPa * 1e9 * width * thickness ** 3) / 12;
-    this.tension = residual_stress_MPa * 1e6 * (1 - poisson_ratio) * width * thickness;
+    this.bending = device.bending_N_m2;
+    this.tension = device.tension_N;
+    this.stretching = device.stretching_N_m;
     this.size = this.length / BEAM.elements;
     this.weights = GAUSS_WEIGHT.map((weight) => 0.5 * this.size * weight);
     const h = this.size;
@@ -27,14 +27,10 @@ class Beam {
     });
     this.products = this.shapes.map((shape, p) =>
       shape.flatMap((one) => shape.map((other) => this.width * this.weights[p] * one * other)));
-    const [bend, pull] = [this.bending / h ** 3, this.tension / (30 * h)];
-    const row = (a, b) => a.map((value, i) => bend * value + pull * b[i]);
-    this.stiffness = [
-      row([12, 6 * h, -12, 6 * h], [36, 3 * h, -36, 3 * h]),
-      row([6 * h, 4 * h ** 2, -6 * h, 2 * h ** 2], [3 * h, 4 * h ** 2, -3 * h, -(h ** 2)]),
-      row([-12, -6 * h, 12, -6 * h], [-36, -3 * h, 36, -3 * h]),
-      row([6 * h, 2 * h ** 2, -6 * h, 4 * h ** 2], [3 * h, -(h ** 2), -3 * h, 4 * h ** 2]),
-    ];
+    this.bend = [[12, 6 * h, -12, 6 * h], [6 * h, 4 * h ** 2, -6 * h, 2 * h ** 2], [-12, -6 * h, 12, -6 * h],
+      [6 * h, 2 * h ** 2, -6 * h, 4 * h ** 2]].map((row) => row.map((value) => (this.bending / h ** 3) * value));
+    this.drawn = [[36, 3 * h, -36, 3 * h], [3 * h, 4 * h ** 2, -3 * h, -(h ** 2)], [-36, -3 * h, 36, -3 * h],
+      [3 * h, -(h ** 2), -3 * h, 4 * h ** 2]].map((row) => row.map((value) => value / (30 * h))); // by a tension of 1
     this.points = 4 * BEAM.elements;
     this.rest_nm = Float64Array.from({ length: this.points }, (_, i) => {
       const share = (Math.floor(i / 4) + 0.5 + 0.5 * GAUSS_AT[i % 4]) / BEAM.elements;
@@ -42,6 +38,23 @@ class Beam {
       return device.gap_um * 1e3 + bow + device.tilt_nm * (share - 0.5);
     });
     this.unknowns = 2 * (BEAM.elements + 1);
+    this.shape = Float64Array.from({ length: this.unknowns }, (_, i) => { // at rest: heights and slopes of the nodes
+      const angle = (2 * Math.PI * (i >> 1)) / BEAM.elements;
+      if (i % 2) return (1e-9 * (device.bow_nm * Math.PI * Math.sin(angle) + device.tilt_nm)) / this.length;
+      return 1e-9 * (device.bow_nm * 0.5 * (1 - Math.cos(angle)) + device.tilt_nm * ((i >> 1) / BEAM.elements - 0.5));
+    });
+  }
+
+  longer(nodal) { // than at rest
+    let sum = 0;
+    for (let e = 0; e < BEAM.elements; e++) {
+      for (let i = 0; i < 4; i++) {
+        for (let j = 0; j < 4; j++) {
+          sum += this.drawn[i][j] * nodal[2 * e + j] * (0.5 * nodal[2 * e + i] + this.shape[2 * e + i]);
+        }
+      }
+    }
+    return sum;
   }
 
   deflection(nodal) { // nm at the integration points from nodal values in m
@@ -57,17 +70,21 @@ class Beam {
   step(nodal, load, inertia, other) { // Newton's step towards balance, and the answer to a pressure `other` on top
     const { pressure, slope } = load(this.deflection(nodal).map((u, i) => this.rest_nm[i] + u));
     const band = new Float64Array(this.unknowns * WIDTH); // entry of column j in row i at i * WIDTH + j - i + BANDS
-    const right = [new Float64Array(this.unknowns), new Float64Array(this.unknowns)];
+    const right = [0, 1, 2].map(() => new Float64Array(this.unknowns));
+    const more = this.stretching * this.longer(nodal);
     for (let e = 0; e < BEAM.elements; e++) {
       const first = 2 * e;
       for (let i = 0; i < 4; i++) {
         let force = 0;
         let answer = 0;
+        let arms = 0;
         for (let j = 0; j < 4; j++) {
-          let entry = this.stiffness[i][j];
+          const [moved, resting] = [nodal[first + j], this.shape[first + j]];
+          let entry = this.bend[i][j] + (this.tension + more) * this.drawn[i][j];
           for (let p = 0; p < 4; p++) entry += (inertia - slope[4 * e + p]) * this.products[p][4 * i + j];
           band[(first + i) * WIDTH + j - i + BANDS] += entry;
-          force -= nodal[first + j] * this.stiffness[i][j];
+          force -= this.bend[i][j] * moved + this.drawn[i][j] * (this.tension * moved + more * (moved + resting));
+          arms += this.drawn[i][j] * (moved + resting);
         }
         for (let p = 0; p < 4; p++) {
           const arm = this.width * this.weights[p] * this.shapes[p][i];
@@ -76,10 +93,17 @@ class Beam {
         }
         right[0][first + i] += force;
         right[1][first + i] += answer;
+        right[2][first + i] += arms;
       }
     }
+    const [unbalanced, , stretched] = right.map((side) => side.slice());
     solveBanded(band, right, 2, this.unknowns - 2);
-    return right;
+    const product = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
+    const [change, answer] = right.slice(0, 2).map((side) => { // stretching adds a product of one vector with itself
+      const share = (this.stretching * product(stretched, side)) / (1 + this.stretching * product(stretched, right[2]));
+      return side.map((value, i) => value - share * right[2][i]);
+    });
+    return [change, answer, product(unbalanced, change)];
   }
 }
 
@@ -99,8 +123,7 @@ function solveBanded(band, right, from, to) { // Gauss with row exchanges, in pl
       const factor = band[at(k, i)] / band[at(i, i)];
       if (factor === 0) continue;
       for (let j = i; j <= reach; j++) band[at(k, j)] -= factor * band[at(i, j)];
-      right[0][k] -= factor * right[0][i];
-      right[1][k] -= factor * right[1][i];
+      for (const side of right) side[k] -= factor * side[i];
     }
   }
   for (let i = to - 1; i >= from; i--) {
@@ -137,8 +160,11 @@ class LocalPad { // the pad at many places, each with a deepest closing of its o
       const k = Math.min(Math.max(placeOf(separation, deepest) - 1, 0), separation.length - 2);
       const ended = net[k] + ((deepest - separation[k]) / (separation[k + 1] - separation[k])) * (net[k + 1] - net[k]);
       // opening starts where closing ended, to the last digit
-      const scale = start > 0 && 0.5 * start < ended && ended < 2 * start ? ended / start : 1;
-      return [scale * (low + (rise - j) * (high - low)), (scale * (high - low)) / step];
+      const alike = start > 0 && 0.5 * start < ended && ended < 2 * start;
+      const scale = alike ? ended / start : 1;
+      const fading = alike || risen >= BEAM.fade_nm ? 0 : ended - start;
+      return [scale * (low + (rise - j) * (high - low)) + fading * (1 - risen / BEAM.fade_nm),
+        (scale * (high - low)) / step - fading / BEAM.fade_nm];
     }
     const { separation, net, far } = this.law;
     if (s > far) {
@@ -157,6 +183,7 @@ class MovingBeam {
     this.pad = new LocalPad(law);
     this.law = law;
     this.dielectric = device.dielectric_nm / device.permittivity;
+    this.edge = device.fringe / (1e3 * device.width_um);
     this.nodal = new Float64Array(this.beam.unknowns);
     this.deepest = new Float64Array(this.beam.points).fill(Infinity);
     this.voltage = 0;
@@ -169,7 +196,11 @@ class MovingBeam {
 
   electric(s) { return Math.max(s + this.dielectric, 0.1 * this.dielectric + 0.1); }
 
-  pull(s, squared) { return (VACUUM_PERMITTIVITY * squared) / (2 * (this.electric(s) * 1e-9) ** 2) / 1e9; }
+  pull(s, squared) { // in GPa, and its fall per nm
+    const gap = this.electric(s);
+    const pull = (VACUUM_PERMITTIVITY * squared) / (2 * (gap * 1e-9) ** 2) / 1e9;
+    return [pull * (1 + this.edge * gap), pull * (2 / gap + this.edge)];
+  }
 
   load(squared) {
     return (separation) => {
@@ -177,9 +208,9 @@ class MovingBeam {
       const slope = new Float64Array(separation.length);
       separation.forEach((s, i) => {
         const [pushed, steep] = this.pad.at(s, this.deepest[i]);
-        const pull = this.pull(s, squared);
+        const [pull, falls] = this.pull(s, squared);
         pressure[i] = (pushed - pull) * 1e9;
-        slope[i] = ((steep + (2 * pull) / this.electric(s)) * 1e9) / 1e-9;
+        slope[i] = ((steep + falls) * 1e9) / 1e-9;
       });
       return { pressure, slope };
     };
@@ -192,40 +223,42 @@ class MovingBeam {
     return landed / length;
   }
 
-  pullIn() { // lowers mid-span; the beam is left just above contact
-    const middle = BEAM.elements >> 1;
-    const rest = this.separation().slice(4 * middle, 4 * middle + 4).reduce((sum, s) => sum + s / 4, 0);
-    const steps = evenly(rest, 0.25 * rest, 61).slice(1);
-    const near = evenly(Math.log10(steps[59]), Math.log10(this.touch + 5), 40).slice(1).map((power) => 10 ** power);
-    const kept = [];
+  pullIn() { // lowers the node that comes down farthest; the beam is left just beyond, from where it snaps
+    const unit = () => this.separation().map((s) => -this.pull(s, 1)[0] * 1e9);
+    const [, first] = this.beam.step(this.nodal, this.load(0), 0, unit());
+    let node = 0;
+    for (let i = 0; i < first.length; i += 2) if (first[i] < first[node]) node = i;
+    const around = this.separation().slice(2 * node - 4, 2 * node);
+    const way = around.reduce((sum, s) => sum + s / 4, 0) - this.touch;
     let squared = 0;
-    for (const target of [...steps, ...near]) {
+    const [kept, states] = [[0], [this.nodal]];
+    for (const target of evenly(0, way, BEAM.down).slice(1)) {
       for (let k = 0; k < 30; k++) {
-        const unit = this.separation().map((s) => -this.pull(s, 1) * 1e9);
-        const [change, perV2] = this.beam.step(this.nodal, this.load(squared), 0, unit);
-        const wanted = -(rest - target) * 1e-9 - this.nodal[2 * middle];
-        const more = (wanted - change[2 * middle]) / perV2[2 * middle];
+        const [change, perV2] = this.beam.step(this.nodal, this.load(squared), 0, unit());
+        const wanted = -target * 1e-9 - this.nodal[node];
+        const more = (wanted - change[node]) / perV2[node];
         this.nodal = this.nodal.map((value, i) => value + change[i] + more * perV2[i]);
         squared += more;
         if (Math.abs(more) < 1e-9 * Math.abs(squared) && Math.abs(wanted) < 1e-15) break;
       }
       kept.push(squared);
+      states.push(this.nodal);
       if (Math.min(...this.separation()) < this.touch) break;
     }
-    const top = largest(kept, 0, Math.min(kept.length, steps.length));
-    if (!(top > 0 && top < steps.length - 1) || top + 1 >= kept.length) {
-      throw new OutOfRange("the beam touches the dielectric before it pulls in");
-    }
+    const top = largest(kept, 0, kept.length - 1);
+    if (!(top > 0 && top < kept.length - 2)) throw new OutOfRange("the beam touches the dielectric before it pulls in");
+    this.nodal = states[top + 1];
     const [a, b, c] = kept.slice(top - 1, top + 2);
     return Math.sqrt(b + (a - c) ** 2 / (8 * (2 * b - a - c)));
   }
 
   creep() { // to the balance at its voltage, every place remembering how deep it came; whether it is then closed
     const free = BEAM.freeShare * Math.min(...this.beam.rest_nm);
-    let [inertia, least, turns] = [1e9, 0, 0];
+    const off = Math.min(this.contact + BEAM.highestRise_nm, free);
+    let [inertia, least, turns, lowest] = [1e9, 0, 0, Infinity];
     let last = new Float64Array(this.beam.unknowns);
     for (let k = 0; k < BEAM.steps; k++) {
-      const [change] = this.beam.step(this.nodal, this.load(this.voltage ** 2), inertia, null);
+      const [change, , work] = this.beam.step(this.nodal, this.load(this.voltage ** 2), inertia, null);
       const moved = this.beam.deflection(change);
       const before = this.separation();
       let [excess, most] = [0, 0];
@@ -234,7 +267,7 @@ class MovingBeam {
         excess = Math.max(excess, Math.abs(way) / allowed);
         most = Math.max(most, Math.abs(way));
       });
-      if (excess > 1) {
+      if (excess > 1 || work < 0) {
         inertia = Math.max(Math.min(Math.max(1.2 * excess, 1.5), 10) * inertia, 1e6);
         if (inertia < 1e25) continue;
       }
@@ -242,14 +275,16 @@ class MovingBeam {
       const now = this.separation();
       this.deepest = this.deepest.map((deep, i) => Math.min(deep, now[i]));
       if (Math.min(...this.deepest) < this.law.near) throw new OutOfRange("the beam presses the pad harder than its curves reach");
-      if (Math.min(...now) > free) return false;
+      const lower = lowest;
+      lowest = Math.min(...now);
+      if (lowest > free && lowest > lower) return false;
       let turned = 0;
       for (let i = 0; i < change.length; i += 2) turned += change[i] * last[i];
       last = change;
       if (turned < 0) turns += 1;
       least = turned < 0 ? Math.max(10 * least, 1e9) : least * (1 - 0.3 * BEAM.patience / (BEAM.patience + turns));
       if (excess < 0.5 || turned < 0) inertia = Math.max(0.3 * inertia, least);
-      if (most < BEAM.settled_nm && most * 1e-9 * inertia < BEAM.settled_Pa) return true;
+      if (most < BEAM.settled_nm && most * 1e-9 * inertia < BEAM.settled_Pa) return lowest < off;
     }
     throw new OutOfRange("the beam finds no balance");
   }
@@ -270,10 +305,10 @@ class MovingBeam {
 }
 
 function solveBeam(device, law) {
-  if (!(device.youngs_modulus_GPa > 0)) throw new OutOfRange("the residual stress alone makes the beam stiffer");
   const moving = new MovingBeam(device, law);
   const pull_in_V = moving.pullIn();
   moving.voltage = device.hold_voltage_V ?? pull_in_V;
+  if (moving.voltage < 0.999 * pull_in_V) throw new OutOfRange("the hold voltage never closes the beam");
   const closed = moving.creep();
   const landed_share = moving.landedShare();
   if (!closed || landed_share === 0) throw new OutOfRange("the hold voltage does not land the beam");
@@ -284,10 +319,6 @@ function solveBeam(device, law) {
 function switchOf(device, { gap_um, spring_N_per_m, area_um2, bow_nm }) { // the plate and the beam that the sliders describe
   const dielectric_nm = device.dielectric_nm / device.permittivity;
   const plate = new PlateSwitch({ spring_N_per_m, gap_nm: gap_um * 1e3, area_m2: area_um2 * 1e-12, dielectric_nm });
-  const { length_um, thickness_um, residual_stress_MPa, poisson_ratio } = device;
-  const width_um = area_um2 / length_um;
-  const slender = thickness_um / length_um;
-  const tension = 8 * residual_stress_MPa * 1e6 * (1 - poisson_ratio) * width_um * 1e-6 * slender;
-  const youngs_modulus_GPa = (spring_N_per_m - tension) / (32 * width_um * 1e-6 * slender ** 3) / 1e9;
-  return { plate, beam: { ...device, gap_um, width_um, youngs_modulus_GPa, bow_nm } };
+  const elastic = Object.entries(device.elastic).map(([name, value]) => [name, (value * spring_N_per_m) / device.stiffness_N_per_m]);
+  return { plate, beam: { ...device, ...Object.fromEntries(elastic), gap_um, width_um: area_um2 / device.length_um, bow_nm } };
 }

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from asperity.foreign_yaml import load_mapping
+from mesoscale.device.beam import beam_of, no_lumps, rests_as_stated
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
@@ -26,12 +27,14 @@ def switch_data(results: Results) -> dict[str, Any] | None:
         return None
     scene = load_mapping(results.root / "scene.yaml", "record of a run")["scene"]
     device = DeviceSettings(**scene["device"])
-    switch = switch_from_settings(device)
-    bends = device.spring_N_per_m is None and device.electrode_um2 is None
+    bends = device.bends and device.electrode_um2 is None
     if results.json("device/pad_switch.json").get("beam" if bends else "mean") is None:
         return None
+    if bends and (no_lumps(device) or not rests_as_stated(device)):
+        return None  # a beam that the page's own model does not follow
+    switch = switch_from_settings(device)
     return {
-        "device": device.model_dump(mode="json"),
+        "device": device.model_dump(mode="json", exclude={"spread"}) | _elastic(device, switch.spring_N_per_m),
         "bends": bends,
         "curves": _curves(results, ContactSettings(**scene["contact"])),
         "sliders": [
@@ -42,6 +45,15 @@ def switch_data(results: Results) -> dict[str, Any] | None:
             {**_slider("adhesion", "adhesion, times the scene's", "", 1.0), "low": 0.0},
         ],
     }
+
+
+def _elastic(device: DeviceSettings, stiffness_N_per_m: float) -> dict[str, Any]:
+    """The beam's elastic numbers, which the slider of the stiffness multiplies."""
+    if not device.bends:
+        return {"elastic": {}, "stiffness_N_per_m": stiffness_N_per_m}
+    beam = beam_of(device, 1)
+    names = ("bending_N_m2", "tension_N", "stretching_N_m")
+    return {"elastic": {name: getattr(beam, name) for name in names}, "stiffness_N_per_m": stiffness_N_per_m}
 
 
 def _curves(results: Results, contact: ContactSettings) -> dict[str, Any]:

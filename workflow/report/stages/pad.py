@@ -11,7 +11,13 @@ from workflow.report.numbers import column, show
 from workflow.report.page import COMPUTED, Section, Table
 from workflow.report.verdict import symbol
 
-CAUSES = {"inputs": "inputs", "gap_cutoff": "D₀", "geometry": "bow and tilt", "cells": "the finite number of cells"}
+CAUSES = {
+    "inputs": "inputs",
+    "gap_cutoff": "D₀",
+    "device_common": "properties that all devices share",
+    "device_each": "properties that differ from device to device",
+    "cells": "the finite number of cells",
+}
 COUNTED = {
     "pad.cells": "cells of the pad",
     "pad.draws": "pads at other inputs",
@@ -52,8 +58,7 @@ def describe(results: Results) -> Section | None:
             f"asperity plan {results.scene} --budget 1h shows minutes against this error, and counts for them."
         )
     section.notes.append(
-        "Where the scene does not measure bow and tilt, their deviations (device.bow_deviation_nm, "
-        "device.tilt_deviation_nm) are assumptions."
+        "Where the scene does not state how its devices vary (device.spread), their spread is an assumption."
     )
     section.files += ["pad/curves.csv", "pad/curves.h5", "pad/adhesion.csv", "device/pad_switch.json"]
     return section

@@ -1,0 +1,73 @@
+"""By how much devices depart from their stated properties, as uncertain inputs."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.errors import InputError
+from mesoscale.inputs.distributions import InputTable, UncertainInput
+from mesoscale.inputs.table import stated_distribution
+from mesoscale.settings import DeviceSettings
+from mesoscale.settings.device import SPREAD, unit_of
+
+Array = NDArray[np.float64]
+
+OF_A_PLATE = ("gap_um", "dielectric_nm", "permittivity")
+"""What can vary of a plate on a spring."""
+
+
+def varied(settings: DeviceSettings) -> list[str]:
+    """The properties that are not exactly known."""
+    names = SPREAD if settings.bends else OF_A_PLATE
+    return [name for name in names if getattr(settings.spread, name) is not None]
+
+
+def departures(settings: DeviceSettings) -> InputTable:
+    """Departures from the stated properties, each in its unit or as a share.
+
+    Raises
+    ------
+    InputError : samples that cannot be read.
+    """
+    rows = []
+    for name in varied(settings):
+        row = getattr(settings.spread, name)
+        given = stated_distribution(name, row, "device.spread")
+        unit = "1" if row.relative else unit_of(name)
+        rows.append(UncertainInput(name, unit, given, row.varies, row.source))
+    return InputTable(tuple(rows), np.eye(len(rows)))
+
+
+def properties_at(settings: DeviceSettings, units: Array) -> Array:
+    """Values of the properties of `varied` at probabilities; both of shape (m, k)."""
+    table = departures(settings)
+    moved = table.transform(units) if table.rows else np.empty((len(units), 0))
+    stated = np.array([getattr(settings, name) for name in table.names])
+    relative = np.array([getattr(settings.spread, name).relative for name in table.names], bool)
+    return np.where(relative, stated * (1.0 + moved), stated + moved)
+
+
+def with_properties(settings: DeviceSettings, values: Array) -> DeviceSettings:
+    """The device with these values of the properties of `varied`, shape (k,)."""
+    return settings.model_copy(update=dict(zip(varied(settings), values.tolist(), strict=True)))
+
+
+def check_spread(settings: DeviceSettings) -> None:
+    """Check that the device stays one over the central share of each departure.
+
+    Raises
+    ------
+    InputError : a property leaves what is accepted for it; samples that cannot be read.
+    """
+    table = departures(settings)
+    for row in table.rows:
+        about = DeviceSettings.model_fields[row.name]
+        for moved in row.distribution.span():
+            stated = getattr(settings, row.name)
+            value = stated * (1.0 + moved) if getattr(settings.spread, row.name).relative else stated + moved
+            try:
+                DeviceSettings(**{row.name: value})
+            except InputError:
+                limits = ", ".join(str(limit) for limit in about.metadata)
+                raise InputError(
+                    f"device.spread.{row.name}: reaches {value:.4g}, accepted is {limits}; narrow or truncate it"
+                ) from None
