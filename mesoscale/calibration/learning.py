@@ -27,6 +27,8 @@ CONFLICT = 0.01
 """Probability below which measurements contradict what else is known."""
 OUTLIER = 0.01
 """The same for the least likely of all specimens."""
+FAR_DEVICES = 3.0
+"""Standard deviations between devices that a measured voltage may lie away from the model."""
 MARGIN = 0.5
 """A value farther outside than this share of the range that the model gives over the prior is refused."""
 
@@ -149,7 +151,9 @@ def check_range(
             whole = np.isfinite(laws).all(axis=1)
             closing, opening = switch.laws(laws[whole], cycles.x[whole, table.names.index("hamaker")])
             volts = switch.release_V(opening) if data.kind == "release" else switch.pull_in_V(closing)
-            _check_values(data, data.kind, np.maximum(volts, 0.0))
+            devices_V = FAR_DEVICES * float(np.hypot(*switch.scatter_V[data.kind]))
+            ends = np.array([np.nanmin(volts) - devices_V, np.nanmax(volts) + devices_V])
+            _check_values(data, data.kind, np.maximum(ends, 0.0))
 
 
 def _check_values(data: Measurements, column: str, model: Array) -> None:

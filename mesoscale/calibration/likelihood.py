@@ -155,15 +155,17 @@ class Posterior:
         direct = tuple(data.simulated(predicted.inputs, rng) for data in self.direct)
         switches = []
         for data in self.switches:
-            mean, sd = (values[0] for values in predicted.voltages["pull_in" if data.kind == "pull_in" else "release"])
+            kind = "pull_in" if data.kind == "pull_in" else "release"
+            mean, sd = (values[0] for values in predicted.voltages[kind])
+            shared = np.hypot(data.discrepancy * abs(mean), self._common_V(kind))
             if data.kind == "sticking":
-                margin = mean / np.hypot(sd, data.discrepancy * abs(mean))
+                margin = mean / np.hypot(sd, shared)
                 total = data.columns["switches"]
                 drawn = {"stuck": rng.binomial(total.astype(int), ndtr(-margin)).astype(float), "switches": total}
             else:
                 error = data.columns[f"{data.kind}_error"]
                 spread = np.hypot(error, sd) * rng.standard_normal(error.shape)
-                values = mean + data.discrepancy * abs(mean) * rng.standard_normal() + spread
+                values = mean + shared * rng.standard_normal() + spread
                 drawn = {data.kind: values, f"{data.kind}_error": error}
             switches.append(replace(data, columns=drawn))
         return replace(self, surfaces=surfaces, direct=direct, switches=tuple(switches))
@@ -171,9 +173,11 @@ class Posterior:
     def _switches(self, voltages: dict[str, tuple[Array, Array]]) -> Array:
         result = np.zeros(1)
         for data in self.switches:
-            mean, sd = voltages["pull_in" if data.kind == "pull_in" else "release"]
+            kind = "pull_in" if data.kind == "pull_in" else "release"
+            mean, sd = voltages[kind]
+            shared = np.hypot(data.discrepancy * np.abs(mean), self._common_V(kind))
             if data.kind == "sticking":
-                spread = np.hypot(sd, data.discrepancy * np.abs(mean))
+                spread = np.hypot(sd, shared)
                 stuck, total = data.columns["stuck"].sum(), data.columns["switches"].sum()
                 margin = mean / spread
                 ways = gammaln(total + 1) - gammaln(stuck + 1) - gammaln(total - stuck + 1)
@@ -181,9 +185,12 @@ class Posterior:
                 continue
             measured = data.columns[data.kind]
             variances = data.columns[f"{data.kind}_error"] ** 2 + sd[:, None] ** 2
-            common = (data.discrepancy * np.abs(mean))[:, None]
-            result = result + normal_with_common(measured - mean[:, None], variances, common)
+            result = result + normal_with_common(measured - mean[:, None], variances, shared[:, None])
         return result
+
+    def _common_V(self, kind: str) -> float:
+        """Standard deviation by what all devices share."""
+        return self.switch.scatter_V[kind][0] if self.switch else 0.0
 
     def switch_voltages(self, x: Array, hamaker: Array) -> dict[str, tuple[Array, Array]]:
         """Mean and deviation between switches of pull-in and release (with sign, V), shape (m,) each.
@@ -206,7 +213,8 @@ class Posterior:
         voltages = {}
         for name, volts in (("pull_in", self.switch.pull_in_V(laws[0])), ("release", self.switch.release_V(laws[1]))):
             draws = volts.reshape(DRAWS, -1)
-            voltages[name] = draws.mean(axis=0), np.maximum(draws.std(axis=0), SMALLEST_SCATTER_V)
+            scatter = np.hypot(draws.std(axis=0), self.switch.scatter_V[name][1])
+            voltages[name] = draws.mean(axis=0), np.maximum(scatter, SMALLEST_SCATTER_V)
         return voltages
 
 

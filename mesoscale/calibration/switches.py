@@ -5,7 +5,7 @@ the separation s. Release is its lowest point between the repulsive wall and the
 that a switch that sticks lies below zero by as much as its spring lacks.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,13 +14,19 @@ from numpy.typing import NDArray
 from mesoscale.calibration.observables import LAWS, Observable
 from mesoscale.calibration.responses import Prediction
 from mesoscale.device.contact_law import column, onset_nm, scale_adhesion
-from mesoscale.device.switch import Switch, switch_from_settings
+from mesoscale.device.spread import properties_at, varied, with_properties
+from mesoscale.device.statistics import analytic_pull_in_V
+from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, Switch, switch_from_settings
 from mesoscale.law.compact import Law
 from mesoscale.law.parameters import PARAMETERS
 from mesoscale.settings import DeviceSettings, LawSettings
 
 Array = NDArray[np.float64]
 
+ONE_DEVIATION = (0.158655, 0.841345)
+"""Probabilities of a normal number one standard deviation out."""
+TOUCH_NM = 20.0
+"""Separation at the last touch, of films of 4 to 6 nm RMS; a release depends on it through the electric gap alone."""
 INNER, OUTER = 120, 60
 """Separations in and beyond contact; release is then within 1e-3 of `drive_switch` (tests)."""
 
@@ -32,19 +38,21 @@ class SwitchModel:
     Attributes
     ----------
     switch, adhesion_scale, law, cells : cells that a landed switch averages.
+    scatter_V : of pull-in and release, by what all devices share and by what differs between them (V).
     """
 
     switch: Switch
     adhesion_scale: float
     law: LawSettings
     cells: float
+    scatter_V: Mapping[str, tuple[float, float]]
 
     @classmethod
     def of(cls, device: DeviceSettings, law: LawSettings, cell_area_nm2: float) -> "SwitchModel":
         """The switch that the settings describe."""
         switch = switch_from_settings(device, law.rho_a_nm)
         landed = switch.last_share * switch.area_m2 * 1e18
-        return cls(switch, device.adhesion_scale, law, max(landed / cell_area_nm2, 1.0))
+        return cls(switch, device.adhesion_scale, law, max(landed / cell_area_nm2, 1.0), device_scatter_V(device))
 
     def laws(self, values: Array, hamaker: Array) -> tuple[Law, Law]:
         """Laws of closing and opening from values (m, 8) of the observables LAWS."""
@@ -88,6 +96,28 @@ class SwitchModel:
         far = (onset + thin) * ratio ** np.linspace(0, 1, OUTER)[1:] - thin
         fold = np.clip(np.full_like(onset, (2 * self.switch.gap_nm - thin) / 3), onset, self.switch.gap_nm)
         return np.sort(np.concatenate([far, fold], axis=1), axis=1)
+
+
+def device_scatter_V(device: DeviceSettings) -> dict[str, tuple[float, float]]:
+    """Standard deviations of pull-in and release by departures of the device, common to all and of each (V).
+
+    Each property departs alone by one standard deviation to either side; the release is that without adhesion.
+    """
+    names, middle = varied(device), np.full((1, len(varied(device))), 0.5)
+    squares = {"pull_in": {"common": 0.0, "each": 0.0}, "release": {"common": 0.0, "each": 0.0}}
+    for place, name in enumerate(names):
+        sides = []
+        for probability in ONE_DEVIATION:
+            units = middle.copy()
+            units[0, place] = probability
+            switch = switch_from_settings(with_properties(device, properties_at(device, units)[0]))
+            electric = (TOUCH_NM + switch.dielectric_nm) * NM
+            spring = switch.spring_N_per_m * (switch.gap_nm - TOUCH_NM) * NM
+            release = np.sqrt(2.0 * spring * electric**2 / (VACUUM_PERMITTIVITY * switch.area_m2))
+            sides.append({"pull_in": analytic_pull_in_V(switch), "release": float(release)})
+        for kind, by in squares.items():
+            by[getattr(device.spread, name).varies] += (0.5 * (sides[1][kind] - sides[0][kind])) ** 2
+    return {kind: (float(np.sqrt(by["common"])), float(np.sqrt(by["each"]))) for kind, by in squares.items()}
 
 
 def signed_root(squares: Array) -> Array:

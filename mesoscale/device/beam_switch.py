@@ -17,7 +17,7 @@ from mesoscale.device.beam_kernels import BEYOND, GPA, NM, SETTLED, UNSETTLED, a
 from mesoscale.device.statistics import never_closes
 from mesoscale.device.switch import VACUUM_PERMITTIVITY
 from mesoscale.errors import InputError, NotComputed
-from mesoscale.pad.local import HIGHEST_RISE_NM, LocalPad
+from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import PadLaw, attracting
 from mesoscale.settings import DeviceSettings
 
@@ -87,8 +87,8 @@ def solve_bent(beam: Beam, settings: DeviceSettings, law: PadLaw) -> BeamStates:
     share = moving.landed_share()
     if not closed or share == 0:
         raise InputError(
-            f"device: at {hold:.4g} V the beam does not land on the pad (pull-in is at {pull_in:.4g} V); lower gap_um, "
-            "bow_nm, tilt_nm or stopper_nm, or raise dimple_nm or hold_voltage_V"
+            f"device: at {hold:.4g} V the beam does not land on the pad (pull-in is at {pull_in:.4g} V); raise "
+            "hold_voltage_V or dimple_nm, or lower stopper_nm, gap_um, bow_nm or tilt_nm"
         )
     pressure = moving.pressure_GPa()
     capacitance = moving.capacitance_F()
@@ -111,7 +111,7 @@ def free_pull_in_V(settings: DeviceSettings, elements: int = 64) -> float:
 
     Raises
     ------
-    InputError : it touches before it pulls in, or at rest.
+    InputError : it touches at rest.
     """
     return _Moving(beam_of(settings, elements), None, settings).snap_V()
 
@@ -257,10 +257,17 @@ class _Moving:
     def snap_V(self) -> float:
         """Pull-in, the largest voltage on the way down; the beam is left just beyond, from where it snaps.
 
+        A beam whose electrode stays far enough touches before it would snap. Its pull-in is the voltage at touch.
+
         Raises
         ------
-        InputError : the beam closes without snapping.
+        InputError : the beam rests in its pad.
         """
+        if self.over_nm().min() <= 0.0:
+            raise InputError(
+                "device: the beam rests within reach of its pad; lower tilt_nm, dimple_nm or stopper_nm, or raise "
+                "gap_um or bow_nm"
+            )
         at = self.leading()
         way = float(self.over_nm()[max(at - 1, 0) : at + 1].mean())
         squared, kept, states = 0.0, [0.0], [self.nodal]
@@ -279,12 +286,10 @@ class _Moving:
             states.append(self.nodal)
             if self.over_nm().min() < 0.0:
                 break
-        top = int(np.argmax(kept[:-1]))
-        if not 0 < top < len(kept) - 2:
-            raise InputError(
-                "device: the beam touches the dielectric before it pulls in; lower bow_nm, tilt_nm, dimple_nm, "
-                "stopper_nm or residual_stress_MPa, or raise gap_um"
-            )
+        top = int(np.argmax(kept))
+        if top == len(kept) - 1:
+            self.nodal = states[-2]
+            return float(np.sqrt(kept[-1]))
         self.nodal = states[top + 1]
         # the top of a parabola through three equal steps
         a, b, c = kept[top - 1 : top + 2]
@@ -309,7 +314,7 @@ class _Moving:
             self.local.tables,
             self.electric(voltage**2),
             self.contact_nm,
-            min(self.contact_nm + HIGHEST_RISE_NM, free),
+            min(self.touch_nm, free),
             free,
         )
         law = self.local.law

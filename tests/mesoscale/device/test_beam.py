@@ -2,14 +2,16 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
-from mesoscale.device.beam import beam_of
+from mesoscale.device.beam import beam_of, euler_MPa, rests_as_stated
 from mesoscale.device.beam_switch import free_pull_in_V, solve_beam
 from mesoscale.device.switch import VACUUM_PERMITTIVITY, beam_stiffness_N_per_m
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
+from tests.mesoscale.device import finite_differences
 
 DEFAULT = DeviceSettings(gap_um=2.3)
 DEPTHS = (16.0, 18.0, 20.0, 22.0, 24.0, 26.0, 28.0, 30.0, 32.0)
@@ -49,6 +51,171 @@ def test_a_tense_beam_bends_as_the_exact_solution():
     assert -middle == pytest.approx(exact, rel=1e-6)
 
 
+def exact_load(middle_m, beam, rest_N=0.0):
+    """Uniform load (N/m) that brings a clamped beam down by so much, and its axial force, after von Karman.
+
+    w = q L^4 / (16 u^3 EI tanh u) [cosh(u (1 - 2 x / L)) / cosh u - 1] + q L^2 x (L - x) / (8 u^2 EI)
+
+    with u^2 = N L^2 / 4 EI, and N by the length of that curve.
+    """
+    length, bending = beam.length_m, beam.bending_N_m2
+    x, weights = np.polynomial.legendre.leggauss(60)
+    x, weights = 0.25 * length * (x + 1.0), 0.5 * length * weights  # half of the beam counts twice
+
+    def shapes(axial):
+        u = np.sqrt(axial * length**2 / (4.0 * bending))
+        front, back = length**4 / (16.0 * u**3 * bending * np.tanh(u)), length**2 / (8.0 * u**2 * bending)
+        middle = front * (1.0 / np.cosh(u) - 1.0) + back * length**2 / 4.0
+        slope = -front * 2.0 * u / length * np.sinh(u * (1.0 - 2.0 * x / length)) / np.cosh(u)
+        return middle, slope + back * (length - 2.0 * x)
+
+    def missing(axial):
+        middle, slope = shapes(axial)
+        longer = 0.5 * (weights * (slope * middle_m / middle) ** 2).sum()
+        return rest_N + beam.stretching_N_m * longer - axial
+
+    axial = brentq(missing, max(rest_N, 1e-9), 10.0, xtol=1e-15, rtol=1e-14)
+    return middle_m / shapes(axial)[0], axial
+
+
+def loaded(beam, load_N_m):
+    """Balance under a uniform load: deflection of mid-span (m, down) and nodal values."""
+    nodal = np.zeros((beam.elements + 1, 2))
+    for _ in range(80):
+        change, _ = beam.step(nodal, lambda s: (np.full_like(s, -load_N_m / beam.width_m), np.zeros_like(s)))
+        nodal = nodal + change
+    return -nodal[beam.elements // 2, 0], nodal
+
+
+TABLE = (
+    (0.5, 0.168155, 0.209),
+    (1.0, 0.347703, 0.837),
+    (2.0, 0.786390, 3.349),
+    (3.49, 1.803540, 10.211),
+    (6.0, 5.250030, 30.382),
+)
+"""Deflection (um), load (N/m), stress by stretching (MPa) of the default beam, from another code."""
+
+
+@pytest.mark.parametrize(("down_um", "load", "stress_MPa"), TABLE)
+def test_a_beam_that_stretches_is_von_karmans(down_um, load, stress_MPa):
+    beam = beam_of(DeviceSettings(bends_as="beam"), 64)
+    assert exact_load(1e-6 * down_um, beam)[0] == pytest.approx(load, rel=1e-5)
+    middle, nodal = loaded(beam, load)
+    assert 1e6 * middle == pytest.approx(down_um, rel=1e-4)
+    assert 1e-6 * beam.axial_N(nodal) / (beam.width_m * 4e-6) == pytest.approx(stress_MPa, abs=6e-4)
+
+
+@pytest.mark.parametrize("stress_MPa", [20.0, 300.0])
+def test_a_tense_beam_that_stretches_is_von_karmans(stress_MPa):
+    beam = beam_of(DeviceSettings(residual_stress_MPa=stress_MPa), 128)
+    for down_m in (1e-6, 4e-6):
+        assert loaded(beam, exact_load(down_m, beam, beam.tension_N)[0])[0] == pytest.approx(down_m, rel=1e-4)
+
+
+@pytest.mark.parametrize("bow_nm", [-800.0, 300.0, 2000.0])
+def test_a_bowed_beam_stretches_as_finite_differences_say(bow_nm):
+    settings = DeviceSettings(bow_nm=bow_nm, residual_stress_MPa=8.0)
+    beam, twin = beam_of(settings, 64), finite_differences.Beam(settings, 799)
+    w = np.zeros_like(twin.gap)
+    for _ in range(80):
+        w = w + twin.step(w, np.full_like(w, -1.0), np.zeros_like(w))[0]
+    assert loaded(beam, 1.0)[0] == pytest.approx(-w[w.size // 2], rel=1e-3)
+
+
+def test_anchors_that_give_way_soften_the_stretching():
+    rigid, soft = (beam_of(DeviceSettings(anchor_um_per_N=give), 16) for give in (0.0, 20.0))
+    own = 510e-6 / (89.3e9 * 123e-6 * 4e-6)
+    assert rigid.stretching_N_m == pytest.approx(1.0 / own)
+    assert soft.stretching_N_m == pytest.approx(1.0 / (own + 20e-6))
+
+
+@pytest.mark.parametrize(("stress_MPa", "side"), [(-26.5, "up"), (-30.0, "down"), (-100.0, "up"), (-2000.0, "up")])
+def test_a_beam_buckles_to_the_known_height_and_force(stress_MPa, side):
+    """h = 2 L / pi sqrt((sigma - sigma_E) / E) at Euler's force, which is -18.1 MPa of the default beam."""
+    settings = DeviceSettings(bends_as="beam", residual_stress_MPa=stress_MPa, buckled=side, gap_um=60.0)
+    euler = np.pi**2 * 89.3e3 * (4.0 / 510.0) ** 2 / 3.0
+    assert euler_MPa(settings) == pytest.approx(euler, rel=1e-12)
+    beam = beam_of(settings, 64)
+    height = 2.0 * 510.0 / np.pi * np.sqrt((-0.7 * stress_MPa - euler) / 89.3e3)
+    assert 1e6 * beam.rest_nodal[32, 0] == pytest.approx(height if side == "up" else -height, rel=1e-4)
+    assert 1e-6 * beam.tension_N / (123e-6 * 4e-6) == pytest.approx(-euler, rel=1e-4)
+    assert not rests_as_stated(settings)
+    assert rests_as_stated(settings.model_copy(update={"residual_stress_MPa": -euler / 0.7 + 1e-6}))
+
+
+def test_a_bow_decides_nothing_of_the_side_that_is_stated():
+    """(-b +- sqrt(b^2 + 4 h^2)) / 2 of a bow b at rest, by the first mode."""
+    for bow, side in ((300.0, "down"), (-300.0, "up")):
+        settings = DeviceSettings(residual_stress_MPa=-60.0, bow_nm=bow, buckled=side, gap_um=20.0)
+        flat = beam_of(settings.model_copy(update={"bow_nm": 0.0}), 64).rest_nodal[32, 0] * 1e9
+        sign = np.sign(flat)
+        wanted = 0.5 * (-bow + sign * np.sqrt(bow**2 + 4.0 * flat**2))
+        assert beam_of(settings, 64).rest_nodal[32, 0] * 1e9 == pytest.approx(wanted, rel=1e-3)
+
+
+def test_heat_is_a_stress_and_moves_a_bow():
+    """-E da dT; a bow grows by 1 / (1 - sigma / sigma_E) while it is small."""
+    hot = DeviceSettings(temperature_C=25.0)
+    assert hot.heating_MPa == pytest.approx(-89.3e3 * 10.8e-6 * 5.0)
+    stressed = DeviceSettings(residual_stress_MPa=hot.heating_MPa / 0.7)
+    assert free_pull_in_V(hot) == pytest.approx(free_pull_in_V(stressed), rel=1e-6)
+    bowed = beam_of(hot.model_copy(update={"bow_nm": 10.0}), 64)
+    assert 1e9 * bowed.rest_nodal[32, 0] == pytest.approx(10.0 / (1.0 + hot.heating_MPa / euler_MPa(hot)), rel=1e-3)
+    cantilever = DeviceSettings(ends="cantilever", temperature_C=200.0, residual_stress_MPa=-300.0)
+    cold = cantilever.model_copy(update={"temperature_C": 20.0, "residual_stress_MPa": 0.0})
+    assert free_pull_in_V(cantilever) == free_pull_in_V(cold)
+
+
+PUBLISHED = (
+    (350.0, 0.0, 20.3),
+    (350.0, 100.0, 35.8),
+    (350.0, -25.0, 13.7),
+    (250.0, 0.0, 40.1),
+    (250.0, 100.0, 57.6),
+    (250.0, -25.0, 33.6),
+)
+"""Length (um), stress (MPa), pull-in (V) of polysilicon bridges by a three-dimensional code (Osterberg and Senturia, J.
+MEMS 6 (1997) 107), as later papers quote them."""
+
+
+@pytest.mark.parametrize(("length_um", "stress_MPa", "volts"), PUBLISHED)
+def test_published_bridges_pull_in_within_3_percent(length_um, stress_MPa, volts):
+    bridge = {"length_um": length_um, "width_um": 50.0, "thickness_um": 3.0, "gap_um": 1.0, "dielectric_nm": 0.0}
+    silicon = {"youngs_modulus_GPa": 169.0, "poisson_ratio": 0.06}
+    assert free_pull_in_V(DeviceSettings(**bridge, **silicon, residual_stress_MPa=stress_MPa)) == pytest.approx(
+        volts, rel=0.03
+    )
+
+
+def test_a_published_cantilever_pulls_in_within_1_percent():
+    """100 x 50 x 3 um over 1 um, 169 GPa: 37.84 V (Osterberg and Senturia 1997, as quoted)."""
+    beam = {"length_um": 100.0, "width_um": 50.0, "thickness_um": 3.0, "gap_um": 1.0, "dielectric_nm": 0.0}
+    settings = DeviceSettings(ends="cantilever", youngs_modulus_GPa=169.0, poisson_ratio=0.06, **beam)
+    assert free_pull_in_V(settings) == pytest.approx(37.84, rel=0.01)
+
+
+def test_a_short_electrode_pulls_a_cantilever_as_a_force_at_its_place():
+    """A narrow electrode at a share a of the length: w = F (aL)^2 (3 x - aL) / (6 EI), F its pull."""
+    settings = DeviceSettings(ends="cantilever", electrode=(0.499, 0.501), contact=(0.9, 1.0), fringe=0.0)
+    beam = beam_of(settings, 64)
+    change, _ = beam.step(np.zeros((beam.elements + 1, 2)), lambda s: (-1e3 * beam.wired, np.zeros_like(s)))
+    force, at = 1e3 * 0.002 * 510e-6 * 123e-6, 0.5 * 510e-6
+    exact = force * at**2 * (3.0 * 510e-6 - at) / (6.0 * beam.bending_N_m2)
+    assert -change[-1, 0] == pytest.approx(exact, rel=1e-4)
+
+
+@pytest.mark.parametrize("settings", [DeviceSettings(), DeviceSettings(residual_stress_MPa=-8.0, bow_nm=400.0)])
+def test_release_from_the_snap_is_that_of_finite_differences(settings):
+    """A plain twin of the whole way: pull-in, snap, landing, memory, release."""
+    law = made_up_law(8.0)
+    pull_in, release = finite_differences.release(settings, law)
+    states = solve_beam(settings, law)
+    assert states.pull_in_V == pytest.approx(pull_in, rel=1e-3)
+    assert states.release_V == pytest.approx(release, rel=1e-2)
+    assert release > 1.0
+
+
 def test_local_pressure_is_that_of_the_pad_with_its_memory():
     law = made_up_law(5.0)
     local = LocalPad(law)
@@ -65,7 +232,7 @@ def landed():
 
 
 def test_pull_in_is_the_exact_number():
-    """eps0 b V^2 L^4 / (2 EI g^3) of a beam without stretching over a gap, by shooting: 70.0950 clamped, 1.68084 free."""
+    """eps0 b V^2 L^4 / (2 EI g^3) of a beam without stretching, by shooting: 70.0950 clamped, 1.68084 cantilever."""
     for ends, exact in (("clamped", 70.095048), ("cantilever", 1.680841)):
         settings = DeviceSettings(ends=ends, anchor_um_per_N=1e9, fringe=0.0)
         beam = beam_of(settings, 64)
@@ -93,7 +260,7 @@ def test_a_bow_away_from_the_dielectric_raises_pull_in_and_release(landed):
     [
         ({"hold_voltage_V": 1.0}, "hold_voltage_V = 1: never closes this switch, which pulls in at"),
         ({"hold_voltage_V": 80.0}, "where its curves end"),
-        ({"bow_nm": -2280.0}, "touches the dielectric before it pulls in"),
+        ({"bow_nm": -2280.0}, "rests within reach of its pad"),
         ({"bow_nm": -3500.0}, "at rest the electrode is -.* nm above what it lands on at its lowest"),
         ({"tilt_nm": 8000.0}, "lower bow_nm, tilt_nm, dimple_nm or stopper_nm, or raise gap_um"),
         ({"contact": (0.0, 0.1)}, "the beam does not land on the pad"),

@@ -224,6 +224,7 @@ class MovingBeam {
   }
 
   pullIn() { // lowers the node that comes down farthest; the beam is left just beyond, from where it snaps
+    if (Math.min(...this.separation()) <= this.touch) throw new OutOfRange("the beam rests within reach of its pad");
     const unit = () => this.separation().map((s) => -this.pull(s, 1)[0] * 1e9);
     const [, first] = this.beam.step(this.nodal, this.load(0), 0, unit());
     let node = 0;
@@ -245,8 +246,11 @@ class MovingBeam {
       states.push(this.nodal);
       if (Math.min(...this.separation()) < this.touch) break;
     }
-    const top = largest(kept, 0, kept.length - 1);
-    if (!(top > 0 && top < kept.length - 2)) throw new OutOfRange("the beam touches the dielectric before it pulls in");
+    const top = largest(kept);
+    if (top === kept.length - 1) {
+      this.nodal = states[top - 1];
+      return Math.sqrt(kept[top]);
+    }
     this.nodal = states[top + 1];
     const [a, b, c] = kept.slice(top - 1, top + 2);
     return Math.sqrt(b + (a - c) ** 2 / (8 * (2 * b - a - c)));
@@ -254,7 +258,7 @@ class MovingBeam {
 
   creep() { // to the balance at its voltage, every place remembering how deep it came; whether it is then closed
     const free = BEAM.freeShare * Math.min(...this.beam.rest_nm);
-    const off = Math.min(this.contact + BEAM.highestRise_nm, free);
+    const off = Math.min(this.touch, free);
     let [inertia, least, turns, lowest] = [1e9, 0, 0, Infinity];
     let last = new Float64Array(this.beam.unknowns);
     for (let k = 0; k < BEAM.steps; k++) {
