@@ -23,6 +23,9 @@ SHOWN_OF_DEVICE = (
     "dielectric_nm",
     "permittivity",
 )
+NUMBERS_OF_DEVICE = [
+    name for name, field in DeviceSettings.model_fields.items() if field.annotation in (float, float | None)
+]
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 GIVEN = "command line"
 
@@ -81,8 +84,8 @@ def device_of(given: Sequence[str]) -> dict[str, float]:
     keys = {}
     for word in given:
         name, _, value = word.partition("=")
-        if name not in DeviceSettings.model_fields or not re.fullmatch(NUMBER, value):
-            raise InputError(f"{word}: accepted is KEY=NUMBER with a key of {', '.join(DeviceSettings.model_fields)}")
+        if name not in NUMBERS_OF_DEVICE or not re.fullmatch(NUMBER, value):
+            raise InputError(f"{word}: accepted is KEY=NUMBER with a key of {', '.join(NUMBERS_OF_DEVICE)}")
         keys[name] = float(value)
     DeviceSettings(**keys)
     return keys

@@ -54,9 +54,9 @@ def test_a_film_softer_than_its_base():
 @pytest.mark.parametrize(
     ("device", "words"),
     [
-        ("{hold_voltage_V: 40}", "device.hold_voltage_V = 40: never closes this switch, which pulls in at 62.69 V"),
+        ("{hold_voltage_V: 40}", "device.hold_voltage_V = 40: never closes this switch, which pulls in at 75.62 V"),
         ("{hold_voltage_V: 40, bow_nm: -2000}", ""),
-        ("{gap_um: 1, tilt_nm: 2100}", "at rest the electrode is -50 nm above the dielectric at its lowest"),
+        ("{gap_um: 1, tilt_nm: 2100}", "at rest the electrode is -50 nm above what it lands on at its lowest"),
         ("{gap_um: 1, tilt_nm: 1900, bow_nm: -700}", ""),  # the middle and the end that are low are not one place
     ],
 )

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from evidence.pad import finite_differences
 from mesoscale.device.beam import beam_of, euler_MPa, rests_as_stated
 from mesoscale.device.beam_switch import free_pull_in_V, solve_beam
 from mesoscale.device.switch import VACUUM_PERMITTIVITY, beam_stiffness_N_per_m
@@ -11,7 +12,6 @@ from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
-from tests.mesoscale.device import finite_differences
 
 DEFAULT = DeviceSettings(gap_um=2.3)
 DEPTHS = (16.0, 18.0, 20.0, 22.0, 24.0, 26.0, 28.0, 30.0, 32.0)
