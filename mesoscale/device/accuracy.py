@@ -193,7 +193,7 @@ def _circuit(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
         nodes = sum(pieces[0].x.size for pieces in [tables.closing, *tables.opening])
         metric, cost = "largest error, of the well", _clock() - started
         yield _row("pressure in a circuit", "nodes of its tables", nodes, tables.of_well, metric, "the curves", cost)
-    if not device.bends:
+    if not device.bends or device.without_lumps:
         return
     flat, reference = device.model_copy(update={"tilt_nm": 0.0}), f"{FINEST_ELEMENTS} elements"
     wanted, _ = _release_V(law, flat, FINEST_ELEMENTS)

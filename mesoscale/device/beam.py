@@ -159,8 +159,8 @@ def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
     """
     if lumps < 4 or lumps % 2:
         raise InputError(f"a bending electrode needs an even number of lumps, at least 4, not {lumps}")
-    if line := no_lumps(settings):
-        raise InputError(line)
+    if settings.without_lumps:
+        raise InputError(settings.without_lumps)
     half, share = settings.length_um * 1e-6 / 2.0, np.linspace(0.0, LANDING, 10001)
     until = np.log1p(share / MIDDLE) + 2.0 * share / LANDING
     landing = np.interp(np.linspace(until[-1], 0.0, lumps // 2), until, share)
@@ -170,16 +170,6 @@ def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
     places = np.concatenate([[0.0], at, 2.0 * half - at[::-1], [2.0 * half]])
     carried = (0.5 * parts * weights).ravel()
     return _beam(settings, np.diff(places), np.ones(1), np.concatenate([carried, carried[::-1], [0.0]])[:, None])
-
-
-def no_lumps(settings: DeviceSettings) -> str:
-    """One line on an electrode that has no lumps, which are those of a symmetric beam; empty where it has."""
-    if settings.ends == "clamped" and settings.electrode == settings.contact == (0.0, 1.0):
-        return ""
-    return (
-        "device.ends, electrode, contact: circuits are made of beams clamped at both ends, with electrode and pad all "
-        "along; take clamped, [0, 1] and [0, 1], or leave the circuit out"
-    )
 
 
 def _beam(settings: DeviceSettings, sizes: Array, within: Array, weights: Array) -> Beam:

@@ -58,16 +58,14 @@ def check_spread(settings: DeviceSettings) -> None:
     ------
     InputError : a property leaves what is accepted for it; samples that cannot be read.
     """
-    table = departures(settings)
-    for row in table.rows:
-        about = DeviceSettings.model_fields[row.name]
+    for row in departures(settings).rows:
+        stated, relative = getattr(settings, row.name), getattr(settings.spread, row.name).relative
         for moved in row.distribution.span():
-            stated = getattr(settings, row.name)
-            value = stated * (1.0 + moved) if getattr(settings.spread, row.name).relative else stated + moved
+            value = stated * (1.0 + moved) if relative else stated + moved
             try:
                 DeviceSettings(**{row.name: value})
-            except InputError:
-                limits = ", ".join(str(limit) for limit in about.metadata)
+            except InputError as error:
+                why = str(error).rpartition(": ")[2]
                 raise InputError(
-                    f"device.spread.{row.name}: reaches {value:.4g}, accepted is {limits}; narrow or truncate it"
+                    f"device.spread.{row.name}: reaches {row.name} = {value:.4g}: {why}; narrow or truncate it"
                 ) from None

@@ -27,6 +27,8 @@ from mesoscale.pad.memory import PadLaw
 
 FORCE = 1e-5
 """Current (A) of a pressure of 1 Pa on a lump: the `abstol` of a simulator is then small beside what moves it."""
+SLOPE = 1e-2
+"""Slope of the electrode of 1 V, so that a simulator's `vntol` is small beside slopes, too."""
 LUMP = "top bottom moved drawn charge"
 """Nodes of a lump: the electrodes; how far it has moved (nm); what draws it down (Pa); its charge (fC), a
 current into 1 Ohm."""
@@ -35,8 +37,8 @@ current into 1 Ohm."""
 def spice_switch(lumps: Lumps, study: Study, law: PadLaw, cells: int) -> str:
     """SPICE netlist (ngspice) of the subcircuits `rough_switch`, `rough_lump` and `rough_pad`."""
     numbers, body, springs = range(lumps.count), [], FORCE * lumps.spring_Pa_nm
-    drawn, heights = lumps.drawn_m * NM, lumps.height_nm
-    sloped = FORCE * lumps.stretching_N_m * NM / lumps.area_m2
+    drawn, heights = lumps.drawn_m * NM / SLOPE, lumps.height_nm
+    sloped = FORCE * lumps.stretching_N_m * NM * SLOPE / lumps.area_m2
     for k in numbers:
         held = "\n".join(f"G{k}_{j} speed{k} 0 bent{j} 0 {springs[k, j]:.12g}" for j in numbers)
         if lumps.stretching_N_m:
@@ -45,7 +47,7 @@ def spice_switch(lumps: Lumps, study: Study, law: PadLaw, cells: int) -> str:
 Islope{k} 0 slope{k} {-(drawn[k] @ heights):.12g}
 Rslope{k} slope{k} 0 1
 Bstretch{k} speed{k} 0 I = {sloped[k]:.12g} * V(longer) * V(slope{k})
-Blonger{k} 0 longer I = 0.5 * (V(bent{k}) + {-heights[k]:.9g}) * V(slope{k})"""
+Blonger{k} 0 longer I = {0.5 * SLOPE:g} * (V(bent{k}) + {-heights[k]:.9g}) * V(slope{k})"""
         of = f"rest={lumps.rest_nm[k]:.9g} area={lumps.area_m2[k]:.9g}"
         body.append(f"""Xlump{k} top bottom moved{k} drawn{k} charge rough_lump {of}
 +   gas={{gas}} viscosity={{viscosity}} fringe={{fringe}} follow={{follow}}
@@ -59,7 +61,7 @@ Gdrag{k} speed{k} 0 speed{k} 0 {{{FORCE:g}*drag}}
 Gdrawn{k} 0 speed{k} drawn{k} 0 {FORCE:g}
 {held}""")
     # longer: by how much (nm) the beam is longer than at rest; slopes are those of its elongation
-    longer = ["Rlonger longer 0 1", f"Ilonger longer 0 {0.5 * heights @ drawn @ heights:.12g}"]
+    longer = ["Rlonger longer 0 1", "Clonger longer 0 {follow}", f"Ilonger longer 0 {0.5 * SLOPE * heights @ drawn @ heights:.12g}"]
     width, dielectric = lumps.width_m, lumps.dielectric_nm
     electric = f"(1e-9*max({{rest+{dielectric:.9g}}} - V(moved), {least_gap_nm(dielectric):.9g}))"
     film, dense = f"max({{rest}} - V(moved), {LEAST_NM:g})", f"max(1 + V(excess), {LEAST_GAS:g})"

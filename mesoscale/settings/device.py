@@ -298,6 +298,16 @@ class DeviceSettings(Settings):
             "lower bow_nm, tilt_nm, dimple_nm or stopper_nm, or raise gap_um"
         )
 
+    @property
+    def without_lumps(self) -> str:
+        """One line on a beam that has no lumps, which are those of a symmetric one; empty where it has."""
+        if self.ends == "clamped" and self.electrode == self.contact == (0.0, 1.0):
+            return ""
+        return (
+            "device.ends, electrode, contact: circuits are made of beams clamped at both ends, with electrode and pad "
+            "all along; take clamped, [0, 1] and [0, 1], or leave the circuit out"
+        )
+
 
 def unit_of(name: str) -> str:
     """Unit of a key of the device; 1 where it has none."""

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from mesoscale.device.beam import euler_MPa
+from mesoscale.device.beam import euler_MPa, lumped_beam
 from mesoscale.device.beam_switch import solve_beam
 from mesoscale.device.electrode import with_pad
+from mesoscale.device.spread import check_spread
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
 from tests.mesoscale.device.test_beam import made_up_law
@@ -80,6 +81,17 @@ def test_beams_that_are_no_switch_are_refused_in_one_line(name):
     with pytest.raises(InputError, match=words) as caught:
         with_pad(lambda law: solve_beam(DeviceSettings(**change), law), made_up_law())
     assert "\n" not in str(caught.value)
+
+
+def test_a_spread_that_leaves_no_device_and_a_beam_without_lumps_are_refused_in_one_line():
+    wide = {"dielectric_nm": {"distribution": "normal", "values": [0, 0.5], "relative": True}}
+    with pytest.raises(
+        InputError, match=r"spread\.dielectric_nm: reaches dielectric_nm = -129.1: .*equal to 0; narrow"
+    ):
+        check_spread(DeviceSettings(spread=wide))
+    check_spread(DeviceSettings())
+    with pytest.raises(InputError, match="circuits are made of beams clamped at both ends"):
+        lumped_beam(DeviceSettings(ends="cantilever"), 8)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from asperity.foreign_yaml import load_mapping
-from mesoscale.device.beam import beam_of, no_lumps, rests_as_stated
+from mesoscale.device.beam import beam_of, rests_as_stated
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
@@ -30,7 +30,7 @@ def switch_data(results: Results) -> dict[str, Any] | None:
     bends = device.bends and device.electrode_um2 is None
     if results.json("device/pad_switch.json").get("beam" if bends else "mean") is None:
         return None
-    if bends and (no_lumps(device) or not rests_as_stated(device)):
+    if bends and (device.without_lumps or not rests_as_stated(device)):
         return None  # a beam that the page's own model does not follow
     switch = switch_from_settings(device)
     return {
