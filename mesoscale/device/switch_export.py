@@ -61,7 +61,7 @@ Gdrag{k} speed{k} 0 speed{k} 0 {{{FORCE:g}*drag}}
 Gdrawn{k} 0 speed{k} drawn{k} 0 {FORCE:g}
 {held}""")
     # longer: by how much (nm) the beam is longer than at rest; slopes are those of its elongation
-    longer = ["Rlonger longer 0 1", "Clonger longer 0 {follow}", f"Ilonger longer 0 {0.5 * SLOPE * heights @ drawn @ heights:.12g}"]
+    longer = ["Rlonger longer 0 1", f"Ilonger longer 0 {0.5 * SLOPE * heights @ drawn @ heights:.12g}"]
     width, dielectric = lumps.width_m, lumps.dielectric_nm
     electric = f"(1e-9*max({{rest+{dielectric:.9g}}} - V(moved), {least_gap_nm(dielectric):.9g}))"
     film, dense = f"max({{rest}} - V(moved), {LEAST_NM:g})", f"max(1 + V(excess), {LEAST_GAS:g})"
