@@ -14,9 +14,9 @@ STOPPER_GPa_nm = 1e-2
 """Stiffness of a stopper: it gives way by a tenth of a nanometre under 1 MPa."""
 LARGEST_STEP_NM = 100.0
 """Step of a place of the creeping beam that is far from contact."""
-LARGEST_CHANGE_NM = 0.25
+CLOSING_NM, OPENING_NM = 1.0, 0.25
 """The same in contact. Longer steps overshoot where a pad of few cells tears off: with 0.5 and 1 nm that of `ci` (16
-cells) lets go 0.9 and 1.8 % too early, in a half and a third of the time."""
+cells) lets go 0.9 and 1.8 % too early. So a beam that opens with the former is let open once more with the latter."""
 SHARE_OF_WAY = 0.25
 """A place that is about to land moves by this share of its way."""
 PATIENCE = 10
@@ -198,7 +198,7 @@ def deflect(nodal, shape):
 
 
 @njit(cache=True, nogil=True)  # switches are solved side by side
-def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, contact_nm, off_nm, free_nm):
+def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, contact_nm, off_nm, free_nm, most_nm):
     """Let a beam move to balance at one voltage, every place remembering how deep it came; both changed in place.
 
     The beam is held back by an added stiffness that grows where steps are too large: an overdamped motion.
@@ -209,6 +209,7 @@ def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, contact_nm, of
     contact_nm : separation at which a place is about to land.
     off_nm : in balance above it, no place is in contact.
     free_nm : a rising beam is off the pad where no place is below this separation.
+    most_nm : largest step of a place in contact.
     """
     inertia, least, turns, lowest = 1e9, 0.0, 0, np.inf
     last = np.zeros(nodal.shape[0])
@@ -225,7 +226,7 @@ def creep(nodal, deepest_nm, rest_m, beam, places, pad, electric, contact_nm, of
         for e in range(s.shape[0]):
             for g in range(s.shape[1]):
                 way = s[e, g] - (dimple_nm + contact_nm if lands[e, g] > 0.0 else stopper_nm)
-                allowed = min(max(SHARE_OF_WAY * way, LARGEST_CHANGE_NM), LARGEST_STEP_NM)
+                allowed = min(max(SHARE_OF_WAY * way, most_nm), LARGEST_STEP_NM)
                 excess = max(excess, abs(moved[e, g]) / allowed)
                 most = max(most, abs(moved[e, g]))
         if excess > 1.0 or work < 0.0:

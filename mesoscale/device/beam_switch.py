@@ -13,7 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.device.beam import Beam, beam_of
-from mesoscale.device.beam_kernels import BEYOND, GPA, NM, SETTLED, UNSETTLED, add_loads, creep, least_gap_nm
+from mesoscale.device.beam_kernels import (
+    BEYOND,
+    CLOSING_NM,
+    GPA,
+    NM,
+    OPENING_NM,
+    SETTLED,
+    UNSETTLED,
+    add_loads,
+    creep,
+    least_gap_nm,
+)
 from mesoscale.device.statistics import never_closes
 from mesoscale.device.switch import VACUUM_PERMITTIVITY
 from mesoscale.errors import InputError, NotComputed
@@ -26,6 +37,8 @@ Array = NDArray[np.float64]
 CONTACT_GPa = 1e-6
 """A place has landed where it is pushed with more than 1 kPa, a tenth of the pull of the default switch's spring."""
 RELEASE_TOLERANCE = 1e-3
+LITTLE = 0.05
+"""Of the hold voltage: a beam that is closed at less is tried without any."""
 ELEMENTS = 128
 """The last places that adhesion holds are some 5 um long: release is within 0.4 % of that of 1024 elements.
 Close to sticking it is within 0.2 V of that of 512, where with 64 elements a switch sticks that opens at 0.7 V. The
@@ -135,7 +148,7 @@ def loop_fF(beam: Beam, settings: DeviceSettings, law: PadLaw, volts: Array) -> 
             moving.creep(float(voltage))
             up.append(moving.capacitance_F())
     down = [
-        moving.capacitance_F() if moving.creep(float(voltage)) else opened
+        moving.capacitance_F() if moving.stays(float(voltage)) else opened
         for voltage, opened in zip(volts[::-1], up[::-1], strict=True)
     ]
     return 1e15 * np.array(up), 1e15 * np.array(down[::-1])
@@ -157,7 +170,7 @@ def closed_beam(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS)
     def closed(voltage: float, times: float) -> bool:
         moving = _Moving(first.beam, first.local.attracting(times, bare), settings)
         moving.nodal = first.nodal.copy()
-        return moving.creep(hold) and moving.creep(voltage)
+        return moving.creep(hold) and moving.stays(voltage)
 
     return closed
 
@@ -295,7 +308,15 @@ class _Moving:
         a, b, c = kept[top - 1 : top + 2]
         return float(np.sqrt(b + (a - c) ** 2 / (8.0 * (2.0 * b - a - c))))
 
-    def creep(self, voltage: float) -> bool:
+    def stays(self, voltage: float) -> bool:
+        """Whether the closed beam is still closed at a voltage, and moved there; see `creep`."""
+        held = self.nodal.copy(), self.deepest.copy()
+        if self.creep(voltage):
+            return True
+        self.nodal, self.deepest = held
+        return self.creep(voltage, OPENING_NM)
+
+    def creep(self, voltage: float, most_nm: float = CLOSING_NM) -> bool:
         """Let the beam move to the balance at a voltage; whether it is then closed.
 
         Raises
@@ -316,6 +337,7 @@ class _Moving:
             self.contact_nm,
             min(self.touch_nm, free),
             free,
+            most_nm,
         )
         law = self.local.law
         if ended == BEYOND:
@@ -331,17 +353,17 @@ class _Moving:
     def open(self, hold_V: float) -> tuple[float, float]:
         """Lower the voltage until the beam lets go; the release voltage (0: stuck) and the share landed before."""
         held = self.nodal.copy(), self.deepest.copy()
-        if self.creep(0.0):
-            return 0.0, self.landed_share()
-        high, low = hold_V, 0.0
-        self.nodal, self.deepest = held[0].copy(), held[1].copy()
         share = self.landed_share()
-        while high - low > RELEASE_TOLERANCE * high:
+        high, low = hold_V, None
+        while low is None or high - low > RELEASE_TOLERANCE * high:
+            # down to no voltage where it holds at little, else between the last voltages
+            voltage = 0.5 * (low + high) if low is not None else 0.5 * high if high > LITTLE * hold_V else 0.0
             # an opening is elastic, so the state at a lower voltage is reached from any higher one
-            self.nodal, self.deepest = held[0].copy(), held[1].copy()
-            voltage = 0.5 * (low + high)
-            if self.creep(voltage):
+            if self.stays(voltage):
                 high, share, held = voltage, self.landed_share(), (self.nodal.copy(), self.deepest.copy())
+                if voltage == 0.0:
+                    return 0.0, share
             else:
                 low = voltage
+                self.nodal, self.deepest = held[0].copy(), held[1].copy()
         return high, share

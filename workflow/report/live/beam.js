@@ -5,9 +5,9 @@ const GAUSS_WEIGHT = [0.34785484513745385, 0.6521451548625461, 0.652145154862546
 const BANDS = 3; // on either side of the diagonal
 const WIDTH = 3 * BANDS + 1; // with room for row exchanges
 const BEAM = {
-  elements: 128, contact_GPa: 1e-6, steps: 60000, largestStep_nm: 100, largestChange_nm: 0.25, shareOfWay: 0.25,
+  elements: 128, contact_GPa: 1e-6, steps: 60000, largestStep_nm: 100, closing_nm: 1, opening_nm: 0.25, shareOfWay: 0.25,
   patience: 10, settled_nm: 1e-3, settled_Pa: 1, releaseTolerance: 1e-3, depths: 96, rises: 1200, highestRise_nm: 60,
-  freeShare: 0.5, down: 81, fade_nm: 1,
+  freeShare: 0.5, little: 0.05, down: 81, fade_nm: 1,
 };
 
 class Beam {
@@ -256,7 +256,14 @@ class MovingBeam {
     return Math.sqrt(b + (a - c) ** 2 / (8 * (2 * b - a - c)));
   }
 
-  creep() { // to the balance at its voltage, every place remembering how deep it came; whether it is then closed
+  stays() { // closed at its voltage; a beam that opens is let open once more in smaller steps
+    const held = [this.nodal, this.deepest];
+    if (this.creep()) return true;
+    [this.nodal, this.deepest] = held;
+    return this.creep(BEAM.opening_nm);
+  }
+
+  creep(most_nm = BEAM.closing_nm) { // to the balance at its voltage, every place remembering how deep it came; whether it is then closed
     const free = BEAM.freeShare * Math.min(...this.beam.rest_nm);
     const off = Math.min(this.touch, free);
     let [inertia, least, turns, lowest] = [1e9, 0, 0, Infinity];
@@ -267,7 +274,7 @@ class MovingBeam {
       const before = this.separation();
       let [excess, most] = [0, 0];
       moved.forEach((way, i) => {
-        const allowed = Math.min(Math.max(BEAM.shareOfWay * (before[i] - this.contact), BEAM.largestChange_nm), BEAM.largestStep_nm);
+        const allowed = Math.min(Math.max(BEAM.shareOfWay * (before[i] - this.contact), most_nm), BEAM.largestStep_nm);
         excess = Math.max(excess, Math.abs(way) / allowed);
         most = Math.max(most, Math.abs(way));
       });
@@ -294,15 +301,19 @@ class MovingBeam {
   }
 
   open() { // lower the voltage until it lets go: release voltage (0: stuck) and the share landed before
-    let [high, low, share] = [this.voltage, 0, this.landedShare()];
+    const hold = this.voltage;
+    let [high, low, share] = [hold, null, this.landedShare()];
     let held = [this.nodal, this.deepest];
-    this.voltage = 0;
-    if (this.creep()) return [0, this.landedShare()];
-    while (high - low > BEAM.releaseTolerance * high) {
-      [this.nodal, this.deepest] = held;
-      this.voltage = 0.5 * (low + high);
-      if (this.creep()) [high, share, held] = [this.voltage, this.landedShare(), [this.nodal, this.deepest]];
-      else low = this.voltage;
+    while (low === null || high - low > BEAM.releaseTolerance * high) {
+      if (low !== null) this.voltage = 0.5 * (low + high);
+      else this.voltage = high > BEAM.little * hold ? 0.5 * high : 0;
+      if (this.stays()) {
+        [high, share, held] = [this.voltage, this.landedShare(), [this.nodal, this.deepest]];
+        if (high === 0) return [0, share];
+      } else {
+        low = this.voltage;
+        [this.nodal, this.deepest] = held;
+      }
     }
     return [high, share];
   }
