@@ -90,7 +90,7 @@ def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
             for (scene, case, method), row in by.items()
             if method == "finite differences"
         ]
-        shown[f"differences_{column.removesuffix('_V')}"] = f"{100.0 * max(apart):.1g} %"
+        shown[f"differences_{column.removesuffix('_V')}"] = f"{max(*apart, 1e-4):.2%}"  # rows have four digits
     central = {scene: by[scene, "fringe", wanted] for scene, _, _ in by}
     for case in dict.fromkeys(row["case"] for row in table if row["case"] not in CAUSES):
         moved = [float(row["release_V"]) - float(central[s]["release_V"]) for (s, c, _), row in by.items() if c == case]

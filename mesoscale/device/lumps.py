@@ -3,8 +3,8 @@
 The lumps of a bending electrode are pairs of places, mirrored at mid-span, with the exact stiffness of the beam between
 them; a plate is one lump. For each lump, s its separation, A its area, b the width of the electrode,
 
-    rho t s'' = p_pad(s, deepest) - eps0 V^2 / 2 [1 / e^2 + fringe / (b e)] + P0 (n / s - 1)
-                - [K u + (S / 2) (z.D z - z0.D z0) D z] / A
+    rho t s'' = p_pad(s, deepest) - eps0 V^2 / 2 [1 / e^2 + fringe / (b e)] + P0 (n / s - 1) - F / A
+    F   = K u + (S / 2) (z.D z - z0.D z0) D z
     n'  = -(P - P0) P s^3 / (P0 mu b^2),    P = P0 n / s,    mu = viscosity / (1 + 9.638 Kn^1.159)
     Q   = V eps0 sum A [1 / e + fringe / b ln(pi b / e)],    e = s + t / eps_r
 
