@@ -15,8 +15,8 @@ STOPPER_GPa_nm = 1e-2
 LARGEST_STEP_NM = 100.0
 """Step of a place of the creeping beam that is far from contact."""
 CLOSING_NM, OPENING_NM = 1.0, 0.25
-"""The same in contact. Longer steps overshoot where a pad of few cells tears off: with 0.5 and 1 nm that of `ci` (16
-cells) lets go 0.9 and 1.8 % too early. So a beam that opens with the former is let open once more with the latter."""
+"""The same in contact. Where a pad of few cells tears off, longer steps overshoot: with 0.5 and 1 nm that of `ci` (16
+cells) lets go 0.9 and 1.8 % too early."""
 SHARE_OF_WAY = 0.25
 """A place that is about to land moves by this share of its way."""
 PATIENCE = 10

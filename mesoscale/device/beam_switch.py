@@ -148,7 +148,7 @@ def loop_fF(beam: Beam, settings: DeviceSettings, law: PadLaw, volts: Array) -> 
             moving.creep(float(voltage))
             up.append(moving.capacitance_F())
     down = [
-        moving.capacitance_F() if moving.stays(float(voltage)) else opened
+        moving.capacitance_F() if moving.creep(float(voltage), OPENING_NM) else opened
         for voltage, opened in zip(volts[::-1], up[::-1], strict=True)
     ]
     return 1e15 * np.array(up), 1e15 * np.array(down[::-1])
@@ -170,7 +170,7 @@ def closed_beam(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS)
     def closed(voltage: float, times: float) -> bool:
         moving = _Moving(first.beam, first.local.attracting(times, bare), settings)
         moving.nodal = first.nodal.copy()
-        return moving.creep(hold) and moving.stays(voltage)
+        return moving.creep(hold) and moving.creep(voltage, OPENING_NM)
 
     return closed
 
@@ -308,14 +308,6 @@ class _Moving:
         a, b, c = kept[top - 1 : top + 2]
         return float(np.sqrt(b + (a - c) ** 2 / (8.0 * (2.0 * b - a - c))))
 
-    def stays(self, voltage: float) -> bool:
-        """Whether the closed beam is still closed at a voltage, and moved there; see `creep`."""
-        held = self.nodal.copy(), self.deepest.copy()
-        if self.creep(voltage):
-            return True
-        self.nodal, self.deepest = held
-        return self.creep(voltage, OPENING_NM)
-
     def creep(self, voltage: float, most_nm: float = CLOSING_NM) -> bool:
         """Let the beam move to the balance at a voltage; whether it is then closed.
 
@@ -359,7 +351,7 @@ class _Moving:
             # down to no voltage where it holds at little, else between the last voltages
             voltage = 0.5 * (low + high) if low is not None else 0.5 * high if high > LITTLE * hold_V else 0.0
             # an opening is elastic, so the state at a lower voltage is reached from any higher one
-            if self.stays(voltage):
+            if self.creep(voltage, OPENING_NM):
                 high, share, held = voltage, self.landed_share(), (self.nodal.copy(), self.deepest.copy())
                 if voltage == 0.0:
                     return 0.0, share

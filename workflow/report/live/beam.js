@@ -256,13 +256,6 @@ class MovingBeam {
     return Math.sqrt(b + (a - c) ** 2 / (8 * (2 * b - a - c)));
   }
 
-  stays() { // closed at its voltage; a beam that opens is let open once more in smaller steps
-    const held = [this.nodal, this.deepest];
-    if (this.creep()) return true;
-    [this.nodal, this.deepest] = held;
-    return this.creep(BEAM.opening_nm);
-  }
-
   creep(most_nm = BEAM.closing_nm) { // to the balance at its voltage, every place remembering how deep it came; whether it is then closed
     const free = BEAM.freeShare * Math.min(...this.beam.rest_nm);
     const off = Math.min(this.touch, free);
@@ -307,7 +300,7 @@ class MovingBeam {
     while (low === null || high - low > BEAM.releaseTolerance * high) {
       if (low !== null) this.voltage = 0.5 * (low + high);
       else this.voltage = high > BEAM.little * hold ? 0.5 * high : 0;
-      if (this.stays()) {
+      if (this.creep(BEAM.opening_nm)) {
         [high, share, held] = [this.voltage, this.landedShare(), [this.nodal, this.deepest]];
         if (high === 0) return [0, share];
       } else {
