@@ -112,8 +112,8 @@ def _stages(scene: Scene) -> Iterator[str]:
 
 def _no_switch(device: DeviceSettings) -> str:
     """One line on a device that is no switch; empty where nothing is known against it."""
-    ordinary = {"hold_voltage_V", "residual_stress_MPa", "temperature_C", "ends", "stopper_nm", "dimple_nm", "spread"}
-    if device.touching_at_rest or not device.bends or not ordinary & device.model_fields_set:
+    unusual = {"hold_voltage_V", "residual_stress_MPa", "temperature_C", "ends", "stopper_nm", "dimple_nm", "spread"}
+    if device.touching_at_rest or not device.bends or not unusual & device.model_fields_set:
         return device.touching_at_rest
     from mesoscale.device.pressing import pull_in_V  # takes a second
     from mesoscale.device.spread import check_spread

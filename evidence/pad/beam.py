@@ -12,13 +12,12 @@ from pathlib import Path
 from time import process_time
 from typing import Any
 
-import numpy as np
-
 from evidence.pad import finite_differences
 from evidence.pad.loop import central_pad
+from mesoscale.calibration.switches import ONE_DEVIATION
 from mesoscale.device.beam_switch import solve_beam
 from mesoscale.device.electrode import with_pad
-from mesoscale.device.spread import properties_at, varied, with_properties
+from mesoscale.device.spread import departed
 from mesoscale.settings import DeviceSettings
 
 CAUSES = {
@@ -27,7 +26,6 @@ CAUSES = {
     "plate": {"fringe": 0.0},
     "fringe": {},
 }
-ONE_OUT = {"-": 0.158655, "+": 0.841345}
 OTHER_NICKEL_GPa = 200.0
 """Of plated nickel bridges (Cantwell et al., J. MEMS 21 (2012) 840)."""
 ELEMENTS = (64, 128, 256)
@@ -53,12 +51,9 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
 
 
 def _departed(device: DeviceSettings) -> Iterator[tuple[str, DeviceSettings]]:
-    names = varied(device)
-    for place, name in enumerate(names):
-        for sign, probability in ONE_OUT.items():
-            units = np.full((1, len(names)), 0.5)
-            units[0, place] = probability
-            yield f"{name} {sign}", with_properties(device, properties_at(device, units)[0])
+    for name, less, more in departed(device, ONE_DEVIATION):
+        yield f"{name} -", less
+        yield f"{name} +", more
     yield "temperature_C +", device.model_copy(update={"temperature_C": device.temperature_C + 1.0})
     yield "other nickel", device.model_copy(update={"youngs_modulus_GPa": OTHER_NICKEL_GPa})
 

@@ -11,7 +11,7 @@ EPS0 = 8.8541878128e-12
 class Beam:
     """Lengths in m, loads in N/m; `nodes` inner points of the deflection w, positive away from the dielectric."""
 
-    def __init__(self, settings, nodes=399, fringe=True):
+    def __init__(self, settings, nodes=399):
         self.length, self.width = settings.length_um * 1e-6, settings.width_um * 1e-6
         thick, modulus = settings.thickness_um * 1e-6, settings.youngs_modulus_GPa * 1e9
         plate = settings.bends_as == "plate" or (settings.bends_as is None and self.width >= 5 * thick)
@@ -23,7 +23,7 @@ class Beam:
         self.shape0 = settings.shape_at_rest_nm(share) * 1e-9
         self.gap = settings.gap_um * 1e-6 + self.shape0
         self.thin = settings.dielectric_nm * 1e-9 / settings.permittivity
-        self.edge = settings.fringe / self.width if fringe else 0.0
+        self.edge = settings.fringe / self.width
         one = np.ones(nodes)
         # fourth difference; a clamped end mirrors the first inner point
         self.fourth = np.array([0 * one, -4 * one, 6 * one, -4 * one, 0 * one])
@@ -42,10 +42,8 @@ class Beam:
 
     def longer(self, w):
         """Elongation by the slopes between points, ends at rest."""
-        z0 = np.concatenate([[self.shape0[0] * 0], self.shape0, [0.0]])
-        full = np.concatenate([[0.0], w, [0.0]])
-        z0[[0, -1]] = 0.0
-        return float(0.5 * (np.diff(full + z0) ** 2 - np.diff(z0) ** 2).sum() / self.h)
+        z0, moved = np.pad(self.shape0, 1), np.pad(w, 1)
+        return float(0.5 * (np.diff(moved + z0) ** 2 - np.diff(z0) ** 2).sum() / self.h)
 
     def pull(self, s, squared):
         """Electrostatic pull per length and its derivative by s."""

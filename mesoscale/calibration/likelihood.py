@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -155,9 +156,8 @@ class Posterior:
         direct = tuple(data.simulated(predicted.inputs, rng) for data in self.direct)
         switches = []
         for data in self.switches:
-            kind = "pull_in" if data.kind == "pull_in" else "release"
-            mean, sd = (values[0] for values in predicted.voltages[kind])
-            shared = np.hypot(data.discrepancy * abs(mean), self._common_V(kind))
+            mean, sd = (values[0] for values in predicted.voltages[_voltage(data)])
+            shared = self._shared_V(data, mean)
             if data.kind == "sticking":
                 margin = mean / np.hypot(sd, shared)
                 total = data.columns["switches"]
@@ -173,9 +173,8 @@ class Posterior:
     def _switches(self, voltages: dict[str, tuple[Array, Array]]) -> Array:
         result = np.zeros(1)
         for data in self.switches:
-            kind = "pull_in" if data.kind == "pull_in" else "release"
-            mean, sd = voltages[kind]
-            shared = np.hypot(data.discrepancy * np.abs(mean), self._common_V(kind))
+            mean, sd = voltages[_voltage(data)]
+            shared = self._shared_V(data, mean)
             if data.kind == "sticking":
                 spread = np.hypot(sd, shared)
                 stuck, total = data.columns["stuck"].sum(), data.columns["switches"].sum()
@@ -188,9 +187,10 @@ class Posterior:
             result = result + normal_with_common(measured - mean[:, None], variances, shared[:, None])
         return result
 
-    def _common_V(self, kind: str) -> float:
-        """Standard deviation by what all devices share."""
-        return self.switch.scatter_V[kind][0] if self.switch else 0.0
+    def _shared_V(self, data: Measurements, mean: Any) -> Any:
+        """Standard deviation that all values of a table share: the model's own error, and what all devices share."""
+        devices_V = self.switch.scatter_V[_voltage(data)][0] if self.switch else 0.0
+        return np.hypot(data.discrepancy * np.abs(mean), devices_V)
 
     def switch_voltages(self, x: Array, hamaker: Array) -> dict[str, tuple[Array, Array]]:
         """Mean and deviation between switches of pull-in and release (with sign, V), shape (m,) each.
@@ -216,6 +216,11 @@ class Posterior:
             scatter = np.hypot(draws.std(axis=0), self.switch.scatter_V[name][1])
             voltages[name] = draws.mean(axis=0), np.maximum(scatter, SMALLEST_SCATTER_V)
         return voltages
+
+
+def _voltage(data: Measurements) -> str:
+    """Which voltage a table on switches is about."""
+    return "pull_in" if data.kind == "pull_in" else "release"
 
 
 def direct_data(tables: Iterable[Measurements]) -> tuple[DirectData, ...]:

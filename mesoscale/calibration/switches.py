@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from mesoscale.calibration.observables import LAWS, Observable
 from mesoscale.calibration.responses import Prediction
 from mesoscale.device.contact_law import column, onset_nm, scale_adhesion
-from mesoscale.device.spread import properties_at, varied, with_properties
+from mesoscale.device.spread import departed
 from mesoscale.device.statistics import analytic_pull_in_V
 from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, Switch, switch_from_settings
 from mesoscale.law.compact import Law
@@ -23,8 +23,8 @@ from mesoscale.settings import DeviceSettings, LawSettings
 
 Array = NDArray[np.float64]
 
-ONE_DEVIATION = (0.158655, 0.841345)
-"""Probabilities of a normal number one standard deviation out."""
+ONE_DEVIATION = 0.841345
+"""Probability of a normal number one standard deviation out."""
 TOUCH_NM = 20.0
 """Separation at the last touch, of films of 4 to 6 nm RMS; a release depends on it through the electric gap alone."""
 INNER, OUTER = 120, 60
@@ -103,20 +103,18 @@ def device_scatter_V(device: DeviceSettings) -> dict[str, tuple[float, float]]:
 
     Each property departs alone by one standard deviation to either side; the release is that without adhesion.
     """
-    names, middle = varied(device), np.full((1, len(varied(device))), 0.5)
+
+    def voltages(switch: Switch) -> dict[str, float]:
+        electric = (TOUCH_NM + switch.dielectric_nm) * NM
+        spring = switch.spring_N_per_m * (switch.gap_nm - TOUCH_NM) * NM
+        release = np.sqrt(2.0 * spring * electric**2 / (VACUUM_PERMITTIVITY * switch.area_m2))
+        return {"pull_in": analytic_pull_in_V(switch), "release": float(release)}
+
     squares = {"pull_in": {"common": 0.0, "each": 0.0}, "release": {"common": 0.0, "each": 0.0}}
-    for place, name in enumerate(names):
-        sides = []
-        for probability in ONE_DEVIATION:
-            units = middle.copy()
-            units[0, place] = probability
-            switch = switch_from_settings(with_properties(device, properties_at(device, units)[0]))
-            electric = (TOUCH_NM + switch.dielectric_nm) * NM
-            spring = switch.spring_N_per_m * (switch.gap_nm - TOUCH_NM) * NM
-            release = np.sqrt(2.0 * spring * electric**2 / (VACUUM_PERMITTIVITY * switch.area_m2))
-            sides.append({"pull_in": analytic_pull_in_V(switch), "release": float(release)})
+    for name, *devices in departed(device, ONE_DEVIATION):
+        low, high = (voltages(switch_from_settings(moved)) for moved in devices)
         for kind, by in squares.items():
-            by[getattr(device.spread, name).varies] += (0.5 * (sides[1][kind] - sides[0][kind])) ** 2
+            by[getattr(device.spread, name).varies] += (0.5 * (high[kind] - low[kind])) ** 2
     return {kind: (float(np.sqrt(by["common"])), float(np.sqrt(by["each"]))) for kind, by in squares.items()}
 
 

@@ -50,17 +50,13 @@ def hardest(settings: DeviceSettings) -> DeviceSettings:
     Each property departs alone to the side where the device presses harder; what they add, adds by squares. A property
     with which the device does not pull in adds nothing.
     """
-    from mesoscale.device.spread import properties_at, varied, with_properties  # reads distributions: not for rules
+    from mesoscale.device.spread import departed  # reads distributions: not for rules
 
-    names, middle = varied(settings), np.full((1, len(varied(settings))), 0.5)
     held, more = held_V(settings), 0.0
     thin = switch_from_settings(settings).dielectric_nm
-    for place in range(len(names)):
+    for _, *devices in departed(settings, FAR_OUT):
         ratios = [1.0]
-        for probability in (FAR_OUT, 1.0 - FAR_OUT):
-            units = middle.copy()
-            units[0, place] = probability
-            device = with_properties(settings, properties_at(settings, units)[0])
+        for device in devices:
             try:
                 ratios.append((held_V(device) * thin / (held * switch_from_settings(device).dielectric_nm)) ** 2)
             except InputError:

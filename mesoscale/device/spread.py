@@ -1,5 +1,7 @@
 """By how much devices depart from their stated properties, as uncertain inputs."""
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -49,6 +51,16 @@ def properties_at(settings: DeviceSettings, units: Array) -> Array:
 def with_properties(settings: DeviceSettings, values: Array) -> DeviceSettings:
     """The device with these values of the properties of `varied`, shape (k,)."""
     return settings.model_copy(update=dict(zip(varied(settings), values.tolist(), strict=True)))
+
+
+def departed(settings: DeviceSettings, probability: float) -> Iterator[tuple[str, DeviceSettings, DeviceSettings]]:
+    """Each property of `varied`, and the devices where it alone departs to this probability and to its complement."""
+    names = varied(settings)
+    for place, name in enumerate(names):
+        units = np.full((2, len(names)), 0.5)
+        units[:, place] = 1.0 - probability, probability
+        low, high = (with_properties(settings, values) for values in properties_at(settings, units))
+        yield name, low, high
 
 
 def check_spread(settings: DeviceSettings) -> None:
