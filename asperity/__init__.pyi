@@ -2,7 +2,7 @@ from asperity.film import Contact, Film, Switch
 from mesoscale.contact import Branch, ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import dissipated_energy, work
 from mesoscale.contact.surface import random_surface
-from mesoscale.device.switch import SwitchStates, drive_switch, switch_from_settings
+from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError
 from mesoscale.extras import MissingExtra
 from mesoscale.inputs.distributions import InputTable
@@ -32,12 +32,10 @@ __all__ = [
     "PadSettings",
     "Scan",
     "Switch",
-    "SwitchStates",
     "TopographySettings",
     "clean",
     "contacting_heights",
     "dissipated_energy",
-    "drive_switch",
     "force",
     "input_table",
     "laws_of",

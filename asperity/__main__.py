@@ -6,10 +6,8 @@ import importlib.metadata
 import importlib.util
 import os
 import re
-import subprocess
 import sys
 import webbrowser
-from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
@@ -99,11 +97,6 @@ def _parser() -> argparse.ArgumentParser:
         added[name].add_argument("scene", nargs="?", default="reduced", help=words)
     for name in ("run", "plan"):
         added[name].add_argument("target", nargs="*", help="stage, for instance law (asperity targets); default: all")
-        counts = added[name].add_mutually_exclusive_group()
-        words = "choose the counts for the least error in this time, for instance 20min"
-        counts.add_argument("--budget", type=_in("s", {"s": 1.0, "min": 60.0, "h": 3600.0}), metavar="TIME", help=words)
-        words = "choose the counts for the least time with this error of the release, for instance 0.3V"
-        counts.add_argument("--error", type=_in("V", {"V": 1.0, "mV": 1e-3}), metavar="VOLTAGE", help=words)
     film = added["film"]
     film.add_argument("files", nargs="+", help="scans, line profiles, containers, or folders of them: of one surface")
     film.add_argument("--tip-nm", type=float, help="radius of the AFM tip where no file states it; default: 5")
@@ -214,24 +207,11 @@ def _demo(given: argparse.Namespace) -> int:
 
 
 def _run(given: argparse.Namespace) -> int:
-    return _choose_counts(given) or _snakemake(given)
+    return _snakemake(given)
 
 
 def _plan(given: argparse.Namespace) -> int:
-    return _choose_counts(given) or _snakemake(given, dry=True)
-
-
-def _choose_counts(given: argparse.Namespace) -> int:
-    """Where a budget or an error is given, write a scene with counts that keep it, and go on with that scene."""
-    chosen = {name: getattr(given, name, None) for name in ("budget", "error")}
-    options = [f"--{name}={value!r}" for name, value in chosen.items() if value is not None]
-    if not options:
-        return 0
-    file = f"{Path(given.scene).stem.removesuffix('_budget')}_budget.yaml"
-    command = [sys.executable, "-m", "workflow.effort", given.scene, *options, f"--cores={given.cores}"]
-    status = subprocess.run([*command, f"--file={file}"], check=False).returncode
-    given.scene = file
-    return status
+    return _snakemake(given, dry=True)
 
 
 def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False) -> int:
@@ -265,18 +245,6 @@ def _cores(text: str) -> str:
     if text != "all" and not (text.isascii() and text.isdigit() and 1 <= int(text) <= 10_000):
         raise argparse.ArgumentTypeError(f"{shown(text)}: accepted is a whole number of at least 1, or all")
     return text
-
-
-def _in(unit: str, units: dict[str, float]) -> Callable[[str], float]:
-    """What reads a positive number with one of these units as a number in `unit`."""
-
-    def read(text: str) -> float:
-        quantity = re.fullmatch(rf"(\d+\.?\d*|\.\d+) ?({'|'.join(units)})", text, re.ASCII)
-        if not quantity or not 0 < float(quantity[1]) < 1e9:
-            raise argparse.ArgumentTypeError(f"{shown(text)}: accepted is a number > 0 with {' or '.join(units)}")
-        return float(quantity[1]) * units[quantity[2]] / units[unit]
-
-    return read
 
 
 def _hours(text: str) -> float:

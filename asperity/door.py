@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from asperity.bundle import ROOT
-from asperity.film import CELLS, MATERIAL, RECOMMENDED, Film, pixels_for
+from asperity.film import MATERIAL, RECOMMENDED, Film, pixels_for
 from mesoscale.errors import InputError
 from mesoscale.inputs.definitions import definition
 from mesoscale.inputs.table import PAPER_ROWS
@@ -95,6 +95,7 @@ def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Map
     """The text of a scene; without a film its roughness is the paper's, by numbers to replace."""
     yield f"# yaml-language-server: $schema={ROOT / 'config' / 'scene.schema.json'}"
     yield f"# Every key with its default: {ROOT / 'config' / 'config.yaml'}"
+    yield "tails: [pad]  # the switch; law: the law of one cell as in the paper, too"
     if film is not None:
         yield "topography:"
         yield f"  scans: {json.dumps(list(film.settings.scans), ensure_ascii=False)}"
@@ -117,7 +118,6 @@ def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Map
         grid = f"pixels: {pixels_for(film.description['inputs'].get('q1'), film.description['cell_nm'])}"
     mechanics = ", ".join(f"{key}: {value}" for key, value in RECOMMENDED.items())
     yield f"contact: {{{mechanics}, {grid}}}  # asperities share one elastic half-space"
-    yield f"pad: {{cells: {CELLS}}}  # more cells: a surer answer"
     yield "device:  # a published beam, where you gave nothing else"
     defaults = {key: getattr(DeviceSettings(), key) for key in SHOWN_OF_DEVICE}
     for name, value in (defaults | dict(device)).items():

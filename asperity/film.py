@@ -13,18 +13,14 @@ import numpy as np
 
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import pull_off
-from mesoscale.device.electrode import presser, releases_by_cells
-from mesoscale.device.pad_results import switch_on_pad
-from mesoscale.device.pressing import pressing, pressure_to_compute
+from mesoscale.device.points import PadModel, central_point, on_pad_grid, plan_points, solve_point, surfaces_of
+from mesoscale.device.release import switch_on_pad
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
-from mesoscale.inputs.contact import FilmInputs, contact_of
+from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.definitions import definition
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import PAPER_ROWS, check_resolved, film_table, input_table
-from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
-from mesoscale.pad.curves import assemble
-from mesoscale.pad.memory import flats_of
 from mesoscale.settings import (
     ContactSettings,
     DeviceSettings,
@@ -202,9 +198,7 @@ class Film(_Shown):
 
         cycle = run_cycle(inputs, settings, NOMINAL_SEED, load_nN, hold=look)
         pad = partial(film_table, table, described["film"])
-        return Contact(
-            inputs, settings, cycle, *fields[0], _pad=lambda scatter: contact_of(pad(scatter).medians(), on_grid)
-        )
+        return Contact(inputs, settings, cycle, *fields[0], _pad=pad, on_grid=on_grid)
 
 
 @dataclass(frozen=True, repr=False)
@@ -215,7 +209,8 @@ class Contact(_Shown):
     ----------
     inputs, settings : what was computed.
     cycle : force against separation of closing and opening.
-    _pad : inputs and settings of a pad, which holds all places of the film, by their scatter (`pad.rms_scatter`).
+    _pad : uncertain inputs of a pad, which holds all places of the film, by their scatter (`pad.rms_scatter`).
+    on_grid : settings before the inputs were put in.
     pressure_GPa, gap_nm : maps at the largest load, shape (pixels, pixels); walls touch where the pressure is positive.
     """
 
@@ -224,7 +219,8 @@ class Contact(_Shown):
     cycle: Cycle
     pressure_GPa: np.ndarray
     gap_nm: np.ndarray
-    _pad: Callable[[Any], tuple[ContactInputs, ContactSettings]]
+    _pad: Callable[[Any], InputTable]
+    on_grid: ContactSettings
 
     def lines(self) -> Iterator[str]:
         """Where it touches, how much of it, and how hard it pulls."""
@@ -271,20 +267,14 @@ class Contact(_Shown):
         ------
         InputError : the pad never reaches the pressure that the switch presses with.
         """
-        device, pad = device or DeviceSettings(), pad or PadSettings(cells=CELLS)
-        inputs, settings = self._pad(pad.rms_scatter)
-        held, area = pressing(device), settings.length_nm**2
-        grid = plan_grid(
-            inputs,
-            settings,
-            pad.piloted(isinstance(inputs, FilmInputs)),
-            pressure_to_compute(held),
-            pressed_GPa=presser(held),
-        )
-        seeds = range(FIRST_SEED, FIRST_SEED + pad.cells)
-        cells = assemble(grid, list(close_cells(inputs, settings, grid, seeds, progress)), area)
-        flats = flats_of(inputs, settings)
-        return Switch(switch_on_pad(cells, flats, device, area, partial(releases_by_cells, device, cells, flats)))
+        device, pad = device or DeviceSettings(), pad or PadSettings()
+        table = self._pad(pad.rms_scatter)
+        central = central_point(table, self.on_grid, device)
+        solved = solve_point(central, on_pad_grid(self.on_grid, table), pad.cells, surfaces_of(0), progress)
+        if solved.pad is None:
+            raise InputError(solved.refused)
+        model = PadModel(solved, plan_points(table, self.on_grid, device, 0), ())
+        return Switch(switch_on_pad(model, self.on_grid.length_nm**2))
 
 
 @dataclass(frozen=True, repr=False)
@@ -293,7 +283,7 @@ class Switch(_Shown):
 
     Attributes
     ----------
-    content : as device/pad_switch.json of a scene without draws.
+    content : as device/pad_switch.json of a scene without points.
     """
 
     content: dict[str, Any]
@@ -301,7 +291,7 @@ class Switch(_Shown):
     @property
     def states(self) -> dict[str, Any] | None:
         """What the switch does: the bending electrode, or the plate of a given spring; None where nothing is known."""
-        return self.content.get("beam") or self.content["mean"]
+        return self.content["central"]
 
     @property
     def release_V(self) -> float:

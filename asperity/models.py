@@ -14,14 +14,12 @@ from mesoscale.calibration.observables import LEVELS, force_levels_nN
 from mesoscale.calibration.observed import separations_at
 from mesoscale.checks import check_seed
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
-from mesoscale.device.switch import drive_switch
 from mesoscale.errors import InputError
 from mesoscale.law.branches import laws_of
-from mesoscale.law.compact import Law
 from mesoscale.law.parameters import PARAMETERS
-from mesoscale.pad.cells import PadGrid, close_cells
+from mesoscale.pad.cells import PadGrid, close_cells, sample_cells
 from mesoscale.pad.curves import assemble
-from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings, Settings
+from mesoscale.settings import ContactSettings, LawSettings, Settings
 
 Numbers = Sequence[Sequence[float]]
 Config = Mapping[str, Any]
@@ -151,31 +149,14 @@ def _pad(values: Sequence[float], config: Config) -> list[list[float]]:
     separations = np.array(_separations(config))
     grid = PadGrid(separations, np.array([len(separations) - 1]))
     inputs = ContactInputs(**dict(zip(INPUTS, values, strict=True)))
-    cells = list(close_cells(inputs, contact, grid, range(first, first + count)))
-    pad = assemble(grid, cells, contact.length_nm**2)
+    cells = sample_cells(inputs, count, first)
+    pad = assemble(grid, cells, list(close_cells(inputs, contact, grid, cells)), contact.length_nm**2)
     return [
-        (1e3 * pad.closing.mean(axis=0).sum(axis=0)).tolist(),
-        (1e3 * pad.opening[:, 0].mean(axis=0).sum(axis=0)).tolist(),
+        (1e3 * pad.mean(pad.closing).sum(axis=0)).tolist(),
+        (1e3 * pad.mean(pad.opening[:, 0]).sum(axis=0)).tolist(),
     ]
 
 
-def _switch(values: Sequence[float], config: Config) -> list[list[float]]:
-    law = _settings(LawSettings, config, "law")
-    count = len(PARAMETERS)
-    laws = [
-        Law(
-            **dict(zip(PARAMETERS, np.array(part)[:, None], strict=True)),
-            hamaker=np.array([values[-1]]),
-            rho_a_nm=law.rho_a_nm,
-            shield_nm=law.shield_nm,
-        )
-        for part in (values[:count], values[count : 2 * count])
-    ]
-    states = drive_switch(_settings(DeviceSettings, config, "device"), *laws)
-    return [[float(states.pull_in_V[0]), float(states.release_V[0]), float(states.stuck[0])]]
-
-
-_BRANCHES = tuple(f"{branch} {name}" for branch in ("closing", "opening") for name in PARAMETERS)
 MODELS = {
     model.name: model
     for model in (
@@ -212,15 +193,6 @@ MODELS = {
             ("seed", "cells", "separations_nm", "contact"),
             _pad,
             lambda config: [len(_separations(config))] * 2,
-        ),
-        Model(
-            "switch",
-            "a switch on a law",
-            (*_BRANCHES, "hamaker"),
-            ("pull-in (V), release (V; 0: stuck), stuck (1 or 0)",),
-            ("law", "device"),
-            _switch,
-            lambda config: [3],
         ),
     )
 }

@@ -15,8 +15,8 @@ RENAMED = {
     },
     "contact.surface.skewness": "contact.surface.moments.skewness",
     "contact.surface.kurtosis": "contact.surface.moments.kurtosis",
-    "pad.pilot_cells": "pad.grid.pilot_cells",
-    "pad.depths": "pad.grid.depths",
+    "pad.draws": "pad.points",
+    "pad.draw_cells": "pad.point_cells",
     "device.bow_deviation_nm": "device.spread.bow_nm",
     "device.tilt_deviation_nm": "device.spread.tilt_nm",
 }
@@ -37,8 +37,7 @@ REPLACED = {
     "contact.unloading_radius": "take mechanics: coupled where opening matters",
     "contact.merge": "take mechanics: coupled, whose repulsion does not fall where asperities merge",
     "coupling": "see target model_form",
-    "pad.max_pressure_MPa": "it follows from the switch",
-    "pad.grid.max_pressure_MPa": "it follows from the switch",
+    **{f"pad.{key}": "it follows from the switch" for key in ("max_pressure_MPa", "pilot_cells", "depths", "grid")},
     "pad.gap_cutoff_high_nm": "for another range of D0 than up to 0.3 nm give inputs.gap_cutoff",
 }
 FORMER_KEYS = {

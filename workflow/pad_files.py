@@ -1,91 +1,114 @@
-"""Cells and draws of the pad from the files of their chunks."""
+"""pad/model.h5 and the files of its parts: the pads that were pressed, and the switches on them."""
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
 
-import numpy as np
-
-from mesoscale.device.failure import Population, with_pad_scatter
-from mesoscale.device.release import Model, cutoff_range, model_of
-from mesoscale.errors import InputError
-from mesoscale.inputs.contact import contact_of
+from mesoscale.device.points import Design, Pad, PadModel, Point, Solved, central_point, plan_points
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import from_rows
-from mesoscale.pad.cells import grid_of_rows
+from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.draws import laws_of_rows, plan_draws
-from mesoscale.pad.memory import Flats, flats_of
-from mesoscale.pad.response import SampledPad
-from mesoscale.settings import ContactSettings, DeviceSettings, FailureSettings
-from workflow.contact_settings import contact_settings
-from workflow.job import settings_from_job
-from workflow.results import load_csv, load_h5, load_numbers
+from mesoscale.pad.memory import Flats
+from mesoscale.settings import ContactSettings, DeviceSettings
+from workflow.results import Dataset, load_csv, load_h5, write_h5
+
+STATES = ("pull_in_V", "release_V", "capacitance_fF", "landed_share", "deepened")
+CURVES = {
+    "separation_nm": ("nm", "separation, falling", ("separation",)),
+    "depth": ("1", "position in separation_nm from which the pad is opened", ("depth",)),
+    "weight": ("1", "share of each cell in the pad", ("cell",)),
+    "first_contact_nm": ("nm", "first contact", ("cell",)),
+    "settled": ("1", "whether flow came to rest", ("cell",)),
+    "closing_GPa": ("GPa", "repulsive and attractive pressure while closing", ("cell", "force", "separation")),
+    "opening_GPa": (
+        "GPa",
+        "the same while opening from each depth; not a number below it",
+        ("cell", "depth", "force", "separation"),
+    ),
+}
 
 
-def load_cells(grid: str, chunks: Sequence[str], cell_area_nm2: float) -> PadCells:
-    """The cells of pad/cells/ (nN) at the separations of pad/grid.csv."""
-    groups = [load_h5(path)[0]["cells"] for path in chunks]
-    return PadCells(
-        grid_of_rows(load_numbers(grid)),
-        np.concatenate([group["first_contact_nm"] for group in groups]),
-        np.concatenate([group["closing_nN"] for group in groups]) / cell_area_nm2,
-        np.concatenate([group["opening_nN"] for group in groups]) / cell_area_nm2,
-        np.concatenate([group["settled"] for group in groups]).astype(bool),
-    )
+def write_solved(
+    path: str,
+    solved: Mapping[int, Solved],
+    provenance: Mapping[str, Any],
+    design: Design | None = None,
+) -> None:
+    """Write switches by their numbers, a group each; with the design, everything that was computed of the pad."""
+    groups: dict[str, dict[str, Dataset]] = {}
+    attributes: dict[str, dict[str, Any]] = {}
+    for number, one in solved.items():
+        name = f"point_{number:04d}"
+        groups[name] = {} if one.pad is None else _curves(one.pad.cells)
+        device = one.point.device.model_dump(mode="json", exclude={"spread"})
+        attributes[name] = {
+            **one.states,
+            "halves_V": one.halves_V,
+            "refused": one.refused,
+            "inputs": one.point.values,
+            "gap_cutoff_nm": one.point.gap_cutoff_nm,
+            "device": device,
+            **(asdict(one.pad.flats) if one.pad else {}),
+        }
+    if design is not None:
+        drawn = Dataset(design.probability, "1", "probability of what is drawn, by `drawn`", ("point", "drawn"))
+        groups["design"] = {"probability": drawn}
+        attributes["design"] = {"drawn": list(design.names), "causes": list(design.causes)}
+    write_h5(path, groups, {}, provenance, attributes)
 
 
-def load_draws(
-    files: Sequence[str], inputs: InputTable, contact: ContactSettings, count: int, cells: int
-) -> list[SampledPad]:
-    """The pads of pad/draws/ with their inputs; so many draws, each of so many cells."""
-    draws = plan_draws(inputs, contact, count, cells)
-    curves = laws_of_rows((row for path in files for row in load_csv(path)), draws, contact)
-    return [
-        SampledPad(draw.values, draw.gap_cutoff_nm, cells, curve) for draw, curve in zip(draws, curves, strict=True)
-    ]
+def _curves(cells: PadCells) -> dict[str, Dataset]:
+    values = {
+        "separation_nm": cells.grid.separation_nm,
+        "depth": cells.grid.depths,
+        "weight": cells.weight,
+        "first_contact_nm": cells.first_contact_nm,
+        "settled": cells.settled.astype(int),
+        "closing_GPa": cells.closing,
+        "opening_GPa": cells.opening,
+    }
+    return {name: Dataset(values[name], *described) for name, described in CURVES.items()}
 
 
-class Spread(NamedTuple):
-    """The pad over everything that is uncertain.
+class Points:
+    """All points of a scene by their numbers, of which 0 is the central one."""
 
-    Attributes
-    ----------
-    inputs : of the pad.
-    cells, flats : at central inputs.
-    cutoffs_nm : range of D0.
-    model : of the pad at other inputs.
-    """
-
-    inputs: InputTable
-    cells: PadCells
-    flats: Flats
-    cutoffs_nm: tuple[float, float]
-    model: Model
+    def __init__(self, table: InputTable, contact: ContactSettings, device: DeviceSettings, count: int):
+        self.table, self.contact = table, contact
+        self.design = plan_points(table, contact, device, count)
+        self.by_number = dict(enumerate((central_point(table, contact, device), *self.design.points)))
 
 
-def load_spread(snakemake: Any, contact: ContactSettings) -> Spread:
-    """The pad of a job that has its inputs, grid, chunks and draws, and their `design`."""
-    inputs = from_rows(load_csv(snakemake.input.inputs))
-    middle, central = contact_of(inputs.medians(), contact)
-    flats, cutoff_nm = flats_of(middle, central), central.gap_cutoff_nm
-    cells = load_cells(snakemake.input.grid, snakemake.input.chunks, contact.length_nm**2)
-    draws = load_draws(snakemake.input.draws, inputs, contact, *snakemake.params.design)
-    model = model_of(cells, draws, inputs, flats, cutoff_nm)
-    return Spread(inputs, cells, flats, cutoff_range(cutoff_nm, draws), model)
+def points_of(inputs: str, contact: ContactSettings, device: DeviceSettings, count: int) -> Points:
+    """So many points and the central one, from pad/inputs.csv."""
+    return Points(from_rows(load_csv(inputs)), contact, device, count)
 
 
-def load_population(snakemake: Any) -> tuple[Population, float, float]:
-    """All switches of a job that `load_spread` takes, the deviation of `with_pad_scatter`, the share that may fail.
+def load_model(paths: Sequence[str], points: Points) -> PadModel:
+    """The pad from pad/model.h5, or from the files of its parts."""
+    solved = dict(item for path in paths for item in _of_file(path, points.by_number))
+    central = solved.pop(0)
+    return PadModel(central, points.design, tuple(solved[number] for number in sorted(solved)))
 
-    Raises
-    ------
-    InputError : the scene allows no share.
-    """
-    asked = settings_from_job(FailureSettings, snakemake.params.failure)
-    if asked.probability is None:
-        raise InputError("failure.probability = null: give the share of the switches that may fail, such as 1e-6")
-    contact = contact_settings(snakemake.params.contact, snakemake)
-    device = settings_from_job(DeviceSettings, snakemake.params.device)
-    pad = load_spread(snakemake, contact)
-    population = Population(pad.inputs, device, pad.cutoffs_nm, pad.model, asked.release_V)
-    return *with_pad_scatter(population, pad.cells, pad.flats, contact.length_nm**2), asked.probability
+
+def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solved]]:
+    groups, _, attributes = load_h5(path)
+    for name, said in attributes.items():
+        if not name.startswith("point_"):
+            continue
+        number, pad = int(name.removeprefix("point_")), None
+        if name in groups:
+            curves = groups[name]
+            cells = PadCells(
+                PadGrid(curves["separation_nm"], curves["depth"]),
+                curves["weight"],
+                curves["first_contact_nm"],
+                curves["closing_GPa"],
+                curves["opening_GPa"],
+                curves["settled"].astype(bool),
+            )
+            pad = Pad(cells, Flats(float(said["hamaker"]), float(said["offset_nm"])))
+        states = {key: float(said[key]) for key in STATES if key in said}
+        first, second = (float(value) for value in said["halves_V"])
+        yield number, Solved(points[number], pad, states, (first, second), str(said["refused"]))

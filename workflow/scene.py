@@ -75,6 +75,12 @@ class Scene(Settings):
         default=(),
         description="stages to run and report although no input is taken from them",
     )
+    tails: tuple[Literal["law", "pad"], ...] = Field(
+        default=("law", "pad"),
+        min_length=1,
+        description="what is made of the inputs: the law of one cell with its uncertainty, as in the paper; the pad of "
+        "many cells and the switch on it",
+    )
     inputs: InputsSettings = InputsSettings()
     hardness: HardnessSettings = HardnessSettings()
     elastic: ElasticSettings = ElasticSettings()

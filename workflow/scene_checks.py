@@ -14,6 +14,7 @@ from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.table import check_literature
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.contact import base_modulus
+from mesoscale.settings.device import SPREAD
 from workflow.scene import ROOT, Scene
 from workflow.terminal.cost import history_s
 from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
@@ -92,6 +93,7 @@ def _stages(scene: Scene) -> Iterator[str]:
             "contacts have a history; choose contact.model: plastic"
         )
     device, side_um = scene.device, scene.contact.length_nm / 1000
+    yield from _too_few_points(scene)
     if device.area_um2 < side_um**2 and not scene.cell_follows_film:
         yield (
             f"device: an electrode of {device.area_um2:g} um^2 (electrode_um2, or length_um times width_um) is smaller "
@@ -108,6 +110,18 @@ def _stages(scene: Scene) -> Iterator[str]:
         yield "topography.scans: empty, and synthetic.small_scans and large_scans are 0: nothing to analyse; give scans"
     if "elastic" in scene.stages() and scene.elastic.dft.engine == "pyscf":
         yield from _unknown_bases(scene)
+
+
+def _too_few_points(scene: Scene) -> Iterator[str]:
+    """A line on points too few to tell causes apart: for a curve of second degree each, a constant, and one over."""
+    spread = [name for name in SPREAD if getattr(scene.device.spread, name) is not None] if scene.device.bends else []
+    inputs = len(scene.inputs.rows()) + scene.unequal_places
+    needed = 2 * (inputs + ("gap_cutoff" not in scene.inputs.rows()) + len(spread)) + 2
+    if "pad" in scene.tails and 0 < scene.pad.points < needed:
+        yield (
+            f"pad.points = {scene.pad.points}: {needed // 2 - 1} inputs and properties of the device vary, whose parts "
+            f"in the spread so few points cannot tell apart; accepted are 0 (no interval) or at least {needed}"
+        )
 
 
 def _no_switch(device: DeviceSettings) -> str:
@@ -151,14 +165,12 @@ def _machine(scene: Scene) -> Iterator[str]:
             f"contact.pixels = {pixels}: a contact needs {needed / 1000:.1f} GB of memory, this machine has "
             f"{present / 1000:.1f}; take fewer pixels"
         )
-    together = {"pad.grid.pilot_cells": scene.pad.grid.pilot_cells}
     if scene.adhesion.pads:
-        together["adhesion.cells"] = scene.adhesion.cells
-    for key, cells in together.items():
+        cells = scene.adhesion.cells
         if present >= contact_MB(scene.contact) and (needed := contact_MB(scene.contact, cells)) > present:
             yield (
-                f"{key} = {cells}: they are closed side by side, which needs {needed / 1000:.1f} GB of memory, this "
-                f"machine has {present / 1000:.1f}; take fewer of them"
+                f"adhesion.cells = {cells}: they are closed side by side, which needs {needed / 1000:.1f} GB of "
+                f"memory, this machine has {present / 1000:.1f}; take fewer of them"
             )
     runs = scene.uncertainty.direct_runs
     if (needed := propagation_MB(scene.uncertainty)) > present:

@@ -6,20 +6,14 @@ at central inputs. All places have the same RMS height, so that pads of few cell
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mesoscale.device.electrode import presser, releases_by_cells
-from mesoscale.device.pad_results import switch_on_pad
-from mesoscale.device.pressing import pressing, pressure_to_compute
-from mesoscale.inputs.contact import contact_of
+from mesoscale.device.points import Point, solve_point
 from mesoscale.inputs.table import from_rows
-from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
-from mesoscale.pad.curves import assemble
-from mesoscale.pad.memory import flats_of
+from mesoscale.pad.cells import FIRST_SEED
 from mesoscale.settings import ContactSettings
 from mesoscale.tables import load_table
 from mesoscale.topography.pooling import Pooled, pool
@@ -44,21 +38,18 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """The release of each pad."""
     scene, results = load_scene(given.scene), Path("results") / given.scene
     medians = from_rows(load_table(results / "pad/inputs.csv")).medians()
-    device, planned = pressing(scene.device), scene.pad.piloted(scene.unequal_places)
     for side in given.sides:
         described = _described(results, scene, side)
         height = described.film["rms"]
         values = {**medians, "rms": 0.5 * (height["a"] + height["b"]), "rms_scatter": 0.0}
         for spacing in given.spacings:
             grid_points = {"pixels": round(side / spacing), "surface": described.surface}
-            inputs, contact = contact_of(values, ContactSettings(**dict(scene.contact) | grid_points).on_cell(side))
-            grid = plan_grid(inputs, contact, planned, pressure_to_compute(device), pressed_GPa=presser(device))
-            count, flats = round(given.area / (side / 1000.0) ** 2), flats_of(inputs, contact)
+            contact = ContactSettings(**dict(scene.contact) | grid_points).on_cell(side)
+            point = Point(values, contact.gap_cutoff_nm, scene.device)
+            count = round(given.area / (side / 1000.0) ** 2)
             for repeat in range(given.repeats):
-                first = FIRST_SEED + APART * repeat
-                cells = assemble(grid, list(close_cells(inputs, contact, grid, range(first, first + count))), side**2)
-                released = partial(releases_by_cells, scene.device, cells, flats)
-                found = switch_on_pad(cells, flats, scene.device, side**2, released)
+                solved = solve_point(point, contact, count, FIRST_SEED + APART * repeat)
+                opening = solved.pad.law.opening[0].sum(axis=0) if solved.pad else np.array([np.nan])
                 yield {
                     "scene": given.scene,
                     "side_nm": side,
@@ -66,8 +57,8 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
                     "cells": count,
                     "repeat": repeat,
                     "rms_nm": values["rms"],
-                    "release_V": (found["beam"] or {}).get("release_V", np.nan),
-                    "pull_off_kPa": -1e6 * float(np.nanmin(cells.opening[:, -1].mean(axis=0).sum(axis=0))),
+                    "release_V": solved.states.get("release_V", np.nan),
+                    "pull_off_kPa": -1e6 * float(np.nanmin(opening)),
                 }
 
 

@@ -11,12 +11,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from evidence.pad.number_of_cells import INPUTS, PIXELS, LOADS_MPa, deepest_kPa, opened_grid
-from mesoscale.pad.cells import FIRST_SEED, close_cells
+from mesoscale.contact import ContactInputs
+from mesoscale.pad.cells import FIRST_SEED, Cell, PadGrid, close_cells, plan_grid
 from mesoscale.pad.curves import PadCells, assemble
 from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
+
+INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
+LOADS_MPa = (2.0, 6.6)
+PIXELS = 128
+PILOTS = 32
 
 SIDE = 4
 """Cells along a large surface."""
@@ -33,12 +38,35 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """Closing pressure and deepest net pressure on opening of both, for each load."""
     contact = ContactSettings(pixels=PIXELS)
     wide = contact.model_copy(update={"pixels": SIDE * PIXELS, "length_nm": SIDE * contact.length_nm})
-    grid = opened_grid(contact)
-    small = close_cells(INPUTS, contact, grid, range(FIRST_SEED, FIRST_SEED + given.cells))
-    large = close_cells(INPUTS, wide, grid, range(FIRST_LARGE_SEED, FIRST_LARGE_SEED + given.large))
-    yield from comparison_rows(
-        assemble(grid, list(small), contact.length_nm**2), assemble(grid, list(large), wide.length_nm**2)
-    )
+    grid = opened_grid(INPUTS, contact)
+    small = closed(INPUTS, contact, grid, random_cells(given.cells, FIRST_SEED))
+    yield from comparison_rows(small, closed(INPUTS, wide, grid, random_cells(given.large, FIRST_LARGE_SEED)))
+
+
+def random_cells(count: int, first_seed: int) -> list[Cell]:
+    """Independent places of a film, as a device has them."""
+    numbers = np.random.default_rng([first_seed, 0x9A11]).normal(size=(count, 2)).tolist()
+    return [Cell(first_seed + k, rough, plane, 1.0 / count) for k, (rough, plane) in enumerate(numbers)]
+
+
+def closed(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cells: Sequence[Cell]) -> PadCells:
+    """A pad of cells."""
+    return assemble(grid, cells, list(close_cells(inputs, contact, grid, cells)), contact.length_nm**2)
+
+
+def opened_grid(inputs: ContactInputs, contact: ContactSettings) -> PadGrid:
+    """Separations of the pad, opened from those at which pilot cells carry the loads."""
+    pilots, largest_GPa = random_cells(PILOTS, FIRST_SEED), max(LOADS_MPa) * 1e-3
+    grid = plan_grid(inputs, contact, pilots, lambda separation: np.full_like(separation, largest_GPa), step_nm=0.1)
+    shut = closed(inputs, contact, PadGrid(grid.separation_nm, np.empty(0, int)), pilots)
+    repelled = shut.mean(shut.closing)[0] * 1e3
+    depths = np.array([int(np.argmax(repelled >= load)) for load in LOADS_MPa])
+    return PadGrid(grid.separation_nm[: depths.max() + 1], depths)
+
+
+def deepest_kPa(net: Array) -> float:
+    """Largest net adhesive pressure of the mean of some cells, shape (cells, n); 0 where they only push."""
+    return max(-float(np.nanmin(net.mean(axis=0))), 0.0) * 1e6
 
 
 def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:

@@ -26,14 +26,11 @@ from mesoscale.device.beam_switch import BeamStates, solve_beam, solve_bent
 from mesoscale.device.electrode import with_pad
 from mesoscale.device.lumps import RELEASE, Lumps, Study, lumps_of, move
 from mesoscale.device.switch_export import spice_switch
-from mesoscale.inputs.contact import contact_of
-from mesoscale.inputs.table import from_rows
 from mesoscale.pad.local import LocalPad
-from mesoscale.pad.memory import PadLaw, attracting, flats_of, law_of
+from mesoscale.pad.memory import PadLaw, attracting
 from mesoscale.settings import DeviceSettings
 from workflow.contact_settings import contact_settings
-from workflow.pad_files import load_cells
-from workflow.results import load_csv
+from workflow.pad_files import load_model, points_of
 
 PAIRS = (4, 8, 12, 16, 20, 24, 28, 32, 48, 64)
 ELEMENTS = 1024
@@ -95,10 +92,12 @@ def central_pad(results: Path) -> tuple[DeviceSettings, PadLaw]:
     described = results / "topography" / "parameters.json"
     found = {"topography": described} if described.exists() else {}
     contact = contact_settings(scene["contact"], SimpleNamespace(input=found))
-    middle, contact = contact_of(from_rows(load_csv(results / "pad" / "inputs.csv")).medians(), contact)
-    chunks = sorted(str(path) for path in (results / "pad" / "cells").glob("*.h5"))
-    cells = load_cells(str(results / "pad" / "grid.csv"), chunks, contact.length_nm**2)
-    return DeviceSettings.model_validate(scene["device"]), law_of(cells, flats_of(middle, contact))
+    device = DeviceSettings.model_validate(scene["device"])
+    points = points_of(str(results / "pad" / "inputs.csv"), contact, device, scene["pad"]["points"])
+    pad = load_model([str(results / "pad" / "model.h5")], points).central.pad
+    if pad is None:
+        raise SystemExit(f"{results}: the pad at central inputs was not pressed")
+    return device, pad.law
 
 
 def _of(by: str, pairs: int, states: BeamStates, started: float) -> dict[str, Any]:

@@ -15,13 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from evidence.pad.large_surfaces import FIRST_LARGE_SEED, SIDE
-from evidence.pad.number_of_cells import INPUTS, deepest_kPa
+from evidence.pad.large_surfaces import FIRST_LARGE_SEED, INPUTS, PILOTS, SIDE, closed, deepest_kPa, random_cells
 from mesoscale.contact.displacement import close_by_separation
 from mesoscale.inputs.contact import ContactInputs, FilmInputs
-from mesoscale.pad.cells import FIRST_SEED, FilmPieces, PadGrid, close_cells, plan_grid
-from mesoscale.pad.curves import PadCells, assemble
-from mesoscale.settings import ContactSettings, PadGridSettings
+from mesoscale.pad.cells import FIRST_SEED, Cell, close_cells, plan_grid, surface_of
+from mesoscale.pad.curves import assemble
+from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
 
@@ -48,24 +47,29 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     grid = plan_grid(
         FILM,
         contact,
-        PadGridSettings(pilot_cells=32, depths=2),
+        random_cells(PILOTS, FIRST_SEED),
         lambda separation: np.full_like(separation, LARGEST_GPa),
+        step_nm=0.1,
+        depths=2,
     )
-    seeds = range(FIRST_SEED, FIRST_SEED + given.cells)
-    pads = {"film": closed(FILM, contact, grid, seeds), "alike": closed(MEDIAN, contact, grid, seeds)}
+    cells = random_cells(given.cells, FIRST_SEED)
+    pads = {"film": closed(FILM, contact, grid, cells), "alike": closed(MEDIAN, contact, grid, cells)}
     for kind, sign in (("smooth", -1), ("rough", 1)):
-        pads[kind] = closed(at_rms(float(np.exp(sign * SCATTER))), contact, grid, seeds[: len(seeds) // 2])
+        pads[kind] = closed(at_rms(float(np.exp(sign * SCATTER))), contact, grid, cells[: len(cells) // 2])
     wide = contact.model_copy(update={"pixels": SIDE * PIXELS, "length_nm": SIDE * contact.length_nm})
     large, assembled = [], []
     for seed in range(FIRST_LARGE_SEED, FIRST_LARGE_SEED + given.large):
         factors = np.exp(SCATTER * np.random.default_rng([seed, 0x91ACE]).normal(size=(SIDE, SIDE)))
-        heights = FilmPieces(MEDIAN, wide).surface(seed) * np.kron(factors, np.ones((PIXELS, PIXELS)))
+        (large_cell,) = random_cells(1, seed)
+        heights = surface_of(MEDIAN, wide, large_cell) * np.kron(factors, np.ones((PIXELS, PIXELS)))
         from_plane = grid.separation_nm + float(heights.mean())
         large.append(close_by_separation(MEDIAN, wide, heights, from_plane, grid.depths))
         for k, factor in enumerate(factors.ravel().tolist()):
-            assembled += close_cells(at_rms(factor), contact, grid, [FIRST_LARGE_SEED + SIDE**2 * seed + k])
-    pads["direct"] = assemble(grid, large, wide.length_nm**2)
-    pads["assembled"] = assemble(grid, assembled, contact.length_nm**2)
+            (small,) = random_cells(1, FIRST_LARGE_SEED + SIDE**2 * seed + k)
+            assembled += close_cells(at_rms(factor), contact, grid, [small])
+    alone = [Cell(0, 0.0, 0.0, 1.0 / len(large))]
+    pads["direct"] = assemble(grid, alone * len(large), large, wide.length_nm**2)
+    pads["assembled"] = assemble(grid, alone * len(assembled), assembled, contact.length_nm**2)
     for k, place in enumerate(grid.depths.tolist()):
         about = {"mechanics": given.mechanics, "from_nm": float(grid.separation_nm[place])}
         closing = {name: pad.closing[:, 0, place] * 1e3 for name, pad in pads.items()}
@@ -77,11 +81,6 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
 def at_rms(factor: float) -> ContactInputs:
     """Inputs of a place whose RMS height is so many times the median one."""
     return replace(MEDIAN, rms=MEDIAN.rms * factor)
-
-
-def closed(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, seeds: Sequence[int]) -> PadCells:
-    """The cells of a pad."""
-    return assemble(grid, list(close_cells(inputs, contact, grid, seeds)), contact.length_nm**2)
 
 
 def comparisons(about: Mapping[str, Any], of: Mapping[str, Array]) -> Iterator[dict[str, Any]]:

@@ -6,15 +6,19 @@ switches are drawn and solved one by one (`brute_force`), and the rare-event met
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from time import process_time
 from typing import Any
 
 import numpy as np
+from scipy.stats import qmc
 
+from evidence.pad.closed_form import ClosedForm
 from mesoscale.device.failure import Population, corrected, learn
-from mesoscale.device.pressing import EXACT
+from mesoscale.device.points import Point, point_of, values_at
+from mesoscale.device.pressing import EXACT, pressure_to_compute
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
-from mesoscale.pad.response import PadResponse
+from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import DeviceSettings
 
 PLATE = DeviceSettings(spring_N_per_m=170.0, spread=EXACT)
@@ -29,28 +33,54 @@ TABLE = InputTable(
     ),
     np.eye(3),
 )
-PADS = PadResponse(
-    names=("e_star",),
-    centre=np.array([90.0]),
-    half=np.array([10.0]),
-    rms_nm=9.0,
-    gap_cutoff_nm=0.165,
-    closing=np.array([-4.0, 0.2, 0.3, 3.0, 0.0, 0.0, 0.05]),
-    opening=np.array([3.5, 0.3, 0.0, 0.2, 0.05]),
-    attraction=np.array([-1.5, 0.1, 0.0, -1.2, 0.95, 0.5]),
-    lifted=0.0,
-    offset=True,
-)
-"""The closed form of any pad, with numbers near those of Table 1."""
 CUTOFFS_NM = (0.165, 0.265)
 ATTRACTIONS = {"1e-2": 1.42, "1e-3": 1.29}
 """Factors on the attraction with which so many switches fail."""
 METHODS = ("brute_force", "rare_event")
 
 
-def population() -> Population:
-    """The plates of the study."""
-    return Population(TABLE, PLATE, CUTOFFS_NM, (PADS, None), 0.0)
+@dataclass(frozen=True)
+class KnownPad:
+    """A pad whose curves are known, so that all its cells agree."""
+
+    law: PadLaw
+
+    @property
+    def halves(self) -> tuple[PadLaw, PadLaw]:
+        """The same curves twice."""
+        return self.law, self.law
+
+
+def known_pad(point: Point, *_: int) -> KnownPad:
+    """The pad of a point, of a closed form with numbers near those of Table 1, as hard as its switch presses."""
+    rms, z = point.values["rms"], (point.values["e_star"] - 90.0) / 10.0
+    size, hamaker = np.log(rms / 9.0), point.values["hamaker"]
+    strength = -1.5 + 0.1 * z - 1.2 * np.log(point.gap_cutoff_nm / 0.165)
+    form = ClosedForm(
+        c0=-4.0 + 0.2 * z + 0.3 * size,
+        c1_per_nm=3.0 / rms,
+        c2_per_nm2=0.05 / rms**2,
+        b0_per_nm=(3.5 + 0.3 * z) / rms,
+        b1_per_nm2=0.2 / rms**2,
+        b2_per_nm2=0.05 / rms**2,
+        beta=float(np.exp(strength)) * hamaker,
+        m=0.95,
+        n=0.5,
+        lifted=0.0,
+        hamaker=hamaker,
+        offset_nm=point.gap_cutoff_nm,
+    )
+    s = np.linspace(0.05, 12.0, 1200) * rms
+    return KnownPad(form.pressed(pressure_to_compute(point.device)(s), s))
+
+
+def population(points: int = 128) -> Population:
+    """The plates of the study, so many of them solved before."""
+    names = [*TABLE.names, "gap_cutoff_nm"]
+    units = qmc.LatinHypercube(len(names), rng=0).random(points)
+    rows = values_at(units, TABLE, PLATE, CUTOFFS_NM)
+    pads = [known_pad(point_of(row, TABLE.names, PLATE)) for row in rows]
+    return Population(TABLE, PLATE, CUTOFFS_NM, 0.0, known_pad, (units, pads))
 
 
 def arguments(parser: ArgumentParser) -> None:

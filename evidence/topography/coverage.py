@@ -24,7 +24,7 @@ from evidence.record import load
 from evidence.topography.recovery import errors_of, random_truth
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.pad.cells import FilmPieces
+from mesoscale.pad.cells import Cell, FilmPieces
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.description.end import rms_before
 from mesoscale.topography.description.heights import common_heights
@@ -233,7 +233,7 @@ def _first_contacts(
         roughness["rms"] *= float(np.exp(scatter * rng.standard_normal()))
         inputs = ContactInputs(hamaker=0.2, e_star=91, h_macro=2, h_prime=8, **roughness)
         pieces = FilmPieces(inputs, ContactSettings(**grid, surface=surface))
-        return -float(pieces.surface(int(rng.integers(2**31))).min())
+        return -float(pieces.surface(Cell(int(rng.integers(2**31)), 0.0, rng.normal(), 1.0)).min())
 
     spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
     hurst = hurst_from_slope(truth.slope, "areal")

@@ -1,8 +1,9 @@
 """Pull-in and release voltages as the inputs predict them, for many inputs at once.
 
-The equilibrium path is that of `mesoscale.device.switch`: W(s) = V^2 is the voltage that balances spring and contact at
-the separation s. Release is its lowest point between the repulsive wall and the barrier; it is kept with its sign, so
-that a switch that sticks lies below zero by as much as its spring lacks.
+The switch is a plate on a spring (`mesoscale.device.switch`) on the law of one cell: W(s) = V^2 is the voltage that
+balances spring and contact at the separation s. While it opens, the contact acts on the share of a bent beam that comes
+off last. Release is the lowest point of W between the repulsive wall and the barrier; it is kept with its sign, so that
+a switch that sticks lies below zero by as much as its spring lacks.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,12 +14,12 @@ from numpy.typing import NDArray
 
 from mesoscale.calibration.observables import LAWS, Observable
 from mesoscale.calibration.responses import Prediction
-from mesoscale.device.contact_law import column, onset_nm, scale_adhesion
 from mesoscale.device.spread import departed
 from mesoscale.device.statistics import analytic_pull_in_V
-from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, Switch, switch_from_settings
+from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, Switch, switch_from_settings
 from mesoscale.law.compact import Law
 from mesoscale.law.parameters import PARAMETERS
+from mesoscale.law.samples import column, onset_nm, pressure_GPa, scale_adhesion
 from mesoscale.settings import DeviceSettings, LawSettings
 
 Array = NDArray[np.float64]
@@ -28,7 +29,7 @@ ONE_DEVIATION = 0.841345
 TOUCH_NM = 20.0
 """Separation at the last touch, of films of 4 to 6 nm RMS; a release depends on it through the electric gap alone."""
 INNER, OUTER = 120, 60
-"""Separations in and beyond contact; release is then within 1e-3 of `drive_switch` (tests)."""
+"""Separations in and beyond contact; release is then within 1e-3 of that on a fine grid (tests)."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +39,12 @@ class SwitchModel:
     Attributes
     ----------
     switch, adhesion_scale, law, cells : cells that a landed switch averages.
+    last_share : share of the electrode that comes off last; 1 of a plate on a given spring.
     scatter_V : of pull-in and release, by what all devices share and by what differs between them (V).
     """
 
     switch: Switch
+    last_share: float
     adhesion_scale: float
     law: LawSettings
     cells: float
@@ -49,10 +52,21 @@ class SwitchModel:
 
     @classmethod
     def of(cls, device: DeviceSettings, law: LawSettings, cell_area_nm2: float) -> "SwitchModel":
-        """The switch that the settings describe."""
-        switch = switch_from_settings(device, law.rho_a_nm)
-        landed = switch.last_share * switch.area_m2 * 1e18
-        return cls(switch, device.adhesion_scale, law, max(landed / cell_area_nm2, 1.0), device_scatter_V(device))
+        """The switch that the settings describe.
+
+        A clamped beam held down at mid-span has the curvature 24 g / L^2 there, so what comes off last are the places
+        within a distance x of mid-span with 12 g x^2 / L^2 below the range of adhesion: a share sqrt(range / (3 g)).
+        """
+        switch, last_share = switch_from_settings(device), 1.0
+        if device.bends:
+            last_share = min(float(np.sqrt(law.rho_a_nm / (3.0 * switch.gap_nm))), 1.0)
+        cells = max(last_share * switch.area_m2 * 1e18 / cell_area_nm2, 1.0)
+        return cls(switch, last_share, device.adhesion_scale, law, cells, device_scatter_V(device))
+
+    def path_V2(self, separation_nm: Array, law: Law, share: float) -> Array:
+        """W(s) with the law on a share of the electrode; below zero where adhesion holds it without any voltage."""
+        contact = share * self.switch.area_m2 * pressure_GPa(separation_nm, law) * GPA
+        return self.switch.balancing_V2(separation_nm, self.switch.spring_force_N(separation_nm) + contact)
 
     def laws(self, values: Array, hamaker: Array) -> tuple[Law, Law]:
         """Laws of closing and opening from values (m, 8) of the observables LAWS."""
@@ -76,7 +90,7 @@ class SwitchModel:
         inner = d_c - np.maximum(depth, 1e-6) * np.linspace(1, 0, INNER) ** 2
         near = d_c + (onset - d_c) * np.linspace(0, 1, 25)[1:]
         grid = np.concatenate([inner, near, self._outside(onset)], axis=1)
-        path = self.switch.voltage_squared(grid, law, self.switch.last_share)
+        path = self.path_V2(grid, law, self.last_share)
         wall = np.argmax(np.where(grid <= d_c, path, -np.inf), axis=1)
         barrier = np.argmax(np.where(grid >= onset, path, -np.inf), axis=1)
         places = np.arange(grid.shape[1])
@@ -87,7 +101,7 @@ class SwitchModel:
         """Pull-in voltages, shape (m,)."""
         law = column(closing)
         grid = self._outside(onset_nm(law))
-        return signed_root(self.switch.voltage_squared(grid, law).max(axis=1))
+        return signed_root(self.path_V2(grid, law, 1.0).max(axis=1))
 
     def _outside(self, onset: Array) -> Array:
         """Separations from the onset of contact to rest, with the fold of an ideal plate among them, shape (m, p)."""

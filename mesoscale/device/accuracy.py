@@ -1,37 +1,42 @@
 """Error of the release on a pad against run time, one numerical choice at a time.
 
-Everything is done with the cells that the scene has computed; some cells are closed again, to time them and
-to see what their steps do.
+Cells, steps, depths and grid are judged by the release on a pad of the same surfaces that is pressed again for each;
+the number of points by the quantiles of the release over all points.
 """
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.contact.displacement import Displacement
 from mesoscale.device.beam import lumped_beam
-from mesoscale.device.beam_switch import solve_beam, solve_bent
+from mesoscale.device.beam_switch import ELEMENTS as ELEMENTS_USED
+from mesoscale.device.beam_switch import solve_bent
 from mesoscale.device.electrode import solve_deepened
 from mesoscale.device.pad_export import tables_of
-from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.switch import switch_from_settings
+from mesoscale.device.points import PadModel, Point, on_pad_grid, press_pad
+from mesoscale.device.release import ENDS
 from mesoscale.errors import InputError
-from mesoscale.inputs.contact import ContactInputs
-from mesoscale.pad.cells import PadGrid, close_cells
-from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import Flats, PadLaw, flats_of, law_of
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.cells import DEPTHS, FIRST_SEED, LONGEST_STEP_NM, STEP_RMS
+from mesoscale.pad.memory import PadLaw
 from mesoscale.settings import ContactSettings, DeviceSettings
 
 Array = NDArray[np.float64]
 Row = dict[str, Any]
 
-TIMED_CELLS = 2
-"""Cells that are closed again."""
-GROUPS = 4
+CELLS = (4, 8, 16, 32)
+"""Cells of a pad, beside twice as many as the most."""
+OTHERS = 4
+"""Pads of other surfaces, of each number of cells."""
+TIMES = (4.0, 2.0, 0.5)
+"""Steps of separation, in units of the pads' own."""
+MORE_DEPTHS = 12
+SIDES = (2, 4)
+"""Finer grids: so many times the pads' sites a side."""
 ELEMENTS = (16, 32, 64, 128, 256)
 FINEST_ELEMENTS = 512
 PAIRS = (8, 12, 16, 20, 28)
@@ -40,32 +45,38 @@ LOOSER = (1.0, 4.0, 16.0)
 """Factors on the errors that tables for circuits may have."""
 STICKS_WITHIN = 1e-3
 MOST_ATTRACTION = 1e3
-STEPS = (4, 2)
-"""Coarser grids: every so many separations of the pad's own."""
+RESAMPLES = 200
 
 
 def accuracy_points(
-    cells: PadCells,
-    inputs: ContactInputs,
+    model: PadModel,
+    table: InputTable,
     contact: ContactSettings,
-    device: DeviceSettings,
-    seeds: Sequence[int],
+    cells: int,
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[Row]:
     """Rows of accuracy/pad.csv.
 
     Parameters
     ----------
-    cells : of the pad at central inputs.
-    seeds : of surfaces of the pad's cells.
+    contact : of the scene.
+    cells : of the pad of a point.
+
+    Raises
+    ------
+    InputError : the pad at central inputs cannot be pressed.
     """
-    flats = flats_of(inputs, contact)
-    law = law_of(cells, flats)
-    again = list(_closed_again(inputs, contact, cells.grid, seeds[:TIMED_CELLS]))
+    central = model.central
+    if central.pad is None:
+        raise InputError(central.refused)
+    law, device, coarse = central.pad.law, central.point.device, on_pad_grid(contact, table)
+    press_pad(central.point, coarse, 2, FIRST_SEED)  # compiles
     parts: list[tuple[str, Iterator[Row]]] = [
-        ("cells", _cells(cells, flats, device, again[0][1])),
-        ("steps", _steps(again)),
-        ("depths", _depths(law, device)),
+        ("cells", _cells(central.point, coarse)),
+        ("steps", _steps(central.point, coarse, cells)),
+        ("depths", _depths(central.point, coarse, cells)),
+        ("grid", _grid(central.point, coarse, cells)),
+        ("points", _points(model, coarse, cells)),
         ("elements", _elements(law, device)),
         ("circuit", _circuit(law, device)),
     ]
@@ -94,78 +105,82 @@ def _clock() -> Array:
     return np.array([time.perf_counter(), time.process_time()])
 
 
-def _release_V(law: PadLaw, device: DeviceSettings, elements: int | None = None) -> tuple[float, Array]:
+def _release_V(law: PadLaw, device: DeviceSettings, elements: int = ELEMENTS_USED) -> tuple[float, Array]:
     """Release (0: stuck; NaN: not computed), and the wall and processor time it took."""
     started = _clock()
     try:
-        if not device.bends:
-            release = solve_on_pad(switch_from_settings(device), law, device.hold_voltage_V).release_V
-        elif elements is None:
-            release = solve_deepened(device, law)["release_V"]
-        else:
-            release = solve_beam(device, law, elements).release_V
+        release = solve_deepened(device, law, elements)["release_V"]
     except InputError:
         release = np.nan
     return release, _clock() - started
 
 
-def _cells(cells: PadCells, flats: Flats, device: DeviceSettings, cost: Array) -> Iterator[Row]:
-    """Fewer cells: disjoint groups of them, and the time to compute a group."""
-    wanted, _ = _release_V(law_of(cells, flats), device)
-    size = 8
-    while size <= cells.count // 2:
-        groups = [np.arange(k * size, (k + 1) * size) for k in range(min(cells.count // size, GROUPS))]
-        deviations = []
-        for group in groups:
-            weights = np.zeros(cells.count)
-            weights[group] = 1.0 / size
-            deviations.append(_release_V(law_of(cells, flats, weights), device)[0] - wanted)
-        error = float(np.sqrt(np.nanmean(np.square(deviations))))
-        metric = f"RMS deviation over {len(groups)} groups, V"
-        yield _row("release", "cells", size, error, metric, f"{cells.count} cells", size * cost)
-        size *= 2
+def _pressed_V(point: Point, contact: ContactSettings, cells: int, first_seed: int = FIRST_SEED, **choices: Any):
+    """Release on a pad that is pressed now, and the wall and processor time of pressing it."""
+    started = _clock()
+    law = press_pad(point, contact, cells, first_seed, **choices).law
+    cost = _clock() - started
+    return _release_V(law, point.device)[0], cost
 
 
-def _closed_again(
-    inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, seeds: Sequence[int]
-) -> Iterator[tuple[list[Displacement], Array]]:
-    """Cells at the separations of the pad and at every second and fourth of them, with the time of one."""
-    list(close_cells(inputs, contact, PadGrid(grid.separation_nm, np.empty(0, int)), seeds[:1]))  # compiles
-    for every in (1, *sorted(STEPS)):
-        # from the deepest, which stays, and with the depths that the coarse grid has
-        kept = np.arange(grid.separation_nm.size)[::-1][::every][::-1]
-        depths = np.flatnonzero(np.isin(kept, grid.depths))
-        started = _clock()
-        closed = list(close_cells(inputs, contact, PadGrid(grid.separation_nm[kept], depths), seeds))
-        yield closed, (_clock() - started) / len(seeds)
+def _cells(point: Point, contact: ContactSettings) -> Iterator[Row]:
+    """Fewer cells: pads of other surfaces."""
+    most = 2 * CELLS[-1]
+    wanted, _ = _pressed_V(point, contact, most)
+    for count in CELLS:
+        tried = [_pressed_V(point, contact, count, FIRST_SEED + (k + 1) * 10_000) for k in range(OTHERS)]
+        error = float(np.sqrt(np.nanmean([(release - wanted) ** 2 for release, _ in tried])))
+        metric, cost = f"RMS deviation over {OTHERS} pads, V", np.mean([cost for _, cost in tried], axis=0)
+        yield _row("release", "cells", count, error, metric, f"{most} cells", cost)
 
 
-def _steps(again: Sequence[tuple[list[Displacement], Array]]) -> Iterator[Row]:
-    """Coarser steps of separation: the force at the deepest closing, and the well on opening from there."""
-    (fine, _), *coarser = again
-    for every, (closed, cost) in zip(sorted(STEPS), coarser, strict=True):
-        for case, of in (("force at the deepest closing", _force), ("well on opening from there", _well)):
-            error = float(np.mean([abs(of(a) / of(b) - 1.0) for a, b in zip(closed, fine, strict=True)]))
-            metric = "mean relative deviation over cells"
-            yield _row(case, "steps of separation", every, error, metric, "the pad's own steps", cost)
+def _steps(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
+    """Longer and shorter steps of separation."""
+    own = min(STEP_RMS * point.values["rms"], LONGEST_STEP_NM)
+    wanted, _ = _pressed_V(point, contact, cells, step_nm=own * TIMES[-1])
+    for times in (*TIMES[:-1], 1.0):
+        release, cost = _pressed_V(point, contact, cells, step_nm=own * times)
+        metric, reference = "deviation, V", f"steps of {own * TIMES[-1]:.2g} nm"
+        yield _row("release", "steps of separation, nm", own * times, abs(release - wanted), metric, reference, cost)
 
 
-def _force(cell: Displacement) -> float:
-    return float(cell.closing[0, -1])
+def _depths(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
+    """Fewer and more depths in the memory."""
+    wanted, _ = _pressed_V(point, contact, cells, depths=MORE_DEPTHS)
+    for depths in (2, 3, DEPTHS, 2 * DEPTHS):
+        release, cost = _pressed_V(point, contact, cells, depths=depths)
+        yield _row("release", "depths", depths, abs(release - wanted), "deviation, V", f"{MORE_DEPTHS} depths", cost)
 
 
-def _well(cell: Displacement) -> float:
-    return float(-np.nanmin(cell.opening[-1].sum(axis=0)))
+def _grid(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
+    """Finer grids, on which the same seeds draw other surfaces: the difference of pads counts beside their scatter."""
+    releases = {}
+    for times in (1, *SIDES):
+        finer = contact.model_copy(update={"pixels": contact.pixels * times})
+        releases[finer.pixels] = [_pressed_V(point, finer, cells, FIRST_SEED + k * 10_000) for k in range(OTHERS)]
+    *coarser, finest = releases
+    wanted = float(np.mean([release for release, _ in releases[finest]]))
+    for pixels in coarser:
+        found = float(np.mean([release for release, _ in releases[pixels]]))
+        metric, cost = f"deviation of the mean of {OTHERS} pads, V", np.mean([c for _, c in releases[pixels]], axis=0)
+        yield _row("release", "sites a side", pixels, abs(found - wanted), metric, f"{finest} sites", cost)
 
 
-def _depths(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
-    """Fewer depths in the memory, the first and the last always among them."""
-    wanted, _ = _release_V(law, device)
-    count = law.depth_nm.size
-    for fewer in sorted({2, 3, (count + 1) // 2, count - 1} - {count}):
-        kept = np.unique(np.linspace(0, count - 1, fewer).round().astype(int))
-        release, cost = _release_V(replace(law, depth_nm=law.depth_nm[kept], opening=law.opening[kept]), device)
-        yield _row("release", "pad.grid.depths", fewer, abs(release - wanted), "deviation, V", f"{count} depths", cost)
+def _points(model: PadModel, contact: ContactSettings, cells: int) -> Iterator[Row]:
+    """Fewer points: quantiles of the release by random ones of them."""
+    release = model.states("release_V") if model.points else np.empty(0)
+    if release.size < 4:
+        return
+    rng, wanted = np.random.default_rng(0), np.quantile(release, ENDS)
+    _, cost = _pressed_V(model.points[int(model.solved[0])].point, contact, cells)
+    count = 16
+    while count <= release.size // 2:
+        picks = rng.permuted(np.tile(release, (RESAMPLES, 1)), axis=1)[:, :count]
+        errors = np.sqrt(np.mean((np.quantile(picks, ENDS, axis=1).T - wanted) ** 2, axis=0))
+        for end, error in zip(ENDS, errors.tolist(), strict=True):
+            metric, reference = f"RMS deviation of {RESAMPLES} choices, V", f"{release.size} points"
+            yield _row(f"{end:.0%} quantile of the release", "points", count, error, metric, reference, count * cost)
+        count *= 2
 
 
 def _elements(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:

@@ -1,7 +1,7 @@
 """What a device engineer simulates: the switch in motion, its spread as draws, and its corners.
 
 Corners lie some standard deviations out (`FAR`), in the direction of inputs, D0 and properties that moves the release
-(sticky, loose) or the pull-in (fast, slow) most: the slope of a plane through the switches of many draws.
+(sticky, loose) or the pull-in (fast, slow) most: the slope of a plane through the switches of all points.
 """
 
 from contextlib import suppress
@@ -15,20 +15,23 @@ from scipy.special import ndtr, ndtri
 from mesoscale.device.beam import beam_of, lumped_beam
 from mesoscale.device.beam_switch import ELEMENTS, BeamStates, loop_fF, solve_bent
 from mesoscale.device.electrode import with_pad
-from mesoscale.device.lumps import COUNTS, Study, lumps_of, move, study_lumps
-from mesoscale.device.release import SOLVED, Model, Point, pad_at, point_of, values_at
-from mesoscale.device.spread import varied
+from mesoscale.device.lumps import Study, lumps_of, move, study_lumps
+from mesoscale.device.points import PadModel, Point, point_of, press_pad, values_at
+from mesoscale.device.release import SOLVED
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.cells import FIRST_SEED
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import PadLaw
-from mesoscale.settings import DeviceSettings
+from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.settings.device import SPREAD
 
 Array = NDArray[np.float64]
 
-POINTS, DRAWS = 64, 16
-"""Switches behind the corners, and those of them that are written."""
+DRAWS = 16
+"""Points whose switches are written."""
+CORNER_CELLS = 64
+"""Cells of the pad of a corner, which stands alone."""
 FAR = (2.0, 1.5, 1.0, 0.5)
 """Deviations of the corners, the first that can be solved."""
 CORNERS = {
@@ -73,58 +76,55 @@ def study_on_pad(settings: DeviceSettings, law: PadLaw) -> tuple[Study, PadLaw]:
 
 
 def versions(
-    table: InputTable, settings: DeviceSettings, cutoffs_nm: tuple[float, float], model: Model, lumps: int = COUNTS[-1]
+    model: PadModel, table: InputTable, contact: ContactSettings, cutoffs_nm: tuple[float, float], lumps: int
 ) -> list[Version]:
-    """Corners and draws of the switch.
+    """Corners of the switch, whose pads are pressed for them, and its first solved points.
 
     Raises
     ------
-    InputError : too many draws, or a corner, cannot be solved.
+    InputError : too many points, or a corner, cannot be solved.
     """
-    from scipy.stats import qmc  # slow to import
+    solved, design, settings = model.solved, model.design, model.central.point.device
+    if len(solved) < max(SOLVED * len(model.points), 2):
+        raise InputError(f"device: only {len(solved)} of {len(model.points)} points of the switch can be solved")
+    z, corners = ndtri(design.probability[solved]), []
+    for number, (name, (state, sign)) in enumerate(CORNERS.items()):
+        plane = np.column_stack([np.ones(len(z)), z])
+        slope = np.linalg.lstsq(plane, model.states(state), rcond=None)[0][1:]
+        out: Array = np.asarray(sign * slope / (np.linalg.norm(slope) or 1.0), float)
 
-    count, given = len(table.rows) + 1 + len(varied(settings)), (table, settings, cutoffs_nm, model)
-    units = qmc.LatinHypercube(count, rng=0).random(POINTS)
-    made = [_version(f"draw_{k + 1:02d}", row, *given, lumps) for k, row in enumerate(units)]
-    solved = [k for k, version in enumerate(made) if version is not None]
-    if len(solved) < SOLVED * POINTS:
-        raise InputError(f"device: only {len(solved)} of {POINTS} draws of the switch can be solved")
-    z, drawn = ndtri(units[solved]), [version for version in made if version is not None]
-    corners = []
-    for name, (answer, sign) in CORNERS.items():
-        slope = np.linalg.lstsq(
-            np.column_stack([np.ones(len(z)), z]), np.array([version.row[answer] for version in drawn]), rcond=None
-        )[0][1:]
-        out = sign * slope / (np.linalg.norm(slope) or 1.0)
-        tried = (_version(name, ndtr(far * out), *given, lumps, far) for far in FAR)
-        if (corner := next((version for version in tried if version), None)) is None:
+        def corner(far: float, out: Array = out, name: str = name, number: int = number) -> Version | None:
+            values = values_at(ndtr(far * out)[None], table, settings, cutoffs_nm)[0]
+            point = point_of(values, table.names, settings)
+            with suppress(InputError):
+                law = press_pad(point, contact, CORNER_CELLS, FIRST_SEED + number).law
+                return _version(name, point, law, lumps, far)
+            return None
+
+        if (found := next((version for far in FAR if (version := corner(far))), None)) is None:
             raise InputError(f"device: the corner {name} of the switch cannot be solved, {FAR[-1]:g} deviations out")
-        corners.append(corner)
-    return [*corners, *drawn[:DRAWS]]
+        corners.append(found)
+    drawn = []
+    for k in solved:
+        if (pad := model.points[k].pad) and len(drawn) < DRAWS:
+            with suppress(InputError):
+                drawn.append(_version(f"draw_{k + 1:02d}", model.points[k].point, pad.law, lumps))
+    return [*corners, *drawn]
 
 
-def _version(
-    name: str,
-    units: Array,
-    table: InputTable,
-    settings: DeviceSettings,
-    cutoffs_nm: tuple[float, float],
-    model: Model,
-    lumps: int,
-    far: float = 0.0,
-) -> Version | None:
-    """The switch at probabilities of what varies; None where it has no solution."""
-    values = values_at(units[None], table, settings, *cutoffs_nm)[0]
-    point: Point = point_of(values, table.names, settings)
+def _version(name: str, point: Point, pad: PadLaw, lumps: int, far: float = 0.0) -> Version:
+    """The switch of a point by so many lumps.
+
+    Raises
+    ------
+    InputError : see `solve_bent`.
+    """
     device = point.device.model_copy(update={"tilt_nm": 0.0})
 
     def solve(law: PadLaw) -> BeamStates:
         return solve_bent(lumped_beam(device, lumps), device, law)
 
-    try:
-        states, law = with_pad(solve, pad_at(point, model))
-    except InputError:
-        return None
+    states, law = with_pad(solve, pad)
     properties = {name: getattr(device, name) for name in SPREAD if name != "tilt_nm"}
     inputs = {**point.values, "gap_cutoff_nm": point.gap_cutoff_nm, **properties}
     row = {"switch": name, "deviations": far, **inputs, "pull_in_V": states.pull_in_V, "release_V": states.release_V}

@@ -7,32 +7,31 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.beam_switch import press_GPa, solve_beam
+from mesoscale.device.beam_switch import ELEMENTS, press_GPa, solve_beam
 from mesoscale.device.pad_switch import solve_on_pad
 from mesoscale.device.statistics import never_closes
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError, NotComputed
-from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import Flats, PadLaw, deepened, law_of
+from mesoscale.pad.memory import Flats, PadLaw, deepened
 from mesoscale.settings import DeviceSettings
 
 T = TypeVar("T")
 
 DEEPENED_BY = 2
 """How often the pressure to which a pad was computed is doubled by continuing its curves."""
-RESAMPLES = 24
-"""Resampled pads: their standard deviation is known to 15 %."""
+COARSE = 64
+"""Elements of a beam where releases are only compared with each other."""
 
 
-def solve_electrode(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
-    """What the switch does on a pad: its bending electrode, or a flat plate where its spring is given.
+def solve_electrode(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> dict[str, float]:
+    """What the switch does on a pad: its bending electrode of so many elements, or a flat plate on a given spring.
 
     Raises
     ------
     InputError : see `solve_beam` and `solve_on_pad`.
     """
     if settings.bends:
-        beam = solve_beam(settings, law)
+        beam = solve_beam(settings, law, elements)
         return {
             "pull_in_V": beam.pull_in_V,
             "release_V": beam.release_V,
@@ -50,7 +49,7 @@ def solve_electrode(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
     }
 
 
-def solve_deepened(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
+def solve_deepened(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> dict[str, float]:
     """As `solve_electrode`; a pad that the switch presses harder than it was computed is continued (`deepened` is 1).
 
     Raises
@@ -58,7 +57,7 @@ def solve_deepened(settings: DeviceSettings, law: PadLaw) -> dict[str, float]:
     InputError : see `solve_electrode`; the hold voltage never closes the switch.
     NotComputed : it presses more than `2 ** DEEPENED_BY` times as hard as the pad was computed.
     """
-    state, pad = with_pad(lambda pad: solve_electrode(settings, pad), law)
+    state, pad = with_pad(lambda pad: solve_electrode(settings, pad, elements), law)
     if line := never_closes(settings, state["pull_in_V"]):
         raise InputError(line)
     return {**state, "deepened": float(pad is not law)}
@@ -103,16 +102,3 @@ def presser(settings: DeviceSettings) -> Callable[[NDArray[np.float64], NDArray[
             return 0.0  # a switch that does not pull in presses nothing; its answer has the reason
 
     return pressed_GPa
-
-
-def releases_by_cells(settings: DeviceSettings, cells: PadCells, flats: Flats) -> NDArray[np.float64]:
-    """Release voltages (V) on pads of resampled cells, shape (resamples,): what their finite number leaves open.
-
-    Raises
-    ------
-    InputError : see `solve_deepened`.
-    """
-    rng = np.random.default_rng(np.random.SeedSequence([0, 0xCE1]))
-    share = np.full(cells.count, 1.0 / cells.count)
-    weights = [rng.multinomial(cells.count, share) / cells.count for _ in range(RESAMPLES)]
-    return np.array([solve_deepened(settings, law_of(cells, flats, drawn))["release_V"] for drawn in weights])

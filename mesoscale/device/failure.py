@@ -2,48 +2,73 @@
 
 Sticking is a yes or no, from which no rare event can be learned. So the reserve of a switch is the logarithm of the
 factor on its attraction with which it just fails. It fails by itself where the reserve is below zero, and with k times
-the attraction where it is below ln k. One response of the reserve serves all laws of attraction and hold voltages.
+the attraction where it is below ln k. One response of the reserve serves all laws of attraction and hold voltages. It
+is learned from switches on pads that are pressed for them: those of the answer, and further ones where a failure is
+likely. Such switches also correct it.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Any, Protocol
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
 from mesoscale.device.beam_switch import ELEMENTS, closed_beam
-from mesoscale.device.electrode import DEEPENED_BY, RESAMPLES
-from mesoscale.device.pad_results import WORKS
+from mesoscale.device.electrode import COARSE, DEEPENED_BY
 from mesoscale.device.pad_switch import solve_on_pad
+from mesoscale.device.points import Point, point_of, values_at
 from mesoscale.device.pressing import held_V, pull_in_V
-from mesoscale.device.release import Model, Point, carried_share, pad_at, point_of, values_at
+from mesoscale.device.release import WORKS
 from mesoscale.device.spread import varied
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.curves import PadCells
-from mesoscale.pad.memory import Flats, PadLaw, attracting, deepened, law_of
+from mesoscale.pad.memory import PadLaw, attracting, deepened
 from mesoscale.settings import DeviceSettings
-from mesoscale.uncertainty.rare_events import LEAST, SAMPLES, Corrected, Process, Sampled, correct, sample_event
+from mesoscale.uncertainty.rare_events import (
+    LEAST,
+    REPEATS,
+    SAMPLES,
+    Corrected,
+    Process,
+    Sampled,
+    correct,
+    sample_event,
+)
 
 Array = NDArray[np.float64]
 Known = tuple[int, float]
 """A number of the population that is known, and its value."""
 
-FIRST = 96
-"""Switches of the first response."""
+
+class Pressed(Protocol):
+    """A pad that was pressed: its mean curves, and those of two halves of its cells."""
+
+    @property
+    def law(self) -> PadLaw: ...
+    @property
+    def halves(self) -> tuple[PadLaw, PadLaw]: ...
+
+
+Press = Callable[[Point, int, int], Pressed]
+"""Presses the pad of a point: with so many times the cells of the scene, and surfaces by a number."""
+FIRST = 48
+"""Switches of the first response beside those of the answer."""
 FEWEST = 32
 ROUNDS, BATCH = 5, 16
 """Switches are added so often, so many at once, where a failure is likely."""
-RUNS = 128
+RUNS = 64
 """Switches that correct a probability."""
 WIDE = 2.0
-"""The first switches have this many times the deviations of the inputs: rare events are far out."""
-COARSE = 64
-"""Elements of the beams that the response learns from; those that correct it have `ELEMENTS`."""
+"""Half of the first switches have this many times the deviations of the inputs: rare events are far out."""
+SURER = 4
+"""Times as many cells has a pad whose halves disagree on whether the switch fails."""
+SURFACES = 4000
+"""Numbers of surfaces."""
 LEAST_TIMES, MOST_TIMES, STEP = 0.1, 30.0, 0.1
 """Factors on the attraction that are tried, and the difference of their logarithms to which the reserve is known."""
 SPAN = 1.5
@@ -113,17 +138,18 @@ class Population:
 
     Attributes
     ----------
-    table, settings, cutoffs_nm, model : as `mesoscale.device.release` takes them.
+    table, settings, cutoffs_nm : as `mesoscale.device.points` takes them.
     release_V : a switch that is still closed at this voltage has failed.
-    pad_deviation : standard deviation of the reserve between pads of the switch's size.
+    press : of the pads.
+    solved : probabilities (m, dimension) of switches whose pads were pressed at the hold voltage, and these pads.
     """
 
     table: InputTable
     settings: DeviceSettings
     cutoffs_nm: tuple[float, float]
-    model: Model
     release_V: float
-    pad_deviation: float = 0.0
+    press: Press
+    solved: tuple[Array, Sequence[Pressed]]
 
     @property
     def dimension(self) -> int:
@@ -147,41 +173,45 @@ class Population:
 
     def columns(self, z: Array, hold_V: Array) -> Array:
         """What the response depends on."""
-        return np.column_stack([values_at(ndtr(z), self.table, self.settings, *self.cutoffs_nm), hold_V])
+        return np.column_stack([values_at(ndtr(z), self.table, self.settings, self.cutoffs_nm), hold_V])
 
     def points(self, z: Array, hold_V: float) -> list[Point]:
         """The switches of numbers (m, dimension)."""
         held = self.settings.model_copy(update={"hold_voltage_V": hold_V})
-        rows = values_at(ndtr(z), self.table, self.settings, *self.cutoffs_nm)
+        rows = values_at(ndtr(z), self.table, self.settings, self.cutoffs_nm)
         return [point_of(row, self.table.names, held) for row in rows]
 
-    def carried(self, z: Array, hold_V: float) -> Array:
-        """Logarithm of `carried_share`, shape (m,): below zero is beyond the model."""
-        return np.log([carried_share(point, self.model) for point in self.points(z, hold_V)])
-
-    def reserves(self, z: Array, hold_V: float) -> Array:
-        """Reserves of switches, shape (m,); NaN beyond the model."""
+    def reserves(self, z: Array, hold_V: float, pads: Sequence[Pressed] | None = None) -> Array:
+        """Reserves of switches, shape (m,), on pads that are pressed where none are given; NaN where one cannot be."""
         reserves = np.full(len(z), np.nan)
-        for k in np.flatnonzero(self.carried(z, hold_V) >= 0.0):
-            (point,) = self.points(z[k : k + 1], hold_V)
-            reserves[k] = Attracted(point.device, pad_at(point, self.model), self.release_V, COARSE).reserve()
+        for k, point in enumerate(self.points(z, hold_V)):
+            with suppress(InputError):
+                pad = self.press(point, 1, _surface(z[k])) if pads is None else pads[k]
+                reserves[k] = Attracted(point.device, pad.law, self.release_V, COARSE).reserve()
         return reserves
 
     def failed(self, z: Array, hold_V: float, times: float) -> NDArray[np.bool_]:
-        """Which switches fail and are not beyond the model, shape (m,); one that cannot be solved has failed."""
-        # pads of the switch's size differ: a pad that holds more by so much fails with so much less attraction
-        scatter = self.pad_deviation * np.random.default_rng(np.random.SeedSequence([0, 0x5CA])).normal(size=len(z))
-        failed = self.carried(z, hold_V) >= 0.0
-        for k in np.flatnonzero(failed):
-            (point,) = self.points(z[k : k + 1], hold_V)
-            with suppress(InputError):
-                switch = Attracted(point.device, pad_at(point, self.model), self.release_V, ELEMENTS)
-                failed[k] = switch.fails(times * float(np.exp(-scatter[k])))
+        """Which switches fail, shape (m,); one that cannot be solved has failed."""
+        points = self.points(z, hold_V)
+        return np.array([self._fails(point, _surface(row), times) for row, point in zip(z, points, strict=True)])
+
+    def _fails(self, point: Point, surface: int, times: float) -> bool:
+        def fails(law: PadLaw, elements: int) -> bool:
+            return Attracted(point.device, law, self.release_V, elements).fails(times)
+
+        try:
+            pad = self.press(point, 1, surface)
+            failed = fails(pad.law, ELEMENTS)
+            if any(fails(half, COARSE) != failed for half in pad.halves):
+                failed = fails(self.press(point, SURER, surface).law, ELEMENTS)
+        except InputError:
+            return True
         return failed
 
-    def beyond(self, hold_V: float) -> Sampled:
-        """The switches beyond the model."""
-        return sample_event(lambda z: (self.carried(z, hold_V), np.full(len(z), 1e-9)), self.dimension, 0.0, 0)
+
+def _surface(z: Array) -> int:
+    """Number of the surfaces of a switch."""
+    return crc32(z.tobytes()) % SURFACES
 
 
 def _with(z: Array, known: Known | None) -> Array:
@@ -198,16 +228,27 @@ class Response:
     switches: int
 
     def moments(self, z: Array, hold_V: float) -> tuple[Array, Array]:
-        """Mean and deviation of the reserve, the scatter between pads in it."""
-        mean, deviation = self.process(self.population.columns(z, np.full(len(z), hold_V)))
-        return mean, np.hypot(deviation, self.population.pad_deviation)
+        """Mean and deviation of the reserve."""
+        return self.process(self.population.columns(z, np.full(len(z), hold_V)))
 
     def sample(
-        self, times: float, hold_V: float, seed: int, known: Known | None = None, samples: int = SAMPLES
+        self,
+        times: float,
+        hold_V: float,
+        seed: int,
+        known: Known | None = None,
+        samples: int = SAMPLES,
+        repeats: int = 1,
     ) -> Sampled:
-        """The failures with `times` the attraction."""
-        dimension, threshold = self.population.dimension, float(np.log(times))
-        return sample_event(lambda z: self.moments(_with(z, known), hold_V), dimension, threshold, seed, samples)
+        """The failures with `times` the attraction; one run where probabilities are only compared."""
+        return sample_event(
+            lambda z: self.moments(_with(z, known), hold_V),
+            self.population.dimension,
+            float(np.log(times)),
+            seed,
+            samples,
+            repeats,
+        )
 
 
 def voltages(population: Population) -> Array:
@@ -230,20 +271,23 @@ def learned(population: Population, tell: Callable[[float, str], None], seed: in
     low, high = voltages(population)[[0, -1]]
     first = qmc.LatinHypercube(population.dimension, rng=rng).random(FIRST)
     z = ndtri(first) * np.where(np.arange(FIRST) % 2, 1.0, WIDE)[:, None]
+    units, pads = population.solved
+    known_z, hold_V = ndtri(units), population.hold_V
+    columns = population.columns(known_z, np.full(len(known_z), hold_V))
+    reserves = population.reserves(known_z, hold_V, pads)
     batches = [(z[k::VOLTAGES], float(volts)) for k, volts in enumerate(voltages(population))]
-    columns, reserves = np.empty((0, population.dimension + 1)), np.empty(0)
     number = 0
     while True:
-        tell(0.6 * number / ROUNDS, f"{len(reserves)} switches")
         for part, hold_V in batches:
+            tell(0.6 * number / ROUNDS, f"{len(reserves)} switches")
             columns = np.concatenate([columns, population.columns(part, np.full(len(part), hold_V))])
             reserves = np.concatenate([reserves, population.reserves(part, hold_V)])
         # a switch that fails with the least attraction says nothing of where others begin to
         within, known = np.isfinite(reserves), reserves > np.log(LEAST_TIMES) + STEP
         if within.sum() < FEWEST:
             raise InputError(
-                f"failure: {within.sum()} of {FIRST} switches are within what the pad was computed for; accepted are "
-                f"at least {FEWEST}; lower device.hold_voltage_V, or narrow the inputs"
+                f"failure: {within.sum()} of {len(reserves)} switches can be solved; accepted are at least {FEWEST}; "
+                "lower device.hold_voltage_V, or narrow the inputs"
             )
         if known.sum() < FEWEST:
             raise InputError(
@@ -262,19 +306,11 @@ def learned(population: Population, tell: Callable[[float, str], None], seed: in
 
 def corrected(response: Response, times: float, hold_V: float, seed: int = 0, runs: int = RUNS) -> Corrected:
     """Probability of a failure with `times` the attraction, the response corrected by so many runs."""
-    sampled = response.sample(times, hold_V, seed)
+    sampled = response.sample(times, hold_V, seed, repeats=REPEATS)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0xC0]))
     chosen = rng.permutation(len(sampled.points))[:runs]
     failed = response.population.failed(sampled.points[chosen], hold_V, times)
     return correct(sampled, failed, sampled.chance[chosen])
-
-
-def reserve_deviation(cells: PadCells, flats: Flats, settings: DeviceSettings, release_V: float) -> float:
-    """Standard deviation of the reserve on pads of resampled cells: what their finite number leaves open."""
-    rng = np.random.default_rng(np.random.SeedSequence([0, 0xCE1]))
-    share = np.full(cells.count, 1.0 / cells.count)
-    laws = [law_of(cells, flats, rng.multinomial(cells.count, share) / cells.count) for _ in range(RESAMPLES)]
-    return float(np.std([Attracted(settings, law, release_V, COARSE).reserve(0.01) for law in laws], ddof=1))
 
 
 def furthest_allowed(values: Array, probability: Array, allowed: float) -> float | None:
@@ -296,15 +332,15 @@ def furthest_allowed(values: Array, probability: Array, allowed: float) -> float
 def least_rms_nm(response: Response, times: float, hold_V: float, allowed: float) -> float | None:
     """Least RMS height (nm), all else varying, with which no more switches fail than allowed.
 
-    None where even the largest of `ROUGH` is too little, where nothing is allowed, or where roughness is no input.
+    None where even the largest of `ROUGH` is too little, or where roughness is no input.
     """
     population = response.population
-    if "rms" not in population.names or allowed <= 0.0:
+    if "rms" not in population.names:
         return None
     place = population.names.index("rms")
     middle = np.zeros((ROUGH.size, population.dimension))
     middle[:, place] = ROUGH
-    rms_nm = values_at(ndtr(middle), population.table, population.settings, *population.cutoffs_nm)[:, place]
+    rms_nm = values_at(ndtr(middle), population.table, population.settings, population.cutoffs_nm)[:, place]
     failing = [response.sample(times, hold_V, 0, (place, z)).probability for z in ROUGH.tolist()]
     return furthest_allowed(rms_nm, np.array(failing), allowed)
 
@@ -319,20 +355,18 @@ def just_allowed(response: Response, hold_V: float, allowed: float) -> float:
     return float(np.exp(high))
 
 
-def least_spring(
-    response: Response, likely: Sampled | None, times: float, hold_V: float, allowed: float
-) -> float | None:
+def least_spring(response: Response, likely: Sampled, times: float, hold_V: float, allowed: float) -> float | None:
     """Least spring, in the unit of its setting, all else varying, with which no more switches fail than allowed.
 
     A weaker spring makes those fail that nearly fail with more attraction. So some of `likely` are solved with other
     springs, and correct its probability as in `corrected`. None where even the largest of `SPRINGS` is too weak, or
-    where nothing is allowed or likely.
+    where none is likely.
 
     Parameters
     ----------
-    likely : the failures with about the allowed probability; see `just_allowed`; None where nothing is allowed.
+    likely : the failures with about the allowed probability; see `just_allowed`.
     """
-    if likely is None or not len(likely.points):
+    if not len(likely.points):
         return None
     population = response.population
     now = getattr(population.settings, population.spring)
@@ -353,62 +387,39 @@ def least_spring(
     return now * float(np.exp(high))
 
 
-def with_pad_scatter(
-    population: Population, cells: PadCells, flats: Flats, cell_area_nm2: float
-) -> tuple[Population, float]:
-    """The population with its `pad_deviation`, and the deviation of the reserve by the finite number of cells."""
-    settings = population.settings
-    held = settings.model_copy(update={"hold_voltage_V": population.hold_V})
-    by_cells = reserve_deviation(cells, flats, held, population.release_V)
-    pad_cells = settings.pad_um2 * 1e6 / cell_area_nm2
-    return replace(population, pad_deviation=by_cells * float(np.sqrt(cells.count / pad_cells))), by_cells
-
-
 def failure_rate(
-    population: Population, cells_deviation: float, allowed: float, tell: Callable[[float, str], None]
+    population: Population, allowed: float, tell: Callable[[float, str], None]
 ) -> tuple[dict[str, Any], list[dict[str, float]]]:
     """Content of device/failure.json and rows of device/failure.csv.
 
     Parameters
     ----------
-    population, cells_deviation : of `with_pad_scatter`.
     allowed : share of the switches that may fail.
 
     Raises
     ------
-    InputError : no switch of the population is within the model, or none lets go above the asked voltage.
+    InputError : no switch of the population can be solved, or none lets go above the asked voltage.
     """
     hold, response = population.hold_V, learn(population, tell)
-    rows = []
-    for number, volts in enumerate(voltages(population).tolist()):
-        tell(0.6 + 0.2 * number / VOLTAGES, f"hold voltage {volts:.3g} V")
-        beyond = population.beyond(volts).probability
-        rows += [
-            {
-                "hold_V": volts,
-                "attraction": times,
-                "failing": response.sample(times, volts, 0).probability,
-                "beyond": beyond,
-            }
-            for times in WORKS
-        ]
-    laws, beyond_hold = [], population.beyond(hold).probability
-    left = allowed - beyond_hold
-    likely = response.sample(just_allowed(response, hold, left), hold, 0) if left > 0.0 else None
+    rows = [
+        {"hold_V": volts, "attraction": times, "failing": response.sample(times, volts, 0).probability}
+        for volts in voltages(population).tolist()
+        for times in WORKS
+    ]
+    laws = []
+    likely = response.sample(just_allowed(response, hold, allowed), hold, 0)
     for number, times in enumerate(WORKS):
-        tell(0.8 + 0.2 * number / len(WORKS), f"{times:.2g} times the attraction")
+        tell(0.6 + 0.4 * number / len(WORKS), f"{times:.2g} times the attraction")
         curve = [row for row in rows if row["attraction"] == times]
         volts, share = (np.array([row[key] for row in curve]) for key in ("hold_V", "failing"))
-        ends = [response.sample(times * np.exp(sign * 1.96 * cells_deviation), hold, 0).probability for sign in (-1, 1)]
-        allowed_V = furthest_allowed(volts, share + [row["beyond"] for row in curve], allowed)
+        allowed_V = furthest_allowed(volts, share, allowed)
         laws.append(
             {
                 "attraction": times,
                 "failing": asdict(corrected(response, times, hold)),
-                "by_cells": ends,
                 "largest_hold_V": allowed_V,
-                "least_rms_nm": least_rms_nm(response, times, hold, left),
-                "least_spring": least_spring(response, likely, times, hold, left),
+                "least_rms_nm": least_rms_nm(response, times, hold, allowed),
+                "least_spring": least_spring(response, likely, times, hold, allowed),
                 "there": None if allowed_V is None else asdict(corrected(response, times, allowed_V)),
             }
         )
@@ -419,7 +430,6 @@ def failure_rate(
         "allowed": allowed,
         "hold_V": hold,
         "spring": population.spring,
-        "beyond": beyond_hold,
         "laws": laws,
         "control_attraction": judged,
         "control": sorted(

@@ -84,7 +84,7 @@ def solve_on_pad(switch: Switch, law: PadLaw, hold_voltage_V: float | None) -> P
     barrier = int(np.argmax(np.where(way_up > law.separation_nm[-1], up, -np.inf)))
     release = float(up[: barrier + 1].min())
     return PadStates(
-        float(np.sqrt(pull_in)),
+        float(np.sqrt(max(pull_in, 0.0))),  # 0: the pad pulls it shut by itself
         hold_nm,
         float(law.closing_GPa(hold_nm)) * 1e3,
         float(np.sqrt(max(release, 0.0))),
@@ -94,5 +94,5 @@ def solve_on_pad(switch: Switch, law: PadLaw, hold_voltage_V: float | None) -> P
 
 
 def _voltage_squared(switch: Switch, separation_nm: Array, pressure_GPa: Array) -> Array:
-    force = switch.net_force_N(separation_nm, None) + switch.area_m2 * pressure_GPa * GPA
+    force = switch.spring_force_N(separation_nm) + switch.area_m2 * pressure_GPa * GPA
     return switch.balancing_V2(separation_nm, force)

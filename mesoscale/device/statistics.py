@@ -1,11 +1,10 @@
-"""Distributions of the switch's behaviour over samples of the law."""
+"""Distributions of what switches do, and what is known of one without solving it."""
 
 from typing import Any
 
 import numpy as np
 
-from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, Switch, SwitchStates
-from mesoscale.law.compact import Law
+from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, Switch
 from mesoscale.settings import DeviceSettings
 
 PULL_IN = 1e-3
@@ -42,36 +41,6 @@ def probability(count: int, total: int) -> dict[str, float | int]:
     }
 
 
-def describe_states(states: SwitchStates) -> dict[str, Any]:
-    """Pull-in, release and stiction over the samples; release only of switches that do release."""
-    total = len(states.stuck)
-    return {
-        "pull_in_V": describe(states.pull_in_V),
-        "release_V": describe(np.where(states.stuck, np.nan, states.release_V)),
-        "release_nm": describe(np.where(states.stuck, np.nan, states.release_nm)),
-        "stiction_probability": probability(int(states.stuck.sum()), total),
-        "critical_share": describe(states.critical_fraction),
-        "hold_nm": describe(states.hold_nm),
-        "hold_pressure_MPa": describe(states.hold_pressure_GPa * 1e3),
-    }
-
-
-def stiction_rows(critical_fraction: np.ndarray, points: int = 61) -> list[dict[str, float]]:
-    """Rows of device/stiction.csv: probability of stiction against the share in contact (above its critical share)."""
-    rows = []
-    for fraction in np.logspace(-4, 0, points):
-        share = probability(int((critical_fraction < fraction).sum()), len(critical_fraction))
-        rows.append(
-            {
-                "share": float(fraction),
-                "stiction_probability": share["value"],
-                "low": share["low"],
-                "high": share["high"],
-            }
-        )
-    return rows
-
-
 def analytic_pull_in_V(switch: Switch) -> float:
     """Pull-in of an ideal plate: sqrt(8 k (g + t/eps)^3 / (27 eps0 A))."""
     gap = (switch.gap_nm + switch.dielectric_nm) * NM
@@ -90,14 +59,3 @@ def never_closes(settings: DeviceSettings, pull_in_V: float) -> str:
         f"device.hold_voltage_V = {hold:.4g}: never closes this switch, which pulls in at {pull_in_V:.4g} V; give the "
         "largest voltage that it is closed with, or null for pull-in itself"
     )
-
-
-def analytic_release_V(switch: Switch, opening: Law) -> np.ndarray:
-    """Release without adhesion, at the last touch s = d_c: sqrt(2 k (g - d_c) (d_c + t/eps)^2 / (eps0 A)).
-
-    Holds where the repulsion falls faster than the electrostatic force, which any real contact does.
-    """
-    contact = np.asarray(opening.d_c_nm, dtype=float)
-    electric = (contact + switch.dielectric_nm) * NM
-    spring = switch.spring_N_per_m * (switch.gap_nm - contact) * NM
-    return np.sqrt(2 * spring * electric**2 / (VACUUM_PERMITTIVITY * switch.area_m2))

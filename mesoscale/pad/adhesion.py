@@ -20,7 +20,7 @@ from mesoscale.contact.attraction import retardation_rate, wall_offset_nm
 from mesoscale.contact.displacement import Displacement
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
-from mesoscale.pad.cells import PadGrid, SideBySide, far_nm
+from mesoscale.pad.cells import PadGrid, SideBySide, far_nm, sample_cells
 from mesoscale.pad.curves import PadCells, assemble
 from mesoscale.pad.memory import PadLaw, flats_of, law_of
 from mesoscale.settings import AdhesionSettings, ContactSettings
@@ -120,7 +120,7 @@ def open_from(separation_nm: Array, net_GPa: Array, beyond_J_m2: float) -> Opene
     return Opened(float(s[0]), -float(np.trapezoid(net, s)) + beyond_J_m2, -float(net.min()))
 
 
-def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range) -> tuple[PadCells, list[int]]:
+def close_to_loads(case: Case, loads_GPa: Sequence[float], count: int, first_seed: int) -> tuple[PadCells, list[int]]:
     """Cells under one plane, closed side by side once, and opened where their mean repulsion reaches each load.
 
     Returns the cells, and the position among the depths for each load; between the loads and up to first contact they
@@ -130,8 +130,9 @@ def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range) -> tupl
     ------
     InputError : the cells never carry the largest load.
     """
-    film = SideBySide(case.inputs, case.contact, seeds)
-    top = film.top_nm(STEP_NM)
+    cells = sample_cells(case.inputs, count, first_seed)
+    film = SideBySide(case.inputs, case.contact, cells)
+    top = float(film.first_contact_nm.max()) + STEP_NM
     separations, openings = far_nm(top)[::-1].tolist(), []
     for separation in separations:
         film.close_to(separation)
@@ -161,22 +162,20 @@ def close_to_loads(case: Case, loads_GPa: Sequence[float], seeds: range) -> tupl
         for contact, cell, branches in zip(film.first_contact_nm.tolist(), film.cells, opened, strict=True)
     ]
     grid = PadGrid(np.array(separations), np.array([place for place, _ in openings]))
-    return assemble(grid, closed, case.contact.length_nm**2), [loaded[load] for load in loads_GPa]
+    return assemble(grid, cells, closed, case.contact.length_nm**2), [loaded[load] for load in loads_GPa]
 
 
 def pad_rows(case: Case, adhesion: AdhesionSettings, number: int) -> list[dict[str, Any]]:
     """One row for each load of one pad of a case: columns of adhesion/pads.csv."""
     first = FIRST_SEED + number * adhesion.cells
-    cells, loaded = close_to_loads(
-        case, [load * 1e-3 for load in adhesion.loads_MPa], range(first, first + adhesion.cells)
-    )
+    cells, loaded = close_to_loads(case, [load * 1e-3 for load in adhesion.loads_MPa], adhesion.cells, first)
     rate, offset = retardation_rate(case.contact.retardation_nm), wall_offset_nm(case.contact)
     outwards = cells.grid.separation_nm[::-1]
     beyond = float(flats_energy(case.inputs.hamaker, outwards[-1] + offset, rate))
     law = law_of(cells, flats_of(case.inputs, case.contact))
     rows = []
     for load, place in zip(adhesion.loads_MPa, loaded, strict=True):
-        net = cells.opening[:, place].sum(axis=1).mean(axis=0)[::-1]
+        net = cells.mean(cells.opening[:, place]).sum(axis=0)[::-1]
         way = np.isfinite(net)
         opened = open_from(outwards[way], net[way], beyond)
         sphere = press_sphere(law, float(cells.grid.depth_nm[place]), adhesion.sphere_radius_um * 1e3, beyond)

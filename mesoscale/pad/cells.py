@@ -5,10 +5,11 @@ RMS height. Pieces of a large film differ in both: their mean planes scatter by 
 and their RMS heights by the few long waves that a cell holds. The highest pieces carry most of the load: without these
 differences a pad has some 15 % too little pressure (docs/pad.md).
 
-Places of a film differ, too: each cell is a place of its own, with an RMS height from the film's distribution.
+Places of a film differ, too: each cell is a place of its own, with an RMS height from the film's distribution. Rough
+places are few and carry most of the load, so more of the cells are rough ones, and each of those counts for less.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -18,24 +19,29 @@ from mesoscale.contact.displacement import Closing, Displacement, close_by_separ
 from mesoscale.contact.surface import random_surface, shortest_wave, surface_spectrum
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, FilmInputs
-from mesoscale.settings import ContactSettings, PadGridSettings
+from mesoscale.settings import ContactSettings
+from mesoscale.settings.pad import PILOTS
 
 Array = NDArray[np.float64]
 
 FIRST_SEED = 1000
 """Of the surface of a pad's first cell."""
-GOLDEN = 0.5 * (5.0**0.5 - 1.0)
-STEP_NM = 0.1
-"""Step of separation in and near contact: twice as long moves the well of a single cell by 15 % (accuracy.py)."""
+LOAD_POWER = 3.0
+"""The load of a place grows about as this power of its RMS height (docs/pad.md): so places are drawn."""
+STEP_RMS, LONGEST_STEP_NM = 0.04, 0.2
+"""Step of separation in and near contact, in units of the RMS height, and the longest (docs/pad.md)."""
+PLACE_STEP_RMS = 0.015
+"""Step of a cell in units of the RMS height of its own place, where that is longer. With 0.04 wells of `reduced` are
+passed over, and it lets go 0.1 V too high."""
+DEPTHS = 4
+"""Depths of closing from which a pad is opened, at loads in even ratios up to the largest (docs/pad.md)."""
 GROWN = 2.0
 """Steps where only rough places touch, in units of their RMS height: release is that of half of it to 1e-6 V."""
-DEVIATIONS_ABOVE = 6.0
-"""First contacts of cells have a Gumbel tail: 1 of 4000 cells touches more than 6 deviations above the mean."""
 FAR_NM = 200.0
 """Beyond, the attraction of the pad is that of two flats to 1 %: 1 + 6 (rms / separation)^2."""
 FAR_POINTS = 24
-LIGHT = 0.1
-"""Part of the largest pressure from which the pad is opened at least; a flat electrode presses with 0.4 of it."""
+LIGHT = 0.05
+"""Part of the largest load from which the pad is opened at least; a flat electrode presses with 0.3 to 0.4 of it."""
 MAX_PILOT_STEPS = 4000
 MARGIN = 1.25
 """Over what the switch presses with: the mean of the few pilot cells is off by 15 %."""
@@ -43,6 +49,57 @@ PILOT_STEP = 5.0
 """Pilot cells are closed in coarser steps than the pad: where the grid ends need not be known to better than that."""
 FEWEST_PILOT_STEPS = 3
 """Where fewer reach the pressure, all steps are finer: a film of long waves is closed by little of its RMS height."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell of a pad.
+
+    Attributes
+    ----------
+    seed : of its surface.
+    rough : ln RMS of its place, in standard deviations from the median place.
+    plane : its mean plane, in standard deviations from that of the film.
+    weight : its share of the pad.
+    """
+
+    seed: int
+    rough: float
+    plane: float
+    weight: float
+
+
+def sample_cells(
+    inputs: ContactInputs, count: int, first_seed: int = FIRST_SEED, pad_cells: float = np.inf
+) -> list[Cell]:
+    """Cells that stand for a pad; their weights sum to 1.
+
+    Places are divided into classes of equal load, one cell each, which counts for all places of its class (stratified
+    sampling, Cochran, Sampling Techniques, 1977, ch. 5). So do mean planes where all places are alike.
+
+    Parameters
+    ----------
+    pad_cells : cells that the pad has. Places rougher than one in so many are left out: few pads have one.
+    """
+    from scipy.special import ndtr, ndtri
+
+    rng = np.random.default_rng(np.random.SeedSequence([first_seed, 0x9A11]))
+    within, plane = rng.random(count), ndtri((rng.permutation(count) + rng.random(count)) / count)
+    if not isinstance(inputs, FilmInputs):
+        return [Cell(first_seed + k, 0.0, value, 1.0 / count) for k, value in enumerate(np.sort(plane).tolist())]
+    shift, roughest = LOAD_POWER * inputs.rms_scatter, ndtri(1.0 - 1.0 / max(pad_cells, 2.0 * count))
+    ends = shift + ndtri(np.linspace(0.0, ndtr(roughest - shift), count + 1))
+    # by the share of rougher places: near 1 digits are lost
+    beyond = ndtr(-ends)
+    weight = beyond[:-1] - beyond[1:]
+    rough = -ndtri(beyond[1:] + within * weight)
+    numbers = zip(rough.tolist(), plane.tolist(), (weight / weight.sum()).tolist(), strict=True)
+    return [Cell(first_seed + k, *of) for k, of in enumerate(numbers)]
+
+
+def half_of(count: int, other: bool = False) -> NDArray[np.bool_]:
+    """Which of so many cells, in the order of `sample_cells`, make one of two like halves: the first, fourth, fifth."""
+    return ((np.arange(count) + 1) // 2 % 2 == 0) != other
 
 
 @dataclass(frozen=True)
@@ -103,34 +160,26 @@ class FilmPieces:
         """Standard deviation of the mean planes of cells (nm)."""
         return float(np.sqrt(self.power[0, 0]))
 
-    def surface(self, seed: int) -> Array:
+    def surface(self, cell: Cell) -> Array:
         """Heights (pixels, pixels) in nm of one cell, from the mean plane of the film; contact is at its minima."""
-        heights = random_surface(self.inputs, self.contact, seed)
+        heights = random_surface(self.inputs, self.contact, cell.seed)
         # the realisation was scaled to its own RMS; its short waves, of which there are many, tell by how much
         realised = np.abs(np.fft.rfft2(heights)) ** 2 / heights.size**2
         ratio = float(np.mean(realised[self.known] / self.power[self.known]))
-        rng = np.random.default_rng(np.random.SeedSequence([seed, 0x9A11]))
-        return heights / np.sqrt(ratio) + self.plane_deviation_nm * rng.normal()
+        return heights / np.sqrt(ratio) + self.plane_deviation_nm * cell.plane
 
 
-def place_of(inputs: ContactInputs, seed: int) -> ContactInputs:
-    """The inputs with the RMS height of one place of the film.
-
-    RMS heights of places are lognormal. Probabilities of successive seeds are multiples of the golden ratio (modulo 1),
-    which are spread evenly: 64 cells have a mean of ln RMS with a third of the error of independent places.
-    """
+def at_place(inputs: ContactInputs, cell: Cell) -> ContactInputs:
+    """The inputs with the RMS height of the cell's place."""
     if not isinstance(inputs, FilmInputs):
         return inputs
-    from scipy.special import ndtri
-
-    normal = float(ndtri((seed - FIRST_SEED + 0.5) * GOLDEN % 1.0))
     place = {field.name: getattr(inputs, field.name) for field in fields(ContactInputs)}
-    return ContactInputs(**{**place, "rms": inputs.rms * float(np.exp(inputs.rms_scatter * normal))})
+    return ContactInputs(**{**place, "rms": inputs.rms * float(np.exp(inputs.rms_scatter * cell.rough))})
 
 
-def _surface(inputs: ContactInputs, contact: ContactSettings, seed: int) -> Array:
-    """Heights (pixels, pixels) in nm of the cell of a seed, from the mean plane of the film."""
-    return FilmPieces(place_of(inputs, seed), contact).surface(seed)
+def surface_of(inputs: ContactInputs, contact: ContactSettings, cell: Cell) -> Array:
+    """Heights (pixels, pixels) in nm of a cell with the RMS height of its place, from the mean plane of the film."""
+    return FilmPieces(at_place(inputs, cell), contact).surface(cell)
 
 
 class SideBySide:
@@ -139,70 +188,64 @@ class SideBySide:
     Attributes
     ----------
     cells : the surfaces as they are closed.
+    share : weight of each over the area of a cell (1/nm^2), shape (n,).
     first_contact_nm : separation from the film's mean plane at which each first touches (nm), shape (n,).
     """
 
-    def __init__(self, inputs: ContactInputs, contact: ContactSettings, seeds: Sequence[int]) -> None:
-        surfaces = [_surface(inputs, contact, seed) for seed in seeds]
+    def __init__(self, inputs: ContactInputs, contact: ContactSettings, cells: Sequence[Cell]) -> None:
+        surfaces = [surface_of(inputs, contact, cell) for cell in cells]
         self.first_contact_nm = np.array([-float(heights.min()) for heights in surfaces])
         self._planes = [float(heights.mean()) for heights in surfaces]
-        self._area_nm2 = len(surfaces) * contact.length_nm**2
+        self.share = np.array([cell.weight for cell in cells]) / contact.length_nm**2
         self.cells = [Closing(inputs, contact, heights) for heights in surfaces]
-
-    def top_nm(self, step_nm: float) -> float:
-        """Separation above which hardly a cell of the film touches; first contacts scatter by a step at least."""
-        deviation = float(self.first_contact_nm.std(ddof=1))
-        return float(self.first_contact_nm.mean()) + DEVIATIONS_ABOVE * max(deviation, step_nm)
 
     @property
     def net_GPa(self) -> Array:
         """Their mean net pressure at all separations so far, shape (n,)."""
-        return np.sum([cell.closing.sum(axis=0) for cell in self.cells], axis=0) / self._area_nm2
+        return np.tensordot(self.share, np.array([cell.closing.sum(axis=0) for cell in self.cells]), 1)
 
     def close_to(self, separation_nm: float, attraction: bool = True) -> float:
         """Bring all to a separation from the film's mean plane; their mean repulsion (GPa)."""
-        return sum(
-            cell.close_to(separation_nm + plane, attraction) / self._area_nm2
+        forces = [
+            cell.close_to(separation_nm + plane, attraction)
             for cell, plane in zip(self.cells, self._planes, strict=True)
-        )
-
-
-def grid_of_rows(rows: Sequence[Mapping[str, float]]) -> PadGrid:
-    """The grid from the rows of pad/grid.csv."""
-    separation = np.array([row["separation_nm"] for row in rows])
-    return PadGrid(separation, np.flatnonzero([row["opened_from"] for row in rows]))
+        ]
+        return float(self.share @ np.array(forces))
 
 
 def plan_grid(
     inputs: ContactInputs,
     contact: ContactSettings,
-    settings: PadGridSettings,
+    cells: Sequence[Cell],
     wanted_GPa: Callable[[Array], Array],
-    first_seed: int = FIRST_SEED,
-    step_nm: float = STEP_NM,
     pressed_GPa: Callable[[Array, Array], float] | None = None,
+    step_nm: float | None = None,
+    depths: int = DEPTHS,
 ) -> PadGrid:
-    """Separations for a pad, from a few pilot cells that are closed until they carry all that is asked for.
+    """Separations for a pad, from some of its cells that are closed until they carry all that is asked for.
 
     Parameters
     ----------
     wanted_GPa : mean repulsion that they carry at least, as a function of separation (nm).
     pressed_GPa : largest net pressure of a switch on a pad, from the closing curve of the pad: separations (nm), from
         near to far, and net pressures. The pilots are closed until they carry that, and `MARGIN` more.
-    first_seed : of the pilot cells' surfaces.
-    step_nm : of separation in and near contact, at most.
+    step_nm : of separation in and near contact, at most; None: `STEP_RMS`.
 
     Raises
     ------
     InputError : the pilot cells never reach the pressure.
     """
+    step_nm = step_nm or min(STEP_RMS * inputs.rms, LONGEST_STEP_NM)
+    touching = np.array([-float(surface_of(inputs, contact, cell).min()) for cell in cells])
+    pilot_cells = _some_of(cells)
     while True:
-        pilots = SideBySide(inputs, contact, range(first_seed, first_seed + settings.pilot_cells))
-        lowest, light = _close_pilots(pilots, wanted_GPa, pressed_GPa, step_nm * PILOT_STEP)
+        pilots = SideBySide(inputs, contact, pilot_cells)
+        way, load = _close_pilots(pilots, wanted_GPa, pressed_GPa, step_nm * PILOT_STEP)
+        lowest = float(way[-1])
         if pilots.first_contact_nm.max() - lowest > (FEWEST_PILOT_STEPS - 0.5) * PILOT_STEP * step_nm:
             break
         step_nm /= FEWEST_PILOT_STEPS
-    top, typical = pilots.top_nm(step_nm), float(pilots.first_contact_nm.mean())
+    top, typical = float(touching.max()) + step_nm, float(np.median(touching))
     near = lowest + step_nm * np.arange(np.ceil((top - lowest) / step_nm) + 1)
     if isinstance(inputs, FilmInputs):
         # rougher places touch farther out, and their lengths grow in proportion
@@ -211,10 +254,16 @@ def plan_grid(
         growth = np.geomspace(close[-1], top, int(np.ceil(np.log(ratio) * close[-1] / (GROWN * step_nm))) + 1)
         near = np.concatenate([close, growth[1:]])
     separation = np.concatenate([near, far_nm(float(near[-1]))])[::-1]
-    # a few tall grains may carry the switch where most cells do not touch yet
-    shallow = int(np.searchsorted(-separation, -max(typical, light)))
-    depths = np.unique(np.linspace(shallow, separation.size - 1, settings.depths).round().astype(int))
-    return PadGrid(separation, depths)
+    levels = np.geomspace(LIGHT * load[-1], load[-1], depths)
+    opened = np.searchsorted(-separation, -np.interp(levels, load, way)).clip(max=separation.size - 1)
+    return PadGrid(separation, np.unique(opened))
+
+
+def _some_of(cells: Sequence[Cell]) -> list[Cell]:
+    """At most `PILOTS` of the cells, as a pad of its own."""
+    kept = cells[:: -(-len(cells) // PILOTS)]
+    whole = sum(cell.weight for cell in kept)
+    return [replace(cell, weight=cell.weight / whole) for cell in kept]
 
 
 def far_nm(top_nm: float) -> Array:
@@ -227,45 +276,65 @@ def _close_pilots(
     wanted_GPa: Callable[[Array], Array],
     pressed_GPa: Callable[[Array, Array], float] | None,
     step_nm: float,
-) -> tuple[float, float]:
-    """Separations at which the pilots carry what is asked for, and LIGHT of what is wanted."""
+) -> tuple[Array, Array]:
+    """Separations on the way to where the pilots carry what is asked for, and the largest repulsion up to each."""
     start_nm = float(pilots.first_contact_nm.max())
-    separation, repelled, wanted, light = start_nm, 0.0, 0.0, None
+    way, load, wanted = [], [], 0.0
     for step in range(MAX_PILOT_STEPS):
-        separation = start_nm - step_nm * step
-        repelled = pilots.close_to(separation, attraction=pressed_GPa is not None)
-        wanted = float(wanted_GPa(np.array([separation]))[0])
-        if light is None and repelled >= LIGHT * wanted:
-            light = separation
-        if light is not None and repelled >= wanted:
+        way.append(start_nm - step_nm * step)
+        load.append(max(pilots.close_to(way[-1], attraction=pressed_GPa is not None), load[-1] if load else 0.0))
+        wanted = float(wanted_GPa(np.array(way[-1:]))[0])
+        if load[-1] >= wanted:
             if pressed_GPa is None:
-                return separation, light
+                return np.array(way), np.array(load)
             net = pilots.net_GPa[::-1]
-            wanted = MARGIN * pressed_GPa(np.linspace(separation, start_nm, net.size), net)
+            wanted = MARGIN * pressed_GPa(np.array(way[::-1]), net)
             if net[0] >= wanted:
-                return separation, light
+                return np.array(way), np.array(load)
     raise InputError(
-        f"device: {len(pilots.cells)} cells closed by {start_nm - separation:g} nm carry {repelled * 1e3:.3g} of the "
+        f"device: {len(pilots.cells)} cells closed by {start_nm - way[-1]:g} nm carry {load[-1] * 1e3:.3g} of the "
         f"{wanted * 1e3:.3g} MPa that the switch presses with; lower hold_voltage_V"
     )
-
-
-def _close(inputs: ContactInputs, contact: ContactSettings, heights: Array, grid: PadGrid) -> Displacement:
-    """One cell closed to separations from the mean plane of the film, in which its heights are given."""
-    plane = float(heights.mean())
-    closed = close_by_separation(inputs, contact, heights, grid.separation_nm + plane, grid.depths)
-    return replace(closed, first_contact_nm=closed.first_contact_nm - plane)
 
 
 def close_cells(
     inputs: ContactInputs,
     contact: ContactSettings,
     grid: PadGrid,
-    seeds: Sequence[int],
+    cells: Sequence[Cell],
     progress: Callable[[float, str], None] | None = None,
 ) -> Iterator[Displacement]:
     """Forces of each cell at the separations of the pad, while closing and while opening from each depth."""
-    for done, seed in enumerate(seeds):
-        yield _close(inputs, contact, _surface(inputs, contact, seed), grid)
+    for done, cell in enumerate(cells):
+        yield _close(inputs, contact, grid, cell)
         if progress:
-            progress((done + 1) / len(seeds), f"{done + 1} of {len(seeds)} cells")
+            progress((done + 1) / len(cells), f"{done + 1} of {len(cells)} cells")
+
+
+def _close(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cell: Cell) -> Displacement:
+    """One cell at the separations of the pad; a rough one in longer steps, between which its forces are straight."""
+    heights = surface_of(inputs, contact, cell)
+    plane = float(heights.mean())  # the separation is that from the mean plane of the film
+    here = at_place(inputs, cell)
+    kept = _own_steps(grid, PLACE_STEP_RMS * here.rms if here is not inputs else 0.0)
+    own = grid.separation_nm[kept]
+    closed = close_by_separation(inputs, contact, heights, own + plane, np.flatnonzero(np.isin(kept, grid.depths)))
+    opening = np.array([_between(grid.separation_nm, own, branch) for branch in closed.opening])
+    for branch, depth in zip(opening, grid.depths, strict=True):
+        branch[:, depth + 1 :] = np.nan
+    closing = _between(grid.separation_nm, own, closed.closing)
+    return Displacement(closed.first_contact_nm - plane, closing, opening, closed.settled)
+
+
+def _own_steps(grid: PadGrid, step_nm: float) -> NDArray[np.int_]:
+    """Positions in a grid that are so far apart at least, with its ends and depths."""
+    kept = [0]
+    for place in range(1, grid.separation_nm.size):
+        if place in grid.depths or grid.separation_nm[kept[-1]] - grid.separation_nm[place] >= (1.0 - 1e-9) * step_nm:
+            kept.append(place)
+    return np.array(kept)
+
+
+def _between(wanted: Array, known: Array, forces: Array) -> Array:
+    """Forces (2, n) at falling separations, at other ones."""
+    return np.array([np.interp(-wanted, -known, row) for row in forces])

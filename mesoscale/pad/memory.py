@@ -156,13 +156,12 @@ def rows_at(wanted: Array | float, known: Array, rows: Array) -> Array:
     return np.stack([np.interp(wanted, known, row) for row in rows])
 
 
-def law_of(cells: PadCells, flats: Flats, weights: ArrayLike | None = None) -> PadLaw:
-    """The law of a pad from its cells; `weights` of the cells (sum 1) for a resampled pad, shape (cells,)."""
-    share = np.full(cells.count, 1.0 / cells.count) if weights is None else np.asarray(weights, float)
+def law_of(cells: PadCells, flats: Flats) -> PadLaw:
+    """The law of a pad from its cells."""
     return PadLaw(
         cells.grid.separation_nm[::-1],
-        np.tensordot(share, cells.closing, 1)[:, ::-1],
+        cells.mean(cells.closing)[:, ::-1],
         cells.grid.depth_nm[::-1],
-        np.tensordot(share, cells.opening, 1)[::-1, :, ::-1],
+        cells.mean(cells.opening)[::-1, :, ::-1],
         flats,
     )

@@ -8,7 +8,7 @@ from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import TABLE_1, Correlation, DistributionRow, InputRow, InputsSettings
 from mesoscale.settings.law import LawSettings
 from mesoscale.settings.measurements import MeasurementsSettings, MeasurementTable
-from mesoscale.settings.pad import AdhesionSettings, PadGridSettings, PadSettings
+from mesoscale.settings.pad import AdhesionSettings, PadSettings
 from mesoscale.settings.resistance import ResistanceSettings
 from mesoscale.settings.topography import InstrumentSettings, SyntheticScanSettings, TopographySettings
 from mesoscale.settings.uncertainty import UncertaintySettings
@@ -28,7 +28,6 @@ __all__ = [
     "LawSettings",
     "MeasurementTable",
     "MeasurementsSettings",
-    "PadGridSettings",
     "PadSettings",
     "ReadingSettings",
     "ResistanceSettings",

@@ -11,50 +11,34 @@ Length = Annotated[float, Field(gt=0, le=1e6)]
 
 Scatter = Annotated[float, Field(ge=0, le=2)]
 
-CELLS_PER_JOB = {"asperity": 64, "coupled": 32, "adhesive": 8}
-"""Cells of a pad per job and file, by mechanics: coupled ones take seconds each."""
-DRAWS_PER_JOB = 12
-UNEQUAL_PILOTS = 64
-"""Of films of unequal places, whose roughest decide how far out and how deep a pad must be known: with eight, the pad
-of scene `reduced` released 0.2 V too low."""
-
-
-class PadGridSettings(Settings):
-    """Separations and depths that all cells of a pad share (docs/pad.md)."""
-
-    pilot_cells: int = Field(
-        default=8,
-        ge=2,
-        le=1000,
-        description="cells that are closed first, to find the range of separations; where places differ at least 64, "
-        "or all",
-    )
-    depths: int = Field(
-        default=8,
-        ge=2,
-        le=200,
-        description="depths of closing from which the pad is opened, between first contact "
-        "of a typical cell and the deepest closing",
-    )
+PILOTS = 16
+"""Most cells of a pad that are closed side by side, to find the range of separations."""
+POINTS_PER_JOB = {"asperity": 16, "coupled": 16, "adhesive": 2}
+"""Points of the joint distribution per job and file, by mechanics."""
 
 
 class PadSettings(Settings):
-    """Pad of many cells that share one separation (docs/pad.md)."""
+    """Pads of many cells that share one separation (docs/pad.md)."""
 
-    cells: int = Field(default=256, ge=8, le=100_000, description="cells that are computed; a pad has their mean")
-    grid: PadGridSettings = PadGridSettings()
-    draws: int = Field(
-        default=24,
+    cells: int = Field(default=64, ge=2, le=100_000, description="cells of the pad at central inputs")
+    points: int = Field(
+        default=128,
         ge=0,
         le=100_000,
-        description="sets of the uncertain inputs with a pad of their own: what the inputs do to the release; 0: none",
+        description="points of the joint distribution of inputs, D0 and devices, each with a pad and a switch of its "
+        "own: the interval of the release; 0: none",
+    )
+    point_cells: int = Field(
+        default=12,
+        ge=2,
+        le=10_000,
+        description="cells of each of these pads; a point that they leave undecided has four times as many",
     )
     rms_scatter: tuple[Scatter, Scatter] | None = Field(
         default=None,
         description="range of the standard deviation of ln RMS between places of a film, of which a pad holds all; "
         "`inputs.rms` is then that of the median place. null: by topography where RMS comes from there, else none",
     )
-    draw_cells: int = Field(default=4, ge=2, le=10_000, description="cells of each of these pads")
 
     @field_validator("rms_scatter")
     @classmethod
@@ -62,11 +46,6 @@ class PadSettings(Settings):
         if given and given[0] > given[1]:
             raise ValueError(f"[{given[0]:g}, {given[1]:g}]: the first must not exceed the second")
         return given
-
-    def piloted(self, unequal: bool) -> PadGridSettings:
-        """The grid with no more pilots than cells, of which they are the first; `UNEQUAL_PILOTS` of unequal places."""
-        wanted = max(self.grid.pilot_cells, UNEQUAL_PILOTS) if unequal else self.grid.pilot_cells
-        return self.grid.model_copy(update={"pilot_cells": min(wanted, self.cells)})
 
 
 class AdhesionSettings(Settings):

@@ -6,9 +6,11 @@ pi = Phi((threshold - m) / d). Then, exactly,
 
     p = E[pi] x E_h[event / pi],   h proportional to pi times the distribution of z
 
-Subset simulation (Au and Beck, Prob. Eng. Mech. 16 (2001) 263) gives the first factor and points from h. Runs of the
-model at these points give the second, which corrects the process (Dubourg, Sudret and Deheeger, Prob. Eng. Mech. 33
-(2013) 47). It is near 1 with a small scatter where the process is good.
+Subset simulation (Au and Beck, Prob. Eng. Mech. 16 (2001) 263) gives the first factor and points from h. One run of it
+states half of its own scatter, because the points of its chains are alike; so several independent runs are made, and
+the scatter between them counts. Runs of the model at points from h give the second factor, which corrects the process
+(Dubourg, Sudret and Deheeger, Prob. Eng. Mech. 33 (2013) 47). It is near 1 with a small scatter where the process is
+good.
 """
 
 from collections.abc import Callable
@@ -23,8 +25,9 @@ from mesoscale.extras import needs
 
 Array = NDArray[np.float64]
 
-SAMPLES = 4000
-"""Points of each level of subset simulation: a probability of 1e-6 is then known to 15 %."""
+SAMPLES, REPEATS = 2000, 8
+"""Points of each level of subset simulation, and its independent runs: a probability of 1e-6 is then known to 16 %."""
+CONFIDENCE = 0.95
 LEAST = 1e-10
 """Smallest probability that is looked for."""
 
@@ -75,28 +78,71 @@ class Sampled:
 
     Attributes
     ----------
-    probability, variation : E[pi], and its coefficient of variation.
+    each : E[pi] by each of the independent runs, shape (runs,).
     points : points from h, shape (m, n); none where the event is not met.
     chance : pi at these points.
     """
 
-    probability: float
-    variation: float
+    each: Array
     points: Array
     chance: Array
+
+    @property
+    def probability(self) -> float:
+        """E[pi]."""
+        return float(self.each.mean())
+
+    @property
+    def variation(self) -> float:
+        """Coefficient of variation of the probability, from the scatter between the runs; 0 of one run."""
+        if self.each.size < 2 or not self.each.any():
+            return 0.0
+        return float(self.each.std(ddof=1) / self.each.mean() / np.sqrt(self.each.size))
+
+    def interval(self, confidence: float = CONFIDENCE) -> tuple[float, float]:
+        """Interval of the probability by the response."""
+        return _interval(self.probability, self.variation, self.each.size - 1, confidence)
+
+
+def _interval(value: float, variation: float, freedom: int, confidence: float) -> tuple[float, float]:
+    """Interval of a lognormal estimate whose coefficient of variation was found with so many degrees of freedom."""
+    from scipy.special import stdtrit  # Student's quantile
+
+    factor = stdtrit(max(freedom, 1), 0.5 + 0.5 * confidence)
+    spread = float(np.exp(factor * np.sqrt(np.log1p(variation**2))))
+    return value / spread, min(value * spread, 1.0)
 
 
 Moments = Callable[[Array], tuple[Array, Array]]
 """Mean and deviation (m,) of the reserve at standard normal points (m, n)."""
 
 
-def sample_event(moments: Moments, dimension: int, threshold: float, seed: int, samples: int = SAMPLES) -> Sampled:
+def sample_event(
+    moments: Moments, dimension: int, threshold: float, seed: int, samples: int = SAMPLES, repeats: int = REPEATS
+) -> Sampled:
     """Subset simulation of the event that mean + deviation x (a standard normal number) is not above the threshold.
 
     Parameters
     ----------
     samples : points of each level.
+    repeats : independent runs.
     """
+    runs = [_simulate(moments, dimension, threshold, seed * REPEATS + k, samples) for k in range(repeats)]
+    each = np.array([probability for probability, _ in runs])
+    if not each.any():
+        return Sampled(each, np.empty((0, dimension)), np.empty(0))
+    # of each run so many as its share of the probability
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 0x5A]))
+    counts = [round(samples * share) for share in (each / each.sum()).tolist()]
+    points = np.concatenate(
+        [rng.choice(found, count) for (_, found), count in zip(runs, counts, strict=True) if count and len(found)]
+    )
+    mean, deviation = moments(points)
+    return Sampled(each, points, ndtr((threshold - mean) / deviation))
+
+
+def _simulate(moments: Moments, dimension: int, threshold: float, seed: int, samples: int) -> tuple[float, Array]:
+    """Probability and points of one run of subset simulation; 0 and none where the event is not met."""
     with needs("uncertainty"):
         import openturns as ot
 
@@ -119,17 +165,10 @@ def sample_event(moments: Moments, dimension: int, threshold: float, seed: int, 
     except RuntimeError as error:
         if "too small" not in str(error):
             raise
-        return Sampled(0.0, 0.0, np.empty((0, dimension)), np.empty(0))
-    result = subset.getResult()
+        return 0.0, np.empty((0, dimension))
     last = subset.getStepsNumber() - 1
     points = np.array(subset.getInputSample(last, ot.SubsetSampling.EVENT1)).reshape(-1, dimension + 1)[:, :-1]
-    mean, deviation = moments(points)
-    return Sampled(
-        float(result.getProbabilityEstimate()),
-        float(result.getCoefficientOfVariation()),
-        points,
-        ndtr((threshold - mean) / deviation),
-    )
+    return float(subset.getResult().getProbabilityEstimate()), points
 
 
 @dataclass(frozen=True)
@@ -153,7 +192,7 @@ class Corrected:
     events: int
 
 
-def correct(sampled: Sampled, happened: NDArray[np.bool_], chance: Array) -> Corrected:
+def correct(sampled: Sampled, happened: NDArray[np.bool_], chance: Array, confidence: float = CONFIDENCE) -> Corrected:
     """The probability from runs of the model at points from h.
 
     Parameters
@@ -171,5 +210,6 @@ def correct(sampled: Sampled, happened: NDArray[np.bool_], chance: Array) -> Cor
     # one more run that differs keeps the scatter of few runs from being none
     scatter = float(np.std(np.append(factors, 0.0), ddof=1)) / mean / np.sqrt(runs)
     variation = float(np.hypot(scatter, sampled.variation))
-    value, spread = mean * sampled.probability, np.exp(1.96 * np.sqrt(np.log1p(variation**2)))
-    return Corrected(value, value / spread, min(value * spread, 1.0), variation, sampled.probability, runs, events)
+    value = mean * sampled.probability
+    low, high = _interval(value, variation, sampled.each.size - 1, confidence)
+    return Corrected(value, low, high, variation, sampled.probability, runs, events)

@@ -20,8 +20,9 @@ from asperity.models import MODELS, evaluate
 umbridge = pytest.importorskip("umbridge")
 
 CENTRE = [0.215, 91.0, 1.95, 8.4, 0.025, 0.75, 8.5]
+QUICK = {"cells": 1, "separations_nm": [80.0, 60.0], "contact": {"pixels": 32}}
 CONTACT = {"contact": {"pixels": 64, "max_force_nN": 2000}}
-CLOSING, OPENING = [30.0, 1e-4, 5e-4, 3.0], [28.0, 1e-4, 5e-4, 3.0]
+(CLOSING,)
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +64,6 @@ def post(url, path, body):
         ("contact_cycle", CENTRE, {"seed": 3, **CONTACT}),
         ("law", CENTRE, {"seed": 3, "contact": {"pixels": 128}}),
         ("pad", CENTRE, {"cells": 2, "separations_nm": [40.0, 30.0], "contact": {"pixels": 64}}),
-        ("switch", [*CLOSING, *OPENING, 0.215], {}),
     ],
 )
 def test_client_gets_the_librarys_digits(server, name, values, config):
@@ -82,9 +82,9 @@ def test_client_gets_the_librarys_digits(server, name, values, config):
         ("Evaluate", [], "JSON object"),
         ("Evaluate", {}, "no such model"),
         ("Evaluate", {"name": "none"}, "no such model"),
-        ("Evaluate", {"name": "switch"}, "one list of 9 numbers"),
-        ("Evaluate", {"name": "switch", "input": [[1, 2]]}, "one list of 9 numbers"),
-        ("Evaluate", {"name": "switch", "input": [["a"] * 9]}, "one list of 9 numbers"),
+        ("Evaluate", {"name": "law"}, "one list of 7 numbers"),
+        ("Evaluate", {"name": "law", "input": [[1, 2]]}, "one list of 7 numbers"),
+        ("Evaluate", {"name": "law", "input": [["a"] * 7]}, "one list of 7 numbers"),
         ("Evaluate", {"name": "contact_cycle", "input": [[*CENTRE[:-1], -1]]}, "rms = -1"),
         ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"sed": 1}}, "unknown key"),
         ("Evaluate", {"name": "contact_cycle", "input": [CENTRE], "config": {"seed": -1}}, "seed = -1"),
@@ -116,7 +116,7 @@ def test_a_malformed_request_gets_one_line(server, path, body, words):
 def test_a_web_page_cannot_use_the_server(server, headers):
     """A page of a stranger may send forms anywhere, and may let a name of its own lead here; JSON it may not send."""
     client = HTTPConnection(server[0].removeprefix("http://"), timeout=60)
-    body = json.dumps({"name": "switch", "input": [[*CLOSING, *OPENING, 0.215]]})
+    body = json.dumps({"name": "pad", "input": [CENTRE], "config": QUICK})
     client.request("POST", "/Evaluate", body, {"Content-Type": "application/json", **headers})
     answer = client.getresponse()
     assert answer.status == 400
@@ -135,7 +135,7 @@ def test_a_request_that_nobody_waits_for_is_ended(server):
     for client in clients:
         client.close()
     started = time.monotonic()
-    assert umbridge.HTTPModel(server[0], "switch")([[*CLOSING, *OPENING, 0.215]])[0][0] > 0
+    assert len(umbridge.HTTPModel(server[0], "pad")([CENTRE], QUICK)) == 2
     assert time.monotonic() - started < 60  # of a busy machine: new workers import the library
 
 
@@ -155,14 +155,13 @@ def children(pid):
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="needs /proc")
 def test_a_killed_worker_is_replaced(server):
     url, process = server
-    model = umbridge.HTTPModel(url, "switch")
-    values = [*CLOSING, *OPENING, 0.215]
-    first = model([values])
+    model = umbridge.HTTPModel(url, "pad")
+    first = model([CENTRE], QUICK)
     workers = children(process.pid)
     assert workers
     for worker in workers:
         os.kill(worker, signal.SIGKILL)
-    assert model([values]) == first
+    assert model([CENTRE], QUICK) == first
 
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="needs /proc")
@@ -185,7 +184,7 @@ def test_a_client_that_goes_away_leaves_the_server_well(server):
         client = socket.create_connection((host, int(port)))
         client.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body) + body[:cut])
         client.close()
-    assert umbridge.HTTPModel(url, "switch")([[*CLOSING, *OPENING, 0.215]])[0][0] > 0
+    assert len(umbridge.HTTPModel(url, "pad")([CENTRE], QUICK)) == 2
 
 
 @pytest.mark.skipif(not os.path.isfile("/proc/net/tcp"), reason="needs /proc")
@@ -198,16 +197,16 @@ def test_only_the_local_address_listens(server):
 
 
 def test_a_foreign_library_propagates_through_it(server):
-    """OpenTURNS sends a sample through the switch by way of the client: release falls with the adhesion."""
+    """OpenTURNS sends a sample through a pad by way of the client: its pull grows with the Hamaker constant."""
     openturns = pytest.importorskip("openturns")
-    model = umbridge.HTTPModel(server[0], "switch")
+    model = umbridge.HTTPModel(server[0], "pad")
 
-    def release(point):
-        return [model([[*CLOSING, OPENING[0], float(point[0]), *OPENING[2:], 0.215]])[0][1]]
+    def pull(point):
+        return [-model([[float(point[0]), *CENTRE[1:]]], QUICK)[0][0]]
 
-    function = openturns.PythonFunction(1, 1, release)
-    volts = np.array(function(openturns.Sample(np.array([[0.0], [1e-6], [1e-5]]))))[:, 0]
-    assert (np.diff(volts) < 0).all()
+    function = openturns.PythonFunction(1, 1, pull)
+    pulls = np.array(function(openturns.Sample(np.array([[0.1], [0.2], [0.3]]))))[:, 0]
+    assert (np.diff(pulls) > 0).all()
 
 
 def test_every_model_says_what_it_takes():

@@ -16,7 +16,12 @@ def made_up(count, well_kPa, press_GPa):
     forces = np.stack([press_GPa * noise * np.ones_like(net), net * noise], axis=1)
     opening = np.stack([np.stack([np.zeros_like(net), net * noise], axis=1)] * 2, axis=1)
     return PadCells(
-        PadGrid(SEPARATION, np.array([70, 80])), np.full(count, 40.0), forces, opening, np.ones(count, bool)
+        PadGrid(SEPARATION, np.array([70, 80])),
+        np.full(count, 1 / count),
+        np.full(count, 40.0),
+        forces,
+        opening,
+        np.ones(count, bool),
     )
 
 

@@ -32,7 +32,7 @@ def write_all(root: Path) -> list[Path]:
     _inputs(root)
     _curves(root)
     _uncertainty(root)
-    _device(root)
+    _law_band(root)
     _pad(root)
     _hardness(root)
     _elastic(root)
@@ -196,36 +196,29 @@ def _response(branch: str, name: str, value: float) -> dict[str, Any]:
     return {"name": f"{branch}_{name}", **kind, "terms": listed}
 
 
-def _device(root: Path) -> None:
-    from mesoscale.device.behaviour import drive_switch, samples_of_rows, state_rows
-    from mesoscale.device.export import law_table
-    from mesoscale.device.statistics import stiction_rows
-    from mesoscale.settings import DeviceSettings
-    from workflow.results import load_csv
+def _law_band(root: Path) -> None:
+    from mesoscale.law.samples import band_rows
+    from workflow.results import load_numbers
 
-    settings = DeviceSettings()
-    rows, fitted = load_csv(root / "uq/samples.csv"), load_csv(root / "law/parameters.csv")
-    samples = samples_of_rows(rows, fitted, settings, 2.0, 2.0)
-    results, states = drive_switch(samples, settings, 7.0)
-    write_json(root / "device/switch.json", results, PROVENANCE)
-    _write(root / "device/release.csv", state_rows(states))
-    _write(root / "device/stiction.csv", stiction_rows(states["with_adhesion"].critical_fraction))
-    _write(root / "device/law.csv", law_table(samples.nominal, samples.laws))
+    rows = load_numbers(root / "uq/samples.csv")
+    columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    _write(root / "uq/law.csv", band_rows(columns, 2.0, 2.0))
 
 
 def _pad(root: Path) -> None:
-    from mesoscale.device.electrode import releases_by_cells
-    from mesoscale.device.pad_results import switch_on_pad
+    from evidence.pad.closed_form import ClosedForm
+    from mesoscale.device.electrode import solve_deepened
+    from mesoscale.device.points import Design, Pad, PadModel, Point, Solved
+    from mesoscale.device.release import switch_on_pad
     from mesoscale.pad.cells import PadGrid
-    from mesoscale.pad.compact import CompactPad
-    from mesoscale.pad.curves import PadCells, adhesion_by_cells, curve_rows
+    from mesoscale.pad.curves import PadCells, curve_rows
     from mesoscale.pad.memory import Flats
     from mesoscale.settings import DeviceSettings
 
     area, flats = 1e6, Flats(0.215, 0.165)
     separation = np.concatenate([np.geomspace(200, 50, 8)[:-1], np.arange(50, 19.9, -0.25)])
     grid = PadGrid(separation, np.arange(separation.size)[-61::12])
-    form = CompactPad(-5.0, 0.15, 0.006, 0.3, 0.01, 0.02, 0.05, 1.0, 0.5, 0.0, flats.hamaker, flats.offset_nm)
+    form = ClosedForm(-5.0, 0.15, 0.006, 0.3, 0.01, 0.02, 0.05, 1.0, 0.5, 0.0, flats.hamaker, flats.offset_nm)
     shifts = np.random.default_rng(5).normal(0, 1.5, 24)
     closing = np.array([form.closing_GPa(separation + shift) for shift in shifts])
     opening = np.array(
@@ -233,19 +226,13 @@ def _pad(root: Path) -> None:
     )
     for number, depth in enumerate(grid.depth_nm):
         opening[:, number, :, separation < depth] = np.nan
-    cells = PadCells(grid, 40 - shifts, closing, opening, np.ones(24, bool))
+    cells = PadCells(grid, np.full(24, 1 / 24), 40 - shifts, closing, opening, np.ones(24, bool))
     _write(root / "pad/curves.csv", curve_rows(cells))
-    _write(root / "pad/adhesion.csv", adhesion_by_cells(cells, [1, 2, 4, 8, 16]))
-    switch = switch_on_pad(
-        cells, flats, DeviceSettings(), area, lambda: releases_by_cells(DeviceSettings(), cells, flats)
-    )
-    write_json(root / "device/pad_switch.json", switch, PROVENANCE)
-    for chunk, members in enumerate(np.split(np.arange(24), 2)):
-        values = {
-            "closing_nN": Dataset(area * closing[members], "nN", "made up", ("cell", "force", "separation")),
-            "opening_nN": Dataset(area * opening[members], "nN", "made up", ("cell", "depth", "force", "separation")),
-        }
-        write_h5(root / f"pad/cells/chunk_{chunk:03d}.h5", {"cells": values}, {}, PROVENANCE)
+    pad = Pad(cells, flats)
+    states = solve_deepened(DeviceSettings(), pad.law)
+    central = Solved(Point({}, 0.165, DeviceSettings()), pad, states, (states["release_V"], states["release_V"]))
+    model = PadModel(central, Design((), (), np.empty((0, 0)), np.arange(0), ()), ())
+    write_json(root / "device/pad_switch.json", switch_on_pad(model, area), PROVENANCE)
 
 
 def _hardness(root: Path) -> None:
@@ -496,7 +483,7 @@ def _studies(root: Path) -> None:
 def _failure(root: Path) -> None:
     failing = {"probability": 3e-5, "low": 2e-5, "high": 5e-5, "variation": 0.2, "by_response": 4e-5, "runs": 128}
     rows = [
-        {"hold_V": volts, "attraction": times, "failing": 1e-6 * times * volts, "beyond": 1e-8 * volts}
+        {"hold_V": volts, "attraction": times, "failing": 1e-6 * times * volts}
         for volts in (60.0, 80.0, 100.0)
         for times in (1 / 3, 1.0, 3.0)
     ]
@@ -504,7 +491,6 @@ def _failure(root: Path) -> None:
         {
             "attraction": times,
             "failing": failing,
-            "by_cells": [1e-5, 1e-4],
             "largest_hold_V": largest,
             "least_rms_nm": 7.0,
             "least_spring": None if largest is None else 3.9,
@@ -512,7 +498,7 @@ def _failure(root: Path) -> None:
         }
         for times, largest in ((1 / 3, 100.0), (1.0, 71.0), (3.0, None))
     ]
-    rate = {"release_V": 0.0, "allowed": 1e-6, "hold_V": 70.0, "beyond": 2e-6, "laws": laws, "switches": 160}
+    rate = {"release_V": 0.0, "allowed": 1e-6, "hold_V": 70.0, "laws": laws, "switches": 160}
     rate |= {"spring": "thickness_um"}
     control = [{"name": "rms", "failing_if_known": 1e-7}, {"name": "hurst", "failing_if_known": 3e-5}]
     write_json(root / "device/failure.json", rate | {"control_attraction": 1.0, "control": control}, PROVENANCE)

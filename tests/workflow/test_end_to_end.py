@@ -3,7 +3,7 @@
 One run is left alone; a second is killed with SIGKILL once in each stage and resumed. Both must end with the
 same results. The second run does without the melts and closings of the hardness stage, on which nothing else of this
 scene depends: `test_ownership` and `test_closing` kill those. It takes over the quenched cell of the first run, and
-draws no pads at other inputs, which are cells as those of the pad.
+has no points, whose pads are as the central one.
 """
 
 import json
@@ -21,12 +21,12 @@ STAGES = {
     "elastic": "scan_volumes",
     "topography": "analyse_scans",
     "inputs": "collect_inputs",
-    "pad": "close_cells",
+    "pad": "press_pads",
     "curves": "compute_nominal",
     "law": "compute_runs",
     "uq": "propagate_uncertainty",
     "sensitivity": "rank_sensitivity",
-    "device": "solve_switch",
+    "device": "assemble_pad",
     "report": "render_report",
 }
 RESULTS = (
@@ -42,6 +42,8 @@ RESULTS = (
     "inputs.csv",
     "curves/nominal.h5",
     "pad/curves.csv",
+    "pad/model.h5",
+    "device/pad_switch.json",
     "law/parameters.csv",
     "uq/outputs.csv",
     "uq/sensitivity.csv",
@@ -117,7 +119,7 @@ def test_a_deleted_stage_is_made_again_with_what_depends_on_it(finished):
 def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_workflow, tmp_path):
     workflow = make_workflow(tmp_path)
     scene = tmp_path / "killed.yaml"
-    scene.write_text("extends: ci\nname: killed\ncompute: [elastic, topography]\npad: {draws: 0}\n")
+    scene.write_text("extends: ci\nname: killed\ncompute: [elastic, topography]\npad: {points: 0}\n")
     quenched = "elastic/quenched"
     shutil.copytree(finished.folder / "results/ci" / quenched, tmp_path / "results/killed" / quenched)
     logs = tmp_path / "results/killed/logs"

@@ -100,9 +100,9 @@ def test_python_gives_the_numbers_of_the_scene_digit_for_digit(scans, started, w
     main([str(scans), "--scene", "mine.yaml"])
     content = yaml.safe_load(Path("mine.yaml").read_text(encoding="utf-8"))
     content["contact"]["pixels"] = 128
-    content["pad"] = {"cells": 8, "draws": 0}
+    content["pad"] = {"cells": 8, "points": 0}
     Path("mine.yaml").write_text(yaml.safe_dump(content))
-    done = workflow_in.run("mine.yaml", "curves", "pad")
+    done = workflow_in.run("mine.yaml", "curves", "device")
     assert done.returncode == 0, done.stderr
 
     threads = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "NUMBA")}  # as jobs have it

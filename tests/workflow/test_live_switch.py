@@ -204,12 +204,11 @@ def _told(cell):
     return float(found[0].replace("−", "-")) if found else math.nan
 
 
-def test_sliders_need_the_electrode_of_the_answer_only(results, tmp_path):
-    """A beam has its own, where the plate on the same pad could not be solved."""
+def test_sliders_need_the_switch_at_central_inputs(results, tmp_path):
     shutil.copytree(results.root, tmp_path / "made_up")
     file = tmp_path / "made_up/device/pad_switch.json"
     content = json.loads(file.read_text(encoding="utf-8"))
     files = [path for path in (tmp_path / "made_up").rglob("*") if path.is_file()]
-    for beam, known in ((content["beam"], True), (None, False)):
-        file.write_text(json.dumps({**content, "mean": None, "beam": beam}), encoding="utf-8")
+    for central, known in ((content["central"], True), (None, False)):
+        file.write_text(json.dumps({**content, "central": central}), encoding="utf-8")
         assert (switch_data(Results(tmp_path / "made_up", files, "made_up")) is not None) is known

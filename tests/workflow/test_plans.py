@@ -8,7 +8,7 @@ HARDNESS = {"make_glass", "run_closing", "find_hardness", "fit_hardness"}
 ELASTIC = {"make_amorphous", "relax_amorphous", "scan_volumes", "fit_bulk_moduli", "combine_e_star"}
 TOPOGRAPHY = {"write_synthetic_scans", "analyse_scans", "pool_spectra"}
 MESOSCALE = {"collect_inputs", "compute_nominal", "compute_runs", "fit_law", "propagate_uncertainty"}
-REPORT = {"rank_sensitivity", "solve_switch", "render_report"}
+REPORT = {"rank_sensitivity", "assemble_pad", "render_report"}
 
 LITERATURE = """
 inputs:
@@ -57,8 +57,14 @@ def test_scene_paper_runs_no_atomistic_and_no_afm_job(plan):
 
 def test_the_failure_rate_is_found_where_a_scene_asks_for_it(plan):
     assert "find_failure_rate" not in plan("paper") | plan("ci")
-    assert {"find_failure_rate", "close_cells", "close_draws"} <= plan("paper", "failure")
-    assert "assemble_pad" not in plan("paper", "failure")
+    assert {"find_failure_rate", "press_pads", "assemble_pad"} <= plan("paper", "failure")
+
+
+def test_a_scene_computes_the_tails_that_it_wants(plan, said):
+    law = {"compute_runs", "fit_law", "propagate_uncertainty", "rank_sensitivity"}
+    assert not law & plan("diamond")
+    assert "assemble_pad" in plan("diamond")
+    assert "ERROR diamond: tails: pad: the target needs the tail law; add it to tails" in said("diamond", "law")
 
 
 def test_the_resistance_is_measured_where_a_scene_has_metals(plan):

@@ -146,22 +146,22 @@ def test_a_stage_that_no_input_comes_from_shows_no_red_gate(made_up):
     assert trust(gates)[0] == "pass"
 
 
-@pytest.mark.parametrize("draws_V", [0.1, None])
-def test_draws_too_few_to_tell_their_error_cost_the_pad_one_table_alone(made_up, draws_V):
+def test_the_pad_says_what_its_answer_is_made_of(made_up):
     root, paths = made_up
     results = Results(root, [path for path in paths if path.parent.name in ("pad", "device")], "made_up")
     spread = {"std": 0.5, "quantiles": {"0.05": 6.0, "0.5": 7.0, "0.95": 8.0}}
     answer = {
         **dict.fromkeys(("release_V", "pull_in_V", "capacitance_fF"), spread),
+        "quantile_error_V": {"0.05": 0.3, "0.5": 0.1, "0.95": 0.2},
         "causes": [{"cause": "cells", "share_of_variance": 0.3}],
         "sensitivity": [{"name": "rms", "share_of_variance": 0.7, "interval_shrinks_by": 0.4}],
-        "design": {"points": 64, "refused": [], "deepened": 0, "draws": 8, "draws_error_V": draws_V}
-        | {"cells_error_V": 0.3, "response_error_V": 0.1},
+        **{"points": 64, "refused": ["too soft"], "deepened": 0, "cells_error_V": 0.3, "fit_error_V": 0.1},
     }
     results.json = lambda name: Results.json(results, name) | ({"answer": answer} if "pad_switch" in name else {})
-    captions = [block.caption for block in pad.describe(results).blocks if hasattr(block, "caption")]
-    assert any("Behind the interval of the release" in caption for caption in captions)
-    assert any("What more computing would narrow" in caption for caption in captions) is (draws_V is not None)
+    (behind,) = [
+        block for block in pad.describe(results).blocks if "Behind the interval" in getattr(block, "caption", "")
+    ]
+    assert ("switches computed; of them without an answer", "65; 1") in behind.rows
 
 
 def test_only_scene_paper_compares_with_the_paper(page_of, page):

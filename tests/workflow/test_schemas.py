@@ -10,8 +10,8 @@ from workflow.schemas import STAGES, UnfitTable, schema_of
 from workflow.schemas.__main__ import PAGE, page
 
 RULES = Path(__file__).parents[2] / "workflow" / "rules"
-ROW = {"share": 0.1, "stiction_probability": 0.5, "low": 0.4, "high": 0.6}
-TABLE = "results/mine/device/stiction.csv"
+ROW = {"time_us": 0.1, "voltage_V": 0.5, "middle_nm": 0.4, "capacitance_fF": 0.6}
+TABLE = "results/mine/device/transient.csv"
 
 
 def test_every_table_of_the_rules_has_a_schema():
@@ -36,13 +36,13 @@ def test_the_page_of_result_files_is_up_to_date():
     ("row", "words"),
     [
         (ROW | {"heigth": 0.6}, "column heigth is unknown"),
-        ({key: value for key, value in ROW.items() if key != "low"}, "column low is missing"),
-        (ROW | {"high": None}, "row 1 has no value in column high"),
-        (ROW | {"high": "most"}, "row 1, column high: 'most' is no number"),
+        ({key: value for key, value in ROW.items() if key != "middle_nm"}, "column middle_nm is missing"),
+        (ROW | {"capacitance_fF": None}, "row 1 has no value in column capacitance_fF"),
+        (ROW | {"capacitance_fF": "most"}, "row 1, column capacitance_fF: 'most' is no number"),
     ],
 )
 def test_a_table_that_does_not_fit_is_not_written(tmp_path, row, words):
-    with pytest.raises(ValueError, match=rf"stiction\.csv: {words}"):
+    with pytest.raises(ValueError, match=rf"transient\.csv: {words}"):
         write_csv(tmp_path / TABLE, [row])
     assert not (tmp_path / TABLE).exists()
 
@@ -66,7 +66,7 @@ def test_the_schema_orders_the_columns(tmp_path):
 def test_a_table_without_rows_has_its_columns(tmp_path):
     write_csv(tmp_path / TABLE, [])
     assert load_csv(tmp_path / TABLE) == []
-    assert (tmp_path / TABLE).read_text() == "share,stiction_probability,low,high\n"
+    assert (tmp_path / TABLE).read_text() == "time_us,voltage_V,middle_nm,capacitance_fF\n"
 
 
 def test_a_column_that_may_be_empty_needs_no_value(tmp_path):
@@ -77,16 +77,16 @@ def test_a_column_that_may_be_empty_needs_no_value(tmp_path):
 
 
 def test_what_was_written_is_read(tmp_path):
-    write_csv(tmp_path / TABLE, [ROW, ROW | {"low": float("nan")}])
-    assert load_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {"low": "nan"}
+    write_csv(tmp_path / TABLE, [ROW, ROW | {"middle_nm": float("nan")}])
+    assert load_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {"middle_nm": "nan"}
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda text: text.replace("high", "top"), "column high is missing"),
-        (lambda text: text[:-5], "row 1 ends before column high"),
-        (lambda text: text.replace("0.5", "0.\x005"), r"row 1, column stiction_probability: '0\.\\x005' is no number"),
+        (lambda text: text.replace("capacitance_fF", "top"), "column capacitance_fF is missing"),
+        (lambda text: text[:-5], "row 1 ends before column capacitance_fF"),
+        (lambda text: text.replace("0.5", "0.\x005"), r"row 1, column voltage_V: '0\.\\x005' is no number"),
         (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, high"),
         (lambda text: "", "column share is missing"),
     ],

@@ -27,11 +27,9 @@ def _pad(stuck=0.02, cells=0.1, error=0.5, **more):
     rows = [("bow_nm", 0.5), ("rms", 0.25), ("gap_cutoff_nm", 0.1)]
     return {
         "electrode": "bending",
-        "mean": {"release_V": 2.0},
-        "beam": {"release_V": 7.4, "stuck": False},
+        "central": {"release_V": 7.4},
         "by_attraction": BOTH_LAWS,
         "answer": {
-            "electrode": "bending",
             "release_V": _described(3.1, 6.6, 9.4),
             "stuck": _probability(stuck),
             "causes": [
@@ -41,8 +39,9 @@ def _pad(stuck=0.02, cells=0.1, error=0.5, **more):
             "sensitivity": [
                 {"name": name, "share_of_variance": share, "interval_shrinks_by": share / 2} for name, share in rows
             ],
-            "design": {"points": 64, "response_error_V": error, "cells_error_V": 2.0 * cells**0.5},
+            **{"points": 64, "fit_error_V": error, "cells_error_V": 2.0 * cells**0.5},
         },
+        "answer_status": "ok",
         **more,
     }
 
@@ -76,18 +75,18 @@ def test_verdict_says_when_it_is_not_decided(stuck, words):
 @pytest.mark.parametrize(("stuck", "words"), [(False, "lets go at 6.66 V"), (True, "sticks")])
 def test_without_an_interval_the_same_model_gives_its_central_value_and_the_reason(stuck, words):
     """Not the flat electrode's, which sticks more: 7.86 V of one scene stood beside "sticks" of another."""
-    beam = {"stuck": stuck, "release_V": 0.0 if stuck else 6.66}
-    without = said({**_pad(), "answer": None, "answer_status": "13 of 64 switches cannot be solved", "beam": beam})
+    central = {"release_V": 0.0 if stuck else 6.66}
+    why = "13 of 64 switches cannot be solved"
+    without = said({**_pad(), "answer": None, "answer_status": why, "central": central})
     reason = "no interval, because 13 of 64 switches cannot be solved."
     assert without.outcome == f"At central inputs the switch {words}; {reason}"
     assert without.stuck is None
     assert without.electrode == said(_pad()).electrode == "bending electrode"
-    never_drawn = {key: value for key, value in _pad().items() if key != "answer"}
-    assert "pad.draws: 24 would give it" in said(never_drawn).outcome
 
 
 def test_a_pad_that_gives_no_number_says_why():
-    pad = {"electrode": "bending", "mean": None, "gate": {"passed": False, "reasons": ["the beam does not land"]}}
+    gate = {"passed": False, "reasons": ["the beam does not land"]}
+    pad = {"electrode": "bending", "central": None, "answer": None, "answer_status": "no points", "gate": gate}
     assert said(pad).outcome == "The release voltage is not known, because the beam does not land."
     assert verdict(_results(None), SOUND) is None
 

@@ -3,7 +3,6 @@
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -74,9 +73,6 @@ def spreads(results: Results) -> dict[tuple[str, str], Spread]:
         quantities["release voltage, 0 where it sticks", "V"] = (low, middle, high)
     if said and said.stuck:
         quantities["probability of sticking", ""] = said.stuck
-    pad = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
-    if pad.get("mean"):
-        quantities["largest net adhesion of the pad", "kPa"] = _described(pad["estimate"]["deepest_net_kPa"])
     if results.has("uq/samples.csv"):
         rows = results.csv("uq/samples.csv")
         for branch in ("closing", "opening"):
@@ -96,11 +92,6 @@ def spreads(results: Results) -> dict[tuple[str, str], Spread]:
 
 def _quantiles(values: np.ndarray) -> Spread:
     low, middle, high = np.quantile(values, ENDS).tolist()
-    return low, middle, high
-
-
-def _described(described: dict[str, Any]) -> Spread:
-    low, middle, high = (float(described["quantiles"][f"{end:g}"]) for end in ENDS)
     return low, middle, high
 
 

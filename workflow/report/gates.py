@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from mesoscale.law.wells import MOST_MISSED, missed_wells
 from workflow.report.available import Results
-from workflow.report.numbers import OUTPUTS, column, number, show
+from workflow.report.numbers import OUTPUTS, column, show
 from workflow.report.page import Gate
 
 MOST_MISSING = 0.05
@@ -101,13 +101,6 @@ def _pad(results: Results) -> Iterator[Gate]:
         yield Gate("pad", gate["passed"], tuple(gate["reasons"]))
 
 
-def _device(results: Results) -> Iterator[Gate]:
-    if results.has("device/switch.json"):
-        switches = results.json("device/switch.json")
-        off = [f"{name.replace('_', ' ')} {show(x)}" for name, x in switches["checks"].items() if not number(x) < 1e-6]
-        yield Gate("switch on one cell", not off, (*off, *switches["warnings"]), answer=False)
-
-
 def _calibration(results: Results) -> Iterator[Gate]:
     if results.has("calibration/posterior.json"):
         posterior = results.json("calibration/posterior.json")
@@ -123,6 +116,5 @@ GATES: tuple[Callable[[Results], Iterator[Gate]], ...] = (
     _pad,
     _law,
     _responses,
-    _device,
     _calibration,
 )

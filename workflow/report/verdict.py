@@ -32,7 +32,6 @@ DECIDED = 0.95
 """Probability from which on a switch is said to stick, or to let go."""
 EXPLAINED = 0.5
 """Share of the variance that the fit behind the causes must explain of switches left out, or no cause is named."""
-NO_DRAWS = "the scene draws no pads at other inputs; pad.draws: 24 would give it"
 WORKS = {"clamped": 1.0 / 3.0, "offset": 3.0}
 """Work of the other law of attraction over that of this one, at touch (docs/contact.md)."""
 OTHER_LAW = {"clamped": "a third of", "offset": "three times"}
@@ -96,9 +95,8 @@ def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | 
         stuck = tuple(answer["stuck"][key] for key in ("low", "value", "high"))
         causes, no_cause = _causes(answer)
     else:
-        central = pad.get("beam") or (pad["mean"] if pad.get("electrode") == "flat" else None)
-        release = (central["release_V"],) if central else None
-        no_interval = pad.get("answer_status") or NO_DRAWS
+        release = (pad["central"]["release_V"],) if pad["central"] else None
+        no_interval = pad["answer_status"]
         if release is None:
             no_interval = "; ".join(pad["gate"]["reasons"]) or no_interval
     failed = [
@@ -139,7 +137,7 @@ def _causes(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]
     rows = [*((symbol(row["name"]), row["share_of_variance"]) for row in answer["sensitivity"])]
     rows = [(name, share) for name, share in [*rows, (CELLS, cells["share_of_variance"])] if share > 0]
     if not rows:
-        return (), f"all {answer['design']['points']} computed combinations of what is uncertain do the same"
+        return (), f"all {answer['points']} computed combinations of what is uncertain do the same"
     explained = explained_share(answer)
     if explained < EXPLAINED:
         return (), f"the fit of the release explains {max(explained, 0):.0%} of the variance of switches left out"
@@ -156,9 +154,8 @@ def explained_share(answer: dict[str, Any]) -> float:
         ),
         0.0,
     )
-    points = answer["design"]
-    variance -= points["cells_error_V"] ** 2
-    return 1.0 - points["response_error_V"] ** 2 / variance if variance > 0 else float("-inf")
+    variance -= answer["cells_error_V"] ** 2
+    return 1.0 - answer["fit_error_V"] ** 2 / variance if variance > 0 else float("-inf")
 
 
 def _other_law(pad: dict[str, Any], results: Results) -> tuple[float, float] | None:
@@ -174,7 +171,7 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
         return f"Mend first what failed: {', '.join(gate.stage for gate in failed)}."
     answer = pad.get("answer")
     if not answer:
-        return "The interval comes first." if pad["mean"] is not None else ""
+        return "The interval comes first." if pad["central"] else ""
     if answer["stuck"]["value"] == 1.0:
         return (
             "Measure a pull-off force next (target calibrate)."
@@ -184,7 +181,7 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
     rows = answer["sensitivity"]
     cells = next(row["share_of_variance"] for row in answer["causes"] if row["cause"] == "cells")
     if not rows or cells > rows[0]["share_of_variance"]:
-        return "Compute more cells next (pad.cells)."
+        return "Compute more cells next (pad.point_cells)."
     if no_cause:
         return ""
     what = NAMES[rows[0]["name"]][1] if rows[0]["name"] in NAMES else f"{symbol(rows[0]['name'])} better"

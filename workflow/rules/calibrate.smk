@@ -100,9 +100,7 @@ rule rank_next_on_pad:
         inputs=f"{RESULTS}/pad/inputs.csv",
         cycles=[f"{RESULTS}/calibration/cycles/chunk_{chunk}.csv" for chunk in MEASUREMENT_CHUNKS],
         local_cycles=f"{RESULTS}/calibration/local_cycles.csv",
-        grid=f"{RESULTS}/pad/grid.csv",
-        cells=lambda wildcards: [f"{RESULTS}/pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS],
-        draws=lambda wildcards: [f"{RESULTS}/pad/draws/chunk_{chunk}.csv" for chunk in DRAW_CHUNKS],
+        model=f"{RESULTS}/pad/model.h5",
     output:
         f"{RESULTS}/calibration/next_on_pad.csv",
     log:
@@ -111,8 +109,8 @@ rule rank_next_on_pad:
     params:
         contact=settings("contact"),
         law=settings("law"),
-        design=lambda wildcards: DRAW_DESIGN,
         device=settings("device"),
+        points=SCENE.pad.points,
     message:
         "rank what to measure next for the switch on the pad"
     script:

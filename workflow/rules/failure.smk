@@ -3,16 +3,14 @@
 
 rule failure:
     input:
-        f"{RESULTS}/device/failure.json",
+        in_tail("pad", f"{RESULTS}/device/failure.json"),
 
 
 rule find_failure_rate:
     input:
         **SURFACE,
         inputs=f"{RESULTS}/pad/inputs.csv",
-        grid=f"{RESULTS}/pad/grid.csv",
-        chunks=[f"{RESULTS}/pad/cells/chunk_{chunk}.h5" for chunk in CELL_CHUNKS],
-        draws=[f"{RESULTS}/pad/draws/chunk_{chunk}.csv" for chunk in DRAW_CHUNKS],
+        model=f"{RESULTS}/pad/model.h5",
     output:
         rate=f"{RESULTS}/device/failure.json",
         table=f"{RESULTS}/device/failure.csv",
@@ -21,8 +19,8 @@ rule find_failure_rate:
     threads: 1
     params:
         contact=settings("contact"),
-        design=DRAW_DESIGN,
         device=settings("device"),
+        pad=settings("pad"),
         failure=settings("failure"),
     message:
         "find how often the switch fails"
@@ -30,7 +28,7 @@ rule find_failure_rate:
         "../scripts/find_failure_rate.py"
 
 
-if SCENE.failure.probability is not None:
+if SCENE.failure.probability is not None and "pad" in SCENE.tails:
     ACCURACY.append(f"{RESULTS}/accuracy/failure.csv")
 
 
@@ -44,8 +42,8 @@ rule measure_failure_accuracy:
     threads: 1
     params:
         contact=settings("contact"),
-        design=DRAW_DESIGN,
         device=settings("device"),
+        pad=settings("pad"),
         failure=settings("failure"),
     message:
         "study the error of the failure rate against run time"
@@ -55,7 +53,7 @@ rule measure_failure_accuracy:
 
 rule circuit:
     input:
-        f"{RESULTS}/device/circuit.json",
+        in_tail("pad", f"{RESULTS}/device/circuit.json"),
 
 
 rule make_circuit:
@@ -72,8 +70,8 @@ rule make_circuit:
     threads: 1
     params:
         contact=settings("contact"),
-        design=DRAW_DESIGN,
         device=settings("device"),
+        pad=settings("pad"),
     message:
         "make the switch for circuit simulators"
     script:

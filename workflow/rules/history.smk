@@ -25,7 +25,6 @@ rule follow_history:
         settings=settings("history"),
         contact=settings("contact"),
         law=settings("law"),
-        device=settings("device"),
     message:
         "close and open again and again"
     script:

@@ -3,20 +3,13 @@ from workflow.checksums import file_checksum
 
 def report_inputs():
     """Result files of exactly the stages that the scene needs; each has its section in the page."""
-    files = [
-        "scene.yaml",
-        "inputs.csv",
-        "curves/nominal.h5",
-        "curves/spots.h5",
-        "law/parameters.csv",
-        "law/wells.csv",
-        "law/nominal.csv",
-    ]
-    files += [
-        f"uq/{name}" for name in ("outputs.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv")
-    ]
-    files += [f"device/{name}" for name in ("switch.json", "release.csv", "stiction.csv", "law.csv")]
-    files += ["pad/inputs.csv", "pad/curves.csv", "pad/adhesion.csv", "device/pad_switch.json"]
+    files = ["scene.yaml", "inputs.csv", "curves/nominal.h5", "curves/spots.h5"]
+    if "law" in SCENE.tails:
+        files += [f"law/{name}.csv" for name in ("parameters", "wells", "nominal")]
+        names = ("outputs.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv", "law.csv")
+        files += [f"uq/{name}" for name in names]
+    if "pad" in SCENE.tails:
+        files += ["pad/inputs.csv", "pad/curves.csv", "device/pad_switch.json"]
     if ADHESION.pads > 0:
         files += ["adhesion/summary.csv"]
     if needed("hardness"):
@@ -28,7 +21,7 @@ def report_inputs():
     if needed("topography"):
         files += ["topography/spectra.h5", "topography/parameters.json"]
         files += [str(Path(path).relative_to(RESULTS)) for path in JUDGED]
-    if SCENE.failure.probability is not None:
+    if SCENE.failure.probability is not None and "pad" in SCENE.tails:
         files += ["device/failure.json", "device/failure.csv"]
         files += [f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "transient.csv")]
     if SCENE.resistance.resistivities_nOhm_m is not None:
@@ -38,7 +31,7 @@ def report_inputs():
     if SCENE.measurements.tables:
         tables = ("samples", "summary", "learned", "next", "predictive", "responses")
         files += ["calibration/posterior.json", *(f"calibration/{table}.csv" for table in tables)]
-        if SCENE.pad.draws:
+        if SCENE.pad.points and "pad" in SCENE.tails:
             files += ["calibration/next_on_pad.csv"]
     studies = [*ACCURACY, *STABILITY] if SCENE.report.studies else []
     return [f"{RESULTS}/{name}" for name in files] + studies
@@ -46,9 +39,12 @@ def report_inputs():
 
 def kept_files():
     """What jobs of the scene leave beside the files of the report."""
-    parts = [rules.fit_law, rules.fit_nominal_law, rules.propagate_uncertainty, rules.solve_switch]
-    parts += [rules.assemble_pad]
-    files = list(DIRECT)
+    parts, files = [], []
+    if "law" in SCENE.tails:
+        parts += [rules.fit_law, rules.fit_nominal_law, rules.propagate_uncertainty]
+        files += DIRECT
+    if "pad" in SCENE.tails:
+        parts += [rules.assemble_pad]
     if needed("hardness"):
         parts += [rules.find_hardness, rules.fit_hardness]
         files += expand(rules.make_glass.output, glass=SCENE.hardness.seeds)

@@ -8,14 +8,12 @@ PAIR_CHUNKS = chunk_bounds(SCENE.uncertainty.model_form_pairs, 20)
 
 rule uq:
     input:
-        f"{RESULTS}/uq/outputs.csv",
-        f"{RESULTS}/uq/surrogate.json",
-        f"{RESULTS}/uq/validation.csv",
+        in_tail("law", *(f"{RESULTS}/uq/{name}" for name in ("outputs.csv", "surrogate.json", "validation.csv"))),
 
 
 rule sensitivity:
     input:
-        f"{RESULTS}/uq/sensitivity.csv",
+        in_tail("law", f"{RESULTS}/uq/sensitivity.csv"),
 
 
 rule compute_direct_runs:
@@ -75,6 +73,7 @@ rule propagate_uncertainty:
         surrogate=f"{RESULTS}/uq/surrogate.json",
         samples=f"{RESULTS}/uq/samples.csv",
         validation=f"{RESULTS}/uq/validation.csv",
+        law=f"{RESULTS}/uq/law.csv",
     log:
         f"{RESULTS}/logs/propagate_uncertainty.log",
     resources:
@@ -131,7 +130,8 @@ rule measure_uncertainty_accuracy:
         "../scripts/measure_uncertainty_accuracy.py"
 
 
-ACCURACY.append(f"{RESULTS}/accuracy/uncertainty.csv")
+if "law" in SCENE.tails:
+    ACCURACY.append(f"{RESULTS}/accuracy/uncertainty.csv")
 
 
 # Asperities on their own and coupled, side by side

@@ -98,8 +98,6 @@ TABLES = (
             number("pull_off_nN", "nN", "largest net attraction on opening"),
             *(number(f"opening_{row.name}", row.unit, f"{row.meaning}, on opening", empty=True) for row in LAW),
             text("opening_status", "ok, or why the fit of the opening is poor or missing"),
-            number("release_V", "V", "release voltage of the switch (0: stuck)", empty=True),
-            number("critical_share", "1", "share in contact beyond which the switch sticks", empty=True),
             boolean("converged", "whether the cycle and its hold converged"),
         ),
     ),

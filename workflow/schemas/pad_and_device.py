@@ -4,8 +4,6 @@ from mesoscale.settings.device import SPREAD, unit_of
 from workflow.schemas.inputs_and_law import BRANCH, INPUT_VALUES
 from workflow.schemas.table import Table, integer, number, text
 
-_CASE = text("case", "with_adhesion or without_adhesion")
-
 _PADS = (
     text("mechanics", "asperity or coupled"),
     text("varied", "what differs from the central case: none, rms, gap_cutoff, retardation or work"),
@@ -60,14 +58,6 @@ TABLES = (
         ),
     ),
     Table(
-        ("pad/grid.csv",),
-        "One separation at which the cells of a pad are computed.",
-        (
-            number("separation_nm", "nm", "separation"),
-            integer("opened_from", "1 where the pad is opened from there, else 0"),
-        ),
-    ),
-    Table(
         ("pad/curves.csv",),
         "One separation of one branch: the mean pressure of the cells.",
         (
@@ -81,61 +71,12 @@ TABLES = (
         ),
     ),
     Table(
-        ("pad/adhesion.csv",),
-        "Pads of one size, opened from one depth.",
-        (
-            number("depth_nm", "nm", "separation from which the pad is opened"),
-            number("closed_to_MPa", "MPa", "net pressure there"),
-            integer("cells", "cells of the pad"),
-            text("method", "groups of cells, or all with the bias taken off"),
-            number("net_adhesion_kPa", "kPa", "largest net attraction on opening, mean over pads"),
-            number("pad_scatter_kPa", "kPa", "standard deviation from pad to pad"),
-            number("standard_error_kPa", "kPa", "standard error of net_adhesion_kPa"),
-        ),
-    ),
-    Table(
-        ("pad/draws/chunk_*.csv",),
-        "One separation of one branch of the pad at one draw of the inputs: the mean pressure of its cells.",
-        (
-            integer("draw", "number of the draw"),
-            number("gap_cutoff_nm", "nm", "D0 of the draw"),
-            number("depth_nm", "nm", "separation from which the pad is opened; empty on closing", empty=True),
-            number("separation_nm", "nm", "separation"),
-            number("repulsive_MPa", "MPa", "repulsive pressure"),
-            number("attractive_MPa", "MPa", "attractive pressure (negative)"),
-        ),
-    ),
-    Table(
-        ("device/release.csv",),
-        "The switch with one sample of the law.",
-        (
-            _CASE,
-            integer("sample", "number of the sample"),
-            number("pull_in_V", "V", "pull-in voltage"),
-            number("release_V", "V", "release voltage (0: stuck)"),
-            number("release_nm", "nm", "separation at release"),
-            integer("stuck", "1 where the switch sticks, else 0"),
-            number("critical_share", "1", "share in contact beyond which the switch sticks"),
-        ),
-    ),
-    Table(
-        ("device/stiction.csv",),
-        "One share of the electrode in contact.",
-        (
-            number("share", "1", "share of the electrode that is in contact"),
-            number("stiction_probability", "1", "share of the samples that stick"),
-            number("low", "1", "lower end of its 95 % interval"),
-            number("high", "1", "upper end of its 95 % interval"),
-        ),
-    ),
-    Table(
         ("device/failure.csv",),
         "One hold voltage with one law of attraction.",
         (
             number("hold_V", "V", "hold voltage"),
             number("attraction", "1", "factor on the attraction"),
             number("failing", "1", "probability of a failure by the response"),
-            number("beyond", "1", "probability of a switch beyond the model"),
         ),
     ),
     Table(
@@ -188,19 +129,6 @@ TABLES = (
             number("voltage_V", "V", "voltage"),
             number("middle_nm", "nm", "separation of mid-span"),
             number("capacitance_fF", "fF", "capacitance"),
-        ),
-    ),
-    Table(
-        ("device/law.csv",),
-        "One gap of one branch.",
-        (
-            BRANCH,
-            number("gap_nm", "nm", "separation"),
-            number("pressure_GPa", "GPa", "nominal contact pressure, positive: repulsive"),
-            number("derivative_GPa_nm", "GPa/nm", "its derivative by the gap"),
-            number("pressure_q05_GPa", "GPa", "5 % quantile over the samples"),
-            number("pressure_q50_GPa", "GPa", "median over the samples"),
-            number("pressure_q95_GPa", "GPa", "95 % quantile over the samples"),
         ),
     ),
 )

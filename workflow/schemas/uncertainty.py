@@ -1,7 +1,7 @@
 """Tables of uncertainty and sensitivity."""
 
 from mesoscale.law.parameters import LAW, LAW_OUTPUTS
-from workflow.schemas.inputs_and_law import INPUT_VALUES, SEED
+from workflow.schemas.inputs_and_law import BRANCH, INPUT_VALUES, SEED
 from workflow.schemas.table import Column, Table, integer, number, text
 
 _OUTPUT = text("output", "parameter of the law on closing, or its change on opening (delta_)")
@@ -191,10 +191,23 @@ _SAMPLES = Table(
     (*INPUT_VALUES, *_fitted(empty=False, status=False)),
 )
 
+_LAW = Table(
+    ("uq/law.csv",),
+    "One gap of one branch: the pressure over the samples of the law.",
+    (
+        BRANCH,
+        number("gap_nm", "nm", "separation"),
+        number("pressure_q05_GPa", "GPa", "5 % quantile, positive: repulsive"),
+        number("pressure_q50_GPa", "GPa", "median"),
+        number("pressure_q95_GPa", "GPa", "95 % quantile"),
+    ),
+)
+
 TABLES = (
     _OUTPUTS,
     _SENSITIVITY,
     _SAMPLES,
+    _LAW,
     _VALIDATION,
     _DIRECT,
     _PAIRS,

@@ -1,6 +1,6 @@
 """Make the switch for circuit simulators: central, corners and draws; its C-V loop and its transient.
 
-In: pad/inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN), pad/draws/*.csv.
+In: pad/inputs.csv, pad/model.h5.
 Out: device/circuit/*.sub and *.va, device/circuit.json, device/circuit.csv, device/loop.csv (fF, V),
 device/transient.csv (us).
 """
@@ -10,20 +10,27 @@ from pathlib import Path
 
 from mesoscale.device.circuit import Version, loops, study_on_pad, transient, versions
 from mesoscale.device.lumps import lumps_of
+from mesoscale.device.points import cutoff_range, on_pad_grid
 from mesoscale.device.switch_export import spice_switch, verilog_lump
-from mesoscale.pad.memory import law_of
-from mesoscale.settings import DeviceSettings
+from mesoscale.errors import InputError
+from mesoscale.settings import DeviceSettings, PadSettings
 from workflow.contact_settings import contact_settings
 from workflow.job import job, settings_from_job
-from workflow.pad_files import load_spread
+from workflow.pad_files import load_model, points_of
 from workflow.results import write_csv, write_json, write_text
 
 with job(snakemake) as run:
     contact = contact_settings(snakemake.params.contact, snakemake)
     device = settings_from_job(DeviceSettings, snakemake.params.device)
-    pad = load_spread(snakemake, contact)
-    study, law = study_on_pad(device, law_of(pad.cells, pad.flats))
-    spread = versions(pad.inputs, device, pad.cutoffs_nm, pad.model, study.lumps)
+    settings = settings_from_job(PadSettings, snakemake.params.pad)
+    points = points_of(snakemake.input.inputs, contact, device, settings.points)
+    model = load_model([snakemake.input.model], points)
+    pad = model.central.pad
+    if pad is None:
+        raise InputError(model.central.refused)
+    study, law = study_on_pad(device, pad.law)
+    coarse, cutoffs = on_pad_grid(contact, points.table), cutoff_range(points.table, contact)
+    spread = versions(model, points.table, coarse, cutoffs, study.lumps)
     run.progress(0.4, "draws and corners")
     states = {"pull_in_V": study.pull_in_V, "release_V": study.release_V}
     central = Version({"switch": "central"} | states, device.model_copy(update={"tilt_nm": 0.0}), law)

@@ -1,14 +1,14 @@
 """Error of the failure rate against run time, by the number of samples.
 
-In: pad/inputs.csv, pad/grid.csv, pad/cells/*.h5 (nN), pad/draws/*.csv.  Out: accuracy/failure.csv (s).
+In: pad/inputs.csv, pad/model.h5.  Out: accuracy/failure.csv (s).
 """
 
 from mesoscale.device.failure_accuracy import accuracy_points
 from workflow.checks import accuracy_rows
+from workflow.failing import load_population
 from workflow.job import job
-from workflow.pad_files import load_population
 from workflow.results import write_csv
 
 with job(snakemake) as run:
-    population, _, allowed = load_population(snakemake)
+    population, allowed = load_population(snakemake)
     write_csv(snakemake.output[0], accuracy_rows("failure", accuracy_points(population, allowed, run.progress)))

@@ -1,13 +1,15 @@
 """Propagate the inputs' uncertainty through the responses and validate these.
 
 In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, uq/again.csv, the paper's Table 2.
-Out: uq/outputs.csv (Table 2), uq/surrogate.json, uq/samples.csv, uq/validation.csv (nm, GPa/nm, GPa).
+Out: uq/outputs.csv (Table 2), uq/surrogate.json, uq/samples.csv, uq/validation.csv,
+uq/law.csv (nm, GPa/nm, GPa).
 """
 
 import numpy as np
 
 from mesoscale.inputs.table import from_rows
 from mesoscale.law.parameters import FITTED
+from mesoscale.law.samples import band_rows
 from mesoscale.settings import LawSettings, UncertaintySettings
 from mesoscale.uncertainty.paper_tables import table2
 from mesoscale.uncertainty.propagation import nodes_of_rows, output_rows, propagate, surrogate_json
@@ -36,9 +38,10 @@ with job(snakemake) as run:
         surrogate_json(result, nodes, table, settings, constants, paper),
         run.provenance,
     )
-    names = [*table.names, *FITTED]
-    values = np.hstack([result.samples, result.outputs]).tolist()
-    write_csv(snakemake.output.samples, (dict(zip(names, line, strict=True)) for line in values))
+    names, values = [*table.names, *FITTED], np.hstack([result.samples, result.outputs])
+    write_csv(snakemake.output.samples, (dict(zip(names, line, strict=True)) for line in values.tolist()))
+    columns = dict(zip(names, values.T, strict=True))
+    write_csv(snakemake.output.law, band_rows(columns, law.rho_a_nm, law.shield_nm))
 
     repeated = (row for path in snakemake.input.again for row in load_csv(path))
     again = direct_runs_of_rows(repeated, table.names, settings.direct_runs)[1]

@@ -23,7 +23,7 @@ from atomistic.hardness.stack import base_of
 from atomistic.materials import Material
 from mesoscale.settings import ContactSettings, HistorySettings
 from mesoscale.settings.history import DWELL_STEPS
-from mesoscale.settings.pad import CELLS_PER_JOB, DRAWS_PER_JOB
+from mesoscale.settings.pad import POINTS_PER_JOB
 from mesoscale.uncertainty.chunks import CHUNK_RUNS, MOST_REPEATED, collocation_run_count
 from workflow.scene import Scene
 
@@ -40,13 +40,8 @@ CYCLE_S = {"asperity": (0.005, 0.054, 1.0), "coupled": (0.01, 2.5, 2.2), "adhesi
 NOMINAL = {"asperity": 10, "coupled": 70, "adhesive": 30}  # cycles: the largest load presses seven times as hard
 RUN_S = 0.004  # law of a run and its row
 CELL = {"asperity": 2.2, "coupled": 3.9, "adhesive": 3.0}  # a pad's cell over a cycle: it opens from several depths
-PRESSED = {"asperity": 1.0, "coupled": 9.0, "adhesive": 5.0}  # that which a switch presses over it
-DRAW = {
-    "asperity": 0.8,
-    "coupled": 0.45,
-    "adhesive": 0.7,
-}  # a cell of a pad at other inputs: fewer steps, half of the depths
-PILOT = {"asperity": 0.53, "coupled": 0.17, "adhesive": 0.3}  # a cell that is only closed, in coarse steps
+PRESSED = {"asperity": 1.0, "coupled": 0.6, "adhesive": 5.0}  # that which a switch presses over it
+BEAMS_S = 0.5  # a switch and those of two halves of its cells
 TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
 
 
@@ -56,9 +51,7 @@ GROWS_BY = {  # the key that makes a rule's jobs many or long
     "measure_tensor": "elastic.tensor_structures",
     "compute_runs": "uncertainty.seeds",
     "compute_direct_runs": "uncertainty.direct_runs",
-    "plan_pad": "pad.grid.pilot_cells",
-    "close_cells": "pad.cells",
-    "close_draws": "pad.draws",
+    "press_pads": "pad.points",
     "follow_history": "history.cycles",
     "observe_cycles": "measurements.runs",
     "sample_posterior": "measurements.local_runs",
@@ -167,6 +160,14 @@ class Costs:
         """Seconds of a job of so many cells of a pad."""
         return ENGINE_S + cells * CELL[self.mechanics] * PRESSED[self.mechanics] * self.cycle_s
 
+    def points_s(self, central: bool) -> float:
+        """Seconds of a job of so many points, or of the one at central inputs."""
+        pad = self.scene.pad
+        if central:
+            return self.cells_s(pad.cells) + BEAMS_S
+        points = min(POINTS_PER_JOB[self.mechanics], pad.points)
+        return self.cells_s(points * pad.point_cells) + points * BEAMS_S
+
     def scf_s(self, seconds: float, tight: bool = True) -> float:
         """Seconds of DFT on a glass from those of 28 atoms at 100 hartree; the power was measured to 112 atoms."""
         elastic = self.scene.elastic
@@ -210,7 +211,7 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     **_each(0.0, "write_scene", "collect_inputs", "collect_pad_inputs", "combine_e_star", "collect_priors"),
     **_each(0.0, "summarise_adhesion"),
     **_each(0.5, "find_hardness", "fit_hardness", "fit_bulk_moduli", "fit_nominal_law", "average_tensors"),
-    **_each(2.0, "draw_surface", "solve_switch", "pool_spectra"),
+    **_each(2.0, "draw_surface", "pool_spectra"),
     **_each(5.0, "write_synthetic_scans"),
     **_each(8.5, "rank_sensitivity"),
     **_each(20.0, "rank_next_on_pad"),
@@ -245,13 +246,9 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
         10.0 * (2 * len(c.scene.measurements.tables) + 1 + c.scene.measurements.rounds)
         + c.cycles_s(c.scene.measurements.rounds * c.scene.measurements.local_runs)
     ),
-    "plan_pad": lambda c, _: c.cells_s(c.scene.pad.piloted(c.scene.unequal_places).pilot_cells * PILOT[c.mechanics]),
-    "close_cells": lambda c, _: c.cells_s(min(CELLS_PER_JOB[c.mechanics], c.scene.pad.cells)),
-    "close_draws": lambda c, _: c.cells_s(
-        min(DRAWS_PER_JOB, c.scene.pad.draws) * (c.scene.pad.draw_cells * DRAW[c.mechanics] + 2 * PILOT[c.mechanics])
-    ),
-    "assemble_pad": lambda c, _: 14.0 if c.scene.pad.draws else 5.0,
-    "measure_pad_accuracy": lambda c, _: 60.0 + c.cells_s(4),
+    "press_pads": lambda c, job: c.points_s(job["chunk"] == "central"),
+    "assemble_pad": lambda c, _: 3.0,
+    "measure_pad_accuracy": lambda c, _: 60.0 + c.cells_s(30 * c.scene.pad.point_cells),
     "open_pads": lambda c, job: _adhesion_s(c.scene, int(job["adhesion_case"])),
     "follow_history": lambda c, _: history_s(c.scene.history, c.scene.contact),
     "render_report": lambda c, _: 5.5 + 0.5 * len(c.scene.stages()),

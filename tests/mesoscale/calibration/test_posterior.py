@@ -22,8 +22,8 @@ from mesoscale.calibration.sampling import NormalProposal, autocorrelation, diag
 from mesoscale.calibration.summary import posterior_json, predictive_rows, sample_rows, summary_rows
 from mesoscale.calibration.surfaces import check_points
 from mesoscale.calibration.switches import SwitchModel, law_values
-from mesoscale.device.switch import drive_switch
 from mesoscale.errors import InputError
+from mesoscale.law.parameters import PARAMETERS
 from mesoscale.settings import DeviceSettings, LawSettings
 from tests.mesoscale.calibration.conftest import MAX_FORCE_NN, made_up_observables
 
@@ -348,17 +348,26 @@ def test_swapped_columns_of_a_curve_are_refused(prior, cycles, parts):
         check_range([replace(data, columns=columns)], prior, cycles, MAX_FORCE_NN, parts[2])
 
 
-def test_release_is_that_of_the_device_stage(prior, parts):
-    """On laws that the responses predict: the coarser grid stays within 1e-3."""
+def test_release_and_pull_in_are_those_of_a_fine_grid(prior, parts):
+    """On laws that the responses predict: the lowest and the highest point of the path, within 2e-3."""
     _, laws, switch, _ = parts
-    x = prior.sample(200, 4)
+    x = prior.sample(50, 4)
     closing, opening = switch.laws(law_values(laws(x)), x[:, prior.names.index("hamaker")])
-    states = drive_switch(DeviceSettings(), closing, opening)
-    volts = switch.release_V(opening)
-    free = ~states.stuck
-    assert (volts[~free] <= 0.05).all()
-    assert volts[free] == pytest.approx(states.release_V[free], rel=2e-3, abs=0.05)
-    assert switch.pull_in_V(closing) == pytest.approx(states.pull_in_V, rel=1e-3)
+    volts, pull_in = switch.release_V(opening), switch.pull_in_V(closing)
+    for k in range(50):
+        one, down = take_one(opening, k), take_one(closing, k)
+        s = np.geomspace(one.d_c_nm + 1e-3, switch.switch.gap_nm, 20_000)
+        inner = one.d_c_nm - np.linspace(0.0, 3.0 * one.rho_r_nm, 20_000)
+        path = switch.path_V2(np.concatenate([inner[::-1], s]), one, switch.last_share)
+        barrier = 20_000 + int(np.argmax(switch.path_V2(s, one, switch.last_share)))
+        lowest = path[:barrier].min()
+        assert volts[k] == pytest.approx(np.sign(lowest) * np.sqrt(abs(lowest)), rel=2e-3, abs=0.05)
+        assert pull_in[k] == pytest.approx(np.sqrt(switch.path_V2(s, down, 1.0).max()), rel=1e-3)
+
+
+def take_one(law, k):
+    """One of the samples of a law."""
+    return replace(law, **{name: np.asarray(getattr(law, name))[k] for name in (*PARAMETERS, "hamaker")})
 
 
 def test_a_release_voltage_teaches_most_of_the_release_voltage(prior, parts):

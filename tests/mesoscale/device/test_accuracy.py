@@ -1,16 +1,12 @@
-"""The accuracy table of the pad: what it must hold, on a pad of few small cells."""
+"""The accuracy table of the pad: what it must hold, on pads of few small cells."""
 
 import numpy as np
 import pytest
 
 from mesoscale.device import accuracy
-from mesoscale.device.electrode import presser
-from mesoscale.device.pressing import pressure_to_compute
-from mesoscale.inputs.contact import ContactInputs
+from mesoscale.device.points import PadModel, central_point, plan_points, solve_point, solve_points
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
-from mesoscale.pad.cells import FIRST_SEED, close_cells, plan_grid
-from mesoscale.pad.curves import assemble
-from mesoscale.settings import ContactSettings, DeviceSettings, PadGridSettings
+from mesoscale.settings import ContactSettings, DeviceSettings
 
 FIXED = {"e_star": 91.0, "h_macro": 1.95, "h_prime": 8.375, "q0": 0.025, "hurst": 0.75}
 RANGES = {"hamaker": (0.2, 0.23), "rms": (7.5, 9.5)}
@@ -23,28 +19,30 @@ TABLE = InputTable(
 )
 CONTACT = ContactSettings(pixels=64)
 DEVICE = DeviceSettings()
-GRID = PadGridSettings(pilot_cells=4, depths=4)
 
 
 @pytest.fixture(scope="module")
 def rows():
-    """The table, whose beams go to 256 elements here."""
-    inputs = ContactInputs(**TABLE.medians())
-    wanted = pressure_to_compute(DEVICE)
-    grid = plan_grid(inputs, CONTACT, GRID, wanted, step_nm=0.2, pressed_GPa=presser(DEVICE))
-    seeds = range(FIRST_SEED, FIRST_SEED + 16)
-    cells = assemble(grid, list(close_cells(inputs, CONTACT, grid, seeds)), CONTACT.length_nm**2)
+    """The table, whose cells, grids and beams are few here."""
+    central = solve_point(central_point(TABLE, CONTACT, DEVICE), CONTACT, 8, 1000)
+    design = plan_points(TABLE, CONTACT, DEVICE, 32)
+    numbered = list(enumerate(design.points, 1))[:1]
+    (one,) = solve_points(numbered, CONTACT, 2)
+    model = PadModel(central, design, (one,) * 32)
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(accuracy, "CELLS", (2, 4))
+        patch.setattr(accuracy, "OTHERS", 2)
+        patch.setattr(accuracy, "SIDES", (2,))
         patch.setattr(accuracy, "ELEMENTS", (16, 32, 64, 128))
         patch.setattr(accuracy, "FINEST_ELEMENTS", 256)
-        return list(accuracy.accuracy_points(cells, inputs, CONTACT, DEVICE, list(seeds)))
+        return list(accuracy.accuracy_points(model, TABLE, CONTACT, 2))
 
 
 def test_every_choice_has_errors_and_times(rows):
     knobs = {row["knob"] for row in rows}
-    of_pad = {"cells", "steps of separation", "pad.grid.depths", "elements of the beam"}
+    of_pad = {"cells", "steps of separation, nm", "depths", "sites a side", "points", "elements of the beam"}
     assert knobs == of_pad | {"nodes of its tables", "pairs of lumps"}
-    assert all(np.isfinite(row["cpu_s"]) for row in rows)
+    assert all(np.isfinite(row["cpu_s"]) and np.isfinite(row["error"]) for row in rows)
 
 
 def test_errors_fall_towards_the_finest(rows):
@@ -64,5 +62,9 @@ def test_errors_fall_towards_the_finest(rows):
     assert lumps[-1] < 0.5 * lumps[0]
     assert tables[0] < 0.004  # allowed: 0.3 % of the well, and 0.05 % of the pressure
     assert tables == sorted(tables)
-    force = {row["value"]: row["error"] for row in rows if row["case"] == "force at the deepest closing"}
-    assert force[2] < force[4]
+
+
+def test_more_cells_take_more_time(rows):
+    cells = [row for row in rows if row["knob"] == "cells"]
+    assert [row["value"] for row in cells] == [2, 4]
+    assert cells[0]["cpu_s"] < cells[1]["cpu_s"]

@@ -3,19 +3,29 @@
 import numpy as np
 import pytest
 
-from evidence.pad.rare_failures import CUTOFFS_NM, PADS, TABLE
+from evidence.pad.rare_failures import CUTOFFS_NM, known_pad
+from mesoscale.device import circuit, points
 from mesoscale.device.beam import beam_of
 from mesoscale.device.beam_switch import loop_fF, solve_beam
 from mesoscale.device.circuit import CORNERS, DRAWS, Version, study_on_pad, transient, versions
+from mesoscale.device.points import Pad
 from mesoscale.errors import InputError
-from mesoscale.settings import DeviceSettings
+from mesoscale.settings import ContactSettings, DeviceSettings
 from tests.mesoscale.device.test_pad_export import pad
+from tests.mesoscale.device.test_release import TABLE, cells_of, model_of
 
 BEAM = DeviceSettings()
 
 
-def test_corners_lie_beyond_the_draws_in_their_direction():
-    made = {version.row["switch"]: version.row for version in versions(TABLE, BEAM, CUTOFFS_NM, (PADS, None), 16)}
+def test_corners_lie_beyond_the_draws_in_their_direction(monkeypatch):
+    def press_pad(point, contact, cells, first_seed, **_):
+        law = known_pad(point).law
+        return Pad(cells_of(law, 0.0), law.flats)
+
+    for module in (circuit, points):
+        monkeypatch.setattr(module, "press_pad", press_pad)
+    contact = ContactSettings()
+    made = {of.row["switch"]: of.row for of in versions(model_of(BEAM, 48), TABLE, contact, CUTOFFS_NM, 16)}
     assert set(made) == {*CORNERS, *(name for name in made if name.startswith("draw_"))}
     assert len(made) == len(CORNERS) + DRAWS
     drawn = [row for name, row in made.items() if name.startswith("draw_")]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from evidence.pad.rare_failures import PADS, population
+from evidence.pad.rare_failures import KnownPad, known_pad, population
 from mesoscale.device.beam_switch import closed_beam, solve_beam
 from mesoscale.device.failure import (
     STEP,
@@ -129,18 +129,41 @@ def test_the_probability_is_that_of_brute_force():
         assert abs(np.log(share / 0.01)) < 2.0 * np.hypot(0.25, error / share)
 
 
-def test_a_closed_form_that_rises_with_the_separation_is_beyond_the_model():
-    plates = population()
-    rising = replace(PADS, closing=np.array([4.0, 0.2, 0.3, -3.0, 0.0, 0.0, 0.0]))
+def test_a_switch_whose_halves_disagree_is_decided_by_more_cells():
+    """Pads of few cells that pull ten times too hard on one half of them; those of many pull as they should."""
+    asked = []
+
+    class Uneven(KnownPad):
+        @property
+        def halves(self):
+            return self.law, attracting(self.law, 10.0)
+
+    def press(point, times, number):
+        asked.append(times)
+        law = known_pad(point).law
+        return KnownPad(law) if times > 1 else Uneven(law)
+
+    plates = replace(population(4), press=press)
     z = np.zeros((1, plates.dimension))
-    assert plates.carried(z, plates.hold_V) > 0.0
-    assert replace(plates, model=(rising, None)).carried(z, plates.hold_V) < 0.0
+    assert not plates.failed(z, plates.hold_V, 1.0)[0]
+    assert asked == [1, 4]
 
 
-def test_switches_beyond_the_model_and_windows_that_none_reaches_are_one_line():
-    hard = replace(population(), settings=PLATE.model_copy(update={"hold_voltage_V": 5e3}))
-    with pytest.raises(InputError, match=r"within what the pad was computed for"):
-        learn(hard, lambda *_: None)
+def test_a_switch_that_cannot_be_pressed_has_failed():
+    def refused(*_):
+        raise InputError("the cells never reach the pressure")
+
+    plates = replace(population(4), press=refused)
+    assert plates.failed(np.zeros((2, plates.dimension)), plates.hold_V, 1.0).all()
+
+
+def test_populations_that_cannot_be_pressed_and_windows_that_none_reaches_are_one_line():
+    def refused(*_):
+        raise InputError("the cells never reach the pressure")
+
+    plates = population()
+    with pytest.raises(InputError, match=r"failure: 0 of \d+ switches can be solved"):
+        learn(replace(plates, press=refused, solved=(plates.solved[0][:0], [])), lambda *_: None)
     with pytest.raises(InputError, match=r"failure\.release_V = 60: 0 of \d+ switches release above it"):
         learn(replace(population(), release_V=60.0), lambda *_: None)
 

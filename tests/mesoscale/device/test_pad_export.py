@@ -5,12 +5,11 @@ import re
 import numpy as np
 import pytest
 
+from evidence.pad.closed_form import ClosedForm
 from mesoscale.device.electrode import solve_deepened
 from mesoscale.device.pad_export import OF_NET, OF_WELL, START_NM, spice_pad, tables_of, verilog_pad
-from mesoscale.pad.compact import CompactPad
 from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
-from tests.mesoscale.closed_form import tabulated
 from tests.mesoscale.device.simulators import by_ngspice, needs_ngspice, needs_openvaf
 
 AREA = 1e12
@@ -20,10 +19,10 @@ HISTORY_NM = (60.0, 30.0, 26.0, 28.0, 33.0, 60.0, 30.0, 27.0, 22.0, 25.0, 30.0, 
 
 def pad(hamaker=0.215, waves=0.0):
     """A pad whose last contacts tear off in jerks, as those of few cells do."""
-    compact = CompactPad(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 2.0, hamaker, 0.3)
+    form = ClosedForm(-2.9, 0.25, 0.003, -0.35, 0.04, 0.02, 0.078, 0.97, 0.5, 2.0, hamaker, 0.3)
     s = np.arange(19.0, 80.0, 0.1)
     depths = np.array([20.0, 22.0, 24.0, 26.0, 28.0])
-    law = tabulated(compact, PadLaw(s, np.zeros((2, s.size)), depths, np.zeros((5, 2, s.size)), compact.flats))
+    law = form.law(s, depths)
     law.opening[:, 1] *= 1.0 + waves * np.sin(5.0 * (s - depths[:, None]))
     return law
 

@@ -1,131 +1,174 @@
-"""The answer: shares of the variance, the response of a pad to its inputs, and the switch on both."""
+"""The answer: points of the joint distribution, shares of the variance, and the switch on known pads."""
 
 from dataclasses import replace
-from functools import partial
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.special import ndtri
 from scipy.stats import qmc
 
-from mesoscale.device import pad_results
+from evidence.pad.closed_form import ClosedForm
+from evidence.pad.rare_failures import known_pad
+from mesoscale.device import points
 from mesoscale.device.beam_kernels import BANDS, solve_bands
-from mesoscale.device.beam_switch import BeamStates, press_GPa
-from mesoscale.device.electrode import presser, releases_by_cells, solve_deepened
-from mesoscale.device.pad_switch import PadStates
+from mesoscale.device.beam_switch import press_GPa
+from mesoscale.device.electrode import presser, solve_deepened
+from mesoscale.device.points import Pad, PadModel, central_point, plan_points, solve_point, solve_points
 from mesoscale.device.pressing import EDGE, EXACT, FAR_OUT, hardest, held_V, pressing, pressure_to_compute
-from mesoscale.device.release import (
-    _probability,
-    draws_error_V,
-    first_order,
-    model_of,
-    plan_points,
-    solve_points,
-    try_answer,
-)
+from mesoscale.device.release import _probability, answer, first_order, switch_on_pad
 from mesoscale.errors import InputError, NotComputed
-from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
-from mesoscale.inputs.table import film_table
+from mesoscale.inputs.table import input_table
 from mesoscale.pad.cells import PadGrid
-from mesoscale.pad.compact import CompactPad
 from mesoscale.pad.curves import PadCells
-from mesoscale.pad.draws import Draw, draw_rows, laws_of_rows
-from mesoscale.pad.memory import Flats
-from mesoscale.pad.response import SampledPad, fit_response, law_of_compact
-from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
 from mesoscale.settings.device import SpreadRow, SpreadSettings
 
-RANGES = {"hamaker": (0.18, 0.25), "e_star": (80.0, 100.0), "rms": (6.0, 12.0)}
-TABLE = InputTable(
-    tuple(UncertainInput(name, "", Distribution("uniform", *ends), "literature", "") for name, ends in RANGES.items()),
-    np.eye(3),
-)
-MIDDLE = TABLE.medians()
 PLATE = DeviceSettings(spring_N_per_m=170.0)
+RMS = 9.0
+SEPARATION = np.linspace(0.05, 12.0, 1200) * RMS
+MIDDLE = ClosedForm(
+    -4.0, 3.0 / RMS, 0.05 / RMS**2, 3.5 / RMS, 0.2 / RMS**2, 0.05 / RMS**2, 0.048, 0.95, 0.5, 0.0, 0.215, 0.165
+)
+"""A pad with numbers near those of Table 1."""
 
 
-def true_pad(values, gap_cutoff_nm, lifted=0.0):
-    """A closed form that depends on the inputs as a response can."""
-    z, size = (values["e_star"] - 90.0) / 10.0, np.log(values["rms"] / MIDDLE["rms"])
-    rms = values["rms"]
-    strength = values["hamaker"] * np.exp(-1.5 + 0.1 * z - 1.2 * np.log(gap_cutoff_nm / 0.165))
-    return CompactPad(
-        -4.0 + 0.2 * z + 0.3 * size, 3.0 / rms, 0.05 / rms**2, (3.5 + 0.3 * z) / rms, 0.2 / rms**2, 0.05 / rms**2,
-        strength, 0.95, 0.5, lifted, values["hamaker"], gap_cutoff_nm,
-    )  # fmt: skip
+def table(**rows):
+    """Inputs of Table 1 of which three vary, as those of the study of rare failures, and what is stated."""
+    fixed = {"h_macro": 1.95, "h_prime": 8.375, "q0": 0.025, "hurst": 0.75}
+    stated = {name: InputRow(distribution="fixed", values=(value,)) for name, value in fixed.items()}
+    stated["e_star"] = InputRow(distribution="normal", values=(90.0, 4.0))
+    stated["rms"] = InputRow(distribution="normal", values=(9.0, 0.8))
+    return input_table(**stated | rows)
 
 
-def sampled(values, gap_cutoff_nm, cells=4, lifted=0.0, higher=0.0):
-    """A pad of few cells; `higher`: by how much the logarithm of its repulsion differs from that of all cells."""
-    compact = true_pad(values, gap_cutoff_nm, lifted)
-    compact = replace(compact, c0=compact.c0 - higher)
-    s = np.linspace(0.05, 12.0, 600) * values["rms"]
-    law = law_of_compact(compact, np.full(s.size, 0.05), s, depths=5)
-    return SampledPad(values, gap_cutoff_nm, cells, law)
+TABLE = table()
 
 
-@pytest.fixture(scope="module")
-def pads():
-    units = qmc.LatinHypercube(4, rng=1).random(12)
-    values = [dict(zip(TABLE.names, row, strict=True)) for row in TABLE.transform(units[:, :3]).tolist()]
-    cutoffs = 0.165 + 0.1 * units[:, 3]
-    return [sampled(MIDDLE, 0.165, 64), *(sampled(row, cut) for row, cut in zip(values, cutoffs, strict=True))]
+def cells_of(law, scale):
+    """A pad of two cells that have the law's pressures times 1 - scale and 1 + scale."""
+    grid = PadGrid(law.separation_nm[::-1], np.flatnonzero(np.isin(law.separation_nm[::-1], law.depth_nm)))
+    closing, opening = law.closing[:, ::-1], law.opening[::-1, :, ::-1]
+    both = np.array([1.0 - scale, 1.0 + scale])
+    return PadCells(
+        grid,
+        np.array([0.5, 0.5]),
+        np.full(2, 30.0),
+        both[:, None, None] * closing,
+        both[:, None, None, None] * opening,
+        np.ones(2, bool),
+    )
 
 
-@pytest.mark.parametrize("lifted", [0.0, 4.0])
-def test_the_response_finds_a_closed_form_that_is_of_its_kind(pads, lifted):
-    """Pads without scatter: the form at inputs that no pad had is the true one."""
-    response = fit_response([sampled(pad.values, pad.gap_cutoff_nm, lifted=lifted) for pad in pads], TABLE)
-    values = {"hamaker": 0.2, "e_star": 84.0, "rms": 7.0}
-    state, wanted = response.at(values, 0.2), true_pad(values, 0.2, lifted)
-    s = np.linspace(10.0, 30.0, 50)
-    for ours, theirs in zip(state.opening_GPa(s, 9.0), wanted.opening_GPa(s, 9.0), strict=True):
-        np.testing.assert_allclose(ours, theirs, rtol=1e-6)
+@pytest.fixture
+def known(monkeypatch):
+    """Pads are those of a closed form, whose two cells differ by a tenth."""
+
+    def press_pad(point, contact, cells, first_seed, **_):
+        law = known_pad(point).law
+        return Pad(cells_of(law, 0.1 / np.sqrt(cells / 2)), law.flats)
+
+    monkeypatch.setattr(points, "press_pad", press_pad)
 
 
-def test_pads_that_scatter_by_where_they_touch_have_their_slope_and_level():
-    """Repulsion falls by 4 per RMS height from 5 ± 0.5 RMS heights on: lines over s would be flat."""
-    table = film_table(TABLE, {}, (0.2, 0.6))
-    rng = np.random.default_rng(3)
-    units = qmc.LatinHypercube(4, rng=rng).random(24)
-    pads = []
-    for row in table.transform(units).tolist():
-        values = dict(zip(table.names, row, strict=True))
-        at = 5.0 + 0.5 * rng.normal()
-        compact = replace(true_pad(values, 0.3), c0=7.0 - 4.0 * at, c1_per_nm=4.0 / values["rms"], c2_per_nm2=0.0)
-        s = np.linspace(at - 0.5, at + 3.0, 300) * values["rms"]
-        pads.append(SampledPad(values, 0.3, 4, law_of_compact(compact, np.full(s.size, 1.0), s, depths=5)))
-    found = fit_response(pads, table).at(table.medians(), 0.3)
-    rms = table.medians()["rms"]
-    assert found.c1_per_nm * rms == pytest.approx(4.0, rel=0.02)
-    assert (7.0 - found.c0) / (found.c1_per_nm * rms) == pytest.approx(5.0, abs=0.3)  # the mean of 24
+def model_of(settings, count, cells=2):
+    design = plan_points(TABLE, ContactSettings(), settings, count)
+    numbered = list(enumerate(design.points, 1))
+    central = solve_point(central_point(TABLE, ContactSettings(), settings), ContactSettings(), cells, 0)
+    return PadModel(central, design, tuple(solve_points(numbered, ContactSettings(), cells)))
 
 
-def test_a_form_beyond_all_numbers_is_refused():
-    s = np.linspace(0.05, 12.0, 600)
-    endless = SimpleNamespace(closing_GPa=lambda at: np.stack([np.where(at < 6.0, np.inf, 1e-3 / at), -1e-9 / at]))
-    with pytest.raises(InputError, match="the closed form of the pad carries inf GPa"):
-        law_of_compact(endless, np.full(s.size, 1.0), s)
+def test_points_fill_what_varies_and_nothing_else():
+    design = plan_points(table(), ContactSettings(), DeviceSettings(), 40)
+    varying = {design.names[k] for k in design.varying}
+    assert {"hamaker", "rms", "gap_cutoff_nm", "bow_nm"} < varying
+    assert not {"q0", "hurst"} & varying
+    for k in design.varying:  # a Latin hypercube: one in each of 40 equal classes
+        assert set(np.floor(40 * design.probability[:, k])) == set(range(40))
+    plates = plan_points(table(), ContactSettings(), PLATE, 4)
+    assert not {"bow_nm", "thickness_um"} & set(plates.names)
 
 
-def test_too_few_draws_are_refused_with_the_number_that_is_enough(pads):
-    with pytest.raises(InputError, match=r"pad\.draws = 2: accepted are at least 4"):
-        fit_response(pads[:3], TABLE)
+def test_a_D0_that_is_an_input_is_not_drawn_twice():
+    drawn = {point.gap_cutoff_nm for point in plan_points(table(), ContactSettings(), PLATE, 6).points}
+    assert len(drawn) == 6
+    stated = table(gap_cutoff=InputRow(distribution="fixed", values=(3.7,)))
+    design = plan_points(stated, ContactSettings(), PLATE, 6)
+    assert {point.gap_cutoff_nm for point in design.points} == {3.7}
+    assert "gap_cutoff" not in {design.causes[k] for k in design.varying}
 
 
-def test_curves_of_draws_come_back_from_their_rows(pads):
-    rest = {"h_macro": 1.95, "h_prime": 8.375, "q0": 0.025, "hurst": 0.75}
-    draws = [Draw(k, pad.values | rest, pad.gap_cutoff_nm, range(0)) for k, pad in enumerate(pads[:2])]
-    rows = [
-        {name: "" if value is None else repr(value) for name, value in row.items()}
-        for draw, pad in zip(draws, pads, strict=False)
-        for row in draw_rows(draw, pad.law)
-    ]
-    for pad, law in zip(pads, laws_of_rows(rows, draws, ContactSettings()), strict=False):
-        np.testing.assert_allclose(law.opening, pad.law.opening, rtol=1e-12)
-        np.testing.assert_allclose(law.closing, pad.law.closing, rtol=1e-12)
-        assert law.flats == pad.law.flats
+@pytest.mark.parametrize(("reaches", "pixels"), [(0.2, 64), (0.4, 128), (0.41, 256)])
+def test_pads_have_the_coarsest_grid_that_holds_all_waves(reaches, pixels):
+    row = InputRow(distribution="uniform", values=(0.1, reaches))
+    contact = ContactSettings(pixels=256)
+    assert points.on_pad_grid(contact, table(q1=row)).pixels == pixels
+    assert points.on_pad_grid(contact, table()).pixels == 256  # the grid is the cut-off
+
+
+def test_an_undecided_point_has_more_cells_and_a_decided_one_has_not(known, monkeypatch):
+    asked = []
+    press = points.press_pad
+
+    def counted(point, contact, cells, first_seed, **options):
+        asked.append(cells)
+        return press(point, contact, cells, first_seed, **options)
+
+    monkeypatch.setattr(points, "press_pad", counted)
+    point = central_point(TABLE, ContactSettings(), PLATE)
+    (decided,) = solve_points([(1, point)], ContactSettings(), 2)
+    assert asked == [2]
+    assert decided.error_V == pytest.approx(0.5 * abs(decided.halves_V[0] - decided.halves_V[1]))
+    monkeypatch.setattr(points, "UNDECIDED", 1e-6)
+    list(solve_points([(1, point)], ContactSettings(), 2))
+    assert asked[1:] == [2, 2 * points.MORE]
+
+
+def test_a_point_that_cannot_be_pressed_leaves_its_reason(monkeypatch):
+    def refused(*_, **__):
+        raise InputError("4 cells closed by 90 nm carry 1 of the 5 MPa")
+
+    monkeypatch.setattr(points, "press_pad", refused)
+    (solved,) = solve_points([(1, central_point(TABLE, ContactSettings(), PLATE))], ContactSettings(), 4)
+    assert solved.pad is None
+    assert not solved.states
+    assert "carry 1 of the 5 MPa" in solved.refused
+    model = PadModel(solved, plan_points(TABLE, ContactSettings(), PLATE, 1), (solved,))
+    content = switch_on_pad(model, 1e6)
+    assert content["central"] is None
+    assert content["gate"]["reasons"] == [solved.refused]
+    assert content["answer_status"] == f"device: 1 of 1 switches cannot be solved: {solved.refused}"
+
+
+def test_the_answer_keeps_its_causes_apart(known):
+    """A plate on known pads: inputs make the spread, the cells hardly any of it."""
+    said = answer(model_of(PLATE, 96, cells=32))
+    shares = {row.cause: row.share_of_variance for row in said.causes}
+    assert shares["cells"] < 0.01
+    assert shares["inputs"] + shares["gap_cutoff"] + shares["device_common"] + shares["device_each"] > 0.8
+    assert said.sensitivity[0].share_of_variance > 0.3
+    assert said.points == 96
+    assert said.cells == 2 * 96
+
+
+def test_quantiles_err_as_their_stated_error_says(known):
+    """Fifty answers of 24 points each, beside 600 points; a Latin hypercube errs by less."""
+    release = np.concatenate([model_of(PLATE, 600).states("release_V")])
+    rng = np.random.default_rng(0)
+    model = model_of(PLATE, 24)
+    stated = answer(model).quantile_error_V["0.5"]
+    medians = [np.median(rng.choice(release, 24)) for _ in range(50)]
+    assert stated == pytest.approx(np.std(medians), rel=0.6)
+
+
+def test_the_gate_fails_where_halves_of_the_cells_disagree_on_sticking(known):
+    """Pads that pull with 0.1 and 1.9 times their pressures: one half sticks."""
+    central = model_of(PLATE, 1).central
+    assert central.pad is not None
+    assert switch_on_pad(PadModel(central, plan_points(TABLE, ContactSettings(), PLATE, 0), ()), 1e6)["gate"]["passed"]
+    apart = replace(central, halves_V=(0.0, 7.0))
+    gate = switch_on_pad(PadModel(apart, plan_points(TABLE, ContactSettings(), PLATE, 0), ()), 1e6)["gate"]
+    assert not gate["passed"]
+    assert "do not decide whether the switch sticks" in gate["reasons"][0]
 
 
 def test_shares_of_the_variance_are_those_of_a_known_function():
@@ -138,12 +181,14 @@ def test_shares_of_the_variance_are_those_of_a_known_function():
     assert error < 1e-9
 
 
-def test_geometry_counts_only_where_the_electrode_bends():
-    names, _, _, points = plan_points(TABLE, DeviceSettings(), 0.165, 0.3)
-    assert {"bow_nm", "tilt_nm"} < set(names)
-    assert len({point.device.bow_nm for point in points}) == len(points)
-    assert not {"bow_nm", "thickness_um"} & set(plan_points(TABLE, PLATE, 0.165, 0.3)[0])
-    assert "gap_cutoff" not in plan_points(TABLE, PLATE, 0.165, 0.165)[1]
+def test_the_hardest_device_is_one_deviation_out_in_all_that_presses():
+    """Of a plate the pressure goes with the cube of the gap; what adds up, adds by squares."""
+    wide = SpreadRow(distribution="normal", values=(0.0, 0.1), relative=True)
+    gap, thin = PLATE.gap_um * 1e3, PLATE.dielectric_nm / PLATE.permittivity
+    of_gap = ((gap * (1 + 0.1 * ndtri(FAR_OUT)) + thin) / (gap + thin)) ** 3 - 1
+    alone = PLATE.model_copy(update={"spread": EXACT.model_copy(update={"gap_um": wide})})
+    assert held_V(hardest(alone)) ** 2 / held_V(PLATE) ** 2 == pytest.approx(1 + of_gap, rel=1e-6)
+    assert hardest(PLATE.model_copy(update={"spread": EXACT})).hold_voltage_V == pytest.approx(held_V(PLATE))
 
 
 def test_pads_are_computed_to_more_than_the_plate_can_press():
@@ -156,23 +201,12 @@ def test_pads_are_computed_to_more_than_the_plate_can_press():
     assert pressing(tilted, spread=True) == pressing(DeviceSettings(), spread=True)
 
 
-def test_the_hardest_device_is_one_deviation_out_in_all_that_presses():
-    """Of a plate the pressure goes with the cube of the gap; what adds up, adds by squares."""
-    wide = SpreadRow(distribution="normal", values=(0.0, 0.1), relative=True)
-    gap, thin = PLATE.gap_um * 1e3, PLATE.dielectric_nm / PLATE.permittivity
-    of_gap = ((gap * (1 + 0.1 * ndtri(FAR_OUT)) + thin) / (gap + thin)) ** 3 - 1
-    alone = PLATE.model_copy(update={"spread": EXACT.model_copy(update={"gap_um": wide})})
-    assert held_V(hardest(alone)) ** 2 / held_V(PLATE) ** 2 == pytest.approx(1 + of_gap, rel=1e-6)
-    assert hardest(PLATE.model_copy(update={"spread": EXACT})).hold_voltage_V == pytest.approx(held_V(PLATE))
-
-
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
 def test_a_pad_that_is_pressed_harder_than_it_was_computed_is_continued(settings):
-    s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
     local = pressure_to_compute(settings)(
-        s
+        SEPARATION
     )  # 2.5 times that of the voltage alone, with less than which a plate presses
-    enough, less = (law_of_compact(true_pad(MIDDLE, 0.165), share * local, s) for share in (1.5, 0.3))
+    enough, less = (MIDDLE.pressed(share * local, SEPARATION) for share in (1.5, 0.3))
     computed, continued = solve_deepened(settings, enough), solve_deepened(settings, less)
     assert (computed["deepened"], continued["deepened"]) == (0.0, 1.0)
     # an opening from deeper is stiffer than from the deepest computed depth, and the tail of closing is Gaussian
@@ -181,23 +215,20 @@ def test_a_pad_that_is_pressed_harder_than_it_was_computed_is_continued(settings
 
 
 def test_a_pad_that_was_closed_far_too_little_stays_refused():
-    s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
-    smooth = replace(true_pad(MIDDLE, 0.165), beta=0.0, hamaker=1e-9)
+    smooth = replace(MIDDLE, beta=0.0, hamaker=1e-9)
     with pytest.raises(NotComputed, match="where its curves end"):
-        solve_deepened(DeviceSettings(), law_of_compact(smooth, np.full(s.size, 0.001), s))
+        solve_deepened(DeviceSettings(), smooth.pressed(np.full(SEPARATION.size, 0.001), SEPARATION))
 
 
 @pytest.mark.parametrize("change", [{}, {"bow_nm": 500.0}, {"residual_stress_MPa": 50.0}, {"hold_voltage_V": 120.0}])
 def test_pilots_know_what_the_beam_will_press_with(change):
     """From a closing curve that ends too early, within the 15 % by which pilot cells are off."""
     settings = DeviceSettings().model_copy(update=change)
-    s = np.linspace(0.05, 12.0, 1200) * MIDDLE["rms"]
-    compact = true_pad(MIDDLE, 0.165)
-    local = pressure_to_compute(settings)(s)
-    short, long = (law_of_compact(compact, share * local, s) for share in (0.6, 3.0))
+    local = pressure_to_compute(settings)(SEPARATION)
+    short, long = (MIDDLE.pressed(share * local, SEPARATION) for share in (0.6, 3.0))
     pressed = presser(settings)(short.separation_nm, short.closing.sum(axis=0))
     assert pressed == pytest.approx(press_GPa(settings, long), rel=0.15)
-    assert pressed > 1.3 * float(local[np.searchsorted(s, short.separation_nm[0])]) / EDGE
+    assert pressed > 1.3 * float(local[np.searchsorted(SEPARATION, short.separation_nm[0])]) / EDGE
 
 
 def test_a_pad_closed_nearly_to_its_mean_plane_asks_for_nothing_deeper():
@@ -206,46 +237,9 @@ def test_a_pad_closed_nearly_to_its_mean_plane_asks_for_nothing_deeper():
     assert presser(DeviceSettings())(separation, 1e-6 * np.exp(-(separation - 3.0))) == 0.0
 
 
-@pytest.mark.parametrize(("settings", "stuck", "passed"), [(DeviceSettings(), 0, True), (DeviceSettings(), 12, False)])
-def test_the_gate_judges_the_electrode_that_the_answer_has(monkeypatch, settings, stuck, passed):
-    """A flat plate that sticks on half of the resampled pads says nothing of an electrode that bends."""
-    state = BeamStates(3490.0, 60.0, 60.0, 7.0, False, 0.5, 0.02, 5.0, 100.0)
-    flat = [PadStates(60.0, 20.0, 5.0, float(k % 2), k % 2 == 0, 9.0) for k in range(pad_results.RESAMPLES)]
-    monkeypatch.setattr(pad_results, "solve_beam", lambda *_: state)
-    monkeypatch.setattr(pad_results, "solve_on_pad", lambda *_: flat[1])
-    monkeypatch.setattr(pad_results, "resampled_states", lambda *_: flat)
-    released = np.repeat([0.0, 7.0], [stuck, 24 - stuck])
-    grid = PadGrid(np.array([30.0, 20.0]), np.array([1]))
-    forces = np.zeros((8, 2, 2))
-    cells = PadCells(grid, np.full(8, 30.0), forces, forces[:, None], np.ones(8, bool))
-    gate = pad_results.switch_on_pad(cells, Flats(0.2, 0.0), settings, 1e6, lambda: released)["gate"]
-    assert gate["passed"] is passed
-    assert passed or "12 of 24 resampled pads; raise pad.cells" in gate["reasons"][0]
-
-
-def test_a_plate_that_cannot_be_solved_says_nothing_of_an_electrode_that_bends(monkeypatch):
-    state = BeamStates(3490.0, 60.0, 60.0, 7.0, False, 0.5, 0.02, 5.0, 100.0)
-
-    def refused(*_):
-        raise NotComputed("deepest closing 18.5 nm: the pad was computed for 11.8 .. 18.2 nm")
-
-    monkeypatch.setattr(pad_results, "solve_beam", lambda *_: state)
-    monkeypatch.setattr(pad_results, "solve_on_pad", refused)
-    grid = PadGrid(np.array([30.0, 20.0]), np.array([1]))
-    forces = np.zeros((8, 2, 2))
-    cells = PadCells(grid, np.full(8, 30.0), forces, forces[:, None], np.ones(8, bool))
-    bending = pad_results.switch_on_pad(cells, Flats(0.2, 0.0), DeviceSettings(), 1e6, lambda: np.full(24, 7.0))
-    assert bending["gate"] == {"passed": True, "reasons": []}
-    assert bending["mean"] is None
-    assert bending["beam"]["release_V"] == 7.0
-    flat = pad_results.switch_on_pad(cells, Flats(0.2, 0.0), PLATE, 1e6, lambda: np.full(24, 7.0))
-    assert not flat["gate"]["passed"]
-
-
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
 def test_a_hold_voltage_that_never_closes_the_switch_is_refused_in_one_line(settings):
-    s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
-    law = law_of_compact(true_pad(MIDDLE, 0.165), 2.0 * pressure_to_compute(settings)(s), s)
+    law = MIDDLE.pressed(2.0 * pressure_to_compute(settings)(SEPARATION), SEPARATION)
     pull_in = solve_deepened(settings, law)["pull_in_V"]
     assert solve_deepened(settings.model_copy(update={"hold_voltage_V": 1.01 * pull_in}), law)["release_V"] >= 0.0
     for share in (0.8, 0.99):
@@ -254,73 +248,11 @@ def test_a_hold_voltage_that_never_closes_the_switch_is_refused_in_one_line(sett
         assert "\n" not in str(caught.value)
 
 
-def test_a_closed_form_that_rises_with_the_separation_is_refused_in_one_line():
-    s = np.linspace(0.05, 12.0, 600) * MIDDLE["rms"]
-    rising = SimpleNamespace(closing_GPa=lambda at: np.stack([1e-6 * at, 0.0 * at]))
-    with pytest.raises(InputError, match="the closed form of the pad still presses there"):
-        law_of_compact(rising, np.full(s.size, 1.0), s)
-
-
 def test_refused_points_widen_the_probability_of_sticking():
     closed, opened = _probability(4, 10, 0), _probability(4, 8, 2)
     assert opened["value"] == 0.5
     assert opened["low"] == closed["low"]
     assert opened["high"] > closed["high"]
-
-
-@pytest.fixture(scope="module")
-def alike(pads):
-    """The central pad, of cells without scatter."""
-    law = pads[0].law
-    grid = PadGrid(law.separation_nm[::-1], np.flatnonzero(np.isin(law.separation_nm[::-1], law.depth_nm)))
-    closing = np.tile(law.closing[:, ::-1], (16, 1, 1))
-    one = np.full((len(grid.depths), 2, law.separation_nm.size), np.nan)
-    for k, depth in enumerate(grid.depth_nm):
-        above = law.separation_nm >= depth - 1e-9
-        one[k][:, above] = true_pad(MIDDLE, 0.165).opening_GPa(law.separation_nm[above], depth)
-    return PadCells(grid, np.full(16, 30.0), closing, np.tile(one[:, :, ::-1], (16, 1, 1, 1)), np.ones(16, bool))
-
-
-def test_the_error_by_the_draws_is_how_answers_of_other_draws_scatter(pads, alike):
-    """Of answers by independent draws whose few cells scatter, and nothing where they do not."""
-    about = TABLE, pads[0].law.flats
-    points = plan_points(TABLE, PLATE, 0.165, 0.265, 24)[3][:8]
-    rng = np.random.default_rng(7)
-
-    def drawn(deviation):
-        units = qmc.LatinHypercube(4, rng=rng).random(24)
-        values = [dict(zip(TABLE.names, row, strict=True)) for row in TABLE.transform(units[:, :3]).tolist()]
-        higher = deviation * rng.normal(size=24)
-        return [
-            sampled(*row, higher=more) for *row, more in zip(values, 0.165 + 0.1 * units[:, 3], higher, strict=True)
-        ]
-
-    assert draws_error_V(alike, drawn(0.0), *about, points, 0.165) < 0.01
-    medians, errors = [], []
-    for _ in range(12):  # whose deviation is known to 21 %
-        draws = drawn(1.0)
-        solved, _ = solve_points(points, model_of(alike, draws, *about, 0.165))
-        medians.append(np.median([state["release_V"] for state in solved.values()]))
-        errors.append(draws_error_V(alike, draws, *about, points, 0.165))
-    assert np.sqrt(np.mean(np.square(errors))) == pytest.approx(np.std(medians, ddof=1), rel=0.5)
-    assert draws_error_V(alike, draws[:4], *about, points, 0.165) is None
-
-
-def test_the_answer_keeps_its_causes_apart(pads, alike):
-    """A plate on pads without scatter between cells: the cells' share is nothing, the inputs' nearly all."""
-    law = pads[0].law
-    released = partial(releases_by_cells, PLATE, alike, law.flats)
-    state = try_answer(alike, pads[1:], TABLE, law.flats, PLATE, 0.165, released, 2)
-    assert state["answer_status"] == "ok"
-    shares = {row["cause"]: row["share_of_variance"] for row in state["answer"]["causes"]}
-    assert shares["cells"] < 1e-9
-    assert shares["inputs"] + shares["gap_cutoff"] > 0.8
-    assert state["answer"]["sensitivity"][0]["share_of_variance"] > 0.3
-    beside = state["answer"]["at_curves"]
-    assert beside["gap_cutoff_nm"] == 0.165
-    assert beside["by_carried_curves"]["release_V"] == pytest.approx(beside["by_curves"]["release_V"], rel=2e-3)
-    middle = 0.5 * (0.165 + max(pad.gap_cutoff_nm for pad in pads))
-    assert state["answer"]["central"]["gap_cutoff_nm"] == pytest.approx(middle)
 
 
 def test_banded_systems_with_a_border_are_solved_with_row_exchanges():

@@ -131,7 +131,7 @@ def test_every_mechanics_has_every_case():
 @pytest.mark.parametrize("mechanics", ["asperity", "coupled", "adhesive"])
 def test_pads_are_opened_from_their_loads(mechanics):
     case = Case("none", INPUTS, SMALL.model_copy(update={"mechanics": mechanics, "gap_cutoff_nm": 0.3}))
-    cells, loaded = close_to_loads(case, [5e-4, 5e-3], range(7, 9))
+    cells, loaded = close_to_loads(case, [5e-4, 5e-3], 2, 7)
     pressed = cells.closing[:, 0].mean(axis=0)[cells.grid.depths[loaded]]
     # within a step of separation: 0.1 nm; where the first sites touch the load doubles within some 0.3 nm
     np.testing.assert_allclose(pressed, [5e-4, 5e-3], rtol=0.5)
@@ -157,4 +157,4 @@ def test_a_load_out_of_reach_is_refused(monkeypatch):
     monkeypatch.setattr("mesoscale.pad.adhesion.MOST_STEPS", 1000)
     soft = Case("none", ContactInputs(**{**VALUES, "e_star": 1e-6, "hamaker": 0.0}), ContactSettings(pixels=32))
     with pytest.raises(InputError, match="MPa; lower it"):
-        close_to_loads(soft, [1.0], range(2))
+        close_to_loads(soft, [1.0], 2, 0)

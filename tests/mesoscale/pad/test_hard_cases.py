@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mesoscale.contact import ContactInputs
-from mesoscale.pad.cells import PadGrid, close_cells
+from mesoscale.pad.cells import Cell, PadGrid, close_cells
 from mesoscale.pad.curves import assemble
 from mesoscale.pad.memory import flats_of, law_of
 from mesoscale.settings import ContactSettings
@@ -15,6 +15,7 @@ MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, 
 # steps of 0.1 nm miss wells of 0.05 nm
 SEPARATION = np.concatenate([np.geomspace(1000.0, 50.0, 40)[:-1], np.arange(50.0, 22.0, -0.05)])
 GRID = PadGrid(SEPARATION, np.array([SEPARATION.size - 1]))
+CELLS = [Cell(1000, 0.0, 0.0, 1.0)]
 CASES = [(0.215, 0.05), (0.215, 2.0), (0.0, 0.165), (1e-6, 30.0), (2.0, 0.3)]
 """Hamaker constant (aJ) and D0 (nm)."""
 
@@ -32,7 +33,7 @@ def test_a_cycle_under_attraction_gains_no_energy(mechanics, hamaker, gap_cutoff
     given = {"mechanics": mechanics, "pixels": 64, "gap_cutoff_nm": gap_cutoff_nm}
     for model in ("plastic", "elastic"):
         contact = ContactSettings.model_validate(given | {"model": model})
-        (cell,) = close_cells(inputs, contact, GRID, [1000])
+        (cell,) = close_cells(inputs, contact, GRID, CELLS)
         spent, returned = (work_J_m2(curve, contact) for curve in (cell.closing, cell.opening[0]))
         assert cell.closing[0, -1] > 0, "not in contact"
         if model == "elastic":
@@ -47,7 +48,7 @@ def test_cells_of_extreme_attraction_join_the_flats_beyond_their_curves(mechanic
     inputs = replace(MIDDLE, hamaker=hamaker)
     given = {"mechanics": mechanics, "pixels": 64, "gap_cutoff_nm": gap_cutoff_nm}
     contact = ContactSettings.model_validate(given)
-    law = law_of(assemble(GRID, list(close_cells(inputs, contact, GRID, [1000])), contact.length_nm**2),
+    law = law_of(assemble(GRID, CELLS, list(close_cells(inputs, contact, GRID, CELLS)), contact.length_nm**2),
                  flats_of(inputs, contact))  # fmt: skip
     ends = float(law.separation_nm[-1])
     inside, beyond = law.closing_GPa(np.array([ends, ends * (1 + 1e-9)]))

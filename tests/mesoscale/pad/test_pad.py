@@ -4,24 +4,32 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.special import ndtri
+from scipy.special import ndtr
 
 from mesoscale.contact import ContactInputs
 from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import FilmInputs
-from mesoscale.inputs.table import film_table, input_table
-from mesoscale.pad.cells import FIRST_SEED, FilmPieces, PadGrid, close_cells, place_of, plan_grid
-from mesoscale.pad.curves import adhesion_by_cells, assemble
-from mesoscale.pad.draws import plan_draws
+from mesoscale.pad.cells import (
+    FIRST_SEED,
+    Cell,
+    FilmPieces,
+    PadGrid,
+    at_place,
+    close_cells,
+    half_of,
+    plan_grid,
+    sample_cells,
+    surface_of,
+)
+from mesoscale.pad.curves import PadCells, assemble
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import Flats, PadLaw, deepened, flats_of, law_of
-from mesoscale.settings import ContactSettings, InputRow, PadGridSettings, PadSettings
+from mesoscale.settings import ContactSettings
 
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
 CONTACT = ContactSettings(pixels=128)
 CELLS, STEP_NM = 16, 0.2
-GRID = PadGridSettings(pilot_cells=4, depths=5)
 WANTED_MPa = 5.0
 
 
@@ -29,11 +37,15 @@ def wanted_GPa(separation_nm):
     return np.full_like(separation_nm, WANTED_MPa * 1e-3)
 
 
+def pressed(inputs, cells, grid=None, contact=CONTACT):
+    """A pad of cells, at separations of its own where none are given."""
+    grid = grid or plan_grid(inputs, contact, cells, wanted_GPa, step_nm=STEP_NM)
+    return assemble(grid, cells, list(close_cells(inputs, contact, grid, cells)), contact.length_nm**2)
+
+
 @pytest.fixture(scope="module")
 def pad():
-    grid = plan_grid(MIDDLE, CONTACT, GRID, wanted_GPa, step_nm=STEP_NM)
-    cells = list(close_cells(MIDDLE, CONTACT, grid, range(FIRST_SEED, FIRST_SEED + CELLS)))
-    return assemble(grid, cells, CONTACT.length_nm**2)
+    return pressed(MIDDLE, sample_cells(MIDDLE, CELLS))
 
 
 def exponential_law(depths):
@@ -56,7 +68,7 @@ def exponential_law(depths):
 
 
 def test_the_grid_reaches_the_pressure_and_all_first_contacts(pad):
-    pressure = pad.closing[:, 0].mean(axis=0)
+    pressure = pad.mean(pad.closing)[0]
     assert 0.5 * WANTED_MPa < pressure[-1] * 1e3 < 2.0 * WANTED_MPa
     assert pad.grid.separation_nm[0] > pad.first_contact_nm.max()
     assert (np.diff(pad.grid.separation_nm) < 0).all()
@@ -65,24 +77,22 @@ def test_the_grid_reaches_the_pressure_and_all_first_contacts(pad):
 def test_a_pad_that_one_tall_grain_carries_is_opened_from_light_loads(monkeypatch):
     piece = FilmPieces.surface
 
-    def with_a_grain(self, seed):
-        heights = piece(self, seed)
-        if seed == FIRST_SEED:
+    def with_a_grain(self, cell):
+        heights = piece(self, cell)
+        if cell.seed == FIRST_SEED:
             heights[:48, :48] -= 20.0
         return heights
 
     monkeypatch.setattr(FilmPieces, "surface", with_a_grain)
-    grid = plan_grid(MIDDLE, CONTACT, GRID, wanted_GPa, step_nm=STEP_NM)
-    cells = list(close_cells(MIDDLE, CONTACT, grid, range(FIRST_SEED, FIRST_SEED + GRID.pilot_cells)))
-    pressure = assemble(grid, cells, CONTACT.length_nm**2).closing[:, 0].mean(axis=0)
-    assert pressure[grid.depths[0]] < 0.3e-3 * WANTED_MPa
+    pad = pressed(MIDDLE, sample_cells(MIDDLE, 4))
+    assert pad.mean(pad.closing)[0, pad.grid.depths[0]] < 0.3e-3 * WANTED_MPa
 
 
 def test_a_pressure_out_of_reach_is_refused():
     rigid = ContactSettings(pixels=32, length_nm=1000.0)
     soft = ContactInputs(**{**vars(MIDDLE), "e_star": 1e-6, "hamaker": 0.0})
     with pytest.raises(InputError, match=r"of the 5 MPa that the switch presses with; lower hold_voltage_V"):
-        plan_grid(soft, rigid, GRID, wanted_GPa)
+        plan_grid(soft, rigid, sample_cells(soft, 4), wanted_GPa)
 
 
 def test_openings_start_where_closing_ended_and_deeper_pads_hold_more(pad):
@@ -136,33 +146,13 @@ def test_far_away_a_pad_is_two_flats(pad):
     assert slope[0, 0] == pytest.approx(-3 * pressure[0, 0] / (2 * far + CONTACT.gap_cutoff_nm), rel=1e-12, abs=0)
 
 
-def test_adhesion_falls_with_the_number_of_cells(pad):
-    rows = adhesion_by_cells(pad, (1, 4, 8))
-    deepest = [row for row in rows if row["depth_nm"] == rows[-1]["depth_nm"]]
-    values = [row["net_adhesion_kPa"] for row in deepest if row["method"] == "groups"]
-    assert values == sorted(values, reverse=True)
-    assert deepest[-1]["cells"] == CELLS
-
-
-def test_groups_of_equal_cells_pull_as_one_cell():
-    """Without scatter between cells nothing averages out."""
-    separation = np.linspace(40.0, 20.0, 50)
-    grid = PadGrid(separation, np.array([49]))
-    net = -np.exp(-((separation - 30.0) ** 2))
-    one = np.stack([np.zeros(50), net])
-    from mesoscale.pad.curves import PadCells
-
-    cells = PadCells(grid, np.full(16, 31.0), np.tile(one, (16, 1, 1)), np.tile(one, (16, 1, 1, 1)), np.ones(16, bool))
-    for row in adhesion_by_cells(cells, (1, 2, 8)):
-        assert row["net_adhesion_kPa"] == pytest.approx(-net.min() * 1e6)
-
-
 def test_cells_are_pieces_of_a_film():
     """Mean planes and RMS heights scatter as those of square pieces cut out of films of four times the side."""
     small = ContactSettings(pixels=64)
     large = ContactSettings(pixels=256, length_nm=4000.0)
     pieces = FilmPieces(MIDDLE, small)
-    ours = np.array([pieces.surface(seed) for seed in range(300)])
+    planes = np.random.default_rng(0).normal(size=300)
+    ours = np.array([pieces.surface(Cell(seed, 0.0, plane, 1.0)) for seed, plane in enumerate(planes)])
     films = [random_surface(MIDDLE, large, seed) for seed in range(40)]
     cut = np.concatenate([film.reshape(4, 64, 4, 64).swapaxes(1, 2).reshape(16, 64, 64) for film in films])
     for of_surface in (lambda h: h.mean(axis=(1, 2)), lambda h: h.std(axis=(1, 2))):
@@ -176,26 +166,75 @@ def film(scatter):
     return FilmInputs(**vars(MIDDLE), rms_scatter=scatter)
 
 
-def test_places_of_successive_seeds_are_spread_evenly():
-    """Windows of 64 cells: independent places would miss the mean of ln RMS by 0.3 / 8."""
-    logs = np.log([place_of(film(0.3), FIRST_SEED + number).rms / MIDDLE.rms for number in range(6400)])
-    windows = logs.reshape(100, 64)
-    assert windows.mean(axis=1).std() < 0.4 * 0.3 / 8
-    assert windows.std(axis=1) == pytest.approx(0.3, rel=0.1)
-    assert np.sort(logs) == pytest.approx(0.3 * ndtri((np.arange(6400) + 0.5) / 6400), abs=0.05)
+@pytest.mark.parametrize("scatter", [0.0, 0.2, 0.75])
+@pytest.mark.parametrize("count", [1, 2, 12, 64])
+def test_classes_of_places_are_all_places_of_the_film(scatter, count):
+    """Weights are the shares of their classes, whose ends lie between the cells; each half is like the whole."""
+    cells = sample_cells(film(scatter), count, pad_cells=1e5)
+    assert sum(cell.weight for cell in cells) == pytest.approx(1.0)
+    rougher = np.cumsum([cell.weight for cell in cells])
+    below = ndtr([cell.rough for cell in cells])
+    left_out = 1e-5  # rougher places than the pad has
+    assert (below <= rougher + left_out).all()
+    assert (below >= (1.0 - left_out) * np.append(0.0, rougher[:-1]) - 1e-9).all()
+    assert abs(half_of(count).sum() - half_of(count, other=True).sum()) <= 1
+
+
+def test_the_mean_over_classes_is_that_over_the_film_without_a_bias():
+    """Of the cube of the RMS height, as the load grows: E[exp(3 s z)] = exp(4.5 s^2)."""
+
+    def mean(seed):
+        cells = sample_cells(film(0.3), 12, seed)
+        return sum(cell.weight * np.exp(3 * 0.3 * cell.rough) for cell in cells)
+
+    found = np.array([mean(seed) for seed in range(200)])
+    assert found.mean() == pytest.approx(np.exp(4.5 * 0.09), rel=0.015)
+    assert found.std() < 0.15 * found.mean()  # 12 places drawn one by one: 0.33
+
+
+def test_a_pad_of_few_cells_has_no_place_of_which_there_is_less_than_one():
+    assert max(cell.rough for cell in sample_cells(film(0.75), 64, pad_cells=1e3)) < 3.1
+    assert max(cell.rough for cell in sample_cells(film(0.75), 64, pad_cells=1e6)) > 3.5
+
+
+def test_halves_of_a_pad_have_its_mean():
+    pressures = np.arange(24.0).reshape(6, 2, 2)
+    ones = np.ones(6)
+    grid = PadGrid(np.array([2.0, 1.0]), np.array([1]))
+    weight = np.array([0.3, 0.2, 0.2, 0.1, 0.1, 0.1])
+    whole = PadCells(grid, weight, ones, pressures, pressures[:, None], ones.astype(bool))
+    parts = [whole.half(other) for other in (False, True)]
+    shares = [weight[half_of(6, other)].sum() for other in (False, True)]
+    together = sum(share * part.mean(part.closing) for share, part in zip(shares, parts, strict=True))
+    assert together == pytest.approx(whole.mean(whole.closing))
 
 
 def test_a_film_whose_places_are_alike_is_one_without_places():
-    grid = PadGrid(np.array([60.0, 30.0, 27.0]), np.array([2]))
-    alike, plain = (
-        assemble(grid, list(close_cells(inputs, CONTACT, grid, range(4))), 1.0) for inputs in (film(0.0), MIDDLE)
-    )
+    grid, cells = PadGrid(np.array([60.0, 30.0, 27.0]), np.array([2])), sample_cells(MIDDLE, 4)
+    alike, plain = (pressed(inputs, cells, grid) for inputs in (film(0.0), MIDDLE))
     assert (alike.closing == plain.closing).all()
     assert np.array_equal(alike.opening, plain.opening, equal_nan=True)
 
 
+def test_a_rough_place_in_its_own_steps_has_the_forces_of_short_ones(monkeypatch):
+    """Six times the median RMS, steps of 0.8 nm for 0.2: lines overrate a force by 6 %, underrate a well by 16 %."""
+    place = Cell(FIRST_SEED, float(np.log(6.0)) / 0.4, 0.0, 1.0)
+    touch = -float(surface_of(film(0.4), CONTACT, place).min())
+    grid = PadGrid(touch + np.concatenate([np.arange(40.0, 2.0, -1.0), np.arange(2.0, -18.1, -0.2)]), np.array([138]))
+    own = pressed(film(0.4), [place], grid)
+    monkeypatch.setattr("mesoscale.pad.cells.PLACE_STEP_RMS", 0.0)
+    short = pressed(film(0.4), [place], grid)
+    assert short.closing.max() > 0.0, "not in contact"
+    assert own.closing == pytest.approx(short.closing, abs=0.1 * short.closing.max())
+    wells = [float(np.nanmin(of.opening[0, 0].sum(axis=0))) for of in (own, short)]
+    assert wells[0] == pytest.approx(wells[1], rel=0.2)
+
+
 def test_steps_grow_with_the_roughness_of_the_places_that_touch():
-    unequal, alike = (plan_grid(film(scatter), CONTACT, GRID, wanted_GPa, step_nm=STEP_NM) for scatter in (0.15, 0.0))
+    unequal, alike = (
+        plan_grid(film(scatter), CONTACT, sample_cells(film(scatter), 16), wanted_GPa, step_nm=STEP_NM)
+        for scatter in (0.15, 0.0)
+    )
     steps = -np.diff(unequal.separation_nm)
     assert steps[-5:] == pytest.approx(STEP_NM)
     assert steps.max() < 0.2 * unequal.separation_nm[0]
@@ -204,44 +243,27 @@ def test_steps_grow_with_the_roughness_of_the_places_that_touch():
 
 
 def test_where_rough_places_alone_carry_the_pad_the_grid_ends_above_the_typical_first_contact():
-    grid = plan_grid(film(0.4), CONTACT, GRID, wanted_GPa, step_nm=STEP_NM)
-    assert (np.diff(grid.separation_nm) < 0).all()
-    pad = assemble(
-        grid, list(close_cells(film(0.4), CONTACT, grid, range(FIRST_SEED, FIRST_SEED + 4))), CONTACT.length_nm**2
-    )
-    assert pad.closing[:, 0, -1].mean() * 1e3 == pytest.approx(WANTED_MPa, rel=0.5)
+    pad = pressed(film(0.4), sample_cells(film(0.4), 16))
+    assert (np.diff(pad.grid.separation_nm) < 0).all()
+    assert pad.mean(pad.closing)[0, -1] * 1e3 == pytest.approx(WANTED_MPa, rel=0.5)
 
 
 def test_mean_planes_and_heights_of_a_place_grow_together():
     """As in a film whose amplitude varies slowly from place to place."""
-    seed = FIRST_SEED + 3
-    times = place_of(film(0.5), seed).rms / MIDDLE.rms
-    here = FilmPieces(place_of(film(0.5), seed), CONTACT).surface(seed)
-    assert here == pytest.approx(times * FilmPieces(MIDDLE, CONTACT).surface(seed), abs=1e-9)
-
-
-def test_a_film_of_two_kinds_of_places_carries_what_both_kinds_carry(monkeypatch):
-    """Half of the places smooth, half rough: cells are independent, so the pad is the mean of both pads."""
-    smooth, rough = (replace(MIDDLE, rms=rms) for rms in (2.0, 8.0))
-    grid = PadGrid(np.concatenate([np.arange(60.0, 40.0, -2.0), np.arange(40.0, 23.0, -0.5)]), np.array([40]))
-    of_kind = [assemble(grid, list(close_cells(kind, CONTACT, grid, range(0, 32, 2))), 1.0) for kind in (smooth, rough)]
-    monkeypatch.setattr("mesoscale.pad.cells.place_of", lambda inputs, seed: (smooth, rough)[seed % 2])
-    mixed = assemble(grid, list(close_cells(film(0.7), CONTACT, grid, range(32))), 1.0)
-    expected = 0.5 * (of_kind[0].closing + of_kind[1].closing).mean(axis=0)
-    error = mixed.closing.std(axis=0) / 32**0.5 * 2**0.5
-    assert np.abs(mixed.closing.mean(axis=0) - expected)[0, -1] < 3 * error[0, -1]
-    # rough places alone carry it: the mean of heights would put the load at the middle RMS
-    assert of_kind[0].closing[:, 0].max() == 0.0 < expected[0, -1]
+    cell = Cell(FIRST_SEED + 3, 0.7, -0.4, 1.0)
+    times = at_place(film(0.5), cell).rms / MIDDLE.rms
+    here = surface_of(film(0.5), CONTACT, cell)
+    assert here == pytest.approx(times * FilmPieces(MIDDLE, CONTACT).surface(cell), abs=1e-9)
 
 
 def test_a_film_of_long_waves_is_closed_in_steps_that_fit_its_way():
     """One wave to a cell: it carries the pressure after a fraction of a step of 0.05 RMS heights."""
     long, contact = replace(MIDDLE, q0=0.001, rms=76.0), CONTACT.model_copy(update={"length_nm": 6000.0})
-    grid = plan_grid(long, contact, GRID, wanted_GPa, step_nm=0.05 * long.rms)
+    cells = sample_cells(long, 4)
+    grid = plan_grid(long, contact, cells, wanted_GPa, step_nm=0.05 * long.rms)
     steps = -np.diff(grid.separation_nm)
     assert steps[-1] <= 0.05 * long.rms / 3 + 1e-9
-    pilots = [-float(FilmPieces(long, contact).surface(FIRST_SEED + k).min()) for k in range(GRID.pilot_cells)]
-    assert np.sum(grid.separation_nm < max(pilots)) > 15
+    assert np.sum(grid.separation_nm < max(-float(surface_of(long, contact, cell).min()) for cell in cells)) > 15
 
 
 def test_a_coarse_film_opens_to_where_it_closes_without_a_step():
@@ -252,19 +274,6 @@ def test_a_coarse_film_opens_to_where_it_closes_without_a_step():
     pressure = LocalPad(coarse)((220.0 + rises)[None], np.full((1, rises.size), 220.0))[0][0]
     known = np.stack([coarse.opening_GPa(np.array([220.0 + rise]), 220.0)[0] for rise in rises])
     assert pressure == pytest.approx(known, rel=1e-3, abs=2e-7)
-
-
-def test_a_D0_that_is_an_input_is_not_drawn_twice():
-    drawn = {draw.gap_cutoff_nm for draw in plan_draws(input_table(), CONTACT, 6, 4)}
-    assert len(drawn) == 6
-    fixed = input_table(gap_cutoff=InputRow(distribution="fixed", values=(3.7,)))
-    assert {draw.gap_cutoff_nm for draw in plan_draws(fixed, CONTACT, 6, 4)} == {3.7}
-
-
-def test_draws_of_unequal_places_have_the_same_surfaces():
-    assert len({draw.seeds for draw in plan_draws(input_table(), CONTACT, 6, 4)}) == 6
-    film = film_table(input_table(), {}, (0.2, 0.5))
-    assert len({draw.seeds for draw in plan_draws(film, CONTACT, 6, 4)}) == 1
 
 
 def test_a_pad_of_one_depth_opens_from_it_without_a_warning():
@@ -283,9 +292,3 @@ def test_a_spectrum_beside_the_waves_of_a_cell_is_refused_in_one_line():
     longer = ContactSettings.model_validate({"pixels": 32, "surface": {"spectrum": {"q": [1e-5, 1e-4], "psd": [1, 1]}}})
     with pytest.raises(InputError, match=r"the spectrum has no wave from 0\.00628"):
         FilmPieces(MIDDLE, longer)
-
-
-def test_pilots_are_cells_and_many_of_unequal_places():
-    few, usual = (PadSettings.model_validate({"cells": cells, "grid": {"pilot_cells": 32}}) for cells in (16, 128))
-    assert [few.piloted(unequal).pilot_cells for unequal in (False, True)] == [16, 16]
-    assert [usual.piloted(unequal).pilot_cells for unequal in (False, True)] == [32, 64]

@@ -28,7 +28,7 @@ def switch_data(results: Results) -> dict[str, Any] | None:
     scene = load_mapping(results.root / "scene.yaml", "record of a run")["scene"]
     device = DeviceSettings(**scene["device"])
     bends = device.bends and device.electrode_um2 is None
-    if results.json("device/pad_switch.json").get("beam" if bends else "mean") is None:
+    if results.json("device/pad_switch.json")["central"] is None:
         return None
     if bends and (device.without_lumps or not rests_as_stated(device)):
         return None  # a beam that the page's own model does not follow

@@ -3,7 +3,7 @@
 import numpy as np
 
 from workflow.report.available import Results
-from workflow.report.drawing import INK, SERIES, SOFT, draw
+from workflow.report.drawing import INK, SERIES, draw
 from workflow.report.numbers import column, show
 from workflow.report.page import COMPUTED, Section, Table
 from workflow.report.verdict import symbol, volts
@@ -27,7 +27,6 @@ def describe(results: Results) -> Section | None:
     header = (
         "attraction",
         f"failing at {volts(rate['hold_V'])} [95 %]",
-        "by finite cells",
         "largest hold voltage",
         "least RMS height",
         "least thickness of the beam" if rate["spring"] == "thickness_um" else "least spring",
@@ -37,7 +36,6 @@ def describe(results: Results) -> Section | None:
         (
             f"{show(law['attraction'], 2)} times",
             f"{show(law['failing']['probability'], 2)} [{_interval(law['failing'])}]",
-            " to ".join(show(end, 2) for end in law["by_cells"]),
             "none" if law["largest_hold_V"] is None else volts(law["largest_hold_V"]),
             "none" if law["least_rms_nm"] is None else f"{show(law['least_rms_nm'], 2)} nm",
             "none" if law["least_spring"] is None else f"{show(law['least_spring'])} {unit}",
@@ -52,11 +50,6 @@ def describe(results: Results) -> Section | None:
             f"fails with {show(rate['control_attraction'], 2)} times the attraction",
         )
         section.blocks.append(Table("What to control", header, known))
-    if rate["beyond"] > rate["allowed"]:
-        section.notes.append(
-            f"{show(rate['beyond'], 2)} of all switches press their pad beyond what was computed. They count as failed "
-            "for the largest hold voltage."
-        )
     return section
 
 
@@ -73,8 +66,6 @@ def _curve(results: Results) -> str:
             curve = [row for row in rows if row["attraction"] == times]
             seen = np.where(column(curve, "failing") > 0, column(curve, "failing"), np.nan)
             axis.plot(column(curve, "hold_V"), seen, "o-", color=color, label=f"{show(times, 2)} times the attraction")
-        curve = rows[:: len(laws)]
-        axis.plot(column(curve, "hold_V"), column(curve, "beyond"), "--", color=SOFT, label="beyond the model")
         axis.axhline(results.json("device/failure.json")["allowed"], linewidth=0.8, color=INK, label="allowed")
         axis.set(yscale="log", xlabel="hold voltage (V)", ylabel="share that fails")
         axis.legend(frameon=False)

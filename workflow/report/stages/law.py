@@ -14,7 +14,7 @@ COLORS = {"closing": BLUE, "opening": ORANGE}
 
 def band(results: Results) -> str:
     """Median and spread of the law over the samples of the inputs, up to the pressure that it was fitted to."""
-    rows = results.csv("device/law.csv")
+    rows = results.csv("uq/law.csv")
     highest = results.fitted_MPa
     spread = {}
     for name in COLORS:

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from workflow.report.available import Results, Row
-from workflow.report.contributions import contributions
 from workflow.report.drawing import BLUE, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import column, show
 from workflow.report.page import COMPUTED, Section, Table
@@ -18,17 +17,11 @@ CAUSES = {
     "device_each": "properties that differ from device to device",
     "cells": "the finite number of cells",
 }
-COUNTED = {
-    "pad.cells": "cells of the pad",
-    "pad.draws": "pads at other inputs",
-    "hardness.seeds": "glasses that are pressed",
-    "elastic.structures": "glasses behind E*",
-}
 
 
 def describe(results: Results) -> Section | None:
-    """The pad's curves, its adhesion against the number of cells, and what the answer is made of."""
-    if not results.has("pad/curves.csv", "pad/adhesion.csv", "device/pad_switch.json"):
+    """The pad's curves, and what the answer is made of."""
+    if not results.has("pad/curves.csv", "device/pad_switch.json"):
         return None
     switch = results.json("device/pad_switch.json")
     section = Section(
@@ -45,22 +38,12 @@ def describe(results: Results) -> Section | None:
         wide=True,
         front=True,
     )
-    section.add(
-        adhesion_by_cells(results),
-        "Largest net adhesive pressure on opening against the number of cells of a pad, with the scatter between "
-        "pads. The point at the right is the mean of all computed cells with its standard error.",
-    )
     if answer := switch.get("answer"):
         section.blocks += _answer(answer)
-        if parts := contributions(results):
-            section.blocks.append(_left_open(parts))
-        section.notes.append(
-            f"asperity plan {results.scene} --budget 1h shows minutes against this error, and counts for them."
-        )
     section.notes.append(
         "Where the scene does not state how its devices vary (device.spread), their spread is an assumption."
     )
-    section.files += ["pad/curves.csv", "pad/curves.h5", "pad/adhesion.csv", "device/pad_switch.json"]
+    section.files += ["pad/curves.csv", "pad/model.h5", "device/pad_switch.json"]
     return section
 
 
@@ -71,12 +54,17 @@ def _answer(answer: dict[str, Any]) -> list[Table]:
         quantiles = answer[key]["quantiles"]
         return f"{show(quantiles['0.5'])} [{show(quantiles['0.05'])}, {show(quantiles['0.95'])}]" if quantiles else "–"
 
-    points = answer["design"]
+    errors = answer["quantile_error_V"]
+    solved, refused = answer["points"], len(answer["refused"])
     rows = [
         ("pull-in (V)", spread("pull_in_V")),
         ("capacitance closed (fF)", spread("capacitance_fF")),
-        ("switches computed; of them without an answer", f"{points['points']}; {len(points['refused'])}"),
-        ("of them that press harder than pads were computed", str(points["deepened"])),
+        ("switches computed; of them without an answer", f"{solved + refused}; {refused}"),
+        (
+            "standard error of the median and of 5 and 95 %, by their number (V)",
+            " ".join((show(errors["0.5"], 2), f"[{show(errors['0.05'], 2)}, {show(errors['0.95'], 2)}]")),
+        ),
+        ("error of one of them by the number of its cells (V)", show(answer["cells_error_V"], 2)),
         *((f"share of {CAUSES[row['cause']]}", f"{row['share_of_variance']:.1%}") for row in answer["causes"]),
     ]
     measured = [
@@ -88,15 +76,6 @@ def _answer(answer: dict[str, Any]) -> list[Table]:
         Table("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows),
         Table("What to measure better for the release", columns, measured),
     ]
-
-
-def _left_open(parts: dict[str, Any]) -> Table:
-    """What inputs and counts leave open of the release, from `contributions`."""
-    rows = [(name, f"{value:.2g}", "no count") for name, value in parts["fixed_V"].items()]
-    for key, count in parts["counts"].items():
-        rows.append((f"{COUNTED[key]}: {count}", f"{np.sqrt(parts['variance_V2'][key] / count):.2g}", key))
-    columns = ("left open by", "deviation of the release (V)", "reduced by")
-    return Table("What more computing would narrow: deviations add up by their squares", columns, rows)
 
 
 def pad_curves(results: Results) -> str:
@@ -141,35 +120,3 @@ def _last_contact(rows: list[Row]) -> float:
     """Largest separation at which any cell pushes (nm)."""
     touching = column(rows, "repulsive_MPa") > 0
     return float(column(rows, "separation_nm")[touching].max())
-
-
-def adhesion_by_cells(results: Results) -> str:
-    """Largest net adhesive pressure against the number of cells."""
-    rows = results.csv("pad/adhesion.csv")
-    depths = sorted({float(row["depth_nm"]) for row in rows})
-    shown = depths[:: max(1, len(depths) // 3)]
-
-    def plot(axis):
-        for place, depth in enumerate(shown):
-            part = [row for row in rows if float(row["depth_nm"]) == depth]
-            groups = [row for row in part if row["method"] == "groups"]
-            color = SERIES[place % len(SERIES)]
-            cells, mean, scatter = (column(groups, key) for key in ("cells", "net_adhesion_kPa", "pad_scatter_kPa"))
-            label = f"closed to {depth:.1f} nm, {float(part[0]['closed_to_MPa']):.1f} MPa"
-            axis.errorbar(
-                cells * 1.04**place, mean, np.minimum(scatter, 0.95 * mean), fmt="o-", color=color, label=label
-            )
-            whole = part[-1]
-            axis.errorbar(
-                float(whole["cells"]) * 1.04**place,
-                float(whole["net_adhesion_kPa"]),
-                float(whole["standard_error_kPa"]),
-                fmt="s",
-                color=color,
-                mfc="none",
-            )
-        axis.set(xscale="log", yscale="log", xlabel="cells of the pad", ylabel="net adhesive pressure (kPa)")
-        axis.set_ylim(top=30 * axis.get_ylim()[1])  # room for the legend
-        axis.legend(loc="upper right")
-
-    return draw("pad-adhesion", "Net adhesive pressure against the number of cells", plot)

@@ -23,7 +23,7 @@ def describe(results: Results) -> Section | None:
         * paper,
         COMPUTED,
     )
-    if results.has("device/law.csv", "uq/surrogate.json"):
+    if results.has("uq/law.csv", "uq/surrogate.json"):
         section.add(
             law.band(results),
             "The law of one cell, closing and after the largest load, up to the pressure that it was fitted to: median "

@@ -1,4 +1,4 @@
-"""What repeated closing and time under load do to the law and to the switch (docs/history.md)."""
+"""What repeated closing and time under load do to the contact and its law (docs/history.md)."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -7,12 +7,10 @@ import numpy as np
 
 from mesoscale.contact.energy import dissipated_energy
 from mesoscale.contact.history import HeldCycle, follow, hardness_factor
-from mesoscale.device.switch import drive_switch
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.law.branches import fit_cycle, law_of_fit
-from mesoscale.law.fit import LawFit
+from mesoscale.law.branches import fit_cycle
 from mesoscale.law.parameters import PARAMETERS
-from mesoscale.settings import ContactSettings, DeviceSettings, HistorySettings, LawSettings
+from mesoscale.settings import ContactSettings, HistorySettings, LawSettings
 from mesoscale.settings.contact import NOMINAL_SEED
 
 
@@ -38,18 +36,10 @@ def shown_cycles(settings: HistorySettings) -> set[int]:
     return {1, min(2, settings.cycles), *np.geomspace(1, settings.cycles, 5).round().astype(int).tolist()}
 
 
-def cycle_row(
-    seed: int,
-    held: HeldCycle,
-    inputs: ContactInputs,
-    contact: ContactSettings,
-    law: LawSettings,
-    device: DeviceSettings,
-) -> dict[str, Any]:
-    """Row of history/cycles.csv: the cycle, the law of its opening, and the switch that follows it."""
+def cycle_row(seed: int, held: HeldCycle, law: LawSettings) -> dict[str, Any]:
+    """Row of history/cycles.csv: the cycle, and the law of its opening."""
     cycle = held.cycle
-    fits = fit_cycle(cycle, law)
-    release, critical = _release(fits.closing, fits.opening, inputs.hamaker, law, device)
+    opening = fit_cycle(cycle, law).opening
     return {
         "seed": seed,
         "cycle": held.number,
@@ -60,10 +50,8 @@ def cycle_row(
         "contact_area_nm2": float(cycle.closing.contact_area_nm2[-1]),
         "dissipated_nN_nm": dissipated_energy(cycle)[0],
         "pull_off_nN": -float(cycle.opening.net_nN.min()),
-        **{f"opening_{name}": _number(getattr(fits.opening, name)) for name in PARAMETERS},
-        "opening_status": fits.opening.status,
-        "release_V": release,
-        "critical_share": critical,
+        **{f"opening_{name}": _number(getattr(opening, name)) for name in PARAMETERS},
+        "opening_status": opening.status,
         "converged": bool(cycle.converged and held.missed == 0),
     }
 
@@ -84,19 +72,6 @@ def dwell_rows(seed: int, held: HeldCycle, contact: ContactSettings, settings: H
         }
         for time, factor, row in zip(held.held_s, factors, held.hold, strict=True)
     ]
-
-
-def _release(
-    closing: LawFit, opening: LawFit, hamaker: float, law: LawSettings, device: DeviceSettings
-) -> tuple[float | None, float | None]:
-    """Release voltage (0: stuck) and critical share; None where a branch has no law."""
-    laws = []
-    for fit in (closing, opening):
-        if not np.all(np.isfinite(fit.parameters)):
-            return None, None
-        laws.append(law_of_fit(fit, hamaker, law))
-    states = drive_switch(device, laws[0], laws[1])
-    return float(states.release_V[0]), float(states.critical_fraction[0])
 
 
 def _number(value: float) -> float | str:

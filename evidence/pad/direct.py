@@ -1,0 +1,131 @@
+"""Are the releases of an answer those of pads with many more cells, of other surfaces?
+
+`answer`: points of a finished scene as its answer has them. `other`: the same points on pads of 64 cells of other
+surfaces. `many`: the points that differ most, on pads of 1,024 independent places (drawn one by one, as a device has
+them), each with a cell of its own. `fresh`: further points of the joint distribution on pads of 64 cells, whose
+quantiles and share that sticks are set beside those of the answer.
+"""
+
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from time import process_time
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import yaml
+from scipy.stats import qmc
+
+from evidence.pad.large_surfaces import random_cells
+from mesoscale.device.electrode import presser, solve_deepened
+from mesoscale.device.points import Point, cutoff_range, on_pad_grid, point_of, solve_point, surfaces_of, values_at
+from mesoscale.device.pressing import pressing, pressure_to_compute
+from mesoscale.errors import InputError
+from mesoscale.pad.cells import close_cells, plan_grid
+from mesoscale.pad.curves import assemble
+from mesoscale.pad.memory import flats_of, law_of
+from mesoscale.settings import ContactSettings, DeviceSettings
+from workflow.contact_settings import contact_settings
+from workflow.pad_files import load_model, points_of
+
+OTHER_CELLS = 64
+OTHERS = 500_000
+"""Number of the first surfaces that no answer has."""
+QUANTILES = (0.05, 0.5, 0.95)
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Finished scenes, and how many points of each."""
+    parser.add_argument("results", nargs="+", type=Path)
+    parser.add_argument("--points", type=int, default=24, help="of the answer, on other surfaces")
+    parser.add_argument("--worst", type=int, default=3, help="of them, on many cells")
+    parser.add_argument("--cells", type=int, default=1024, help="of these")
+    parser.add_argument("--fresh", type=int, default=0, help="further points")
+
+
+def rows(given: Namespace) -> Iterator[dict[str, Any]]:
+    """A row for each pad."""
+    for folder in given.results:
+        scene = yaml.safe_load((folder / "scene.yaml").read_text(encoding="utf-8"))["scene"]
+        described = folder / "topography" / "parameters.json"
+        found = {"topography": described} if described.exists() else {}
+        contact = contact_settings(scene["contact"], SimpleNamespace(input=found))
+        device = DeviceSettings.model_validate(scene["device"])
+        points = points_of(str(folder / "pad" / "inputs.csv"), contact, device, scene["pad"]["points"])
+        model, coarse = load_model([str(folder / "pad" / "model.h5")], points), on_pad_grid(contact, points.table)
+        apart = {}
+        for k, one in enumerate(model.points):
+            release = one.states.get("release_V", np.nan)
+            yield _row(folder.name, "answer", k, one.pad.cells.count if one.pad else 0, release, one.error_V, 0.0)
+            if k < given.points:
+                started = process_time()
+                other = solve_point(one.point, coarse, OTHER_CELLS, surfaces_of(OTHERS + k))
+                there, took = other.states.get("release_V", np.nan), process_time() - started
+                yield _row(folder.name, "other", k, OTHER_CELLS, there, other.error_V, took)
+                apart[k] = abs(there - release)
+        for k in sorted(apart, key=lambda k: -np.nan_to_num(apart[k], nan=np.inf))[: given.worst]:
+            started = process_time()
+            release = brute_force_V(model.points[k].point, coarse, given.cells)
+            yield _row(folder.name, "many", k, given.cells, release, np.nan, process_time() - started)
+        units = qmc.LatinHypercube(len(points.design.names), rng=1).random(given.fresh)
+        values = values_at(units, points.table, device, cutoff_range(points.table, contact))
+        for k, row in enumerate(values):
+            started = process_time()
+            point = point_of(row, points.table.names, device)
+            solved = solve_point(point, coarse, OTHER_CELLS, surfaces_of(2 * OTHERS + k))
+            release, took = solved.states.get("release_V", np.nan), process_time() - started
+            yield _row(folder.name, "fresh", k, OTHER_CELLS, release, solved.error_V, took)
+
+
+def brute_force_V(point: Point, contact: ContactSettings, count: int) -> float:
+    """Release on a pad of independent places; NaN where they cannot carry the switch."""
+    inputs, settings = point.contact_of(contact)
+    device, cells = pressing(point.device), random_cells(count, surfaces_of(3 * OTHERS))
+    try:
+        grid = plan_grid(inputs, settings, cells, pressure_to_compute(device), presser(device))
+        pad = assemble(grid, cells, list(close_cells(inputs, settings, grid, cells)), settings.length_nm**2)
+        return solve_deepened(point.device, law_of(pad, flats_of(inputs, settings)))["release_V"]
+    except InputError:
+        return np.nan
+
+
+def _row(scene: str, kind: str, point: int, cells: int, release_V: float, error_V: float, cpu_s: float):
+    row = {"scene": scene, "kind": kind, "point": point, "cells": cells, "release_V": release_V}
+    return row | {"error_V": error_V, "cpu_s": cpu_s}
+
+
+def figures(table: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """RMS and mean of the differences, beside the stated error; the worst points; quantiles and share that sticks."""
+    shown = {}
+    for scene in dict.fromkeys(row["scene"] for row in table):
+        by = {kind: _releases(table, scene, kind) for kind in ("answer", "other", "many", "fresh")}
+        stated = {int(row["point"]): float(row["error_V"]) for row in table if _is(row, scene, "answer")}
+        both = [k for k in by["other"] if np.isfinite(by["other"][k] - by["answer"][k])]
+        if both:
+            apart = np.array([by["answer"][k] - by["other"][k] for k in both])
+            errors = np.array([stated[k] for k in both])
+            shown[f"{scene}_points"] = str(len(both))
+            shown[f"{scene}_rms"] = f"{np.sqrt(np.mean(apart**2)):.2f} V"
+            shown[f"{scene}_bias"] = f"{apart.mean():+.2f} V"
+            shown[f"{scene}_median_apart"] = f"{np.median(np.abs(apart)):.2f} V"
+            shown[f"{scene}_stated"] = f"{np.sqrt(np.nanmean(errors**2)):.2f} V"
+        shown |= {
+            f"{scene}_worst_{n}": f"{by['answer'][k]:.2f}, {by['other'][k]:.2f}, {by['many'][k]:.2f} V"
+            for n, k in enumerate(by["many"], 1)
+        }
+        for kind in ("answer", "fresh"):
+            release = np.array([value for value in by[kind].values() if np.isfinite(value)])
+            if release.size:
+                low, middle, high = np.quantile(release, QUANTILES)
+                said = f"{middle:.2f} [{low:.2f}, {high:.2f}] V, {np.mean(release == 0.0):.1%} stick"
+                shown[f"{scene}_{kind}"] = f"{said}, {release.size} points"
+    return shown
+
+
+def _is(row: Mapping[str, str], scene: str, kind: str) -> bool:
+    return (row["scene"], row["kind"]) == (scene, kind)
+
+
+def _releases(table: Sequence[Mapping[str, str]], scene: str, kind: str) -> dict[int, float]:
+    return {int(row["point"]): float(row["release_V"]) for row in table if _is(row, scene, kind)}
