@@ -25,11 +25,11 @@ TARGETS = {
     "topography": "what the measurements show, and the surface behind them",
     "inputs": "table of the uncertain inputs",
     "curves": "force against separation at central inputs",
-    "law": "compact law of the contact",
-    "pad": "many cells under one plane, and the switch on them",
+    "law": "compact law of one cell",
+    "pad": "many cells under one plane, at points of all that is uncertain",
     "uq": "what the uncertain inputs do to the law",
     "sensitivity": "which input causes the spread",
-    "device": "switch on single cells; tables and circuit models of the law",
+    "device": "the switch on these pads: release and sticking, with their causes",
     "failure": "how often the switch fails, down to one in a million",
     "circuit": "the switch for simulators: corners, draws, C-V loop, transient",
     "resistance": "electrical resistance of metal on metal against force",
@@ -53,7 +53,7 @@ COMMANDS = {
     "new": "write a scene file to start from",
     "compare": "put two folders of results side by side on one page",
     "schema": "print the JSON Schema of a scene",
-    "serve": "offer contact cycle, law, pad and switch over UM-Bridge",
+    "serve": "offer contact cycle, law and pad over UM-Bridge",
 }
 
 

@@ -1,4 +1,4 @@
-"""The models that `asperity serve` offers over UM-Bridge: contact cycle, law, pad and switch (docs/umbridge.md).
+"""The models that `asperity serve` offers over UM-Bridge: contact cycle, law and pad (docs/umbridge.md).
 
 A model takes lists of numbers in stated units and a configuration, and gives lists of numbers. It calls the library
 and changes nothing: the same inputs give the same digits.

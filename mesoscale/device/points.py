@@ -28,8 +28,9 @@ Progress = Callable[[float, str], None]
 
 HIGHEST_GAP_CUTOFF_NM = 0.3
 """Upper end of a D0 that is no input: a distance of atoms, above Israelachvili's 0.165 nm (docs/pad.md)."""
-UNDECIDED = 0.008
-"""Error of a release from which a pad has more cells, over the pull-in voltage: 0.6 V of the default switch."""
+UNDECIDED, OF_RELEASE = 0.008, 0.1
+"""Error of a release from which a pad has more cells, over the pull-in voltage (0.6 V of the default switch) and over
+the release: what exceeds both."""
 MORE = 4
 """So many times as many cells has a point that is undecided."""
 SEEDS = 1_000_000
@@ -191,7 +192,8 @@ class Solved:
         if self.refused:
             return False
         disagree = (self.halves_V[0] == 0.0) != (self.halves_V[1] == 0.0)
-        return disagree or not self.error_V <= UNDECIDED * self.states["pull_in_V"]
+        enough = max(UNDECIDED * self.states["pull_in_V"], OF_RELEASE * self.states["release_V"])
+        return disagree or not self.error_V <= enough
 
 
 def press_pad(

@@ -22,7 +22,6 @@ umbridge = pytest.importorskip("umbridge")
 CENTRE = [0.215, 91.0, 1.95, 8.4, 0.025, 0.75, 8.5]
 QUICK = {"cells": 1, "separations_nm": [80.0, 60.0], "contact": {"pixels": 32}}
 CONTACT = {"contact": {"pixels": 64, "max_force_nN": 2000}}
-(CLOSING,)
 
 
 @pytest.fixture(scope="module")

@@ -385,7 +385,7 @@ def _history(root: Path) -> None:
     for cycle in (1, 2):
         row = {"seed": 1, "cycle": cycle, "held_s": 10.0 * cycle, "closed_nm": 25.0 - cycle, "last_contact_nm": 29.0}
         row |= {"contact_area_nm2": 1e3, "dissipated_nN_nm": 1e4 / cycle**6, "pull_off_nN": 300.0}
-        cycles.append(row | {"release_V": 0.0, "critical_share": 0.008})
+        cycles.append(row)
         for time in (0.0, 10.0):
             held = {
                 "held_s": 10 * (cycle - 1) + time,

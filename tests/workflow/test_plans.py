@@ -60,11 +60,13 @@ def test_the_failure_rate_is_found_where_a_scene_asks_for_it(plan):
     assert {"find_failure_rate", "press_pads", "assemble_pad"} <= plan("paper", "failure")
 
 
-def test_a_scene_computes_the_tails_that_it_wants(plan, said):
+def test_a_scene_computes_the_tails_that_it_wants(plan, make_workflow, tmp_path):
     law = {"compute_runs", "fit_law", "propagate_uncertainty", "rank_sensitivity"}
     assert not law & plan("diamond")
     assert "assemble_pad" in plan("diamond")
-    assert "ERROR diamond: tails: pad: the target needs the tail law; add it to tails" in said("diamond", "law")
+    refused = make_workflow(tmp_path).run("diamond", "law", options=("--dry-run",))
+    assert refused.returncode != 0
+    assert refused.stderr.splitlines()[-1] == "ERROR diamond: tails: pad: the target needs the tail law; add it to tails"
 
 
 def test_the_resistance_is_measured_where_a_scene_has_metals(plan):

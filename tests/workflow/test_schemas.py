@@ -87,8 +87,8 @@ def test_what_was_written_is_read(tmp_path):
         (lambda text: text.replace("capacitance_fF", "top"), "column capacitance_fF is missing"),
         (lambda text: text[:-5], "row 1 ends before column capacitance_fF"),
         (lambda text: text.replace("0.5", "0.\x005"), r"row 1, column voltage_V: '0\.\\x005' is no number"),
-        (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, high"),
-        (lambda text: "", "column share is missing"),
+        (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, capacitance_fF"),
+        (lambda text: "", "column time_us is missing"),
     ],
 )
 def test_a_damaged_table_is_refused_in_one_line(tmp_path, change, words):

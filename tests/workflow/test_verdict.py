@@ -98,7 +98,7 @@ def test_a_coupled_switch_that_sticks_does_so_by_an_upper_bound():
 
 def test_few_cells_are_named_before_any_measurement():
     assert said(_pad(cells=0.7)).causes[0] == (CELLS, 0.7)
-    assert said(_pad(cells=0.7)).next_step == "Compute more cells next (pad.cells)."
+    assert said(_pad(cells=0.7)).next_step == "Compute more cells next (pad.point_cells)."
 
 
 def test_no_cause_is_named_where_the_fit_behind_it_explains_little():

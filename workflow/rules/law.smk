@@ -5,7 +5,7 @@ RUN_CHUNKS = chunk_bounds(collocation_run_count(len(SCENE.inputs.rows()), SCENE.
 
 rule law:
     input:
-        in_tail("law", *(f"{RESULTS}/law/{name}.csv" for name in ("parameters", "wells", "nominal"))),
+        in_tail("law", f"{RESULTS}/law/parameters.csv", f"{RESULTS}/law/wells.csv", f"{RESULTS}/law/nominal.csv"),
 
 
 rule compute_runs:

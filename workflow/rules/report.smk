@@ -5,7 +5,7 @@ def report_inputs():
     """Result files of exactly the stages that the scene needs; each has its section in the page."""
     files = ["scene.yaml", "inputs.csv", "curves/nominal.h5", "curves/spots.h5"]
     if "law" in SCENE.tails:
-        files += [f"law/{name}.csv" for name in ("parameters", "wells", "nominal")]
+        files += ["law/parameters.csv", "law/wells.csv", "law/nominal.csv"]
         names = ("outputs.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv", "law.csv")
         files += [f"uq/{name}" for name in names]
     if "pad" in SCENE.tails:
