@@ -62,6 +62,8 @@ class ClosedForm:
         for k, depth in enumerate(depth_nm):
             above = separation_nm >= depth - 1e-9
             opening[k][:, above] = self.opening_GPa(separation_nm[above], depth)
+            # what was flattened never pushes harder than it did on the way down
+            opening[k, 0, above] = np.minimum(opening[k, 0, above], self.closing_GPa(separation_nm[above])[0])
         return PadLaw(separation_nm, np.stack(self.closing_GPa(separation_nm)), depth_nm, opening, self.flats)
 
     def pressed(self, wanted_GPa: Array, separation_nm: Array, depths: int = 24) -> PadLaw:

@@ -14,7 +14,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import yaml
 from scipy.stats import qmc
 
 from evidence.pad.large_surfaces import random_cells
@@ -25,9 +24,10 @@ from mesoscale.errors import InputError
 from mesoscale.pad.cells import close_cells, plan_grid
 from mesoscale.pad.curves import assemble
 from mesoscale.pad.memory import flats_of, law_of
-from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.settings import ContactSettings
 from workflow.contact_settings import contact_settings
 from workflow.pad_files import load_model, points_of
+from workflow.scene import load_scene
 
 OTHER_CELLS = 64
 OTHERS = 500_000
@@ -47,12 +47,12 @@ def arguments(parser: ArgumentParser) -> None:
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """A row for each pad."""
     for folder in given.results:
-        scene = yaml.safe_load((folder / "scene.yaml").read_text(encoding="utf-8"))["scene"]
+        scene = load_scene(folder.name)
         described = folder / "topography" / "parameters.json"
         found = {"topography": described} if described.exists() else {}
-        contact = contact_settings(scene["contact"], SimpleNamespace(input=found))
-        device = DeviceSettings.model_validate(scene["device"])
-        points = points_of(str(folder / "pad" / "inputs.csv"), contact, device, scene["pad"]["points"])
+        contact = contact_settings(scene.contact.model_dump(mode="json"), SimpleNamespace(input=found))
+        device = scene.device
+        points = points_of(str(folder / "pad" / "inputs.csv"), contact, device, scene.pad.points)
         model, coarse = load_model([str(folder / "pad" / "model.h5")], points), on_pad_grid(contact, points.table)
         apart = {}
         for k, one in enumerate(model.points):

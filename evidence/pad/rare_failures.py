@@ -14,7 +14,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from evidence.pad.closed_form import ClosedForm
-from mesoscale.device.failure import Population, corrected, learn
+from mesoscale.device.failure import Attracted, Population, corrected, learn
 from mesoscale.device.points import Point, point_of, values_at
 from mesoscale.device.pressing import EXACT, pressure_to_compute
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
@@ -86,17 +86,20 @@ def population(points: int = 128) -> Population:
 def arguments(parser: ArgumentParser) -> None:
     """Options on the command line."""
     parser.add_argument("--repeats", type=int, default=20)
-    parser.add_argument("--brute-force", type=int, default=100_000)
+    parser.add_argument("--brute-force", type=int, default=40_000, help="plates; 0: those of a run before stand")
 
 
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """A row for brute force, and one for each repetition, of each probability."""
     plates = population()
     z = np.random.default_rng(1).normal(size=(given.brute_force, plates.dimension))
-    for name, times in ATTRACTIONS.items():
-        started = process_time()
-        failed = int(plates.failed(z, plates.hold_V, times).sum())
-        share = failed / len(z)
+    failed, started = dict.fromkeys(ATTRACTIONS, 0), process_time()
+    for point in plates.points(z, plates.hold_V):
+        plate = Attracted(point.device, known_pad(point).law, 0.0, 0)
+        for name, times in ATTRACTIONS.items():
+            failed[name] += plate.fails(times)
+    for name, count in failed.items() if len(z) else ():
+        share = count / len(z)
         error = (share * (1.0 - share) / len(z)) ** 0.5
         yield _row(name, "brute_force", 0, share, (share - 1.96 * error, share + 1.96 * error), len(z), started)
     for seed in range(given.repeats):
