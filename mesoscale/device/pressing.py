@@ -7,15 +7,12 @@ from numpy.typing import NDArray
 
 from mesoscale.device.statistics import analytic_pull_in_V
 from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, switch_from_settings
-from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.device import SPREAD, SpreadSettings
 
 EDGE = 2.5
 """Local over electrostatic pressure to which pads are computed at least. The edge of what has landed bears the beam,
 too, and presses with 1.6 to 2.3 of it on pads of Table 1."""
-FAR_OUT = 0.84
-"""Probability, one standard deviation out, of a device that presses harder; draws are computed for it."""
 EXACT = SpreadSettings(**dict.fromkeys(SPREAD))
 
 
@@ -38,31 +35,9 @@ class LargestPressure:
         return EDGE * VACUUM_PERMITTIVITY * self.voltage_V**2 / (2.0 * electric**2) / GPA
 
 
-def pressing(settings: DeviceSettings, spread: bool = False) -> DeviceSettings:
-    """The switch that a pad is computed for, without what does not press; with its `spread` for `hardest`."""
-    kept = settings.spread.model_copy(update={"tilt_nm": None}) if spread else EXACT
-    return settings.model_copy(update={"tilt_nm": 0.0, "adhesion_scale": 1.0, "spread": kept})
-
-
-def hardest(settings: DeviceSettings) -> DeviceSettings:
-    """The switch held with the voltage that presses as a device one standard deviation out.
-
-    Each property departs alone to the side where the device presses harder; what they add, adds by squares. A property
-    with which the device does not pull in adds nothing.
-    """
-    from mesoscale.device.spread import departed  # reads distributions: not for rules
-
-    held, more = held_V(settings), 0.0
-    thin = switch_from_settings(settings).dielectric_nm
-    for _, *devices in departed(settings, FAR_OUT):
-        ratios = [1.0]
-        for device in devices:
-            try:
-                ratios.append((held_V(device) * thin / (held * switch_from_settings(device).dielectric_nm)) ** 2)
-            except InputError:
-                continue
-        more += (max(ratios) - 1.0) ** 2
-    return settings.model_copy(update={"hold_voltage_V": held * float(np.sqrt(1.0 + np.sqrt(more))), "spread": EXACT})
+def pressing(settings: DeviceSettings) -> DeviceSettings:
+    """The switch that a pad is computed for, without what does not press."""
+    return settings.model_copy(update={"tilt_nm": 0.0, "adhesion_scale": 1.0, "spread": EXACT})
 
 
 def pressure_to_compute(settings: DeviceSettings) -> LargestPressure:

@@ -4,7 +4,7 @@
 stiction hang on the well alone, so the attraction is judged here by itself.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -105,18 +105,6 @@ def attraction_residual(law: Law, separation_nm: Array, attractive_GPa: Array) -
     misfit = pressure(at, law)[0] - curve
     largest = float(np.abs(curve).max())
     return float(np.sqrt(np.mean(misfit**2))) / largest if largest > 0 else 0.0
-
-
-def well_note(rows: Sequence[Mapping[str, str]]) -> str:
-    """One line on how well the laws of the runs at central inputs, else of all runs, hold the adhesion on opening."""
-    opening = [row for row in rows if row["branch"] == "opening" and row["well_law_kPa"] and row["well_curve_kPa"]]
-    central = [row for row in opening if row["node"] == "0"] or opening
-    if not central:
-        return "adhesion well on opening: no curve to compare with"
-    law, curve = (float(np.mean([float(row[key]) for row in central])) for key in ("well_law_kPa", "well_curve_kPa"))
-    missed = sum(row["attraction_status"].startswith("misses_well") for row in opening)
-    verdict = "OK" if missed == 0 else f"MISSED by more than {MOST_MISSED:.0%} on {missed} of {len(opening)} curves"
-    return f"adhesion well on opening: {law:.4g} kPa by the law, {curve:.4g} kPa by the curves; {verdict}"
 
 
 def missed_wells(rows: Iterable[Mapping[str, str]]) -> tuple[int, int]:

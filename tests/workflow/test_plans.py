@@ -66,7 +66,9 @@ def test_a_scene_computes_the_tails_that_it_wants(plan, make_workflow, tmp_path)
     assert "assemble_pad" in plan("diamond")
     refused = make_workflow(tmp_path).run("diamond", "law", options=("--dry-run",))
     assert refused.returncode != 0
-    assert refused.stderr.splitlines()[-1] == "ERROR diamond: tails: pad: the target needs the tail law; add it to tails"
+    assert (
+        refused.stderr.splitlines()[-1] == "ERROR diamond: tails: pad: the target needs the tail law; add it to tails"
+    )
 
 
 def test_the_resistance_is_measured_where_a_scene_has_metals(plan):

@@ -51,6 +51,15 @@ def test_a_film_softer_than_its_base():
     assert "films softer than their base are not modelled" in line
 
 
+def test_points_that_cannot_tell_causes_apart_are_refused_before_anything_runs():
+    scene = Scene.model_validate({"extends": "table1", "pad": {"points": 30}})
+    (line,) = [line for line in mistakes(scene, {}) if line.startswith("pad.points")]
+    wanted = int(line.rpartition(" ")[2])
+    assert line.startswith(f"pad.points = 30: {wanted // 2 - 1} inputs and properties of the device vary, whose parts")
+    for points in (0, wanted):
+        assert not mistakes(Scene.model_validate({"extends": "table1", "pad": {"points": points}}), {})
+
+
 @pytest.mark.parametrize(
     ("device", "words"),
     [

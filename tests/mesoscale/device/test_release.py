@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.special import ndtri
 from scipy.stats import qmc
 
 from evidence.pad.closed_form import ClosedForm
@@ -14,14 +13,13 @@ from mesoscale.device.beam_kernels import BANDS, solve_bands
 from mesoscale.device.beam_switch import press_GPa
 from mesoscale.device.electrode import presser, solve_deepened
 from mesoscale.device.points import Pad, PadModel, central_point, plan_points, solve_point, solve_points
-from mesoscale.device.pressing import EDGE, EXACT, FAR_OUT, hardest, held_V, pressing, pressure_to_compute
+from mesoscale.device.pressing import EDGE, pressing, pressure_to_compute
 from mesoscale.device.release import _probability, answer, first_order, switch_on_pad
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.table import input_table
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.curves import PadCells
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
-from mesoscale.settings.device import SpreadRow, SpreadSettings
 
 PLATE = DeviceSettings(spring_N_per_m=170.0)
 RMS = 9.0
@@ -182,24 +180,12 @@ def test_shares_of_the_variance_are_those_of_a_known_function():
     assert error < 1e-9
 
 
-def test_the_hardest_device_is_one_deviation_out_in_all_that_presses():
-    """Of a plate the pressure goes with the cube of the gap; what adds up, adds by squares."""
-    wide = SpreadRow(distribution="normal", values=(0.0, 0.1), relative=True)
-    gap, thin = PLATE.gap_um * 1e3, PLATE.dielectric_nm / PLATE.permittivity
-    of_gap = ((gap * (1 + 0.1 * ndtri(FAR_OUT)) + thin) / (gap + thin)) ** 3 - 1
-    alone = PLATE.model_copy(update={"spread": EXACT.model_copy(update={"gap_um": wide})})
-    assert held_V(hardest(alone)) ** 2 / held_V(PLATE) ** 2 == pytest.approx(1 + of_gap, rel=1e-6)
-    assert hardest(PLATE.model_copy(update={"spread": EXACT})).hold_voltage_V == pytest.approx(held_V(PLATE))
-
-
 def test_pads_are_computed_to_more_than_the_plate_can_press():
     s = np.array([10.0, 20.0])
     plate, beam = pressure_to_compute(PLATE)(s), pressure_to_compute(DeviceSettings())(s)
     assert (beam > plate).all()
     assert plate[0] > plate[1]
-    assert (pressure_to_compute(hardest(pressing(DeviceSettings(), spread=True)))(s) > beam).all()
-    tilted = DeviceSettings(tilt_nm=50.0, spread=SpreadSettings(tilt_nm=None))
-    assert pressing(tilted, spread=True) == pressing(DeviceSettings(), spread=True)
+    assert pressing(DeviceSettings(tilt_nm=50.0)) == pressing(DeviceSettings())
 
 
 @pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
