@@ -3,7 +3,7 @@
 Each row is scene `reduced` up to its pad with hardness by eq. 4, its default until 0.2.0, and one statement changed.
 What its atoms give is stated: E*, H' and D0 of its own runs; `film` has the law of films and its numbers instead.
 `pixels` of 256 make the rows cheap, and are the same for all that are compared. Rows with other seeds have other
-surfaces, other draws and other points. The pull is that of a large pad, closed to the largest pressure.
+surfaces and other points.
 """
 
 import json
@@ -36,7 +36,7 @@ GLASS = {  # the closing runs' own hardness, without the soft metal of eq. 4
     "h_prime": {"origin": "literature", "distribution": "fixed", "values": [0], "source": "no size effect"},
 }
 LITERATURE = {"gap_cutoff": {"origin": "literature", "values": [0.165, 0.3], "source": "Israelachvili, 13.13"}}
-SMALL = {"cells": 32, "draws": 12, "draw_cells": 2}  # an adhesive cell takes some ten times as long as a coupled one
+SMALL = {"cells": 32, "points": 48, "point_cells": 2}  # an adhesive cell takes some ten times as long as a coupled one
 CLAMPED = {"contact": {"attraction": "clamped"}}
 TABLE_1 = {"extends": "table1", "contact": {"mechanics": "coupled", "attraction": "offset"}, "pad": {"cells": 64}}
 SEEDS = {"mesoscale/pad/cells.py": "FIRST_SEED = 1000", "mesoscale/device/points.py": "rng=0"}
@@ -91,7 +91,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     for case in given.cases:
         with tempfile.TemporaryDirectory() as folder:
             tree = _other_seeds(Path(folder), case[-1]) if case.startswith("other") else ROOT
-            with results_of(scene_of(case, given.pixels), "pad", tree) as results:
+            with results_of(scene_of(case, given.pixels), "device", tree) as results:
                 yield {"case": case, "pixels": given.pixels, **_answer(results)}
 
 
@@ -111,7 +111,7 @@ def scene_of(case: str, pixels: int) -> dict[str, Any]:
 
 
 def _other_seeds(tree: Path, number: str) -> Path:
-    """A copy of the product whose surfaces, draws and points come from other seeds."""
+    """A copy of the product whose surfaces and points come from other seeds."""
     for package in ("asperity", "atomistic", "mesoscale", "workflow", "config", "evidence"):
         shutil.copytree(ROOT / package, tree / package, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("Snakefile", "pyproject.toml", "uv.lock"):
