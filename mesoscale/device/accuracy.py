@@ -136,12 +136,12 @@ def _cells(point: Point, contact: ContactSettings) -> Iterator[Row]:
 
 def _steps(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
     """Longer and shorter steps of separation."""
-    own = min(STEP_RMS * point.values["rms"], LONGEST_STEP_NM)
-    wanted, _ = _pressed_V(point, contact, cells, step_nm=own * TIMES[-1])
+    step = min(STEP_RMS * point.values["rms"], LONGEST_STEP_NM)
+    wanted, _ = _pressed_V(point, contact, cells, step_nm=step * TIMES[-1])
     for times in (*TIMES[:-1], 1.0):
-        release, cost = _pressed_V(point, contact, cells, step_nm=own * times)
-        metric, reference = "deviation, V", f"steps of {own * TIMES[-1]:.2g} nm"
-        yield _row("release", "steps of separation, nm", own * times, abs(release - wanted), metric, reference, cost)
+        release, cost = _pressed_V(point, contact, cells, step_nm=step * times)
+        metric, reference = "deviation, V", f"steps of {step * TIMES[-1]:.2g} nm"
+        yield _row("release", "steps of separation, nm", step * times, abs(release - wanted), metric, reference, cost)
 
 
 def _depths(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
@@ -161,9 +161,9 @@ def _grid(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
     *coarser, finest = releases
     wanted = float(np.mean([release for release, _ in releases[finest]]))
     for pixels in coarser:
-        found = float(np.mean([release for release, _ in releases[pixels]]))
+        mean = float(np.mean([release for release, _ in releases[pixels]]))
         metric, cost = f"deviation of the mean of {OTHERS} pads, V", np.mean([c for _, c in releases[pixels]], axis=0)
-        yield _row("release", "sites a side", pixels, abs(found - wanted), metric, f"{finest} sites", cost)
+        yield _row("release", "sites a side", pixels, abs(mean - wanted), metric, f"{finest} sites", cost)
 
 
 def _points(model: PadModel, contact: ContactSettings, cells: int) -> Iterator[Row]:

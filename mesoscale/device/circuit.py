@@ -101,9 +101,9 @@ def versions(
                 return _version(name, point, law, lumps, far)
             return None
 
-        if (found := next((version for far in FAR if (version := corner(far))), None)) is None:
+        if (nearest := next((version for far in FAR if (version := corner(far))), None)) is None:
             raise InputError(f"device: the corner {name} of the switch cannot be solved, {FAR[-1]:g} deviations out")
-        corners.append(found)
+        corners.append(nearest)
     drawn = []
     for k in solved:
         if (pad := model.points[k].pad) and len(drawn) < DRAWS:

@@ -93,12 +93,10 @@ def answer(model: PadModel) -> Answer:
     release, stuck = model.states("release_V"), model.states("release_V") == 0.0
     errors = np.array([point.error_V for point in solved])
     error_V = float(np.sqrt(np.mean(errors[np.isfinite(errors)] ** 2))) if np.isfinite(errors).any() else 0.0
-    design = model.design
-    shares, fit_error_V = first_order(design.probability[model.solved][:, design.varying], release)
+    names, causes, varying = model.design.names, model.design.causes, model.design.varying
+    shares, fit_error_V = first_order(model.design.probability[model.solved][:, varying], release)
     variance = float(release.var()) or 1.0
-    rows = [
-        (design.names[k], design.causes[k], share) for k, share in zip(design.varying, shares.tolist(), strict=True)
-    ]
+    rows = [(names[k], causes[k], share) for k, share in zip(varying, shares.tolist(), strict=True)]
     by_cause = {cause: float(sum(share for _, of, share in rows if of == cause)) for cause in CAUSES}
     by_cause["cells"] = error_V**2 / variance
     return Answer(

@@ -30,9 +30,10 @@ LOAD_POWER = 3.0
 """The load of a place grows about as this power of its RMS height (docs/pad.md): so places are drawn."""
 STEP_RMS, LONGEST_STEP_NM = 0.04, 0.2
 """Step of separation in and near contact, in units of the RMS height, and the longest (docs/pad.md)."""
-PLACE_STEP_RMS, LONGEST_PLACE_STEP_RMS = 0.01, 0.05
-"""Step of a cell, and the longest, in units of the RMS height of its own place: times that over the median place's,
-where this is longer than the pad's. With 0.04 at all places wells are passed over: `reduced` lets go 0.1 V too high."""
+PLACE_STEP_RMS, LONGEST_PLACE_STEP_NM = 0.01, 0.8
+"""Step of a cell in units of the RMS height of its own place, times that over the median place's, where this is longer
+than the pad's; and the longest, since wells are a nanometre wide. With 0.04 at all places wells are passed over, and
+`reduced` lets go 0.1 V too high."""
 DEPTHS = 4
 """Depths of closing from which a pad is opened, at loads in even ratios up to the largest (docs/pad.md)."""
 GROWN = 2.0
@@ -316,13 +317,13 @@ def _close(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cell:
     heights = surface_of(inputs, contact, cell)
     plane = float(heights.mean())  # the separation is that from the mean plane of the film
     here = at_place(inputs, cell).rms
-    kept = _own_steps(grid, min(PLACE_STEP_RMS * here / inputs.rms, LONGEST_PLACE_STEP_RMS) * here)
-    own = grid.separation_nm[kept]
-    closed = close_by_separation(inputs, contact, heights, own + plane, np.flatnonzero(np.isin(kept, grid.depths)))
-    opening = np.array([_between(grid.separation_nm, own, branch) for branch in closed.opening])
+    kept = _own_steps(grid, min(PLACE_STEP_RMS * here**2 / inputs.rms, LONGEST_PLACE_STEP_NM))
+    known = grid.separation_nm[kept]
+    closed = close_by_separation(inputs, contact, heights, known + plane, np.flatnonzero(np.isin(kept, grid.depths)))
+    opening = np.array([_between(grid.separation_nm, known, branch) for branch in closed.opening])
     for branch, depth in zip(opening, grid.depths, strict=True):
         branch[:, depth + 1 :] = np.nan
-    closing = _between(grid.separation_nm, own, closed.closing)
+    closing = _between(grid.separation_nm, known, closed.closing)
     return Displacement(closed.first_contact_nm - plane, closing, opening, closed.settled)
 
 

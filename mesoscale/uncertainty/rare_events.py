@@ -78,30 +78,30 @@ class Sampled:
 
     Attributes
     ----------
-    each : E[pi] by each of the independent runs, shape (runs,).
+    estimates : E[pi] by each of the independent runs, shape (runs,).
     points : points from h, shape (m, n); none where the event is not met.
     chance : pi at these points.
     """
 
-    each: Array
+    estimates: Array
     points: Array
     chance: Array
 
     @property
     def probability(self) -> float:
         """E[pi]."""
-        return float(self.each.mean())
+        return float(self.estimates.mean())
 
     @property
     def variation(self) -> float:
         """Coefficient of variation of the probability, from the scatter between the runs; 0 of one run."""
-        if self.each.size < 2 or not self.each.any():
+        if self.estimates.size < 2 or not self.estimates.any():
             return 0.0
-        return float(self.each.std(ddof=1) / self.each.mean() / np.sqrt(self.each.size))
+        return float(self.estimates.std(ddof=1) / self.estimates.mean() / np.sqrt(self.estimates.size))
 
     def interval(self, confidence: float = CONFIDENCE) -> tuple[float, float]:
         """Interval of the probability by the response."""
-        return _interval(self.probability, self.variation, self.each.size - 1, confidence)
+        return _interval(self.probability, self.variation, self.estimates.size - 1, confidence)
 
 
 def _interval(value: float, variation: float, freedom: int, confidence: float) -> tuple[float, float]:
@@ -128,17 +128,17 @@ def sample_event(
     repeats : independent runs.
     """
     runs = [_simulate(moments, dimension, threshold, seed * REPEATS + k, samples) for k in range(repeats)]
-    each = np.array([probability for probability, _ in runs])
-    if not each.any():
-        return Sampled(each, np.empty((0, dimension)), np.empty(0))
+    estimates = np.array([probability for probability, _ in runs])
+    if not estimates.any():
+        return Sampled(estimates, np.empty((0, dimension)), np.empty(0))
     # of each run so many as its share of the probability
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0x5A]))
-    counts = [round(samples * share) for share in (each / each.sum()).tolist()]
+    counts = [round(samples * share) for share in (estimates / estimates.sum()).tolist()]
     points = np.concatenate(
-        [rng.choice(found, count) for (_, found), count in zip(runs, counts, strict=True) if count and len(found)]
+        [rng.choice(likely, count) for (_, likely), count in zip(runs, counts, strict=True) if count and len(likely)]
     )
     mean, deviation = moments(points)
-    return Sampled(each, points, ndtr((threshold - mean) / deviation))
+    return Sampled(estimates, points, ndtr((threshold - mean) / deviation))
 
 
 def _simulate(moments: Moments, dimension: int, threshold: float, seed: int, samples: int) -> tuple[float, Array]:
@@ -211,5 +211,5 @@ def correct(sampled: Sampled, happened: NDArray[np.bool_], chance: Array, confid
     scatter = float(np.std(np.append(factors, 0.0), ddof=1)) / mean / np.sqrt(runs)
     variation = float(np.hypot(scatter, sampled.variation))
     value = mean * sampled.probability
-    low, high = _interval(value, variation, sampled.each.size - 1, confidence)
+    low, high = _interval(value, variation, sampled.estimates.size - 1, confidence)
     return Corrected(value, low, high, variation, sampled.probability, runs, events)

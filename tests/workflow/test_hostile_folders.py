@@ -77,16 +77,15 @@ def test_a_section_or_the_first_screen_that_fails_costs_itself(made_up, monkeypa
     def broken(results):
         raise ZeroDivisionError("no\x1b[31m <b>pull-in</b>")
 
-    monkeypatch.setattr("workflow.report.stages.device.describe", broken)
+    monkeypatch.setattr("workflow.report.stages.inputs.describe", broken)
     monkeypatch.setattr(rendering, "first_screen", lambda results, gates: 1 / 0)
     root, paths = made_up
     page = rendering.render(Results(root, [path for path in paths if path.name == "inputs.csv"], "made_up"))
     assert "This part of the page could not be drawn (ZeroDivisionError" in page
     assert "<b>pull" not in page
     assert "first screen</b>" in page
-    assert "Inputs in use" in page
     said = capsys.readouterr().err
-    assert "report: device could not be drawn" in said
+    assert "report: inputs could not be drawn" in said
     assert "\x1b" not in said
 
 
