@@ -5,12 +5,11 @@ from typing import Any
 import numpy as np
 
 from mesoscale.device.failure import Population
-from mesoscale.device.points import Pad, Point, cutoff_range, on_pad_grid, press_pad, surfaces_of
+from mesoscale.device.points import Pad, Point, press_pad, surfaces_of
 from mesoscale.errors import InputError
-from mesoscale.settings import DeviceSettings, FailureSettings, PadSettings
-from workflow.contact_settings import contact_settings
+from mesoscale.settings import FailureSettings
 from workflow.job import settings_from_job
-from workflow.pad_files import load_model, points_of
+from workflow.pad_files import load_model, points_of_job
 
 FIRST_SURFACES = 100_000
 """Beyond those of the points of an answer."""
@@ -26,17 +25,15 @@ def load_population(snakemake: Any) -> tuple[Population, float]:
     asked = settings_from_job(FailureSettings, snakemake.params.failure)
     if asked.probability is None:
         raise InputError("failure.probability = null: give the share of the switches that may fail, such as 1e-6")
-    contact = contact_settings(snakemake.params.contact, snakemake)
-    device = settings_from_job(DeviceSettings, snakemake.params.device)
-    pad = settings_from_job(PadSettings, snakemake.params.pad)
-    points = points_of(snakemake.input.inputs, contact, device, pad.points)
-    model, cutoffs = load_model([snakemake.input.model], points), cutoff_range(points.table, contact)
-    contact = on_pad_grid(contact, points.table)
+    points, pad = points_of_job(snakemake)
+    model = load_model([snakemake.input.model], points)
 
     def press(point: Point, times: int, number: int) -> Pad:
-        return press_pad(point, contact, times * pad.point_cells, surfaces_of(FIRST_SURFACES + number))
+        return press_pad(point, points.on_grid, times * pad.point_cells, surfaces_of(FIRST_SURFACES + number))
 
     solved = [(units, one.pad) for units, one in zip(points.design.probability, model.points, strict=True) if one.pad]
     known = points.design.probability[:0] if not solved else np.array([units for units, _ in solved])
     pads = [of for _, of in solved]
-    return Population(points.table, device, cutoffs, asked.release_V, press, (known, pads)), asked.probability
+    return Population(
+        points.table, points.device, points.cutoffs_nm, asked.release_V, press, (known, pads)
+    ), asked.probability

@@ -4,13 +4,25 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from mesoscale.device.points import Design, Pad, PadModel, Point, Solved, central_point, plan_points
+from mesoscale.device.points import (
+    Design,
+    Pad,
+    PadModel,
+    Point,
+    Solved,
+    central_point,
+    cutoff_range,
+    on_pad_grid,
+    plan_points,
+)
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import Flats
-from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.settings import ContactSettings, DeviceSettings, PadSettings
+from workflow.contact_settings import contact_settings
+from workflow.job import settings_from_job
 from workflow.results import Dataset, load_csv, load_h5, write_h5
 
 STATES = ("pull_in_V", "release_V", "capacitance_fF", "landed_share", "deepened")
@@ -72,10 +84,17 @@ def _curves(cells: PadCells) -> dict[str, Dataset]:
 
 
 class Points:
-    """All points of a scene by their numbers, of which 0 is the central one."""
+    """All points of a scene by their numbers, of which 0 is the central one.
+
+    Attributes
+    ----------
+    on_grid : the contact on the grid of the pads.
+    """
 
     def __init__(self, table: InputTable, contact: ContactSettings, device: DeviceSettings, count: int):
-        self.table, self.contact = table, contact
+        self.table, self.contact, self.device = table, contact, device
+        self.on_grid = on_pad_grid(contact, table)
+        self.cutoffs_nm = cutoff_range(table, contact)
         self.design = plan_points(table, contact, device, count)
         self.by_number = dict(enumerate((central_point(table, contact, device), *self.design.points)))
 
@@ -83,6 +102,14 @@ class Points:
 def points_of(inputs: str, contact: ContactSettings, device: DeviceSettings, count: int) -> Points:
     """So many points and the central one, from pad/inputs.csv."""
     return Points(from_rows(load_csv(inputs)), contact, device, count)
+
+
+def points_of_job(snakemake: Any) -> tuple[Points, PadSettings]:
+    """The points of a job that has the inputs of the pad, and sections `contact`, `device` and `pad` of its scene."""
+    contact = contact_settings(snakemake.params.contact, snakemake)
+    device = settings_from_job(DeviceSettings, snakemake.params.device)
+    pad = settings_from_job(PadSettings, snakemake.params.pad)
+    return points_of(snakemake.input.inputs, contact, device, pad.points), pad
 
 
 def load_model(paths: Sequence[str], points: Points) -> PadModel:

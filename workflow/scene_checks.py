@@ -14,7 +14,6 @@ from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.table import check_literature
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.contact import base_modulus
-from mesoscale.settings.device import SPREAD
 from workflow.scene import ROOT, Scene
 from workflow.terminal.cost import history_s
 from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
@@ -114,9 +113,8 @@ def _stages(scene: Scene) -> Iterator[str]:
 
 def _too_few_points(scene: Scene) -> Iterator[str]:
     """A line on points too few to tell causes apart: for a curve of second degree each, a constant, and one over."""
-    spread = [name for name in SPREAD if getattr(scene.device.spread, name) is not None] if scene.device.bends else []
     inputs = len(scene.inputs.rows()) + scene.unequal_places
-    needed = 2 * (inputs + ("gap_cutoff" not in scene.inputs.rows()) + len(spread)) + 2
+    needed = 2 * (inputs + ("gap_cutoff" not in scene.inputs.rows()) + len(scene.device.varied)) + 2
     if "pad" in scene.tails and 0 < scene.pad.points < needed:
         yield (
             f"pad.points = {scene.pad.points}: {needed // 2 - 1} inputs and properties of the device vary, whose parts "

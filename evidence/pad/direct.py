@@ -18,7 +18,7 @@ from scipy.stats import qmc
 
 from evidence.pad.large_surfaces import random_cells
 from mesoscale.device.electrode import presser, solve_deepened
-from mesoscale.device.points import Point, cutoff_range, on_pad_grid, point_of, solve_point, surfaces_of, values_at
+from mesoscale.device.points import Point, point_of, solve_point, surfaces_of, values_at
 from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.errors import InputError
 from mesoscale.pad.cells import close_cells, plan_grid
@@ -53,7 +53,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         contact = contact_settings(scene.contact.model_dump(mode="json"), SimpleNamespace(input=found))
         device = scene.device
         points = points_of(str(folder / "pad" / "inputs.csv"), contact, device, scene.pad.points)
-        model, coarse = load_model([str(folder / "pad" / "model.h5")], points), on_pad_grid(contact, points.table)
+        model, coarse = load_model([str(folder / "pad" / "model.h5")], points), points.on_grid
         apart = {}
         for k, one in enumerate(model.points):
             release = one.states.get("release_V", np.nan)
@@ -69,7 +69,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
             release = brute_force_V(model.points[k].point, coarse, given.cells)
             yield _row(folder.name, "many", k, given.cells, release, np.nan, process_time() - started)
         units = qmc.LatinHypercube(len(points.design.names), rng=1).random(given.fresh)
-        values = values_at(units, points.table, device, cutoff_range(points.table, contact))
+        values = values_at(units, points.table, device, points.cutoffs_nm)
         for k, row in enumerate(values):
             started = process_time()
             point = point_of(row, points.table.names, device)

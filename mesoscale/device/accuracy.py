@@ -13,13 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.device.beam import lumped_beam
-from mesoscale.device.beam_switch import ELEMENTS as ELEMENTS_USED
 from mesoscale.device.beam_switch import solve_bent
-from mesoscale.device.electrode import solve_deepened
+from mesoscale.device.electrode import release_or_nan_V
 from mesoscale.device.pad_export import tables_of
 from mesoscale.device.points import PadModel, Point, on_pad_grid, press_pad
 from mesoscale.device.release import ENDS
-from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.cells import DEPTHS, FIRST_SEED, LONGEST_STEP_NM, STEP_RMS
 from mesoscale.pad.memory import PadLaw
@@ -67,9 +65,7 @@ def accuracy_points(
     InputError : the pad at central inputs cannot be pressed.
     """
     central = model.central
-    if central.pad is None:
-        raise InputError(central.refused)
-    law, device, coarse = central.pad.law, central.point.device, on_pad_grid(contact, table)
+    law, device, coarse = central.pressed.law, central.point.device, on_pad_grid(contact, table)
     press_pad(central.point, coarse, 2, FIRST_SEED)  # compiles
     parts: list[tuple[str, Iterator[Row]]] = [
         ("cells", _cells(central.point, coarse)),
@@ -105,13 +101,10 @@ def _clock() -> Array:
     return np.array([time.perf_counter(), time.process_time()])
 
 
-def _release_V(law: PadLaw, device: DeviceSettings, elements: int = ELEMENTS_USED) -> tuple[float, Array]:
+def _release_V(law: PadLaw, device: DeviceSettings, *elements: int) -> tuple[float, Array]:
     """Release (0: stuck; NaN: not computed), and the wall and processor time it took."""
     started = _clock()
-    try:
-        release = solve_deepened(device, law, elements)["release_V"]
-    except InputError:
-        release = np.nan
+    release = release_or_nan_V(device, law, *elements)
     return release, _clock() - started
 
 

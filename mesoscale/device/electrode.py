@@ -63,6 +63,14 @@ def solve_deepened(settings: DeviceSettings, law: PadLaw, elements: int = ELEMEN
     return {**state, "deepened": float(pad is not law)}
 
 
+def release_or_nan_V(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> float:
+    """Release on a pad (V; 0: it sticks); NaN where the switch has no answer."""
+    try:
+        return solve_deepened(settings, law, elements)["release_V"]
+    except InputError:
+        return np.nan
+
+
 def with_pad(solve: Callable[[PadLaw], T], law: PadLaw) -> tuple[T, PadLaw]:
     """What `solve` says of a pad that is continued as far as the switch presses it, and this pad.
 

@@ -23,7 +23,6 @@ from mesoscale.device.pad_switch import solve_on_pad
 from mesoscale.device.points import Point, point_of, values_at
 from mesoscale.device.pressing import held_V, pull_in_V
 from mesoscale.device.release import WORKS
-from mesoscale.device.spread import varied
 from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import InputTable
@@ -159,7 +158,7 @@ class Population:
     @property
     def names(self) -> list[str]:
         """What the numbers stand for."""
-        return [*self.table.names, "gap_cutoff_nm", *varied(self.settings)]
+        return [*self.table.names, "gap_cutoff_nm", *self.settings.varied]
 
     @property
     def spring(self) -> str:

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact.surface import shortest_wave
-from mesoscale.device.electrode import COARSE, presser, solve_deepened
+from mesoscale.device.electrode import COARSE, presser, release_or_nan_V, solve_deepened
 from mesoscale.device.pressing import pressing, pressure_to_compute
-from mesoscale.device.spread import properties_at, varied, with_properties
+from mesoscale.device.spread import properties_at, with_properties
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.distributions import InputTable
@@ -95,7 +95,7 @@ def plan_points(table: InputTable, contact: ContactSettings, settings: DeviceSet
     """Points of a Latin hypercube over inputs, D0 and properties of the device."""
     from scipy.stats import qmc  # slow to import
 
-    device, cutoffs = varied(settings), cutoff_range(table, contact)
+    device, cutoffs = settings.varied, cutoff_range(table, contact)
     names = [*table.names, "gap_cutoff_nm", *device]
     causes = ["inputs"] * len(table.names) + ["gap_cutoff"]
     causes += [f"device_{getattr(settings.spread, name).varies}" for name in device]
@@ -128,7 +128,7 @@ def point_of(row: Array, names: Sequence[str], settings: DeviceSettings) -> Poin
 def on_pad_grid(contact: ContactSettings, table: InputTable) -> ContactSettings:
     """The contact on the coarsest of its halved grids that still holds all waves of the inputs.
 
-    The release of `reduced` moves by 0.04 V from 128 to 512 sites a side, at a fiftieth of the time (docs/pad.md).
+    The release of `reduced` moves by 0.03 V from 128 to 512 sites a side, at a fiftieth of the time (docs/pad.md).
     Without a cut-off the grid itself is one, and stays.
     """
     if "q1" in table.names:
@@ -180,6 +180,18 @@ class Solved:
     states: dict[str, float]
     halves_V: tuple[float, float]
     refused: str = ""
+
+    @property
+    def pressed(self) -> Pad:
+        """The pad.
+
+        Raises
+        ------
+        InputError : it cannot be pressed.
+        """
+        if self.pad is None:
+            raise InputError(self.refused)
+        return self.pad
 
     @property
     def error_V(self) -> float:
@@ -234,16 +246,8 @@ def solve_point(
         states = solve_deepened(point.device, pad.law)
     except InputError as error:
         return Solved(point, pad, {}, (np.nan, np.nan), str(error))
-    first, second = (_release_V(point.device, law) for law in pad.halves)
+    first, second = (release_or_nan_V(point.device, law, COARSE) for law in pad.halves)
     return Solved(point, pad, states, (first, second))
-
-
-def _release_V(device: DeviceSettings, law: PadLaw) -> float:
-    """Release on half of the cells (V); NaN where they cannot carry the switch."""
-    try:
-        return solve_deepened(device, law, COARSE)["release_V"]
-    except InputError:
-        return np.nan
 
 
 def surfaces_of(number: int) -> int:

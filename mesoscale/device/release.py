@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.electrode import solve_deepened
+from mesoscale.device.electrode import release_or_nan_V
 from mesoscale.device.points import PadModel, Solved
 from mesoscale.device.statistics import describe, probability
 from mesoscale.device.switch import NM, switch_from_settings
@@ -200,7 +200,5 @@ def _release_V(central: Solved, times: float) -> float | None:
     """Release at `times` the attraction; None where it is not known."""
     if central.pad is None:
         return None
-    try:
-        return solve_deepened(central.point.device, attracting(central.pad.law, times))["release_V"]
-    except InputError:
-        return None
+    release = release_or_nan_V(central.point.device, attracting(central.pad.law, times))
+    return release if np.isfinite(release) else None

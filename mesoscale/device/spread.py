@@ -9,18 +9,9 @@ from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable, UncertainInput
 from mesoscale.inputs.table import stated_distribution
 from mesoscale.settings import DeviceSettings
-from mesoscale.settings.device import SPREAD, unit_of
+from mesoscale.settings.device import unit_of
 
 Array = NDArray[np.float64]
-
-OF_A_PLATE = ("gap_um", "dielectric_nm", "permittivity")
-"""What can vary of a plate on a spring."""
-
-
-def varied(settings: DeviceSettings) -> list[str]:
-    """The properties that are not exactly known."""
-    names = SPREAD if settings.bends else OF_A_PLATE
-    return [name for name in names if getattr(settings.spread, name) is not None]
 
 
 def departures(settings: DeviceSettings) -> InputTable:
@@ -31,7 +22,7 @@ def departures(settings: DeviceSettings) -> InputTable:
     InputError : samples that cannot be read.
     """
     rows = []
-    for name in varied(settings):
+    for name in settings.varied:
         row = getattr(settings.spread, name)
         given = stated_distribution(name, row, "device.spread")
         unit = "1" if row.relative else unit_of(name)
@@ -40,7 +31,7 @@ def departures(settings: DeviceSettings) -> InputTable:
 
 
 def properties_at(settings: DeviceSettings, units: Array) -> Array:
-    """Values of the properties of `varied` at probabilities; both of shape (m, k)."""
+    """Values of the properties of `DeviceSettings.varied` at probabilities; both of shape (m, k)."""
     table = departures(settings)
     moved = table.transform(units) if table.rows else np.empty((len(units), 0))
     stated = np.array([getattr(settings, name) for name in table.names])
@@ -49,13 +40,13 @@ def properties_at(settings: DeviceSettings, units: Array) -> Array:
 
 
 def with_properties(settings: DeviceSettings, values: Array) -> DeviceSettings:
-    """The device with these values of the properties of `varied`, shape (k,)."""
-    return settings.model_copy(update=dict(zip(varied(settings), values.tolist(), strict=True)))
+    """The device with these values of the properties of `DeviceSettings.varied`, shape (k,)."""
+    return settings.model_copy(update=dict(zip(settings.varied, values.tolist(), strict=True)))
 
 
 def departed(settings: DeviceSettings, probability: float) -> Iterator[tuple[str, DeviceSettings, DeviceSettings]]:
-    """Each property of `varied`, and the devices where it alone departs to this probability and to its complement."""
-    names = varied(settings)
+    """Each property that varies, and the devices where it alone departs to this probability and to its complement."""
+    names = settings.varied
     for place, name in enumerate(names):
         units = np.full((2, len(names)), 0.5)
         units[:, place] = 1.0 - probability, probability

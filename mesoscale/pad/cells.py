@@ -237,8 +237,10 @@ def plan_grid(
     InputError : the pilot cells never reach the pressure.
     """
     step_nm = step_nm or min(STEP_RMS * inputs.rms, LONGEST_STEP_NM)
-    touching = np.array([-float(surface_of(inputs, contact, cell).min()) for cell in cells])
-    pilot_cells = _some_of(cells)
+    every = -(-len(cells) // PILOTS)
+    pilot_cells = _some_of(cells, every)
+    others = [cell for k, cell in enumerate(cells) if k % every]
+    touching = [-float(surface_of(inputs, contact, cell).min()) for cell in others]
     while True:
         pilots = SideBySide(inputs, contact, pilot_cells)
         way, load = _close_pilots(pilots, wanted_GPa, pressed_GPa, step_nm * PILOT_STEP)
@@ -246,6 +248,7 @@ def plan_grid(
         if pilots.first_contact_nm.max() - lowest > (FEWEST_PILOT_STEPS - 0.5) * PILOT_STEP * step_nm:
             break
         step_nm /= FEWEST_PILOT_STEPS
+    touching = np.append(pilots.first_contact_nm, touching)
     top, typical = float(touching.max()) + step_nm, float(np.median(touching))
     near = lowest + step_nm * np.arange(np.ceil((top - lowest) / step_nm) + 1)
     if isinstance(inputs, FilmInputs):
@@ -260,9 +263,9 @@ def plan_grid(
     return PadGrid(separation, np.unique(opened))
 
 
-def _some_of(cells: Sequence[Cell]) -> list[Cell]:
-    """At most `PILOTS` of the cells, as a pad of its own."""
-    kept = cells[:: -(-len(cells) // PILOTS)]
+def _some_of(cells: Sequence[Cell], every: int) -> list[Cell]:
+    """Every so many of the cells, as a pad of its own."""
+    kept = cells[::every]
     whole = sum(cell.weight for cell in kept)
     return [replace(cell, weight=cell.weight / whole) for cell in kept]
 

@@ -75,6 +75,8 @@ class SpreadSettings(Settings):
 
 
 SPREAD = tuple(SpreadSettings.model_fields)
+OF_A_PLATE = ("gap_um", "dielectric_nm", "permittivity")
+"""What can vary of a plate on a spring."""
 """The properties of a device that can be uncertain."""
 
 
@@ -297,6 +299,12 @@ class DeviceSettings(Settings):
             f"device: at rest the electrode is {lowest_nm:.4g} nm above what it lands on at its lowest; "
             "lower bow_nm, tilt_nm, dimple_nm or stopper_nm, or raise gap_um"
         )
+
+    @property
+    def varied(self) -> list[str]:
+        """The properties that are not exactly known."""
+        names = SPREAD if self.bends else OF_A_PLATE
+        return [name for name in names if getattr(self.spread, name) is not None]
 
     @property
     def without_lumps(self) -> str:

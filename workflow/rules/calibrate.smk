@@ -110,7 +110,7 @@ rule rank_next_on_pad:
         contact=settings("contact"),
         law=settings("law"),
         device=settings("device"),
-        points=SCENE.pad.points,
+        pad=settings("pad"),
     message:
         "rank what to measure next for the switch on the pad"
     script:

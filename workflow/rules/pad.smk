@@ -76,7 +76,7 @@ rule assemble_pad:
     params:
         contact=settings("contact"),
         device=settings("device"),
-        points=SCENE.pad.points,
+        pad=settings("pad"),
     message:
         "assemble the pad, and say what the switch does"
     script:

@@ -6,24 +6,17 @@ Out: pad/model.h5, pad/curves.csv (MPa against nm), device/pad_switch.json, devi
 
 from mesoscale.device.pad_export import spice_pad, verilog_pad
 from mesoscale.device.release import switch_on_pad
-from mesoscale.errors import InputError
 from mesoscale.pad.curves import curve_rows
-from mesoscale.settings import DeviceSettings
-from workflow.contact_settings import contact_settings
-from workflow.job import job, settings_from_job
-from workflow.pad_files import load_model, points_of, write_solved
+from workflow.job import job
+from workflow.pad_files import load_model, points_of_job, write_solved
 from workflow.results import write_csv, write_json, write_text
 
 with job(snakemake) as run:
-    contact = contact_settings(snakemake.params.contact, snakemake)
-    device = settings_from_job(DeviceSettings, snakemake.params.device)
-    points = points_of(snakemake.input.inputs, contact, device, snakemake.params.points)
+    points, _ = points_of_job(snakemake)
     model = load_model(snakemake.input.chunks, points)
-    pad = model.central.pad
-    if pad is None:
-        raise InputError(model.central.refused)
+    pad = model.central.pressed
     write_solved(snakemake.output.model, dict(enumerate((model.central, *model.points))), run.provenance, points.design)
     write_csv(snakemake.output.table, curve_rows(pad.cells))
     write_text(snakemake.output.verilog, verilog_pad(pad.law, pad.cells.count))
     write_text(snakemake.output.spice, spice_pad(pad.law, pad.cells.count))
-    write_json(snakemake.output.switch, switch_on_pad(model, contact.length_nm**2), run.provenance)
+    write_json(snakemake.output.switch, switch_on_pad(model, points.contact.length_nm**2), run.provenance)

@@ -10,30 +10,20 @@ from pathlib import Path
 
 from mesoscale.device.circuit import Version, loops, study_on_pad, transient, versions
 from mesoscale.device.lumps import lumps_of
-from mesoscale.device.points import cutoff_range, on_pad_grid
 from mesoscale.device.switch_export import spice_switch, verilog_lump
-from mesoscale.errors import InputError
-from mesoscale.settings import DeviceSettings, PadSettings
-from workflow.contact_settings import contact_settings
-from workflow.job import job, settings_from_job
-from workflow.pad_files import load_model, points_of
+from workflow.job import job
+from workflow.pad_files import load_model, points_of_job
 from workflow.results import write_csv, write_json, write_text
 
 with job(snakemake) as run:
-    contact = contact_settings(snakemake.params.contact, snakemake)
-    device = settings_from_job(DeviceSettings, snakemake.params.device)
-    settings = settings_from_job(PadSettings, snakemake.params.pad)
-    points = points_of(snakemake.input.inputs, contact, device, settings.points)
+    points, _ = points_of_job(snakemake)
     model = load_model([snakemake.input.model], points)
-    pad = model.central.pad
-    if pad is None:
-        raise InputError(model.central.refused)
-    study, law = study_on_pad(device, pad.law)
-    coarse, cutoffs = on_pad_grid(contact, points.table), cutoff_range(points.table, contact)
-    spread = versions(model, points.table, coarse, cutoffs, study.lumps)
+    pad = model.central.pressed
+    study, law = study_on_pad(points.device, pad.law)
+    spread = versions(model, points.table, points.on_grid, points.cutoffs_nm, study.lumps)
     run.progress(0.4, "draws and corners")
     states = {"pull_in_V": study.pull_in_V, "release_V": study.release_V}
-    central = Version({"switch": "central"} | states, device.model_copy(update={"tilt_nm": 0.0}), law)
+    central = Version({"switch": "central"} | states, points.device.model_copy(update={"tilt_nm": 0.0}), law)
     drawn = [version for version in spread if not version.row["deviations"]]
     write_csv(snakemake.output.loop, loops(central, drawn))
     run.progress(0.6, "C-V loops")

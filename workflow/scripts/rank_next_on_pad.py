@@ -13,22 +13,18 @@ from mesoscale.calibration.further import next_on_pad
 from mesoscale.calibration.likelihood import posterior_of
 from mesoscale.calibration.posterior import cycles_of_rows, expected_of, responses_of
 from mesoscale.inputs.table import from_rows
-from mesoscale.settings import DeviceSettings
-from workflow.contact_settings import contact_settings
-from workflow.job import job, settings_from_job
-from workflow.pad_files import load_model, points_of
+from workflow.job import job
+from workflow.pad_files import load_model, points_of_job
 from workflow.results import load_csv, write_csv
 
 SOLVED_TO_RANK = 0.5
 """Least share of the points with an answer; made-up data leave a tenth to a half of them with weight."""
 
 with job(snakemake) as run:
-    contact = contact_settings(snakemake.params.contact, snakemake)
-    device = settings_from_job(DeviceSettings, snakemake.params.device)
+    points, _ = points_of_job(snakemake)
     prior = from_rows(load_csv(snakemake.input.priors))
     rows = [row for path in (*snakemake.input.cycles, snakemake.input.local_cycles) for row in load_csv(path)]
     cycles = cycles_of_rows(rows, prior.names)
-    points = points_of(snakemake.input.inputs, contact, device, snakemake.params.points)
     model = load_model([snakemake.input.model], points)
     responses, laws = responses_of(prior, cycles)
     given = partial(
@@ -37,13 +33,13 @@ with job(snakemake) as run:
         responses=responses,
         law_responses=laws,
         switch=None,
-        max_force_nN=contact.max_force_nN,
+        max_force_nN=points.contact.max_force_nN,
         expected=expected_of(cycles),
     )
     ranked, volts = [], model.states("release_V")
     if len(volts) > SOLVED_TO_RANK * len(model.points):
         # how places differ is no input of a cell
         x = np.array([[model.points[k].point.values[name] for name in prior.names] for k in model.solved])
-        ranked = next_on_pad(given, responses, x, volts, contact.max_force_nN)
+        ranked = next_on_pad(given, responses, x, volts, points.contact.max_force_nN)
         ranked = [{**row, "solved": len(volts), "refused": len(model.refused)} for row in ranked]
     write_csv(snakemake.output[0], ranked)
