@@ -41,7 +41,7 @@ myst_substitutions = figures()  # numbers that pages quote, from evidence/data
 nb_custom_formats = {".py": ["jupytext.reads", {"fmt": "py:percent"}]}
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 120
+nb_execution_timeout = 600  # seconds a cell: beside lint and tests, two cores are shared by seven processes
 
 # the API reference: a page per room and module. Settings have their own page, written from the same classes
 apidoc_modules = [

@@ -41,7 +41,7 @@ GROWN = 2.0
 FAR_NM = 200.0
 """Beyond, the attraction of the pad is that of two flats to 1 %: 1 + 6 (rms / separation)^2."""
 FAR_POINTS = 24
-LIGHT = 0.05
+LIGHT = 0.02
 """Part of the largest load from which the pad is opened at least; a flat electrode presses with 0.3 to 0.4 of it."""
 MAX_PILOT_STEPS = 4000
 MARGIN = 1.25
