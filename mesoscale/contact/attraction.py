@@ -95,6 +95,21 @@ class Attraction:
             )
         return -self.strength * total
 
+    def around(
+        self,
+        heights: np.ndarray,
+        separation: float,
+        displacement: np.ndarray,
+        sites: np.ndarray,
+        place: np.ndarray,
+        pressure: np.ndarray,
+    ) -> float:
+        """Force (nN, negative) on all sites with their displacements (nm), (N^2,), around those under pressure."""
+        walls, touching = (self.least, self.offset, self.rate), self.touching
+        return -self.strength * inverse_cubes_around(
+            heights, separation, displacement, sites, place, pressure, touching, *walls
+        )
+
     def undeformed(
         self,
         heights: np.ndarray,
@@ -234,6 +249,29 @@ def inverse_cubes_of(gap, weight, least, offset, rate):
     for k in range(gap.size):
         if weight[k] > 0.0:
             total += weight[k] * inverse_cube(max(gap[k], least) + offset, rate)
+    return total
+
+
+@njit(cache=True)
+def inverse_cubes_around(heights, separation, displacement, sites, place, pressure, touching, least, offset, rate):
+    """Sum of 1/s^3 over all sites of a cell, with the weights of `attracting` around `sites`, which have pressures."""
+    pixels = int(np.sqrt(heights.size) + 0.5)
+    total = 0.0
+    for k in range(heights.size):
+        total += inverse_cube(max(heights[k] + separation + displacement[k], least) + offset, rate)
+    if touching:
+        return total
+    for k in range(sites.size):
+        if not pressure[k] > 0.0:
+            continue
+        site = sites[k]
+        total -= inverse_cube(max(heights[site] + separation + displacement[site], least) + offset, rate)
+        row, col = site // pixels, site % pixels
+        for rows, cols in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+            beside = (row + rows) % pixels * pixels + (col + cols) % pixels
+            if place[beside] < 0 or not pressure[place[beside]] > 0.0:
+                gap = heights[beside] + separation + displacement[beside]
+                total += EXCESS * inverse_cube(max(gap, least) + offset, rate)
     return total
 
 

@@ -93,8 +93,8 @@ class AdhesiveContact(CoupledContact):
     def _forget(self) -> None:
         super()._forget()
         nothing = np.zeros(self.heights.size)
-        self.now = self.earlier = Pulled(math.inf, nothing, nothing, nothing, 0.0, 0.0, 0.0, 0.0, 0.0)
-        self.saved = (self.now, self.earlier)
+        self.now = self.last = Pulled(math.inf, nothing, nothing, nothing, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.saved = (self.now, self.last)
 
     @property
     def strongest(self) -> float:
@@ -105,17 +105,17 @@ class AdhesiveContact(CoupledContact):
     def back(self) -> None:
         """Undo the last move, its flow and its stresses."""
         super().back()
-        self.now, self.earlier = self.saved
+        self.now, self.last = self.saved
         self.displacement = self.now.moved[self.sites]
 
     def move_to(self, separation: float, with_flow: bool) -> State:
         """Bring the flat to a separation; it may be undone by `back` until the next move."""
-        self.saved = (self.now, self.earlier)
+        self.saved = (self.now, self.last)
         guess = self._expected(separation)
         if not (with_flow or self.capped):
             self.limit = np.full(self.limit.size, math.inf)
             self.mean = float(self.heights.mean())
-        self.earlier, self.now = self.now, self.now._replace(separation=separation, pull=guess)
+        self.last, self.now = self.now, self.now._replace(separation=separation, pull=guess)
         state = super().move_to(separation, with_flow)
         if state.force < math.inf:
             self._balance(with_flow)
@@ -143,10 +143,10 @@ class AdhesiveContact(CoupledContact):
 
     def _expected(self, separation: float) -> np.ndarray:
         """Attraction of the sites if it goes on as in the last step."""
-        step, last = separation - self.now.separation, self.now.separation - self.earlier.separation
+        step, last = separation - self.now.separation, self.now.separation - self.last.separation
         if not (math.isfinite(last) and last * step > 0.0):
             return self.now.pull
-        change = min(step / last, 1.0) * (self.now.pull - self.earlier.pull)
+        change = min(step / last, 1.0) * (self.now.pull - self.last.pull)
         change[self.now.pull <= self.MIXED_PULL * self.strongest] = 0.0
         return np.clip(self.now.pull + change, 0.0, self.strongest)
 
@@ -181,7 +181,7 @@ class AdhesiveContact(CoupledContact):
 
         The last separation is the present one; the contact is as before afterwards.
         """
-        kept = (self.separation, self.sites, self.pressure.copy(), self.limit.copy()), (self.now, self.earlier)
+        kept = self._kept(), (self.now, self.last)
         rows = [self.away(separation) for separation in separations[::-1].tolist()]
         self.before, self.saved = kept
         self.back()
@@ -231,7 +231,7 @@ class AdhesiveContact(CoupledContact):
             self.now = self.now._replace(pull=wanted, shift=self.space.displacement(-wanted))
             settled = super()._solve()
             pressure = self._spread()
-            moved = self.now.shift + (self.space.displacement(pressure) if self.grid is None else self.displacement)
+            moved = self.now.shift + (self.space.displacement(pressure) if self.grid is None else self.grid.field)
             reached = np.zeros_like(moved)
             energy = change = 0.0
             if law is not None:

@@ -31,6 +31,14 @@ def extend(matrix, table, scale, sites, old, new, pixels):
             matrix[j, k] = value
 
 
+@njit(cache=True)
+def block(table, scale, sites, pixels):
+    """Influences of some sites on each other, nm/GPa, in single precision."""
+    matrix = np.empty((sites.size, sites.size), np.float32)
+    extend(matrix, table, scale, sites, 0, sites.size, pixels)
+    return matrix
+
+
 @njit(cache=True, fastmath=FAST)
 def multiply(matrix, n, x, y):
     """y = matrix[:n, :n] x for a symmetric matrix; its cost is that of the values of x that are not 0."""
@@ -92,16 +100,16 @@ def classify(gap, pressure, displacement, limit, stiffness, n, state):
 
 
 @njit(cache=True)
-def _close_gaps(block, gap, goal):
+def close_gaps(block, gap, goal, share):
     """Pressures that close the gaps of some sites, by conjugate gradients.
 
-    Ends where the largest gap is below `goal`, or below `FACE_SHARE` of the first one: the next step goes on from
+    Ends where the largest gap is below `goal`, or below a share of the first one: the next step goes on from
     there, and the block need not be exact.
     """
     size = gap.size
     x = np.zeros(size)
     r = -gap
-    goal = max(goal, FACE_SHARE * np.abs(gap).max())
+    goal = max(goal, share * np.abs(gap).max())
     d = r.copy()
     q = np.empty(size)
     rr = r @ r
@@ -170,7 +178,7 @@ def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
                 for j in range(count):
                     block[k, j] = matrix[free[k], free[j]]
         open_gap = gap[free] + displacement[free]
-        closed_gaps = _close_gaps(block, open_gap, 0.1 * tolerance * largest / stiffness)
+        closed_gaps = close_gaps(block, open_gap, 0.1 * tolerance * largest / stiffness, FACE_SHARE)
         change[:] = 0.0
         change[free] = closed_gaps
         pressure[free] += closed_gaps

@@ -1,8 +1,9 @@
-"""Pressures between bounds on a whole grid: active sets, with the half-space applied by FFT.
+"""Pressures between bounds where many sites can touch: active sets, with the half-space applied by FFT.
 
 The problem is that of `dense`. Here the linear system of each step is solved by conjugate gradients that are
 preconditioned with the stiffness of the free half-space, without layers E* abs(q) / 2 (Vollebregt,
-doi:10.1007/s10957-013-0433-z).
+doi:10.1007/s10957-013-0433-z), or with their matrix where few sites are free. Steps are in single precision, which adds
+to the displacements; double precision has the last word.
 """
 
 from collections.abc import Callable
@@ -16,24 +17,32 @@ from mesoscale.settings.contact import Body
 
 NEWTON_STEPS = 60
 FACE_STEPS = 500
-GRADIENT_STEPS = 20000
-SINGLE_SHARE = 1e-4  # single precision gets a linear system at least this far
+GRADIENT_STEPS = 500
+SINGLE_SHARE = 1e-6  # single precision gets a linear system at least this far
 FACE_SHARE = 0.3  # each linear system is solved to this share of its first gap: the sets change before more pays
+DIRECT = 256  # free sites up to which a linear system has a matrix
+TABLE_SHARE = 0.5  # of the grid's sites: so many pairs of sites cost less by the table than a transform
 
 Apply = Callable[[np.ndarray], np.ndarray]
 
 
 class Grid:
-    """A half-space of N x N sites, for pressures and displacements of shape (N^2,)."""
+    """A half-space of N x N sites, for pressures and displacements of shape (N^2,).
+
+    Attributes
+    ----------
+    field : displacement (nm) of all sites by the pressures that `displace` had last.
+    """
 
     def __init__(self, pixels: int, length: float, e_star: float, bodies: tuple[Body, ...] = ()):
-        self.shape = (pixels, pixels)
+        self.shape, self.scale = (pixels, pixels), length / e_star
         number = half_space.wave_numbers(pixels) / half_space.softness(pixels, length, bodies)
         number[0, 0] = 1.0  # a preconditioner must not swallow the mean
         self.stiffness = (number * (np.pi * e_star / length)).astype(np.float32)
         number[0, 0] = np.inf
         self.compliance = (length / (np.pi * e_star)) / number
         self.single_compliance = self.compliance.astype(np.float32)
+        self.field = np.zeros(pixels**2)
 
     def displacement(self, pressure: np.ndarray) -> np.ndarray:
         """Displacement (nm) by a pressure (GPa), mean zero, in the precision of the pressure."""
@@ -49,54 +58,128 @@ class Grid:
         spectrum *= factor
         return np.asarray(fft.irfft2(spectrum, s=self.shape, overwrite_x=True)).reshape(-1)
 
+    def spread(self, sites: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Values of some sites, in the order of the cell, on all; 0 on the others."""
+        if sites.size == self.field.size:
+            return values
+        everywhere = np.zeros(self.field.size, values.dtype)
+        everywhere[sites] = values
+        return everywhere
+
+    def gather(self, sites: np.ndarray, everywhere: np.ndarray) -> np.ndarray:
+        """Values on all sites at some of them."""
+        return everywhere if sites.size == self.field.size else everywhere[sites]
+
+    def displace(self, sites: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+        """Displacement (nm) of some sites by their pressures (GPa); that of all is kept in `field`."""
+        self.field = self.displacement(self.spread(sites, pressure))
+        return self.gather(sites, self.field).copy()
+
 
 def solve(
-    grid: Grid, gap: np.ndarray, limit: np.ndarray, stiffness: float, tolerance: float, guess: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, int, bool]:
-    """Pressures and displacements of a whole grid.
+    grid: Grid,
+    table: np.ndarray,
+    sites: np.ndarray,
+    gap: np.ndarray,
+    limit: np.ndarray,
+    stiffness: float,
+    tolerance: float,
+    pressure: np.ndarray,
+    displacement: np.ndarray,
+) -> tuple[int, bool]:
+    """Find the pressures of n sites of a grid.
 
     Parameters
     ----------
-    gap, limit, guess : (N^2,), gap of the undeformed surface (nm), largest and first pressures (GPa)
+    table : influence of one site on another (`half_space.influence`)
+    sites : (n,), numbers of the sites that can touch, rising
+    gap, limit : (n,), gap of the undeformed surface (nm), largest pressures (GPa)
     stiffness : what makes a pressure of a gap in the residual, GPa/nm
     tolerance : of the residual over the largest pressure
+    pressure, displacement : (n,), GPa and nm; a first guess, and the answer
 
     Returns
     -------
-    Pressures (GPa) and displacements (nm), Newton steps, and whether they settled.
+    Newton steps, and whether they settled. `grid.field` has the displacements of all sites.
     """
-    pressure = np.clip(guess, 0.0, limit)
-    displacement = grid.displacement(pressure)
     state = np.full(gap.size, 1, np.int8)
+    change, block, exact = np.zeros(gap.size), None, False
     for step in range(NEWTON_STEPS):
         moved = dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state) > 0 or step == 0
-        _bind(pressure, limit, state)
-        displacement = grid.displacement(pressure)
+        if _bind(pressure, limit, state, change):
+            exact = False
+            _follow(grid, table, sites, change, displacement)
         if dense.residual(gap, pressure, displacement, limit, stiffness, gap.size) <= tolerance:
-            return pressure, displacement, step, True
+            if exact:
+                return step, True
+            displacement[:], exact = grid.displace(sites, pressure), True
+            if dense.residual(gap, pressure, displacement, limit, stiffness, gap.size) <= tolerance:
+                return step, True
+            continue
         free = state == 1
-        if free.any():
+        count, exact = int(np.count_nonzero(free)), False
+        if 0 < count <= min(DIRECT, gap.size - 1):
+            places = np.flatnonzero(free)
+            if moved or block is None:
+                block = dense.block(table, grid.scale, sites[places], grid.shape[0])
+            change[:] = 0.0
+            change[places] = dense.close_gaps(block, gap[places] + displacement[places], 0.0, SINGLE_SHARE)
+            pressure += change
+            _follow(grid, table, sites, change, displacement)
+        elif count:
             goal = 0.1 * tolerance * float(pressure.max()) / stiffness
-            _close_gaps(grid, free, gap, pressure, displacement, goal, FACE_SHARE if moved else 0.0)
-            if free.all():  # a uniform pressure moves nothing: take the least, so that the sets can change
+            _close_gaps(grid, sites, free, gap, pressure, displacement, goal, FACE_SHARE if moved else 0.0)
+            if count == grid.field.size:  # a uniform pressure moves nothing: take the least, so that the sets change
                 pressure -= pressure.min()
-    return pressure, displacement, NEWTON_STEPS, False
+    displacement[:] = grid.displace(sites, pressure)
+    return NEWTON_STEPS, False
+
+
+def _follow(grid: Grid, table: np.ndarray, sites: np.ndarray, change: np.ndarray, displacement: np.ndarray) -> None:
+    """Add what a change of the pressures (GPa) displaces: of few sites by the table, of many by a transform.
+
+    The transform is in single precision where the change is small.
+    """
+    changed = np.count_nonzero(change)
+    if changed * sites.size <= TABLE_SHARE * grid.field.size:
+        add_displacement(table, grid.scale, grid.shape[0], sites, change, displacement)
+        return
+    largest = float(np.abs(change).max())
+    everywhere = grid.spread(sites, (change / largest).astype(np.float32))
+    displacement += largest * grid.gather(sites, grid.displacement(everywhere))
 
 
 @njit(cache=True)
-def _bind(pressure, limit, state):
-    """Put the sites apart and those at their limit on their bounds, the others between them."""
+def add_displacement(table, scale, pixels, sites, change, displacement):
+    """Add to the displacements (nm) of sites what changes of their pressures (GPa) make."""
+    for k in range(sites.size):
+        if change[k] == 0.0:
+            continue
+        row, col, value = sites[k] // pixels, sites[k] % pixels, scale * change[k]
+        for m in range(sites.size):
+            dr, dc = abs(row - sites[m] // pixels), abs(col - sites[m] % pixels)
+            displacement[m] += value * table[min(dr, pixels - dr), min(dc, pixels - dc)]
+
+
+@njit(cache=True)
+def _bind(pressure, limit, state, change):
+    """Put the sites apart and those at their limit on their bounds, the others between them; whether any changes."""
+    changed = False
     for k in range(pressure.size):
+        new = min(max(pressure[k], 0.0), limit[k])
         if state[k] == 0:
-            pressure[k] = 0.0
+            new = 0.0
         elif state[k] == 2:
-            pressure[k] = limit[k]
-        else:
-            pressure[k] = min(max(pressure[k], 0.0), limit[k])
+            new = limit[k]
+        change[k] = new - pressure[k]
+        changed |= change[k] != 0.0
+        pressure[k] = new
+    return changed
 
 
 def _close_gaps(
     grid: Grid,
+    sites: np.ndarray,
     free: np.ndarray,
     gap: np.ndarray,
     pressure: np.ndarray,
@@ -106,7 +189,7 @@ def _close_gaps(
 ) -> None:
     """Change the pressures of the free sites, and with them the displacements, so that the gaps there close.
 
-    Both change in place. Single precision is three times as fast; the next step starts from gaps in double precision.
+    Both change in place. Single precision is three times as fast.
     """
     first = np.where(free, -(gap + displacement), 0.0)
     largest = float(np.abs(first).max())
@@ -115,10 +198,10 @@ def _close_gaps(
     x, u, d = np.zeros_like(r), np.zeros_like(r), np.zeros_like(r)
     last = 1.0
     for _ in range(FACE_STEPS):
-        z = grid.pressure(r)
+        z = grid.gather(sites, grid.pressure(grid.spread(sites, r)))
         rz = _turn(z, r, free, last, d)
         last = rz
-        q = grid.displacement(d)
+        q = grid.gather(sites, grid.displacement(grid.spread(sites, d)))
         dq = float(d @ q)
         if not dq > 1e-7 * rz:  # rounding of what moves nothing
             break
