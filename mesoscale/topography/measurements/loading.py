@@ -1,13 +1,12 @@
-"""Scans and line profiles from files, through the readers of SurfaceTopography; Gwyddion files for synthetic scans.
+"""Scans and line profiles from files and published containers, through the readers of SurfaceTopography.
 
-Files come from strangers: each is read in a process with limits (`guarded`), and readers that may run code (pickles
-inside NumPy files) are never tried.
+Files come from strangers: each is read in a process with limits (`guarded`). The lists of containers are read without
+executing what they name: PyYAML's full loader knows plain values and tuples.
 """
 
 import re
-import struct
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fnmatch import fnmatch
 from pathlib import Path
@@ -19,17 +18,13 @@ from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.settings import InstrumentSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan
-from mesoscale.topography.measurements.containers import is_container, stated_radius, unpacked
 from mesoscale.topography.measurements.guarded import guarded
 from mesoscale.topography.measurements.profiles import Profile, profile_of
-from mesoscale.topography.measurements.text_units import column_units
 
-REFUSED_FORMATS = frozenset({"npy", "npz"})  # NumPy files hold no physical size and may hold pickles
-MAGIC_BYTES = 512
-MAX_PIXELS = 16384**2
 MIN_SIDE = 32
 FILE_NM = (10.0, 1e8)  # plausible sizes: the largest real map at hand has 12 mm; beyond, a reader mistakes the unit
-NM = {"m": 1e9, "mm": 1e6, "um": 1e3, "µm": 1e3, "μm": 1e3, "nm": 1.0, "Å": 0.1, "pm": 1e-3}
+HEAD_BYTES = 8192  # of a text file, in which the heads of its columns stand
+NO_LIMITS = InstrumentSettings(files="*")
 
 
 @dataclass(frozen=True)
@@ -58,261 +53,238 @@ def load_measurements(
 
     Parameters
     ----------
-    path : file of any format that SurfaceTopography reads, NumPy's own excepted, or a container (.zip).
+    path : file of any format that SurfaceTopography reads, or a container of contact.engineering (.zip).
     name : what to call it; by default the file's name. Measurements of a container add their own.
     settings : the channel to take, and the limits of the instruments.
 
     Raises
     ------
     InputError : file missing, unreadable or of unknown format; no or several height channels; no physical size or
-        unit; pixels not on a regular grid; a container that cannot be trusted.
+        unit; a container of several surfaces.
     """
     path, settings = Path(path), settings or TopographySettings()
-    _check_present(path)
-    _import_readers()
-    return guarded(path, lambda: _measurements(path, name, settings))
+    if not path.is_file():
+        raise InputError(f"{path}: no such scan; correct topography.scans in the scene")
+    with needs("scans"):  # imported here, so that the process that reads, a fork of this one, has the readers
+        import SurfaceTopography.Container.IO
+        import SurfaceTopography.IO  # noqa: F401  4 s, because it loads all of that library
 
+    def read() -> list[Measurement]:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # readers warn of metadata that nothing here uses
+            if path.suffix.lower() == ".zip":
+                return list(_contained(path, name or path.stem, settings))
+            return [_alone(path, name or path.stem, settings)]
 
-def _measurements(path: Path, name: str | None, settings: TopographySettings) -> list[Measurement]:
-    if not is_container(path):
-        instrument = _instrument(path.name, settings)
-        data = _load(path, name or path.stem, instrument.channel or settings.channel, instrument.unit)
-        return [with_limits(data, settings, instrument)]
-    measurements = []
-    with unpacked(path) as members:
-        for number, member in enumerate(members):
-            instrument = _instrument(member.name, settings)
-            label = re.sub(r"[^\w.-]+", "_", f"{name or path.stem}_{number + 1}_{Path(member.name).stem}")
-            unit, channel = instrument.unit or member.unit, instrument.channel or settings.channel
-            try:
-                data = _load(member.path, label, channel, unit, member.sizes)
-            except InputError as error:
-                raise InputError(str(error).replace(str(member.path), f"{path}: {member.name}")) from None
-            if isinstance(data, Profile):
-                data = replace(data, bow=member.bow, tip_radius_nm=data.tip_radius_nm or member.tip_radius_nm)
-            measurements.append(with_limits(data, settings, instrument))
-    if not measurements:
-        raise InputError(f"{path}: its list of measurements is empty")
-    return measurements
-
-
-def _instrument(name: str, settings: TopographySettings) -> InstrumentSettings:
-    """The instrument that the scene states for a name; one without limits where it states none."""
-    fits = (item for item in settings.instruments if fnmatch(name, item.files))
-    return next(fits, NO_LIMITS)
-
-
-NO_LIMITS = InstrumentSettings(files="*")
+    return guarded(path, read)
 
 
 def with_limits(
-    data: Scan | Profile, settings: TopographySettings, instrument: InstrumentSettings = NO_LIMITS
+    data: Scan | Profile,
+    settings: TopographySettings,
+    instrument: InstrumentSettings = NO_LIMITS,
+    file_radius_nm: float | None = None,
 ) -> Measurement:
-    """A scan or line profile with the limits of its instrument; what that leaves open is the settings'."""
-    radius = instrument.tip_radius_nm
-    if radius is None and isinstance(data, Profile):
-        radius = data.tip_radius_nm
+    """A scan or line profile with the limits of its instrument; what that leaves open is the file's or the settings'."""
+    radius = file_radius_nm if instrument.tip_radius_nm is None else instrument.tip_radius_nm
     stated = radius is not None or isinstance(data, Scan)  # topography.tip_radius_nm is a scanning probe's
     used = settings.tip_radius_nm if radius is None else radius
     return Measurement(data, used, stated, instrument.shortest_wave_nm, instrument.noise_nm)
 
 
-def _import_readers() -> None:
-    """Import the readers here, so that the process that reads, a fork of this one, has them."""
-    with needs("scans"):
-        import SurfaceTopography.IO  # noqa: F401  4 s, because it loads all of that library
+def _instrument(name: str, settings: TopographySettings) -> InstrumentSettings:
+    """The instrument that the scene states for a name; one without limits where it states none."""
+    return next((item for item in settings.instruments if fnmatch(name, item.files)), NO_LIMITS)
 
 
-def _check_present(path: Path) -> bytes:
-    """The first bytes of a file that is there and can be read."""
-    if not path.is_file():
-        raise InputError(f"{path}: no such scan; correct topography.scans in the scene")
+def _alone(path: Path, name: str, settings: TopographySettings) -> Measurement:
+    """The measurement of a file."""
+    instrument = _instrument(path.name, settings)
     try:
         with path.open("rb") as stream:
-            return stream.read(MAGIC_BYTES)
+            head = stream.read(HEAD_BYTES)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); make the file readable") from None
+    channels = _tried(str(path), lambda: list(_open(path, head).channels))
+    channel, note = _height_channel(path, channels, instrument.channel or settings.channel)
+    _check_sized(str(path), channel)
+    topography = _tried(str(path), channel.topography)
+    steps = (f"read channel {channel.name}", *note)
+    return _measurement(str(path), name, topography, head, steps, settings, instrument)
 
 
-def _load(
-    path: Path,
+def _contained(path: Path, name: str, settings: TopographySettings) -> Iterator[Measurement]:
+    """The measurements of the one surface in a container, as they were taken: filters of its list are not applied."""
+    from SurfaceTopography.Container.IO import CEReader
+
+    try:
+        container = CEReader(str(path), ignore_filters=True)
+    except Exception as error:  # of damaged, encrypted and foreign archives, and of strange lists
+        raise InputError(f"{path}: this container cannot be read ({_first_line(error)}); get it again") from None
+    if container.nb_containers != 1:
+        raise InputError(f"{path}: holds {container.nb_containers} surfaces; give a container of one surface")
+    if not container.members():
+        raise InputError(f"{path}: its list of measurements is empty")
+    for number, member in enumerate(container.members()):
+        where = f"{path}: {member.name[:80]}"
+        label = re.sub(r"[^\w.-]+", "_", f"{name}_{number + 1}_{Path(member.name[:80]).stem}")
+        topography = _tried(where, lambda k=number: container.container()[k])
+        with member.open() as stream:
+            head = stream.read(HEAD_BYTES)
+        steps = (f"read channel {topography.info.get('data_source', 0)}",)
+        yield _measurement(where, label, topography, head, steps, settings, _instrument(member.name, settings))
+
+
+def _measurement(
+    where: str,
     name: str,
-    channel: str | None,
-    unit: str | None,
-    sizes: tuple[float, ...] | None = None,
-) -> Scan | Profile:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # readers warn of metadata that nothing here uses
-        reader = _open(path, _check_present(path))
-        try:
-            channels = _heights(path, lambda: list(reader.channels))
-            info, note = _height_channel(path, channels, channel)
-            if info.dim == 1:
-                return _profile(path, name, info, unit)
-            return _scan(path, name, info, note, unit, sizes)
-        finally:
-            close = getattr(reader, "close", None)
-            if close:
-                close()
+    topography: Any,
+    head: bytes,
+    steps: tuple[str, ...],
+    settings: TopographySettings,
+    instrument: InstrumentSettings,
+) -> Measurement:
+    """A topography of SurfaceTopography in nm, by the unit of the file, of its columns, or of the scene."""
+    unit = topography.unit or instrument.unit
+    factors = (_nm(where, unit),) * 2 if unit else _column_units(head)
+    if factors is None:
+        raise InputError(
+            f"{where}: a {'profile' if topography.dim == 1 else 'map'} without length unit; state it in "
+            f"topography.instruments (files: {Path(where).name!r}, unit: um; tip_radius_nm, too) or in the heads of its "
+            "columns"
+        )
+    if topography.dim == 1:
+        x, z = _tried(where, lambda: [_filled(part) for part in topography.positions_and_heights()])
+        data: Scan | Profile = _profile(where, name, x * factors[0], z * factors[1])
+        data = replace(data, bow=topography.info.get("detrend_mode") == "curvature")
+    else:
+        _check_sized(where, topography)
+        heights = factors[1] * _tried(where, lambda: _filled(topography.heights()))
+        if min(heights.shape) < MIN_SIDE:
+            raise InputError(f"{where}: {heights.shape[0]} x {heights.shape[1]} pixels; at least {MIN_SIDE} a side")
+        x_nm, y_nm = (factors[0] * float(size) for size in topography.physical_sizes)
+        _check_plausible(where, heights, x_nm, y_nm)
+        data = Scan(heights, (x_nm, y_nm), name)
+    data = replace(data, steps=(*steps, *data.steps))
+    return with_limits(data, settings, instrument, _stated_radius(topography.info))
 
 
-def _open(path: Path, start: bytes) -> Any:
+def _profile(where: str, name: str, x_nm: np.ndarray, z_nm: np.ndarray) -> Profile:
+    try:
+        profile = profile_of(x_nm, z_nm, name)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+    _check_plausible(where, profile.heights_nm, profile.length_nm)
+    return profile
+
+
+def _open(path: Path, head: bytes) -> Any:
     """The file in the first of all readers that understands it."""
-    with needs("scans"):
-        from SurfaceTopography.IO import readers
-        from SurfaceTopography.IO.Reader import MagicMatch
-        from SurfaceTopography.IO.XYZ import XYZReader
+    from SurfaceTopography.IO import CannotDetectFileFormat, MagicMatch, open_topography, readers
 
-        from mesoscale.topography.measurements.text_reader import QuickXYZReader
-
-    _check_pages(path, start)
-    reasons = []
-    for reader in readers:
-        match = reader.can_read(start)
-        if reader.format() in REFUSED_FORMATS:
-            if match == MagicMatch.YES and reader.format() == "npy":
-                raise InputError(
-                    f"{path}: NumPy files are refused (they carry no physical size and may carry code); "
-                    "export the scan to Gwyddion (.gwy) or keep the instrument's format"
-                )
-            continue
-        if match == MagicMatch.NO:
-            continue
-        try:
-            return (QuickXYZReader if reader is XYZReader else reader)(str(path))
-        except Exception as error:  # readers of foreign formats fail in many ways
-            if match == MagicMatch.YES:
-                reasons.append(f"{reader.name()}: {_first_line(error)}")
-    detail = f" ({reasons[0]})" if reasons else ""
+    try:
+        return open_topography(str(path))
+    except CannotDetectFileFormat as error:
+        said = dict(re.findall(r"tried (\w+): \n (.+)", str(error)))
+    suffix = path.suffix.lower().lstrip(".")
+    meant = [reader for reader in readers if reader.can_read(head) == MagicMatch.YES]
+    meant += [reader for reader in readers if suffix in (reader.file_extensions() or ())]
+    reasons = (f" ({item.name()}: {said[item.__name__].strip()[:120]})" for item in meant if item.__name__ in said)
     raise InputError(
-        f"{path}: no reader understands this file{detail}; accepted are the formats of SurfaceTopography "
-        "(gwy, ibw, di, jpk, mi, nid, ps tiff, ...; all 40: docs/topography.md, Formats) except NumPy files"
+        f"{path}: no reader understands this file{next(reasons, '')}; accepted are the formats of SurfaceTopography "
+        "(gwy, ibw, di, jpk, mi, nid, ps tiff, ...; all 40: docs/topography.md, Formats)"
     )
 
 
-def _check_pages(path: Path, start: bytes) -> None:
-    """Refuse a TIFF file whose list of pages leads back to itself: the reader would follow it without end."""
-    order = {b"II*\0": "<", b"MM\0*": ">"}.get(start[:4])
-    if order is None or len(start) < 8:
-        return
-    (page,), seen = struct.unpack_from(f"{order}I", start, 4), set[int]()
-    with path.open("rb") as stream:
-        while page:
-            if page in seen:
-                raise InputError(f"{path}: its list of pages leads back to itself; save the file again (.gwy)")
-            seen.add(page)
-            stream.seek(page)
-            count = int.from_bytes(stream.read(2), "little" if order == "<" else "big")
-            stream.seek(12 * count, 1)  # tags of 12 bytes
-            following = stream.read(4)
-            page = struct.unpack(f"{order}I", following)[0] if len(following) == 4 else 0
-
-
-def _first_line(error: Exception) -> str:
-    return (str(error).strip().splitlines() or [type(error).__name__])[0][:120]
-
-
-def _height_channel(path: Path, channels: list[Any], wanted: str | None) -> tuple[Any, str]:
-    """The height channel and a note when there was a choice."""
+def _height_channel(path: Path, channels: list[Any], wanted: str | None) -> tuple[Any, tuple[str, ...]]:
+    """The height channel, and a note when there was a choice."""
     # some readers call a phase a height, but then its unit is no length
     heights = [c for c in channels if c.is_height_channel and (c.unit is None or isinstance(c.unit, str))]
-    names = ", ".join(dict.fromkeys(str(c.name) for c in heights)) or "none"
+    names = list(dict.fromkeys(str(c.name) for c in heights))
     if wanted is not None:
         heights = [c for c in heights if str(c.name) == wanted]
         if not heights:
-            raise InputError(f"{path}: no height channel {wanted!r} (topography.channel); the file has: {names}")
+            listed = ", ".join(names) or "none"
+            raise InputError(f"{path}: no height channel {wanted!r} (topography.channel); the file has: {listed}")
+    elif len(names) > 1:
+        raise InputError(f"{path}: several height channels: {', '.join(names)}; name one in topography.channel")
     if not heights:
         raise InputError(f"{path}: no height channel in this file; save the topography channel too")
-    if len({str(c.name) for c in heights}) > 1:
-        raise InputError(f"{path}: several height channels: {names}; name one in topography.channel")
-    if len(heights) > 1:
-        return heights[0], f"took the first of {len(heights)} channels named {heights[0].name}"
-    return heights[0], ""
+    more = len(heights) > 1
+    return heights[0], (f"took the first of {len(heights)} channels named {heights[0].name}",) if more else ()
 
 
-def _scan(
-    path: Path, name: str, info: Any, note: str, stated_unit: str | None, stated_sizes: tuple[float, ...] | None
-) -> Scan:
-    sizes, unit, grid = info.physical_sizes, info.unit, info.nb_grid_pts
-    if info.dim != 2 or (grid is not None and len(grid) != 2):
-        raise InputError(f"{path}: not a two-dimensional map; give a scan, not a line profile")
-    given: dict[str, Any] = {}
-    if sizes is None and stated_sizes is not None:
-        sizes = given["physical_sizes"] = stated_sizes
-    if not unit and stated_unit is not None:
-        unit = given["unit"] = stated_unit
-    sized = sizes is not None and len(sizes) == 2 and all(np.isfinite(s) and s > 0 for s in sizes)
-    if lacks := " and no ".join(["physical size"] * (not sized) + ["length unit"] * (not unit)):
-        raise InputError(f"{path}: has no {lacks}; save it in a format that carries size and unit (.gwy)")
-    if grid is not None and int(np.prod(grid)) > MAX_PIXELS:
-        raise InputError(f"{path}: {grid[0]} x {grid[1]} pixels; at most {MAX_PIXELS} pixels are accepted")
-    topography = _heights(path, lambda: info.topography(**given))
-    if not getattr(topography, "is_uniform", True):
-        raise InputError(f"{path}: points are not on a regular grid; give a scan on a grid")
+def _nm(where: str, unit: str) -> float:
+    """Length of a unit in nm."""
+    from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor, mangle_length_unit_utf8
+
     try:
-        topography = topography.to_unit("nm")
-    except Exception:  # the library raises what its table of units happens to: one line for the user either way
-        raise InputError(f"{path}: unit {unit!r} is not a length; save heights and size in nm, um or m") from None
-    heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
-    _check_heights(path, heights)
-    if min(heights.shape) < MIN_SIDE:
-        raise InputError(f"{path}: {heights.shape[0]} x {heights.shape[1]} pixels; at least {MIN_SIDE} a side")
-    lengths = tuple(float(s) for s in topography.physical_sizes)
-    _check_size(path, *lengths)
-    steps = (f"read channel {info.name}", note) if note else (f"read channel {info.name}",)
-    return Scan(heights, (lengths[0], lengths[1]), name, steps)
+        return float(get_unit_conversion_factor(mangle_length_unit_utf8(unit), "nm"))
+    except ValueError:
+        raise InputError(f"{where}: unit {unit!r} is not a length; save heights and size in nm, um or m") from None
 
 
-def _profile(path: Path, name: str, info: Any, stated_unit: str | None) -> Profile:
-    """Positions and heights of a line, by the unit of the file, of its columns, or of the scene."""
-    unit = info.unit or stated_unit
-    factors = (NM[unit], NM[unit]) if unit in NM else column_units(path, NM)
-    if factors is None:
-        raise InputError(
-            f"{path}: a profile without length unit; state it in topography.instruments "
-            f"(files: {path.name!r}, unit: um; tip_radius_nm, too) or in the heads of its columns"
-        )
+def _column_units(head: bytes) -> tuple[float, float] | None:
+    """Factors to nm of the last two columns, position and height, by the heads of a text's columns; None without."""
+    from SurfaceTopography.Support.UnitConversion import find_length_unit_in_string
 
-    def points() -> list[np.ndarray]:
-        x, z = info.topography().positions_and_heights()
-        return [np.ma.filled(np.ma.asarray(v, dtype=float), np.nan) for v in (x, z)]
-
-    x, z = _heights(path, points)
-    try:
-        profile = profile_of(x * factors[0], z * factors[1], name)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
-    _check_size(path, profile.length_nm)
-    _check_heights(path, profile.heights_nm)
-    radius = stated_radius(info.info.get("instrument", {}).get("parameters", {}).get("tip_radius"))
-    return replace(profile, tip_radius_nm=radius, steps=(f"read channel {info.name}", *profile.steps))
+    encoding = "utf-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8"
+    for line in head[: len(head) // 2 * 2].decode(encoding, errors="replace").splitlines():
+        units = [find_length_unit_in_string(column) for column in re.split(r"[,;\t]", line.strip())]
+        if len(units) >= 2 and units[-2] and units[-1]:
+            return _nm(line, units[-2]), _nm(line, units[-1])
+    return None
 
 
-def _check_size(path: Path, *lengths_nm: float) -> None:
+def _stated_radius(info: Any) -> float | None:
+    """Radius of the tip in nm, as files and containers state it with their instrument; None where they do not."""
+    for key in ("instrument", "parameters", "tip_radius"):
+        info = info.get(key) if isinstance(info, dict) else None
+    if not isinstance(info, dict) or not isinstance(info.get("value"), (int, float)) or info["value"] <= 0:
+        return None
+    return float(info["value"]) * _nm("tip_radius", str(info.get("unit")))
+
+
+def _filled(values: Any) -> np.ndarray:
+    return np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
+
+
+def _check_sized(where: str, item: Any) -> None:
+    sizes = item.physical_sizes
+    if item.dim == 2 and (sizes is None or not all(np.isfinite(size) and size > 0 for size in sizes)):
+        raise InputError(f"{where}: has no physical size; save it in a format that carries size and unit (.gwy)")
+
+
+def _check_plausible(where: str, heights_nm: np.ndarray, *lengths_nm: float) -> None:
+    """Refuse sizes and heights that no instrument measures."""
     low, high = FILE_NM
     if not all(low <= length <= high for length in lengths_nm):
         raise InputError(
-            f"{path}: a size of {' x '.join(f'{length:.4g}' for length in lengths_nm)} nm; plausible is {low:g} .. "
+            f"{where}: a size of {' x '.join(f'{length:.4g}' for length in lengths_nm)} nm; plausible is {low:g} .. "
             f"{high:g} nm, so its unit may be mistaken: save it again with the size in nm or um (.gwy)"
         )
-
-
-def _check_heights(path: Path, heights_nm: np.ndarray) -> None:
     if not np.isfinite(heights_nm).any():
-        raise InputError(f"{path}: no pixel has a height; measure again")
+        raise InputError(f"{where}: no pixel has a height; measure again")
     largest = float(np.nanmax(np.abs(heights_nm - np.nanmedian(heights_nm))))  # some instruments count from far away
-    if largest > FILE_NM[1]:
+    if largest > high:
         raise InputError(
-            f"{path}: a height of {largest:.3g} nm; plausible is up to {FILE_NM[1]:g} nm about the median, so the file "
+            f"{where}: a height of {largest:.3g} nm; plausible is up to {high:g} nm about the median, so the file "
             "may be damaged or its unit mistaken: save it again (.gwy)"
         )
 
 
-def _heights(path: Path, read: Callable[[], Any]) -> Any:
+def _tried(where: str, read: Callable[[], Any]) -> Any:
+    """What a reader gives; readers of foreign formats fail in many ways."""
     try:
         return read()
+    except InputError:
+        raise
     except Exception as error:
-        raise InputError(f"{path}: heights cannot be read ({_first_line(error)}); is the file complete?") from None
+        raise InputError(f"{where}: heights cannot be read ({_first_line(error)}); is the file complete?") from None
+
+
+def _first_line(error: Exception) -> str:
+    return (str(error).strip().splitlines() or [type(error).__name__])[0][:120]
 
 
 def write_gwy(path: str | Path, scan: Scan) -> None:

@@ -24,7 +24,6 @@ class Profile:
     name : what messages and results call the profile.
     resampled : the points were not at even steps and were interpolated.
     bow : the instrument's own bow is part of the heights, so that a parabola is taken off.
-    tip_radius_nm : as the file states it; None where it does not.
     steps : what has been done to the heights so far, in order, in words.
     """
 
@@ -33,7 +32,6 @@ class Profile:
     name: str
     resampled: bool = False
     bow: bool = False
-    tip_radius_nm: float | None = None
     steps: tuple[str, ...] = field(default=())
 
     def __post_init__(self):
