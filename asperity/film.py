@@ -113,7 +113,7 @@ class Film(_Shown):
         pooled = pool(records, attributes, self.settings, cell_nm=None, cut_off=True, pixels=GROWN_PIXELS)
         self._spectra = pooled.spectra
         self._levelled = {name: data["heights"] for name, data in arrays.items() if "heights" in data}
-        rows = scan_rows(pooled.spectra, pooled.topography, attributes, None)
+        rows = scan_rows(pooled, attributes, None)
         self.description = parameters(pooled, rows, self.settings, None)
 
     @property

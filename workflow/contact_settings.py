@@ -20,6 +20,6 @@ def contact_settings(given: dict[str, Any], snakemake: Any) -> ContactSettings:
     surface, stated = described.get("surface", {}), given["surface"]
     settings = settings_from_job(ContactSettings, given)
     settings = settings.on_cell(described.get("cell_nm", settings.length_nm))
-    if not surface or any(stated[key] for key in ("spectrum", "heights", "moments")):
+    if not surface or any(stated[key] for key in ("spectrum", "heights")):
         return settings
     return ContactSettings(**{**dict(settings), "surface": {**stated, **surface}})

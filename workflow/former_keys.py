@@ -13,8 +13,6 @@ RENAMED = {
         f"contact.{key}": f"contact.reading.{key}"
         for key in ("convention", "prefactor", "radius", "area", "flow_pair", "touching_attracts")
     },
-    "contact.surface.skewness": "contact.surface.moments.skewness",
-    "contact.surface.kurtosis": "contact.surface.moments.kurtosis",
     "pad.draws": "pad.points",
     "pad.draw_cells": "pad.point_cells",
     "device.bow_deviation_nm": "device.spread.bow_nm",
@@ -36,6 +34,8 @@ REPLACED = {
     "elastic.tensor": "structures is elastic.tensor_structures, the others are fixed",
     "contact.unloading_radius": "take mechanics: coupled where opening matters",
     "contact.merge": "take mechanics: coupled, whose repulsion does not fall where asperities merge",
+    **{f"contact.surface.{key}": "give `heights`" for key in ("moments", "skewness", "kurtosis")},
+    "topography.method": "maximum likelihood; parameters.json has the paper's line fits, too",
     "coupling": "see target model_form",
     **{f"pad.{key}": "it follows from the switch" for key in ("max_pressure_MPa", "pilot_cells", "depths", "grid")},
     "pad.gap_cutoff_high_nm": "for another range of D0 than up to 0.3 nm give inputs.gap_cutoff",

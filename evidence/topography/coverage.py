@@ -26,8 +26,8 @@ from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.cells import Cell, FilmPieces
 from mesoscale.settings import ContactSettings, TopographySettings
-from mesoscale.topography.description.end import rms_before
 from mesoscale.topography.description.heights import common_heights
+from mesoscale.topography.description.inputs import rms_before
 from mesoscale.topography.height_synthesis import Z, synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import Measurement
@@ -184,7 +184,7 @@ def set_row(kind: str, number: int) -> dict[str, Any]:
         except InputError:  # a line of noise
             row["refused"] += 1
     arrays = in_order(arrays, attributes)
-    highs = [trusted_record(name, data, attributes[name], settings).high for name, data in arrays.items()]
+    highs = [trusted_record(name, data, attributes[name]).high for name, data in arrays.items()]
     cell_nm = max(FINE_CELL_NM, 16 * np.pi / max(highs))
     pooled = pool(arrays, attributes, settings, cell_nm)
     row |= {"measurements": len(arrays), "description": pooled.choice.name}

@@ -59,7 +59,7 @@ def judged(measured: Measurement, scans: Sequence[Scan], settings: TopographySet
         name = pool(arrays, attributes, settings, cell_nm=None).choice.name
     except InputError:
         return
-    spectra = [trusted_record(key, data, attributes[key], settings) for key, data in arrays.items()]
+    spectra = [trusted_record(key, data, attributes[key]) for key, data in arrays.items()]
     for row in judge(scans, spectra, name, INPUTS, settings, ContactSettings()):
         yield {
             key: row[key] for key in ("scan", "description", "quantity", "pressed", "median", "low", "high", "inside")

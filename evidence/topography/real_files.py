@@ -66,7 +66,7 @@ def described(path: Path) -> dict[str, Any]:
     arrays, attributes = {}, {}
     for item in measured:
         arrays[item.data.name], attributes[item.data.name] = record(item, settings)
-    images = [trusted_record(key, data, attributes[key], settings) for key, data in arrays.items()]
+    images = [trusted_record(key, data, attributes[key]) for key, data in arrays.items()]
     pooled = pool(arrays, attributes, settings, cell_nm=None)
     found: dict[str, Any] = {
         "measurements": len(measured),

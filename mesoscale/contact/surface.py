@@ -33,15 +33,9 @@ def random_surface(inputs: ContactInputs, settings: ContactSettings, seed: int) 
         rms, psd = math.hypot(inputs.rms, other.rms_nm if other else 0.0), surface_spectrum(inputs, settings)
         return -synthesize_heights(pixels, length, psd, wanted.heights, rms, seed, q1)
     if wanted.spectrum is None and other is None:
-        heights = synthesize(pixels, length, inputs.q0, inputs.hurst, inputs.rms, seed, settings.reading.convention, q1)
-    else:
-        rms = math.hypot(inputs.rms, other.rms_nm if other else 0.0)
-        heights = synthesize_spectrum(pixels, length, surface_spectrum(inputs, settings), rms, seed, q1)
-    if wanted.moments:
-        from mesoscale.topography.synthesis import with_moments
-
-        heights = -with_moments(-heights, wanted.moments.skewness, wanted.moments.kurtosis)
-    return heights
+        return synthesize(pixels, length, inputs.q0, inputs.hurst, inputs.rms, seed, settings.reading.convention, q1)
+    rms = math.hypot(inputs.rms, other.rms_nm if other else 0.0)
+    return synthesize_spectrum(pixels, length, surface_spectrum(inputs, settings), rms, seed, q1)
 
 
 def surface_spectrum(inputs: ContactInputs, settings: ContactSettings) -> Callable[[np.ndarray], np.ndarray]:

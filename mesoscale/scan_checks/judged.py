@@ -12,10 +12,9 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.scan_checks.surface import contacting_heights
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.settings.contact import NOMINAL_SEED
-from mesoscale.topography.description.choice import carried_on
-from mesoscale.topography.description.confidence import CONFIDENCE, REACH
 from mesoscale.topography.description.heights import common_heights, height_quantiles
-from mesoscale.topography.description.one_spectrum import OneSpectrum, few_places, merge
+from mesoscale.topography.description.intervals import CONFIDENCE, REACH, few_places, student_reach
+from mesoscale.topography.description.one_spectrum import OneSpectrum, merge
 from mesoscale.topography.description.parameters import Topography, analyse
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.height_synthesis import synthesize_heights
@@ -56,7 +55,7 @@ class Described:
             scatter = self.one.place_sd * few_places(len(self.one.names))
             for psd, place in zip(self.one.draws(places=False, count=count), places, strict=True):
                 # as the contact's own surfaces
-                yield SpectrumTable(*carried_on(self.one, psd * math.exp(scatter * place))).psd
+                yield SpectrumTable(*self.one.carried_on(psd * math.exp(scatter * place))).psd
             return
         rng = np.random.default_rng(1)
         estimates, fitted = self.topography.estimates, self.topography.likelihood
@@ -209,13 +208,11 @@ def _predicted(values: Array, positive: bool) -> tuple[float, float, float]:
     height is, and negative in full contact: only their order counts. One more lies between the j-th of n from below and
     the j-th from above with probability 1 - 2 j / (n + 1).
     """
-    from scipy.special import stdtrit
-
     count = len(values)
     if positive:
         logs = np.log(values)
         middle = float(np.mean(logs))
-        reach = float(stdtrit(count - 1, 0.5 + CONFIDENCE / 2)) * float(np.std(logs, ddof=1)) * math.sqrt(1 + 1 / count)
+        reach = student_reach(count - 1) * float(np.std(logs, ddof=1)) * math.sqrt(1 + 1 / count)
         return math.exp(middle - reach), math.exp(middle), math.exp(middle + reach)
     ordered = np.sort(values)
     outside = max(int((count + 1) * (1 - CONFIDENCE) / 2 + 1e-9), 1)

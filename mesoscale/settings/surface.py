@@ -51,13 +51,6 @@ class SpectrumSettings(Settings):
         return self
 
 
-class MomentsSettings(Settings):
-    """Heights of given moments, peaks counted positive; a normal distribution has 0 and 3."""
-
-    skewness: float = Field(default=0.0, ge=-5, le=5, description="third standardised moment")
-    kurtosis: float = Field(default=3.0, ge=1, le=50, description="fourth standardised moment")
-
-
 class SurfaceSettings(Settings):
     """The contacting surface (docs/topography.md, Surfaces)."""
 
@@ -67,18 +60,15 @@ class SurfaceSettings(Settings):
     counterface: CounterfaceSettings | None = Field(
         default=None, description="second rough surface; null: the counterface is flat"
     )
-    moments: MomentsSettings | None = Field(
-        default=None, description="skewness and kurtosis of the heights; null: a normal distribution, or `heights`"
-    )
     heights: tuple[Annotated[float, Field(ge=-1000, le=1000)], ...] = Field(
         default=(),
         max_length=111,
         description="measured heights: their values in units of the RMS at the normal variables -5, -4.9, ... 6 (as "
-        "topography/parameters.json has them); empty: normal, or `moments`",
+        "topography/parameters.json has them); empty: a normal distribution",
     )
 
     @model_validator(mode="after")
     def _one_distribution(self) -> "SurfaceSettings":
-        if self.heights and (len(self.heights) != 111 or self.moments):
-            raise ValueError("heights: accepted are 111 values, without moments")
+        if self.heights and len(self.heights) != 111:
+            raise ValueError("heights: accepted are 111 values")
         return self

@@ -86,10 +86,6 @@ class TopographySettings(Settings):
         le=0.5,
         description="largest share of missing pixels that is filled from neighbours; above, the scan is refused",
     )
-    method: Literal["likelihood", "lines"] = Field(
-        default="likelihood",
-        description="estimate that feeds the inputs: maximum likelihood, or the paper's line fits made precise",
-    )
     ranges: Literal["scatter", "interval"] = Field(
         default="scatter",
         description="range that feeds the inputs: scatter between scans (as the paper), or the confidence "

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.analysis import hann_spectrum, trusted
 from mesoscale.topography.description.likelihood import fit, skip_blurred_shells
 from mesoscale.topography.description.parameters import analyse
+from mesoscale.topography.description.trusted_range import trusted_range
 from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.roughness_spectrum import mean_square
+from mesoscale.topography.spectrum import hann_spectrum
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
 
 REPEATS = 3  # surfaces of each value
@@ -84,7 +85,8 @@ def _estimates(scans: list[Scan], settings: TopographySettings, knob: str, value
     """Estimates of one set; a knob of the spectrum or of the likelihood takes its value."""
     changes = {"sections": {"sections": value}, "flat share of window": {"flat": value}}.get(knob, {})
     cleaned = [clean(scan, settings) for scan in scans]
-    spectra = [trusted(item.name, hann_spectrum(item, **changes), item.rms_nm, settings) for item in cleaned]
+    radius = settings.tip_radius_nm
+    spectra = [trusted_range(item.name, hann_spectrum(item, **changes), radius, item.rms_nm) for item in cleaned]
     result = analyse(spectra, settings)
     if knob == "bins per decade" and result.likelihood is not None:
         knee = result.likelihood.q0

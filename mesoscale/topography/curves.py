@@ -1,20 +1,16 @@
-"""The curves of figure 10: all spectra pooled, and what is fitted to them."""
+"""The curves of figure 10: all spectra pooled, what is fitted to them, and the one spectrum with its band."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from mesoscale.topography.description.parameters import Topography
+from mesoscale.topography.pooling import Pooled
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import Spectrum, log_bins
 
-CURVE_POINTS = 200
 CURVES = {  # unit and meaning of every curve in spectra.h5
     "q": ("1/nm", "wave vector"),
     "psd": ("nm^4", "geometric mean of the scans' spectra"),
-    "psd_low": ("nm^4", "lowest scan"),
-    "psd_high": ("nm^4", "highest scan"),
-    "scans": ("1", "scans that reach this wave vector"),
     "likelihood": ("nm^4", "maximum-likelihood fit of equation 9"),
     "lines": ("nm^4", "line fits of the paper's procedure"),
     "shallow_bound": ("nm^4", "shallowest line that bounds the scatter"),
@@ -26,40 +22,41 @@ CURVES = {  # unit and meaning of every curve in spectra.h5
     "measurements": ("1", "measurements that see this band; 0: bridged"),
     "truth": ("nm^4", "spectrum of the typical place of the synthetic surface"),
 }
+Curves = dict[str, np.ndarray]
 
 
-def pooled_curve(spectra: Sequence[Spectrum]) -> dict[str, np.ndarray]:
-    """Geometric mean, lowest and highest C of all scans on common bins of log q, with the number of scans."""
+def result_curves(pooled: Pooled, typical: RoughSpectrum | None) -> dict[str, Curves]:
+    """Groups of curves over q for spectra.h5; `typical` is the truth of synthetic scans, which need no band."""
+    groups = {"pooled": _pooled([item.spectrum for item in pooled.spectra]), "fits": _fits(pooled, typical)}
+    one = pooled.one
+    if one is not None and typical is None:
+        low, high = one.band()
+        curves = {"q": one.q, "psd": one.psd, "band_low": low, "band_high": high, "measurements": one.count}
+        groups["one_spectrum"] = {key: values[one.q >= one.first] for key, values in curves.items()}
+    return groups
+
+
+def _pooled(spectra: Sequence[Spectrum]) -> Curves:
+    """Geometric mean C of all scans on common bins of log q."""
     per_decade = 12
-    rows: dict[int, list[tuple[float, float]]] = {}
-    for spectrum in spectra:
-        binned = log_bins(spectrum, per_decade)
-        for q, psd in zip(binned.q, binned.psd, strict=True):
-            rows.setdefault(int(np.floor(np.log10(q) * per_decade)), []).append((q, psd))
-    keys = sorted(rows)
-    return {
-        "q": np.array([np.exp(np.mean([np.log(q) for q, _ in rows[key]])) for key in keys]),
-        "psd": np.array([np.exp(np.mean([np.log(psd) for _, psd in rows[key]])) for key in keys]),
-        "psd_low": np.array([min(psd for _, psd in rows[key]) for key in keys]),
-        "psd_high": np.array([max(psd for _, psd in rows[key]) for key in keys]),
-        "scans": np.array([len(rows[key]) for key in keys]),
-    }
+    binned = [log_bins(spectrum, per_decade) for spectrum in spectra]
+    q, psd = (np.concatenate([getattr(item, key) for item in binned]) for key in ("q", "psd"))
+    _, index, count = np.unique(np.floor(np.log10(q) * per_decade), return_inverse=True, return_counts=True)
+    return {key: np.exp(np.bincount(index, np.log(values)) / count) for key, values in (("q", q), ("psd", psd))}
 
 
-def fit_curves(topography: Topography, lowest_q: float, truth: RoughSpectrum | None = None) -> Mapping[str, np.ndarray]:
-    """The fits of figure 10 on a common grid of q (1/nm), C in nm^4; bounds are those of the line fits."""
-    q = np.geomspace(lowest_q, max(topography.cutoff, 2 * lowest_q), CURVE_POINTS)
-    curves = {"q": q}
-    if topography.likelihood is not None:
-        curves["likelihood"] = topography.likelihood.spectrum(topography.cutoff).psd(q)
-    line = topography.line_fit
+def _fits(pooled: Pooled, typical: RoughSpectrum | None) -> Curves:
+    """The fits on a common grid of q (1/nm), C in nm^4; bounds are those of the line fits."""
+    lowest, end = min(item.spectrum.q[0] for item in pooled.spectra), pooled.topography.cutoff
+    q = np.geomspace(lowest, max(end, 2 * lowest), 200)
+    curves, line = {"q": q}, pooled.topography.line_fit
+    if pooled.topography.likelihood is not None:
+        curves["likelihood"] = pooled.topography.likelihood.spectrum(end).psd(q)
     if line is not None:
-        end = topography.cutoff
-        curves["lines"] = RoughSpectrum(line.plateau, line.q0, line.slope, end).psd(q)
-        curves["shallow_bound"] = RoughSpectrum(line.plateau, line.q0, line.slope_low, end).psd(q)
-        curves["steep_bound"] = RoughSpectrum(line.plateau, line.q0, line.slope_high, end).psd(q)
+        for name, slope in (("lines", line.slope), ("shallow_bound", line.slope_low), ("steep_bound", line.slope_high)):
+            curves[name] = RoughSpectrum(line.plateau, line.q0, slope, end).psd(q)
         curves["plateau_low"] = np.where(q <= line.q0, line.plateau_low, np.nan)
         curves["plateau_high"] = np.where(q <= line.q0, line.plateau_high, np.nan)
-    if truth is not None:
-        curves["truth"] = truth.psd(q)
+    if typical is not None:
+        curves["truth"] = typical.psd(q)
     return curves

@@ -8,20 +8,17 @@ from typing import Any
 import numpy as np
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.curves import fit_curves, pooled_curve
-from mesoscale.topography.description.cell import finer_waves_doubt, grown_cell, refuse_coarse_measurements, suited_cell
-from mesoscale.topography.description.choice import (
-    Choice,
-    carried_on,
-    choose,
-    description_doubts,
-    rows_of,
+from mesoscale.topography.description.cell import (
+    finer_waves_doubt,
+    grown_cell,
+    refuse_coarse_measurements,
     share_on_cells,
-    surface_of,
+    suited_cell,
 )
+from mesoscale.topography.description.choice import Choice, choose, description_doubts
 from mesoscale.topography.description.doubts import Doubt
-from mesoscale.topography.description.end import cutoff_row, rms_before
 from mesoscale.topography.description.heights import HeightTest, compare_heights, not_gaussian
+from mesoscale.topography.description.inputs import cutoff_row, rms_before, rms_scatter_row, rows_of, surface_of
 from mesoscale.topography.description.one_spectrum import (
     OneSpectrum,
     Overlap,
@@ -30,16 +27,17 @@ from mesoscale.topography.description.one_spectrum import (
     refuse_different_films,
 )
 from mesoscale.topography.description.parameters import Topography, analyse
-from mesoscale.topography.description.places import rms_scatter_row
-from mesoscale.topography.description.surfaces import several_surfaces
-from mesoscale.topography.description.tip_error import spectrum_with_radius_error, with_radius_error
-from mesoscale.topography.description.tip_on_grains import lift_doubt, with_lift_error, without_lift
+from mesoscale.topography.description.surfaces import disagreements, several_surfaces
+from mesoscale.topography.description.tip import (
+    lift_doubt,
+    spectrum_with_radius_error,
+    with_lift_error,
+    with_radius_error,
+    without_lift,
+)
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.records import is_profile, trusted_record
-from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
-from mesoscale.topography.spectrum import Spectrum
-
-ENDS = ("spacing", "nyquist")
+from mesoscale.topography.roughness_spectrum import SpectrumTable
 
 
 @dataclass(frozen=True)
@@ -95,7 +93,7 @@ def pool(
     ------
     InputError : measured files that cannot be of one surface, or that see no wave of a cell.
     """
-    images = [trusted_record(name, data, attributes[name], settings) for name, data in arrays.items()]
+    images = [trusted_record(name, data, attributes[name]) for name, data in arrays.items()]
     tests = [
         compare_heights(
             name,
@@ -117,38 +115,35 @@ def pool(
     if settings.scans:  # synthetic scans know their tip
         one = spectrum_with_radius_error(one, spectra)
     choice = choose(topography, one, tests, settings)
+    used = None if choice.name == "power_law" else one
     cutoff = cutoff_row(topography, spectra)
     if grows:
 
         def held(side_nm: float) -> float:
-            return share_on_cells(topography, one, choice, side_nm)[0]
+            return share_on_cells(topography, used, side_nm)[0]
 
         shortest_nm = 2.0 * np.pi / max(cutoff["a"], cutoff.get("b", 0.0))
         cell_nm = grown_cell(cell_nm, held, shortest_nm, pixels, electrode_nm)
+    charts = list(quantiles.values()) if choice.name == "measured_heights" else []
+    surface = surface_of(topography, used, charts, settings, cell_nm)
     typical = settings.model_copy(update={"ranges": "interval"})
-    surface = surface_of(choice, topography, one, list(quantiles.values()), settings, cell_nm)
-    rows, film = (rows_of(choice, topography, one, asked, cell_nm) for asked in (settings, typical))
+    rows, film = (rows_of(topography, used, asked, cell_nm) for asked in (settings, typical))
     if rows:
         rows["q1"] = cutoff
-        film["rms_scatter"] = rms_scatter_row(topography, one if surface else None)
+        film["rms_scatter"] = rms_scatter_row(topography, used)
         if cut_off:
             rows["rms"], film["rms"] = (
                 rms_before(rows["q1"], part["rms"], topography, surface) for part in (rows, film)
             )
-    doubts = []
+    doubts = [doubt for doubt in topography.doubts if used is None or doubt.fatal]
     if settings.scans:
-        apart = _disagreements(pairs, one)
-        doubts = several_surfaces(
-            images, pairs, {name: str(values.get("file", name)) for name, values in attributes.items()}
-        )
-        doubts += description_doubts(topography, choice, one, attributes, apart, cell_nm, tests)
+        files = {name: str(values.get("file", name)) for name, values in attributes.items()}
+        doubts += several_surfaces(images, pairs, files)
+        doubts += description_doubts(topography, choice.name, one, attributes, tests, cell_nm)
+        doubts += disagreements(pairs, one)
         if one is not None:
-            doubts += finer_waves_doubt(SpectrumTable(*carried_on(one, one.psd)).psd, spectra, cell_nm)
+            doubts += finer_waves_doubt(SpectrumTable(*one.carried_on(one.psd)).psd, spectra, cell_nm)
     doubts += lift_doubt(images, spectra, lifted)
-    if choice.name == "power_law":
-        doubts = [*topography.doubts, *doubts]
-    else:
-        doubts = [*(doubt for doubt in topography.doubts if doubt.fatal), *doubts]
     return Pooled(spectra, topography, one, tests, pairs, choice, surface, rows, film, doubts, cell_nm)
 
 
@@ -169,42 +164,3 @@ def parameters_of(
         topography = analyse(spectra, settings)
     topography = with_radius_error(topography, spectra, settings)
     return with_lift_error(topography, error), spectra, error
-
-
-def _disagreements(pairs: Sequence[Overlap], one: OneSpectrum | None) -> list[str]:
-    """In words the measurements of different size or instrument that differ by more than places do."""
-    between = 1.645 * np.sqrt(2) * one.place_sd if one else 0.0
-    worst = [pair for pair in pairs if abs(np.log(pair.ratio)) > np.hypot(np.log(pair.expected), between)]
-    worst.sort(key=lambda pair: -abs(np.log(pair.ratio)))
-    return [
-        f"{pair.first} and {pair.second} differ by a factor of {max(pair.ratio, 1 / pair.ratio):.2g} in C from "
-        f"{pair.low:.2g} to {pair.high:.2g} /nm, expected is {pair.expected:.2g}"
-        for pair in worst[:3]
-    ]
-
-
-def result_curves(
-    pooled: Pooled,
-    arrays: Mapping[str, Mapping[str, np.ndarray]],
-    attributes: Mapping[str, Mapping[str, Any]],
-    settings: TopographySettings,
-    typical: RoughSpectrum | None,
-) -> dict[str, dict[str, np.ndarray]]:
-    """Groups of curves over q for spectra.h5; units and meanings stand in `curves.CURVES`."""
-    flat = [
-        Spectrum(data["flat_q"], data["flat_psd"], data["flat_modes"], *(attributes[name][key] for key in ENDS))
-        for name, data in arrays.items()
-        if "flat_q" in data
-    ]
-    lowest = min(item.spectrum.q[0] for item in pooled.spectra)
-    groups = {"pooled": pooled_curve([item.spectrum for item in pooled.spectra])}
-    if flat:
-        groups["pooled_flat"] = pooled_curve(flat)
-    groups["fits"] = dict(fit_curves(pooled.topography, lowest, typical))
-    if pooled.one is not None and settings.scans:
-        low, high = pooled.one.band()
-        curves = {"q": pooled.one.q, "psd": pooled.one.psd, "band_low": low, "band_high": high}
-        curves["measurements"] = pooled.one.count
-        measured = pooled.one.q >= pooled.one.first
-        groups["one_spectrum"] = {key: values[measured] for key, values in curves.items()}
-    return groups

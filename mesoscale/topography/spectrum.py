@@ -10,10 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.fft
 
+from mesoscale.topography.measurements.cleaning import Scan
+
 FLOOR = 1e-300  # keeps logarithms of empty spectra finite
-# overlapping sections of a scan, their side over that of the scan, flat share of their window: the paper's, section 4.2
-SECTIONS, SECTION_SIDE, FLAT_SHARE = 100, 0.75, 0.99
-HANN_SECTIONS = 25  # Hann-windowed sections overlap more than flat ones; more than this adds nothing
 
 
 @dataclass(frozen=True)
@@ -61,6 +60,15 @@ def section_pixels(pixels: int, fraction: float) -> int:
     """Side of a section: a fast FFT size near `fraction` of the scan (768 of 1024)."""
     wanted = max(16, round(pixels * fraction))
     return min(pixels, scipy.fft.next_fast_len(wanted, True) or wanted)
+
+
+def hann_spectrum(cleaned: Scan, sections: int = 25, flat: float = 0.0) -> Spectrum:
+    """The spectrum of a cleaned scan that the fits use, without what line offsets disturb.
+
+    Sections have the paper's side (section 4.2). With a Hann window they overlap more than its 100 nearly flat ones:
+    more than 25 add nothing.
+    """
+    return radial_spectrum(cleaned.heights_nm, cleaned.lengths_nm, sections, 0.75, flat, skip_lines=True)
 
 
 def radial_spectrum(
@@ -135,32 +143,6 @@ def _covered(pixels: int, starts: np.ndarray, window: np.ndarray) -> float:
     for start in starts:
         weight[start : start + len(window)] += window**2
     return float(weight.sum() ** 2 / np.sum(weight**2))
-
-
-def profile_spectrum(heights: np.ndarray, lengths_nm: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """One-dimensional spectrum along the fast axis, Hann window: q (1/nm) and C1 (nm^3).
-
-    Normalised so that the sum of C1 2 pi / L over positive and negative q is the mean square height.
-    """
-    nx = heights.shape[0]
-    window = flat_window(nx, 0.0)[:, None]
-    z = np.asarray(scipy.fft.rfft((heights - heights.mean(axis=0)) * window, axis=0))
-    step = lengths_nm[0] / nx
-    c1 = np.mean(np.abs(z) ** 2, axis=1) * step**2 / (2 * np.pi * lengths_nm[0] * np.mean(window**2))
-    q = 2 * np.pi / lengths_nm[0] * np.arange(len(c1))
-    return q[1:], c1[1:]
-
-
-def autocorrelation(heights: np.ndarray, lengths_nm: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Height autocorrelation along the fast axis up to half the scan: lag (nm) and <h h> (nm^2).
-
-    Unbiased (each lag divided by its number of pairs), not periodic.
-    """
-    nx = heights.shape[0]
-    padded = scipy.fft.next_fast_len(2 * nx, True) or 2 * nx
-    z = np.asarray(scipy.fft.rfft(heights - heights.mean(), n=padded, axis=0))
-    sums = np.asarray(scipy.fft.irfft(np.mean(np.abs(z) ** 2, axis=1), n=padded))[: nx // 2]
-    return np.arange(nx // 2) * lengths_nm[0] / nx, sums / (nx - np.arange(nx // 2))
 
 
 def log_bins(spectrum: Spectrum, per_decade: int = 12) -> Spectrum:

@@ -7,32 +7,28 @@ import numpy as np
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.choice import DESCRIPTIONS
-from mesoscale.topography.description.confidence import CONFIDENCE
-from mesoscale.topography.description.end import trusted_end
-from mesoscale.topography.description.parameters import Topography
-from mesoscale.topography.description.trusted_range import TrustedSpectrum
+from mesoscale.topography.description.inputs import trusted_end
+from mesoscale.topography.description.intervals import CONFIDENCE
+from mesoscale.topography.description.likelihood import LikelihoodFit
+from mesoscale.topography.description.line_fits import LineFit
 from mesoscale.topography.pooling import Pooled
+from mesoscale.topography.records import is_profile
 from mesoscale.topography.roughness_spectrum import hurst_from_slope, mean_square
-
-UNITS = {"q0": "1/nm", "slope": "1", "hurst": "1", "rms": "nm"}
-
-
-HEADS = ("measurement", "size (nm)", "points", "RMS (nm)", "trusted q (1/nm)", "ends by")
-LONGEST_NAME = 20  # so that the table fits on 80 columns
 
 
 def measurement_lines(content: Mapping[str, Any]) -> Iterator[str]:
     """What each measurement shows, as lines of a table; `content` is that of topography/parameters.json."""
-    rows = [HEADS, *(_cells(row) for row in content["scans"])]
-    widths = [max(len(row[k]) for row in rows) for k in range(len(HEADS))]
+    heads = ("measurement", "size (nm)", "points", "RMS (nm)", "trusted q (1/nm)", "ends by")
+    rows = [heads, *(_cells(row) for row in content["scans"])]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(heads))]
     for row in rows:
         yield "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
 
 
 def _cells(row: Mapping[str, Any]) -> tuple[str, ...]:
-    name, ends = row["name"], f"{row['trusted_low']:.2g} to {row['trusted_high']:.2g}"
-    if len(name) > LONGEST_NAME:
-        name = f"{name[: LONGEST_NAME // 2 - 1]}…{name[-LONGEST_NAME // 2 :]}"
+    name, ends, longest = row["name"], f"{row['trusted_low']:.2g} to {row['trusted_high']:.2g}", 20
+    if len(name) > longest:  # so that the table fits on 80 columns
+        name = f"{name[: longest // 2 - 1]}…{name[-longest // 2 :]}"
     pixels = row["pixels"].replace(" ", "")
     return name, f"{row['length_nm']:.4g}", pixels, f"{row['rms_heights_nm']:.3g}", ends, row["limit"]
 
@@ -45,21 +41,18 @@ def doubt_lines(content: Mapping[str, Any]) -> Iterator[str]:
 
 
 def scan_rows(
-    spectra: Sequence[TrustedSpectrum],
-    topography: Topography,
-    attributes: Mapping[str, Mapping[str, Any]],
-    truth: Mapping[str, Any] | None,
+    pooled: Pooled, attributes: Mapping[str, Mapping[str, Any]], truth: Mapping[str, Any] | None
 ) -> list[dict[str, Any]]:
     """One row per scan: size, RMS from heights and from the spectrum, trusted range and what limits it."""
     spectrum_rms = {}
-    fitted = topography.likelihood
+    fitted = pooled.topography.likelihood
     if fitted is not None:
-        used = [item.name for item in spectra if item.trusted.sum() >= 3]
-        spectrum_rms = dict(zip(used, fitted.scan_rms(topography.cutoff), strict=True))
+        used = [item.name for item in pooled.spectra if item.trusted.sum() >= 3]
+        spectrum_rms = dict(zip(used, fitted.scan_rms(pooled.topography.cutoff), strict=True))
     rows = []
-    for item in spectra:
+    for item in pooled.spectra:
         loaded = attributes[item.name]
-        line = "length_y_nm" not in loaded
+        line = is_profile(loaded)
         row = {
             "name": item.name,
             "file": loaded["file"],
@@ -72,11 +65,10 @@ def scan_rows(
             "trusted_high": item.high,
             "limit": item.limit,
             "steps": loaded["steps"],
+            "tip_radius_nm": loaded["tip_radius_nm"],
         }
         if line:
             row["kind"] = "profile"
-        if "tip_radius_nm" in loaded:
-            row["tip_radius_nm"] = loaded["tip_radius_nm"]
         if truth is not None:
             row["true_rms_nm"] = truth["scans"][item.name]["rms_nm"]
         rows.append(row)
@@ -88,23 +80,23 @@ def parameters(
 ) -> dict[str, Any]:
     """Content of topography/parameters.json."""
     topography, doubts, used = pooled.topography, pooled.doubts, pooled.choice.name
-    stopping = [doubt for doubt in doubts if doubt.fatal or (used == "power_law" and doubt in topography.doubts)]
+    stopping = [doubt for doubt in doubts if doubt.fatal or doubt in topography.doubts]
     passed = bool(pooled.rows) and (not stopping or settings.on_doubt == "warn")
-    likelihood, line = topography.likelihood, topography.line_fit
+    units = {"q0": "1/nm", "slope": "1", "hurst": "1", "rms": "nm"}
     content: dict[str, Any] = {
         "synthetic": truth is not None,
         "convention": settings.convention,
-        "method": settings.method,
+        "method": "likelihood",
         "ranges": settings.ranges,
         "confidence": CONFIDENCE,
         "tip_radius_nm": settings.tip_radius_nm,
         "estimates": {
-            name: {**estimate.plain(), "unit": UNITS[name]} for name, estimate in topography.estimates.items()
+            name: {**estimate.plain(), "unit": units[name]} for name, estimate in topography.estimates.items()
         },
         "q1": {"value": topography.q1, "unit": "1/nm", "instrument_limited": topography.q1_limited},
         "integrated_to_q": topography.cutoff,
-        "likelihood": None,
-        "lines": None,
+        "likelihood": _likelihood(topography.likelihood, topography.cutoff),
+        "lines": _lines(topography.line_fit, topography.cutoff, settings),
         "scans": list(rows),
         "description": {
             "name": used,
@@ -121,49 +113,42 @@ def parameters(
         "gate": {"passed": passed, "reasons": [doubt.text for doubt in stopping]},
         "doubts": [doubt.plain() for doubt in doubts],
     }
-    if likelihood is not None:
-        fitted = likelihood.spectrum(topography.cutoff)
-        content["likelihood"] = {
-            "plateau_nm4": likelihood.plateau,
-            "q0": likelihood.q0,
-            "slope": likelihood.slope,
-            "rms_nm": fitted.rms_nm,
-            "rms_slope": fitted.rms_slope,
-            "covariance": likelihood.covariance,
-            "amplitude_sd": likelihood.amplitude_sd,
-            "dispersion": likelihood.dispersion,
-            "misfit": likelihood.misfit,
-            "plateau_gain": likelihood.plateau_gain,
-            "power_gain": likelihood.power_gain,
-            "hurst_profile": hurst_from_slope(likelihood.slope, "profile"),
-            "hurst_areal": hurst_from_slope(likelihood.slope, "areal"),
-        }
-    if line is not None:
-        scale = mean_square(1.0, line.q0, line.slope, topography.cutoff)
-        content["lines"] = {
-            "plateau_nm4": line.plateau,
-            "q0": line.q0,
-            "q0_departure": line.departure,
-            "q1": line.q1,
-            "slope": line.slope,
-            "slope_bounds": [line.slope_low, line.slope_high],
-            "hurst_bounds": [
-                hurst_from_slope(value, settings.convention) for value in (line.slope_low, line.slope_high)
-            ],
-            "rms_nm": line.rms(topography.cutoff),
-            "rms_bounds_nm": [float(np.sqrt(level * scale)) for level in (line.plateau_low, line.plateau_high)],
-            "hurst_profile": hurst_from_slope(line.slope, "profile"),
-            "hurst_areal": hurst_from_slope(line.slope, "areal"),
-        }
     if truth is not None:
-        content["truth"] = {
-            **truth["truth"],
-            "hurst": hurst_from_slope(truth["truth"]["slope"], settings.convention),
-        }
+        hurst = hurst_from_slope(truth["truth"]["slope"], settings.convention)
+        content["truth"] = {**truth["truth"], "hurst": hurst}
     return content
 
 
-MOST_PAIRS = 40  # of many alike scans the rest repeats them
+def _hursts(slope: float) -> dict[str, float]:
+    return {"hurst_profile": hurst_from_slope(slope, "profile"), "hurst_areal": hurst_from_slope(slope, "areal")}
+
+
+def _likelihood(fitted: LikelihoodFit | None, cutoff: float) -> dict[str, Any] | None:
+    if fitted is None:
+        return None
+    names = ("q0", "slope", "covariance", "amplitude_sd", "dispersion", "misfit", "plateau_gain", "power_gain")
+    spectrum = fitted.spectrum(cutoff)
+    roughness = {"plateau_nm4": fitted.plateau, "rms_nm": spectrum.rms_nm, "rms_slope": spectrum.rms_slope}
+    return roughness | {name: getattr(fitted, name) for name in names} | _hursts(fitted.slope)
+
+
+def _lines(line: LineFit | None, cutoff: float, settings: TopographySettings) -> dict[str, Any] | None:
+    if line is None:
+        return None
+    slopes = (line.slope_low, line.slope_high)
+    share = mean_square(1.0, line.q0, line.slope, cutoff)
+    return {
+        "plateau_nm4": line.plateau,
+        "q0": line.q0,
+        "q0_departure": line.departure,
+        "q1": line.q1,
+        "slope": line.slope,
+        "slope_bounds": list(slopes),
+        "hurst_bounds": [hurst_from_slope(slope, settings.convention) for slope in slopes],
+        "rms_nm": float(np.sqrt(mean_square(line.plateau, line.q0, line.slope, cutoff))),
+        "rms_bounds_nm": [float(np.sqrt(level * share)) for level in (line.plateau_low, line.plateau_high)],
+        **_hursts(line.slope),
+    }
 
 
 def _one(pooled: Pooled) -> dict[str, Any] | None:
@@ -186,6 +171,6 @@ def _one(pooled: Pooled) -> dict[str, Any] | None:
                 "expected_within": pair.expected,
                 "agrees": pair.agrees,
             }
-            for pair in pooled.pairs[:MOST_PAIRS]
+            for pair in pooled.pairs[:40]  # of many alike scans the rest repeats them
         ],
     }

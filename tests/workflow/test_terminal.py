@@ -137,13 +137,13 @@ def test_costs_grow_with_what_a_job_does(development_machine, tmp_path):
 def test_a_plan_learns_from_what_jobs_took(development_machine, tmp_path):
     paper, times = load_scene("paper"), tmp_path / ".snakemake/times.json"
     costs = Costs(paper, {}, times)
-    guess, at_first = costs.seconds("fit_law", {}), costs.seconds("draw_surface", {})
+    guess, at_first = costs.seconds("fit_law", {}), costs.seconds("pool_spectra", {})
     for _ in range(round(1000 / guess)):  # a machine of a third of the speed, long enough to be believed
         costs.learn("fit_law", {}, 3 * guess)
     later = Costs(paper, {}, times)
     assert later.seconds("fit_law", {}) == pytest.approx(3 * guess, rel=0.1)
     # what has not run here is as slow as the rest
-    assert later.seconds("draw_surface", {}) == pytest.approx(3 * at_first, rel=0.2)
+    assert later.seconds("pool_spectra", {}) == pytest.approx(3 * at_first, rel=0.2)
     times.write_text("{")  # a run was killed while it wrote
     assert Costs(paper, {}, times).seconds("fit_law", {}) == guess
 

@@ -10,20 +10,12 @@ from workflow.report.page import Doubt, Section, Table
 from workflow.report.surface_picture import draw_one_spectrum, short_names
 
 JUDGED = "topography/judged.csv"
-UNSEEN = "topography/unseen.csv"
 QUANTITIES = {
     "rms": "RMS (nm)",
     "first_contact": "first contact (nm)",
     "separation_1uN": "separation at 1 µN on a cell (nm)",
     "separation_7uN": "separation at 7 µN on a cell (nm)",
     "area_7uN": "area at 7 µN (nm²)",
-}
-
-UNSEEN_NAMES = {
-    "first_contact": "first contact (nm)",
-    "area": "area at the largest force (nm²)",
-    "C_r": "C_r of closing (GPa)",
-    "pull_off": "pull-off force of a cell (nN)",
 }
 
 
@@ -52,8 +44,6 @@ def describe_surface(results: Results, parameters: Mapping[str, Any], section: S
     if results.has(JUDGED):
         _judgement(results, section)
     place_doubts(parameters, section, "contact")
-    if results.has(UNSEEN):
-        _unseen(results, section)
 
 
 def place_doubts(parameters: Mapping[str, Any], section: Section, *about: str) -> None:
@@ -135,28 +125,3 @@ def _judgement(results: Results, section: Section) -> None:
         )
     )
     section.files.append(JUDGED)
-
-
-def _unseen(results: Results, section: Section) -> None:
-    rows = [row for row in results.csv(UNSEEN) if row["share"]]
-    lines = [
-        (
-            UNSEEN_NAMES[row["quantity"]],
-            f"{show(float(row['seen_q']))} to {show(float(row['end_q']))}",
-            show(float(row["seen"])),
-            show(float(row["all"])),
-            f"{float(row['shift']):+.0%}".replace("-", "−"),
-            f"{float(row['share']):.0%}",
-        )
-        for row in rows
-    ]
-    if not lines:
-        return
-    header = ("quantity", "waves added (1/nm)", "without them", "with them", "change", "share of the variance")
-    caption = (
-        "What no instrument saw: short waves, extrapolated, on the same random surfaces. The first rows are what the "
-        "surfaces of this run have; rows up to the grid's end say what it would be if the roughness went on. The share "
-        "takes anything between none and all of them, beside the scatter from surface to surface"
-    )
-    section.blocks.append(Table(caption, header, lines))
-    section.files.append(UNSEEN)

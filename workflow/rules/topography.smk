@@ -22,10 +22,8 @@ SCAN_CHUNKS = [SCAN_FILES[k : k + SCANS_PER_JOB] for k in range(0, len(SCAN_FILE
 SURFACE = {"topography": f"{RESULTS}/topography/parameters.json"} if "topography" in SCENE.inputs.origins() else {}
 
 
-# measured scans judge their description by pressing, and what no instrument saw is weighed, where the contact uses it
-JUDGED = []
-if TOPOGRAPHY.scans and SURFACE:
-    JUDGED = [f"{RESULTS}/topography/judged.csv", f"{RESULTS}/topography/unseen.csv"]
+# measured scans judge their description by pressing, where the contact uses it
+JUDGED = [f"{RESULTS}/topography/judged.csv"] if TOPOGRAPHY.scans and SURFACE else []
 
 
 rule topography:
@@ -80,6 +78,7 @@ rule pool_spectra:
         parameters=report(
             f"{RESULTS}/topography/parameters.json", caption="../captions/topography.rst", category="Inputs"
         ),
+        picture=f"{RESULTS}/topography/surface.png",
     log:
         f"{RESULTS}/logs/pool_spectra.log",
     params:
@@ -92,20 +91,6 @@ rule pool_spectra:
         "describe the surface behind the spectra"
     script:
         "../scripts/pool_spectra.py"
-
-
-rule draw_surface:
-    input:
-        spectra=f"{RESULTS}/topography/spectra.h5",
-        parameters=f"{RESULTS}/topography/parameters.json",
-    output:
-        f"{RESULTS}/topography/surface.png",
-    log:
-        f"{RESULTS}/logs/draw_surface.log",
-    message:
-        "draw the surface and its spectrum"
-    script:
-        "../scripts/draw_surface.py"
 
 
 rule judge_scans:
@@ -125,23 +110,6 @@ rule judge_scans:
         "press the scans beside surfaces made from the others' description"
     script:
         "../scripts/judge_scans.py"
-
-
-rule weigh_unseen_waves:
-    input:
-        topography=f"{RESULTS}/topography/parameters.json",
-        inputs=f"{RESULTS}/inputs.csv",
-    output:
-        f"{RESULTS}/topography/unseen.csv",
-    log:
-        f"{RESULTS}/logs/weigh_unseen_waves.log",
-    params:
-        contact=settings("contact"),
-        law=settings("law"),
-    message:
-        "weigh the waves that no instrument saw"
-    script:
-        "../scripts/weigh_unseen_waves.py"
 
 
 if needed("topography"):

@@ -20,18 +20,4 @@ TABLES = (
             boolean("inside", "whether the scan is inside"),
         ),
     ),
-    Table(
-        ("topography/unseen.csv",),
-        "What the waves beyond those that instruments show do to random surfaces of the contact.",
-        (
-            text("quantity", "first_contact, area at the largest force, C_r of closing, pull_off"),
-            text("unit", "nm, nm^2, GPa or nN"),
-            number("seen_q", "1/nm", "where the trusted spectra surely end"),
-            number("end_q", "1/nm", "where the surfaces end: at q1, at what the grid holds"),
-            number("seen", "its unit", "mean of surfaces that end at seen_q", empty=True),
-            number("all", "its unit", "mean of surfaces that end at end_q, of the same noise", empty=True),
-            number("shift", "1", "relative change by the unseen waves", empty=True),
-            number("share", "1", "share of the variance, beside that between surfaces", empty=True),
-        ),
-    ),
 )

@@ -21,7 +21,7 @@ with job(snakemake) as run:
     spectra = []
     for path in snakemake.input.chunks:
         groups, _, attributes = load_h5(path)
-        spectra += [trusted_record(name, data, attributes[name], settings) for name, data in groups.items()]
+        spectra += [trusted_record(name, data, attributes[name]) for name, data in groups.items()]
     scans = []
     for number, path in enumerate(snakemake.input.scans):
         measured = load_measurements(path, f"{number + 1:02d}_{Path(path).stem}", settings)

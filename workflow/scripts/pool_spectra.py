@@ -1,19 +1,20 @@
 """Describe the surface behind all measurements: q0, q1, slope and RMS, one spectrum, and what random surfaces follow.
 
 In: topography/spectra/chunk_*.h5, truth.json for synthetic scans.
-Out: topography/spectra.h5 (figures 9 and 10), topography/parameters.json (1/nm, 1, nm).
+Out: topography/spectra.h5 (figures 9 and 10), topography/parameters.json (1/nm, 1, nm), topography/surface.png.
 """
 
 import math
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.curves import CURVES
-from mesoscale.topography.pooling import pool, result_curves
+from mesoscale.topography.curves import CURVES, result_curves
+from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import DATASETS, KEPT, in_order
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.summary import parameters, scan_rows
 from workflow.job import job, settings_from_job
-from workflow.results import Dataset, load_h5, load_json, write_h5, write_json
+from workflow.report.surface_picture import surface_picture
+from workflow.results import Dataset, atomic_path, load_h5, load_json, write_h5, write_json
 
 with job(snakemake) as run:
     settings = settings_from_job(TopographySettings, snakemake.params.settings)
@@ -32,10 +33,10 @@ with job(snakemake) as run:
     given = snakemake.params
     room_nm = given.electrode_nm or math.inf
     pooled = pool(arrays, attributes, settings, given.cell_nm, given.cut_off, room_nm, given.pixels)
-    rows = scan_rows(pooled.spectra, pooled.topography, attributes, truth)
+    rows = scan_rows(pooled, attributes, truth)
     for row in rows:
         attributes[row["name"]] = {**attributes[row["name"]], **row}
-    curves = result_curves(pooled, arrays, attributes, settings, typical)
+    curves = result_curves(pooled, typical)
     groups = {
         group: {name: Dataset(values, *CURVES[name], ("q",)) for name, values in content.items()}
         for group, content in curves.items()
@@ -50,3 +51,6 @@ with job(snakemake) as run:
         {f"scans/{name}": values for name, values in attributes.items()},
     )
     write_json(snakemake.output.parameters, parameters(pooled, rows, settings, truth), run.provenance)
+    with atomic_path(snakemake.output.picture) as temporary:
+        drawn, _, drawn_attributes = load_h5(snakemake.output.spectra)
+        surface_picture(drawn, drawn_attributes, load_json(snakemake.output.parameters), temporary)

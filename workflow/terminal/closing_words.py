@@ -20,19 +20,7 @@ def closing_words(results: Path) -> Iterator[str]:
         yield f"a picture is in {picture}"
     if (results / "topography/judged.csv").is_file():
         yield from judgement(load_csv(results / "topography/judged.csv"))
-    if (results / "topography/unseen.csv").is_file():
-        yield from unseen(load_csv(results / "topography/unseen.csv"))
     yield from doubt_lines(content)
-
-
-def unseen(rows: list[dict[str, str]]) -> Iterator[str]:
-    """In words what waves that no instrument saw do to the contact."""
-    ends = dict.fromkeys((row["seen_q"], row["end_q"]) for row in rows if row["share"])
-    for seen, end in ends:
-        known = [row for row in rows if row["share"] and row["end_q"] == end]
-        parts = (f"{row['quantity']} {float(row['shift']):+.0%} ({float(row['share']):.0%})" for row in known)
-        waves = f"{float(seen):.2g} to {float(end):.2g} /nm"
-        yield f"unseen waves of {waves} would change (share of the variance): {', '.join(parts)}"
 
 
 def judgement(rows: list[dict[str, str]]) -> Iterator[str]:

@@ -211,7 +211,7 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     **_each(0.0, "write_scene", "collect_inputs", "collect_pad_inputs", "combine_e_star", "collect_priors"),
     **_each(0.0, "summarise_adhesion"),
     **_each(0.5, "find_hardness", "fit_hardness", "fit_bulk_moduli", "fit_nominal_law", "average_tensors"),
-    **_each(2.0, "draw_surface", "pool_spectra"),
+    **_each(2.0, "pool_spectra"),
     **_each(5.0, "write_synthetic_scans"),
     **_each(8.5, "rank_sensitivity"),
     **_each(20.0, "rank_next_on_pad"),
@@ -231,7 +231,6 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     # six scans, after the import of their readers
     "analyse_scans": lambda c, _: 4.0 + 4.8 * c.scene.topography.synthetic.pixels**2 / GRID,
     "judge_scans": lambda c, _: 3.0 + 3.0 * len(c.scene.topography.scans),
-    "weigh_unseen_waves": lambda c, _: 24 * c.cycle_s,
     # to eight forces, twice; the cycles to small forces are short
     "measure_resistance": lambda c, _: c.cycles_s(4 * c.scene.resistance.runs),
     "compute_nominal": lambda c, _: 0.5 + c.cycles_s(NOMINAL[c.mechanics]),

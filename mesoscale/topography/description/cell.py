@@ -13,17 +13,18 @@ import numpy as np
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings
 from mesoscale.topography.description.doubts import Doubt
+from mesoscale.topography.description.one_spectrum import OneSpectrum
+from mesoscale.topography.description.parameters import Topography
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
+from mesoscale.topography.roughness_spectrum import mean_square
 from mesoscale.topography.synthesis import synthesize_spectrum
 
-USUAL_NM = ContactSettings().length_nm
-FINEST_WAVES = 2.0  # the shortest measured wave goes at least so often into a cell
-SUITED_WAVES = 8.0  # and so often into a cell whose side is chosen
-HELD = 0.9  # of the RMS height of the film, that a cell holds whose side is chosen
-GROWN = 4.0  # times as long as without the long waves is a cell at most
-SITES_A_WAVE = 2.0  # that its grid has at least for the shortest wave of the surfaces: the Nyquist limit
-MANY_WAVES = 16.0  # so often, and the contact is mostly one of measured waves
-SURFACES, SITES = 8, 256  # of the first contact with and without finer waves
+FINEST_WAVES = 2.0
+"""The shortest measured wave goes at least so often into a cell."""
+SUITED_WAVES = 8.0
+"""And so often into a cell whose side is chosen."""
+HELD = 0.9
+"""Share of the RMS height of the film that a cell holds whose side is chosen."""
 
 
 def suited_cell(spectra: Sequence[TrustedSpectrum], electrode_nm: float = math.inf) -> float:
@@ -44,7 +45,7 @@ def suited_cell(spectra: Sequence[TrustedSpectrum], electrode_nm: float = math.i
             f"{electrode_nm:.3g} nm (device), so that no roughness below it was measured; measure on a finer scale, or "
             "correct the size of the device"
         )
-    return min(max(USUAL_NM, float(f"{SUITED_WAVES * seen:.2g}")), electrode_nm)
+    return min(max(ContactSettings().length_nm, float(f"{SUITED_WAVES * seen:.2g}")), electrode_nm)
 
 
 def grown_cell(
@@ -60,10 +61,54 @@ def grown_cell(
     pixels : grid points a side of the cells.
     room_nm : side of a square of the electrode's area.
     """
-    most_nm = min(GROWN * side_nm, pixels * shortest_nm / SITES_A_WAVE, room_nm)
+    # at most four times as long as without the long waves; a grid resolves waves of two sites
+    most_nm = min(4.0 * side_nm, pixels * shortest_nm / 2.0, room_nm)
     while held(side_nm) < HELD**2 and 2.0 * side_nm <= most_nm:
         side_nm *= 2.0
     return side_nm
+
+
+def cell_waves(cell_nm: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Wave vectors (1/nm) of a periodic cell, the area (1/nm^2) that each stands for, and where an integral takes over.
+
+    The mean plane counts as one more wave of the longest: the spectrum of the film is flat there.
+    """
+    step, summed = 2.0 * np.pi / cell_nm, 16  # beyond, sum and integral differ by less than a per cent
+    numbers = np.arange(-summed, summed + 1)
+    squared, count = np.unique(numbers[:, None] ** 2 + numbers**2, return_counts=True)
+    inside = squared <= summed**2
+    return step * np.sqrt(np.maximum(squared[inside], 1)), step**2 * count[inside], summed * step
+
+
+def mean_square_of_cells(one: OneSpectrum, psd: np.ndarray, cell_nm: float) -> np.ndarray:
+    """Mean square height (nm^2) of cells by spectra (..., m) on the bands of `one`."""
+    waves, areas, end = cell_waves(cell_nm)
+    logs, known = np.log(psd).reshape(-1, len(one.q)), waves <= one.q[-1]
+    summed = [np.exp(np.interp(np.log(waves[known]), np.log(one.q), row)) @ areas[known] for row in logs]
+    return np.reshape(summed, psd.shape[:-1]) + one.moment(0, low=end, psd=psd) + one.tail(psd)
+
+
+def share_on_cells(topography: Topography, one: OneSpectrum | None, cell_nm: float) -> tuple[float, float]:
+    """Share of the mean square height (nm^2) that cells have, and all of it.
+
+    Parameters
+    ----------
+    one : the measured spectrum, where it is used; None: eq. 9, flat beyond the longest wave of a cell.
+    """
+    if one is not None:
+        whole = float(one.moment(0, psd=one.psd) + one.tail(one.psd))
+        return float(mean_square_of_cells(one, one.psd, cell_nm)) / whole, whole
+    fitted = topography.likelihood
+    if fitted is None:
+        return 1.0, 0.0
+    all_of_it = mean_square(fitted.plateau, fitted.q0, fitted.slope, topography.cutoff)
+    if fitted.q0 >= 2.0 * np.pi / cell_nm:
+        return 1.0, all_of_it
+    waves, areas, end = cell_waves(cell_nm)
+    whole, summed = (mean_square(1.0, fitted.q0, fitted.slope, high) for high in (topography.cutoff, end))
+    areas = np.where(waves <= topography.cutoff, areas, 0.0)  # a coarse film ends before the sum does
+    share = ((waves / fitted.q0) ** -fitted.slope @ areas + max(whole - summed, 0.0)) / whole
+    return float(share), all_of_it
 
 
 def refuse_coarse_measurements(spectra: Sequence[TrustedSpectrum], cell_nm: float) -> None:
@@ -93,14 +138,14 @@ def finer_waves_doubt(
     psd : C (nm^4) at wave vectors (1/nm), carried on for a decade beyond the measurements.
     """
     finest, seen = _shortest_wave(spectra)
-    if cell_nm >= MANY_WAVES * seen:
+    if cell_nm >= 16.0 * seen:  # the contact is mostly one of measured waves
         return []
     step, end = 2.0 * np.pi / cell_nm, 2.0 * np.pi / seen
     effects = []
     for last in (end, 10.0 * end):
         q = np.geomspace(step, last, 400)
         rms, slope = (float(np.sqrt(np.trapezoid(2 * np.pi * q**power * psd(q), q))) for power in (1, 3))
-        surfaces = (synthesize_spectrum(SITES, cell_nm, psd, rms, seed, last) for seed in range(SURFACES))
+        surfaces = (synthesize_spectrum(256, cell_nm, psd, rms, seed, last) for seed in range(8))
         effects.append((slope, float(np.mean([heights.max() for heights in surfaces]))))
     (cut_slope, cut_nm), (slope, contact_nm) = effects
     text = (

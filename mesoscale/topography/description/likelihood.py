@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur, tip_bias
+from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur, curvature, tip_bias
 from mesoscale.topography.profile_conversion import spread
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
 
@@ -22,12 +22,8 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
 # on the plateau only levelling is left, and the trusted range leaves its waves out
 DISCREPANCY, PLATEAU_DISCREPANCY = 0.04, 0.01
 MAX_SLOPE = 10.0
-SMALL_BLUR_SHELL = 5.0
-CLEAR_MISFIT = 0.3  # of ln C; bins in which chance makes more say little about the shape
-BINS_PER_DECADE = 12  # the discrepancy is shared within a bin of this width
-# how far ln q0 and the slope are sought for the ends of an interval; no plateau within a factor of e^10 is none
-INTERVAL_STEP, INTERVAL_END, INTERVAL_SLOPE = 0.04, 10.0, 1.0
-LINE_POINTS, LINE_REACH = 48, 7.7  # nodes of the integral along a line, and its end as arcosh(q/k): 1100 k
+BINS_PER_DECADE = 12
+"""The discrepancy is shared within a bin of this width."""
 
 
 @dataclass(frozen=True)
@@ -95,8 +91,9 @@ class _Data:
         self.log_q = np.log(self.q)
         self.line = line.astype(bool)
         # a line's C1(k) is the integral of 2 C(q) q over t, with q = k cosh t
-        t, step = np.polynomial.legendre.leggauss(LINE_POINTS)
-        t, step = LINE_REACH * (t + 1) / 2, LINE_REACH / 2 * step
+        end = 7.7  # arcosh(q/k) = 1100 k
+        t, step = np.polynomial.legendre.leggauss(48)
+        t, step = end * (t + 1) / 2, end / 2 * step
         spacing = np.array([item.spectrum.spacing for item in spectra])
         k = spread(self.q[self.line], spacing[self.scan[self.line]])
         self.line_q = np.concatenate(k[:, :, None] * np.cosh(t), axis=1)
@@ -107,18 +104,14 @@ class _Data:
         """ln of the model's shape and measured over modelled shape, the tip's bias at amplitude `level`."""
         shape = -slope * np.maximum(self.log_q - log_q0, 0.0)
         shape += np.where(self.log_q > log_q0, blur(slope, self.shell), 0.0)
-        shape -= self._tip_bias(level[self.scan] + shape, self.q, self.tip)
+        shape -= tip_bias(curvature(self.tip, self.q, np.exp(level[self.scan] + shape)))
         if self.line.any():
             falling = -slope * np.maximum(self.line_log_q - log_q0, 0.0)
             if self.tip[self.line].any():
                 amplitude = level[self.scan[self.line], None] + falling
-                falling -= self._tip_bias(amplitude, self.line_q, self.tip[self.line, None])
+                falling -= tip_bias(curvature(self.tip[self.line, None], self.line_q, np.exp(amplitude)))
             shape[self.line] = np.log(np.sum(self.line_weight * np.exp(falling), axis=1))
         return shape, self.psd * np.exp(-shape)
-
-    @staticmethod
-    def _tip_bias(log_psd: np.ndarray, q: np.ndarray, radius: np.ndarray) -> np.ndarray:
-        return tip_bias(radius * np.sqrt(2 * np.pi * np.exp(log_psd)) * q**3)
 
 
 def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[TrustedSpectrum]:
@@ -128,7 +121,7 @@ def skip_blurred_shells(spectra: Sequence[TrustedSpectrum], q0: float) -> list[T
     it is large, and mixes plateau and power law.
     """
     return [
-        replace(item, low=max(item.low, SMALL_BLUR_SHELL * item.spectrum.spacing))
+        replace(item, low=max(item.low, 5.0 * item.spectrum.spacing))
         if item.low > q0 / 2 and not item.spectrum.sharp
         else item
         for item in spectra
@@ -223,7 +216,7 @@ def _misfit(residual: np.ndarray, modes: np.ndarray) -> float:
 
     chance = polygamma(1, modes) + (digamma(modes) - np.log(modes)) ** 2
     excess = np.log(np.maximum(residual, 1e-12)) ** 2 - chance
-    weight = 1 / (chance + CLEAR_MISFIT**2)
+    weight = 1 / (chance + 0.3**2)  # bins in which chance makes more than 0.3 say little about the shape
     return float(np.sqrt(max(np.sum(weight * excess) / weight.sum(), 0.0)))
 
 
@@ -285,7 +278,7 @@ def q0_interval(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, reach
     level, best = np.log(fitted.amplitudes), np.log(fitted.q0)
 
     def lowest(log_q0: float) -> float:
-        inside = max(fitted.slope - INTERVAL_SLOPE, 0.0), min(fitted.slope + INTERVAL_SLOPE, MAX_SLOPE)
+        inside = max(fitted.slope - 1.0, 0.0), min(fitted.slope + 1.0, MAX_SLOPE)
         minimum: Any = minimize_scalar(
             lambda slope: _deviance(data, log_q0, slope, fitted.amplitude_sd, level)[0],
             bounds=inside,
@@ -295,15 +288,15 @@ def q0_interval(spectra: Sequence[TrustedSpectrum], fitted: LikelihoodFit, reach
         return float(minimum.fun)
 
     allowed = lowest(best) + reach**2 * max(fitted.dispersion, 1.0)
-    ends = []
+    ends, step, furthest = [], 0.04, 10.0  # no plateau within a factor of e^10 is none
     for side in (-1, 1):
-        distance = INTERVAL_STEP
-        while lowest(best + side * distance) < allowed and distance < INTERVAL_END:
+        distance = step
+        while lowest(best + side * distance) < allowed and distance < furthest:
             distance *= 2
-        if distance >= INTERVAL_END:
-            ends.append(best + side * INTERVAL_END)
+        if distance >= furthest:
+            ends.append(best + side * furthest)
             continue
-        start = distance / 2 if distance > INTERVAL_STEP else 0.0
+        start = distance / 2 if distance > step else 0.0
         end: Any = brentq(lambda at, s=side: lowest(best + s * at) - allowed, start, distance, xtol=2e-3)
         ends.append(best + side * end)
     return float(np.exp(ends[0])), float(np.exp(ends[1]))

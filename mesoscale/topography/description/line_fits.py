@@ -6,7 +6,7 @@ ends (q1).  Made precise here:
 
 - all points are means over bins of equal width in log q, one per scan and bin, inside the trusted range;
 - the plateau *ends* at the last bin for which the slope of [q_L, q] is not significantly negative (one-sided
-  t test at `SIGNIFICANCE`, for this bin and every later one); this literal reading lies above the knee,
+  t test at 1 %, for this bin and every later one); this literal reading lies above the knee,
   because the line needs some points of the slope to notice it, so that
 - *q0* is where the plateau's mean level and the power law's line meet;
 - *q1* is the largest q for which the slope of [q0, q] differs from its median by no more than its own
@@ -19,11 +19,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur
-from mesoscale.topography.roughness_spectrum import mean_square
-
-SIGNIFICANCE = 0.01
-BINS_PER_DECADE = 12
-SLOPE_TOLERANCE = 0.05
 
 
 @dataclass(frozen=True)
@@ -60,33 +55,25 @@ class LineFit:
     plateau_low: float
     plateau_high: float
 
-    def rms(self, q1: float) -> float:
-        """RMS height in nm from the plateau's level, integrated to q1."""
-        return float(np.sqrt(mean_square(self.plateau, self.q0, self.slope, q1)))
-
 
 def points(spectra: Sequence[TrustedSpectrum], q0: float = np.inf, slope: float = 0.0) -> Points:
     """Mean ln C of each scan on common bins of ln q, inside each scan's trusted range.
 
     Once knee and slope are known roughly, the window's blur beyond `q0` is taken out.
     """
-    rows = []
+    parts = [np.empty((4, 0))]
     for number, item in enumerate(spectra):
-        ok = item.trusted
-        if not ok.any():
-            continue
-        log_q, log_c = np.log(item.spectrum.q[ok]), np.log(item.corrected_psd()[ok])
-        log_c = log_c - np.where(item.spectrum.q[ok] > q0, blur(slope, item.spectrum.q[ok] / item.spectrum.spacing), 0)
-        modes = item.spectrum.modes[ok]
-        bins = np.floor(log_q / np.log(10) * BINS_PER_DECADE).astype(int)
-        for b in np.unique(bins):
-            here = bins == b
-            weight = modes[here] / modes[here].sum()
-            # the mean of ln C lies below ln of the mean by about 1/(2 n)
-            bias = 0.5 / max(float(modes[here].sum()), 0.5)
-            rows.append((weight @ log_q[here], weight @ log_c[here] + min(bias, 0.5), number, b))
-    table = np.array(sorted(rows, key=lambda row: (row[3], row[2]))).reshape(-1, 4)
-    return Points(table[:, 0], table[:, 1], table[:, 2].astype(int), table[:, 3].astype(int))
+        q, modes = item.spectrum.q[item.trusted], item.spectrum.modes[item.trusted]
+        log_c = np.log(item.corrected_psd()[item.trusted])
+        log_c = log_c - np.where(q > q0, blur(slope, q / item.spectrum.spacing), 0)
+        bins, index = np.unique(np.floor(12 * np.log10(q)), return_inverse=True)  # 12 a decade
+        worth = np.bincount(index, modes)
+        log_q, log_c = (np.bincount(index, modes * part) / worth for part in (np.log(q), log_c))
+        # the mean of ln C lies below ln of the mean by about 1/(2 n)
+        parts.append(np.stack([log_q, log_c + 0.5 / np.maximum(worth, 1.0), np.full(len(bins), number), bins]))
+    table = np.concatenate(parts, axis=1)
+    table = table[:, np.lexsort((table[2], table[3]))]
+    return Points(table[0], table[1], table[2].astype(int), table[3].astype(int))
 
 
 def pooled(data: Points) -> tuple[np.ndarray, np.ndarray]:
@@ -130,65 +117,57 @@ def _fit_points(data: Points) -> LineFit | None:
         return None
     x, y = pooled(data)
     end = plateau_end(x, y)
-    if end is None:
+    knee = None if end is None else _knee(x, y, end)
+    if end is None or knee is None:
         return None
-    knee = _knee(x, y, end)
-    if knee is None:
-        return None
-    log_q0, level, intercept, slope = knee
+    log_q0, level = knee
     first = int(np.searchsorted(x, log_q0 + 0.15))
-    sizes = range(first + 4, len(x) + 1)
-    fits = [line(x[first:k], y[first:k]) for k in sizes]
-    if not fits:
+    fits = np.array([line(x[first:k], y[first:k]) for k in range(first + 4, len(x) + 1)])
+    if not len(fits):
         return None
-    running_q = np.exp(x[[k - 1 for k in sizes]])
-    running = np.array([f[1] for f in fits])
-    errors = np.array([f[2] for f in fits])
-    settled = running[len(running) // 3 :]
-    reference = float(np.median(settled))
-    constant = np.abs(running - reference) <= np.maximum(SLOPE_TOLERANCE, _threshold(len(x) - first) * errors)
-    last = int(np.flatnonzero(constant).max())
-    slope = -float(running[last])
-    intercept = fits[last][0]
+    reference = float(np.median(fits[len(fits) // 3 :, 1]))
+    allowed = np.maximum(0.05, _threshold(len(x) - first) * fits[:, 2])
+    last = int(np.flatnonzero(np.abs(fits[:, 1] - reference) <= allowed).max())
+    intercept, slope = fits[last, 0], -float(fits[last, 1])
     log_q0 = (intercept - level) / slope
-    levels = _levels(data, level, log_q0, slope)
-    low, high = _bounding_slopes(data, level, log_q0)
+    shape = -slope * np.maximum(data.log_q - log_q0, 0)
+    levels = [np.mean((data.log_c - shape)[data.scan == k]) for k in np.unique(data.scan)]
+    beyond = data.log_q > log_q0 + np.log(2)
+    slopes = (level - data.log_c[beyond]) / (data.log_q[beyond] - log_q0)
     return LineFit(
         plateau=float(np.exp(level)),
         q0=float(np.exp(log_q0)),
         slope=slope,
         departure=float(np.exp(x[end])),
-        q1=float(running_q[last]),
-        q1_limited=last == len(running) - 1,
-        slope_low=low,
-        slope_high=high,
-        plateau_low=float(np.exp(levels.min())),
-        plateau_high=float(np.exp(levels.max())),
+        q1=float(np.exp(x[first + 3 + last])),
+        q1_limited=last == len(fits) - 1,
+        slope_low=float(slopes.min()),
+        slope_high=float(slopes.max()),
+        plateau_low=float(np.exp(min(levels))),
+        plateau_high=float(np.exp(max(levels))),
     )
 
 
 def plateau_end(x: np.ndarray, y: np.ndarray) -> int | None:
     """Index of the last bin up to which the slope of y(x) from the start is not significantly negative."""
-    significant = []
-    for k in range(3, len(x) + 1):
-        _, slope, error = line(x[:k], y[:k])
-        significant.append(slope < -_threshold(k - 2) * error and slope < -0.1)
-    if not significant[-1]:
-        return None  # flat all the way: no power law
-    flat = np.flatnonzero(~np.array(significant))
-    return None if len(flat) == 0 else int(flat.max()) + 2
+    fits = np.array([line(x[:k], y[:k]) for k in range(3, len(x) + 1)])
+    thresholds = np.array([_threshold(k) for k in range(1, len(x) - 1)])
+    flat = np.flatnonzero((fits[:, 1] >= -thresholds * fits[:, 2]) | (fits[:, 1] >= -0.1))
+    if len(flat) == 0 or flat[-1] == len(fits) - 1:  # flat all the way: no power law
+        return None
+    return int(flat[-1]) + 2
 
 
 def _threshold(freedom: int) -> float:
+    """Of Student's distribution at 1 %, one-sided."""
     from scipy.special import stdtrit
 
-    return float(stdtrit(max(freedom, 1), 1 - SIGNIFICANCE))
+    return float(stdtrit(max(freedom, 1), 0.99))
 
 
-def _knee(x: np.ndarray, y: np.ndarray, end: int) -> tuple[float, float, float, float] | None:
-    """Meeting point of plateau and power law: ln q0, plateau level, intercept and slope of the line."""
-    log_q0 = float(x[end]) - 0.2
-    level = intercept = slope = 0.0
+def _knee(x: np.ndarray, y: np.ndarray, end: int) -> tuple[float, float] | None:
+    """Meeting point of plateau and power law: ln q0 and the plateau's level."""
+    log_q0, level = float(x[end]) - 0.2, 0.0
     for _ in range(20):
         flat, fall = x < log_q0 - 0.1, x > log_q0 + 0.15
         if flat.sum() < 2 or fall.sum() < 4:
@@ -201,17 +180,4 @@ def _knee(x: np.ndarray, y: np.ndarray, end: int) -> tuple[float, float, float, 
         if abs(new - log_q0) < 1e-6:
             break
         log_q0 = new
-    return log_q0, level, intercept, -slope
-
-
-def _levels(data: Points, level: float, log_q0: float, slope: float) -> np.ndarray:
-    """ln plateau of each scan, its points shifted along the common shape."""
-    shape = -slope * np.maximum(data.log_q - log_q0, 0)
-    return np.array([np.mean((data.log_c - shape)[data.scan == k]) for k in np.unique(data.scan)])
-
-
-def _bounding_slopes(data: Points, level: float, log_q0: float) -> tuple[float, float]:
-    """Slopes of the lines through the knee that bound the points between 2 q0 and the end."""
-    beyond = data.log_q > log_q0 + np.log(2)
-    slopes = (level - data.log_c[beyond]) / (data.log_q[beyond] - log_q0)
-    return float(slopes.min()), float(slopes.max())
+    return log_q0, level

@@ -18,23 +18,45 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
-from mesoscale.topography.description.confidence import QUANTILES, REACH, student_reach
+from mesoscale.topography.description.intervals import QUANTILES, REACH, few_places
 from mesoscale.topography.description.likelihood import DISCREPANCY
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, with_ends
 
-BANDS_PER_DECADE = 10
-DIFFERENT_FILMS = 100.0  # ratio of C, a factor of 10 in RMS height, beyond which two files are not of one surface
-MOST_MISFIT = 3.0  # of reduced chi^2 of a common shape: of 143 pairs of maps of one synthetic surface none reaches 1.8
-# of ln C between two places whose RMS heights scatter by 40 %, at 99 %: a factor of 18
-MOST_PLACES = 2.58 * np.sqrt(2) * 0.8
-KINK = 0.35  # standard deviation of the change of slope times the band's width, from band to band
-MOST_BIASED = 0.3  # of ln C, where hardly one amplitude is behind it
-DRAWS = 500
-# surfaces of C ~ q^-1 to q^-4 without a plateau, levelled by a plane, hold the waves of 0.63 to 0.81 a side and more;
-# ln of their mean square scatters by 0.03 to 0.6 (the steepest)
-LEVELLED_WAVES, LEVELLED_SCATTER = 0.72, 0.6
-CANDIDATES = 10_000  # of which those that the mean square allows are kept
-ROUNDS = 200
+
+@dataclass(frozen=True)
+class Merging:
+    """How measurements are joined and compared.
+
+    Attributes
+    ----------
+    per_decade : bands.
+    kink : standard deviation of the change of slope times the band's width, from band to band.
+    most_biased : of ln C, where hardly one amplitude is behind it.
+    draws, candidates : spectra that a band stands for; of the candidates those that the mean square allows are kept.
+    levelled_waves, levelled_scatter : surfaces of C ~ q^-1 to q^-4 without a plateau, levelled by a plane, hold the
+        waves of 0.63 to 0.81 a side and more; ln of their mean square scatters by 0.03 to 0.6 (the steepest).
+    different_films : ratio of C, a factor of 10 in RMS height, beyond which two files are not of one surface.
+    most_misfit : of reduced chi^2 of a common shape: of 143 pairs of maps of one simulated surface none reaches 1.8.
+    most_places : of ln C between two places whose RMS heights scatter by 40 %, at 99 %: a factor of 18.
+    extension : decades that the last slope is carried on beyond what is measured.
+    slopes : of a self-affine surface (0 < H < 1); shallower ones have no finite RMS height.
+    """
+
+    per_decade: int = 10
+    kink: float = 0.35
+    most_biased: float = 0.3
+    draws: int = 500
+    candidates: int = 10_000
+    levelled_waves: float = 0.72
+    levelled_scatter: float = 0.6
+    different_films: float = 100.0
+    most_misfit: float = 3.0
+    most_places: float = 2.58 * np.sqrt(2) * 0.8
+    extension: float = 1.0
+    slopes: tuple[float, float] = (-4.0, -2.1)
+
+
+MERGING = Merging()
 
 
 @dataclass(frozen=True)
@@ -61,8 +83,8 @@ class Overlap:
     @property
     def one_surface(self) -> bool:
         """Can these be two places of one surface, whose spectra differ by one factor, and by no large one?"""
-        most = np.hypot(np.log(self.expected), MOST_PLACES)
-        return bool(abs(np.log(self.ratio)) <= most and self.misfit <= MOST_MISFIT)
+        most = np.hypot(np.log(self.expected), MERGING.most_places)
+        return bool(abs(np.log(self.ratio)) <= most and self.misfit <= MERGING.most_misfit)
 
     @property
     def agrees(self) -> bool:
@@ -82,7 +104,7 @@ class OneSpectrum:
     place_sd : standard deviation of ln C between places and instruments, common to all bands; 0 for one measurement.
     count : (m,) measurements behind each band; 0 in a gap between instruments and before the first.
     names : measurements that take part.
-    logs : (DRAWS, m) values of ln C that the measurements allow, where they are not normally distributed; else None.
+    logs : (draws, m) values of ln C that the measurements allow, where they are not normally distributed; else None.
     """
 
     q: np.ndarray
@@ -113,7 +135,7 @@ class OneSpectrum:
         reach = REACH * self.log_sd
         return np.exp(self.log_psd - reach), np.exp(self.log_psd + reach)
 
-    def draws(self, places: bool, count: int = DRAWS) -> np.ndarray:
+    def draws(self, places: bool, count: int = MERGING.draws) -> np.ndarray:
         """(count, m) spectra C in nm^4 that the measurements allow: of the typical place, or of a place anywhere."""
         rng = np.random.default_rng(0)  # the same draws whenever they are asked for
         logs = self._normal_draws(rng, count) if self.logs is None else self.logs[:count]
@@ -128,13 +150,13 @@ class OneSpectrum:
         `error` in its logarithm.
         """
         rng = np.random.default_rng(3)
-        logs = self._normal_draws(rng, CANDIDATES)
+        logs = self._normal_draws(rng, MERGING.candidates)
         away = np.log(self.moment(0, low=low, psd=np.exp(logs)) / mean_square) / error
         weight = np.exp(-0.5 * (away**2 - np.min(away**2)))
         weight /= weight.sum()
         centre = weight @ logs
         covariance = (weight[:, None] * (logs - centre)).T @ (logs - centre)
-        drawn = logs[rng.choice(CANDIDATES, size=DRAWS, p=weight)]
+        drawn = logs[rng.choice(MERGING.candidates, size=MERGING.draws, p=weight)]
         return replace(self, log_psd=centre, covariance=covariance, logs=drawn)
 
     def with_error(self, error: np.ndarray) -> "OneSpectrum":
@@ -169,6 +191,32 @@ class OneSpectrum:
         below = 2 * np.pi * psd[..., 0] * fine[0] ** (power + 2) / (power + 2) if low == 0 else 0.0
         return np.asarray(np.trapezoid(2 * np.pi * fine ** (power + 1) * values, fine, axis=-1) + below)
 
+    def carried_on(self, psd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Points (1/nm, nm^4) of a spectrum (m,) on the bands, with its last slope carried on for a decade."""
+        end = float(self.q[-1])
+        beyond = end * 10 ** np.linspace(0.1, MERGING.extension, 10)
+        slope = self._end_slope(psd)
+        return np.concatenate([self.q, beyond]), np.concatenate([psd, psd[-1] * (beyond / end) ** slope])
+
+    def tail(self, psd: np.ndarray) -> np.ndarray:
+        """Mean square heights of the continuations of spectra (..., m), nm^2."""
+        power = self._end_slope(psd) + 2.0
+        grown = 10.0 ** (MERGING.extension * power) - 1.0
+        return 2.0 * np.pi * psd[..., -1] * self.q[-1] ** 2 * grown / power
+
+    def _end_slope(self, psd: np.ndarray) -> np.ndarray:
+        """Logarithmic slopes of the ends of spectra (..., m), over the last 0.3 decades.
+
+        A spectrum that ends before its power law says nothing of it: the slopes are then spread over all possible ones.
+        """
+        end = self.q > self.q[-1] * 10**-0.31
+        logs = np.log(psd[..., end]).reshape(-1, np.count_nonzero(end))
+        slopes = np.polyfit(np.log(self.q[end]), logs.T, 1)[0]
+        unseen = slopes > MERGING.slopes[1]
+        count = np.count_nonzero(unseen)
+        slopes[unseen] = np.interp((np.arange(count) + 0.5) / max(count, 1), (0, 1), MERGING.slopes)
+        return slopes.reshape(psd.shape[:-1])
+
     def statistics(self) -> dict[str, dict[str, Any]]:
         """RMS height, slope and curvature of all waves that are measured, with intervals of the typical place.
 
@@ -187,11 +235,6 @@ class OneSpectrum:
         return result
 
 
-def few_places(count: int) -> float:
-    """How much further than a normal distribution one reaches whose scatter is estimated from `count` places."""
-    return student_reach(count - 1) / REACH if count > 1 else 1.0
-
-
 def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneSpectrum | None:
     """The spectrum behind all measurements; None where none has two bands to offer.
 
@@ -207,7 +250,7 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     # waves twice as long as the longest measurement still tilt and bow it
     names = {entry[0] for entry in measured}
     longest = min(item.spectrum.spacing for item in spectra if item.name in names) / 2
-    bands = np.arange(min(seen.min(), int(np.floor(np.log10(longest) * BANDS_PER_DECADE))), seen.max() + 1)
+    bands = np.arange(min(seen.min(), int(np.floor(np.log10(longest) * MERGING.per_decade))), seen.max() + 1)
     index = np.concatenate([np.searchsorted(bands, entry[1]) for entry in measured])
     values = np.concatenate([entry[2] for entry in measured])
     weight = 1 / np.concatenate([entry[3] for entry in measured])
@@ -217,12 +260,12 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     system[np.arange(len(values)), index] = 1.0
     system[np.arange(len(values)), m + owner] = 1.0
     normal, right = system.T @ (weight[:, None] * system), system.T @ (weight * values)
-    bends = np.diff(np.eye(m), 2, axis=0) / KINK
+    bends = np.diff(np.eye(m), 2, axis=0) / MERGING.kink
     normal[:m, :m] += bends.T @ bends
     shared = np.bincount(index, minlength=m) > 1
     variance = 0.1 if shared.any() else 0.0
     covariance, solution = normal, right
-    for _ in range(ROUNDS):
+    for _ in range(200):
         penalty = np.zeros(m + places)
         penalty[m:] = 1 / max(variance, 1e-6)
         covariance = np.linalg.inv(normal + np.diag(penalty))
@@ -234,7 +277,7 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
         if abs(new - variance) < 1e-6 * variance + 1e-9:
             break
         variance = new
-    centres = 10 ** ((bands + 0.5) / BANDS_PER_DECADE)
+    centres = 10 ** ((bands + 0.5) / MERGING.per_decade)
     result = OneSpectrum(
         centres,
         solution[:m],
@@ -250,8 +293,8 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     if result.first < first_wave:  # a longer line has measured these waves
         return result
     # what is form and what is roughness is unknown to what a parabola would take
-    error = float(np.sqrt(LEVELLED_SCATTER**2 + largest.form**2 + common_error**2))
-    return result.with_mean_square(largest.rms_nm**2, LEVELLED_WAVES * first_wave, error)
+    error = float(np.sqrt(MERGING.levelled_scatter**2 + largest.form**2 + common_error**2))
+    return result.with_mean_square(largest.rms_nm**2, MERGING.levelled_waves * first_wave, error)
 
 
 def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -261,15 +304,15 @@ def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     if inside.sum() < 3:
         return nothing
     q, psd, modes = item.spectrum.q[inside], corrected[inside], item.spectrum.modes[inside]
-    grid = np.floor(np.log10(q) * BANDS_PER_DECADE).astype(int)
+    grid = np.floor(np.log10(q) * MERGING.per_decade).astype(int)
     numbers, index = np.unique(grid, return_inverse=True)
     worth = np.bincount(index, modes)
     centre = np.bincount(index, modes * np.log(q)) / worth
     # the logarithm of a mean of few amplitudes is on average too small: by 1 / 2n for n of them
-    level = np.log(np.bincount(index, modes * psd) / worth) + np.minimum(0.5 / worth, MOST_BIASED)
+    level = np.log(np.bincount(index, modes * psd) / worth) + np.minimum(0.5 / worth, MERGING.most_biased)
     if len(numbers) < 2:
         return nothing
-    wanted = (numbers + 0.5) / BANDS_PER_DECADE * np.log(10)
+    wanted = (numbers + 0.5) / MERGING.per_decade * np.log(10)
     # a band that is only half covered is read at its centre along the measurement's own slope
     slope = np.gradient(level, centre)
     # the mean over a band of a power law is above its middle
@@ -294,7 +337,7 @@ def overlaps(spectra: Sequence[TrustedSpectrum]) -> list[Overlap]:
             misfit = float(np.sum(weight * (apart - difference) ** 2)) / max(len(common) - 1, 1)
             # errors of neighbouring bands go together: no more certain than a typical band
             spread = float(np.sqrt(1 / weight.mean()))
-            edges = 10 ** (np.array([common[0], common[-1] + 1]) / BANDS_PER_DECADE)
+            edges = 10 ** (np.array([common[0], common[-1] + 1]) / MERGING.per_decade)
             expected = float(np.exp(REACH * spread))
             ratio = float(np.exp(difference))
             pairs.append(Overlap(first.name, second.name, edges[0], edges[1], ratio, expected, misfit))
@@ -309,9 +352,9 @@ def refuse_different_films(pairs: Sequence[Overlap]) -> None:
     InputError : naming the two that differ most.
     """
     worst = max(pairs, key=lambda pair: abs(np.log(pair.ratio)), default=None)
-    if worst is not None and max(worst.ratio, 1 / worst.ratio) > DIFFERENT_FILMS * worst.expected:
+    if worst is not None and max(worst.ratio, 1 / worst.ratio) > MERGING.different_films * worst.expected:
         raise InputError(
             f"topography.scans: {worst.first} and {worst.second} cannot be one surface: between {worst.low:.2g} and "
             f"{worst.high:.2g} /nm their spectra differ by a factor of {max(worst.ratio, 1 / worst.ratio):.3g}; "
-            f"accepted is {DIFFERENT_FILMS:g}; give the files of one film, or correct a unit or a height scale"
+            f"accepted is {MERGING.different_films:g}; give the files of one film, or correct a unit or a height scale"
         )

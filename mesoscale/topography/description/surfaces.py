@@ -10,22 +10,21 @@ A scatter that is estimated hides two films whose places differ by as much as th
 be about ten times the scatter apart (python -m evidence topography.surfaces has the error rates).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from mesoscale.topography.description.doubts import Doubt
-from mesoscale.topography.description.one_spectrum import BANDS_PER_DECADE, MOST_MISFIT, Overlap, on_bands
+from mesoscale.topography.description.intervals import REACH
+from mesoscale.topography.description.one_spectrum import MERGING, OneSpectrum, Overlap, on_bands
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 
 Array = np.ndarray
-FALSE_ALARMS = 0.05  # of films of one surface, shared by level and tilt
-FEWEST = 4  # measurements; of fewer no scatter within two heaps can be told from a difference
-SIMULATED = 999
-LEAST_APART = {"level": 0.2, "tilt": 0.2}  # of ln C (10 % of the RMS height), and of the slope of ln C over ln q
-UNKNOWN = 100.0  # variance of a level that no shared band ties to the others
-MOST_NAMES = 6  # of a heap in a sentence
+FALSE_ALARMS = 0.05
+"""Of films of one surface, shared by level and tilt."""
+FEWEST = 4
+"""Measurements; of fewer no scatter within two heaps can be told from a difference."""
 
 
 @dataclass(frozen=True)
@@ -56,14 +55,14 @@ def levels_and_tilts(spectra: Sequence[TrustedSpectrum]) -> dict[str, tuple[Arra
     if not shared.any():
         return {}
     number, owner, value, variance, index = (part[shared] for part in (number, owner, value, variance, index))
-    x = number * np.log(10) / BANDS_PER_DECADE
+    x = number * np.log(10) / MERGING.per_decade
     x = x - np.average(x, weights=1 / variance)
     film, places = np.eye(len(count))[index], np.eye(len(bands))[owner]
     mean_free = np.eye(len(bands)) - 1 / len(bands)
     estimates = {}
     for name, parts in (("level", [film, places]), ("tilt", [film, places, places * x[:, None]])):
         system = np.hstack(parts)
-        prior = np.full(system.shape[1], 1 / UNKNOWN)
+        prior = np.full(system.shape[1], 0.01)  # of a level that no shared band ties to the others
         prior[: len(count)] = 1e-6
         covariance = np.linalg.inv(system.T @ (system / variance[:, None]) + np.diag(prior))
         last = slice(-len(bands), None)
@@ -101,8 +100,9 @@ def by_chance(values: Array, covariance: Array, score: float) -> float:
     mean_free = np.eye(n) - 1 / n
     scatter = max(float(values @ mean_free @ values - np.trace(mean_free @ covariance)), 0.0) / (n - 1)
     spread, vectors = np.linalg.eigh(covariance + scatter * np.eye(n))
-    drawn = np.random.default_rng(4).standard_normal((SIMULATED, n)) @ (vectors * np.sqrt(np.maximum(spread, 0.0))).T
-    return (1 + sum(best_cut(row, covariance).score >= score for row in drawn)) / (SIMULATED + 1)
+    count = 999
+    drawn = np.random.default_rng(4).standard_normal((count, n)) @ (vectors * np.sqrt(np.maximum(spread, 0.0))).T
+    return (1 + sum(best_cut(row, covariance).score >= score for row in drawn)) / (count + 1)
 
 
 def two_heaps(spectra: Sequence[TrustedSpectrum]) -> tuple[str, Cut, float] | None:
@@ -111,7 +111,8 @@ def two_heaps(spectra: Sequence[TrustedSpectrum]) -> tuple[str, Cut, float] | No
         return None
     estimates = levels_and_tilts(spectra)
     cuts = [(name, best_cut(*part)) for name, part in estimates.items()]
-    asked = [(by_chance(*estimates[name], cut.score), name, cut) for name, cut in cuts if cut.apart > LEAST_APART[name]]
+    # 0.2 of ln C is 10 % of the RMS height; the same of the slope of ln C over ln q
+    asked = [(by_chance(*estimates[name], cut.score), name, cut) for name, cut in cuts if cut.apart > 0.2]
     chance, name, cut = min(asked, key=lambda item: item[0], default=(1.0, "", None))
     return None if cut is None or chance > FALSE_ALARMS / len(estimates) else (name, cut, chance)
 
@@ -139,7 +140,7 @@ def several_surfaces(
     if strangers:
         worst = max(strangers, key=lambda pair: max(pair.misfit, abs(np.log(pair.ratio))))
         differ = f"by a factor of {max(worst.ratio, 1 / worst.ratio):.2g}"
-        if worst.misfit > MOST_MISFIT:
+        if worst.misfit > MERGING.most_misfit:
             differ = f"in shape, by {np.sqrt(worst.misfit):.2g} times their errors"
         text = (
             f"{worst.first} and {worst.second} look like two surfaces: from {worst.low:.2g} to {worst.high:.2g} /nm "
@@ -157,9 +158,22 @@ def several_surfaces(
     return []
 
 
+def disagreements(pairs: Sequence[Overlap], one: OneSpectrum | None) -> Iterator[Doubt]:
+    """A doubt for each of the worst three pairs of measurements that differ by more than places do."""
+    between = REACH * np.sqrt(2) * one.place_sd if one else 0.0
+    worst = [pair for pair in pairs if abs(np.log(pair.ratio)) > np.hypot(np.log(pair.expected), between)]
+    for pair in sorted(worst, key=lambda pair: -abs(np.log(pair.ratio)))[:3]:
+        text = (
+            f"{pair.first} and {pair.second} differ by a factor of {max(pair.ratio, 1 / pair.ratio):.2g} in C from "
+            f"{pair.low:.2g} to {pair.high:.2g} /nm, expected is {pair.expected:.2g}"
+        )
+        remedy = "check their units, height scales and places; the band of the spectrum holds both"
+        yield Doubt("measurements_disagree", text, remedy, "spectrum")
+
+
 def _listed(names: Sequence[str]) -> str:
-    more = len(names) - MOST_NAMES
-    return ", ".join(names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
+    more = len(names) - 6
+    return ", ".join(names[:6]) + (f" and {more} more" if more > 0 else "")
 
 
 def _apart(groups: Sequence[Sequence[str]], files: Mapping[str, str]) -> str:

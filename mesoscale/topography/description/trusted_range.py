@@ -3,25 +3,67 @@
 Levelling and the window change the longest waves, pixels, noise and the tip the shortest.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
-from mesoscale.topography.spectrum import Spectrum
-
-# dilation lowers C by exp(-a k^b), k = R sqrt(2 pi q^6 C) the tip's radius times the curvature per octave;
-# measured on slopes 2.3-3.8, RMS 3 and 8 nm, tips of 2-10 nm: one curve to 3 %
-TIP_BIAS = (0.5, 1.3)
-# beyond k = 0.5 the same comparison (slopes 2.4-4.2, tips of 5-20 nm) gives 0.45 k, to 0.15 at 1.5 and 0.2 at 2.5
-BLUNT_BIAS = 0.45
-BLUNT_ERROR = 0.3  # of that correction
-MOST_CURVED = 2.0
-LEVELLED_ERROR = 0.5  # of ln C in the first shells, after their blur is taken out
+from mesoscale.errors import InputError
+from mesoscale.settings import TopographySettings
+from mesoscale.topography.measurements.cleaning import Scan, clean, form_share
+from mesoscale.topography.measurements.loading import Measurement, with_limits
+from mesoscale.topography.measurements.profiles import Profile
+from mesoscale.topography.profile_conversion import binned_line, isotropic_spectrum, line_spectrum
+from mesoscale.topography.spectrum import Spectrum, hann_spectrum
 
 
-def tip_bias(curvature: np.ndarray) -> np.ndarray:
-    """-ln of what dilation leaves of C where a tip's radius times the curvature per octave is `curvature`."""
-    return TIP_BIAS[0] * np.minimum(curvature, 3.0) ** TIP_BIAS[1]
+@dataclass(frozen=True)
+class Trust:
+    """How far spectra are trusted and corrected, by comparison with simulated scans of known truth.
+
+    Attributes
+    ----------
+    tip_bias : dilation lowers C by exp(-a k^b), k = R sqrt(2 pi q^6 C) the tip's radius times the curvature per octave;
+        measured on slopes 2.3-3.8, RMS 3 and 8 nm, tips of 2-10 nm: one curve to 3 %.
+    blunt_bias, blunt_error : beyond k = 0.5 the same comparison (slopes 2.4-4.2, tips of 5-20 nm) gives 0.45 k, to 0.15
+        at 1.5 and 0.2 at 2.5; the error is a share of this correction.
+    curved, most_curved : k at which a range ends, and up to which it can be corrected beyond.
+    levelled_error : of ln C in the first shells, after their blur is taken out.
+    noise : C over the level of the noise at which a range ends.
+    lowest_shell : below, levelling and the window change a map's waves.
+    lowest_wave, lowest_wave_bow : below, the window and the line taken off a profile change its waves, or the parabola.
+    pixels, even_line, uneven_line : of Nyquist. Short waves folded back lift C1, which is shallow, by 6 % at the first
+        of a line's (slope 2.84); straight lines between uneven points smooth.
+    """
+
+    tip_bias: tuple[float, float] = (0.5, 1.3)
+    blunt_bias: float = 0.45
+    blunt_error: float = 0.3
+    curved: float = 0.5
+    most_curved: float = 2.0
+    levelled_error: float = 0.5
+    noise: float = 20.0
+    lowest_shell: float = 2.5
+    lowest_wave: float = 2.5
+    lowest_wave_bow: float = 4.0
+    pixels: float = 0.7
+    even_line: float = 0.35
+    uneven_line: float = 0.5
+
+
+TRUST = Trust()
+
+
+def curvature(
+    radius_nm: np.ndarray | float, q: np.ndarray, psd: np.ndarray, raised: np.ndarray | float = 1
+) -> np.ndarray:
+    """A tip's radius times the curvature per octave of roughness of spectrum `psd` times `raised`."""
+    return radius_nm * np.sqrt(2 * np.pi * psd * raised) * q**3
+
+
+def tip_bias(curved: np.ndarray) -> np.ndarray:
+    """-ln of what dilation leaves of C where the `curvature` is `curved`."""
+    return TRUST.tip_bias[0] * np.minimum(curved, 3.0) ** TRUST.tip_bias[1]
 
 
 def blur(slope: float, shell: np.ndarray) -> np.ndarray:
@@ -40,7 +82,7 @@ class TrustedSpectrum:
     Attributes
     ----------
     low, high : trusted wave vectors, 1/nm.
-    limit : what ends the range above: `tip`, `noise` or `pixels`.
+    limit : what ends the range above: `tip`, `noise`, `pixels` or `filter`.
     tip_radius_nm : radius used for the tip's correction.
     rms_nm : RMS of the cleaned heights.
     reach : where the range would end without the tip, 1/nm; between `high` and here the tip's correction is large.
@@ -69,17 +111,16 @@ class TrustedSpectrum:
     def corrected_psd(self) -> np.ndarray:
         """(m,) C with the tip's bias taken out, nm^4; meaningful inside the trusted range."""
         q, psd = self.spectrum.q, self.spectrum.psd
-        smooth = np.exp(_running_mean(np.log(psd), q))
-        bias = np.zeros_like(q)
+        smooth, bias = _smooth(psd, q), np.zeros_like(q)
         for _ in range(5):
-            bias = tip_bias(self.tip_radius_nm * np.sqrt(2 * np.pi * smooth * np.exp(bias)) * q**3)
+            bias = tip_bias(curvature(self.tip_radius_nm, q, smooth, np.exp(bias)))
         return psd * np.exp(bias)
 
 
 def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The trusted shells with those beyond its ends that can be corrected, at a price.
 
-    Above, up to where the roughness is MOST_CURVED times as curved as the tip; below, down to the first shell.
+    Above, up to where the roughness is `most_curved` times as curved as the tip; below, down to the first shell.
 
     Returns
     -------
@@ -88,78 +129,148 @@ def with_ends(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray
     error : (m,) error of ln C that the correction leaves; 0 in the trusted range.
     """
     q, psd = item.spectrum.q, item.spectrum.psd
-    smooth = np.exp(_running_mean(np.log(psd), q))
-    curvature = bias = np.zeros_like(q)
+    smooth = _smooth(psd, q)
+    curved = bias = np.zeros_like(q)
     for _ in range(12):
-        curvature = item.tip_radius_nm * np.sqrt(2 * np.pi * smooth * np.exp(bias)) * q**3
-        bias = np.where(curvature < 0.5, tip_bias(curvature), BLUNT_BIAS * np.minimum(curvature, 2 * MOST_CURVED))
+        curved = curvature(item.tip_radius_nm, q, smooth, np.exp(bias))
+        bias = np.where(curved < 0.5, tip_bias(curved), TRUST.blunt_bias * np.minimum(curved, 2 * TRUST.most_curved))
     use = (q >= item.low) & (q <= max(item.high, item.reach))
-    blunt = curvature > MOST_CURVED
+    blunt = curved > TRUST.most_curved
     if (blunt & use).any():
         use &= q < q[blunt & use][0]
-    error = np.where(q > item.high, BLUNT_ERROR * bias, 0.0)
+    error = np.where(q > item.high, TRUST.blunt_error * bias, 0.0)
     psd = psd * np.exp(bias)
     if not item.spectrum.sharp and use.sum() > 3:  # the window lifts long waves, levelling takes the longest
         long = (q < item.low) & (q > 0.9 * item.spectrum.spacing)
         start = np.flatnonzero(use)[: max(4, int(np.sum(use & (q < 3 * item.low))))]
         slope = float(np.clip(-np.polyfit(np.log(q[start]), np.log(psd[start]), 1)[0], 0.0, 6.0))
         psd = psd * np.exp(-blur(slope, q / item.spectrum.spacing))
-        error = np.where(long, LEVELLED_ERROR, error)
+        error = np.where(long, TRUST.levelled_error, error)
         use |= long
     return use, psd, error
+
+
+def trusted_map(cleaned: Scan, measured: Measurement) -> TrustedSpectrum:
+    """Spectrum of a cleaned scan within what its instrument shows."""
+    white = (measured.noise_nm or 0.0) ** 2 * float(np.prod(cleaned.pixel_nm)) / (2 * np.pi) ** 2
+    spectrum, radius, shortest = hann_spectrum(cleaned), measured.tip_radius_nm, measured.shortest_wave_nm
+    limits = trusted_range(cleaned.name, spectrum, radius, cleaned.rms_nm, shortest, white)
+    return replace(limits, side_nm=float(np.sqrt(np.prod(cleaned.lengths_nm))), form=form_share(cleaned.heights_nm))
+
+
+def trusted_scan(scan: Scan, settings: TopographySettings) -> TrustedSpectrum:
+    """Spectrum and trusted range of a raw scan."""
+    return trusted_map(clean(scan, settings), with_limits(scan, settings))
 
 
 def trusted_range(
     name: str,
     spectrum: Spectrum,
     tip_radius_nm: float,
-    lowest_shell: float = 2.5,
-    noise_margin: float = 20.0,
-    tip_margin: float = 0.5,
     rms_nm: float = 0.0,
     shortest_wave_nm: float | None = None,
     noise_psd: float = 0.0,
 ) -> TrustedSpectrum:
     """Bound a spectrum to what the instrument resolves.
 
-    Below, `lowest_shell` shells: levelling and the window change longer waves. Above, the first of
+    Above, the first of
 
     - *pixels*: 0.7 of the Nyquist wave vector;
-    - *noise*: C falls under `noise_margin` times its level at the Nyquist wave vector, which bounds noise and
-      short waves folded back by the pixels;
-    - *tip*: the roughness of an octave is curved like the tip, R sqrt(2 pi q^6 C) > `tip_margin` (dilation
-      takes 20 % of C there; the fit corrects the known part);
+    - *noise*: C falls under 20 times its level at the Nyquist wave vector, which bounds noise and short waves folded
+      back by the pixels;
+    - *tip*: the roughness of an octave is curved like the tip, R sqrt(2 pi q^6 C) > 0.5 (dilation takes 20 % of C
+      there; the fit corrects the known part);
     - *filter*: the instrument's shortest wave, where `shortest_wave_nm` states one.
 
     `noise_psd` (nm^4) is a stated white level; the level at Nyquist counts where it is higher.
     """
     q, psd = spectrum.q, spectrum.psd
-    low = lowest_shell * spectrum.spacing
+    low = TRUST.lowest_shell * spectrum.spacing
     tail = float(psd[-1])
     if len(q) > 20:  # a converted profile ends before, where its noise has been looked for
         end = psd[q > 0.93 * spectrum.nyquist]
         tail = float(np.median(end)) if len(end) else 0.0
-    tail = max(tail, noise_psd)
-    smooth = np.exp(_running_mean(np.log(psd), q))
-    limits = {"pixels": 0.7 * spectrum.nyquist}
+    smooth = _smooth(psd, q)
+    limits = {"pixels": TRUST.pixels * spectrum.nyquist}
     if shortest_wave_nm:
         limits["filter"] = 2 * np.pi / shortest_wave_nm
-    above = q > low
-    noisy = above & (smooth < noise_margin * tail)
-    if noisy.any():
-        limits["noise"] = float(q[noisy][0])
+    limits |= _first("noise", q, (q > low) & (smooth < TRUST.noise * max(tail, noise_psd)))
     reach = min(limits.values())
-    if tip_radius_nm > 0:
-        blunt = above & (tip_radius_nm * np.sqrt(2 * np.pi * smooth) * q**3 > tip_margin)
-        if blunt.any():
-            limits["tip"] = float(q[blunt][0])
+    limits |= _first("tip", q, (q > low) & (curvature(tip_radius_nm, q, smooth) > TRUST.curved))
     limit = min(limits, key=lambda key: limits[key])
     return TrustedSpectrum(name, spectrum, low, limits[limit], limit, tip_radius_nm, rms_nm, reach)
 
 
-def _running_mean(values: np.ndarray, q: np.ndarray, width: float = 0.12) -> np.ndarray:
-    """Mean over q (1 - width) ... q (1 + width)."""
+def trusted_profile(cleaned: Profile, measured: Measurement) -> TrustedSpectrum:
+    """Isotropic spectrum of a levelled profile within what its instrument shows.
+
+    Above, the first of pixels, noise (as seen at the Nyquist wave vector, or as stated), the instrument's shortest
+    wave, and the tip, by the same measure as for scans.
+
+    Raises
+    ------
+    InputError : hardly a wave between the ends of what is trusted.
+    """
+    k, c1 = line_spectrum(cleaned)
+    nyquist, radius = np.pi / cleaned.step_nm, measured.tip_radius_nm
+    low = (TRUST.lowest_wave_bow if cleaned.bow else TRUST.lowest_wave) * 2 * np.pi / cleaned.length_nm
+    limits = {"pixels": (TRUST.uneven_line if cleaned.resampled else TRUST.even_line) * nyquist}
+    if measured.shortest_wave_nm:
+        limits["filter"] = 2 * np.pi / measured.shortest_wave_nm
+    limits |= _first(
+        "noise", k, (k > low) & (_smooth_line(k, c1) < TRUST.noise * _noise_level(k, c1, cleaned, measured))
+    )
+    limit = min(limits, key=lambda key: limits[key])
+    high = reach = limits[limit]
+    _check_span(cleaned, low, high, limit)
+    spectrum = isotropic_spectrum(cleaned, low, reach)
+    curved = curvature(radius, spectrum.q, spectrum.psd)
+    if blunt := _first("tip", spectrum.q, curved > TRUST.curved):
+        limit, high = "tip", blunt["tip"]
+        _check_span(cleaned, low, high, limit)
+        # what the tip has taken beyond would pull the waves below down with it
+        reach = float(spectrum.q[curved < TRUST.most_curved][-1])
+        spectrum = isotropic_spectrum(cleaned, low, reach)
+    line = binned_line(k, c1, low, high)
+    return TrustedSpectrum(cleaned.name, spectrum, low, high, limit, radius, cleaned.rms_nm, reach, line=line)
+
+
+def _noise_level(k: np.ndarray, c1: np.ndarray, profile: Profile, measured: Measurement) -> float:
+    """White level of C1 (nm^3): the stated one, or that seen at Nyquist."""
+    if measured.noise_nm is not None:
+        return measured.noise_nm**2 * profile.step_nm / (2 * np.pi)
+    end = k > 0.93 * np.pi / profile.step_nm
+    return float(np.median(c1[end])) / np.log(2)  # the median of an exponential distribution of mean 1
+
+
+def _check_span(profile: Profile, low: float, high: float, limit: str) -> None:
+    if high < 2 * low:
+        raise InputError(
+            f"{profile.name}: nothing to see: its waves are trusted from {low:.2g} /nm, but the {limit} limit "
+            f"ends them at {high:.2g} /nm; give a longer or finer profile, state its own tip "
+            "(topography.instruments; 0 for a side view), or leave it out"
+        )
+
+
+def _first(name: str, q: np.ndarray, reached: np.ndarray) -> dict[str, float]:
+    """A limit at the first wave vector where it is reached; none where it never is."""
+    return {name: float(q[reached][0])} if reached.any() else {}
+
+
+def _smooth(psd: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Geometric mean over 12 % to each side of q."""
+    return np.exp(_windowed_mean(np.log(psd), q, q * (1 - 0.12), q * (1 + 0.12), "right"))
+
+
+def _smooth_line(k: np.ndarray, c1: np.ndarray) -> np.ndarray:
+    """Mean over a quarter to each side, at least 8 wave numbers: single ones scatter by as much as they are."""
+    width = np.maximum(0.25 * k, 8 * (k[1] - k[0]))
+    return _windowed_mean(c1, k, k - width, k + width, "left")
+
+
+def _windowed_mean(
+    values: np.ndarray, q: np.ndarray, low: np.ndarray, high: np.ndarray, side: Literal["left", "right"]
+) -> np.ndarray:
     total = np.concatenate([[0.0], np.cumsum(values)])
-    first = np.searchsorted(q, q * (1 - width), side="left")
-    last = np.searchsorted(q, q * (1 + width), side="right")
+    first, last = np.searchsorted(q, low), np.searchsorted(q, high, side=side)
     return (total[last] - total[first]) / (last - first)

@@ -1,11 +1,12 @@
 """Scans and line profiles from files and published containers, through the readers of SurfaceTopography.
 
-Files come from strangers: each is read in a process with limits (`guarded`). The lists of containers are read without
-executing what they name: PyYAML's full loader knows plain values and tuples.
+Files come from strangers: each is read in a process with limits (`guarded`). The list of a container, which its reader
+takes by PyYAML's full loader, must hold plain values and tuples alone.
 """
 
 import re
 import warnings
+import zipfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fnmatch import fnmatch
@@ -14,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from asperity.foreign_yaml import MistakenYaml, parse
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.settings import InstrumentSettings, TopographySettings
@@ -85,7 +87,7 @@ def with_limits(
     instrument: InstrumentSettings = NO_LIMITS,
     file_radius_nm: float | None = None,
 ) -> Measurement:
-    """A scan or line profile with the limits of its instrument; what that leaves open is the file's or the settings'."""
+    """A scan or line profile with the limits of its instrument; what it leaves open is the file's or the settings'."""
     radius = file_radius_nm if instrument.tip_radius_nm is None else instrument.tip_radius_nm
     stated = radius is not None or isinstance(data, Scan)  # topography.tip_radius_nm is a scanning probe's
     used = settings.tip_radius_nm if radius is None else radius
@@ -99,13 +101,15 @@ def _instrument(name: str, settings: TopographySettings) -> InstrumentSettings:
 
 def _alone(path: Path, name: str, settings: TopographySettings) -> Measurement:
     """The measurement of a file."""
+    from SurfaceTopography.IO import open_topography
+
     instrument = _instrument(path.name, settings)
     try:
         with path.open("rb") as stream:
             head = stream.read(HEAD_BYTES)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); make the file readable") from None
-    channels = _tried(str(path), lambda: list(_open(path, head).channels))
+    channels = _tried(str(path), lambda: list(open_topography(str(path)).channels), head)
     channel, note = _height_channel(path, channels, instrument.channel or settings.channel)
     _check_sized(str(path), channel)
     topography = _tried(str(path), channel.topography)
@@ -118,7 +122,12 @@ def _contained(path: Path, name: str, settings: TopographySettings) -> Iterator[
     from SurfaceTopography.Container.IO import CEReader
 
     try:
+        with zipfile.ZipFile(path) as archive:
+            if "meta.yml" in archive.namelist():
+                parse(archive.read("meta.yml"), tuples=True)
         container = CEReader(str(path), ignore_filters=True)
+    except MistakenYaml as error:
+        raise InputError(f"{path}: meta.yml holds more than plain values ({error}); nothing was executed") from None
     except Exception as error:  # of damaged, encrypted and foreign archives, and of strange lists
         raise InputError(f"{path}: this container cannot be read ({_first_line(error)}); get it again") from None
     if container.nb_containers != 1:
@@ -128,9 +137,8 @@ def _contained(path: Path, name: str, settings: TopographySettings) -> Iterator[
     for number, member in enumerate(container.members()):
         where = f"{path}: {member.name[:80]}"
         label = re.sub(r"[^\w.-]+", "_", f"{name}_{number + 1}_{Path(member.name[:80]).stem}")
-        topography = _tried(where, lambda k=number: container.container()[k])
-        with member.open() as stream:
-            head = stream.read(HEAD_BYTES)
+        head = _tried(where, lambda item=member: item.open().read(HEAD_BYTES))
+        topography = _tried(where, lambda k=number: container.container()[k], head)
         steps = (f"read channel {topography.info.get('data_source', 0)}",)
         yield _measurement(where, label, topography, head, steps, settings, _instrument(member.name, settings))
 
@@ -150,11 +158,11 @@ def _measurement(
     if factors is None:
         raise InputError(
             f"{where}: a {'profile' if topography.dim == 1 else 'map'} without length unit; state it in "
-            f"topography.instruments (files: {Path(where).name!r}, unit: um; tip_radius_nm, too) or in the heads of its "
-            "columns"
+            f"topography.instruments (files: {Path(where).name!r}, unit: um; tip_radius_nm, too) or in the heads of "
+            "its columns"
         )
     if topography.dim == 1:
-        x, z = _tried(where, lambda: [_filled(part) for part in topography.positions_and_heights()])
+        x, z = _tried(where, lambda: _points(*topography.positions_and_heights()))
         data: Scan | Profile = _profile(where, name, x * factors[0], z * factors[1])
         data = replace(data, bow=topography.info.get("detrend_mode") == "curvature")
     else:
@@ -178,20 +186,17 @@ def _profile(where: str, name: str, x_nm: np.ndarray, z_nm: np.ndarray) -> Profi
     return profile
 
 
-def _open(path: Path, head: bytes) -> Any:
-    """The file in the first of all readers that understands it."""
-    from SurfaceTopography.IO import CannotDetectFileFormat, MagicMatch, open_topography, readers
+def _no_reader(where: str, head: bytes, tried: str) -> str:
+    """Why no reader takes a file: the reason of one that its first bytes or its name mean."""
+    from SurfaceTopography.IO import MagicMatch, readers
 
-    try:
-        return open_topography(str(path))
-    except CannotDetectFileFormat as error:
-        said = dict(re.findall(r"tried (\w+): \n (.+)", str(error)))
-    suffix = path.suffix.lower().lstrip(".")
+    said = dict(re.findall(r"tried (\w+): \n (.*\S)", tried))
+    suffix = Path(where).suffix.lower().lstrip(".")
     meant = [reader for reader in readers if reader.can_read(head) == MagicMatch.YES]
     meant += [reader for reader in readers if suffix in (reader.file_extensions() or ())]
-    reasons = (f" ({item.name()}: {said[item.__name__].strip()[:120]})" for item in meant if item.__name__ in said)
-    raise InputError(
-        f"{path}: no reader understands this file{next(reasons, '')}; accepted are the formats of SurfaceTopography "
+    reasons = (f" ({item.name()}: {said[item.__name__][:120]})" for item in meant if item.__name__ in said)
+    return (
+        f"{where}: no reader understands this file{next(reasons, '')}; accepted are the formats of SurfaceTopography "
         "(gwy, ibw, di, jpk, mi, nid, ps tiff, ...; all 40: docs/topography.md, Formats)"
     )
 
@@ -245,6 +250,10 @@ def _stated_radius(info: Any) -> float | None:
     return float(info["value"]) * _nm("tip_radius", str(info.get("unit")))
 
 
+def _points(x: Any, z: Any) -> tuple[np.ndarray, np.ndarray]:
+    return _filled(x), _filled(z)
+
+
 def _filled(values: Any) -> np.ndarray:
     return np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
 
@@ -273,12 +282,14 @@ def _check_plausible(where: str, heights_nm: np.ndarray, *lengths_nm: float) -> 
         )
 
 
-def _tried(where: str, read: Callable[[], Any]) -> Any:
+def _tried(where: str, read: Callable[[], Any], head: bytes = b"") -> Any:
     """What a reader gives; readers of foreign formats fail in many ways."""
+    from SurfaceTopography.IO import CannotDetectFileFormat
+
     try:
         return read()
-    except InputError:
-        raise
+    except CannotDetectFileFormat as error:
+        raise InputError(_no_reader(where, head, str(error))) from None
     except Exception as error:
         raise InputError(f"{where}: heights cannot be read ({_first_line(error)}); is the file complete?") from None
 

@@ -8,9 +8,9 @@ import pytest
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.scan_checks.judged import Described, _predicted, judge
 from mesoscale.settings import ContactSettings, TopographySettings
-from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description.one_spectrum import few_places, merge
 from mesoscale.topography.description.parameters import analyse
+from mesoscale.topography.description.trusted_range import trusted_scan
 from mesoscale.topography.height_synthesis import synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum

@@ -8,8 +8,8 @@ import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description.parameters import Topography, analyse
+from mesoscale.topography.description.trusted_range import trusted_scan
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.synthetic_scans import ScanSet, surface_patch, synthetic_scans

@@ -77,7 +77,7 @@ def test_profiles_alone_recover_the_surface():
         surface = surface_patch(truth, points, length, np.random.default_rng(seed))
         for number, line in enumerate(surface[:, :: points // 4].T):
             measured = Measurement(Profile(line, length, f"{seed}{number}"), 0.0, True)
-            spectra.append(trusted_record(measured.data.name, *record(measured, settings), settings))
+            spectra.append(trusted_record(measured.data.name, *record(measured, settings)))
     result = analyse(spectra, settings)
     assert result.estimates["slope"].value == pytest.approx(2.84, abs=0.1)
     assert result.estimates["rms"].value == pytest.approx(6.0, rel=0.1)

@@ -5,9 +5,7 @@ import pytest
 
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import (
-    autocorrelation,
     flat_window,
-    profile_spectrum,
     radial_spectrum,
     section_pixels,
 )
@@ -70,17 +68,3 @@ def test_hann_window_returns_steep_slopes(slope):
     used = (spectrum.q > 0.08) & (spectrum.q < 1.2)
     measured = -np.polyfit(np.log(spectrum.q[used]), np.log(spectrum.psd[used]), 1, w=np.sqrt(spectrum.modes[used]))[0]
     assert measured == pytest.approx(slope, abs=0.03)
-
-
-def test_profile_spectrum_sums_to_the_mean_square():
-    heights = np.random.default_rng(4).standard_normal((256, 200))
-    q, c1 = profile_spectrum(heights, (256.0, 200.0))
-    assert 2 * c1.sum() * (q[1] - q[0]) == pytest.approx(1.0, rel=0.03)
-
-
-def test_autocorrelation_starts_at_the_mean_square_and_finds_a_period():
-    x = np.arange(400)
-    heights = np.sin(2 * np.pi * x / 40)[:, None] * np.ones(5)[None, :]
-    lag, correlation = autocorrelation(heights, (800.0, 10.0))
-    assert correlation[0] == pytest.approx(0.5, rel=1e-12)
-    assert correlation[np.argmin(abs(lag - 80))] == pytest.approx(0.5, rel=0.01)  # 40 pixels of 2 nm

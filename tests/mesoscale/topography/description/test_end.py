@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.description.end import cutoff_row, rms_before, trusted_end
+from mesoscale.topography.description.inputs import cutoff_row, rms_before, trusted_end
 from mesoscale.topography.description.parameters import analyse
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from tests.mesoscale.topography.description.test_parameters import spectra

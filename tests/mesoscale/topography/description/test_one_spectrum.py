@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mesoscale.errors import InputError
-from mesoscale.topography.description.confidence import REACH
+from mesoscale.topography.description.intervals import REACH
 from mesoscale.topography.description.one_spectrum import merge, overlaps, refuse_different_films
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.roughness_spectrum import RoughSpectrum

@@ -8,13 +8,12 @@ import pytest
 from scipy.special import beta, betainc
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description import likelihood
-from mesoscale.topography.description.parameters import MAX_MISFIT, analyse, inputs
-from mesoscale.topography.description.places import rms_scatter_row
-from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur
+from mesoscale.topography.description.inputs import rms_scatter_row, rows_of
+from mesoscale.topography.description.parameters import MAX_MISFIT, analyse
+from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur, trusted_scan
 from mesoscale.topography.measurements.cleaning import Scan
-from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, slope_from_hurst
+from mesoscale.topography.roughness_spectrum import RoughSpectrum, hurst_from_slope, mean_square, slope_from_hurst
 from mesoscale.topography.spectrum import Spectrum
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
 
@@ -34,14 +33,23 @@ def from_heights(heights, length=1000.0, settings=None):
     return analyse([trusted_scan(scan, settings)], settings)
 
 
-@pytest.mark.parametrize("method", ["likelihood", "lines"])
-def test_recovers_truth_through_tip_noise_tilt_and_drift(method):
-    result = analyse(spectra(), TopographySettings(method=method))
+def test_recovers_truth_through_tip_noise_tilt_and_drift():
+    result = analyse(spectra(), TopographySettings())
     assert result.reasons == ()
     estimates = result.estimates
     assert estimates["q0"].value == pytest.approx(TRUTH.q0, rel=0.2)
     assert estimates["slope"].value == pytest.approx(TRUTH.slope, abs=0.15)
     assert estimates["rms"].value == pytest.approx(TRUTH.rms_nm, rel=0.05)
+
+
+def test_the_line_fits_of_the_paper_recover_truth():
+    fitted = analyse(spectra(), TopographySettings()).line_fit
+    assert fitted.q0 == pytest.approx(TRUTH.q0, rel=0.2)
+    assert fitted.slope == pytest.approx(TRUTH.slope, abs=0.15)
+    rms = np.sqrt(mean_square(fitted.plateau, fitted.q0, fitted.slope, TRUTH.q1))
+    assert rms == pytest.approx(TRUTH.rms_nm, rel=0.05)
+    assert fitted.slope_low < fitted.slope < fitted.slope_high
+    assert fitted.plateau_low < fitted.plateau < fitted.plateau_high
 
 
 def test_places_of_different_roughness_widen_the_range_of_rms_only():
@@ -134,12 +142,12 @@ def test_conventions_differ_by_one_half():
 
 def test_inputs_are_ranges_of_q0_hurst_and_rms():
     result = analyse(spectra(), TopographySettings())
-    rows = inputs(result, TopographySettings())
+    rows = rows_of(result, None, TopographySettings(), 100.0)
     assert set(rows) == {"q0", "hurst", "rms"}
     for row in rows.values():
         assert row["distribution"] == "uniform"
         assert 0 < row["a"] < row["b"]
-    narrow = inputs(result, TopographySettings(ranges="interval"))
+    narrow = rows_of(result, None, TopographySettings(ranges="interval"), 100.0)
     assert narrow["rms"]["b"] - narrow["rms"]["a"] <= rows["rms"]["b"] - rows["rms"]["a"]
 
 
@@ -151,7 +159,6 @@ def test_white_noise_has_no_power_law():
 def test_constant_scan_is_not_identifiable():
     result = from_heights(np.zeros((128, 128)))
     assert any("not identifiable" in reason for reason in result.reasons)
-    assert inputs(result, TopographySettings()) == {} or result.reasons
 
 
 def test_small_scans_alone_show_no_plateau():

@@ -3,10 +3,10 @@
 import numpy as np
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.analysis import trusted_scan
 from mesoscale.topography.description.one_spectrum import merge
 from mesoscale.topography.description.parameters import analyse
-from mesoscale.topography.description.tip_error import spectrum_with_radius_error, with_radius_error
+from mesoscale.topography.description.tip import spectrum_with_radius_error, with_radius_error
+from mesoscale.topography.description.trusted_range import trusted_scan
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
 
 

@@ -8,7 +8,7 @@ import pytest
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.heights import common_heights, height_quantiles
 from mesoscale.topography.description.parameters import analyse
-from mesoscale.topography.description.tip_on_grains import tip_lift, with_lift_error, without_lift
+from mesoscale.topography.description.tip import tip_lift, with_lift_error, without_lift
 from mesoscale.topography.height_synthesis import Z, synthesize_heights
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import Measurement
@@ -36,7 +36,7 @@ def images(heights, count=3):
 def analysed(heights):
     scans, lifts = zip(*images(heights), strict=True)
     measured = [(scan.name, *record(Measurement(scan, RADIUS, True), SETTINGS)) for scan in scans]
-    spectra = [trusted_record(*each, SETTINGS) for each in measured]
+    spectra = [trusted_record(*each) for each in measured]
     quantiles = {scan.name: height_quantiles(scan.heights_nm) for scan in scans}
     return spectra, quantiles, float(np.mean(lifts))
 

@@ -1,7 +1,6 @@
 """Containers of contact.engineering: read whole, and harmless whatever is inside."""
 
 import json
-import tracemalloc
 import zipfile
 from pathlib import Path
 
@@ -10,8 +9,8 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.settings import InstrumentSettings, TopographySettings
+from mesoscale.topography.measurements import guarded
 from mesoscale.topography.measurements.cleaning import Scan
-from mesoscale.topography.measurements.containers import MAX_RATIO
 from mesoscale.topography.measurements.loading import load_measurements, write_gwy
 from mesoscale.topography.measurements.profiles import Profile
 
@@ -53,7 +52,14 @@ def test_the_diamond_film_is_read_with_each_instrument():
 
 def test_both_kinds_of_lists_are_read(tmp_path):
     (old,) = load_measurements(container(tmp_path / "old.zip"))
-    listed = {"surfaces": [{"topographies": [{"name": "line", "unit": "um", "datafile": {"original": "line.txt"}}]}]}
+    listed = {
+        "surfaces": [
+            {
+                "name": "film",
+                "topographies": [{"name": "line", "unit": "um", "size": [0.6], "datafile": {"original": "line.txt"}}],
+            }
+        ]
+    }
     (new,) = load_measurements(container(tmp_path / "new.zip", json.dumps(listed), "index.json"))
     assert old.data.heights_nm == pytest.approx(new.data.heights_nm)
     assert old.data.rms_nm == pytest.approx(1 / np.sqrt(2), rel=0.02)
@@ -75,25 +81,23 @@ def test_code_in_the_list_is_never_run(tmp_path, tag):
     assert not trace.exists()
 
 
-def test_a_bomb_is_not_unpacked(tmp_path):
-    refused(container(tmp_path / "bomb.zip", **{"line.txt": b"0" * 200 * 2**20}), "unpacks to more than")
+def test_a_bomb_is_refused_by_the_limits_of_the_process(tmp_path, monkeypatch):
+    monkeypatch.setattr(guarded, "MEMORY_MB", 300.0)
+    refused(container(tmp_path / "bomb.zip", **{"line.txt": b"0" * 400 * 2**20}), "more than|cannot be read")
 
 
 @pytest.mark.parametrize(
     ("meta", "words"),
     [
-        (META.replace("line.txt", "other.txt"), "which the container lacks"),
-        (META.replace("[0.6]", "[-1.0]"), "size ="),
-        (META.replace("[0.6]", "[1.0, 2.0, 3.0]"), "size ="),
+        (META.replace("line.txt", "other.txt"), "no item named 'other.txt'"),
         (META.replace("unit: um, ", ""), "without length unit"),
-        (META.replace("{original: line.txt}", "{squeezed: line.nc}"), "without an original data file"),
+        (META.replace("{original: line.txt}", "{other: line.nc}"), "data file"),
         (META + META.removeprefix("surfaces:\n"), "holds 2 surfaces"),
-        ("surfaces: 3\n", "lists no surfaces"),
+        ("surfaces: 3\n", "cannot be read"),
         ("surfaces:\n- topographies: []\n", "empty"),
-        ("a: [" * 3000, "plain values|cannot"),
+        ("a: [" * 3000, "plain values"),
         (f"{META}a: &a [x, x]\nb: [*a, *a]\n", "alias"),
         (f'{META}a: !!int ""\n', "tag"),
-        ("{" + "x" * 5 * 2**20, "unpacks to more than"),
     ],
 )
 def test_strange_lists_are_refused_in_one_line(tmp_path, meta, words):
@@ -110,19 +114,7 @@ def test_a_name_cannot_leave_the_folder(tmp_path):
 def test_what_is_no_archive_is_refused(tmp_path):
     path = tmp_path / "a.zip"
     path.write_bytes(b"PK\x03\x04 not really")
-    refused(path, "cannot be unpacked")
+    refused(path, "cannot be read")
     with zipfile.ZipFile(tmp_path / "b.zip", "w") as archive:
         archive.writestr("notes.txt", "hello")
-    refused(tmp_path / "b.zip", "neither index.json nor meta.yml")
-
-
-def test_a_bomb_takes_no_more_memory_than_is_accepted(tmp_path):
-    path = container(tmp_path / "bomb.zip", **{"line.txt": b"0" * 200 * 2**20})
-    accepted = path.stat().st_size * MAX_RATIO
-    tracemalloc.start()
-    try:
-        refused(path, "unpacks to more than")
-        most = tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
-    assert most < 3 * accepted
+    refused(tmp_path / "b.zip", "neither 'index.json' nor 'meta.yml'")
