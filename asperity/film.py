@@ -42,7 +42,6 @@ Material = Mapping[str, float | InputRow | Any]
 
 RECOMMENDED = {"mechanics": "coupled", "attraction": "offset"}
 """Of a contact: all asperities on one elastic half-space, and walls that are D0 apart at touch (docs/contact.md)."""
-CELLS = 64
 PIXELS = {128: 4.0, 256: 4.0, 512: 1.0, 1024: 1.0, 2048: 1.0}
 """Grids, and how far beyond a film's cut-off they must resolve: small ones are for films of long waves."""
 GROWN_PIXELS = 512

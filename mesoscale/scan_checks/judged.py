@@ -23,9 +23,7 @@ from mesoscale.topography.roughness_spectrum import RoughSpectrum, SpectrumTable
 from mesoscale.topography.synthesis import synthesize_spectrum
 
 Array = np.ndarray
-EVENLY = 0.5 * (5.0**0.5 - 1.0)  # multiples of the golden ratio (modulo 1) are spread evenly, however many
 SITES = 256  # a scan is thinned to at most so many sites a side, and so are the surfaces beside it
-MAPS, BLOCKS = 10, 4  # maps of heights drawn, and blocks a side of a scan that they are drawn from
 TOUCHED, PRESSED = 40, 20  # surfaces that are brought to first contact, and of these the ones that are pressed
 MOST_CONTACT = 0.5  # share of the cell; beyond, contacts have merged and asperities one by one say nothing
 LOADS_NN = (1000.0, 7000.0)  # per cell of the contact settings: 1 and 7 uN
@@ -50,7 +48,8 @@ class Described:
         from scipy.special import ndtri
 
         # spread evenly, the first ones too: twenty random places can have half of the film's scatter
-        places = ndtri((np.arange(count) + 0.5) * EVENLY % 1.0)
+        golden = 0.5 * (5.0**0.5 - 1.0)  # its multiples (modulo 1) are spread evenly, however many
+        places = ndtri((np.arange(count) + 0.5) * golden % 1.0)
         if self.one is not None:
             scatter = self.one.place_sd * few_places(len(self.one.names))
             for psd, place in zip(self.one.draws(places=False, count=count), places, strict=True):
@@ -109,12 +108,12 @@ def judge(
         yield from _judged(scan, described, name, left_out, inputs, settings, contact, most_contact)
 
 
-def height_maps(scans: Sequence[Scan], count: int = MAPS) -> Iterator[tuple[float, ...]]:
+def height_maps(scans: Sequence[Scan], count: int = 10) -> Iterator[tuple[float, ...]]:
     """Maps of heights that few grains allow: from blocks of the scans drawn anew (bootstrap over places)."""
-    blocks = []
+    blocks, cuts = [], 4
     for scan in scans:
         standard = (scan.heights_nm - scan.heights_nm.mean()) / scan.rms_nm
-        blocks += [part for row in np.array_split(standard, BLOCKS) for part in np.array_split(row, BLOCKS, axis=1)]
+        blocks += [part for row in np.array_split(standard, cuts) for part in np.array_split(row, cuts, axis=1)]
     rng = np.random.default_rng(2)
     for _ in range(count):
         drawn = [blocks[k].ravel() for k in rng.integers(len(blocks), size=len(blocks))]

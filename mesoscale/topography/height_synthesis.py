@@ -19,8 +19,6 @@ from mesoscale.topography.synthesis import filtered_noise, squared_waves
 
 Array = NDArray[np.float64]
 Z = np.round(np.arange(-50, 61) / 10, 1)  # normal variable at which a height map states heights
-HERMITE = 24
-QUADRATURE = 160
 
 
 def synthesize_heights(
@@ -87,15 +85,15 @@ def _gaussian_power(pixels: int, wanted: Array, heights: tuple[float, ...]) -> A
 @lru_cache(maxsize=8)
 def _carried_correlation(heights: tuple[float, ...]) -> tuple[Array, Array]:
     """Correlations r of g in rising order and what F makes of them."""
-    x, weight = np.polynomial.hermite_e.hermegauss(QUADRATURE)
+    x, weight = np.polynomial.hermite_e.hermegauss(160)
     weight = weight / weight.sum()
     values = np.interp(x, Z, np.asarray(heights))
     previous, current = np.zeros_like(x), np.ones_like(x)  # normalised Hermite polynomials by recursion
-    squares = []
-    for n in range(HERMITE):
+    squares, terms = [], 24
+    for n in range(terms):
         previous, current = current, (x * current - np.sqrt(n) * previous) / np.sqrt(n + 1)
         squares.append(float(np.sum(weight * values * current)) ** 2)
     share = np.array(squares) / np.sum(squares)
     r = np.linspace(-1, 1, 2001)
-    carried = np.sum(share[:, None] * r[None, :] ** np.arange(1, HERMITE + 1)[:, None], axis=0)
+    carried = np.sum(share[:, None] * r[None, :] ** np.arange(1, terms + 1)[:, None], axis=0)
     return r, np.maximum.accumulate(carried)

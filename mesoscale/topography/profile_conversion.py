@@ -15,16 +15,6 @@ import numpy as np
 from mesoscale.topography.measurements.profiles import Profile
 from mesoscale.topography.spectrum import FLOOR, Spectrum
 
-NODES_PER_DECADE = 10
-BINS_PER_DECADE = 20
-KINK = 0.35  # standard deviation of the change of slope times the node distance, from node to node
-SLOPE, SLOPE_SD = -0.75, 1.5  # what the logarithmic slope may be where a line hardly determines it (its plateau)
-SLOPE_REACH = 5  # nodes that share one such slope
-TAIL_DECADES = 1.5  # C is continued this far beyond the data, because short waves lift C1 everywhere
-BIAS = 0.25  # error of ln C that no averaging removes: its mean about the knee, on slopes 2.3 to 3.6 (60 lines each)
-QUADRATURE = 160
-ROUNDS = 60
-STEP_SIZES = 0.5 ** np.arange(14)
 # sine tapers (Riedel and Sidorenko 1995, doi:10.1109/78.365298): n of them give 2 n/(2 n + 1) independent modes per
 # wave number, and spread each over a variance of (n + 1)(2 n + 1)/24 wave numbers
 TAPERS = 3
@@ -60,16 +50,17 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     """
     measured = binned_line(*line_spectrum(profile), low, high)
     bins, modes = measured.q, measured.modes
-    distance = np.log(10) / NODES_PER_DECADE
+    distance = np.log(10) / 10  # nodes a decade
     count = max(4, int(np.ceil(np.log(bins[-1] / bins[0]) / distance)) + 1)
-    tail = int(TAIL_DECADES * NODES_PER_DECADE)
-    nodes = np.log(bins[0]) + distance * np.arange(count + tail)
+    # C is continued for 1.5 decades beyond the data, because short waves lift C1 everywhere
+    nodes = np.log(bins[0]) + distance * np.arange(count + 15)
     heights, covariance = _solve(nodes, measured)
     keep = (nodes >= np.log(low) - 1e-9) & (nodes <= np.log(high) + 1e-9)
     variance = np.diag(covariance)[keep]
     worth = 1 / variance
     worth *= min(1.0, modes.sum() / worth.sum())
-    worth /= 1 + worth * BIAS**2
+    # error of ln C that no averaging removes: its mean about the knee, on slopes 2.3 to 3.6 (60 lines each)
+    worth /= 1 + worth * 0.25**2
     nyquist = np.pi / profile.step_nm
     return Spectrum(np.exp(nodes[keep]), np.exp(heights[keep]), worth, measured.spacing, nyquist, sharp=True)
 
@@ -94,17 +85,17 @@ def projected(q: np.ndarray, psd: np.ndarray, k: np.ndarray) -> np.ndarray:
 
 
 def _points(k: np.ndarray, end: float) -> tuple[np.ndarray, np.ndarray]:
-    """Where C is read for C1 at each k (m,), and with which weight: (m, QUADRATURE) each; q = k cosh t."""
+    """Where C is read for C1 at each k (m,), and with which weight: (m, 160) each; q = k cosh t."""
     reach = np.arccosh(np.maximum(end / k, 1 + 1e-9))
-    t, w = np.polynomial.legendre.leggauss(QUADRATURE)
+    t, w = np.polynomial.legendre.leggauss(160)
     t = 0.5 * (t + 1)[None, :] * reach[:, None]
     at = k[:, None] * np.cosh(t)
     return at, at * w[None, :] * reach[:, None]  # 2 * (reach / 2)
 
 
 def _binned(k: np.ndarray, c1: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Bins even in log k: mean k, independent modes and mean C1 of each."""
-    grid = np.floor(np.log10(k) * BINS_PER_DECADE).astype(int)
+    """20 bins a decade of k: mean k, independent modes and mean C1 of each."""
+    grid = np.floor(np.log10(k) * 20).astype(int)
     _, index = np.unique(grid, return_inverse=True)
     count = np.bincount(index)
     centre = np.exp(np.bincount(index, np.log(k)) / count)
@@ -120,10 +111,12 @@ def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarra
     place = (np.log(at) - nodes[0]) / (nodes[1] - nodes[0])
     left = np.clip(place.astype(int), 0, len(nodes) - 2)
     right_share = np.clip(place - left, 0.0, 1.0)
-    bends = np.diff(np.eye(len(nodes)), 2, axis=0) / KINK
+    # standard deviation of the change of slope times the node distance, from node to node
+    bends = np.diff(np.eye(len(nodes)), 2, axis=0) / 0.35
     rise = np.diff(np.eye(len(nodes)), axis=0) / (nodes[1] - nodes[0])
-    prior = bends.T @ bends + rise.T @ rise / (SLOPE_SD**2 * SLOPE_REACH)
-    pull = rise.sum(axis=0) * SLOPE / (SLOPE_SD**2 * SLOPE_REACH)
+    # the logarithmic slope is -0.75 +- 1.5 where a line hardly determines it (its plateau); five nodes share one
+    prior = bends.T @ bends + rise.T @ rise / (1.5**2 * 5)
+    pull = rise.sum(axis=0) * -0.75 / (1.5**2 * 5)
     rows = np.repeat(np.arange(len(k)), at.shape[1])
 
     def model(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -141,12 +134,12 @@ def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarra
     fall = np.polyfit(np.log(k), np.log(c1), 1)
     y = np.polyval(fall, nodes) - nodes - np.log(2)
     mean, slope = model(y)
-    for _ in range(ROUNDS):
+    for _ in range(60):
         gradient = slope.T @ (modes * (c1 / mean - 1)) - prior @ y + pull
         information = slope.T @ (modes[:, None] * slope) + prior
         move = np.linalg.solve(information + 1e-9 * np.eye(len(y)), gradient)
         before = cost(y, mean)
-        for size in STEP_SIZES:
+        for size in 0.5 ** np.arange(14):
             trial = y + size * move
             trial_mean, trial_slope = model(trial)
             if cost(trial, trial_mean) <= before:

@@ -9,7 +9,6 @@ import numpy as np
 from mesoscale.errors import InputError
 
 Convention = Literal["profile", "areal"]
-FINE_POINTS = 2001  # of the integral over a table
 OFFSET = {"profile": 1.0, "areal": 2.0}  # slope = 2 H + offset of the two-dimensional spectrum
 
 
@@ -97,7 +96,7 @@ class SpectrumTable:
         square = np.pi * self.values[0] * min(low, q1) ** 2
         if high > low:
             inside = self.q[self.q < high]
-            q = np.unique(np.concatenate([inside, np.geomspace(low, high, FINE_POINTS)]))
+            q = np.unique(np.concatenate([inside, np.geomspace(low, high, 2001)]))
             square += np.trapezoid(2 * np.pi * q * self.psd(q), q)
         return float(square)
 

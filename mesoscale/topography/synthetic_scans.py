@@ -12,10 +12,6 @@ from mesoscale.settings import SyntheticScanSettings
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 
-PERIOD = 1.25  # side of the periodic surface over side of the scan cut from it, so that scans are not periodic
-ALIASES = 12  # images of the spectrum folded back by coarse pixels
-TIP_STEP_NM = 5.0  # the tip meets the surface on pixels this fine, or twice as fine as the scan's
-
 
 class ScanSet(SyntheticScanSettings):
     """A set of synthetic scans: what a scene says of them, and what is fixed, the surface and the artefacts."""
@@ -54,7 +50,8 @@ def synthetic_scans(settings: ScanSet) -> Iterator[SyntheticScan]:
             rng = np.random.default_rng(np.random.SeedSequence(settings.seed, spawn_key=(key, number)))
             rms = settings.rms_nm * math.exp(settings.rms_variation * rng.standard_normal())
             truth = RoughSpectrum.from_rms(rms, settings.q0, settings.slope, settings.q1)
-            finer = 2 if settings.tip_radius_nm > 0 and length / settings.pixels > TIP_STEP_NM else 1
+            # the tip meets the surface on pixels of 5 nm, or twice as fine as the scan's
+            finer = 2 if settings.tip_radius_nm > 0 and length / settings.pixels > 5.0 else 1
             surface = surface_patch(truth, finer * settings.pixels, length, rng)
             surface = dilate(surface, settings.tip_radius_nm, length / len(surface))[::finer, ::finer]
             name = f"{size}_{number + 1:02d}"
@@ -67,7 +64,7 @@ def surface_patch(truth: RoughSpectrum, pixels: int, length_nm: float, rng: np.r
     The spectrum is folded at the Nyquist wave vector as point sampling folds it, so that a coarse scan of a
     surface that is rough below its pixels is exact, RMS included.
     """
-    wanted = math.ceil(PERIOD * pixels)
+    wanted = math.ceil(1.25 * pixels)  # the periodic surface is larger, so that scans are not periodic
     n = scipy.fft.next_fast_len(wanted, True) or wanted
     step = length_nm / pixels
     qx = 2 * np.pi * np.fft.fftfreq(n, step)
@@ -80,7 +77,7 @@ def surface_patch(truth: RoughSpectrum, pixels: int, length_nm: float, rng: np.r
 
 def _folded_psd(truth: RoughSpectrum, qx: np.ndarray, qy: np.ndarray, sampling: float) -> np.ndarray:
     """Sum of C over the images of each wave vector at multiples of the sampling wave vector."""
-    images = min(ALIASES, math.ceil(truth.q1 / sampling + 0.5))
+    images = min(12, math.ceil(truth.q1 / sampling + 0.5))
     # the images vary slowly over the grid: a coarse one and linear interpolation do
     nodes = np.linspace(-sampling / 2, sampling / 2, 33)
     far = np.zeros((33, 33))

@@ -10,12 +10,6 @@ from mesoscale.topography.roughness_spectrum import SpectrumTable
 from mesoscale.topography.spectrum import radial_spectrum
 from mesoscale.topography.synthesis import synthesize_spectrum
 
-GAUSSIANS = 39  # surfaces that a scan is set beside
-SECTIONS, FRACTION = 9, 0.75
-MIN_SIGNIFICANCE = 2.0  # standard deviations of all scans together
-MIN_SKEWNESS, MIN_EXCESS, MIN_TALLER = 0.3, 0.15, 0.15  # smaller ones hardly change a contact
-TAIL = 1.0  # the last normal variable's width over which the tail's slope is fitted
-
 
 @dataclass(frozen=True)
 class HeightTest:
@@ -24,7 +18,7 @@ class HeightTest:
     Attributes
     ----------
     skewness, kurtosis, highest : of the scan; highest point above the mean plane in units of the RMS height.
-    expected, spread : (3,) mean and standard deviation of the same on `GAUSSIANS` Gaussian surfaces.
+    expected, spread : (3,) mean and standard deviation of the same on 39 Gaussian surfaces.
     anisotropy : RMS slope along the steepest direction over that across it; 1 for an isotropic surface.
     """
 
@@ -48,9 +42,9 @@ def compare_heights(name: str, heights: np.ndarray, lengths_nm: tuple[float, flo
     i, j = ((side - n) // 2 for side in heights.shape)
     square = np.asarray(heights[i : i + n, j : j + n], dtype=float)
     side = min(lengths_nm)
-    spectrum = radial_spectrum(square, (side, side), SECTIONS, FRACTION, flat=0.0)
+    spectrum = radial_spectrum(square, (side, side), 9, 0.75, flat=0.0)
     psd = SpectrumTable(spectrum.q, spectrum.psd).psd
-    gaussian = np.array([moments(synthesize_spectrum(n, side, psd, 1.0, seed)) for seed in range(GAUSSIANS)])
+    gaussian = np.array([moments(synthesize_spectrum(n, side, psd, 1.0, seed)) for seed in range(39)])
     skewness, kurtosis, highest = moments(square)
     expected, spread = gaussian.mean(axis=0), gaussian.std(axis=0, ddof=1)
     return HeightTest(name, skewness, kurtosis, highest, expected, spread, slope_ratio(square))
@@ -74,7 +68,7 @@ def moments(heights: np.ndarray) -> tuple[float, float, float]:
 def not_gaussian(tests: Sequence[HeightTest]) -> str:
     """In words what of the heights no Gaussian surface has; empty where nothing stands out.
 
-    A statistic stands out where the scans together are MIN_SIGNIFICANCE standard deviations away, and far enough to
+    A statistic stands out where the scans together are two standard deviations away, and far enough to
     change a contact.
     """
     if not tests:
@@ -84,10 +78,10 @@ def not_gaussian(tests: Sequence[HeightTest]) -> str:
         np.mean([getattr(test, key) for test in tests]) for key in ("skewness", "kurtosis", "highest")
     )
     expected = np.mean([test.expected for test in tests], axis=0)
-    far = (
-        abs(skewness - expected[0]) > MIN_SKEWNESS,
-        abs(kurtosis - expected[1]) > MIN_EXCESS * expected[1],
-        abs(highest / expected[2] - 1) > MIN_TALLER,
+    far = (  # less hardly changes a contact
+        abs(skewness - expected[0]) > 0.3,
+        abs(kurtosis - expected[1]) > 0.15 * expected[1],
+        abs(highest / expected[2] - 1) > 0.15,
     )
     words = (
         f"skewness {skewness:.2f} where Gaussian surfaces have {expected[0]:.2f}",
@@ -97,13 +91,13 @@ def not_gaussian(tests: Sequence[HeightTest]) -> str:
     return "; ".join(
         f"{word} ({away:+.1f} standard deviations)"
         for word, away, enough in zip(words, together, far, strict=True)
-        if enough and abs(away) > MIN_SIGNIFICANCE
+        if enough and abs(away) > 2.0
     )
 
 
 def height_quantiles(heights: np.ndarray) -> np.ndarray:
     """Heights of a scan in units of its RMS at each normal variable of `Z`, with the tails carried on straight."""
-    from scipy.special import ndtr
+    from scipy.special import ndtr, ndtri
 
     values = np.sort(heights, axis=None)
     values = (values - values.mean()) / values.std()
@@ -111,8 +105,8 @@ def height_quantiles(heights: np.ndarray) -> np.ndarray:
     place = (np.arange(count) + 0.5) / count
     table = np.interp(ndtr(Z), place, values)
     for side in (1, -1):
-        end = _normal(1 - 0.5 / count)
-        outside, near = side * Z > end, (side * Z <= end) & (side * Z >= end - TAIL)
+        end = float(ndtri(1 - 0.5 / count))
+        outside, near = side * Z > end, (side * Z <= end) & (side * Z >= end - 1.0)
         slope = max(np.polyfit(Z[near], table[near], 1)[0], 0.0)
         edge = Z[near][-1] if side > 0 else Z[near][0]
         start = table[near][-1] if side > 0 else table[near][0]
@@ -128,9 +122,3 @@ def common_heights(quantiles: Sequence[np.ndarray]) -> tuple[float, ...]:
     table = table - np.sum(density * table)
     table /= np.sqrt(np.sum(density * table**2))
     return tuple(float(value) for value in np.round(table, 6))
-
-
-def _normal(probability: float) -> float:
-    from scipy.special import ndtri
-
-    return float(ndtri(probability))

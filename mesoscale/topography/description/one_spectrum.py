@@ -22,41 +22,12 @@ from mesoscale.topography.description.intervals import QUANTILES, REACH, few_pla
 from mesoscale.topography.description.likelihood import DISCREPANCY
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, with_ends
 
-
-@dataclass(frozen=True)
-class Merging:
-    """How measurements are joined and compared.
-
-    Attributes
-    ----------
-    per_decade : bands.
-    kink : standard deviation of the change of slope times the band's width, from band to band.
-    most_biased : of ln C, where hardly one amplitude is behind it.
-    draws, candidates : spectra that a band stands for; of the candidates those that the mean square allows are kept.
-    levelled_waves, levelled_scatter : surfaces of C ~ q^-1 to q^-4 without a plateau, levelled by a plane, hold the
-        waves of 0.63 to 0.81 a side and more; ln of their mean square scatters by 0.03 to 0.6 (the steepest).
-    different_films : ratio of C, a factor of 10 in RMS height, beyond which two files are not of one surface.
-    most_misfit : of reduced chi^2 of a common shape: of 143 pairs of maps of one simulated surface none reaches 1.8.
-    most_places : of ln C between two places whose RMS heights scatter by 40 %, at 99 %: a factor of 18.
-    extension : decades that the last slope is carried on beyond what is measured.
-    slopes : of a self-affine surface (0 < H < 1); shallower ones have no finite RMS height.
-    """
-
-    per_decade: int = 10
-    kink: float = 0.35
-    most_biased: float = 0.3
-    draws: int = 500
-    candidates: int = 10_000
-    levelled_waves: float = 0.72
-    levelled_scatter: float = 0.6
-    different_films: float = 100.0
-    most_misfit: float = 3.0
-    most_places: float = 2.58 * np.sqrt(2) * 0.8
-    extension: float = 1.0
-    slopes: tuple[float, float] = (-4.0, -2.1)
-
-
-MERGING = Merging()
+BANDS_PER_DECADE = 10
+MOST_MISFIT = 3.0
+"""Of reduced chi^2 of a common shape: of 143 pairs of maps of one simulated surface none reaches 1.8."""
+DRAWS = 500
+EXTENSION_DECADES = 1.0
+"""The last slope is carried on this far beyond what is measured."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +54,9 @@ class Overlap:
     @property
     def one_surface(self) -> bool:
         """Can these be two places of one surface, whose spectra differ by one factor, and by no large one?"""
-        most = np.hypot(np.log(self.expected), MERGING.most_places)
-        return bool(abs(np.log(self.ratio)) <= most and self.misfit <= MERGING.most_misfit)
+        # ln C of two places whose RMS heights scatter by 40 %, at 99 %: a factor of 18
+        most = np.hypot(np.log(self.expected), 2.58 * np.sqrt(2) * 0.8)
+        return bool(abs(np.log(self.ratio)) <= most and self.misfit <= MOST_MISFIT)
 
     @property
     def agrees(self) -> bool:
@@ -135,7 +107,7 @@ class OneSpectrum:
         reach = REACH * self.log_sd
         return np.exp(self.log_psd - reach), np.exp(self.log_psd + reach)
 
-    def draws(self, places: bool, count: int = MERGING.draws) -> np.ndarray:
+    def draws(self, places: bool, count: int = DRAWS) -> np.ndarray:
         """(count, m) spectra C in nm^4 that the measurements allow: of the typical place, or of a place anywhere."""
         rng = np.random.default_rng(0)  # the same draws whenever they are asked for
         logs = self._normal_draws(rng, count) if self.logs is None else self.logs[:count]
@@ -150,13 +122,14 @@ class OneSpectrum:
         `error` in its logarithm.
         """
         rng = np.random.default_rng(3)
-        logs = self._normal_draws(rng, MERGING.candidates)
+        candidates = 10_000
+        logs = self._normal_draws(rng, candidates)
         away = np.log(self.moment(0, low=low, psd=np.exp(logs)) / mean_square) / error
         weight = np.exp(-0.5 * (away**2 - np.min(away**2)))
         weight /= weight.sum()
         centre = weight @ logs
         covariance = (weight[:, None] * (logs - centre)).T @ (logs - centre)
-        drawn = logs[rng.choice(MERGING.candidates, size=MERGING.draws, p=weight)]
+        drawn = logs[rng.choice(candidates, size=DRAWS, p=weight)]
         return replace(self, log_psd=centre, covariance=covariance, logs=drawn)
 
     def with_error(self, error: np.ndarray) -> "OneSpectrum":
@@ -194,14 +167,14 @@ class OneSpectrum:
     def carried_on(self, psd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points (1/nm, nm^4) of a spectrum (m,) on the bands, with its last slope carried on for a decade."""
         end = float(self.q[-1])
-        beyond = end * 10 ** np.linspace(0.1, MERGING.extension, 10)
+        beyond = end * 10 ** np.linspace(0.1, EXTENSION_DECADES, 10)
         slope = self._end_slope(psd)
         return np.concatenate([self.q, beyond]), np.concatenate([psd, psd[-1] * (beyond / end) ** slope])
 
     def tail(self, psd: np.ndarray) -> np.ndarray:
         """Mean square heights of the continuations of spectra (..., m), nm^2."""
         power = self._end_slope(psd) + 2.0
-        grown = 10.0 ** (MERGING.extension * power) - 1.0
+        grown = 10.0 ** (EXTENSION_DECADES * power) - 1.0
         return 2.0 * np.pi * psd[..., -1] * self.q[-1] ** 2 * grown / power
 
     def _end_slope(self, psd: np.ndarray) -> np.ndarray:
@@ -212,9 +185,10 @@ class OneSpectrum:
         end = self.q > self.q[-1] * 10**-0.31
         logs = np.log(psd[..., end]).reshape(-1, np.count_nonzero(end))
         slopes = np.polyfit(np.log(self.q[end]), logs.T, 1)[0]
-        unseen = slopes > MERGING.slopes[1]
+        possible = (-4.0, -2.1)  # of a self-affine surface (0 < H < 1); shallower ones have no finite RMS height
+        unseen = slopes > possible[1]
         count = np.count_nonzero(unseen)
-        slopes[unseen] = np.interp((np.arange(count) + 0.5) / max(count, 1), (0, 1), MERGING.slopes)
+        slopes[unseen] = np.interp((np.arange(count) + 0.5) / max(count, 1), (0, 1), possible)
         return slopes.reshape(psd.shape[:-1])
 
     def statistics(self) -> dict[str, dict[str, Any]]:
@@ -250,7 +224,7 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     # waves twice as long as the longest measurement still tilt and bow it
     names = {entry[0] for entry in measured}
     longest = min(item.spectrum.spacing for item in spectra if item.name in names) / 2
-    bands = np.arange(min(seen.min(), int(np.floor(np.log10(longest) * MERGING.per_decade))), seen.max() + 1)
+    bands = np.arange(min(seen.min(), int(np.floor(np.log10(longest) * BANDS_PER_DECADE))), seen.max() + 1)
     index = np.concatenate([np.searchsorted(bands, entry[1]) for entry in measured])
     values = np.concatenate([entry[2] for entry in measured])
     weight = 1 / np.concatenate([entry[3] for entry in measured])
@@ -260,7 +234,8 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     system[np.arange(len(values)), index] = 1.0
     system[np.arange(len(values)), m + owner] = 1.0
     normal, right = system.T @ (weight[:, None] * system), system.T @ (weight * values)
-    bends = np.diff(np.eye(m), 2, axis=0) / MERGING.kink
+    # standard deviation of the change of slope times the band's width, from band to band
+    bends = np.diff(np.eye(m), 2, axis=0) / 0.35
     normal[:m, :m] += bends.T @ bends
     shared = np.bincount(index, minlength=m) > 1
     variance = 0.1 if shared.any() else 0.0
@@ -277,7 +252,7 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
         if abs(new - variance) < 1e-6 * variance + 1e-9:
             break
         variance = new
-    centres = 10 ** ((bands + 0.5) / MERGING.per_decade)
+    centres = 10 ** ((bands + 0.5) / BANDS_PER_DECADE)
     result = OneSpectrum(
         centres,
         solution[:m],
@@ -292,9 +267,11 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     first_wave = 2 * np.pi / largest.side_nm
     if result.first < first_wave:  # a longer line has measured these waves
         return result
-    # what is form and what is roughness is unknown to what a parabola would take
-    error = float(np.sqrt(MERGING.levelled_scatter**2 + largest.form**2 + common_error**2))
-    return result.with_mean_square(largest.rms_nm**2, MERGING.levelled_waves * first_wave, error)
+    # surfaces of C ~ q^-1 to q^-4 without a plateau, levelled by a plane, hold the waves from 0.63 to 0.81 a side on;
+    # ln of their mean square scatters by 0.03 to 0.6 (the steepest). What is form and what is roughness is unknown to
+    # what a parabola would take.
+    error = float(np.sqrt(0.6**2 + largest.form**2 + common_error**2))
+    return result.with_mean_square(largest.rms_nm**2, 0.72 * first_wave, error)
 
 
 def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -304,15 +281,15 @@ def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     if inside.sum() < 3:
         return nothing
     q, psd, modes = item.spectrum.q[inside], corrected[inside], item.spectrum.modes[inside]
-    grid = np.floor(np.log10(q) * MERGING.per_decade).astype(int)
+    grid = np.floor(np.log10(q) * BANDS_PER_DECADE).astype(int)
     numbers, index = np.unique(grid, return_inverse=True)
     worth = np.bincount(index, modes)
     centre = np.bincount(index, modes * np.log(q)) / worth
     # the logarithm of a mean of few amplitudes is on average too small: by 1 / 2n for n of them
-    level = np.log(np.bincount(index, modes * psd) / worth) + np.minimum(0.5 / worth, MERGING.most_biased)
+    level = np.log(np.bincount(index, modes * psd) / worth) + np.minimum(0.5 / worth, 0.3)
     if len(numbers) < 2:
         return nothing
-    wanted = (numbers + 0.5) / MERGING.per_decade * np.log(10)
+    wanted = (numbers + 0.5) / BANDS_PER_DECADE * np.log(10)
     # a band that is only half covered is read at its centre along the measurement's own slope
     slope = np.gradient(level, centre)
     # the mean over a band of a power law is above its middle
@@ -337,7 +314,7 @@ def overlaps(spectra: Sequence[TrustedSpectrum]) -> list[Overlap]:
             misfit = float(np.sum(weight * (apart - difference) ** 2)) / max(len(common) - 1, 1)
             # errors of neighbouring bands go together: no more certain than a typical band
             spread = float(np.sqrt(1 / weight.mean()))
-            edges = 10 ** (np.array([common[0], common[-1] + 1]) / MERGING.per_decade)
+            edges = 10 ** (np.array([common[0], common[-1] + 1]) / BANDS_PER_DECADE)
             expected = float(np.exp(REACH * spread))
             ratio = float(np.exp(difference))
             pairs.append(Overlap(first.name, second.name, edges[0], edges[1], ratio, expected, misfit))
@@ -352,9 +329,10 @@ def refuse_different_films(pairs: Sequence[Overlap]) -> None:
     InputError : naming the two that differ most.
     """
     worst = max(pairs, key=lambda pair: abs(np.log(pair.ratio)), default=None)
-    if worst is not None and max(worst.ratio, 1 / worst.ratio) > MERGING.different_films * worst.expected:
+    most = 100.0  # of C: a factor of 10 in RMS height
+    if worst is not None and max(worst.ratio, 1 / worst.ratio) > most * worst.expected:
         raise InputError(
             f"topography.scans: {worst.first} and {worst.second} cannot be one surface: between {worst.low:.2g} and "
             f"{worst.high:.2g} /nm their spectra differ by a factor of {max(worst.ratio, 1 / worst.ratio):.3g}; "
-            f"accepted is {MERGING.different_films:g}; give the files of one film, or correct a unit or a height scale"
+            f"accepted is {most:g}; give the files of one film, or correct a unit or a height scale"
         )

@@ -17,12 +17,14 @@ import numpy as np
 
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.intervals import REACH
-from mesoscale.topography.description.one_spectrum import MERGING, OneSpectrum, Overlap, on_bands
+from mesoscale.topography.description.one_spectrum import BANDS_PER_DECADE, MOST_MISFIT, OneSpectrum, Overlap, on_bands
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 
 Array = np.ndarray
 FALSE_ALARMS = 0.05
 """Of films of one surface, shared by level and tilt."""
+SIMULATED = 999
+"""Sets of places behind a probability."""
 FEWEST = 4
 """Measurements; of fewer no scatter within two heaps can be told from a difference."""
 
@@ -55,7 +57,7 @@ def levels_and_tilts(spectra: Sequence[TrustedSpectrum]) -> dict[str, tuple[Arra
     if not shared.any():
         return {}
     number, owner, value, variance, index = (part[shared] for part in (number, owner, value, variance, index))
-    x = number * np.log(10) / MERGING.per_decade
+    x = number * np.log(10) / BANDS_PER_DECADE
     x = x - np.average(x, weights=1 / variance)
     film, places = np.eye(len(count))[index], np.eye(len(bands))[owner]
     mean_free = np.eye(len(bands)) - 1 / len(bands)
@@ -100,9 +102,8 @@ def by_chance(values: Array, covariance: Array, score: float) -> float:
     mean_free = np.eye(n) - 1 / n
     scatter = max(float(values @ mean_free @ values - np.trace(mean_free @ covariance)), 0.0) / (n - 1)
     spread, vectors = np.linalg.eigh(covariance + scatter * np.eye(n))
-    count = 999
-    drawn = np.random.default_rng(4).standard_normal((count, n)) @ (vectors * np.sqrt(np.maximum(spread, 0.0))).T
-    return (1 + sum(best_cut(row, covariance).score >= score for row in drawn)) / (count + 1)
+    drawn = np.random.default_rng(4).standard_normal((SIMULATED, n)) @ (vectors * np.sqrt(np.maximum(spread, 0.0))).T
+    return (1 + sum(best_cut(row, covariance).score >= score for row in drawn)) / (SIMULATED + 1)
 
 
 def two_heaps(spectra: Sequence[TrustedSpectrum]) -> tuple[str, Cut, float] | None:
@@ -140,7 +141,7 @@ def several_surfaces(
     if strangers:
         worst = max(strangers, key=lambda pair: max(pair.misfit, abs(np.log(pair.ratio))))
         differ = f"by a factor of {max(worst.ratio, 1 / worst.ratio):.2g}"
-        if worst.misfit > MERGING.most_misfit:
+        if worst.misfit > MOST_MISFIT:
             differ = f"in shape, by {np.sqrt(worst.misfit):.2g} times their errors"
         text = (
             f"{worst.first} and {worst.second} look like two surfaces: from {worst.low:.2g} to {worst.high:.2g} /nm "

@@ -9,9 +9,6 @@ from mesoscale.checks import MAX_LENGTH_NM, MIN_LENGTH_NM, check_number, checked
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
 
-SPIKE = 12.0  # robust standard deviations from the median of the neighbours, beyond which a pixel is no height
-MAX_CUT_OFF = 0.01  # share of pixels at one end of the heights above which they are no measurement
-
 
 @dataclass(frozen=True)
 class Scan:
@@ -74,7 +71,7 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
     if share > 0:
         heights[missing] = np.nan
     cut = cut_off_share(heights)
-    if cut > MAX_CUT_OFF:
+    if cut > 0.01:
         raise InputError(
             f"{scan.name}: {cut:.1%} of the pixels lie exactly at the highest or lowest height: the scan is "
             "cut off at the end of the scanner's range; measure again with a larger range"
@@ -177,5 +174,5 @@ def without_spikes(heights: np.ndarray) -> tuple[np.ndarray, int]:
     scale = float(np.quantile(away[::2, ::2], 0.99)) / 2.576
     if scale == 0:
         return heights, 0
-    spikes = away > SPIKE * scale
+    spikes = away > 12.0 * scale  # robust standard deviations
     return np.where(spikes, local, heights), int(spikes.sum())

@@ -111,7 +111,7 @@ def _alone(path: Path, name: str, settings: TopographySettings) -> Measurement:
         raise InputError(f"{path}: cannot be read ({error.strerror}); make the file readable") from None
     channels = _tried(str(path), lambda: list(open_topography(str(path)).channels), head)
     channel, note = _height_channel(path, channels, instrument.channel or settings.channel)
-    _check_sized(str(path), channel)
+    _check_sized(str(path), channel, channel.unit or instrument.unit)
     topography = _tried(str(path), channel.topography)
     steps = (f"read channel {channel.name}", *note)
     return _measurement(str(path), name, topography, head, steps, settings, instrument)
@@ -166,7 +166,7 @@ def _measurement(
         data: Scan | Profile = _profile(where, name, x * factors[0], z * factors[1])
         data = replace(data, bow=topography.info.get("detrend_mode") == "curvature")
     else:
-        _check_sized(where, topography)
+        _check_sized(where, topography, unit)
         heights = factors[1] * _tried(where, lambda: _filled(topography.heights()))
         if min(heights.shape) < MIN_SIDE:
             raise InputError(f"{where}: {heights.shape[0]} x {heights.shape[1]} pixels; at least {MIN_SIDE} a side")
@@ -258,10 +258,11 @@ def _filled(values: Any) -> np.ndarray:
     return np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
 
 
-def _check_sized(where: str, item: Any) -> None:
+def _check_sized(where: str, item: Any, unit: str | None) -> None:
     sizes = item.physical_sizes
     if item.dim == 2 and (sizes is None or not all(np.isfinite(size) and size > 0 for size in sizes)):
-        raise InputError(f"{where}: has no physical size; save it in a format that carries size and unit (.gwy)")
+        lacks = "physical size" if unit else "physical size and no length unit"
+        raise InputError(f"{where}: has no {lacks}; save it in a format that carries size and unit (.gwy)")
 
 
 def _check_plausible(where: str, heights_nm: np.ndarray, *lengths_nm: float) -> None:

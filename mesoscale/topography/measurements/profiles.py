@@ -10,7 +10,6 @@ from mesoscale.settings import TopographySettings
 
 MIN_POINTS = 64
 MAX_POINTS = 4_000_000
-MAX_STEP = 16.0  # largest gap between points over their mean distance that is bridged by a straight line
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ def profile_of(positions_nm: np.ndarray, heights_nm: np.ndarray, name: str) -> P
         raise InputError(f"{name}: {len(x)} points with a position and a height; at least {MIN_POINTS} are needed")
     gaps = np.diff(x)
     step = (x[-1] - x[0]) / (len(x) - 1)
-    if gaps.max() > MAX_STEP * step:
+    if gaps.max() > 16.0 * step:  # too far for a straight line
         raise InputError(
             f"{name}: a hole of {gaps.max():.3g} nm between points that are {step:.3g} nm apart; "
             "give the longer part alone"

@@ -11,8 +11,6 @@ from workflow.report.numbers import SYMBOLS, show, shown_unit
 from workflow.report.page import SYNTHETIC, Section, Table
 from workflow.report.surface_picture import short_names
 
-MOST_LETTERS = 32  # of a name above a map
-
 
 def describe(results: Results) -> Section | None:
     """Figures 9 and 10, and the roughness parameters."""
@@ -90,7 +88,7 @@ def maps(results: Results) -> str | None:
                 size, unit = size / 1e3, "µm"
             rms = float(scan_attributes[name].get("rms_nm", np.nan))
             title = short[name.removeprefix("scans/")]
-            title = title if len(title) <= MOST_LETTERS else f"…{title[-MOST_LETTERS:]}"
+            title = title if len(title) <= 32 else f"…{title[-32:]}"
             axis.set_title(f"{title}:\nRMS {rms:.3g} nm")
             axis.set_xlabel(unit)
             axis.locator_params(axis="x", nbins=4)

@@ -28,7 +28,7 @@ def described(scans, settings=SETTINGS, cell_nm=1000.0):
         arrays[scan.name], attributes[scan.name] = record(Measurement(scan, settings.tip_radius_nm, True), settings)
         attributes[scan.name] |= {"file": "a", "sha256": "b"}
     pooled = pool(arrays, attributes, settings, cell_nm)
-    rows = scan_rows(pooled.spectra, pooled.topography, attributes, None)
+    rows = scan_rows(pooled, attributes, None)
     return pooled, parameters(pooled, rows, settings, None)
 
 
