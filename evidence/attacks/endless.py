@@ -104,8 +104,8 @@ def _container(rng: random.Random) -> bytes:
 
 
 def _bomb(rng: random.Random) -> bytes:
-    measurements = [{"name": "a", "datafile": {"original": "a.txt"}}] * rng.randrange(1, 500)
-    index = json.dumps({"surfaces": [{"topographies": measurements}]})
+    measurements = [{"name": "a", "size": [1.0], "datafile": {"original": "a.txt"}}] * rng.randrange(1, 500)
+    index = json.dumps({"surfaces": [{"name": "film", "topographies": measurements}]})
     return _zip({"index.json": index, "a.txt": b"0 " * rng.randrange(10**6, 10**7)})
 
 

@@ -42,7 +42,7 @@ class Lift:
     most : of ln C; where half the height would be lift this theory ends.
     sites : of the Gaussian surfaces that a tip is set on.
     amplitudes : of their short waves, times those measured.
-    found, error : share of the lift that is found from images, which lose skewness, and what that leaves uncertain.
+    recovered, error : share of the lift that is found from images, which lose skewness, and what that leaves uncertain.
     radius_error : relative; a radius is anywhere within, as a maker states it or a worn tip has it.
     """
 
@@ -52,7 +52,7 @@ class Lift:
     most: float = 2 * np.log(2)
     sites: int = 256
     amplitudes: Array = field(default_factory=lambda: np.array([0.25, 0.5, 1.0, 2.0, 4.0]))
-    found: float = 0.85
+    recovered: float = 0.85
     error: float = 0.2
     radius_error: float = 0.2
 
@@ -76,7 +76,7 @@ def tip_lift(
     image = _smooth(quantiles * rms)
     ends = LIFT.further * seen, max(min(LIFT.furthest * seen, LIFT.finest_wave), LIFT.further * seen)
     low, gain, high = (
-        gain / LIFT.found if (gain := _gain(image, _mean_lifts(radius_nm, fitted, end))) > 0 else gain
+        gain / LIFT.recovered if (gain := _gain(image, _mean_lifts(radius_nm, fitted, end))) > 0 else gain
         for end in (ends[0], np.sqrt(ends[0] * ends[1]), ends[1])
     )
     between = 0.5 * (high - low) / np.sqrt(3)  # anywhere between both
