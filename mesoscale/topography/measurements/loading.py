@@ -72,6 +72,7 @@ def load_measurements(
         import SurfaceTopography.IO  # noqa: F401  4 s, because it loads all of that library
 
     def read() -> list[Measurement]:
+        _teach_units()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # readers warn of metadata that nothing here uses
             if path.suffix.lower() == ".zip":
@@ -79,6 +80,14 @@ def load_measurements(
             return [_alone(path, name or path.stem, settings)]
 
     return guarded(path, read)
+
+
+def _teach_units() -> None:
+    """Add spellings of lengths that instruments write and SurfaceTopography's table lacks."""
+    from SurfaceTopography.Support.UnitConversion import length_units
+
+    length_units |= dict.fromkeys(("\u03bcm", "micron", "microns", "micrometer", "\u339b"), 1e-6)
+    length_units |= dict.fromkeys(("Angstrom", "angstrom", "\u212b", "\u00c5ngstr\u00f6m", "Ang"), 1e-10)
 
 
 def with_limits(
@@ -214,7 +223,10 @@ def _height_channel(path: Path, channels: list[Any], wanted: str | None) -> tupl
     elif len(names) > 1:
         raise InputError(f"{path}: several height channels: {', '.join(names)}; name one in topography.channel")
     if not heights:
-        raise InputError(f"{path}: no height channel in this file; save the topography channel too")
+        raise InputError(
+            f"{path}: no channel of heights in a unit of length (m, um, nm, Å); save the topography too, or calibrate "
+            "heights that are in V"
+        )
     more = len(heights) > 1
     return heights[0], (f"took the first of {len(heights)} channels named {heights[0].name}",) if more else ()
 

@@ -127,6 +127,31 @@ def test_several_height_channels_are_asked_for(tmp_path):
         load_scan(path, channel="Phase")
 
 
+@pytest.mark.parametrize(
+    ("unit", "nm"), [("\u00b5m", 1e3), ("\u03bcm", 1e3), ("Angstrom", 0.1), ("\u00c5", 0.1), ("nm", 1.0)]
+)
+def test_units_are_read_in_all_spellings(tmp_path, unit, nm):
+    path = unit_gwy(tmp_path / "a.gwy", unit, 1000.0 / nm)
+    assert load_scan(path).lengths_nm == pytest.approx((1000.0, 1000.0))
+    assert load_scan(path).heights_nm.max() == pytest.approx(nm)
+
+
+def test_heights_in_volts_are_refused_with_the_reason(tmp_path):
+    with pytest.raises(InputError, match="no channel of heights in a unit of length"):
+        load_scan(unit_gwy(tmp_path / "a.gwy", "V", 1000.0))
+
+
+def unit_gwy(path, unit, side):
+    from gwyfile.objects import GwyContainer, GwyDataField
+
+    content = GwyContainer()
+    content["/0/data/title"] = "Height"
+    heights = np.eye(40)
+    content["/0/data"] = GwyDataField(heights, xreal=side, yreal=side, si_unit_xy=unit, si_unit_z=unit)
+    content.tofile(str(path))
+    return path
+
+
 def test_cleaning_levels_aligns_fills_and_records(tmp_path):
     rng = np.random.default_rng(0)
     rough = rng.standard_normal((128, 128))
