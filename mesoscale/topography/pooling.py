@@ -36,7 +36,7 @@ from mesoscale.topography.description.tip import (
     without_lift,
 )
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
-from mesoscale.topography.records import is_profile, trusted_record
+from mesoscale.topography.records import copies, is_profile, trusted_record
 from mesoscale.topography.roughness_spectrum import SpectrumTable
 
 
@@ -93,6 +93,9 @@ def pool(
     ------
     InputError : measured files that cannot be of one surface, or that see no wave of a cell.
     """
+    alike = copies(arrays, attributes)
+    arrays = {name: data for name, data in arrays.items() if name not in alike}
+    attributes = {name: values for name, values in attributes.items() if name not in alike}
     images = [trusted_record(name, data, attributes[name]) for name, data in arrays.items()]
     tests = [
         compare_heights(
@@ -144,6 +147,9 @@ def pool(
         if one is not None:
             doubts += finer_waves_doubt(SpectrumTable(*one.carried_on(one.psd)).psd, spectra, cell_nm)
     doubts += lift_doubt(images, spectra, lifted)
+    if alike:
+        text = f"{', '.join(f'{name} is a copy of {other}' for name, other in alike.items())}: it counts once"
+        doubts.append(Doubt("copies", text, "measure other places of the surface", "rms"))
     return Pooled(spectra, topography, one, tests, pairs, choice, surface, rows, film, doubts, cell_nm)
 
 

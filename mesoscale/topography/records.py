@@ -77,6 +77,19 @@ def in_order(arrays: Mapping[str, Arrays], attributes: Mapping[str, Mapping[str,
     return dict(sorted(arrays.items(), key=lambda item: (attributes[item[0]]["length_x_nm"], item[0])))
 
 
+def copies(
+    arrays: Mapping[str, Mapping[str, np.ndarray]], attributes: Mapping[str, Mapping[str, Any]]
+) -> dict[str, str]:
+    """Measurements of files of the same bytes that hold what an earlier one holds, with the name of that."""
+    first: dict[tuple[str, bytes], str] = {}
+    alike = {}
+    for name, data in arrays.items():
+        if digest := attributes[name].get("sha256"):  # a container has several measurements
+            other = first.setdefault((digest, data["psd"].tobytes()), name)
+            alike |= {name: other} if other != name else {}
+    return alike
+
+
 def trusted_record(name: str, arrays: Mapping[str, np.ndarray], attributes: Mapping[str, Any]) -> TrustedSpectrum:
     """Spectrum and trusted range of a recorded measurement."""
     line = is_profile(attributes)

@@ -12,20 +12,23 @@ from mesoscale.scan_checks.judged import judge
 from mesoscale.scan_checks.surface import has_square_pixels
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.measurements.loading import load_measurements
-from mesoscale.topography.records import trusted_record
+from mesoscale.topography.records import copies, in_order, trusted_record
 from workflow.job import job, settings_from_job
 from workflow.results import load_csv, load_h5, load_json, write_csv
 
 with job(snakemake) as run:
     settings = settings_from_job(TopographySettings, snakemake.params.settings)
-    spectra = []
+    groups, attributes = {}, {}
     for path in snakemake.input.chunks:
-        groups, _, attributes = load_h5(path)
-        spectra += [trusted_record(name, data, attributes[name]) for name, data in groups.items()]
+        part, _, described = load_h5(path)
+        groups |= part
+        attributes |= described
+    alike = copies(in_order(groups, attributes), attributes)
+    spectra = [trusted_record(name, data, attributes[name]) for name, data in groups.items() if name not in alike]
     scans = []
     for number, path in enumerate(snakemake.input.scans):
         measured = load_measurements(path, f"{number + 1:02d}_{Path(path).stem}", settings)
-        scans += [item.data for item in measured if has_square_pixels(item.data)]
+        scans += [item.data for item in measured if has_square_pixels(item.data) and item.data.name not in alike]
     name = load_json(snakemake.input.parameters)["description"]["name"]
     values = medians(load_csv(snakemake.input.inputs))
     inputs, contact = contact_of(values, settings_from_job(ContactSettings, snakemake.params.contact))

@@ -1,5 +1,7 @@
 """Which description is chosen by which evidence, and what it hands on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -114,6 +116,17 @@ def test_tall_grains_choose_the_measured_heights():
     pooled, content = described(grainy())
     assert pooled.choice.name == "measured_heights"
     assert len(content["surface"]["heights"]) == 111
+
+
+def test_copies_of_a_file_are_one_place():
+    """Three times the same file says no more of other places than once."""
+    (scan,) = patches(3.0, 0.05, count=1)
+    once, content = described([scan])
+    thrice, repeated = described([scan, replace(scan, name="t1"), replace(scan, name="t2")])
+    assert thrice.rows == once.rows
+    assert "copies" not in [doubt["code"] for doubt in content["doubts"]]
+    (doubt,) = (doubt for doubt in repeated["doubts"] if doubt["code"] == "copies")
+    assert "t1 is a copy of s0" in doubt["text"]
 
 
 def test_noise_says_nothing_and_is_refused():
