@@ -33,7 +33,6 @@ TARGETS = {
     "failure": "how often the switch fails, down to one in a million",
     "circuit": "the switch for simulators: corners, draws, C-V loop, transient",
     "resistance": "electrical resistance of metal on metal against force",
-    "adhesion": "energy and pull-off of pads",
     "calibrate": "inputs narrowed by your measurements of contacts",
     "history": "cycle after cycle, with creep",
     "model_form": "both mechanics of the contact compared",

@@ -37,6 +37,7 @@ REPLACED = {
     "contact.unloading_radius": "take mechanics: coupled where opening matters",
     "contact.merge": "take mechanics: coupled, whose repulsion does not fall where asperities merge",
     "coupling": "see target model_form",
+    "adhesion": "device/pad_switch.json has the adhesion of the pad",
     **{f"pad.{key}": "it follows from the switch" for key in ("max_pressure_MPa", "pilot_cells", "depths", "grid")},
     "pad.gap_cutoff_high_nm": "for another range of D0 than up to 0.3 nm give inputs.gap_cutoff",
 }

@@ -163,13 +163,6 @@ def _machine(scene: Scene) -> Iterator[str]:
             f"contact.pixels = {pixels}: a contact needs {needed / 1000:.1f} GB of memory, this machine has "
             f"{present / 1000:.1f}; take fewer pixels"
         )
-    if scene.adhesion.pads:
-        cells = scene.adhesion.cells
-        if present >= contact_MB(scene.contact) and (needed := contact_MB(scene.contact, cells)) > present:
-            yield (
-                f"adhesion.cells = {cells}: they are closed side by side, which needs {needed / 1000:.1f} GB of "
-                f"memory, this machine has {present / 1000:.1f}; take fewer of them"
-            )
     runs = scene.uncertainty.direct_runs
     if (needed := propagation_MB(scene.uncertainty)) > present:
         yield (

@@ -15,6 +15,7 @@ from mesoscale.device.points import PadModel, Solved
 from mesoscale.device.statistics import describe, probability
 from mesoscale.device.switch import NM, switch_from_settings
 from mesoscale.errors import InputError
+from mesoscale.pad.adhesion import adhesion_of
 from mesoscale.pad.memory import attracting
 
 Array = NDArray[np.float64]
@@ -175,6 +176,7 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         "spring_pressure_kPa": switch.spring_N_per_m * switch.gap_nm * NM / switch.area_m2 * 1e-3,
         "central": {**central.states, "error_V": central.error_V} if central.states else None,
         "by_attraction": [{"times": times, "release_V": _release_V(central, times)} for times in WORKS],
+        "adhesion": [asdict(opened) for opened in adhesion_of(central.pad.law)] if central.pad else [],
         "gate": {"passed": not (reasons := _reasons(central)), "reasons": reasons},
         "answer": said,
         "answer_status": status,

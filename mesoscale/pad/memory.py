@@ -37,6 +37,11 @@ class Flats:
         walls = np.maximum(np.asarray(separation_nm, float), 1.0) + self.offset_nm
         return self.hamaker / (6.0 * np.pi * walls**3)
 
+    def energy_J_m2(self, separation_nm: ArrayLike) -> Array:
+        """Work per area of this attraction from a separation to infinity, A_H / (12 pi s^2); any shape."""
+        walls = np.maximum(np.asarray(separation_nm, float), 1.0) + self.offset_nm
+        return self.hamaker / (12.0 * np.pi * walls**2)
+
 
 def flats_of(inputs: ContactInputs, contact: ContactSettings) -> Flats:
     """The flats of a contact."""

@@ -38,7 +38,6 @@ def write_all(root: Path) -> list[Path]:
     _elastic(root)
     _topography(root)
     _history(root)
-    _adhesion(root)
     _failure(root)
     _model_form(root)
     _calibration(root)
@@ -403,25 +402,6 @@ def _history(root: Path) -> None:
     _write(root / "history/cycles.csv", cycles)
     _write(root / "history/dwell.csv", dwell)
     write_h5(root / "history/curves.h5", groups, {"cell_area_nm2": 1e6}, PROVENANCE, facts)
-
-
-def _adhesion(root: Path) -> None:
-    rows = [
-        {
-            "mechanics": mechanics,
-            "varied": varied,
-            "rms_nm": rms,
-            "gap_cutoff_nm": 0.165,
-            "load_MPa": load,
-            "energy_uJ_m2": 98.0,
-            "energy_uJ_m2_lowest": 58.0,
-            "energy_uJ_m2_highest": 248.0,
-        }
-        for mechanics in ("asperity", "coupled")
-        for varied, rms in (("none", 4.4), ("rms", 8.5))
-        for load in (0.5, 7.0)
-    ]
-    _write(root / "adhesion/summary.csv", rows)
 
 
 def _model_form(root: Path) -> None:

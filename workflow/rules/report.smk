@@ -10,8 +10,6 @@ def report_inputs():
         files += [f"uq/{name}" for name in names]
     if "pad" in SCENE.tails:
         files += ["pad/inputs.csv", "pad/curves.csv", "device/pad_switch.json"]
-    if ADHESION.pads > 0:
-        files += ["adhesion/summary.csv"]
     if needed("hardness"):
         files += ["hardness/points.csv", "hardness/fit.json"]
         files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness", "snapshots") for run in CLOSINGS]
