@@ -11,7 +11,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from mesoscale.device.points import Point, press_pad, surfaces_of
+from mesoscale.device.points import Point, on_pad_grid, press_pad, surfaces_of
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad.adhesion import adhesion_of
 from mesoscale.settings.inputs import WorkAndRangeSettings
@@ -28,7 +28,6 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("results", type=Path)
     parser.add_argument("--pads", type=int, default=4)
     parser.add_argument("--cells", type=int, default=4)
-    parser.add_argument("--pixels", type=int, default=256)
 
 
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
@@ -36,8 +35,8 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     scene = load_scene("diamond")
     described = SimpleNamespace(input={"topography": given.results / "topography" / "parameters.json"})
     contact = contact_settings(scene.contact.model_dump(mode="json"), described)
-    contact = contact.model_copy(update={"pixels": given.pixels})
-    values = from_rows(load_table(given.results / "pad" / "inputs.csv")).medians()
+    table = from_rows(load_table(given.results / "pad" / "inputs.csv"))
+    contact, values = on_pad_grid(contact, table), table.medians()
     fitted = values | {"hamaker": FITTED.hamaker(contact.attraction)}
     attractions = [("hamaker", values, cutoff) for cutoff in (contact.gap_cutoff_nm, 0.3, 1.0)]
     for attraction, inputs, cutoff in (*attractions, ("fitted", fitted, FITTED.gap_cutoff_nm(contact.attraction))):
