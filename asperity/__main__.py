@@ -31,7 +31,7 @@ TARGETS = {
     "sensitivity": "which input causes the spread",
     "device": "the switch on these pads: release and sticking, with their causes",
     "failure": "how often the switch fails, down to one in a million",
-    "circuit": "the switch for simulators: corners, draws, C-V loop, transient",
+    "circuit": "the switch for simulators: corners, draws, C-V loop",
     "resistance": "electrical resistance of metal on metal against force",
     "calibrate": "inputs narrowed by your measurements of contacts",
     "history": "cycle after cycle, with creep",

@@ -78,7 +78,7 @@ class Workers:
 
         Raises
         ------
-        InputError : see `mesoscale.models.Model`; or the evaluation takes too long.
+        InputError : see `asperity.models.Model`; or the evaluation takes too long.
         RuntimeError : a fault of the model, or its worker died at every try.
         """
         worker = await self.free.get()
@@ -87,7 +87,8 @@ class Workers:
                 call = asyncio.get_running_loop().run_in_executor(self.threads, worker.evaluate, request)
                 try:
                     answer = await asyncio.wait_for(call, LONGEST_S)
-                except (EOFError, OSError, asyncio.CancelledError) as error:  # it died, took too long, is not waited for
+                except (EOFError, OSError, asyncio.CancelledError) as error:
+                    # it died, takes too long (TimeoutError is an OSError), or its client went away
                     worker.process.kill()
                     worker = _Worker()
                     if isinstance(error, TimeoutError):
@@ -125,7 +126,10 @@ def application(workers: Workers, host: str) -> "web.Application":
         except RuntimeError as error:
             return refused("ModelError", str(error), 500)
 
-    async def content_of(request: "web.Request") -> dict[str, Any]:
+    async def info(_: "web.Request") -> dict[str, Any]:
+        return {"protocolVersion": 1.0, "models": list(MODELS)}
+
+    async def answer(request: "web.Request") -> dict[str, Any]:
         if request.content_type != "application/json":
             raise InputError("the request must say Content-Type: application/json")
         try:
@@ -136,37 +140,20 @@ def application(workers: Workers, host: str) -> "web.Application":
             raise InputError("the request must be a JSON object")
         if not isinstance(name := content.get("name"), str) or name not in MODELS:
             raise InputError(f"name = {name!r:.60}: no such model; accepted: {', '.join(MODELS)}")
-        return {"config": {}, **content}
-
-    async def info(_: "web.Request") -> dict[str, Any]:
-        return {"protocolVersion": 1.0, "models": list(MODELS)}
-
-    async def about(request: "web.Request") -> dict[str, Any]:
-        model = MODELS[(await content_of(request))["name"]]
-        return {"support": SUPPORT, "inputs": [list(INPUTS)], "config": list(model.config)}
-
-    async def input_sizes(request: "web.Request") -> dict[str, Any]:
-        content = await content_of(request)
-        MODELS[content["name"]].checked_config(content["config"])
-        return {"inputSizes": [len(INPUTS)]}
-
-    async def output_sizes(request: "web.Request") -> dict[str, Any]:
-        content = await content_of(request)
-        model = MODELS[content["name"]]
-        return {"outputSizes": model.output_sizes(model.checked_config(content["config"]))}
-
-    async def evaluate(request: "web.Request") -> dict[str, Any]:
-        content = await content_of(request)
-        return {"output": await workers.evaluate(content["name"], content.get("input"), content["config"])}
+        config = MODELS[name].checked_config(content.get("config", {}))
+        match request.path:
+            case "/ModelInfo":
+                return {"support": SUPPORT}
+            case "/InputSizes":
+                return {"inputSizes": [len(INPUTS)]}
+            case "/OutputSizes":
+                return {"outputSizes": MODELS[name].output_sizes(config)}
+            case _:
+                return {"output": await workers.evaluate(name, content.get("input"), config)}
 
     app = web.Application(middlewares=[in_one_line])
     app.router.add_get("/Info", info)
-    for path, answer in {
-        "/ModelInfo": about,
-        "/InputSizes": input_sizes,
-        "/OutputSizes": output_sizes,
-        "/Evaluate": evaluate,
-    }.items():
+    for path in ("/ModelInfo", "/InputSizes", "/OutputSizes", "/Evaluate"):
         app.router.add_post(path, answer)
     return app
 

@@ -12,10 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.beam import lumped_beam
-from mesoscale.device.beam_switch import solve_bent
 from mesoscale.device.electrode import release_or_nan_V
-from mesoscale.device.pad_export import tables_of
 from mesoscale.device.points import PadModel, Point, on_pad_grid, press_pad
 from mesoscale.device.release import ENDS
 from mesoscale.inputs.distributions import InputTable
@@ -37,10 +34,6 @@ SIDES = (2, 4)
 """Finer grids: so many times the pads' sites a side."""
 ELEMENTS = (16, 32, 64, 128, 256)
 FINEST_ELEMENTS = 512
-PAIRS = (8, 12, 16, 20, 28)
-"""Of lumps, of the electrode in a circuit."""
-LOOSER = (1.0, 4.0, 16.0)
-"""Factors on the errors that tables for circuits may have."""
 STICKS_WITHIN = 1e-3
 MOST_ATTRACTION = 1e3
 RESAMPLES = 200
@@ -74,7 +67,6 @@ def accuracy_points(
         ("grid", _grid(central.point, coarse, cells)),
         ("points", _points(model, coarse, cells)),
         ("elements", _elements(law, device)),
-        ("circuit", _circuit(law, device)),
     ]
     for done, (name, rows) in enumerate(parts):
         yield from rows
@@ -191,27 +183,6 @@ def _elements(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
         metric, reference = "relative deviation", f"{FINEST_ELEMENTS} elements"
         error = abs(factor / sticks - 1.0)
         yield _row("attraction that sticks", "elements of the beam", elements, error, metric, reference, cost)
-
-
-def _circuit(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
-    """Nodes of the tables for circuits, and pairs of lumps of a bending electrode."""
-    for looser in LOOSER:
-        started = _clock()
-        tables = tables_of(law, False, looser)
-        nodes = sum(pieces[0].x.size for pieces in [tables.closing, *tables.opening])
-        metric, cost = "largest error, of the well", _clock() - started
-        yield _row("pressure in a circuit", "nodes of its tables", nodes, tables.of_well, metric, "the curves", cost)
-    if not device.bends or device.without_lumps:
-        return
-    flat, reference = device.model_copy(update={"tilt_nm": 0.0}), f"{FINEST_ELEMENTS} elements"
-    wanted, _ = _release_V(law, flat, FINEST_ELEMENTS)
-    for pairs in PAIRS:
-        started = _clock()
-        release = solve_bent(lumped_beam(flat, pairs), flat, law).release_V
-        cost = _clock() - started
-        yield _row(
-            "release in a circuit", "pairs of lumps", pairs, abs(release - wanted), "deviation, V", reference, cost
-        )
 
 
 def _sticking(law: PadLaw, device: DeviceSettings, elements: int) -> tuple[float, Array]:

@@ -492,9 +492,7 @@ def _failure(root: Path) -> None:
     _write(root / "device/resistance.csv", contacts)
     study = {"lumps": 24, "pull_in": 1e-4, "release": 3e-3, "capacitance": 0.01, "pull_in_V": 70.0, "release_V": 6.0}
     study |= {"reference": 1e-3}
-    said = {"drive_V": 77.0, "closing_us": 30.0, "bounce_nm": 12.0, "impact_m_s": 3.1, "opening_us": None}
-    said |= {"deepest_nm": 18.0, "table_ends_nm": 19.0}
-    write_json(root / "device/circuit.json", {"lumps": study, "transient": said}, PROVENANCE)
+    write_json(root / "device/circuit.json", {"lumps": study}, PROVENANCE)
     switches = [
         {
             "switch": name,
@@ -510,7 +508,3 @@ def _failure(root: Path) -> None:
     _write(root / "device/circuit.csv", switches)
     ways = [f"{way}_{of}_fF" for way in ("up", "down") for of in ("central", "q05", "q95")]
     _write(root / "device/loop.csv", [{"voltage_V": v, **dict.fromkeys(ways, 160.0 + v)} for v in (0.0, 40.0, 77.0)])
-    steps = [
-        {"time_us": t, "voltage_V": 77.0, "middle_nm": 3490.0 - t, "capacitance_fF": 158.0 + t} for t in (0.0, 9.0)
-    ]
-    _write(root / "device/transient.csv", steps)

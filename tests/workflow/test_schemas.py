@@ -10,8 +10,8 @@ from workflow.schemas import STAGES, UnfitTable, schema_of
 from workflow.schemas.__main__ import PAGE, page
 
 RULES = Path(__file__).parents[2] / "workflow" / "rules"
-ROW = {"time_us": 0.1, "voltage_V": 0.5, "middle_nm": 0.4, "capacitance_fF": 0.6}
-TABLE = "results/mine/device/transient.csv"
+ROW = {"hold_V": 80.0, "attraction": 1.0, "failing": 0.6}
+TABLE = "results/mine/device/failure.csv"
 
 
 def test_every_table_of_the_rules_has_a_schema():
@@ -36,13 +36,13 @@ def test_the_page_of_result_files_is_up_to_date():
     ("row", "words"),
     [
         (ROW | {"heigth": 0.6}, "column heigth is unknown"),
-        ({key: value for key, value in ROW.items() if key != "middle_nm"}, "column middle_nm is missing"),
-        (ROW | {"capacitance_fF": None}, "row 1 has no value in column capacitance_fF"),
-        (ROW | {"capacitance_fF": "most"}, "row 1, column capacitance_fF: 'most' is no number"),
+        ({key: value for key, value in ROW.items() if key != "attraction"}, "column attraction is missing"),
+        (ROW | {"failing": None}, "row 1 has no value in column failing"),
+        (ROW | {"failing": "most"}, "row 1, column failing: 'most' is no number"),
     ],
 )
 def test_a_table_that_does_not_fit_is_not_written(tmp_path, row, words):
-    with pytest.raises(ValueError, match=rf"transient\.csv: {words}"):
+    with pytest.raises(ValueError, match=rf"failure\.csv: {words}"):
         write_csv(tmp_path / TABLE, [row])
     assert not (tmp_path / TABLE).exists()
 

@@ -21,7 +21,7 @@ def report_inputs():
         files += [str(Path(path).relative_to(RESULTS)) for path in JUDGED]
     if SCENE.failure.probability is not None and "pad" in SCENE.tails:
         files += ["device/failure.json", "device/failure.csv"]
-        files += [f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "transient.csv")]
+        files += [f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv")]
     if SCENE.resistance.resistivities_nOhm_m is not None:
         files += ["device/resistance.csv"]
     if SCENE.history.cycles > 0:

@@ -69,14 +69,4 @@ TABLES = (
             ),
         ),
     ),
-    Table(
-        ("device/transient.csv",),
-        "One time after a step of the voltage, which ends later.",
-        (
-            number("time_us", "us", "time"),
-            number("voltage_V", "V", "voltage"),
-            number("middle_nm", "nm", "separation of mid-span"),
-            number("capacitance_fF", "fF", "capacitance"),
-        ),
-    ),
 )

@@ -9,7 +9,10 @@ from pydantic import ValidationError
 
 from evidence.pad.rare_failures import KnownPad, known_pad, population
 from mesoscale.device.beam_switch import closed_beam, solve_beam
-from mesoscale.device.failure import (
+from mesoscale.device.pad_switch import solve_on_pad
+from mesoscale.device.switch import switch_from_settings
+from mesoscale.errors import InputError
+from mesoscale.failure.rate import (
     STEP,
     Attracted,
     corrected,
@@ -19,9 +22,6 @@ from mesoscale.device.failure import (
     least_rms_nm,
     least_spring,
 )
-from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.switch import switch_from_settings
-from mesoscale.errors import InputError
 from mesoscale.pad.memory import attracting
 from mesoscale.settings import DeviceSettings, FailureSettings
 from tests.mesoscale.device.test_beam import made_up_law

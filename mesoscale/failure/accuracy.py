@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.failure import Population, Response, corrected, just_allowed, learned
+from mesoscale.failure.rate import Population, Response, corrected, just_allowed, learned
 from mesoscale.uncertainty.rare_events import Corrected
 
 Row = dict[str, Any]
@@ -29,12 +29,12 @@ def accuracy_points(
 
     Parameters
     ----------
-    population : see `mesoscale.device.failure.with_pad_scatter`.
+    population : see `mesoscale.failure.rate.Population`.
     allowed : share of the switches that may fail.
 
     Raises
     ------
-    InputError : see `mesoscale.device.failure.learned`.
+    InputError : see `mesoscale.failure.rate.learned`.
     """
     tell = progress or (lambda *_: None)
     hold, responses, costs, started = population.hold_V, [], [], _clock()
