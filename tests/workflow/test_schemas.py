@@ -10,7 +10,7 @@ from workflow.schemas import STAGES, UnfitTable, schema_of
 from workflow.schemas.__main__ import PAGE, page
 
 RULES = Path(__file__).parents[2] / "workflow" / "rules"
-ROW = {"hold_V": 80.0, "attraction": 1.0, "failing": 0.6}
+ROW = {"hold_V": 80.0, "attraction": 0.5, "failing": 0.6}
 TABLE = "results/mine/device/failure.csv"
 
 
@@ -66,7 +66,7 @@ def test_the_schema_orders_the_columns(tmp_path):
 def test_a_table_without_rows_has_its_columns(tmp_path):
     write_csv(tmp_path / TABLE, [])
     assert load_csv(tmp_path / TABLE) == []
-    assert (tmp_path / TABLE).read_text() == "time_us,voltage_V,middle_nm,capacitance_fF\n"
+    assert (tmp_path / TABLE).read_text() == "hold_V,attraction,failing\n"
 
 
 def test_a_column_that_may_be_empty_needs_no_value(tmp_path):
@@ -77,18 +77,18 @@ def test_a_column_that_may_be_empty_needs_no_value(tmp_path):
 
 
 def test_what_was_written_is_read(tmp_path):
-    write_csv(tmp_path / TABLE, [ROW, ROW | {"middle_nm": float("nan")}])
-    assert load_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {"middle_nm": "nan"}
+    write_csv(tmp_path / TABLE, [ROW, ROW | {"attraction": float("nan")}])
+    assert load_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {"attraction": "nan"}
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda text: text.replace("capacitance_fF", "top"), "column capacitance_fF is missing"),
-        (lambda text: text[:-5], "row 1 ends before column capacitance_fF"),
-        (lambda text: text.replace("0.5", "0.\x005"), r"row 1, column voltage_V: '0\.\\x005' is no number"),
-        (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, capacitance_fF"),
-        (lambda text: "", "column time_us is missing"),
+        (lambda text: text.replace("failing", "top"), "column failing is missing"),
+        (lambda text: text[:-5], "row 1 ends before column failing"),
+        (lambda text: text.replace("0.5", "0.\x005"), r"row 1, column attraction: '0\.\\x005' is no number"),
+        (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, failing"),
+        (lambda text: "", "column hold_V is missing"),
     ],
 )
 def test_a_damaged_table_is_refused_in_one_line(tmp_path, change, words):
