@@ -118,7 +118,7 @@ def application(workers: Workers, host: str) -> "web.Application":
         if not _is_ours(request.host, host):
             return refused("InvalidInput", f"Host: {request.host}: accepted is {host}, localhost or an address")
         try:
-            return web.json_response(await handler(request))
+            return await handler(request)
         except web.HTTPException as error:  # no such route, too large
             return refused("InvalidInput", error.reason, error.status)
         except InputError as error:
@@ -126,10 +126,10 @@ def application(workers: Workers, host: str) -> "web.Application":
         except RuntimeError as error:
             return refused("ModelError", str(error), 500)
 
-    async def info(_: "web.Request") -> dict[str, Any]:
-        return {"protocolVersion": 1.0, "models": list(MODELS)}
+    async def info(_: "web.Request") -> "web.Response":
+        return web.json_response({"protocolVersion": 1.0, "models": list(MODELS)})
 
-    async def answer(request: "web.Request") -> dict[str, Any]:
+    async def answer(request: "web.Request") -> "web.Response":
         if request.content_type != "application/json":
             raise InputError("the request must say Content-Type: application/json")
         try:
@@ -143,13 +143,14 @@ def application(workers: Workers, host: str) -> "web.Application":
         config = MODELS[name].checked_config(content.get("config", {}))
         match request.path:
             case "/ModelInfo":
-                return {"support": SUPPORT}
+                result: dict[str, Any] = {"support": SUPPORT}
             case "/InputSizes":
-                return {"inputSizes": [len(INPUTS)]}
+                result = {"inputSizes": [len(INPUTS)]}
             case "/OutputSizes":
-                return {"outputSizes": MODELS[name].output_sizes(config)}
+                result = {"outputSizes": MODELS[name].output_sizes(config)}
             case _:
-                return {"output": await workers.evaluate(name, content.get("input"), config)}
+                result = {"output": await workers.evaluate(name, content.get("input"), config)}
+        return web.json_response(result)
 
     app = web.Application(middlewares=[in_one_line])
     app.router.add_get("/Info", info)

@@ -127,9 +127,8 @@ def _no_switch(device: DeviceSettings) -> str:
     unusual = {"hold_voltage_V", "residual_stress_MPa", "temperature_C", "ends", "stopper_nm", "dimple_nm", "spread"}
     if device.touching_at_rest or not device.bends or not unusual & device.model_fields_set:
         return device.touching_at_rest
-    from mesoscale.device.pressing import pull_in_V  # takes a second
+    from mesoscale.device.pressing import never_closes, pull_in_V  # takes a second
     from mesoscale.device.spread import check_spread
-    from mesoscale.device.statistics import never_closes
 
     try:
         check_spread(device)

@@ -14,7 +14,7 @@ from mesoscale.circuit.lumps import LumpErrors, Lumps
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.tables import Piece, note, tables_of
 from mesoscale.device.beam_kernels import NM, least_gap_nm
-from mesoscale.device.switch import VACUUM_PERMITTIVITY
+from mesoscale.device.plate import VACUUM_PERMITTIVITY
 from mesoscale.pad.memory import FLOOR_GPa, PadLaw
 
 LUMP = "top bottom moved drawn charge"

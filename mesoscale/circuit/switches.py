@@ -17,12 +17,12 @@ from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.device.beam import beam_of, lumped_beam
 from mesoscale.device.beam_switch import loop_fF, solve_bent
 from mesoscale.device.electrode import with_pad
+from mesoscale.device.numerics import SWITCH
 from mesoscale.device.points import PadModel, Point, point_of, press_pad, values_at
-from mesoscale.device.release import SOLVED
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.cells import FIRST_SEED
 from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.settings.device import SPREAD
 
@@ -75,7 +75,7 @@ def spread_switches(
     InputError : too many points, or a corner, cannot be solved.
     """
     solved, design, settings = model.solved, model.design, model.central.point.device
-    if len(solved) < max(SOLVED * len(model.points), 2):
+    if len(solved) < max(SWITCH.solved * len(model.points), 2):
         raise InputError(f"device: only {len(solved)} of {len(model.points)} points of the switch can be solved")
     z, corners = ndtri(design.probability[solved]), []
     plane = np.column_stack([np.ones(len(z)), z])
@@ -86,11 +86,11 @@ def spread_switches(
             values = values_at(ndtr(deviations * out)[None], table, settings, cutoffs_nm)[0]
             point = point_of(values, table.names, settings)
             with suppress(InputError):
-                law = press_pad(point, contact, CIRCUIT.corner_cells, FIRST_SEED + number).law
+                law = press_pad(point, contact, CIRCUIT.corner_cells, PAD.first_seed + number).law
                 corners.append(_by_lumps(name, point, law, lumps, deviations))
                 break
         else:
-            raise InputError(f"device: the corner {name} of the switch cannot be solved, {deviations:g} deviations out")
+            raise InputError(f"device: the corner {name} of the switch cannot be solved")
     drawn = []
     for k in solved:
         if (pad := model.points[k].pad) and len(drawn) < CIRCUIT.draws:
@@ -122,7 +122,7 @@ def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, 
     for switch in drawn:
         with suppress(InputError):  # a beam that finds no balance on any mesh
             curves.append(_loop_fF(switch, volts))
-    if len(curves) <= SOLVED * len(drawn):
+    if len(curves) <= SWITCH.solved * len(drawn):
         raise InputError(f"device: the slow loop can be solved for only {len(curves) - 1} of {len(drawn)} draws")
     low, high = np.quantile(np.stack(curves[1:]), (0.05, 0.95), axis=0)
     return [

@@ -8,7 +8,7 @@ from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import LUMP
 from mesoscale.circuit.tables import Piece, Tables, note, tables_of
 from mesoscale.device.beam_kernels import least_gap_nm
-from mesoscale.device.switch import VACUUM_PERMITTIVITY
+from mesoscale.device.plate import VACUUM_PERMITTIVITY
 from mesoscale.pad.memory import FLOOR_GPa, PadLaw
 
 

@@ -16,8 +16,8 @@ from mesoscale.device.electrode import release_or_nan_V
 from mesoscale.device.points import PadModel, Point, on_pad_grid, press_pad
 from mesoscale.device.release import ENDS
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.cells import DEPTHS, FIRST_SEED, LONGEST_STEP_NM, STEP_RMS
 from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings, DeviceSettings
 
 Array = NDArray[np.float64]
@@ -59,7 +59,7 @@ def accuracy_points(
     """
     central = model.central
     law, device, coarse = central.pressed.law, central.point.device, on_pad_grid(contact, table)
-    press_pad(central.point, coarse, 2, FIRST_SEED)  # compiles
+    press_pad(central.point, coarse, 2, PAD.first_seed)  # compiles
     parts: list[tuple[str, Iterator[Row]]] = [
         ("cells", _cells(central.point, coarse)),
         ("steps", _steps(central.point, coarse, cells)),
@@ -100,7 +100,7 @@ def _release_V(law: PadLaw, device: DeviceSettings, *elements: int) -> tuple[flo
     return release, _clock() - started
 
 
-def _pressed_V(point: Point, contact: ContactSettings, cells: int, first_seed: int = FIRST_SEED, **choices: Any):
+def _pressed_V(point: Point, contact: ContactSettings, cells: int, first_seed: int = PAD.first_seed, **choices: Any):
     """Release on a pad that is pressed now, and the wall and processor time of pressing it."""
     started = _clock()
     law = press_pad(point, contact, cells, first_seed, **choices).law
@@ -113,7 +113,7 @@ def _cells(point: Point, contact: ContactSettings) -> Iterator[Row]:
     most = 2 * CELLS[-1]
     wanted, _ = _pressed_V(point, contact, most)
     for count in CELLS:
-        tried = [_pressed_V(point, contact, count, FIRST_SEED + (k + 1) * 10_000) for k in range(OTHERS)]
+        tried = [_pressed_V(point, contact, count, PAD.first_seed + (k + 1) * 10_000) for k in range(OTHERS)]
         error = float(np.sqrt(np.nanmean([(release - wanted) ** 2 for release, _ in tried])))
         metric, cost = f"RMS deviation over {OTHERS} pads, V", np.mean([cost for _, cost in tried], axis=0)
         yield _row("release", "cells", count, error, metric, f"{most} cells", cost)
@@ -121,7 +121,7 @@ def _cells(point: Point, contact: ContactSettings) -> Iterator[Row]:
 
 def _steps(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
     """Longer and shorter steps of separation."""
-    step = min(STEP_RMS * point.values["rms"], LONGEST_STEP_NM)
+    step = min(PAD.step_rms * point.values["rms"], PAD.longest_step_nm)
     wanted, _ = _pressed_V(point, contact, cells, step_nm=step * TIMES[-1])
     for times in (*TIMES[:-1], 1.0):
         release, cost = _pressed_V(point, contact, cells, step_nm=step * times)
@@ -132,7 +132,7 @@ def _steps(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
 def _depths(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
     """Fewer and more depths in the memory."""
     wanted, _ = _pressed_V(point, contact, cells, depths=MORE_DEPTHS)
-    for depths in (2, 3, DEPTHS, 2 * DEPTHS):
+    for depths in (2, 3, PAD.depths, 2 * PAD.depths):
         release, cost = _pressed_V(point, contact, cells, depths=depths)
         yield _row("release", "depths", depths, abs(release - wanted), "deviation, V", f"{MORE_DEPTHS} depths", cost)
 
@@ -142,7 +142,7 @@ def _grid(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
     releases = {}
     for times in (1, *SIDES):
         finer = contact.model_copy(update={"pixels": contact.pixels * times})
-        releases[finer.pixels] = [_pressed_V(point, finer, cells, FIRST_SEED + k * 10_000) for k in range(OTHERS)]
+        releases[finer.pixels] = [_pressed_V(point, finer, cells, PAD.first_seed + k * 10_000) for k in range(OTHERS)]
     *coarser, finest = releases
     wanted = float(np.mean([release for release, _ in releases[finest]]))
     for pixels in coarser:

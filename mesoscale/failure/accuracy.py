@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.failure.rate import Population, Response, corrected, just_allowed, learned
+from mesoscale.failure.rate import Population, ReserveResponse, corrected, just_allowed, learned
 from mesoscale.uncertainty.rare_events import Corrected
 
 Row = dict[str, Any]
@@ -65,7 +65,7 @@ def accuracy_points(
 
 
 def _by_learning(
-    responses: list[Response], costs: list[NDArray[np.float64]], times: float, hold_V: float, best: Corrected
+    responses: list[ReserveResponse], costs: list[NDArray[np.float64]], times: float, hold_V: float, best: Corrected
 ) -> Iterator[Row]:
     """Fewer switches that the response learns from: its own rate beside the best one."""
     for response, cost in zip(responses, costs, strict=True):

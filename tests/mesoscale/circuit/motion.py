@@ -5,7 +5,7 @@ from scipy.integrate import solve_ivp
 
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.device.beam_kernels import NM, least_gap_nm
-from mesoscale.device.switch import GPA, VACUUM_PERMITTIVITY
+from mesoscale.device.plate import GPA, VACUUM_PERMITTIVITY
 
 
 def _gap_m(lumps, separation_nm):

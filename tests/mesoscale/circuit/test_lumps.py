@@ -11,8 +11,7 @@ from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import LUMP, spice_switch
 from mesoscale.circuit.verilog import verilog_lump
 from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.statistics import analytic_pull_in_V
-from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, switch_from_settings
+from mesoscale.device.plate import GPA, NM, VACUUM_PERMITTIVITY, plate_from_settings
 from mesoscale.errors import InputError
 from mesoscale.pad.local import LocalPad
 from mesoscale.settings import DeviceSettings
@@ -22,7 +21,7 @@ from tests.mesoscale.circuit.test_tables import pad
 from tests.mesoscale.device.test_beam import made_up_law
 
 BEAM = DeviceSettings()
-SPRING = switch_from_settings(DeviceSettings(spring_N_per_m=10.0))
+SPRING = plate_from_settings(DeviceSettings(spring_N_per_m=10.0))
 NONE = np.zeros((1, 1))
 PLATE = Lumps(
     np.array([SPRING.gap_nm]),
@@ -179,7 +178,7 @@ quit
 @needs_ngspice
 def test_a_step_closes_an_undamped_plate_above_the_dynamic_pull_in(tmp_path):
     """V = sqrt(k g^3 / 4 eps A), 0.9186 of the static one."""
-    dynamic = np.sqrt(27.0 / 32.0) * analytic_pull_in_V(SPRING)
+    dynamic = np.sqrt(27.0 / 32.0) * SPRING.pull_in_V
     for share, closes in ((0.995, False), (1.005, True)):
         way = stepped(tmp_path, PLATE, share * dynamic, 100.0, gas=1e-3)[1].max()
         assert (way > 2000.0) == closes  # half of the electric gap, 1758 nm, is the top
