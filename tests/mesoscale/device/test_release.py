@@ -119,7 +119,7 @@ def test_an_undecided_point_has_more_cells_and_a_decided_one_has_not(known, monk
     assert decided.error_V == pytest.approx(0.5 * abs(decided.halves_V[0] - decided.halves_V[1]))
     monkeypatch.setattr(points, "SWITCH", replace(SWITCH, undecided=1e-6, of_release=1e-6))
     list(solve_points([(1, point)], ContactSettings(), 2))
-    assert asked[1:] == [2, 2 * points.MORE]
+    assert asked[1:] == [2, 2 * SWITCH.more_cells]
 
 
 def test_a_point_that_cannot_be_pressed_leaves_its_reason(monkeypatch):
