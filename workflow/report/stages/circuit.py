@@ -3,7 +3,7 @@
 import numpy as np
 
 from workflow.report.available import Results
-from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
+from workflow.report.drawing import BLUE, ORANGE, draw
 from workflow.report.numbers import column, show
 from workflow.report.page import COMPUTED, Section, Table
 from workflow.report.verdict import volts
@@ -52,10 +52,8 @@ def _figure(results: Results) -> str:
         slow.set(xlabel="voltage (V)", ylabel="capacitance (pF)", title="slow loop")
         slow.legend()
         usual = [row for row in failing if np.isclose(float(row["attraction"]), 1.0)]
-        for key, color, label in (("failing", BLUE, "fails"), ("beyond", SOFT, "beyond the model")):
-            share = column(usual, key)
-            rare.plot(column(usual, "hold_V"), np.where(share > 0, share, np.nan), "o-", color=color, label=label)
+        share = column(usual, "failing")
+        rare.plot(column(usual, "hold_V"), np.where(share > 0, share, np.nan), "o-", color=BLUE)
         rare.set(yscale="log", xlabel="hold voltage (V)", ylabel="share of switches", title="failures")
-        rare.legend()
 
     return draw("circuit", "Capacitance and failures of the switch", plot, (9.4, 3.3), columns=2)
