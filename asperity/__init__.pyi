@@ -2,7 +2,6 @@ from asperity.film import Contact, Film, Switch
 from mesoscale.contact import Branch, ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import dissipated_energy, work
 from mesoscale.contact.surface import random_surface
-from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError
 from mesoscale.extras import MissingExtra
 from mesoscale.inputs.distributions import InputTable
@@ -43,6 +42,5 @@ __all__ = [
     "pressure",
     "random_surface",
     "run_cycle",
-    "switch_from_settings",
     "work",
 ]

@@ -21,14 +21,12 @@ from mesoscale.pad.cells import PadGrid, close_cells, sample_cells
 from mesoscale.pad.curves import assemble
 from mesoscale.settings import ContactSettings, LawSettings, Settings
 
-Numbers = Sequence[Sequence[float]]
 Config = Mapping[str, Any]
 
 MOST_POINTS = 1 << 26
 """Grid points of all cells of one request."""
-MOST_SEPARATIONS = 1000
 INPUTS = tuple(field.name for field in fields(ContactInputs) if field.default is MISSING)
-PAD_SEPARATIONS_NM = (40.0, 35.0, 30.0, 28.0)
+"""What the numbers of the only input list are."""
 
 
 @dataclass(frozen=True)
@@ -37,17 +35,14 @@ class Model:
 
     Attributes
     ----------
-    name, about, inputs : what the numbers of the only input list are.
-    outputs : what each output list is.
     config : keys that the configuration may have.
+    evaluate : output lists, from the inputs and the configuration.
+    output_sizes : lengths of the output lists.
     """
 
     name: str
-    about: str
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
     config: tuple[str, ...]
-    evaluate: Callable[[Sequence[float], Config], list[list[float]]]
+    evaluate: Callable[[ContactInputs, Config], Sequence[Any]]
     output_sizes: Callable[[Config], list[int]]
 
     def __call__(self, parameters: Any, config: Any) -> list[list[float]]:
@@ -57,23 +52,18 @@ class Model:
         ------
         InputError : wrong shape, unknown key of the configuration, values out of range, no finite result.
         """
-        checked = self.checked_config(config)
-        if not isinstance(parameters, list) or len(parameters) != 1 or not isinstance(parameters[0], list):
-            raise InputError(f"{self.name}: input must be one list of {len(self.inputs)} numbers: {self._named()}")
-        values = parameters[0]
-        good = all(isinstance(x, (int, float)) and not isinstance(x, bool) for x in values)
-        if len(values) != len(self.inputs) or not good:
-            raise InputError(f"{self.name}: input must be one list of {len(self.inputs)} numbers: {self._named()}")
+        checked, named = self.checked_config(config), ", ".join(INPUTS)
+        values = parameters[0] if isinstance(parameters, list) and len(parameters) == 1 else None
+        if not isinstance(values, list) or len(values) != len(INPUTS) or not all(map(_is_number, values)):
+            raise InputError(f"{self.name}: input must be one list of {len(INPUTS)} numbers: {named}")
         try:
-            numbers = [float(x) for x in values]
+            inputs = ContactInputs(**dict(zip(INPUTS, map(float, values), strict=True)))
         except OverflowError:
-            raise InputError(f"{self.name}: a number too large; inputs are {self._named()}") from None
-        result = self.evaluate(numbers, checked)
+            raise InputError(f"{self.name}: a number too large; inputs are {named}") from None
+        result = [np.asarray(part, float) for part in self.evaluate(inputs, checked)]
         if not all(np.isfinite(part).all() for part in result):
-            raise InputError(
-                f"{self.name}: no finite result at these inputs (JSON has no NaN); look at {self._named()}"
-            )
-        return result
+            raise InputError(f"{self.name}: no finite result at these inputs (JSON has no NaN); look at {named}")
+        return [part.tolist() for part in result]
 
     def checked_config(self, config: Any) -> Config:
         """The configuration, with its keys checked.
@@ -84,20 +74,20 @@ class Model:
         """
         if not isinstance(config, dict):
             raise InputError(f"{self.name}: config must be a mapping with keys of {', '.join(self.config)}")
-        unknown = sorted(set(config) - set(self.config))
-        if unknown:
+        if unknown := sorted(set(config) - set(self.config)):
             raise InputError(f"{self.name}: config.{unknown[0]}: unknown key; accepted: {', '.join(self.config)}")
         return config
 
-    def _named(self) -> str:
-        return ", ".join(self.inputs)
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def _settings(kind: type[Settings], config: Config, key: str) -> Any:
-    given = config.get(key, {})
-    if not isinstance(given, dict):
+    stated = config.get(key, {})
+    if not isinstance(stated, dict):
         raise InputError(f"config.{key}: must be a mapping of settings")
-    return kind(**given)
+    return kind(**stated)
 
 
 def _contact(config: Config, cells: int = 1) -> ContactSettings:
@@ -110,86 +100,56 @@ def _contact(config: Config, cells: int = 1) -> ContactSettings:
     return contact
 
 
-def _cycle(values: Sequence[float], config: Config) -> Cycle:
-    seed = config.get("seed", 1)
+def _seed(config: Config, default: int) -> int:
+    seed = config.get("seed", default)
     check_seed(seed)
-    contact = _contact(config)
-    return run_cycle(ContactInputs(**dict(zip(INPUTS, values, strict=True))), contact, seed)
+    return seed
 
 
-def _contact_cycle(values: Sequence[float], config: Config) -> list[list[float]]:
-    cycle = _cycle(values, config)
-    forces = force_levels_nN(_settings(ContactSettings, config, "contact").max_force_nN)
-    return [
-        [float(cycle.first_contact_nm), float(cycle.last_contact_nm), float(-cycle.opening.net_nN.min())],
-        separations_at(cycle.closing, forces).tolist(),
-        separations_at(cycle.opening, forces).tolist(),
-    ]
+def _cycle(inputs: ContactInputs, config: Config) -> Cycle:
+    return run_cycle(inputs, _contact(config), _seed(config, 1))
 
 
-def _law(values: Sequence[float], config: Config) -> list[list[float]]:
-    laws = laws_of(_cycle(values, config), _settings(LawSettings, config, "law"))
-    return [[float(np.asarray(getattr(law, name))) for name in PARAMETERS] for law in laws]
+def _contact_cycle(inputs: ContactInputs, config: Config) -> Sequence[Any]:
+    """First and last contact (nm) and pull-off (nN); separations (nm) at forces, closing and opening."""
+    cycle = _cycle(inputs, config)
+    forces = force_levels_nN(_contact(config).max_force_nN)
+    ends = [cycle.first_contact_nm, cycle.last_contact_nm, -cycle.opening.net_nN.min()]
+    return [ends, separations_at(cycle.closing, forces), separations_at(cycle.opening, forces)]
+
+
+def _law(inputs: ContactInputs, config: Config) -> Sequence[Any]:
+    """Parameters of the law, closing and opening."""
+    laws = laws_of(_cycle(inputs, config), _settings(LawSettings, config, "law"))
+    return [[getattr(law, name) for name in PARAMETERS] for law in laws]
 
 
 def _separations(config: Config) -> list[float]:
-    given = config.get("separations_nm", PAD_SEPARATIONS_NM)
-    listed = isinstance(given, (list, tuple)) and 0 < len(given) <= MOST_SEPARATIONS
-    if not listed or not all(isinstance(x, (int, float)) for x in given):
-        raise InputError(f"config.separations_nm: must be a list of 1 .. {MOST_SEPARATIONS} falling separations in nm")
-    return [float(x) for x in given]
+    stated, most = config.get("separations_nm", (40.0, 35.0, 30.0, 28.0)), 1000
+    listed = isinstance(stated, (list, tuple)) and 0 < len(stated) <= most
+    if not listed or not all(map(_is_number, stated)):
+        raise InputError(f"config.separations_nm: must be a list of 1 .. {most} falling separations in nm")
+    return [float(x) for x in stated]
 
 
-def _pad(values: Sequence[float], config: Config) -> list[list[float]]:
-    count, first = config.get("cells", 16), config.get("seed", 1000)
-    check_seed(first)
-    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 100_000:
-        raise InputError(f"config.cells = {count!r}: accepted is a whole number, 1 .. 100000")
-    contact = _contact(config, count)
-    separations = np.array(_separations(config))
-    grid = PadGrid(separations, np.array([len(separations) - 1]))
-    inputs = ContactInputs(**dict(zip(INPUTS, values, strict=True)))
-    cells = sample_cells(inputs, count, first)
+def _pad(inputs: ContactInputs, config: Config) -> Sequence[Any]:
+    """Mean net pressure (MPa) at the separations, of closing and of opening from the last one."""
+    count, first, most = config.get("cells", 16), _seed(config, 1000), 100_000
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= most:
+        raise InputError(f"config.cells = {count!r}: accepted is a whole number, 1 .. {most}")
+    contact, separations = _contact(config, count), np.array(_separations(config))
+    grid, cells = PadGrid(separations, np.array([separations.size - 1])), sample_cells(inputs, count, first)
     pad = assemble(grid, cells, list(close_cells(inputs, contact, grid, cells)), contact.length_nm**2)
-    return [
-        (1e3 * pad.mean(pad.closing).sum(axis=0)).tolist(),
-        (1e3 * pad.mean(pad.opening[:, 0]).sum(axis=0)).tolist(),
-    ]
+    return [1e3 * pad.mean(branch).sum(axis=0) for branch in (pad.closing, pad.opening[:, 0])]
 
 
 MODELS = {
     model.name: model
     for model in (
-        Model(
-            "contact_cycle",
-            "one surface closed and opened",
-            INPUTS,
-            (
-                "first contact (nm), last contact (nm), pull-off (nN)",
-                "separations (nm) of closing at net forces from 2 to 50 % of the largest, evenly in logarithm",
-                "the same of opening",
-            ),
-            ("seed", "contact"),
-            _contact_cycle,
-            lambda config: [3, LEVELS, LEVELS],
-        ),
-        Model(
-            "law",
-            "the compact law fitted to a cycle",
-            INPUTS,
-            tuple(f"{branch}: {', '.join(PARAMETERS)}" for branch in ("closing", "opening")),
-            ("seed", "contact", "law"),
-            _law,
-            lambda config: [len(PARAMETERS)] * 2,
-        ),
+        Model("contact_cycle", ("seed", "contact"), _contact_cycle, lambda config: [3, LEVELS, LEVELS]),
+        Model("law", ("seed", "contact", "law"), _law, lambda config: [len(PARAMETERS)] * 2),
         Model(
             "pad",
-            "cells under one plane",
-            INPUTS,
-            (
-                "mean net pressure (MPa) of closing at separations_nm",
-                "the same of opening from the last separation",
-            ),
             ("seed", "cells", "separations_nm", "contact"),
             _pad,
             lambda config: [len(_separations(config))] * 2,
@@ -197,13 +157,3 @@ MODELS = {
     )
 }
 """All models by name."""
-
-
-def evaluate(name: str, parameters: Any, config: Any) -> list[list[float]]:
-    """Evaluate a model by its name; what a worker process runs.
-
-    Raises
-    ------
-    InputError : see `Model`.
-    """
-    return MODELS[name](parameters, config)

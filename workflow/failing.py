@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.device.failure import Population
 from mesoscale.device.points import Pad, Point, press_pad, surfaces_of
 from mesoscale.errors import InputError
+from mesoscale.failure.rate import Population
 from mesoscale.settings import FailureSettings
 from workflow.job import settings_from_job
 from workflow.pad_files import load_model, points_of_job

@@ -37,6 +37,7 @@ REPLACED = {
     **{f"contact.surface.{key}": "give `heights`" for key in ("moments", "skewness", "kurtosis")},
     "topography.method": "maximum likelihood; parameters.json has the paper's line fits, too",
     "coupling": "see target model_form",
+    "adhesion": "device/pad_switch.json has the adhesion of the pad",
     **{f"pad.{key}": "it follows from the switch" for key in ("max_pressure_MPa", "pilot_cells", "depths", "grid")},
     "pad.gap_cutoff_high_nm": "for another range of D0 than up to 0.3 nm give inputs.gap_cutoff",
 }

@@ -20,7 +20,6 @@ from pydantic.fields import FieldInfo
 from asperity.foreign_yaml import MistakenYaml, load_mapping
 from atomistic.settings import ElasticSettings, HardnessSettings
 from mesoscale.settings import (
-    AdhesionSettings,
     ContactSettings,
     DeviceSettings,
     FailureSettings,
@@ -88,7 +87,6 @@ class Scene(Settings):
     contact: ContactSettings = ContactSettings()
     law: LawSettings = LawSettings()
     pad: PadSettings = PadSettings()
-    adhesion: AdhesionSettings = AdhesionSettings()
     uncertainty: UncertaintySettings = UncertaintySettings()
     device: DeviceSettings = DeviceSettings()
     failure: FailureSettings = FailureSettings()

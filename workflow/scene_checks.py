@@ -127,9 +127,8 @@ def _no_switch(device: DeviceSettings) -> str:
     unusual = {"hold_voltage_V", "residual_stress_MPa", "temperature_C", "ends", "stopper_nm", "dimple_nm", "spread"}
     if device.touching_at_rest or not device.bends or not unusual & device.model_fields_set:
         return device.touching_at_rest
-    from mesoscale.device.pressing import pull_in_V  # takes a second
+    from mesoscale.device.pressing import never_closes, pull_in_V  # takes a second
     from mesoscale.device.spread import check_spread
-    from mesoscale.device.statistics import never_closes
 
     try:
         check_spread(device)
@@ -163,13 +162,6 @@ def _machine(scene: Scene) -> Iterator[str]:
             f"contact.pixels = {pixels}: a contact needs {needed / 1000:.1f} GB of memory, this machine has "
             f"{present / 1000:.1f}; take fewer pixels"
         )
-    if scene.adhesion.pads:
-        cells = scene.adhesion.cells
-        if present >= contact_MB(scene.contact) and (needed := contact_MB(scene.contact, cells)) > present:
-            yield (
-                f"adhesion.cells = {cells}: they are closed side by side, which needs {needed / 1000:.1f} GB of "
-                f"memory, this machine has {present / 1000:.1f}; take fewer of them"
-            )
     runs = scene.uncertainty.direct_runs
     if (needed := propagation_MB(scene.uncertainty)) > present:
         yield (

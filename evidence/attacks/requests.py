@@ -20,8 +20,9 @@ from asperity.models import MODELS
 from evidence.attacks.runs import HANG_S, Attack, figures, table
 
 __all__ = ["campaign", "figures", "rows"]
-SWITCH = {"name": "switch", "input": [[30.0, 1e-4, 5e-4, 3.0, 28.0, 1e-4, 5e-4, 3.0, 0.215]]}
 CENTRE = [0.215, 91.0, 1.95, 8.4, 0.025, 0.75, 8.5]
+QUICK = {"cells": 1, "separations_nm": [80.0, 60.0], "contact": {"pixels": 32}}
+ORDINARY = {"name": "pad", "input": [CENTRE], "config": QUICK}
 JSON = {"Content-Type": "application/json"}
 ODD: tuple[Any, ...] = (
     None, True, -1, 0, 1e300, 10**400, "", "x", [], {}, [[]], [None], "\x1b[31m", "\u202e", "cls", "self", "__class__",
@@ -71,7 +72,7 @@ def campaign(seed: int, count: int) -> Iterator[Attack]:
                 started = time.monotonic()
                 outcome, words = _send(rng, port, kind)
                 if outcome != "fault" and number % 10 == 9:
-                    status, answer = _post(port, "/Evaluate", json.dumps(SWITCH).encode(), JSON)
+                    status, answer = _post(port, "/Evaluate", json.dumps(ORDINARY).encode(), JSON)
                     if status != 200 or server.poll() is not None:
                         outcome, words = "fault", f"an ordinary request gets {status} {answer[:100]}"
                 seconds = time.monotonic() - started
@@ -91,7 +92,7 @@ def _listens(port: int) -> bool:
 
 
 def _send(rng: random.Random, port: int, kind: str) -> tuple[str, str]:
-    body, headers = json.dumps(SWITCH).encode(), dict(JSON)
+    body, headers = json.dumps(ORDINARY).encode(), dict(JSON)
     path = rng.choice(("/Evaluate", "/Evaluate", "/ModelInfo", "/InputSizes", "/OutputSizes", "/x"))
     if kind in ("cut off", "no HTTP", "left alone"):
         return _leave(rng, port, kind)
@@ -103,7 +104,7 @@ def _send(rng: random.Random, port: int, kind: str) -> tuple[str, str]:
         big = {"name": "pad", "input": [CENTRE], "config": {"cells": 10**5, "contact": {"pixels": 16384}}}
         path, body = "/Evaluate", json.dumps(big).encode() + b" " * rng.choice((0, 2 << 20))
     else:
-        content = {**SWITCH, "name": rng.choice(list(MODELS)), "config": {}}
+        content = {**ORDINARY, "name": rng.choice(list(MODELS)), "config": {}}
         for _ in range(rng.randrange(1, 4)):
             owner = rng.choice((content, content["config"])) if isinstance(content.get("config"), dict) else content
             owner[rng.choice(KEYS)] = rng.choice(ODD)

@@ -13,7 +13,7 @@ import numpy as np
 
 from mesoscale.device.points import Point, solve_point
 from mesoscale.inputs.table import from_rows
-from mesoscale.pad.cells import FIRST_SEED
+from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings
 from mesoscale.tables import load_table
 from mesoscale.topography.pooling import Pooled, pool
@@ -48,7 +48,7 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
             point = Point(values, contact.gap_cutoff_nm, scene.device)
             count = round(given.area / (side / 1000.0) ** 2)
             for repeat in range(given.repeats):
-                solved = solve_point(point, contact, count, FIRST_SEED + APART * repeat)
+                solved = solve_point(point, contact, count, PAD.first_seed + APART * repeat)
                 opening = solved.pad.law.opening[0].sum(axis=0) if solved.pad else np.array([np.nan])
                 yield {
                     "scene": given.scene,

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from evidence.pad.large_surfaces import FIRST_LARGE_SEED, INPUTS, PILOTS, SIDE, closed, deepest_kPa, random_cells
 from mesoscale.contact.displacement import close_by_separation
 from mesoscale.inputs.contact import ContactInputs, FilmInputs
-from mesoscale.pad.cells import FIRST_SEED, Cell, close_cells, plan_grid, surface_of
+from mesoscale.pad.cells import Cell, close_cells, plan_grid, surface_of
 from mesoscale.pad.curves import assemble
+from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
@@ -47,12 +48,12 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     grid = plan_grid(
         FILM,
         contact,
-        random_cells(PILOTS, FIRST_SEED),
+        random_cells(PILOTS, PAD.first_seed),
         lambda separation: np.full_like(separation, LARGEST_GPa),
         step_nm=0.1,
         depths=2,
     )
-    cells = random_cells(given.cells, FIRST_SEED)
+    cells = random_cells(given.cells, PAD.first_seed)
     pads = {"film": closed(FILM, contact, grid, cells), "alike": closed(MEDIAN, contact, grid, cells)}
     for kind, sign in (("smooth", -1), ("rough", 1)):
         pads[kind] = closed(at_rms(float(np.exp(sign * SCATTER))), contact, grid, cells[: len(cells) // 2])

@@ -1,6 +1,6 @@
 """Pull-in and release voltages as the inputs predict them, for many inputs at once.
 
-The switch is a plate on a spring (`mesoscale.device.switch`) on the law of one cell: W(s) = V^2 is the voltage that
+The switch is a plate on a spring (`mesoscale.device.plate`) on the law of one cell: W(s) = V^2 is the voltage that
 balances spring and contact at the separation s. While it opens, the contact acts on the share of a bent beam that comes
 off last. Release is the lowest point of W between the repulsive wall and the barrier; it is kept with its sign, so that
 a switch that sticks lies below zero by as much as its spring lacks.
@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from mesoscale.calibration.observables import LAWS, Observable
 from mesoscale.calibration.responses import Prediction
+from mesoscale.device.plate import GPA, NM, VACUUM_PERMITTIVITY, Plate, plate_from_settings
 from mesoscale.device.spread import departed
-from mesoscale.device.statistics import analytic_pull_in_V
-from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, Switch, switch_from_settings
 from mesoscale.law.compact import Law
 from mesoscale.law.parameters import PARAMETERS
 from mesoscale.law.samples import column, onset_nm, pressure_GPa, scale_adhesion
@@ -43,7 +42,7 @@ class SwitchModel:
     scatter_V : of pull-in and release, by what all devices share and by what differs between them (V).
     """
 
-    switch: Switch
+    switch: Plate
     last_share: float
     adhesion_scale: float
     law: LawSettings
@@ -57,7 +56,7 @@ class SwitchModel:
         A clamped beam held down at mid-span has the curvature 24 g / L^2 there, so what comes off last are the places
         within a distance x of mid-span with 12 g x^2 / L^2 below the range of adhesion: a share sqrt(range / (3 g)).
         """
-        switch, last_share = switch_from_settings(device), 1.0
+        switch, last_share = plate_from_settings(device), 1.0
         if device.bends:
             last_share = min(float(np.sqrt(law.rho_a_nm / (3.0 * switch.gap_nm))), 1.0)
         cells = max(last_share * switch.area_m2 * 1e18 / cell_area_nm2, 1.0)
@@ -118,15 +117,15 @@ def device_scatter_V(device: DeviceSettings) -> dict[str, tuple[float, float]]:
     Each property departs alone by one standard deviation to either side; the release is that without adhesion.
     """
 
-    def voltages(switch: Switch) -> dict[str, float]:
+    def voltages(switch: Plate) -> dict[str, float]:
         electric = (TOUCH_NM + switch.dielectric_nm) * NM
         spring = switch.spring_N_per_m * (switch.gap_nm - TOUCH_NM) * NM
         release = np.sqrt(2.0 * spring * electric**2 / (VACUUM_PERMITTIVITY * switch.area_m2))
-        return {"pull_in": analytic_pull_in_V(switch), "release": float(release)}
+        return {"pull_in": switch.pull_in_V, "release": float(release)}
 
     squares = {"pull_in": {"common": 0.0, "each": 0.0}, "release": {"common": 0.0, "each": 0.0}}
     for name, *devices in departed(device, ONE_DEVIATION):
-        low, high = (voltages(switch_from_settings(moved)) for moved in devices)
+        low, high = (voltages(plate_from_settings(moved)) for moved in devices)
         for kind, by in squares.items():
             by[getattr(device.spread, name).varies] += (0.5 * (high[kind] - low[kind])) ** 2
     return {kind: (float(np.sqrt(by["common"])), float(np.sqrt(by["each"]))) for kind, by in squares.items()}

@@ -12,15 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.beam import lumped_beam
-from mesoscale.device.beam_switch import solve_bent
 from mesoscale.device.electrode import release_or_nan_V
-from mesoscale.device.pad_export import tables_of
 from mesoscale.device.points import PadModel, Point, on_pad_grid, press_pad
 from mesoscale.device.release import ENDS
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.cells import DEPTHS, FIRST_SEED, LONGEST_STEP_NM, STEP_RMS
 from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings, DeviceSettings
 
 Array = NDArray[np.float64]
@@ -37,10 +34,6 @@ SIDES = (2, 4)
 """Finer grids: so many times the pads' sites a side."""
 ELEMENTS = (16, 32, 64, 128, 256)
 FINEST_ELEMENTS = 512
-PAIRS = (8, 12, 16, 20, 28)
-"""Of lumps, of the electrode in a circuit."""
-LOOSER = (1.0, 4.0, 16.0)
-"""Factors on the errors that tables for circuits may have."""
 STICKS_WITHIN = 1e-3
 MOST_ATTRACTION = 1e3
 RESAMPLES = 200
@@ -66,7 +59,7 @@ def accuracy_points(
     """
     central = model.central
     law, device, coarse = central.pressed.law, central.point.device, on_pad_grid(contact, table)
-    press_pad(central.point, coarse, 2, FIRST_SEED)  # compiles
+    press_pad(central.point, coarse, 2, PAD.first_seed)  # compiles
     parts: list[tuple[str, Iterator[Row]]] = [
         ("cells", _cells(central.point, coarse)),
         ("steps", _steps(central.point, coarse, cells)),
@@ -74,7 +67,6 @@ def accuracy_points(
         ("grid", _grid(central.point, coarse, cells)),
         ("points", _points(model, coarse, cells)),
         ("elements", _elements(law, device)),
-        ("circuit", _circuit(law, device)),
     ]
     for done, (name, rows) in enumerate(parts):
         yield from rows
@@ -108,7 +100,7 @@ def _release_V(law: PadLaw, device: DeviceSettings, *elements: int) -> tuple[flo
     return release, _clock() - started
 
 
-def _pressed_V(point: Point, contact: ContactSettings, cells: int, first_seed: int = FIRST_SEED, **choices: Any):
+def _pressed_V(point: Point, contact: ContactSettings, cells: int, first_seed: int = PAD.first_seed, **choices: Any):
     """Release on a pad that is pressed now, and the wall and processor time of pressing it."""
     started = _clock()
     law = press_pad(point, contact, cells, first_seed, **choices).law
@@ -121,7 +113,7 @@ def _cells(point: Point, contact: ContactSettings) -> Iterator[Row]:
     most = 2 * CELLS[-1]
     wanted, _ = _pressed_V(point, contact, most)
     for count in CELLS:
-        tried = [_pressed_V(point, contact, count, FIRST_SEED + (k + 1) * 10_000) for k in range(OTHERS)]
+        tried = [_pressed_V(point, contact, count, PAD.first_seed + (k + 1) * 10_000) for k in range(OTHERS)]
         error = float(np.sqrt(np.nanmean([(release - wanted) ** 2 for release, _ in tried])))
         metric, cost = f"RMS deviation over {OTHERS} pads, V", np.mean([cost for _, cost in tried], axis=0)
         yield _row("release", "cells", count, error, metric, f"{most} cells", cost)
@@ -129,7 +121,7 @@ def _cells(point: Point, contact: ContactSettings) -> Iterator[Row]:
 
 def _steps(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
     """Longer and shorter steps of separation."""
-    step = min(STEP_RMS * point.values["rms"], LONGEST_STEP_NM)
+    step = min(PAD.step_rms * point.values["rms"], PAD.longest_step_nm)
     wanted, _ = _pressed_V(point, contact, cells, step_nm=step * TIMES[-1])
     for times in (*TIMES[:-1], 1.0):
         release, cost = _pressed_V(point, contact, cells, step_nm=step * times)
@@ -140,7 +132,7 @@ def _steps(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
 def _depths(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
     """Fewer and more depths in the memory."""
     wanted, _ = _pressed_V(point, contact, cells, depths=MORE_DEPTHS)
-    for depths in (2, 3, DEPTHS, 2 * DEPTHS):
+    for depths in (2, 3, PAD.depths, 2 * PAD.depths):
         release, cost = _pressed_V(point, contact, cells, depths=depths)
         yield _row("release", "depths", depths, abs(release - wanted), "deviation, V", f"{MORE_DEPTHS} depths", cost)
 
@@ -150,7 +142,7 @@ def _grid(point: Point, contact: ContactSettings, cells: int) -> Iterator[Row]:
     releases = {}
     for times in (1, *SIDES):
         finer = contact.model_copy(update={"pixels": contact.pixels * times})
-        releases[finer.pixels] = [_pressed_V(point, finer, cells, FIRST_SEED + k * 10_000) for k in range(OTHERS)]
+        releases[finer.pixels] = [_pressed_V(point, finer, cells, PAD.first_seed + k * 10_000) for k in range(OTHERS)]
     *coarser, finest = releases
     wanted = float(np.mean([release for release, _ in releases[finest]]))
     for pixels in coarser:
@@ -191,27 +183,6 @@ def _elements(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
         metric, reference = "relative deviation", f"{FINEST_ELEMENTS} elements"
         error = abs(factor / sticks - 1.0)
         yield _row("attraction that sticks", "elements of the beam", elements, error, metric, reference, cost)
-
-
-def _circuit(law: PadLaw, device: DeviceSettings) -> Iterator[Row]:
-    """Nodes of the tables for circuits, and pairs of lumps of a bending electrode."""
-    for looser in LOOSER:
-        started = _clock()
-        tables = tables_of(law, False, looser)
-        nodes = sum(pieces[0].x.size for pieces in [tables.closing, *tables.opening])
-        metric, cost = "largest error, of the well", _clock() - started
-        yield _row("pressure in a circuit", "nodes of its tables", nodes, tables.of_well, metric, "the curves", cost)
-    if not device.bends or device.without_lumps:
-        return
-    flat, reference = device.model_copy(update={"tilt_nm": 0.0}), f"{FINEST_ELEMENTS} elements"
-    wanted, _ = _release_V(law, flat, FINEST_ELEMENTS)
-    for pairs in PAIRS:
-        started = _clock()
-        release = solve_bent(lumped_beam(flat, pairs), flat, law).release_V
-        cost = _clock() - started
-        yield _row(
-            "release in a circuit", "pairs of lumps", pairs, abs(release - wanted), "deviation, V", reference, cost
-        )
 
 
 def _sticking(law: PadLaw, device: DeviceSettings, elements: int) -> tuple[float, Array]:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.device.beam_kernels import NM, deflect, elongation, newton_step
+from mesoscale.device.numerics import SWITCH
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
 
@@ -26,10 +27,6 @@ Load = Callable[[Array], tuple[Array, Array]]
 """Pressure (Pa, positive: apart) and its derivative (Pa/m) at separations (m), all of shape (elements, points)."""
 
 GAUSS = np.polynomial.legendre.leggauss(4)
-MIDDLE, LANDING = 0.012, 0.56
-"""Shares of half the beam: of the last contact, 3 um of the default, and of what lands when the beam pulls in."""
-AT_REST, RESTS_NM = 200, 1e-6
-"""Newton steps of a beam that heat or its stress moves to rest, and the last of them."""
 
 
 @dataclass(frozen=True)
@@ -148,9 +145,9 @@ def beam_of(settings: DeviceSettings, elements: int = 256) -> Beam:
 def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
     """The same beam loaded at 2 `lumps` places only: one integration point at the end of each element but the last.
 
-    The places are those of Gauss in parts of the beam. Within `LANDING` of mid-span, which opens last, the density of
-    parts is 1 / (x + `MIDDLE`) + 2 / `LANDING` at a share x of half the beam; what remains is one part.
-    Their stiffness is exact where there is no tension.
+    The places are those of Gauss in parts of the beam. Within `SWITCH.landing` of mid-span, which opens last, the
+    density of parts is 1 / (x + middle) + 2 / landing at a share x of half the beam; what remains is one part. Their
+    stiffness is exact where there is no tension.
 
     Raises
     ------
@@ -161,8 +158,8 @@ def lumped_beam(settings: DeviceSettings, lumps: int) -> Beam:
         raise InputError(f"a bending electrode needs an even number of lumps, at least 4, not {lumps}")
     if settings.without_lumps:
         raise InputError(settings.without_lumps)
-    half, share = settings.length_um * 1e-6 / 2.0, np.linspace(0.0, LANDING, 10001)
-    until = np.log1p(share / MIDDLE) + 2.0 * share / LANDING
+    half, share = settings.length_um * 1e-6 / 2.0, np.linspace(0.0, SWITCH.landing, 10001)
+    until = np.log1p(share / SWITCH.middle) + 2.0 * share / SWITCH.landing
     landing = np.interp(np.linspace(until[-1], 0.0, lumps // 2), until, share)
     ends = half * (1.0 - np.concatenate([[1.0], landing]))
     parts, (gauss, weights) = np.diff(ends)[:, None], np.polynomial.legendre.leggauss(2)
@@ -246,14 +243,14 @@ def _at_rest(stated: Beam, settings: DeviceSettings) -> Beam:
             [0.5 * (1.0 - np.cos(2.0 * np.pi * share)), np.pi / stated.length_m * np.sin(2 * np.pi * share)]
         )
         u = (1.0 if settings.buckled == "up" else -1.0) * height * mode.T.ravel()[freedoms] - z0
-    for _ in range(AT_REST):
+    for _ in range(SWITCH.rest_steps):
         gradient = pulls @ (z0 + u)
         more = heat + stretching * (0.5 * u @ pulls @ u + z0 @ pulls @ u)
         left = bends @ u + stated.tension_N * (pulls @ u) + more * gradient
         stiffness = bends + (stated.tension_N + more) * pulls + stretching * np.outer(gradient, gradient)
         change = -np.linalg.solve(stiffness, left)
         u = u + change
-        if abs(change[::2]).max() < RESTS_NM * NM:
+        if abs(change[::2]).max() < SWITCH.rests_nm * NM:
             break
     else:
         raise InputError(

@@ -25,30 +25,15 @@ from mesoscale.device.beam_kernels import (
     creep,
     least_gap_nm,
 )
-from mesoscale.device.statistics import never_closes
-from mesoscale.device.switch import VACUUM_PERMITTIVITY
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.plate import VACUUM_PERMITTIVITY
+from mesoscale.device.pressing import never_closes
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import PadLaw, attracting
 from mesoscale.settings import DeviceSettings
 
 Array = NDArray[np.float64]
-
-CONTACT_GPa = 1e-6
-"""A place has landed where it is pushed with more than 1 kPa, a tenth of the pull of the default switch's spring."""
-RELEASE_TOLERANCE = 1e-3
-LITTLE = 0.05
-"""Of the hold voltage: a beam that is closed at less is tried without any."""
-ELEMENTS = 128
-"""The last places that adhesion holds are some 5 um long: release is within 0.4 % of that of 1024 elements.
-Close to sticking it is within 0.2 V of that of 512, where with 64 elements a switch sticks that opens at 0.7 V. The
-attraction that sticks is known to 1 to 4 %."""
-NEWTON = 12
-"""Steps to the balance of a free beam, each from that of the voltage before."""
-DOWN = 81
-"""Separations of the way down, from rest to touch."""
-FREE_SHARE = 0.5
-"""Off the pad is a beam that is nowhere below this share of its separation at rest; it pulls in from two thirds."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +62,7 @@ class BeamStates:
     capacitance_fF: float
 
 
-def solve_beam(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> BeamStates:
+def solve_beam(settings: DeviceSettings, law: PadLaw, elements: int = SWITCH.elements) -> BeamStates:
     """Close the beam on a pad, hold it, and open it.
 
     Raises
@@ -141,7 +126,7 @@ def loop_fF(beam: Beam, settings: DeviceSettings, law: PadLaw, volts: Array) -> 
     pull_in, up = moving.snap_V(), []
     for voltage in volts:
         if voltage < pull_in:
-            for _ in range(NEWTON):
+            for _ in range(SWITCH.free_steps):
                 free.nodal = free.nodal + free.beam.step(free.nodal, lambda s, at=voltage**2: free.load(s, at))[0]
             up.append(free.capacitance_F())
         else:
@@ -154,7 +139,7 @@ def loop_fF(beam: Beam, settings: DeviceSettings, law: PadLaw, volts: Array) -> 
     return 1e15 * np.array(up), 1e15 * np.array(down[::-1])
 
 
-def closed_beam(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> Callable[[float, float], bool]:
+def closed_beam(settings: DeviceSettings, law: PadLaw, elements: int) -> Callable[[float, float], bool]:
     """Whether the beam is still closed at a voltage with so many times the attraction, as a function of both.
 
     The beam is closed with its hold voltage, at least with that of its pull-in.
@@ -175,7 +160,7 @@ def closed_beam(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS)
     return closed
 
 
-def press_GPa(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> float:
+def press_GPa(settings: DeviceSettings, law: PadLaw, elements: int = SWITCH.elements) -> float:
     """Largest net pressure with which the beam presses a pad on its way to the held state.
 
     Raises
@@ -202,7 +187,7 @@ class _Moving:
         if pad is None:
             return
         law = pad.law
-        touching = law.closing[0] > CONTACT_GPa
+        touching = law.closing[0] > SWITCH.contact_GPa
         if not touching.any():
             raise NotComputed(
                 f"device: the pad carries {law.closing[0].max() * 1e3:.3g} MPa at {law.separation_nm[0]:.4g} nm, where "
@@ -247,7 +232,7 @@ class _Moving:
 
     def landed_share(self) -> float:
         """Share of the contact part that is pushed."""
-        pushed = self.pressure_GPa() > CONTACT_GPa
+        pushed = self.pressure_GPa() > SWITCH.contact_GPa
         return float((pushed * self.beam.weights_m).sum() / self.beam.contact_m)
 
     def capacitance_F(self) -> float:
@@ -284,7 +269,7 @@ class _Moving:
         at = self.leading()
         way = float(self.over_nm()[max(at - 1, 0) : at + 1].mean())
         squared, kept, states = 0.0, [0.0], [self.nodal]
-        for target in np.linspace(0.0, way, DOWN)[1:]:
+        for target in np.linspace(0.0, way, SWITCH.down)[1:]:
             for _ in range(30):
                 change, per_V2 = self.beam.step(
                     self.nodal, lambda s, now=squared: self.load(s, now), 0.0, self.pull_Pa()
@@ -317,7 +302,7 @@ class _Moving:
         InputError : no balance within the allowed number of steps.
         """
         over_pad = self.beam.rest_m[self.beam.lands > 0] / NM - self.beam.dimple_nm
-        free = FREE_SHARE * float(over_pad.min())
+        free = SWITCH.free_share * float(over_pad.min())
         ended = creep(
             self.nodal,
             self.deepest,
@@ -347,9 +332,9 @@ class _Moving:
         held = self.nodal.copy(), self.deepest.copy()
         share = self.landed_share()
         high, low = hold_V, None
-        while low is None or high - low > RELEASE_TOLERANCE * high:
+        while low is None or high - low > SWITCH.release_tolerance * high:
             # down to no voltage where it holds at little, else between the last voltages
-            voltage = 0.5 * (low + high) if low is not None else 0.5 * high if high > LITTLE * hold_V else 0.0
+            voltage = 0.5 * (low + high) if low is not None else 0.5 * high if high > SWITCH.little * hold_V else 0.0
             # an opening is elastic, so the state at a lower voltage is reached from any higher one
             if self.creep(voltage, OPENING_NM):
                 high, share, held = voltage, self.landed_share(), (self.nodal.copy(), self.deepest.copy())

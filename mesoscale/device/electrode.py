@@ -7,23 +7,18 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.beam_switch import ELEMENTS, press_GPa, solve_beam
-from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.statistics import never_closes
-from mesoscale.device.switch import switch_from_settings
+from mesoscale.device.beam_switch import press_GPa, solve_beam
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.plate import plate_from_settings, solve_on_pad
+from mesoscale.device.pressing import never_closes
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.memory import Flats, PadLaw, deepened
 from mesoscale.settings import DeviceSettings
 
 T = TypeVar("T")
 
-DEEPENED_BY = 2
-"""How often the pressure to which a pad was computed is doubled by continuing its curves."""
-COARSE = 64
-"""Elements of a beam where releases are only compared with each other."""
 
-
-def solve_electrode(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> dict[str, float]:
+def solve_electrode(settings: DeviceSettings, law: PadLaw, elements: int = SWITCH.elements) -> dict[str, float]:
     """What the switch does on a pad: its bending electrode of so many elements, or a flat plate on a given spring.
 
     Raises
@@ -38,7 +33,7 @@ def solve_electrode(settings: DeviceSettings, law: PadLaw, elements: int = ELEME
             "capacitance_fF": beam.capacitance_fF,
             "landed_share": beam.landed_share,
         }
-    switch = switch_from_settings(settings)
+    switch = plate_from_settings(settings)
     plate = solve_on_pad(switch, law, settings.hold_voltage_V)
     capacitance = float(switch.capacitance_F(np.array(plate.hold_nm))) * 1e15
     return {
@@ -49,13 +44,13 @@ def solve_electrode(settings: DeviceSettings, law: PadLaw, elements: int = ELEME
     }
 
 
-def solve_deepened(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> dict[str, float]:
+def solve_deepened(settings: DeviceSettings, law: PadLaw, elements: int = SWITCH.elements) -> dict[str, float]:
     """As `solve_electrode`; a pad that the switch presses harder than it was computed is continued (`deepened` is 1).
 
     Raises
     ------
     InputError : see `solve_electrode`; the hold voltage never closes the switch.
-    NotComputed : it presses more than `2 ** DEEPENED_BY` times as hard as the pad was computed.
+    NotComputed : it presses more than `2 ** SWITCH.deepened_by` times as hard as the pad was computed.
     """
     state, pad = with_pad(lambda pad: solve_electrode(settings, pad, elements), law)
     if line := never_closes(settings, state["pull_in_V"]):
@@ -63,7 +58,7 @@ def solve_deepened(settings: DeviceSettings, law: PadLaw, elements: int = ELEMEN
     return {**state, "deepened": float(pad is not law)}
 
 
-def release_or_nan_V(settings: DeviceSettings, law: PadLaw, elements: int = ELEMENTS) -> float:
+def release_or_nan_V(settings: DeviceSettings, law: PadLaw, elements: int = SWITCH.elements) -> float:
     """Release on a pad (V; 0: it sticks); NaN where the switch has no answer."""
     try:
         return solve_deepened(settings, law, elements)["release_V"]
@@ -76,9 +71,9 @@ def with_pad(solve: Callable[[PadLaw], T], law: PadLaw) -> tuple[T, PadLaw]:
 
     Raises
     ------
-    NotComputed : it presses more than `2 ** DEEPENED_BY` times as hard as the pad was computed.
+    NotComputed : it presses more than `2 ** SWITCH.deepened_by` times as hard as the pad was computed.
     """
-    for _ in range(DEEPENED_BY):
+    for _ in range(SWITCH.deepened_by):
         try:
             return solve(law), law
         except NotComputed:
@@ -99,7 +94,7 @@ def presser(settings: DeviceSettings) -> Callable[[NDArray[np.float64], NDArray[
         closing = np.stack([np.maximum(net_GPa, 0.0), np.minimum(net_GPa, 0.0)])
         law = PadLaw(separation_nm, closing, separation_nm[:1], closing[None], Flats(0.0, 0.0))
         with suppress(NotComputed):  # closed nearly to its mean plane: it is continued as far as that goes
-            for _ in range(DEEPENED_BY):
+            for _ in range(SWITCH.deepened_by):
                 law = deepened(law)
         try:
             return press_GPa(settings, law)

@@ -12,29 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact.surface import shortest_wave
-from mesoscale.device.electrode import COARSE, presser, release_or_nan_V, solve_deepened
+from mesoscale.device.electrode import presser, release_or_nan_V, solve_deepened
+from mesoscale.device.numerics import SWITCH
 from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.device.spread import properties_at, with_properties
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.cells import DEPTHS, FIRST_SEED, close_cells, plan_grid, sample_cells
+from mesoscale.pad.cells import close_cells, plan_grid, sample_cells
 from mesoscale.pad.curves import PadCells, assemble
 from mesoscale.pad.memory import Flats, PadLaw, flats_of, law_of
+from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings, DeviceSettings
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
-
-HIGHEST_GAP_CUTOFF_NM = 0.3
-"""Upper end of a D0 that is no input: a distance of atoms, above Israelachvili's 0.165 nm (docs/pad.md)."""
-UNDECIDED, OF_RELEASE = 0.008, 0.1
-"""Error of a release from which a pad has more cells, over the pull-in voltage (0.6 V of the default switch) and over
-the release: what exceeds both."""
-MORE = 4
-"""So many times as many cells has a point that is undecided."""
-SEEDS = 1_000_000
-"""Between the first surfaces of two points."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +75,7 @@ class Design:
 def cutoff_range(table: InputTable, contact: ContactSettings) -> tuple[float, float]:
     """D0 (nm) of the scene, and the largest that is drawn; the same where D0 is an input."""
     low = contact_of(table.medians(), contact)[1].gap_cutoff_nm
-    return low, low if "gap_cutoff" in table.names else max(low, HIGHEST_GAP_CUTOFF_NM)
+    return low, low if "gap_cutoff" in table.names else max(low, SWITCH.highest_gap_cutoff_nm)
 
 
 def central_point(table: InputTable, contact: ContactSettings, settings: DeviceSettings) -> Point:
@@ -204,7 +196,7 @@ class Solved:
         if self.refused:
             return False
         disagree = (self.halves_V[0] == 0.0) != (self.halves_V[1] == 0.0)
-        enough = max(UNDECIDED * self.states["pull_in_V"], OF_RELEASE * self.states["release_V"])
+        enough = max(SWITCH.undecided * self.states["pull_in_V"], SWITCH.of_release * self.states["release_V"])
         return disagree or not self.error_V <= enough
 
 
@@ -215,7 +207,7 @@ def press_pad(
     first_seed: int,
     *,
     step_nm: float | None = None,
-    depths: int = DEPTHS,
+    depths: int = PAD.depths,
     progress: Progress | None = None,
 ) -> Pad:
     """The pad of a point, closed as hard as its switch presses, and opened.
@@ -246,20 +238,22 @@ def solve_point(
         states = solve_deepened(point.device, pad.law)
     except InputError as error:
         return Solved(point, pad, {}, (np.nan, np.nan), str(error))
-    first, second = (release_or_nan_V(point.device, law, COARSE) for law in pad.halves)
+    first, second = (release_or_nan_V(point.device, law, SWITCH.coarse_elements) for law in pad.halves)
     return Solved(point, pad, states, (first, second))
 
 
 def surfaces_of(number: int) -> int:
     """First seed of the surfaces of a point; number 0 is the central one."""
-    return FIRST_SEED + SEEDS * number
+    return PAD.first_seed + SWITCH.seeds * number
 
 
 def solve_points(points: Sequence[tuple[int, Point]], contact: ContactSettings, cells: int) -> Iterator[Solved]:
     """The switches of points, each with its number; one that is undecided has more cells."""
     for number, point in points:
         solved = solve_point(point, contact, cells, surfaces_of(number))
-        yield solve_point(point, contact, MORE * cells, surfaces_of(number)) if solved.undecided else solved
+        if solved.undecided:
+            solved = solve_point(point, contact, SWITCH.more_cells * cells, surfaces_of(number))
+        yield solved
 
 
 @dataclass(frozen=True)

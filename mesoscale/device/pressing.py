@@ -5,14 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.statistics import analytic_pull_in_V
-from mesoscale.device.switch import GPA, NM, VACUUM_PERMITTIVITY, switch_from_settings
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.plate import GPA, NM, VACUUM_PERMITTIVITY, plate_from_settings
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.device import SPREAD, SpreadSettings
 
-EDGE = 2.5
-"""Local over electrostatic pressure to which pads are computed at least. The edge of what has landed bears the beam,
-too, and presses with 1.6 to 2.3 of it on pads of Table 1."""
 EXACT = SpreadSettings(**dict.fromkeys(SPREAD))
 
 
@@ -32,7 +29,7 @@ class LargestPressure:
     def __call__(self, separation_nm: NDArray[np.float64]) -> NDArray[np.float64]:
         """In GPa, of the shape of the separations."""
         electric = np.maximum(separation_nm + self.dielectric_nm, 0.5 * self.dielectric_nm + 1.0) * NM
-        return EDGE * VACUUM_PERMITTIVITY * self.voltage_V**2 / (2.0 * electric**2) / GPA
+        return SWITCH.edge * VACUUM_PERMITTIVITY * self.voltage_V**2 / (2.0 * electric**2) / GPA
 
 
 def pressing(settings: DeviceSettings) -> DeviceSettings:
@@ -47,7 +44,7 @@ def pressure_to_compute(settings: DeviceSettings) -> LargestPressure:
     ------
     InputError : see `held_V`.
     """
-    return LargestPressure(held_V(settings), switch_from_settings(settings).dielectric_nm)
+    return LargestPressure(held_V(settings), plate_from_settings(settings).dielectric_nm)
 
 
 def held_V(settings: DeviceSettings) -> float:
@@ -68,7 +65,21 @@ def pull_in_V(settings: DeviceSettings) -> float:
     InputError : a beam that does not pull in, or that stands on the dielectric.
     """
     if not settings.bends:
-        return analytic_pull_in_V(switch_from_settings(settings))
+        return plate_from_settings(settings).pull_in_V
     from mesoscale.device.beam_switch import free_pull_in_V  # compiles: not for rules
 
     return free_pull_in_V(settings)
+
+
+def never_closes(settings: DeviceSettings, pull_in_V: float) -> str:
+    """One line on a hold voltage below pull-in, which never closes the switch; empty where there is none.
+
+    A switch that is closed by more and then held by less has the deepest closing, and so the release, of the former.
+    """
+    hold = settings.hold_voltage_V
+    if hold is None or hold >= (1.0 - SWITCH.pull_in_error) * pull_in_V:
+        return ""
+    return (
+        f"device.hold_voltage_V = {hold:.4g}: never closes this switch, which pulls in at {pull_in_V:.4g} V; give the "
+        "largest voltage that it is closed with, or null for pull-in itself"
+    )

@@ -11,18 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.device.electrode import release_or_nan_V
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.plate import NM, plate_from_settings
 from mesoscale.device.points import PadModel, Solved
-from mesoscale.device.statistics import describe, probability
-from mesoscale.device.switch import NM, switch_from_settings
 from mesoscale.errors import InputError
+from mesoscale.pad.adhesion import adhesion_of
 from mesoscale.pad.memory import attracting
 
 Array = NDArray[np.float64]
 
-SOLVED = 0.8
-"""Share of the points that must be solved, since those that cannot be are no random part of them."""
-RESAMPLES = 1000
 ENDS = (0.05, 0.5, 0.95)
+QUANTILES = (0.05, 0.16, 0.25, 0.5, 0.75, 0.84, 0.95)
 WORKS = (1.0 / 3.0, 1.0, 3.0)
 """Both laws of attraction differ by a factor of 3 in their work at touch (docs/contact.md); no statistics decides."""
 CAUSES = ("inputs", "gap_cutoff", "device_common", "device_each")
@@ -88,7 +87,7 @@ def answer(model: PadModel) -> Answer:
     InputError : too few of them have an answer.
     """
     solved, refused = [model.points[k] for k in model.solved], model.refused
-    if len(solved) < SOLVED * len(model.points):
+    if len(solved) < SWITCH.solved * len(model.points):
         raise InputError(f"device: {len(refused)} of {len(model.points)} switches cannot be solved: {refused[0]}")
     release, stuck = model.states("release_V"), model.states("release_V") == 0.0
     errors = np.array([point.error_V for point in solved])
@@ -122,10 +121,39 @@ def answer(model: PadModel) -> Answer:
     )
 
 
+def describe(values: np.ndarray) -> dict[str, Any]:
+    """Mean, deviation and quantiles of the finite values."""
+    values = np.asarray(values, dtype=float)
+    finite = values[np.isfinite(values)]
+    if finite.size == 0:
+        return {"samples": 0, "mean": None, "std": None, "quantiles": {}}
+    quantiles = np.quantile(finite, QUANTILES)
+    return {
+        "samples": int(finite.size),
+        "mean": float(finite.mean()),
+        "std": float(finite.std(ddof=1)) if finite.size > 1 else 0.0,
+        "quantiles": {f"{q:g}": float(value) for q, value in zip(QUANTILES, quantiles, strict=True)},
+    }
+
+
+def probability(count: int, total: int) -> dict[str, float | int]:
+    """Share of `count` in `total` with its 95 % Wilson interval, which stays sensible at 0 and 1."""
+    from scipy.stats import binomtest  # slow to import
+
+    ends = binomtest(count, total).proportion_ci(0.95, method="wilson")
+    return {
+        "value": count / total,
+        "low": float(ends.low),
+        "high": float(ends.high),
+        "count": int(count),
+        "samples": int(total),
+    }
+
+
 def _quantile_errors(release: Array) -> dict[str, float]:
     """Standard errors of quantiles by resampling the points; a Latin hypercube errs by less."""
     rng = np.random.default_rng(np.random.SeedSequence([0, 0xB007]))
-    picks = rng.integers(release.size, size=(RESAMPLES, release.size))
+    picks = rng.integers(release.size, size=(SWITCH.resamples, release.size))
     errors = np.quantile(release[picks], ENDS, axis=1).std(axis=1)
     return {f"{end:g}": float(error) for end, error in zip(ENDS, errors, strict=True)}
 
@@ -160,7 +188,7 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
     """Content of device/pad_switch.json; without points there is no answer."""
     central = model.central
     settings = central.point.device
-    switch, cells = switch_from_settings(settings), central.pad.cells if central.pad else None
+    switch, cells = plate_from_settings(settings), central.pad.cells if central.pad else None
     said, status = None, "the scene asks for no points (pad.points: 0)"
     if model.points:
         try:
@@ -175,6 +203,7 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         "spring_pressure_kPa": switch.spring_N_per_m * switch.gap_nm * NM / switch.area_m2 * 1e-3,
         "central": {**central.states, "error_V": central.error_V} if central.states else None,
         "by_attraction": [{"times": times, "release_V": _release_V(central, times)} for times in WORKS],
+        "adhesion": [asdict(opened) for opened in adhesion_of(central.pad.law)] if central.pad else [],
         "gate": {"passed": not (reasons := _reasons(central)), "reasons": reasons},
         "answer": said,
         "answer_status": status,

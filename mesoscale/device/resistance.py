@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from mesoscale.contact import Cycle, run_cycle
 from mesoscale.contact.cycle import Branch
-from mesoscale.device.release import SOLVED
+from mesoscale.device.numerics import SWITCH
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.distributions import InputTable
@@ -97,7 +97,7 @@ def resistance_rows(
             ways = _ways(inputs, chosen, run.seed)
         except (InputError, ArithmeticError) as error:
             failed.append(str(error))
-            if len(failed) > (1.0 - SOLVED) * len(runs):
+            if len(failed) > (1.0 - SWITCH.solved) * len(runs):
                 raise InputError(f"resistance: of {len(runs)} surfaces, {len(failed)} failed: {failed[-1]}") from None
             continue
         for way, (force, slope, area) in ways.items():

@@ -19,37 +19,11 @@ from mesoscale.contact.displacement import Closing, Displacement, close_by_separ
 from mesoscale.contact.surface import random_surface, shortest_wave, surface_spectrum
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, FilmInputs
+from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.pad import PILOTS
 
 Array = NDArray[np.float64]
-
-FIRST_SEED = 1000
-"""Of the surface of a pad's first cell."""
-LOAD_POWER = 3.0
-"""The load of a place grows about as this power of its RMS height (docs/pad.md): so places are drawn."""
-STEP_RMS, LONGEST_STEP_NM = 0.04, 0.2
-"""Step of separation in and near contact, in units of the RMS height, and the longest (docs/pad.md)."""
-PLACE_STEP_RMS, LONGEST_PLACE_STEP_NM = 0.01, 0.8
-"""Step of a cell in units of the RMS height of its own place, times that over the median place's, where this is longer
-than the pad's; and the longest, since wells are a nanometre wide. With 0.04 at all places wells are passed over, and
-`reduced` lets go 0.1 V too high."""
-DEPTHS = 4
-"""Depths of closing from which a pad is opened, at loads in even ratios up to the largest (docs/pad.md)."""
-GROWN = 2.0
-"""Steps where only rough places touch, in units of their RMS height: release is that of half of it to 1e-6 V."""
-FAR_NM = 200.0
-"""Beyond, the attraction of the pad is that of two flats to 1 %: 1 + 6 (rms / separation)^2."""
-FAR_POINTS = 24
-LIGHT = 0.02
-"""Part of the largest load from which the pad is opened at least; a flat electrode presses with 0.3 to 0.4 of it."""
-MAX_PILOT_STEPS = 4000
-MARGIN = 1.25
-"""Over what the switch presses with: the mean of the few pilot cells is off by 15 %."""
-PILOT_STEP = 5.0
-"""Pilot cells are closed in coarser steps than the pad: where the grid ends need not be known to better than that."""
-FEWEST_PILOT_STEPS = 3
-"""Where fewer reach the pressure, all steps are finer: a film of long waves is closed by little of its RMS height."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +45,7 @@ class Cell:
 
 
 def sample_cells(
-    inputs: ContactInputs, count: int, first_seed: int = FIRST_SEED, pad_cells: float = np.inf
+    inputs: ContactInputs, count: int, first_seed: int = PAD.first_seed, pad_cells: float = np.inf
 ) -> list[Cell]:
     """Cells that stand for a pad; their weights sum to 1.
 
@@ -88,7 +62,7 @@ def sample_cells(
     within, plane = rng.random(count), ndtri((rng.permutation(count) + rng.random(count)) / count)
     if not isinstance(inputs, FilmInputs):
         return [Cell(first_seed + k, 0.0, value, 1.0 / count) for k, value in enumerate(np.sort(plane).tolist())]
-    shift, roughest = LOAD_POWER * inputs.rms_scatter, ndtri(1.0 - 1.0 / max(pad_cells, 2.0 * count))
+    shift, roughest = PAD.load_power * inputs.rms_scatter, ndtri(1.0 - 1.0 / max(pad_cells, 2.0 * count))
     ends = shift + ndtri(np.linspace(0.0, ndtr(roughest - shift), count + 1))
     # by the share of rougher places: near 1 digits are lost
     beyond = ndtr(-ends)
@@ -221,7 +195,7 @@ def plan_grid(
     wanted_GPa: Callable[[Array], Array],
     pressed_GPa: Callable[[Array, Array], float] | None = None,
     step_nm: float | None = None,
-    depths: int = DEPTHS,
+    depths: int = PAD.depths,
 ) -> PadGrid:
     """Separations for a pad, from some of its cells that are closed until they carry all that is asked for.
 
@@ -229,25 +203,25 @@ def plan_grid(
     ----------
     wanted_GPa : mean repulsion that they carry at least, as a function of separation (nm).
     pressed_GPa : largest net pressure of a switch on a pad, from the closing curve of the pad: separations (nm), from
-        near to far, and net pressures. The pilots are closed until they carry that, and `MARGIN` more.
-    step_nm : of separation in and near contact, at most; None: `STEP_RMS`.
+        near to far, and net pressures. The pilots are closed until they carry that, and `PAD.margin` more.
+    step_nm : of separation in and near contact, at most; None: `PAD.step_rms`.
 
     Raises
     ------
     InputError : the pilot cells never reach the pressure.
     """
-    step_nm = step_nm or min(STEP_RMS * inputs.rms, LONGEST_STEP_NM)
+    step_nm = step_nm or min(PAD.step_rms * inputs.rms, PAD.longest_step_nm)
     every = -(-len(cells) // PILOTS)
     pilot_cells = _some_of(cells, every)
     others = [cell for k, cell in enumerate(cells) if k % every]
     touching = [-float(surface_of(inputs, contact, cell).min()) for cell in others]
     while True:
         pilots = SideBySide(inputs, contact, pilot_cells)
-        way, load = _close_pilots(pilots, wanted_GPa, pressed_GPa, step_nm * PILOT_STEP)
+        way, load = _close_pilots(pilots, wanted_GPa, pressed_GPa, step_nm * PAD.pilot_step)
         lowest = float(way[-1])
-        if pilots.first_contact_nm.max() - lowest > (FEWEST_PILOT_STEPS - 0.5) * PILOT_STEP * step_nm:
+        if pilots.first_contact_nm.max() - lowest > (PAD.fewest_pilot_steps - 0.5) * PAD.pilot_step * step_nm:
             break
-        step_nm /= FEWEST_PILOT_STEPS
+        step_nm /= PAD.fewest_pilot_steps
     touching = np.append(pilots.first_contact_nm, touching)
     top, typical = float(touching.max()) + step_nm, float(np.median(touching))
     near = lowest + step_nm * np.arange(np.ceil((top - lowest) / step_nm) + 1)
@@ -255,10 +229,10 @@ def plan_grid(
         # rougher places touch farther out, and their lengths grow in proportion
         close = near[near < max(typical, lowest + step_nm)]
         ratio = top / close[-1]
-        growth = np.geomspace(close[-1], top, int(np.ceil(np.log(ratio) * close[-1] / (GROWN * step_nm))) + 1)
+        growth = np.geomspace(close[-1], top, int(np.ceil(np.log(ratio) * close[-1] / (PAD.grown * step_nm))) + 1)
         near = np.concatenate([close, growth[1:]])
     separation = np.concatenate([near, far_nm(float(near[-1]))])[::-1]
-    levels = np.geomspace(LIGHT * load[-1], load[-1], depths)
+    levels = np.geomspace(PAD.light * load[-1], load[-1], depths)
     opened = np.searchsorted(-separation, -np.interp(levels, load, way)).clip(max=separation.size - 1)
     return PadGrid(separation, np.unique(opened))
 
@@ -272,7 +246,7 @@ def _some_of(cells: Sequence[Cell], every: int) -> list[Cell]:
 
 def far_nm(top_nm: float) -> Array:
     """Separations, rising, from that of no contact to where a pad attracts as two flats."""
-    return np.geomspace(top_nm, max(FAR_NM, 2.0 * top_nm), FAR_POINTS)[1:]
+    return np.geomspace(top_nm, max(PAD.far_nm, 2.0 * top_nm), PAD.far_points)[1:]
 
 
 def _close_pilots(
@@ -284,7 +258,7 @@ def _close_pilots(
     """Separations on the way to where the pilots carry what is asked for, and the largest repulsion up to each."""
     start_nm = float(pilots.first_contact_nm.max())
     way, load, wanted = [], [], 0.0
-    for step in range(MAX_PILOT_STEPS):
+    for step in range(PAD.most_pilot_steps):
         way.append(start_nm - step_nm * step)
         load.append(max(pilots.close_to(way[-1], attraction=pressed_GPa is not None), load[-1] if load else 0.0))
         wanted = float(wanted_GPa(np.array(way[-1:]))[0])
@@ -292,7 +266,7 @@ def _close_pilots(
             if pressed_GPa is None:
                 return np.array(way), np.array(load)
             net = pilots.net_GPa[::-1]
-            wanted = MARGIN * pressed_GPa(np.array(way[::-1]), net)
+            wanted = PAD.margin * pressed_GPa(np.array(way[::-1]), net)
             if net[0] >= wanted:
                 return np.array(way), np.array(load)
     raise InputError(
@@ -320,7 +294,7 @@ def _close(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cell:
     heights = surface_of(inputs, contact, cell)
     plane = float(heights.mean())  # the separation is that from the mean plane of the film
     here = at_place(inputs, cell).rms
-    kept = _own_steps(grid, min(PLACE_STEP_RMS * here**2 / inputs.rms, LONGEST_PLACE_STEP_NM))
+    kept = _own_steps(grid, min(PAD.place_step_rms * here**2 / inputs.rms, PAD.longest_place_step_nm))
     known = grid.separation_nm[kept]
     closed = close_by_separation(inputs, contact, heights, known + plane, np.flatnonzero(np.isin(kept, grid.depths)))
     opening = np.array([_between(grid.separation_nm, known, branch) for branch in closed.opening])

@@ -7,22 +7,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mesoscale.pad.memory import PadLaw, attracting
+from mesoscale.pad.numerics import PAD
 
 Array = NDArray[np.float64]
 
-DEPTHS = 96
-"""Deepest closings between those that were computed: 8 nm in steps of 0.1 nm."""
-RISES = 1200
-"""Separations above the deepest closing."""
-HIGHEST_RISE_NM = 60.0
-"""Beyond, closing and opening are the same attraction, but for coarse films."""
-COARSE_NM = 120.0
-"""Shallowest depth of a coarse film. Those of scene `paper` are at most 90 nm: its tables stay as they are."""
 FADE_NM = 1.0
 """Rise over which a difference between the end of closing and the start of opening fades, where push and pull nearly
 cancel."""
-SAME_GPa = 1e-9
-"""Difference of closing and opening below which they are the same, the accuracy of a beam's balance."""
 
 
 class LocalPad:
@@ -33,10 +24,10 @@ class LocalPad:
         # in a row in memory, whichever way the curves came: the loops are compiled once
         self.at_nm = np.ascontiguousarray(law.separation_nm)
         self.closing = law.closing.sum(axis=0)
-        self.depth_nm = np.linspace(law.depth_nm[0], law.depth_nm[-1], DEPTHS)
+        self.depth_nm = np.linspace(law.depth_nm[0], law.depth_nm[-1], PAD.memory_depths)
         shallow = law.depth_nm[-1]
-        highest = max(HIGHEST_RISE_NM, _reach_nm(law)) if shallow > COARSE_NM else HIGHEST_RISE_NM
-        self.rise_nm = np.linspace(0.0, min(law.separation_nm[-1] - shallow, highest), RISES)
+        highest = max(PAD.highest_rise_nm, _reach_nm(law)) if shallow > PAD.coarse_nm else PAD.highest_rise_nm
+        self.rise_nm = np.linspace(0.0, min(law.separation_nm[-1] - shallow, highest), PAD.memory_rises)
         self.opening = np.array([law.opening_GPa(depth + self.rise_nm, depth) for depth in self.depth_nm])
 
     @property
@@ -62,7 +53,7 @@ class LocalPad:
 
 def _reach_nm(law: PadLaw) -> float:
     """Largest rise above a computed depth at which opening and closing still differ."""
-    apart = np.abs(law.opening.sum(axis=1) - law.closing.sum(axis=0)) > SAME_GPa  # not a number below the depth
+    apart = np.abs(law.opening.sum(axis=1) - law.closing.sum(axis=0)) > PAD.same_GPa  # not a number below the depth
     last = apart.shape[1] - 1 - apart[:, ::-1].argmax(axis=1)
     return float(np.max(np.where(apart.any(axis=1), law.separation_nm[last] - law.depth_nm, 0.0)))
 

@@ -9,14 +9,13 @@ from mesoscale.contact.attraction import wall_offset_nm
 from mesoscale.errors import NotComputed
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.curves import PadCells
+from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings
 
 Array = NDArray[np.float64]
 
 FLOOR_GPa = 1e-13
 """Repulsion of 0.1 mPa counts as none; it keeps the logarithm finite beyond the last contact."""
-DEEPENED = 20
-"""Separations below the deepest closing of a pad that is continued."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +35,11 @@ class Flats:
         """Attraction (positive), A_H / (6 pi s^3) with s the distance of the walls; any shape."""
         walls = np.maximum(np.asarray(separation_nm, float), 1.0) + self.offset_nm
         return self.hamaker / (6.0 * np.pi * walls**3)
+
+    def energy_J_m2(self, separation_nm: ArrayLike) -> Array:
+        """Work per area of this attraction from a separation to infinity, A_H / (12 pi s^2); any shape."""
+        walls = np.maximum(np.asarray(separation_nm, float), 1.0) + self.offset_nm
+        return self.hamaker / (12.0 * np.pi * walls**2)
 
 
 def flats_of(inputs: ContactInputs, contact: ContactSettings) -> Flats:
@@ -132,11 +136,11 @@ def deepened(law: PadLaw, times: float = 2.0) -> PadLaw:
     reach = np.log(times) / slopes[0]
     if reach >= s[0]:
         raise NotComputed(f"separation {s[0]:.4g} nm: the pad is closed to its mean plane before its repulsion doubles")
-    deeper = np.linspace(s[0] - reach, s[0], DEEPENED + 1)[:-1]
+    deeper = np.linspace(s[0] - reach, s[0], PAD.deepened + 1)[:-1]
     growth = np.exp(np.outer(slopes, s[0] - deeper))
     start = int(np.flatnonzero(np.isfinite(law.opening[0, 0]))[0])
-    opening = np.full((len(law.opening) + 1, 2, DEEPENED + s.size), np.nan)
-    opening[1:, :, DEEPENED:] = law.opening
+    opening = np.full((len(law.opening) + 1, 2, PAD.deepened + s.size), np.nan)
+    opening[1:, :, PAD.deepened :] = law.opening
     at = np.concatenate([deeper, s])
     risen = np.minimum(at - at[0] + s[start], s[-1])
     opening[0] = rows_at(risen, s[start:], law.opening[0][:, start:]) * growth[:, :1]

@@ -8,14 +8,13 @@ from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import TABLE_1, Correlation, DistributionRow, InputRow, InputsSettings
 from mesoscale.settings.law import LawSettings
 from mesoscale.settings.measurements import MeasurementsSettings, MeasurementTable
-from mesoscale.settings.pad import AdhesionSettings, PadSettings
+from mesoscale.settings.pad import PadSettings
 from mesoscale.settings.resistance import ResistanceSettings
 from mesoscale.settings.topography import InstrumentSettings, SyntheticScanSettings, TopographySettings
 from mesoscale.settings.uncertainty import UncertaintySettings
 
 __all__ = [
     "TABLE_1",
-    "AdhesionSettings",
     "ContactSettings",
     "Correlation",
     "DeviceSettings",

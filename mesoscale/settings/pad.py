@@ -1,13 +1,10 @@
 """Settings of the pad."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field, field_validator
 
 from mesoscale.settings.base import Settings
-from mesoscale.settings.inputs import WorkAndRangeSettings
-
-Length = Annotated[float, Field(gt=0, le=1e6)]
 
 Scatter = Annotated[float, Field(ge=0, le=2)]
 
@@ -46,48 +43,3 @@ class PadSettings(Settings):
         if given and given[0] > given[1]:
             raise ValueError(f"[{given[0]:g}, {given[1]:g}]: the first must not exceed the second")
         return given
-
-
-class AdhesionSettings(Settings):
-    """Energy and pull-off of pads against roughness, load and attraction (docs/adhesion.md); off by default."""
-
-    pads: int = Field(
-        default=0, ge=0, le=1000, description="pads of each case, whose scatter is the band; 0: the stage is not run"
-    )
-    cells: int = Field(default=4, ge=2, le=10_000, description="cells of a pad, each with a surface of its own")
-    mechanics: tuple[Literal["asperity", "coupled", "adhesive"], ...] = Field(
-        default=("asperity", "coupled"), min_length=1, description="mechanics that are compared"
-    )
-    loads_MPa: tuple[Annotated[float, Field(gt=0, le=1e6)], ...] = Field(
-        default=(0.05, 0.5, 2.0, 7.0),
-        min_length=1,
-        description="largest mean pressures from which a pad is opened",
-        json_schema_extra={"unit": "MPa"},
-    )
-    rms_nm: tuple[Length, ...] = Field(
-        default=(), description="RMS heights beside that of the inputs", json_schema_extra={"unit": "nm"}
-    )
-    gap_cutoffs_nm: tuple[Annotated[float, Field(gt=0, le=10)], ...] = Field(
-        default=(), description="D0 beside that of the contact", json_schema_extra={"unit": "nm"}
-    )
-    retardations_nm: tuple[Annotated[float, Field(ge=1, le=1e6)], ...] = Field(
-        default=(),
-        description="wavelengths of retardation beside that of the contact",
-        json_schema_extra={"unit": "nm"},
-    )
-    works: tuple[WorkAndRangeSettings, ...] = Field(
-        default=(), description="attractions by work and range beside that of the inputs"
-    )
-    sphere_radius_um: float = Field(
-        default=250.0,
-        gt=0,
-        le=1e6,
-        description="radius of the sphere whose pull-off is computed by Derjaguin's integral",
-        json_schema_extra={"unit": "um"},
-    )
-
-    @property
-    def case_count(self) -> int:
-        """Cases of all mechanics: the central one, and one for each value beside it."""
-        beside = len(self.rms_nm) + len(self.gap_cutoffs_nm) + len(self.retardations_nm) + len(self.works)
-        return len(self.mechanics) * (1 + beside)

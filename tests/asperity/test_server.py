@@ -15,7 +15,7 @@ from http.client import HTTPConnection
 import numpy as np
 import pytest
 
-from asperity.models import MODELS, evaluate
+from asperity.models import MODELS
 
 umbridge = pytest.importorskip("umbridge")
 
@@ -67,9 +67,9 @@ def post(url, path, body):
 )
 def test_client_gets_the_librarys_digits(server, name, values, config):
     model = umbridge.HTTPModel(server[0], name)
-    assert model([values], config) == evaluate(name, [values], config)
+    assert model([values], config) == MODELS[name]([values], config)
     assert model.get_input_sizes(config) == [len(values)]
-    assert model.get_output_sizes(config) == [len(part) for part in evaluate(name, [values], config)]
+    assert model.get_output_sizes(config) == [len(part) for part in MODELS[name]([values], config)]
 
 
 @pytest.mark.parametrize(
@@ -172,7 +172,7 @@ def test_a_worker_killed_at_work_is_replaced_and_its_request_repeated(server):
         time.sleep(0.3)  # the cells take longer
         for worker in children(process.pid):
             os.kill(worker, signal.SIGKILL)
-        assert answer.result(120) == evaluate("pad", [CENTRE], config)
+        assert answer.result(120) == MODELS["pad"]([CENTRE], config)
 
 
 def test_a_client_that_goes_away_leaves_the_server_well(server):
@@ -206,7 +206,3 @@ def test_a_foreign_library_propagates_through_it(server):
     function = openturns.PythonFunction(1, 1, pull)
     pulls = np.array(function(openturns.Sample(np.array([[0.1], [0.2], [0.3]]))))[:, 0]
     assert (np.diff(pulls) > 0).all()
-
-
-def test_every_model_says_what_it_takes():
-    assert all(model.about and model.inputs and model.outputs and model.config for model in MODELS.values())

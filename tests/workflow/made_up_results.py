@@ -38,7 +38,6 @@ def write_all(root: Path) -> list[Path]:
     _elastic(root)
     _topography(root)
     _history(root)
-    _adhesion(root)
     _failure(root)
     _model_form(root)
     _calibration(root)
@@ -405,25 +404,6 @@ def _history(root: Path) -> None:
     write_h5(root / "history/curves.h5", groups, {"cell_area_nm2": 1e6}, PROVENANCE, facts)
 
 
-def _adhesion(root: Path) -> None:
-    rows = [
-        {
-            "mechanics": mechanics,
-            "varied": varied,
-            "rms_nm": rms,
-            "gap_cutoff_nm": 0.165,
-            "load_MPa": load,
-            "energy_uJ_m2": 98.0,
-            "energy_uJ_m2_lowest": 58.0,
-            "energy_uJ_m2_highest": 248.0,
-        }
-        for mechanics in ("asperity", "coupled")
-        for varied, rms in (("none", 4.4), ("rms", 8.5))
-        for load in (0.5, 7.0)
-    ]
-    _write(root / "adhesion/summary.csv", rows)
-
-
 def _model_form(root: Path) -> None:
     pairs = {"pairs": 100, "asperity_mean": 2.0, "asperity_dev": 1.0, "coupled_mean": 5.0, "coupled_dev": 1.0}
     found = {"shift": 3.0, "shift_low": 2.5, "shift_high": 3.5, "cost_ratio": 25.0}
@@ -512,9 +492,7 @@ def _failure(root: Path) -> None:
     _write(root / "device/resistance.csv", contacts)
     study = {"lumps": 24, "pull_in": 1e-4, "release": 3e-3, "capacitance": 0.01, "pull_in_V": 70.0, "release_V": 6.0}
     study |= {"reference": 1e-3}
-    said = {"drive_V": 77.0, "closing_us": 30.0, "bounce_nm": 12.0, "impact_m_s": 3.1, "opening_us": None}
-    said |= {"deepest_nm": 18.0, "table_ends_nm": 19.0}
-    write_json(root / "device/circuit.json", {"lumps": study, "transient": said}, PROVENANCE)
+    write_json(root / "device/circuit.json", {"lumps": study}, PROVENANCE)
     switches = [
         {
             "switch": name,
@@ -530,7 +508,3 @@ def _failure(root: Path) -> None:
     _write(root / "device/circuit.csv", switches)
     ways = [f"{way}_{of}_fF" for way in ("up", "down") for of in ("central", "q05", "q95")]
     _write(root / "device/loop.csv", [{"voltage_V": v, **dict.fromkeys(ways, 160.0 + v)} for v in (0.0, 40.0, 77.0)])
-    steps = [
-        {"time_us": t, "voltage_V": 77.0, "middle_nm": 3490.0 - t, "capacitance_fF": 158.0 + t} for t in (0.0, 9.0)
-    ]
-    _write(root / "device/transient.csv", steps)

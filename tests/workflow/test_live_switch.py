@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 
 from mesoscale.device.beam_switch import solve_beam
-from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.switch import beam_stiffness_N_per_m, switch_from_settings
+from mesoscale.device.plate import beam_stiffness_N_per_m, plate_from_settings, solve_on_pad
 from mesoscale.errors import InputError
 from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
@@ -87,7 +86,7 @@ def by_library(data, chosen):
         }
     )
     # a bow stiffens the beam, which the slider of the stiffness has already
-    plate = switch_from_settings(settings.model_copy(update={"bow_nm": device.bow_nm}))
+    plate = plate_from_settings(settings.model_copy(update={"bow_nm": device.bow_nm}))
     hold = settings.hold_voltage_V
     law = _law(data["curves"], _numbers(data["curves"]["mean"]), chosen["adhesion"])
     return {

@@ -76,12 +76,6 @@ def test_the_resistance_is_measured_where_a_scene_has_metals(plan):
     assert plan("paper", "resistance") == {"collect_inputs", "measure_resistance"}
 
 
-def test_adhesion_is_computed_where_a_scene_asks_for_it(plan):
-    assert "open_pads" not in plan("paper")
-    wanted = {"collect_inputs", "collect_pad_inputs", "open_pads", "summarise_adhesion"}
-    assert plan("adhesion", "adhesion") == wanted
-
-
 def test_an_input_from_literature_schedules_no_job_that_would_compute_it(plan):
     assert not (HARDNESS | ELASTIC) & plan("literature")
     assert plan("literature") >= TOPOGRAPHY | MESOSCALE | REPORT

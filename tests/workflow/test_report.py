@@ -29,7 +29,7 @@ from workflow.report.stages.inputs import _distribution
 from workflow.report.studies import recommended
 
 SECTIONS = ("hardness", "elastic", "topography", "curves", "uncertainty", "sensitivity", "pad")
-ON_TOP = ("model-form", "adhesion", "history", "calibration", "accuracy", "stability")
+ON_TOP = ("model-form", "history", "calibration", "accuracy", "stability")
 
 
 @pytest.fixture(scope="module")
@@ -195,11 +195,6 @@ def test_stability_tells_what_did_not_pass(page):
 
 def test_history_says_its_answer(page):
     assert "The last cycle loses 1.6 % of the energy that the first one lost" in page
-
-
-def test_adhesion_of_pads_stands_beside_what_was_measured(page):
-    assert "98.0 [58.0, 248]" in page
-    assert "0.08 to 7.15 mJ/m²" in page
 
 
 def test_model_form_says_what_shifts_and_what_the_cheap_engine_saves(page):

@@ -104,7 +104,7 @@ def test_every_mistake_is_told_at_once(tmp_path):
 
 
 def test_an_unknown_scene_lists_the_known_ones():
-    with pytest.raises(SceneError, match=r"unknown scene; accepted: adhesion, ci, .*paper"):
+    with pytest.raises(SceneError, match=r"unknown scene; accepted: ci, .*paper"):
         load_scene("papre")
 
 

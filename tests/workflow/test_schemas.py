@@ -10,8 +10,8 @@ from workflow.schemas import STAGES, UnfitTable, schema_of
 from workflow.schemas.__main__ import PAGE, page
 
 RULES = Path(__file__).parents[2] / "workflow" / "rules"
-ROW = {"time_us": 0.1, "voltage_V": 0.5, "middle_nm": 0.4, "capacitance_fF": 0.6}
-TABLE = "results/mine/device/transient.csv"
+ROW = {"hold_V": 80.0, "attraction": 0.5, "failing": 0.6}
+TABLE = "results/mine/device/failure.csv"
 
 
 def test_every_table_of_the_rules_has_a_schema():
@@ -36,13 +36,13 @@ def test_the_page_of_result_files_is_up_to_date():
     ("row", "words"),
     [
         (ROW | {"heigth": 0.6}, "column heigth is unknown"),
-        ({key: value for key, value in ROW.items() if key != "middle_nm"}, "column middle_nm is missing"),
-        (ROW | {"capacitance_fF": None}, "row 1 has no value in column capacitance_fF"),
-        (ROW | {"capacitance_fF": "most"}, "row 1, column capacitance_fF: 'most' is no number"),
+        ({key: value for key, value in ROW.items() if key != "attraction"}, "column attraction is missing"),
+        (ROW | {"failing": None}, "row 1 has no value in column failing"),
+        (ROW | {"failing": "most"}, "row 1, column failing: 'most' is no number"),
     ],
 )
 def test_a_table_that_does_not_fit_is_not_written(tmp_path, row, words):
-    with pytest.raises(ValueError, match=rf"transient\.csv: {words}"):
+    with pytest.raises(ValueError, match=rf"failure\.csv: {words}"):
         write_csv(tmp_path / TABLE, [row])
     assert not (tmp_path / TABLE).exists()
 
@@ -66,7 +66,7 @@ def test_the_schema_orders_the_columns(tmp_path):
 def test_a_table_without_rows_has_its_columns(tmp_path):
     write_csv(tmp_path / TABLE, [])
     assert load_csv(tmp_path / TABLE) == []
-    assert (tmp_path / TABLE).read_text() == "time_us,voltage_V,middle_nm,capacitance_fF\n"
+    assert (tmp_path / TABLE).read_text() == "hold_V,attraction,failing\n"
 
 
 def test_a_column_that_may_be_empty_needs_no_value(tmp_path):
@@ -77,18 +77,18 @@ def test_a_column_that_may_be_empty_needs_no_value(tmp_path):
 
 
 def test_what_was_written_is_read(tmp_path):
-    write_csv(tmp_path / TABLE, [ROW, ROW | {"middle_nm": float("nan")}])
-    assert load_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {"middle_nm": "nan"}
+    write_csv(tmp_path / TABLE, [ROW, ROW | {"attraction": float("nan")}])
+    assert load_csv(tmp_path / TABLE)[1] == {key: repr(value) for key, value in ROW.items()} | {"attraction": "nan"}
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda text: text.replace("capacitance_fF", "top"), "column capacitance_fF is missing"),
-        (lambda text: text[:-5], "row 1 ends before column capacitance_fF"),
-        (lambda text: text.replace("0.5", "0.\x005"), r"row 1, column voltage_V: '0\.\\x005' is no number"),
-        (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, capacitance_fF"),
-        (lambda text: "", "column time_us is missing"),
+        (lambda text: text.replace("failing", "top"), "column failing is missing"),
+        (lambda text: text[:-5], "row 1 ends before column failing"),
+        (lambda text: text.replace("0.5", "0.\x005"), r"row 1, column attraction: '0\.\\x005' is no number"),
+        (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, failing"),
+        (lambda text: "", "column hold_V is missing"),
     ],
 )
 def test_a_damaged_table_is_refused_in_one_line(tmp_path, change, words):

@@ -64,7 +64,6 @@ rule make_circuit:
         summary=f"{RESULTS}/device/circuit.json",
         table=f"{RESULTS}/device/circuit.csv",
         loop=f"{RESULTS}/device/loop.csv",
-        transient=f"{RESULTS}/device/transient.csv",
     log:
         f"{RESULTS}/logs/make_circuit.log",
     threads: 1

@@ -10,8 +10,6 @@ def report_inputs():
         files += [f"uq/{name}" for name in names]
     if "pad" in SCENE.tails:
         files += ["pad/inputs.csv", "pad/curves.csv", "device/pad_switch.json"]
-    if ADHESION.pads > 0:
-        files += ["adhesion/summary.csv"]
     if needed("hardness"):
         files += ["hardness/points.csv", "hardness/fit.json"]
         files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness", "snapshots") for run in CLOSINGS]
@@ -23,7 +21,7 @@ def report_inputs():
         files += [str(Path(path).relative_to(RESULTS)) for path in JUDGED]
     if SCENE.failure.probability is not None and "pad" in SCENE.tails:
         files += ["device/failure.json", "device/failure.csv"]
-        files += [f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "transient.csv")]
+        files += [f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv")]
     if SCENE.resistance.resistivities_nOhm_m is not None:
         files += ["device/resistance.csv"]
     if SCENE.history.cycles > 0:

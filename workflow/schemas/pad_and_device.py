@@ -4,59 +4,7 @@ from mesoscale.settings.device import SPREAD, unit_of
 from workflow.schemas.inputs_and_law import BRANCH, INPUT_VALUES
 from workflow.schemas.table import Table, integer, number, text
 
-_PADS = (
-    text("mechanics", "asperity or coupled"),
-    text("varied", "what differs from the central case: none, rms, gap_cutoff, retardation or work"),
-    number("rms_nm", "nm", "RMS height"),
-    number("hamaker_aJ", "1e-18 J", "Hamaker constant"),
-    number("gap_cutoff_nm", "nm", "D0"),
-    number("retardation_nm", "nm", "wavelength of retardation; empty: none", empty=True),
-    number("load_MPa", "MPa", "largest mean repulsion before opening"),
-    integer("cells", "cells of a pad"),
-)
-_ADHESION = (
-    ("zero_force_nm", "nm", "separation at which the net force is first zero on opening"),
-    ("energy_uJ_m2", "µJ/m²", "work of opening from there to infinity"),
-    ("flats_uJ_m2", "µJ/m²", "the same work of two flats that far apart"),
-    ("pull_off_kPa", "kPa", "largest net attraction on opening"),
-    (
-        "sphere_load_uN",
-        "µN",
-        "net force on the sphere when its lowest point is as deep as the pad was; below 0: pulled",
-    ),
-    ("sphere_pull_off_uN", "µN", "largest pull on the sphere on its way out"),
-    ("sphere_work_mJ_m2", "mJ/m²", "that pull over 2 pi R"),
-)
-
 TABLES = (
-    Table(
-        ("adhesion/pads/case_*.csv",),
-        "One pad opened from one load.",
-        (
-            *_PADS,
-            integer("pad", "number of the pad"),
-            number("depth_nm", "nm", "separation from which the pad is opened"),
-            *(number(*column) for column in _ADHESION),
-        ),
-    ),
-    Table(
-        ("adhesion/summary.csv",),
-        "One case and load: mean over its pads.",
-        (
-            *_PADS,
-            integer("pads", "number of pads"),
-            *(
-                number(name + ending, unit, meaning + of, empty=ending == "_error")
-                for name, unit, meaning in _ADHESION
-                for ending, of in (
-                    ("", ""),
-                    ("_error", ", standard error"),
-                    ("_lowest", ", lowest pad"),
-                    ("_highest", ", highest pad"),
-                )
-            ),
-        ),
-    ),
     Table(
         ("pad/curves.csv",),
         "One separation of one branch: the mean pressure of the cells.",
@@ -119,16 +67,6 @@ TABLES = (
                     ("q95", "95 % of the draws"),
                 )
             ),
-        ),
-    ),
-    Table(
-        ("device/transient.csv",),
-        "One time after a step of the voltage, which ends later.",
-        (
-            number("time_us", "us", "time"),
-            number("voltage_V", "V", "voltage"),
-            number("middle_nm", "nm", "separation of mid-span"),
-            number("capacitance_fF", "fF", "capacitance"),
         ),
     ),
 )

@@ -4,7 +4,8 @@ In: pad/inputs.csv, pad/points/*.h5 (GPa against nm; V).
 Out: pad/model.h5, pad/curves.csv (MPa against nm), device/pad_switch.json, device/rough_pad.va, device/rough_pad.sub.
 """
 
-from mesoscale.device.pad_export import spice_pad, verilog_pad
+from mesoscale.circuit.spice import spice_pad
+from mesoscale.circuit.verilog import verilog_pad
 from mesoscale.device.release import switch_on_pad
 from mesoscale.pad.curves import curve_rows
 from workflow.job import job

@@ -3,7 +3,7 @@
 In: pad/inputs.csv, pad/model.h5.  Out: device/failure.json, device/failure.csv (V).
 """
 
-from mesoscale.device.failure import failure_rate
+from mesoscale.failure.rate import failure_rate
 from workflow.failing import load_population
 from workflow.job import job
 from workflow.results import write_csv, write_json

@@ -191,14 +191,6 @@ def _quenches(glass: Any) -> int:
     return 10 if glass.max_defects else 75
 
 
-def _adhesion_s(scene: Scene, case: int) -> float:
-    """The pads of one case; the first half of the cases is of the first mechanics."""
-    adhesion = scene.adhesion
-    mechanics = adhesion.mechanics[case * len(adhesion.mechanics) // adhesion.case_count]
-    cycle = cycle_s(scene.contact.model_copy(update={"mechanics": mechanics}))
-    return ENGINE_S + adhesion.pads * adhesion.cells * CELL[mechanics] * cycle
-
-
 def _each(seconds: float, *rules: str) -> dict[str, Callable[[Costs, Any], float]]:
     return dict.fromkeys(rules, lambda costs, wildcards: seconds)
 
@@ -209,7 +201,6 @@ def _design_runs(costs: Costs) -> int:
 
 FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     **_each(0.0, "write_scene", "collect_inputs", "collect_pad_inputs", "combine_e_star", "collect_priors"),
-    **_each(0.0, "summarise_adhesion"),
     **_each(0.5, "find_hardness", "fit_hardness", "fit_bulk_moduli", "fit_nominal_law", "average_tensors"),
     **_each(2.0, "pool_spectra"),
     **_each(5.0, "write_synthetic_scans"),
@@ -248,7 +239,6 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     "press_pads": lambda c, job: c.points_s(job["chunk"] == "central"),
     "assemble_pad": lambda c, _: 3.0,
     "measure_pad_accuracy": lambda c, _: 60.0 + c.cells_s(30 * c.scene.pad.point_cells),
-    "open_pads": lambda c, job: _adhesion_s(c.scene, int(job["adhesion_case"])),
     "follow_history": lambda c, _: history_s(c.scene.history, c.scene.contact),
     "render_report": lambda c, _: 5.5 + 0.5 * len(c.scene.stages()),
 }

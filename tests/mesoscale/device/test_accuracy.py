@@ -41,7 +41,7 @@ def rows():
 def test_every_choice_has_errors_and_times(rows):
     knobs = {row["knob"] for row in rows}
     of_pad = {"cells", "steps of separation, nm", "depths", "sites a side", "points", "elements of the beam"}
-    assert knobs == of_pad | {"nodes of its tables", "pairs of lumps"}
+    assert knobs == of_pad
     assert all(np.isfinite(row["cpu_s"]) and np.isfinite(row["error"]) for row in rows)
 
 
@@ -55,13 +55,6 @@ def test_errors_fall_towards_the_finest(rows):
     assert max(row["error"] for row in sticks[-2:]) < min(row["error"] for row in sticks[:2])
     assert elements[-1]["error"] <= elements[0]["error"] + 1e-9
     assert elements[-1]["error"] < 0.2
-    lumps, tables = (
-        [row["error"] for row in rows if row["knob"] == knob] for knob in ("pairs of lumps", "nodes of its tables")
-    )
-    assert lumps[-1] < 0.2
-    assert lumps[-1] < 0.5 * lumps[0]
-    assert tables[0] < 0.004  # allowed: 0.3 % of the well, and 0.05 % of the pressure
-    assert tables == sorted(tables)
 
 
 def test_more_cells_take_more_time(rows):

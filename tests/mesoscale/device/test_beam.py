@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 from evidence.pad import finite_differences
 from mesoscale.device.beam import beam_of, euler_MPa, rests_as_stated
 from mesoscale.device.beam_switch import free_pull_in_V, solve_beam
-from mesoscale.device.switch import VACUUM_PERMITTIVITY, beam_stiffness_N_per_m
+from mesoscale.device.plate import VACUUM_PERMITTIVITY, beam_stiffness_N_per_m
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import Flats, PadLaw

@@ -8,7 +8,7 @@ import pytest
 from mesoscale.device.electrode import solve_deepened
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
-from tests.mesoscale.device.test_pad_export import pad
+from tests.mesoscale.circuit.test_tables import pad
 
 
 def ends(field):

@@ -12,8 +12,9 @@ from mesoscale.device import points
 from mesoscale.device.beam_kernels import BANDS, solve_bands
 from mesoscale.device.beam_switch import press_GPa
 from mesoscale.device.electrode import presser, solve_deepened
+from mesoscale.device.numerics import SWITCH
 from mesoscale.device.points import Pad, PadModel, central_point, plan_points, solve_point, solve_points
-from mesoscale.device.pressing import EDGE, pressing, pressure_to_compute
+from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.device.release import _probability, answer, first_order, switch_on_pad
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.table import input_table
@@ -116,10 +117,9 @@ def test_an_undecided_point_has_more_cells_and_a_decided_one_has_not(known, monk
     (decided,) = solve_points([(1, point)], ContactSettings(), 2)
     assert asked == [2]
     assert decided.error_V == pytest.approx(0.5 * abs(decided.halves_V[0] - decided.halves_V[1]))
-    monkeypatch.setattr(points, "UNDECIDED", 1e-6)
-    monkeypatch.setattr(points, "OF_RELEASE", 1e-6)
+    monkeypatch.setattr(points, "SWITCH", replace(SWITCH, undecided=1e-6, of_release=1e-6))
     list(solve_points([(1, point)], ContactSettings(), 2))
-    assert asked[1:] == [2, 2 * points.MORE]
+    assert asked[1:] == [2, 2 * SWITCH.more_cells]
 
 
 def test_a_point_that_cannot_be_pressed_leaves_its_reason(monkeypatch):
@@ -215,7 +215,7 @@ def test_pilots_know_what_the_beam_will_press_with(change):
     short, long = (MIDDLE.pressed(share * local, SEPARATION) for share in (0.6, 3.0))
     pressed = presser(settings)(short.separation_nm, short.closing.sum(axis=0))
     assert pressed == pytest.approx(press_GPa(settings, long), rel=0.15)
-    assert pressed > 1.3 * float(local[np.searchsorted(SEPARATION, short.separation_nm[0])]) / EDGE
+    assert pressed > 1.3 * float(local[np.searchsorted(SEPARATION, short.separation_nm[0])]) / SWITCH.edge
 
 
 def test_a_pad_closed_nearly_to_its_mean_plane_asks_for_nothing_deeper():

@@ -11,7 +11,6 @@ from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import FilmInputs
 from mesoscale.pad.cells import (
-    FIRST_SEED,
     Cell,
     FilmPieces,
     PadGrid,
@@ -25,6 +24,7 @@ from mesoscale.pad.cells import (
 from mesoscale.pad.curves import PadCells, assemble
 from mesoscale.pad.local import LocalPad
 from mesoscale.pad.memory import Flats, PadLaw, deepened, flats_of, law_of
+from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings
 
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
@@ -79,7 +79,7 @@ def test_a_pad_that_one_tall_grain_carries_is_opened_from_light_loads(monkeypatc
 
     def with_a_grain(self, cell):
         heights = piece(self, cell)
-        if cell.seed == FIRST_SEED:
+        if cell.seed == PAD.first_seed:
             heights[:48, :48] -= 20.0
         return heights
 
@@ -218,11 +218,11 @@ def test_a_film_whose_places_are_alike_is_one_without_places():
 
 def test_a_rough_place_in_its_own_steps_has_the_forces_of_short_ones(monkeypatch):
     """Six times the median RMS, steps of 0.8 nm for 0.2: lines overrate a force by 6 %, underrate a well by 16 %."""
-    place = Cell(FIRST_SEED, float(np.log(6.0)) / 0.4, 0.0, 1.0)
+    place = Cell(PAD.first_seed, float(np.log(6.0)) / 0.4, 0.0, 1.0)
     touch = -float(surface_of(film(0.4), CONTACT, place).min())
     grid = PadGrid(touch + np.concatenate([np.arange(40.0, 2.0, -1.0), np.arange(2.0, -18.1, -0.2)]), np.array([138]))
     own = pressed(film(0.4), [place], grid)
-    monkeypatch.setattr("mesoscale.pad.cells.PLACE_STEP_RMS", 0.0)
+    monkeypatch.setattr("mesoscale.pad.cells.PAD", replace(PAD, place_step_rms=0.0))
     short = pressed(film(0.4), [place], grid)
     assert short.closing.max() > 0.0, "not in contact"
     assert own.closing == pytest.approx(short.closing, abs=0.1 * short.closing.max())
@@ -250,7 +250,7 @@ def test_where_rough_places_alone_carry_the_pad_the_grid_ends_above_the_typical_
 
 def test_mean_planes_and_heights_of_a_place_grow_together():
     """As in a film whose amplitude varies slowly from place to place."""
-    cell = Cell(FIRST_SEED + 3, 0.7, -0.4, 1.0)
+    cell = Cell(PAD.first_seed + 3, 0.7, -0.4, 1.0)
     times = at_place(film(0.5), cell).rms / MIDDLE.rms
     here = surface_of(film(0.5), CONTACT, cell)
     assert here == pytest.approx(times * FilmPieces(MIDDLE, CONTACT).surface(cell), abs=1e-9)

@@ -8,7 +8,7 @@ import numpy as np
 
 from asperity.foreign_yaml import load_mapping
 from mesoscale.device.beam import beam_of, rests_as_stated
-from mesoscale.device.switch import switch_from_settings
+from mesoscale.device.plate import plate_from_settings
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.pad.memory import flats_of
@@ -32,7 +32,7 @@ def switch_data(results: Results) -> dict[str, Any] | None:
         return None
     if bends and (device.without_lumps or not rests_as_stated(device)):
         return None  # a beam that the page's own model does not follow
-    switch = switch_from_settings(device)
+    switch = plate_from_settings(device)
     return {
         "device": device.model_dump(mode="json", exclude={"spread"}) | _elastic(device, switch.spring_N_per_m),
         "bends": bends,

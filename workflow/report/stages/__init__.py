@@ -4,7 +4,6 @@ Every module offers `describe(results) -> Section | None`; None where the scene 
 """
 
 from workflow.report.stages import (
-    adhesion,
     calibration,
     circuit,
     contact,
@@ -22,7 +21,7 @@ from workflow.report.stages import (
 )
 
 PARTS = (
-    ("switch", "The switch", (pad, circuit, failure, resistance, adhesion, history)),
+    ("switch", "The switch", (pad, circuit, failure, resistance, history)),
     ("contact", "The contact", (contact, uncertainty, sensitivity, model_form)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

@@ -3,65 +3,47 @@
 import numpy as np
 
 from workflow.report.available import Results
-from workflow.report.drawing import BLUE, GREEN, ORANGE, SOFT, draw
+from workflow.report.drawing import BLUE, ORANGE, draw
 from workflow.report.numbers import column, show
 from workflow.report.page import COMPUTED, Section, Table
 from workflow.report.verdict import volts
 
 
 def describe(results: Results) -> Section | None:
-    """C-V loop with its band, transient, and failure rate; pull-in and release of the corners."""
-    files = [f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "transient.csv", "failure.csv")]
+    """C-V loop with its band, and failure rate; pull-in and release of the corners."""
+    files = [f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "failure.csv")]
     if not results.has(*files):
         return None
     circuit, rows = results.json("device/circuit.json"), results.csv("device/circuit.csv")
-    study, said = circuit["lumps"], circuit["transient"]
+    errors = circuit["lumps"]
     corners = [row for row in rows if float(row["deviations"]) > 0]
     section = Section(
         "circuit",
         "In a circuit",
         "The folder device/circuit has the switch as SPICE netlists: central, four corners and "
-        f"{len(rows) - len(corners)} draws. {study['lumps']} pairs of lumps stand for the electrode. Beside finite "
-        f"elements pull-in differs by {study['pull_in']:.1%}, release by {study['release']:.1%}; these themselves err "
-        f"by {study['reference']:.1%}.",
+        f"{len(rows) - len(corners)} draws. {errors['lumps']} pairs of lumps stand for the electrode. Beside finite "
+        f"elements pull-in differs by {errors['pull_in']:.1%}, release by {errors['release']:.1%}; these err by "
+        f"{errors['reference']:.1%}.",
         COMPUTED,
         files=files,
     )
     section.add(
         _figure(results),
-        "Left: slow loop; the bands hold 90 % of the draws. Middle: a step of "
-        f"{volts(said['drive_V'])}, then none. Right: share that fails against hold voltage.",
+        "Left: slow loop; the bands hold 90 % of the draws. Right: share that fails against hold voltage.",
         wide=True,
     )
-    times = [
-        ("closes after (µs)", _or_never(said["closing_us"])),
-        ("hits with (m/s)", show(said["impact_m_s"], 2)),
-        ("bounces by (nm)", _or_never(said["bounce_nm"])),
-        ("opens after (µs)", _or_never(said["opening_us"])),
-    ]
-    section.blocks.append(Table(f"A step of {volts(said['drive_V'])}", ("mid-span", "value"), times))
     lines = [
         (row["switch"], show(float(row["deviations"])), volts(float(row["pull_in_V"])), volts(float(row["release_V"])))
         for row in corners
     ]
     section.blocks.append(Table("Corners", ("corner", "standard deviations out", "pull-in", "release"), lines))
-    if said["deepest_nm"] < said["table_ends_nm"]:
-        section.notes.append(
-            f"The impact closes the pad to {show(said['deepest_nm'])} nm; its curves end at "
-            f"{show(said['table_ends_nm'])} nm and go on in a line. The bounce is rough."
-        )
     return section
 
 
-def _or_never(value: float | None) -> str:
-    return "never" if value is None else show(value, 3)
-
-
 def _figure(results: Results) -> str:
-    loop, step = results.csv("device/loop.csv"), results.csv("device/transient.csv")
-    failing = results.csv("device/failure.csv")
+    loop, failing = results.csv("device/loop.csv"), results.csv("device/failure.csv")
 
-    def plot(slow, fast, rare):
+    def plot(slow, rare):
         voltage = column(loop, "voltage_V")
         for way, color in (("up", BLUE), ("down", ORANGE)):
             low, high = (column(loop, f"{way}_{end}_fF") / 1e3 for end in ("q05", "q95"))
@@ -69,15 +51,9 @@ def _figure(results: Results) -> str:
             slow.plot(voltage, column(loop, f"{way}_central_fF") / 1e3, color=color, label=way)
         slow.set(xlabel="voltage (V)", ylabel="capacitance (pF)", title="slow loop")
         slow.legend()
-        fast.plot(column(step, "time_us"), column(step, "middle_nm") / 1e3, color=BLUE, label="mid-span (µm)")
-        fast.plot(column(step, "time_us"), column(step, "capacitance_fF") / 1e3, color=GREEN, label="capacitance (pF)")
-        fast.set(xlabel="time (µs)", title="step of the voltage", ylim=(None, 1.35 * fast.get_ylim()[1]))
-        fast.legend(loc="upper right")
         usual = [row for row in failing if np.isclose(float(row["attraction"]), 1.0)]
-        for key, color, label in (("failing", BLUE, "fails"), ("beyond", SOFT, "beyond the model")):
-            share = column(usual, key)
-            rare.plot(column(usual, "hold_V"), np.where(share > 0, share, np.nan), "o-", color=color, label=label)
+        share = column(usual, "failing")
+        rare.plot(column(usual, "hold_V"), np.where(share > 0, share, np.nan), "o-", color=BLUE)
         rare.set(yscale="log", xlabel="hold voltage (V)", ylabel="share of switches", title="failures")
-        rare.legend()
 
-    return draw("circuit", "Capacitance, motion and failures of the switch", plot, (10.6, 3.3), columns=3)
+    return draw("circuit", "Capacitance and failures of the switch", plot, (9.4, 3.3), columns=2)

@@ -40,6 +40,8 @@ def describe(results: Results) -> Section | None:
     )
     if answer := switch.get("answer"):
         section.blocks += _answer(answer)
+    if opened := switch.get("adhesion"):
+        section.blocks.append(_adhesion(opened))
     section.notes.append(
         "Where the scene does not state how its devices vary (device.spread), their spread is an assumption."
     )
@@ -76,6 +78,18 @@ def _answer(answer: dict[str, Any]) -> list[Table]:
         Table("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows),
         Table("What to measure better for the release", columns, measured),
     ]
+
+
+def _adhesion(opened: list[dict[str, float]]) -> Table:
+    """What opening the pad costs after each load."""
+    columns = {
+        "load_MPa": "load (MPa)",
+        "energy_uJ_m2": "energy (µJ/m²)",
+        "flats_uJ_m2": "flats so far apart (µJ/m²)",
+        "pull_off_kPa": "pull-off (kPa)",
+    }
+    rows = [tuple(show(row[key]) for key in columns) for row in opened]
+    return Table("Adhesion of the pad at central inputs, opened from each load", tuple(columns.values()), rows)
 
 
 def pad_curves(results: Results) -> str:

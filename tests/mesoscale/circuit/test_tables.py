@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from evidence.pad.closed_form import ClosedForm
+from mesoscale.circuit.numerics import CIRCUIT
+from mesoscale.circuit.spice import spice_pad
+from mesoscale.circuit.tables import tables_of
+from mesoscale.circuit.verilog import verilog_pad
 from mesoscale.device.electrode import solve_deepened
-from mesoscale.device.pad_export import OF_NET, OF_WELL, START_NM, spice_pad, tables_of, verilog_pad
 from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
-from tests.mesoscale.device.simulators import by_ngspice, needs_ngspice, needs_openvaf
+from tests.mesoscale.circuit.simulators import by_ngspice, needs_ngspice, needs_openvaf
 
 AREA = 1e12
 HISTORY_NM = (60.0, 30.0, 26.0, 28.0, 33.0, 60.0, 30.0, 27.0, 22.0, 25.0, 30.0, 60.0)
@@ -51,7 +54,7 @@ def compiled(law, tmp_path):
     values = {"area_nm2": AREA, "follow": 1e-9, "mfactor": 1.0, **vars(law.flats)}
 
     def pressed(separation, deepest):
-        state = START_NM - deepest
+        state = CIRCUIT.start_nm - deepest
         residuals, _ = module.run_init_eval({**values, "V(s,ref)": separation * 1e-9, "V(closed)": state})
         # the state is at rest: it does not want to follow further, and hardly leaks
         assert abs(residuals[2][0]) <= 1e-9
@@ -67,7 +70,7 @@ def test_openvaf_follows_a_history_of_two_closings(tmp_path, waves):
     pressed = compiled(law, tmp_path)
     for separation, deepest, wanted in zip(*pressures(law), strict=True):
         found = pressed(separation, deepest)
-        assert found == pytest.approx(wanted, abs=2.0 * (OF_WELL * well(law) + OF_NET * abs(wanted)))
+        assert found == pytest.approx(wanted, abs=2.0 * (CIRCUIT.of_well * well(law) + CIRCUIT.of_net * abs(wanted)))
 
 
 @needs_openvaf
@@ -127,7 +130,7 @@ def apart(net, pull):
 
 def by_spice(text, separation, deepest):
     """Pressure (GPa) of the SPICE subcircuit, by its tables alone."""
-    at = {f"{START_NM:g} - V(near)": deepest, "V(risen)": separation - deepest}
+    at = {f"{CIRCUIT.start_nm:g} - V(near)": deepest, "V(risen)": separation - deepest}
 
     def logarithm(name):
         (sums,) = re.findall(rf"^B{name} 0 {name} I = (.*?)^R", text, re.M | re.S)
@@ -149,7 +152,7 @@ def test_the_tables_for_spice_hold_the_curves(waves):
     text = spice_pad(law, 256)
     for separation, deepest, wanted in zip(*pressures(law), strict=True):
         found = by_spice(text, separation, deepest)
-        assert found == pytest.approx(wanted, abs=2.0 * (OF_WELL * well(law) + OF_NET * abs(wanted)))
+        assert found == pytest.approx(wanted, abs=2.0 * (CIRCUIT.of_well * well(law) + CIRCUIT.of_net * abs(wanted)))
 
 
 @needs_ngspice
@@ -178,7 +181,7 @@ quit
     )
     at_rest = np.interp((2 * np.arange(len(HISTORY_NM)) + 0.99) * 1e-3, time, force) / AREA
     wanted = pressures(law)[2]
-    np.testing.assert_allclose(at_rest, wanted, rtol=2.0 * OF_NET, atol=2.0 * OF_WELL * well(law))
+    np.testing.assert_allclose(at_rest, wanted, rtol=2.0 * CIRCUIT.of_net, atol=2.0 * CIRCUIT.of_well * well(law))
 
 
 def test_the_exports_name_what_they_were_made_of():

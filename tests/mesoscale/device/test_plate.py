@@ -3,14 +3,12 @@
 import numpy as np
 import pytest
 
-from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.statistics import analytic_pull_in_V
-from mesoscale.device.switch import NM, VACUUM_PERMITTIVITY, switch_from_settings
+from mesoscale.device.plate import NM, VACUUM_PERMITTIVITY, plate_from_settings, solve_on_pad
 from mesoscale.errors import InputError
 from mesoscale.pad.memory import Flats, PadLaw
 from mesoscale.settings import DeviceSettings
 
-SWITCH = switch_from_settings(DeviceSettings())
+PLATE = plate_from_settings(DeviceSettings())
 DEPTHS = (18.0, 20.0, 22.0, 24.0, 26.0, 28.0)
 
 
@@ -29,28 +27,28 @@ def made_up_law(adhesion_kPa=0.0, hamaker=1e-6):
 
 
 def test_pull_in_is_that_of_an_ideal_plate():
-    assert solve_on_pad(SWITCH, made_up_law(), None).pull_in_V == pytest.approx(analytic_pull_in_V(SWITCH), rel=1e-6)
+    assert solve_on_pad(PLATE, made_up_law(), None).pull_in_V == pytest.approx(PLATE.pull_in_V, rel=1e-6)
 
 
 def test_the_held_state_balances_the_forces():
-    found = solve_on_pad(SWITCH, made_up_law(), 60.0)
-    electric = VACUUM_PERMITTIVITY * 60.0**2 / (2 * ((found.hold_nm + SWITCH.dielectric_nm) * NM) ** 2)
-    spring = SWITCH.spring_N_per_m * (SWITCH.gap_nm - found.hold_nm) * NM / SWITCH.area_m2
+    found = solve_on_pad(PLATE, made_up_law(), 60.0)
+    electric = VACUUM_PERMITTIVITY * 60.0**2 / (2 * ((found.hold_nm + PLATE.dielectric_nm) * NM) ** 2)
+    spring = PLATE.spring_N_per_m * (PLATE.gap_nm - found.hold_nm) * NM / PLATE.area_m2
     assert found.hold_MPa * 1e6 == pytest.approx(electric - spring, rel=1e-3)
 
 
 def test_release_without_adhesion_is_at_the_last_touch():
-    found = solve_on_pad(SWITCH, made_up_law(), 60.0)
+    found = solve_on_pad(PLATE, made_up_law(), 60.0)
     last = found.hold_nm + 6.0
-    electric_gap = (last + SWITCH.dielectric_nm) * NM
-    spring = SWITCH.spring_N_per_m * (SWITCH.gap_nm - last) * NM
-    wanted = np.sqrt(2 * spring * electric_gap**2 / (VACUUM_PERMITTIVITY * SWITCH.area_m2))
+    electric_gap = (last + PLATE.dielectric_nm) * NM
+    spring = PLATE.spring_N_per_m * (PLATE.gap_nm - last) * NM
+    wanted = np.sqrt(2 * spring * electric_gap**2 / (VACUUM_PERMITTIVITY * PLATE.area_m2))
     assert found.release_V == pytest.approx(wanted, rel=2e-3)
     assert not found.stuck
 
 
 def test_adhesion_above_the_spring_sticks_and_below_lowers_the_release():
-    free, pulled, stuck = (solve_on_pad(SWITCH, made_up_law(kPa), 60.0) for kPa in (0.0, 5.0, 12.0))
+    free, pulled, stuck = (solve_on_pad(PLATE, made_up_law(kPa), 60.0) for kPa in (0.0, 5.0, 12.0))
     assert free.release_V > pulled.release_V > 0
     assert stuck.stuck
     assert stuck.release_V == 0
@@ -59,9 +57,9 @@ def test_adhesion_above_the_spring_sticks_and_below_lowers_the_release():
 
 def test_nothing_beyond_the_computed_closing_is_used():
     with pytest.raises(InputError, match=r"the pad was computed for 18 \.\. 28 nm"):
-        solve_on_pad(SWITCH, made_up_law(), 300.0)
+        solve_on_pad(PLATE, made_up_law(), 300.0)
 
 
 def test_a_voltage_that_does_not_hold_is_refused():
     with pytest.raises(InputError, match="too little"):
-        solve_on_pad(SWITCH, made_up_law(), 0.01)
+        solve_on_pad(PLATE, made_up_law(), 0.01)

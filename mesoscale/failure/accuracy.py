@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.device.failure import Population, Response, corrected, just_allowed, learned
+from mesoscale.failure.rate import Population, ReserveResponse, corrected, just_allowed, learned
 from mesoscale.uncertainty.rare_events import Corrected
 
 Row = dict[str, Any]
@@ -29,12 +29,12 @@ def accuracy_points(
 
     Parameters
     ----------
-    population : see `mesoscale.device.failure.with_pad_scatter`.
+    population : see `mesoscale.failure.rate.Population`.
     allowed : share of the switches that may fail.
 
     Raises
     ------
-    InputError : see `mesoscale.device.failure.learned`.
+    InputError : see `mesoscale.failure.rate.learned`.
     """
     tell = progress or (lambda *_: None)
     hold, responses, costs, started = population.hold_V, [], [], _clock()
@@ -65,7 +65,7 @@ def accuracy_points(
 
 
 def _by_learning(
-    responses: list[Response], costs: list[NDArray[np.float64]], times: float, hold_V: float, best: Corrected
+    responses: list[ReserveResponse], costs: list[NDArray[np.float64]], times: float, hold_V: float, best: Corrected
 ) -> Iterator[Row]:
     """Fewer switches that the response learns from: its own rate beside the best one."""
     for response, cost in zip(responses, costs, strict=True):

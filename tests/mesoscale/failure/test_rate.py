@@ -9,8 +9,10 @@ from pydantic import ValidationError
 
 from evidence.pad.rare_failures import KnownPad, known_pad, population
 from mesoscale.device.beam_switch import closed_beam, solve_beam
-from mesoscale.device.failure import (
-    STEP,
+from mesoscale.device.plate import plate_from_settings, solve_on_pad
+from mesoscale.errors import InputError
+from mesoscale.failure.rate import (
+    FAILURE,
     Attracted,
     corrected,
     furthest_allowed,
@@ -19,9 +21,6 @@ from mesoscale.device.failure import (
     least_rms_nm,
     least_spring,
 )
-from mesoscale.device.pad_switch import solve_on_pad
-from mesoscale.device.switch import switch_from_settings
-from mesoscale.errors import InputError
 from mesoscale.pad.memory import attracting
 from mesoscale.settings import DeviceSettings, FailureSettings
 from tests.mesoscale.device.test_beam import made_up_law
@@ -34,7 +33,7 @@ def test_a_closed_beam_lets_go_where_the_solved_one_does():
     law = made_up_law(40.0)
     for times in (0.5, 1.0):
         release = solve_beam(BEAM, attracting(law, times)).release_V
-        closed = closed_beam(BEAM, law)
+        closed = closed_beam(BEAM, law, 128)
         assert release > 0.0
         assert closed(1.01 * release, times)
         assert not closed(0.99 * release, times)
@@ -44,18 +43,18 @@ def test_a_closed_beam_lets_go_where_the_solved_one_does():
 def test_the_reserve_is_the_attraction_with_which_the_switch_just_sticks(settings):
     law = made_up_law(40.0)
     reserve = Attracted(settings, law, 0.0, 128).reserve()
-    for logarithm, wanted in ((reserve - STEP, False), (reserve + STEP, True)):
+    for logarithm, wanted in ((reserve - FAILURE.step, False), (reserve + FAILURE.step, True)):
         scaled = attracting(law, float(np.exp(logarithm)))
         if settings.spring_N_per_m is None:
             assert solve_beam(settings, scaled).stuck == wanted
         else:
-            assert solve_on_pad(switch_from_settings(settings), scaled, settings.hold_voltage_V).stuck == wanted
+            assert solve_on_pad(plate_from_settings(settings), scaled, settings.hold_voltage_V).stuck == wanted
     assert Attracted(settings, law, 2.0, 128).reserve() <= reserve  # to let go in time asks for more than to let go
 
 
 def test_a_well_far_deeper_than_the_spring_and_none_at_all_reach_the_ends():
-    assert Attracted(PLATE, made_up_law(1e6), 0.0, 64).reserve() < np.log(0.1) + STEP
-    assert Attracted(PLATE, made_up_law(0.0), 0.0, 64).reserve() > np.log(30.0) - STEP
+    assert Attracted(PLATE, made_up_law(1e6), 0.0, 64).reserve() < np.log(0.1) + FAILURE.step
+    assert Attracted(PLATE, made_up_law(0.0), 0.0, 64).reserve() > np.log(30.0) - FAILURE.step
 
 
 def test_a_gap_of_20_nm_is_told_or_refused():

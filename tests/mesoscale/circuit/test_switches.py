@@ -1,17 +1,21 @@
 """The switch for circuits: its corners, its slow loop, its transient."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from evidence.pad.rare_failures import CUTOFFS_NM, known_pad
-from mesoscale.device import circuit, points
+from mesoscale.circuit import switches
+from mesoscale.circuit.numerics import CIRCUIT
+from mesoscale.circuit.switches import CORNERS, central_switch, loops, spread_switches
+from mesoscale.device import points
 from mesoscale.device.beam import beam_of
 from mesoscale.device.beam_switch import loop_fF, solve_beam
-from mesoscale.device.circuit import CORNERS, DRAWS, Version, study_on_pad, transient, versions
 from mesoscale.device.points import Pad
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings, DeviceSettings
-from tests.mesoscale.device.test_pad_export import pad
+from tests.mesoscale.circuit.test_tables import pad
 from tests.mesoscale.device.test_release import TABLE, cells_of, model_of
 
 BEAM = DeviceSettings()
@@ -22,12 +26,12 @@ def test_corners_lie_beyond_the_draws_in_their_direction(monkeypatch):
         law = known_pad(point).law
         return Pad(cells_of(law, 0.0), law.flats)
 
-    for module in (circuit, points):
+    for module in (switches, points):
         monkeypatch.setattr(module, "press_pad", press_pad)
     contact = ContactSettings()
-    made = {of.row["switch"]: of.row for of in versions(model_of(BEAM, 48), TABLE, contact, CUTOFFS_NM, 16)}
+    made = {of.row["switch"]: of.row for of in spread_switches(model_of(BEAM, 48), TABLE, contact, CUTOFFS_NM, 16)}
     assert set(made) == {*CORNERS, *(name for name in made if name.startswith("draw_"))}
-    assert len(made) == len(CORNERS) + DRAWS
+    assert len(made) == len(CORNERS) + CIRCUIT.draws
     drawn = [row for name, row in made.items() if name.startswith("draw_")]
     for fewer, more, answer in (("fast", "slow", "pull_in_V"), ("sticky", "loose", "release_V")):
         middle = np.median([row[answer] for row in drawn])
@@ -50,17 +54,15 @@ def test_the_slow_loop_jumps_at_pull_in_and_release():
     assert (np.diff(up) > 0).all()
 
 
-def test_a_step_above_pull_in_closes_and_its_end_opens():
-    law = pad()
-    study, law = study_on_pad(BEAM, law)
-    row = {"switch": "central", "pull_in_V": study.pull_in_V, "release_V": study.release_V}
-    said, rows = transient(Version(row, BEAM, law), 16)
-    assert said["closing_us"] < 150.0
-    assert 0.0 < said["opening_us"] < 100.0
-    assert rows[0]["middle_nm"] == pytest.approx(3490.0, abs=0.01)
-    assert max(row["capacitance_fF"] for row in rows) > 10.0 * rows[0]["capacitance_fF"]
+def test_draws_make_the_band_of_the_slow_loop():
+    central, _ = central_switch(BEAM, pad())
+    softer = replace(central, settings=BEAM.model_copy(update={"thickness_um": 3.9}))
+    rows = loops(central, [softer] * 4)
+    assert rows[-1]["voltage_V"] == pytest.approx(CIRCUIT.loop_top * central.row["pull_in_V"])
+    assert all(row["up_q05_fF"] <= row["up_q95_fF"] for row in rows)
+    assert sum(row["up_q05_fF"] for row in rows) > sum(row["up_central_fF"] for row in rows)  # it closes earlier
 
 
 def test_a_plate_on_a_spring_has_no_circuit():
     with pytest.raises(InputError, match="circuits are made of bending electrodes"):
-        study_on_pad(DeviceSettings(spring_N_per_m=10.0), pad())
+        central_switch(DeviceSettings(spring_N_per_m=10.0), pad())

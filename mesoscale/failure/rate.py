@@ -17,13 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
-from mesoscale.device.beam_switch import ELEMENTS, closed_beam
-from mesoscale.device.electrode import COARSE, DEEPENED_BY
-from mesoscale.device.pad_switch import solve_on_pad
+from mesoscale.device.beam_switch import closed_beam
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.plate import plate_from_settings, solve_on_pad
 from mesoscale.device.points import Point, point_of, values_at
 from mesoscale.device.pressing import held_V, pull_in_V
 from mesoscale.device.release import WORKS
-from mesoscale.device.switch import switch_from_settings
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.memory import PadLaw, attracting, deepened
@@ -55,32 +54,51 @@ class Pressed(Protocol):
 
 Press = Callable[[Point, int, int], Pressed]
 """Presses the pad of a point: with so many times the cells of the scene, and surfaces by a number."""
-FIRST = 48
-"""Switches of the first response beside those of the answer."""
-FEWEST = 32
-ROUNDS, BATCH = 5, 16
-"""Switches are added so often, so many at once, where a failure is likely."""
-RUNS = 64
-"""Switches that correct a probability."""
-WIDE = 2.0
-"""Half of the first switches have this many times the deviations of the inputs: rare events are far out."""
-SURER = 4
-"""Times as many cells has a pad whose halves disagree on whether the switch fails."""
-SURFACES = 4000
-"""Numbers of surfaces."""
-LEAST_TIMES, MOST_TIMES, STEP = 0.1, 30.0, 0.1
-"""Factors on the attraction that are tried, and the difference of their logarithms to which the reserve is known."""
-SPAN = 1.5
-"""Largest hold voltage of the curve, over that of the scene."""
-VOLTAGES = 5
-ROUGH = ndtri(np.array([0.98, 0.84, 0.5, 0.16, 0.02]))
-"""RMS heights among which the least is sought, from the roughest, as standard normal numbers of this input."""
-SPRINGS = (0.5, 2.0)
-"""Springs among which the least is sought, over that of the scene."""
-SPRING_RUNS = 32
-"""Switches that are solved with each spring. They know a probability to some 25 %, and a spring to 1 or 2 %."""
-NEAR = 0.02
-"""Difference of logarithms to which attractions and springs are sought."""
+
+
+@dataclass(frozen=True)
+class FailureNumerics:
+    """How rare failures are looked for; no scene sets these choices.
+
+    Attributes
+    ----------
+    first, fewest : switches of the first response beside those of the answer, and the fewest that may be solved.
+    rounds, batch : switches are added so often, so many at once, where a failure is likely.
+    runs : switches that correct a probability.
+    wide : half of the first switches have this many times the deviations of the inputs: rare events are far out.
+    surer_cells : times as many cells has a pad whose halves disagree on whether the switch fails.
+    surfaces : numbers of surfaces.
+    least_times, most_times, step : factors on the attraction that are tried, and the difference of their logarithms to
+        which the reserve is known.
+    span, voltages : largest hold voltage of the curve, over that of the scene, and the number of voltages.
+    rough : probabilities of the RMS heights among which the least is sought, from the roughest.
+    springs : springs among which the least is sought, over that of the scene.
+    spring_runs : switches that are solved with each spring. They know a probability to some 25 %, and a spring to 1 or
+        2 %.
+    near : difference of logarithms to which attractions and springs are sought.
+    """
+
+    first: int = 48
+    fewest: int = 32
+    rounds: int = 5
+    batch: int = 16
+    runs: int = 64
+    wide: float = 2.0
+    surer_cells: int = 4
+    surfaces: int = 4000
+    least_times: float = 0.1
+    most_times: float = 30.0
+    step: float = 0.1
+    span: float = 1.5
+    voltages: int = 5
+    rough: tuple[float, ...] = (0.98, 0.84, 0.5, 0.16, 0.02)
+    springs: tuple[float, float] = (0.5, 2.0)
+    spring_runs: int = 32
+    near: float = 0.02
+
+
+FAILURE = FailureNumerics()
+"""What every scene uses."""
 
 
 class Attracted:
@@ -108,19 +126,19 @@ class Attracted:
             try:
                 if not self.settings.bends:
                     law = attracting(self.laws[-1], times)
-                    plate = solve_on_pad(switch_from_settings(self.settings), law, self.settings.hold_voltage_V)
+                    plate = solve_on_pad(plate_from_settings(self.settings), law, self.settings.hold_voltage_V)
                     return plate.stuck or plate.release_V < self.release_V
                 self.closed = self.closed or closed_beam(self.settings, self.laws[-1], self.elements)
                 return self.closed(self.release_V, times)
             except NotComputed:
-                if len(self.laws) > DEEPENED_BY:
+                if len(self.laws) > SWITCH.deepened_by:
                     raise
                 self.laws.append(deepened(self.laws[-1]))
                 self.closed = None
 
-    def reserve(self, step: float = STEP) -> float:
+    def reserve(self, step: float = FAILURE.step) -> float:
         """Logarithm of the factor on the attraction with which the switch just fails, known to half a step."""
-        low, high = np.log(LEAST_TIMES), np.log(MOST_TIMES)
+        low, high = np.log(FAILURE.least_times), np.log(FAILURE.most_times)
         while high - low > step:
             middle = 0.5 * (low + high)
             try:
@@ -186,7 +204,7 @@ class Population:
         for k, point in enumerate(self.points(z, hold_V)):
             with suppress(InputError):
                 pad = self.press(point, 1, _surface(z[k])) if pads is None else pads[k]
-                reserves[k] = Attracted(point.device, pad.law, self.release_V, COARSE).reserve()
+                reserves[k] = Attracted(point.device, pad.law, self.release_V, SWITCH.coarse_elements).reserve()
         return reserves
 
     def failed(self, z: Array, hold_V: float, times: float) -> NDArray[np.bool_]:
@@ -200,9 +218,9 @@ class Population:
 
         try:
             pad = self.press(point, 1, surface)
-            failed = fails(pad.law, ELEMENTS)
-            if any(fails(half, COARSE) != failed for half in pad.halves):
-                failed = fails(self.press(point, SURER, surface).law, ELEMENTS)
+            failed = fails(pad.law, SWITCH.elements)
+            if any(fails(half, SWITCH.coarse_elements) != failed for half in pad.halves):
+                failed = fails(self.press(point, FAILURE.surer_cells, surface).law, SWITCH.elements)
         except InputError:
             return True
         return failed
@@ -210,7 +228,7 @@ class Population:
 
 def _surface(z: Array) -> int:
     """Number of the surfaces of a switch."""
-    return crc32(z.tobytes()) % SURFACES
+    return crc32(z.tobytes()) % FAILURE.surfaces
 
 
 def _with(z: Array, known: Known | None) -> Array:
@@ -219,7 +237,7 @@ def _with(z: Array, known: Known | None) -> Array:
 
 
 @dataclass(frozen=True)
-class Response:
+class ReserveResponse:
     """What was learned of the reserve of a population, from a number of switches."""
 
     population: Population
@@ -251,59 +269,61 @@ class Response:
 
 
 def voltages(population: Population) -> Array:
-    """Hold voltages of the curve: from pull-in, or that of the scene, to `SPAN` times that of the scene."""
+    """Hold voltages of the curve: from pull-in, or that of the scene, to `FAILURE.span` times that of the scene."""
     hold_V = population.hold_V
-    return np.linspace(min(hold_V, pull_in_V(population.settings)), SPAN * hold_V, VOLTAGES)
+    return np.linspace(min(hold_V, pull_in_V(population.settings)), FAILURE.span * hold_V, FAILURE.voltages)
 
 
-def learn(population: Population, tell: Callable[[float, str], None], seed: int = 0) -> Response:
+def learn(population: Population, tell: Callable[[float, str], None], seed: int = 0) -> ReserveResponse:
     """The response of the reserve, from switches of the whole population and then from such as nearly fail."""
     *_, last = learned(population, tell, seed)
     return last
 
 
-def learned(population: Population, tell: Callable[[float, str], None], seed: int) -> Iterator[Response]:
-    """The response after each of the `ROUNDS`, the first of the whole population."""
+def learned(population: Population, tell: Callable[[float, str], None], seed: int) -> Iterator[ReserveResponse]:
+    """The response after each of the `FAILURE.rounds`, the first of the whole population."""
     from scipy.stats import qmc  # slow to import
 
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0xFA11]))
     low, high = voltages(population)[[0, -1]]
-    first = qmc.LatinHypercube(population.dimension, rng=rng).random(FIRST)
-    z = ndtri(first) * np.where(np.arange(FIRST) % 2, 1.0, WIDE)[:, None]
+    first = qmc.LatinHypercube(population.dimension, rng=rng).random(FAILURE.first)
+    z = ndtri(first) * np.where(np.arange(FAILURE.first) % 2, 1.0, FAILURE.wide)[:, None]
     units, pads = population.solved
     known_z, hold_V = ndtri(units), population.hold_V
     columns = population.columns(known_z, np.full(len(known_z), hold_V))
     reserves = population.reserves(known_z, hold_V, pads)
-    batches = [(z[k::VOLTAGES], float(volts)) for k, volts in enumerate(voltages(population))]
+    batches = [(z[k :: FAILURE.voltages], float(volts)) for k, volts in enumerate(voltages(population))]
     number = 0
     while True:
         for part, hold_V in batches:
-            tell(0.6 * number / ROUNDS, f"{len(reserves)} switches")
+            tell(0.6 * number / FAILURE.rounds, f"{len(reserves)} switches")
             columns = np.concatenate([columns, population.columns(part, np.full(len(part), hold_V))])
             reserves = np.concatenate([reserves, population.reserves(part, hold_V)])
         # a switch that fails with the least attraction says nothing of where others begin to
-        within, known = np.isfinite(reserves), reserves > np.log(LEAST_TIMES) + STEP
-        if within.sum() < FEWEST:
+        within, known = np.isfinite(reserves), reserves > np.log(FAILURE.least_times) + FAILURE.step
+        if within.sum() < FAILURE.fewest:
             raise InputError(
-                f"failure: {within.sum()} of {len(reserves)} switches can be solved; accepted are at least {FEWEST}; "
-                "lower device.hold_voltage_V, or narrow the inputs"
+                f"failure: {within.sum()} of {len(reserves)} switches can be solved; accepted are at least "
+                f"{FAILURE.fewest}; lower device.hold_voltage_V, or narrow the inputs"
             )
-        if known.sum() < FEWEST:
+        if known.sum() < FAILURE.fewest:
             raise InputError(
                 f"failure.release_V = {population.release_V:.4g}: {known.sum()} of {within.sum()} switches release "
-                f"above it; accepted are at least {FEWEST}; lower it, or device.hold_voltage_V"
+                f"above it; accepted are at least {FAILURE.fewest}; lower it, or device.hold_voltage_V"
             )
-        response = Response(population, Process(columns[known], reserves[known]), len(reserves))
+        response = ReserveResponse(population, Process(columns[known], reserves[known]), len(reserves))
         yield response
-        if number == ROUNDS:
+        if number == FAILURE.rounds:
             return
         hold_V, times = float(rng.uniform(low, high)), WORKS[number % len(WORKS)]
         likely = response.sample(times, hold_V, seed + number).points
         number += 1
-        batches = [(likely[rng.permutation(len(likely))[:BATCH]], hold_V)]
+        batches = [(likely[rng.permutation(len(likely))[: FAILURE.batch]], hold_V)]
 
 
-def corrected(response: Response, times: float, hold_V: float, seed: int = 0, runs: int = RUNS) -> Corrected:
+def corrected(
+    response: ReserveResponse, times: float, hold_V: float, seed: int = 0, runs: int = FAILURE.runs
+) -> Corrected:
     """Probability of a failure with `times` the attraction, the response corrected by so many runs."""
     sampled = response.sample(times, hold_V, seed, repeats=REPEATS)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 0xC0]))
@@ -328,38 +348,41 @@ def furthest_allowed(values: Array, probability: Array, allowed: float) -> float
     return float(values[beyond - 1] + share * (values[beyond] - values[beyond - 1]))
 
 
-def least_rms_nm(response: Response, times: float, hold_V: float, allowed: float) -> float | None:
+def least_rms_nm(response: ReserveResponse, times: float, hold_V: float, allowed: float) -> float | None:
     """Least RMS height (nm), all else varying, with which no more switches fail than allowed.
 
-    None where even the largest of `ROUGH` is too little, or where roughness is no input.
+    None where even the largest of `FAILURE.rough` is too little, or where roughness is no input.
     """
     population = response.population
     if "rms" not in population.names:
         return None
     place = population.names.index("rms")
-    middle = np.zeros((ROUGH.size, population.dimension))
-    middle[:, place] = ROUGH
+    rough = ndtri(np.array(FAILURE.rough))
+    middle = np.zeros((rough.size, population.dimension))
+    middle[:, place] = rough
     rms_nm = values_at(ndtr(middle), population.table, population.settings, population.cutoffs_nm)[:, place]
-    failing = [response.sample(times, hold_V, 0, (place, z)).probability for z in ROUGH.tolist()]
+    failing = [response.sample(times, hold_V, 0, (place, z)).probability for z in rough.tolist()]
     return furthest_allowed(rms_nm, np.array(failing), allowed)
 
 
-def just_allowed(response: Response, hold_V: float, allowed: float) -> float:
+def just_allowed(response: ReserveResponse, hold_V: float, allowed: float) -> float:
     """Factor on the attraction with which just as many as allowed fail by the response."""
-    low, high = float(np.log(LEAST_TIMES)), float(np.log(MOST_TIMES))
-    while high - low > NEAR:
+    low, high = float(np.log(FAILURE.least_times)), float(np.log(FAILURE.most_times))
+    while high - low > FAILURE.near:
         middle = 0.5 * (low + high)
         more = response.sample(float(np.exp(middle)), hold_V, 0).probability > allowed
         low, high = (low, middle) if more else (middle, high)
     return float(np.exp(high))
 
 
-def least_spring(response: Response, likely: Sampled, times: float, hold_V: float, allowed: float) -> float | None:
+def least_spring(
+    response: ReserveResponse, likely: Sampled, times: float, hold_V: float, allowed: float
+) -> float | None:
     """Least spring, in the unit of its setting, all else varying, with which no more switches fail than allowed.
 
     A weaker spring makes those fail that nearly fail with more attraction. So some of `likely` are solved with other
-    springs, and correct its probability as in `corrected`. None where even the largest of `SPRINGS` is too weak, or
-    where none is likely.
+    springs, and correct its probability as in `corrected`. None where even the largest of `FAILURE.springs` is too
+    weak, or where none is likely.
 
     Parameters
     ----------
@@ -370,17 +393,17 @@ def least_spring(response: Response, likely: Sampled, times: float, hold_V: floa
     population = response.population
     now = getattr(population.settings, population.spring)
     rng = np.random.default_rng(np.random.SeedSequence([0, 0x5B1]))
-    chosen = rng.permutation(len(likely.points))[:SPRING_RUNS]
+    chosen = rng.permutation(len(likely.points))[: FAILURE.spring_runs]
 
     def too_many(logarithm: float) -> bool:
         changed = population.settings.model_copy(update={population.spring: now * float(np.exp(logarithm))})
         failed = replace(population, settings=changed).failed(likely.points[chosen], hold_V, times)
         return likely.probability * float(np.mean(failed / likely.chance[chosen])) > allowed
 
-    low, high = np.log(SPRINGS).tolist()
+    low, high = np.log(FAILURE.springs).tolist()
     if too_many(high):
         return None
-    while high - low > NEAR:
+    while high - low > FAILURE.near:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if too_many(middle) else (low, middle)
     return now * float(np.exp(high))

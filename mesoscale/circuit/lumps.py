@@ -1,0 +1,155 @@
+"""The electrode as few lumps: pairs of places, mirrored at mid-span, with the stiffness of the beam between them.
+
+For each lump, s its separation, A its area, b the width of the electrode, mass per area rho t,
+
+    rho t s'' = p_pad(s, deepest) - eps0 V^2 / 2 [1 / e^2 + fringe / (b e)] + P0 (n / s - 1) - F / A
+    F   = K u + (S / 2) (z.D z - z0.D z0) D z
+    n'  = -(P - P0) P s^3 / (P0 mu b^2),    P = P0 n / s,    mu = viscosity / (1 + 9.638 Kn^1.159)
+    Q   = V eps0 sum A [1 / e + fringe / b ln(pi b / e)],    e = s + t / eps_r
+
+with u = s - rest, z = z0 + u the height over the anchors, z0 that at rest, z.D z / 2 the elongation of the beam, and S
+its stretching stiffness, EA / L where anchors are rigid.
+The gas of a long strip: small slow motion feels the incompressible film, mu b^3 / s^3 per length, and fast motion the
+spring P0 A / s of trapped gas, the two limits of Blech, J. Lubr. Technol. 105 (1983) 615. Viscosity in narrow gaps is
+that of Veijola et al., Sens. Actuators A 48 (1995) 239, Kn the mean free path over s. A fringe of 2 / pi is that of a
+thin strip over a plane (Palmer, Trans. AIEE 56 (1937) 363). Simulators integrate these equations
+(`mesoscale.circuit.spice`).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.circuit.numerics import CIRCUIT
+from mesoscale.device.beam import Beam, assembled, lumped_beam
+from mesoscale.device.beam_kernels import NM
+from mesoscale.device.beam_switch import BeamStates, solve_beam, solve_bent
+from mesoscale.pad.memory import PadLaw
+from mesoscale.settings import DeviceSettings
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Lumps:
+    """What moves.
+
+    Attributes
+    ----------
+    rest_nm, area_m2 : separation at rest and area of the lumps, from the ends to mid-span, shape (n,).
+    stiffness_N_m : K, forces that hold the lumps at small displacements, but for what they stretch, shape (n, n).
+    drawn_m : D, twice the elongation of the beam (m) by the squares of heights (m), in 1/m, shape (n, n).
+    height_nm : z0, height at rest over the anchors, shape (n,).
+    stretching_N_m : S.
+    width_m, dielectric_nm : of the electrode; thickness of the dielectric over its permittivity.
+    mass_kg_m2 : mass per area.
+    gas_Pa : pressure of the gas around.
+    loss_us : a moving electrode resists as if it were displaced by so much more of its velocity.
+    fringe : see above.
+    """
+
+    rest_nm: Array
+    area_m2: Array
+    stiffness_N_m: Array
+    drawn_m: Array
+    height_nm: Array
+    stretching_N_m: float
+    width_m: float
+    dielectric_nm: float
+    mass_kg_m2: float
+    gas_Pa: float
+    loss_us: float
+    fringe: float
+
+    @property
+    def count(self) -> int:
+        """Number of lumps."""
+        return self.rest_nm.size
+
+
+def lumps_of(settings: DeviceSettings, count: int) -> Lumps:
+    """So many lumps of the electrode, without its tilt, with the loss of the assumed quality.
+
+    Raises
+    ------
+    InputError : see `lumped_beam`.
+    """
+    beam = lumped_beam(settings.model_copy(update={"tilt_nm": 0.0}), count)
+    area, heights_m = 2.0 * beam.width_m * beam.weights_m[:count, 0], beam.rest_nodal[1 : count + 1, 0]
+    stiffness, drawn = _paired_stiffness(beam)
+    mass = 1e3 * settings.density_g_cm3 * 1e-6 * settings.thickness_um
+    at_rest = stiffness + beam.stretching_N_m * np.outer(drawn @ heights_m, drawn @ heights_m)
+    slowest = np.linalg.eigvalsh(at_rest / np.sqrt(np.outer(area, area)))[0] / mass
+    return Lumps(
+        beam.rest_m[:count, 0] / NM,
+        area,
+        stiffness,
+        drawn,
+        heights_m / NM,
+        beam.stretching_N_m,
+        settings.width_um * 1e-6,
+        settings.dielectric_nm / settings.permittivity,
+        mass,
+        1e3 * settings.gas_kPa,
+        1e6 / (CIRCUIT.quality * float(np.sqrt(slowest))),
+        settings.fringe,
+    )
+
+
+def _paired_stiffness(beam: Beam) -> tuple[Array, Array]:
+    """Stiffness and D of a lumped beam against equal displacements of its mirrored places, shape (n, n) each.
+
+    Slopes follow the displacements as they do at rest, without what stretches the beam.
+    """
+    _, bends, pulled, *_ = beam.mechanics
+    drawn, free = assembled(pulled)[2:-2, 2:-2], assembled(bends)[2:-2, 2:-2]
+    free = free + beam.tension_N * drawn
+    follow = -np.linalg.solve(free[1::2, 1::2], free[1::2, ::2])
+    whole = np.empty((len(free), len(follow)))
+    whole[::2], whole[1::2] = np.eye(len(follow)), follow
+    half = len(follow) // 2
+    paired = whole @ np.vstack([np.eye(half), np.eye(half)[::-1]])
+    stiffness, folded = (paired.T @ of @ paired for of in (free, drawn))
+    return 0.5 * (stiffness + stiffness.T), 0.5 * (folded + folded.T)
+
+
+@dataclass(frozen=True)
+class LumpErrors:
+    """How many lumps an electrode needs, their errors beside the finite elements, and what these say.
+
+    An error of 1 is that of a release which only one of both has. `reference` is the larger of the changes of pull-in
+    and release from half as many finite elements.
+    """
+
+    lumps: int
+    pull_in: float
+    release: float
+    capacitance: float
+    pull_in_V: float
+    release_V: float
+    reference: float
+
+
+def choose_lumps(settings: DeviceSettings, law: PadLaw) -> LumpErrors:
+    """The fewest lumps of a bending electrode within the allowed errors, else the most.
+
+    Raises
+    ------
+    NotComputed, InputError : see `solve_beam`.
+    """
+    elements = CIRCUIT.reference_elements
+    half, exact = (solve_beam(settings, law, number) for number in (elements // 2, elements))
+    symmetric = settings.model_copy(update={"tilt_nm": 0.0})
+    count, errors = 0, (1.0, 1.0, 1.0)
+    for count in CIRCUIT.lump_counts:
+        errors = _errors(solve_bent(lumped_beam(symmetric, count), symmetric, law), exact)
+        if max(errors[:2]) <= CIRCUIT.release_error and errors[2] <= CIRCUIT.capacitance_error:
+            break
+    return LumpErrors(count, *errors, exact.pull_in_V, exact.release_V, max(_errors(half, exact)[:2]))
+
+
+def _errors(made: BeamStates, exact: BeamStates) -> tuple[float, float, float]:
+    pairs = ((made.pull_in_V, exact.pull_in_V), (made.release_V, exact.release_V))
+    pull_in, release = (0.0 if a == b else abs(a / b - 1.0) if a and b else 1.0 for a, b in pairs)
+    return pull_in, release, abs(made.capacitance_fF / exact.capacitance_fF - 1.0)

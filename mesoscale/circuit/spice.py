@@ -1,0 +1,149 @@
+"""The switch as a SPICE netlist, which ngspice runs as it is: its electrode, lumps (`mesoscale.circuit.lumps`) and pad.
+
+A netlist holds the stiffness of the electrode, and one instance of `rough_lump` for each pair of lumps, which has the
+subcircuit `rough_pad`. `mesoscale.circuit.verilog` has the same lump as a module, which is compiled once.
+
+Terminals are `top` and `bottom` of the two electrodes, and `middle`: by how much mid-span has come down (1 V = 1 nm).
+Inside, voltages are nm, nm/us, Pa and fC. All are zero for the open switch at rest, where simulators begin. What
+follows from others is a current into 1 Ohm: voltage sources would double the equations.
+"""
+
+import numpy as np
+
+from mesoscale.circuit.lumps import LumpErrors, Lumps
+from mesoscale.circuit.numerics import CIRCUIT
+from mesoscale.circuit.tables import Piece, note, tables_of
+from mesoscale.device.beam_kernels import NM, least_gap_nm
+from mesoscale.device.plate import VACUUM_PERMITTIVITY
+from mesoscale.pad.memory import FLOOR_GPa, PadLaw
+
+LUMP = "top bottom moved drawn charge"
+"""Nodes of a lump: the electrodes; how far it has moved (nm); what draws it down (Pa); its charge (fC), a
+current into 1 Ohm."""
+
+
+def spice_switch(lumps: Lumps, errors: LumpErrors, law: PadLaw, cells: int) -> str:
+    """SPICE netlist (ngspice) of the subcircuits `rough_switch`, `rough_lump` and `rough_pad`."""
+    force, slope = CIRCUIT.force_A, CIRCUIT.slope_per_V
+    springs = force * lumps.stiffness_N_m * NM / lumps.area_m2[:, None]
+    drawn, heights = lumps.drawn_m * NM / slope, lumps.height_nm
+    sloped = force * lumps.stretching_N_m * NM * slope / lumps.area_m2
+    body = []
+    for k in range(lumps.count):
+        held = [f"G{k}_{j} speed{k} 0 bent{j} 0 {spring:.12g}" for j, spring in enumerate(springs[k])]
+        held += [f"Gslope{k}_{j} 0 slope{k} bent{j} 0 {of:.12g}" for j, of in enumerate(drawn[k])]
+        body.append(f"""Xlump{k} top bottom moved{k} drawn{k} charge rough_lump
++   rest={lumps.rest_nm[k]:.9g} area={lumps.area_m2[k]:.9g}
++   gas={{gas}} viscosity={{viscosity}} fringe={{fringe}} follow={{follow}}
+Cmoved{k} moved{k} 0 1u
+Gmoved{k} 0 moved{k} speed{k} 0 1
+Gbent{k} 0 bent{k} moved{k} 0 1
+Gmore{k} 0 bent{k} speed{k} 0 {{loss}}
+Rbent{k} bent{k} 0 1
+Cspeed{k} speed{k} 0 {{{1e-3 * force:g}*mass}}
+Gdrag{k} speed{k} 0 speed{k} 0 {{{force:g}*drag}}
+Gdrawn{k} 0 speed{k} drawn{k} 0 {force:g}
+{chr(10).join(held)}
+Islope{k} 0 slope{k} {-(drawn[k] @ heights):.12g}
+Rslope{k} slope{k} 0 1
+Bstretch{k} speed{k} 0 I = {sloped[k]:.12g} * V(longer) * V(slope{k})
+Blonger{k} 0 longer I = {0.5 * slope:g} * (V(bent{k}) + {-heights[k]:.9g}) * V(slope{k})""")
+    # longer: by how much (nm) the beam is longer than at rest; slopes are those of its elongation
+    longer = ["Rlonger longer 0 1", f"Ilonger longer 0 {0.5 * slope * heights @ drawn @ heights:.12g}"]
+    width, dielectric = lumps.width_m, lumps.dielectric_nm
+    electric = f"(1e-9*max({{rest+{dielectric:.9g}}} - V(moved), {least_gap_nm(dielectric):.9g}))"
+    film = f"max({{rest}} - V(moved), {CIRCUIT.least_film_nm:g})"
+    dense = f"max(1 + V(excess), {CIRCUIT.least_density:g})"
+    return f"""* An electrostatic switch on a rough contact (Asperity, docs/switch.md).
+* the electrode: {lumps.count} pairs of lumps; beside finite elements pull-in differs by {errors.pull_in:.2%},
+* release by {errors.release:.2%}, capacitance by {errors.capacitance:.2%}; these err by {errors.reference:.2%}
+* top, bottom: the electrodes; middle: by how much (nm) mid-span has come down, 1 V = 1 nm.
+* Inside: nm, nm/us, Pa, fC. What moves a lump: 1 A for {1.0 / force:g} Pa.
+* mass per area in kg/m2, loss in us, viscosity in Pa s, gas in Pa.
+* drag: 0; a large one (3e4 Pa us/nm) lands the electrode softly, for loops so slow that nothing else matters.
+* follow: s, until the pad remembers; 1e-6 for such loops.
+* fringe: of the field at the sides; 0.6366 for a thin strip over a plane.
+.subckt rough_switch top bottom middle params: fringe={lumps.fringe:.9g} gas={lumps.gas_Pa:.9g}
++   viscosity={CIRCUIT.viscosity_Pa_s:g} mass={lumps.mass_kg_m2:.9g} loss={lumps.loss_us:.9g} drag=0
++   follow={CIRCUIT.follow_s:g}
+{chr(10).join([*body, *longer])}
+Emiddle middle 0 moved{lumps.count - 1} 0 1
+Rcharge charge 0 1
+Ccharge charge sense 1f
+Vcharge sense 0 0
+Fcharge top bottom Vcharge 1
+.ends rough_switch
+
+* A pair of lumps; Verilog-A has the same.
+.subckt rough_lump {LUMP} params: rest=1 area=1 gas=1 viscosity=1 fringe=0 follow={CIRCUIT.follow_s:g}
+Gup 0 up 0 moved 1
+Rup up 0 1
+Xpad up push rough_pad area=1e9 rest={{rest}} follow={{follow}}
+Bcharge 0 charge I = 1e15 * V(top,bottom) * {{area*{VACUUM_PERMITTIVITY}}} * (1 / {electric}
++   + {{fringe/{width:.9g}}} * ln({np.pi * width:.9g} / {electric}))
+Rexcess excess 0 1
+Bexcess 0 excess I = ({{rest}} - V(lost)) / {film} - 1
+Clost lost 0 1u
+Blost 0 lost I = {{1e-24*gas/(viscosity*{width**2:.9g})}} * {dense} * V(excess) * {film}^3
++   * (1 + 9.638 * pow({{{CIRCUIT.free_path_nm_Pa:.9g}/gas}} / ({dense} * {film}), 1.159))
+Rdrawn drawn 0 1
+Bdrawn 0 drawn I = {0.5 * VACUUM_PERMITTIVITY} * V(top,bottom)^2 * (1 + {{fringe/{width:.9g}}} * {electric})
++   / {electric}^2 - V(push) - {{gas}} * V(excess)
+.ends rough_lump
+
+{spice_pad(law, cells)}"""
+
+
+def spice_pad(law: PadLaw, cells: int) -> str:
+    """SPICE subcircuit `rough_pad` (ngspice): node s 1 V = 1 nm, node force 1 V = 1 nN, positive = pushed away."""
+    tables = tables_of(law, cubic=False)
+    depths = tables.depth_nm
+    deepest, far = f"{CIRCUIT.start_nm:g} - V(near)", [piece.y[-1] for piece in tables.closing]
+    push, pull = (Piece(piece.x, piece.y - piece.y[-1]) for piece in tables.closing)
+    weights, places = [], np.append(depths, depths[-1] + CIRCUIT.fade_nm)
+    for k in range(depths.size):
+        at = places[max(k - 1, 0) : k + 2]
+        weights.append(_pwl(deepest, Piece(at, (at == depths[k]).astype(float))))
+    sums = []
+    for way, closed in enumerate((_pwl(deepest, push, CIRCUIT.reach_nm), _pwl(deepest, pull))):
+        rises = (_pwl("V(risen)", pieces[way]) for pieces in tables.opening)
+        terms = [f"({weight} > 0 ? {weight}*{rise} : 0)" for weight, rise in zip(weights, rises, strict=True)]
+        sums.append("\n+   + ".join([closed, *terms]))
+    most = [piece.y.max() + CIRCUIT.most_folds for piece in tables.closing]  # wild steps of a simulator stay finite
+    return f"""* Mean pressure of a pad of a rough contact that remembers its deepest closing (Asperity, docs/pad.md).
+* {note(tables, cells)}
+* nodes     s      mean separation less rest, 1 V = 1 nm
+*           force  force on the moving electrode, 1 V = 1 nN, positive = pushed away
+* closed    by how much (nm) the pad has been closed so far below {CIRCUIT.start_nm:g} nm; a state
+* follow    time constant (s) of that state: much shorter than any motion; integrate by backward Euler
+*           (.options method=gear maxord=1), because what overshoots is remembered
+* Nodes are 0 for a pad that is far away, where simulators begin.
+.subckt rough_pad s force params: area=1e+12 follow={CIRCUIT.follow_s:g}
++   hamaker={law.flats.hamaker:.12g} offset_nm={law.flats.offset_nm:.12g} rest=0
+Cclosed closed 0 {CIRCUIT.memory_F:g}
+Rleak closed 0 {{follow/{CIRCUIT.memory_F * CIRCUIT.leak:g}}}
+Bclosed 0 closed I = {{{CIRCUIT.memory_F:g}/follow}} * max({{{CIRCUIT.start_nm:g}-rest}} - V(s) - V(closed), 0)
+Rnear near 0 1
+Bnear 0 near I = max(V(closed), {{{CIRCUIT.start_nm:g}-rest}} - V(s))
+Rrisen risen 0 1
+Brisen 0 risen I = V(s) + V(near) + {{rest-{CIRCUIT.start_nm:g}}}
+Rpush push 0 1
+Bpush 0 push I = {sums[0]}
+Rpull pull 0 1
+Bpull 0 pull I = {sums[1]}
+Rforce force 0 1
+Bforce 0 force I = {{area}} * (exp(min(V(push) + {far[0]:.7g}, {most[0]:.4g})) - {tables.faint_GPa:.7g}
++   - ({{hamaker/(6*3.14159265358979324)}} / pow(max(V(s) + {{rest}}, 1) + {{offset_nm}}, 3) + {FLOOR_GPa:g})
++   * exp(min(V(pull) + {far[1]:.7g}, {most[1]:.4g})))
+.ends rough_pad
+"""
+
+
+def _pwl(of: str, piece: Piece, below: float = 0.0) -> str:
+    """Straight pieces of ngspice, the ends held, four nodes a line; `below` the first node, the slope of the first."""
+    x, y = piece.x, piece.y
+    held = [(x[0] - 1e3, y[0]), *zip(x, y, strict=True), (x[-1] + 1e3, y[-1])]
+    if below:
+        held[0] = x[0] - below, y[0] - below * (y[1] - y[0]) / (x[1] - x[0])
+    nodes = [f"{x:.7g},{y:.7g}" for x, y in held]
+    return f"pwl({of}" + "".join((",\n+   " if k % 4 == 0 else ", ") + node for k, node in enumerate(nodes)) + ")"

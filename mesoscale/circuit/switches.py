@@ -1,0 +1,152 @@
+"""What a device engineer simulates: the central switch, its corners, draws of its spread, and their slow loops.
+
+Corners lie some standard deviations out, in the direction of inputs, D0 and properties that moves the release (sticky,
+loose) or the pull-in (fast, slow) most: the slope of a plane through the switches of all points.
+"""
+
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr, ndtri
+
+from mesoscale.circuit.lumps import LumpErrors, choose_lumps
+from mesoscale.circuit.numerics import CIRCUIT
+from mesoscale.device.beam import beam_of, lumped_beam
+from mesoscale.device.beam_switch import loop_fF, solve_bent
+from mesoscale.device.electrode import with_pad
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.points import PadModel, Point, point_of, press_pad, values_at
+from mesoscale.errors import InputError
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.memory import PadLaw
+from mesoscale.pad.numerics import PAD
+from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.settings.device import SPREAD
+
+Array = NDArray[np.float64]
+
+CORNERS = {
+    "loose": ("release_V", 1.0),
+    "sticky": ("release_V", -1.0),
+    "slow": ("pull_in_V", 1.0),
+    "fast": ("pull_in_V", -1.0),
+}
+
+
+@dataclass(frozen=True)
+class CircuitSwitch:
+    """One switch for circuit simulators.
+
+    Attributes
+    ----------
+    row : its name, inputs, D0 and properties, pull-in and release, for device/circuit.csv.
+    settings, law : its properties, without tilt, and its pad.
+    """
+
+    row: dict[str, Any]
+    settings: DeviceSettings
+    law: PadLaw
+
+
+def central_switch(settings: DeviceSettings, law: PadLaw) -> tuple[CircuitSwitch, LumpErrors]:
+    """The central switch on its pad, and the lumps that it needs.
+
+    Raises
+    ------
+    InputError : a plate on a spring, which has no corners; see `solve_beam`.
+    """
+    if not settings.bends:
+        raise InputError("device.spring_N_per_m: circuits are made of bending electrodes; set it to null")
+    errors, law = with_pad(lambda pad: choose_lumps(settings, pad), law)
+    row = {"switch": "central", "pull_in_V": errors.pull_in_V, "release_V": errors.release_V}
+    return CircuitSwitch(row, settings.model_copy(update={"tilt_nm": 0.0}), law), errors
+
+
+def spread_switches(
+    model: PadModel, table: InputTable, contact: ContactSettings, cutoffs_nm: tuple[float, float], lumps: int
+) -> list[CircuitSwitch]:
+    """Corners of the switch, whose pads are pressed for them, and its first solved points.
+
+    Raises
+    ------
+    InputError : too many points, or a corner, cannot be solved.
+    """
+    solved, design, settings = model.solved, model.design, model.central.point.device
+    if len(solved) < max(SWITCH.solved * len(model.points), 2):
+        raise InputError(f"device: only {len(solved)} of {len(model.points)} points of the switch can be solved")
+    z, corners = ndtri(design.probability[solved]), []
+    plane = np.column_stack([np.ones(len(z)), z])
+    for number, (name, (state, sign)) in enumerate(CORNERS.items()):
+        slope = np.linalg.lstsq(plane, model.states(state), rcond=None)[0][1:]
+        out = sign * slope / (np.linalg.norm(slope) or 1.0)
+        for deviations in CIRCUIT.corner_deviations:
+            values = values_at(ndtr(deviations * out)[None], table, settings, cutoffs_nm)[0]
+            point = point_of(values, table.names, settings)
+            with suppress(InputError):
+                law = press_pad(point, contact, CIRCUIT.corner_cells, PAD.first_seed + number).law
+                corners.append(_by_lumps(name, point, law, lumps, deviations))
+                break
+        else:
+            raise InputError(f"device: the corner {name} of the switch cannot be solved")
+    drawn = []
+    for k in solved:
+        if (pad := model.points[k].pad) and len(drawn) < CIRCUIT.draws:
+            with suppress(InputError):
+                drawn.append(_by_lumps(f"draw_{k + 1:02d}", model.points[k].point, pad.law, lumps))
+    return [*corners, *drawn]
+
+
+def _by_lumps(name: str, point: Point, pad: PadLaw, lumps: int, deviations: float = 0.0) -> CircuitSwitch:
+    """The switch of a point by so many lumps.
+
+    Raises
+    ------
+    InputError : see `solve_bent`.
+    """
+    device = point.device.model_copy(update={"tilt_nm": 0.0})
+    states, law = with_pad(lambda law: solve_bent(lumped_beam(device, lumps), device, law), pad)
+    properties = {name: getattr(device, name) for name in SPREAD if name != "tilt_nm"}
+    inputs = {**point.values, "gap_cutoff_nm": point.gap_cutoff_nm, **properties}
+    volts = {"pull_in_V": states.pull_in_V, "release_V": states.release_V}
+    return CircuitSwitch({"switch": name, "deviations": deviations, **inputs, **volts}, device, law)
+
+
+def loops(central: CircuitSwitch, drawn: list[CircuitSwitch]) -> list[dict[str, float]]:
+    """Rows of device/loop.csv: capacitance against voltage, up and down, central and of 90 % of the draws."""
+    top = CIRCUIT.loop_top * max(switch.row["pull_in_V"] for switch in (central, *drawn))
+    volts = np.linspace(0.0, top, CIRCUIT.loop_voltages)
+    curves = [_loop_fF(central, volts)]
+    for switch in drawn:
+        with suppress(InputError):  # a beam that finds no balance on any mesh
+            curves.append(_loop_fF(switch, volts))
+    if len(curves) <= SWITCH.solved * len(drawn):
+        raise InputError(f"device: the slow loop can be solved for only {len(curves) - 1} of {len(drawn)} draws")
+    low, high = np.quantile(np.stack(curves[1:]), (0.05, 0.95), axis=0)
+    return [
+        {
+            "voltage_V": float(voltage),
+            **{
+                f"{way}_{name}_fF": float(of[place, k])
+                for place, way in enumerate(("up", "down"))
+                for name, of in (("central", curves[0]), ("q05", low), ("q95", high))
+            },
+        }
+        for k, voltage in enumerate(volts)
+    ]
+
+
+def _loop_fF(switch: CircuitSwitch, volts: Array) -> Array:
+    """The loop of one switch, shape (2, volts), by the first mesh on which the beam finds all its balances."""
+    for elements in CIRCUIT.loop_elements:
+        beam = beam_of(switch.settings, elements)
+        try:
+            solved = with_pad(lambda law, of=beam: loop_fF(of, switch.settings, law, volts), switch.law)[0]
+        except InputError:  # between straight pieces of the pad's curves, steps may cycle
+            if elements == CIRCUIT.loop_elements[-1]:
+                raise
+        else:
+            return np.stack(solved)
+    raise AssertionError("unreachable: the last mesh returns or raises")

@@ -1,0 +1,1 @@
+"""How often a switch fails, down to one in a million."""
