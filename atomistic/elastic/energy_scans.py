@@ -1,23 +1,24 @@
 """Energy-volume scans E(V) under isotropic strain, and the bulk modulus of each.
 
 Ions keep their fractional coordinates (they are "clamped": every bond scales), as in the paper.  A glass whose ions
-follow the strain is softer: its elastic constants (`atomistic.elastic.constants`) say by how much.
+follow the strain is softer.
 """
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from ase import Atoms
 from ase.calculators.calculator import CalculationFailed, Calculator
 
+from atomistic.elastic.dft import PyscfGamma, Solution, Store, make_calculator
 from atomistic.elastic.equation_of_state import MIN_POINTS, fit_equation_of_state
 from atomistic.elastic.relaxation import strained
+from atomistic.settings import DftSettings
 
 Progress = Callable[[float, str], None]
-LDA_CENTRE = -0.012  # strain about which LDA is scanned: its volume is some 4 % smaller than that of GGA
 
 
 @dataclass(frozen=True)
@@ -57,10 +58,36 @@ def scan_volumes(
     return [points[strain] for strain in sorted(points)]
 
 
-def rejected_points(atoms: Atoms, strains: Sequence[float], reason: str) -> list[Point]:
-    """The scan of a structure that failed its gate: nothing computed, the reason in every point."""
-    volumes = [float(strained(atoms, strain).get_volume()) for strain in strains]
-    return [Point(s, v, float("nan"), False, 0.0, reason) for s, v in zip(strains, volumes, strict=True)]
+def scan_rows(
+    name: str,
+    atoms: Atoms,
+    xc: str,
+    dft: DftSettings,
+    strains: Sequence[float],
+    store: Store | None = None,
+    start: Sequence[Solution] = (),
+    rejected: str = "",
+    progress: Progress | None = None,
+) -> list[dict[str, Any]]:
+    """Rows of elastic/points.csv of one structure and functional.
+
+    Parameters
+    ----------
+    start : former solutions to start from (PySCF only)
+    rejected : why the structure failed its gate: nothing is computed, and every row says so
+    """
+    if xc == "LDA":
+        atoms = strained(atoms, -0.012)  # its volume is some 4 % smaller than that of GGA
+    if rejected:
+        volumes = [float(strained(atoms, strain).get_volume()) for strain in strains]
+        points = [Point(s, v, float("nan"), False, 0.0, rejected) for s, v in zip(strains, volumes, strict=True)]
+    else:
+        calculator = make_calculator(dft, xc, atoms.cell.array * (1 + max(strains)), store)
+        if isinstance(calculator, PyscfGamma):
+            calculator.history = list(start)
+        points = scan_volumes(atoms, calculator, strains, progress)
+    head = {"structure": name, "xc": xc, "ions": "clamped", "atoms": len(atoms)}
+    return [{**head, **asdict(point)} for point in points]
 
 
 def fit_scan(scan: Sequence[Mapping[str, str]]) -> dict[str, Any]:

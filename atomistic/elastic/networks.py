@@ -20,11 +20,30 @@ from atomistic.errors import InputError
 from atomistic.materials import SEARCHED_A, Material, NetworkGlass, Supercell, Tersoff
 from atomistic.settings import NitrideGlassSettings
 
-START_DISTANCE_A = 1.4  # random start: nothing closer than this
-MELT_K, MELT_PS, FINAL_K = 5000.0, 3.0, 300.0
-TIMESTEP_FS = 1.0
-ATTEMPTS = 1000  # quenches until one passes the gates; of 28 atoms about one in sixty does
-FREE_BELOW_K = 2500.0  # a melt has no shape to keep; below this its network can still change and settles as a glass
+
+@dataclass(frozen=True)
+class Quench:
+    """How a cell is melted and quenched, beside its rate; films on the glass take the same temperatures.
+
+    Attributes
+    ----------
+    start_distance_A : random start: nothing closer than this
+    melt_K, melt_ps, final_K : temperature and time of the melt; temperature of the glass
+    free_below_K : a melt has no shape to keep; below this its network can still change and settles as a glass
+    timestep_fs : of the molecular dynamics
+    attempts : quenches until one passes the gates; of 28 atoms about one in sixty does
+    """
+
+    start_distance_A: float = 1.4
+    melt_K: float = 5000.0
+    melt_ps: float = 3.0
+    final_K: float = 300.0
+    free_below_K: float = 2500.0
+    timestep_fs: float = 1.0
+    attempts: int = 1000
+
+
+QUENCH = Quench()
 
 
 def crystal(material: Material, name: str, supercell: Supercell | None = None) -> Atoms:
@@ -172,7 +191,7 @@ def random_structure(
     edge = shape * (atoms.get_masses().sum() * AMU_PER_A3_IN_G_CM3 / density_g_cm3 / shape.prod()) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 5]))
     atoms.set_cell(edge)
-    atoms.positions = random_places(len(symbols), edge, START_DISTANCE_A, rng)
+    atoms.positions = random_places(len(symbols), edge, QUENCH.start_distance_A, rng)
     return atoms
 
 
@@ -198,9 +217,9 @@ def make_glass(
     """
     attempts: list[dict[str, Any]] = []
     atoms, network = Atoms(), material.part("network_glass")
-    for attempt in range(ATTEMPTS):
+    for attempt in range(QUENCH.attempts):
         if progress:
-            progress(attempt / ATTEMPTS, f"melt and quench, attempt {attempt + 1}")
+            progress(attempt / QUENCH.attempts, f"melt and quench, attempt {attempt + 1}")
         quench_seed = int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
         atoms = quench(material, settings, quench_seed, work)
         verdict = examine(atoms, network, settings.max_defects)
@@ -227,7 +246,7 @@ def make_glass(
 def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: Path) -> Atoms:
     """One melt and quench, then ions and cell at rest together (LAMMPS, `protocols/nitride.in`).
 
-    Down to `FREE_BELOW_K` the volume is constant; below it volume and shape follow a pressure of zero.  In the box of
+    Down to `QUENCH.free_below_K` the volume is constant; below it volume and shape follow a pressure of zero.  In the box of
     the melt a network is left under up to 30 GPa of shear stress, and slides far when it is let go.
     """
     from ase.io import read
@@ -260,7 +279,7 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
         LammpsAtoms(elements, types, start.positions, np.diag(start.cell.array)),
         network.masses_u,
     )
-    steps_per_ps = 1000 / TIMESTEP_FS
+    steps_per_ps = 1000 / QUENCH.timestep_fs
     steps_per_K = steps_per_ps / settings.quench_rate_K_ps
     run_lammps(
         "nitride.in",
@@ -268,13 +287,13 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
         {
             "elements": " ".join(elements),
             "seed": seed,
-            "timestep": TIMESTEP_FS / 1000,
-            "melt": MELT_K,
-            "free": FREE_BELOW_K,
-            "final": FINAL_K,
-            "melt_steps": round(MELT_PS * steps_per_ps),
-            "quench_steps": round((MELT_K - FREE_BELOW_K) * steps_per_K),
-            "free_steps": round((FREE_BELOW_K - FINAL_K) * steps_per_K),
+            "timestep": QUENCH.timestep_fs / 1000,
+            "melt": QUENCH.melt_K,
+            "free": QUENCH.free_below_K,
+            "final": QUENCH.final_K,
+            "melt_steps": round(QUENCH.melt_ps * steps_per_ps),
+            "quench_steps": round((QUENCH.melt_K - QUENCH.free_below_K) * steps_per_K),
+            "free_steps": round((QUENCH.free_below_K - QUENCH.final_K) * steps_per_K),
         },
     )
     numbers = {kind: atomic_numbers[element] for kind, element in enumerate(elements, 1)}

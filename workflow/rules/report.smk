@@ -17,7 +17,6 @@ def report_inputs():
         files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness", "snapshots") for run in CLOSINGS]
     if needed("elastic"):
         files += [f"elastic/{name}" for name in ("points.csv", "bulk_moduli.csv", "e_star.json", "e_star.h5")]
-        files += ["elastic/isotropic_moduli.csv"] if TENSORS else []
     if needed("topography"):
         files += ["topography/spectra.h5", "topography/parameters.json"]
         files += [str(Path(path).relative_to(RESULTS)) for path in JUDGED]
@@ -52,9 +51,8 @@ def kept_files():
         if COUNTER_GLASS:
             files += expand(rules.make_counter_glass.output, glass=SCENE.hardness.seeds)
     if needed("elastic"):
-        parts += [rules.fit_bulk_moduli, rules.combine_e_star]
-        files += expand([*rules.make_amorphous.output, *rules.relax_amorphous.output], amorphous=GLASSES)
-        parts += [rules.average_tensors] if TENSORS else []
+        parts += [rules.combine_e_star]
+        files += expand([*rules.make_amorphous.output, *rules.scan_glass.output], amorphous=GLASSES)
     if needed("topography"):
         parts += [rules.pool_spectra] if TOPOGRAPHY.scans else [rules.write_synthetic_scans, rules.pool_spectra]
     files += [file for part in parts for file in (*part.input, *part.output)]

@@ -48,24 +48,6 @@ TABLES = (
         ),
     ),
     Table(
-        ("elastic/isotropic_moduli.csv",),
-        "Isotropic moduli of one structure from its elastic constants, ions clamped or relaxed.",
-        (
-            text("structure", "name of the structure"),
-            integer("atoms", "atoms in the cell"),
-            number("density_g_cm3", "g/cm³", "density at rest, without stress"),
-            text("ions", "clamped or relaxed"),
-            number("B_GPa", "GPa", "bulk modulus, mean of Voigt's and Reuss's bounds", empty=True),
-            number("G_GPa", "GPa", "shear modulus, mean of Voigt's and Reuss's bounds", empty=True),
-            number("E_GPa", "GPa", "Young's modulus", empty=True),
-            number("nu", "1", "Poisson's ratio", empty=True),
-            number("B_error_GPa", "GPa", "half of the distance between the bounds of B", empty=True),
-            number("G_error_GPa", "GPa", "half of the distance between the bounds of G", empty=True),
-            text("flags", "why they are not trusted", empty=True),
-            text("doubts", "why the cell at rest is no insulating glass; it enters E* all the same", empty=True),
-        ),
-    ),
-    Table(
         ("elastic/quenched/*.csv",),
         "One attempt to melt and quench a cell.",
         (

@@ -1,7 +1,7 @@
-"""Error of B and G against run time.  In: material, bulk moduli, points.  Out: accuracy/elastic.csv."""
+"""Error of B against run time.  In: material, bulk moduli, points.  Out: accuracy/elastic.csv."""
 
-from atomistic.elastic.accuracy import ensemble_points, shear_points, volume_points
 from atomistic.elastic.networks import crystal
+from atomistic.elastic.studies import ensemble_points, volume_points
 from atomistic.materials import load_material
 from atomistic.settings import ElasticSettings
 from workflow.checks import accuracy_rows
@@ -20,6 +20,4 @@ with job(snakemake) as run:
         name = next(iter(material.crystals), "")
         small, larger = crystal(material, name, (1, 1, 1)), crystal(material, name)
         rows += accuracy_rows("elastic", volume_points(small, larger, settings, run.progress))
-        if settings.poisson == "computed":
-            rows += accuracy_rows("elastic", shear_points(larger, settings, run.progress))
     write_csv(snakemake.output.table, rows)

@@ -10,7 +10,7 @@ from ase.calculators.calculator import CalculationFailed
 from ase.calculators.emt import EMT
 from pydantic import ValidationError
 
-from atomistic.elastic.energy_scans import fit_scan, rejected_points, scan_volumes
+from atomistic.elastic.energy_scans import fit_scan, scan_rows, scan_volumes
 from atomistic.elastic.moduli import Modulus, effective_modulus, plane_strain_modulus, variance_shares
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings, ElasticSettings
@@ -118,8 +118,7 @@ def test_poisson_ratio_of_a_liquid_and_too_few_strains_are_refused(bad):
 
 
 def test_rejected_glass_costs_nothing_and_carries_its_reason():
-    points = rejected_points(bulk("Cu"), STRAINS, "6 atoms without their valence")
-    row = {"structure": "a08", "xc": "GGA", "ions": "clamped", "atoms": "28"}
-    fit = fit_scan([{**row, **{k: str(v) for k, v in vars(p).items()}} for p in points])
+    rows = scan_rows("a08", bulk("Cu"), "GGA", DftSettings(), STRAINS, rejected="6 atoms without their valence")
+    fit = fit_scan([{key: str(value) for key, value in row.items()} for row in rows])
     assert fit["B_GPa"] is None
     assert fit["flags"].count("6 atoms without their valence") == 1
