@@ -246,8 +246,8 @@ def make_glass(
 def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: Path) -> Atoms:
     """One melt and quench, then ions and cell at rest together (LAMMPS, `protocols/nitride.in`).
 
-    Down to `QUENCH.free_below_K` the volume is constant; below it volume and shape follow a pressure of zero.  In the box of
-    the melt a network is left under up to 30 GPa of shear stress, and slides far when it is let go.
+    Down to `QUENCH.free_below_K` the volume is constant; below it volume and shape follow a pressure of zero.  In the
+    box of the melt a network is left under up to 30 GPa of shear stress, and slides far when it is let go.
     """
     from ase.io import read
 

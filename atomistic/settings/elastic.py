@@ -55,7 +55,7 @@ class DftSettings(Settings):
 
     @property
     def forces_cutoff_Ha(self) -> float:
-        """Plane-wave cutoff where forces are computed: at 80 Ha within 0.5 eV/Å of those at 140, and none is compared."""
+        """Plane-wave cutoff of forces: at 80 Ha they are within 0.5 eV/Å of those at 140; no volumes are compared."""
         return min(self.cutoff_Ha, 80.0)
 
     @model_validator(mode="after")

@@ -3,8 +3,8 @@
 The stage scans E(V) with clamped ions; scene `reduced` states the range of Poisson's ratio that was found here. Its
 glasses are perfect networks of 28 atoms; `broken_bonds` lets three of 28 atoms lack or exceed their valence, as many as
 large melt-quenched models have; `double_glass` has 56 atoms, of which five may.  PBE at 80 Ha, ions and cell at rest.
-E* of a scene stands in each of its rows, with Poisson's ratio computed and as the paper takes it. The code that computed
-elastic constants left the stage after `COMMIT`, where the command runs: one to three hours of two cores a scene. There,
+E* of a scene stands in each of its rows, with Poisson's ratio computed and as the paper takes it. The code for elastic
+constants left the stage after `COMMIT`, where the command runs: one to three hours of two cores a scene. There,
 `python -m evidence elastic.constants` has beta-Si3N4 beside Brillouin scattering (Vogelgesang et al. 2000): B is 11 %,
 G 4 % and E 5 % too small, and ν is 0.27 instead of 0.29.
 The first rows were copied from a page, to the digits that it gave; the third glass of 56 atoms was quenched in the box
@@ -45,7 +45,8 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """Run the elastic stage of each scene as it was at `COMMIT`, and take its isotropic moduli."""
     archive = subprocess.run(["git", "archive", COMMIT], cwd=ROOT, capture_output=True, check=True).stdout
     with tempfile.TemporaryDirectory() as folder:
-        tarfile.open(fileobj=io.BytesIO(archive)).extractall(folder, filter="data")
+        with tarfile.open(fileobj=io.BytesIO(archive)) as files:
+            files.extractall(folder, filter="data")
         for scene in given.scenes:
             name = scene.rpartition("/")[2].removesuffix(".yaml")
             own = Path(folder) / f"computed_{name}.yaml"
