@@ -52,13 +52,8 @@ class Atoms:
         return Atoms(self.elements, self.types[keep], self.positions_A[keep], self.cell_A, velocities)
 
 
-def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float], below_A: float = 0.0) -> None:
-    """Write a LAMMPS data file (atom_style atomic, units metal).
-
-    Parameters
-    ----------
-    below_A : room below z = 0, for a body that may sink.
-    """
+def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) -> None:
+    """Write a LAMMPS data file (atom_style atomic, units metal)."""
     lines = [
         f"{'-'.join(atoms.elements)}",
         "",
@@ -67,7 +62,7 @@ def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float], be
         "",
     ]
     x, y, z = atoms.cell_A.tolist()
-    lines += [f"0 {x!r} xlo xhi", f"0 {y!r} ylo yhi", f"{-below_A if below_A else 0} {z!r} zlo zhi"]
+    lines += [f"0 {x!r} xlo xhi", f"0 {y!r} ylo yhi", f"0 {z!r} zlo zhi"]
     lines += ["", "Masses", ""]
     lines += [f"{k} {masses_u[element]} # {element}" for k, element in enumerate(atoms.elements, 1)]
     lines += ["", "Atoms # atomic", ""]

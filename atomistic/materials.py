@@ -205,7 +205,7 @@ class Eam(_Section):
     source: str
 
 
-class Bond(_Section):
+class MorseBond(_Section):
     """Morse bond of an atom of the base and an ion of a film."""
 
     D_eV: Positive
@@ -230,7 +230,7 @@ class FilmBase(_Section):
         default=None, description="of a metal, whose grains make it soft: diameter of a sphere of their mean volume"
     )
     timestep_factor: float = Field(default=1.0, gt=0, le=1, description="on the time step of a closing")
-    bonds: dict[ElementPair, Bond] = Field(min_length=1)
+    bonds: dict[ElementPair, MorseBond] = Field(min_length=1)
     repelled: tuple[ElementPair, ...] = Field(description="pairs that only repel each other")
     area_of_film: BodyArea
     area_of_base: BodyArea

@@ -29,6 +29,11 @@ REPLACED = {
     },
     **{f"inputs.{row}.prior": "without `values` the prior is that of the stage" for row in BY_NAME},
     "hardness.area": "the potential's file says with what its area is calibrated",
+    **{
+        f"hardness.closing.{key}": "a rigid flat at constant speed presses every asperity"
+        for key in ("counterface", "control", "interface", "counter_material", "counter_potential", "dwell_ps")
+    },
+    "hardness.fit.h_macro": "H_macro is that of fit.h_macro_GPa",
     "hardness.plasticity": "`closing.stop: window` takes runs to their end",
     **dict.fromkeys(("elastic.ions", "elastic.relaxed_structures"), "ions are clamped in E(V)"),
     **dict.fromkeys(("elastic.poisson", "elastic.tensor_structures"), "state the range as elastic.poisson_ratio"),

@@ -58,7 +58,6 @@ class Metal(Base):
     """A metal below films, or by itself."""
 
     styles = ("eam/alloy",)
-    molten_K = 2800.0
 
     @property
     def element(self) -> str:
@@ -80,15 +79,6 @@ class Metal(Base):
         """Of the hexagonal crystal."""
         a, c = self.eam.lattice_A
         return 4e3 / (a**2 * np.sqrt(3) * c)
-
-    def softened(self, factor: float) -> "Metal":
-        """The same metal with all energies times a factor: for checks."""
-        single, several = ("A_eV", "B_eV", "F_outer_eV"), ("F_inner_eV", "F_middle_eV")
-        eam = self.eam.model_copy(
-            update={key: factor * getattr(self.eam, key) for key in single}
-            | {key: tuple(factor * value for value in getattr(self.eam, key)) for key in several}
-        )
-        return Metal(self.material.model_copy(update={"eam": eam}))
 
     def commands(self, above: int) -> list[str]:
         """Commands of its own atoms, type 1."""

@@ -17,7 +17,7 @@ from atomistic.errors import InputError
 from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import NEAREST_START_A, density_g_cm3, run_segments, unlike_neighbours
 from atomistic.lammps import Atoms, Progress, Workspace
-from atomistic.materials import Core, NetworkGlass, Tersoff
+from atomistic.materials import NetworkGlass
 
 MELT_K, FREE_BELOW_K, FINAL_K = 5000.0, 2500.0, 300.0
 MELT_PS, QUENCH_K_PS, REST_PS = 3.0, 100.0, 3.0
@@ -30,7 +30,6 @@ class Network(Base):
     """A glass of covalent bonds below films, or by itself."""
 
     styles = ("tersoff", "harmonic/cut")
-    molten_K = MELT_K
 
     @property
     def network(self) -> NetworkGlass:
@@ -48,24 +47,6 @@ class Network(Base):
         unit_u = sum(count * self.network.masses_u[element] for element, count in self.material.formula.items())
         atoms = sum(self.material.formula.values())
         return atoms * self.network.start_density_g_cm3 * AVOGADRO / unit_u * 1e-21
-
-    def softened(self, factor: float) -> "Network":
-        """The same glass with all energies times a factor."""
-        network = self.network.model_copy(update={"tersoff": self._tersoff(factor), "cores": self._cores(factor)})
-        return Network(self.material.model_copy(update={"network_glass": network}))
-
-    def _tersoff(self, factor: float) -> Tersoff:
-        atoms = {
-            element: atom.model_copy(update={"A": factor * atom.A, "B": factor * atom.B})
-            for element, atom in self.network.tersoff.elements.items()
-        }
-        return self.network.tersoff.model_copy(update={"elements": atoms})
-
-    def _cores(self, factor: float) -> dict[str, Core]:
-        return {
-            pair: core.model_copy(update={"k_eV_A2": factor * core.k_eV_A2})
-            for pair, core in self.network.cores.items()
-        }
 
     def commands(self, above: int) -> list[str]:
         """Commands of its own atoms, the first types."""

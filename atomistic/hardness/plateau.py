@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from atomistic.hardness.runs import PROTOCOL, geometry
-from atomistic.settings import ClosingSettings
+from atomistic.hardness.runs import PROTOCOL
 
 Rows = Sequence[Mapping[str, float]]
 
@@ -187,7 +186,6 @@ def find_hardness(
     fraction = column["contact_area_nm2"] / cell_area_nm2
     # what comes back after the contact was too wide is not used; one that shrinks for a moment goes on
     window = (length >= rules.min_length_nm) & (np.maximum.accumulate(fraction) <= rules.max_area_fraction)
-    # counterfaces of atoms start farther apart than the approach
     apart = np.max(travel[np.cumsum(fraction) == 0], initial=approach_nm)
     onset = plastic_onset(witness, float(apart), rules, by_bonds=not on_base)
     measured: dict[str, Any] = {
@@ -277,20 +275,18 @@ def may_stop(
     return hardness.plateau_exponent <= rules.max_exponent and narrow
 
 
-def point(
-    curve: Rows, witness: Rows, run: Mapping[str, Any], closing: ClosingSettings, potential: str
-) -> dict[str, Any]:
+def point(curve: Rows, witness: Rows, run: Mapping[str, Any], potential: str) -> dict[str, Any]:
     """Row of points.csv of a run, given its summary `run` and the name of its potential."""
-    copied = ("energy_scale", "asperity", "wavelength_nm", "amplitude_nm", "film_nm", "seed", "atoms", "restart_steps")
+    copied = ("energy_scale", "asperity", "wavelength_nm", "amplitude_nm", "film_nm", "seed", "atoms")
     hardness = find_hardness(curve, witness, run["wavelength_nm"] ** 2, on_base=run["film_nm"] is not None)
     if run["film_nm"] and (fault := film_fault(run)):
         hardness = replace(hardness, status=f"rejected: {fault}", sound=False)
     return {
         "run": run["run"],
         "potential": potential,
-        "geometry": geometry(closing),
-        **{key: run[key] for key in (*copied, "lammps_cpu_s", "python_cpu_s")},
+        **{key: run[key] for key in copied},
         "atom_steps": run["atoms"] * run["steps"],
+        "lammps_cpu_s": run["lammps_cpu_s"],
         **asdict(hardness),
     }
 

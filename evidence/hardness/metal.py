@@ -33,7 +33,7 @@ from atomistic.hardness.metal import (
 )
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
-from atomistic.hardness.stability import drift_meV_atom_ps, free_motion, heated
+from atomistic.hardness.studies import drift_meV_atom_ps, free_motion, heated
 from atomistic.lammps import Atoms, Workspace
 from atomistic.materials import Eam, load_material
 from atomistic.settings import AsperitySettings, ClosingSettings

@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 
-HARDNESS = {"make_glass", "run_closing", "find_hardness", "fit_hardness"}
+HARDNESS = {"make_glass", "run_closing", "fit_hardness"}
 ELASTIC = {"make_amorphous", "scan_glass", "combine_e_star"}
 TOPOGRAPHY = {"write_synthetic_scans", "analyse_scans", "pool_spectra"}
 MESOSCALE = {"collect_inputs", "compute_nominal", "compute_runs", "fit_law", "propagate_uncertainty"}

@@ -45,11 +45,9 @@ def kept_files():
     if "pad" in SCENE.tails:
         parts += [rules.assemble_pad]
     if needed("hardness"):
-        parts += [rules.find_hardness, rules.fit_hardness]
+        parts += [rules.fit_hardness]
         files += expand(rules.make_glass.output, glass=SCENE.hardness.seeds)
         files += expand(rules.run_closing.output, run=CLOSINGS)
-        if COUNTER_GLASS:
-            files += expand(rules.make_counter_glass.output, glass=SCENE.hardness.seeds)
     if needed("elastic"):
         parts += [rules.combine_e_star]
         files += expand([*rules.make_amorphous.output, *rules.scan_glass.output], amorphous=GLASSES)

@@ -1,0 +1,201 @@
+"""Accuracy and stability of the hardness stage: choices of the smallest run varied, and hard cases of the dynamics."""
+
+import shutil
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from atomistic.constants import BOLTZMANN_EV_PER_K, EV_PER_A3_IN_GPA, KE_EV
+from atomistic.hardness.glass import MELT_K, TIMESTEP_FS, write_forcefield
+from atomistic.hardness.plateau import RULES, Rows, find_hardness
+from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
+from atomistic.hardness.stack import Stack
+from atomistic.lammps import Atoms, Workspace, load_averages, load_data, run_lammps, write_data
+from atomistic.potentials import ForceField, Potential, masses_u
+from atomistic.settings import ClosingSettings
+
+VARIATIONS = {  # choice and factor on it
+    "default": ("speed_m_s", 1.0),
+    "speed_double": ("speed_m_s", 2.0),
+    "speed_fourfold": ("speed_m_s", 4.0),
+    "timestep_half": ("timestep_fs", 0.5),
+    "wall_stiffness_fourfold": ("wall_stiffness_eV_A3", 4.0),
+    "temperature_tenth": ("temperature_K", 0.1),
+    "base_larger": ("base_over_contact", 1.5),
+    "bonds_weaker": ("bond_factor", 0.5),
+    "bonds_stronger": ("bond_factor", 1.5),
+}
+Check = tuple[str, str, str, Callable[[], tuple[bool, str]]]  # case, description, what is checked, the check
+
+
+def variations(run: ClosingRun) -> list[str]:
+    """Those that mean something for a run: bonds of film and metal are of films only."""
+    return [name for name, (key, _) in VARIATIONS.items() if key != "bond_factor" or run.asperity.film_nm]
+
+
+def varied(name: str, closing: ClosingSettings) -> tuple[ClosingSettings, Protocol]:
+    """Settings and protocol of a closing with one choice changed."""
+    key, factor = VARIATIONS[name]
+    if key == "speed_m_s":
+        return closing.model_copy(update={key: factor * closing.speed_m_s}), PROTOCOL
+    return closing, PROTOCOL.model_copy(update={key: factor * getattr(PROTOCOL, key)})
+
+
+def compare(
+    curves: Mapping[str, Rows], witnesses: Mapping[str, Rows], runs: Mapping[str, Mapping], closing: ClosingSettings
+) -> Iterator[dict]:
+    """Accuracy points of the variations: plateau stress of each against the default's.
+
+    The scatter of a single run (`hardness_lo`, `hardness_hi`) limits what a difference means.
+    """
+    hardnesses = {
+        name: find_hardness(
+            curves[name], witnesses[name], run["wavelength_nm"] ** 2, on_base=run.get("film_nm") is not None
+        )
+        for name, run in runs.items()
+    }
+    for name, hardness in hardnesses.items():
+        key, run = VARIATIONS[name][0], runs[name]
+        settings, protocol = varied(name, closing)
+        yield {
+            "case": name,
+            "knob": key,
+            "value": getattr(settings if key == "speed_m_s" else protocol, key),
+            "error": hardness.hardness_GPa / hardnesses["default"].hardness_GPa - 1,
+            "error_metric": "relative difference of the plateau stress",
+            "reference": "default",
+            "hardness_GPa": hardness.hardness_GPa,
+            "wall_s": run["wall_s"],
+            "cpu_s": run["lammps_cpu_s"] + run["python_cpu_s"],
+            "peak_rss_MB": run.get("peak_rss_MB"),
+            "hardness_lo": hardness.hardness_lo,
+            "hardness_hi": hardness.hardness_hi,
+            "status": hardness.status,
+            "atom_steps": run["atoms"] * run["steps"],
+        }
+
+
+def glass_checks(potential: Potential, glass: Atoms, energy_scales: Sequence[float], work: Path) -> list[Check]:
+    """Checks of the potential of a scene on a glass that it made.
+
+    Parameters
+    ----------
+    work : folder for LAMMPS, which the caller removes in the end.
+    """
+    name = f"{potential.name}_{''.join(glass.elements)}"
+    cases = [
+        *((f"room_x{scale:g}", PROTOCOL.temperature_K, PROTOCOL.timestep_fs, scale) for scale in energy_scales),
+        ("cold", 10.0, PROTOCOL.timestep_fs, 1.0),
+        ("melt", MELT_K, TIMESTEP_FS, 1.0),
+    ]
+    return [
+        *(_keeps_energy(f"{label}_{name}", glass, potential, work, *of) for label, *of in cases),
+        (
+            f"half_energy_identity_{name}",
+            "halved energies at T against full at 2T, time x sqrt 2",
+            "same path to 1e-5 A after 100 steps",
+            lambda: half_energy_identity(glass, potential, work),
+        ),
+    ]
+
+
+def film_checks(stack: Stack, body: Atoms, energy_scales: Sequence[float], work: Path) -> list[Check]:
+    """Checks of a film on its base: the scene's thinnest one, welded.
+
+    Parameters
+    ----------
+    work : of `glass_checks`.
+    """
+    step_fs = stack.base.below_films.timestep_factor * PROTOCOL.timestep_fs
+    cases = [
+        *((f"room_x{scale:g}", PROTOCOL.temperature_K, step_fs, scale) for scale in energy_scales),
+        ("cold", 10.0, step_fs, 1.0),
+        ("hot_as_in_anneal", PROTOCOL.anneal_temperature_K, step_fs, 1.0),
+    ]
+    low, high = 0.1, 10.0  # J/m2: weaker films fall off, stronger ones are part of the base
+
+    def separation() -> tuple[bool, str]:
+        lift_A = 60.0  # beyond the cut-off of every pair, also of ions that went into the base
+        film = body.types > len(stack.base.elements)
+        raised = body.positions_A + np.where(film, lift_A, 0.0)[:, None] * [0, 0, 1]
+        free = replace(body, positions_A=raised, cell_A=body.cell_A + np.array([0, 0, lift_A]))
+        gained_eV = energy_at_rest(free, stack, work) - energy_at_rest(body, stack, work)
+        found = gained_eV / float(np.prod(body.cell_A[:2])) * EV_PER_A3_IN_GPA / 10
+        return low < found < high, f"{found:.2f} J/m2"
+
+    return [
+        *(_keeps_energy(f"film_{label}", body, stack, work, *of) for label, *of in cases),
+        ("film_work_of_separation", "film lifted off as it is", f"{low:g} to {high:g} J/m2", separation),
+    ]
+
+
+def _keeps_energy(
+    case: str, atoms: Atoms, force: ForceField, work: Path, kelvin: float, step_fs: float, scale: float
+) -> Check:
+    """The check that a body moves at constant energy; the step is over the square root of the energy scale."""
+    step = float(step_fs / np.sqrt(scale))
+
+    def drift() -> tuple[bool, str]:
+        record, _ = free_motion(heated(atoms, force, kelvin), force, work / "nve", step, round(4000 / step), scale)
+        found = drift_meV_atom_ps(record, len(atoms), step)
+        return abs(found) < RULES.max_drift_meV_atom_ps, f"{found:+.4f} meV per atom and ps"
+
+    what = f"{kelvin:g} K, energies x {scale:g}, {step:.3g} fs, 4 ps at constant energy"
+    return case, what, f"drift below {RULES.max_drift_meV_atom_ps} meV per atom and ps", drift
+
+
+def half_energy_identity(glass: Atoms, potential: Potential, work: Path) -> tuple[bool, str]:
+    """E/2 at T moves like E at 2T with time x sqrt 2: checks table, masses, units and time step at once."""
+    hot = heated(glass, potential, 600)
+    assert hot.velocities_A_ps is not None
+    slow = replace(hot, velocities_A_ps=hot.velocities_A_ps / np.sqrt(2))
+    _, full = free_motion(hot, potential, work / "nve", 1.0, 100)
+    _, halved = free_motion(slow, potential, work / "nve", float(np.sqrt(2)), 100, 0.5)
+    apart = full.positions_A - halved.positions_A
+    apart -= full.cell_A * np.round(apart / full.cell_A)
+    largest = float(np.abs(apart).max())
+    return largest < 1e-5, f"largest distance {largest:.1e} A"
+
+
+def free_motion(
+    atoms: Atoms, potential: ForceField, work: Path, timestep_fs: float, steps: int, energy_scale: float = 1.0
+) -> tuple[np.ndarray, Atoms]:
+    """Run at constant energy; rows (step, potential, total energy in eV), and the atoms at the end."""
+    shutil.rmtree(work, ignore_errors=True)
+    workspace = Workspace(work, {}, "nve.in")
+    write_forcefield(workspace, potential, atoms.elements, energy_scale)
+    write_data(workspace / "start.data", atoms, masses_u(potential, atoms.elements))
+    variables = {
+        "data": "start.data",
+        "pairs": "pairs",
+        "timestep": timestep_fs / 1000,
+        "steps": steps,
+        "every": max(1, steps // 50),
+    }
+    run_lammps("nve.in", workspace, variables)
+    record, end = load_averages(workspace / "energy.dat"), load_data(workspace / "end.data", atoms.elements)
+    workspace.remove()
+    return record, end
+
+
+def energy_at_rest(atoms: Atoms, force: ForceField, work: Path) -> float:
+    """Potential energy, eV."""
+    return float(free_motion(replace(atoms, velocities_A_ps=None), force, work / "rest", 0.01, 1)[0][0, 1])
+
+
+def heated(atoms: Atoms, potential: ForceField, temperature_K: float) -> Atoms:
+    """The same atoms with Maxwell velocities."""
+    rng = np.random.default_rng(np.random.SeedSequence([17]))
+    masses = np.array([potential.species[ion].mass_u for ion in atoms.elements])[atoms.types - 1]
+    speeds = np.sqrt(BOLTZMANN_EV_PER_K * temperature_K / (KE_EV * masses))
+    velocities = rng.normal(size=(len(atoms), 3)) * speeds[:, None]
+    momentum = np.sum(velocities * masses[:, None], axis=0) / np.sum(masses)
+    return replace(atoms, velocities_A_ps=velocities - momentum)
+
+
+def drift_meV_atom_ps(record: np.ndarray, atoms: int, timestep_fs: float) -> float:
+    """Slope of the total energy."""
+    time_ps = record[:, 0] * timestep_fs / 1000
+    return float(1000 * np.polyfit(time_ps, record[:, 2], 1)[0] / atoms)
