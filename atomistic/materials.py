@@ -213,13 +213,6 @@ class MorseBond(_Section):
     r0_A: Positive
 
 
-class BodyArea(_Section):
-    """Depth within which atoms touch, as calibrated on bodies of one kind, and the largest error of the area."""
-
-    depth_A: Positive
-    error: float = Field(ge=0, le=0.1)
-
-
 class FilmBase(_Section):
     """What a body below an oxide film is like, and how ions of the film act on its atoms.
 
@@ -232,8 +225,9 @@ class FilmBase(_Section):
     timestep_factor: float = Field(default=1.0, gt=0, le=1, description="on the time step of a closing")
     bonds: dict[ElementPair, MorseBond] = Field(min_length=1)
     repelled: tuple[ElementPair, ...] = Field(description="pairs that only repel each other")
-    area_of_film: BodyArea
-    area_of_base: BodyArea
+    area_error: float = Field(
+        ge=0, le=0.1, description="largest of the contact area on a film or on the body by itself, as a fraction"
+    )
     source: str
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from functools import cached_property, partial
 from itertools import combinations_with_replacement
 from pathlib import Path
-from typing import Annotated, Any, Literal, Protocol
+from typing import Annotated, Literal, Protocol
 
 import numpy as np
 from pydantic import Field, ValidationError
@@ -101,16 +101,13 @@ class Source(Settings):
 
 
 class AreaCalibration(Settings):
-    """The definition of contact area that was tested on bodies of known section with a potential's glass; lengths in Å.
+    """How the definition of contact area was tested on bodies of known section with a potential's glass.
 
     Attributes
     ----------
     error : largest deviation from the known area, as a fraction.
     """
 
-    depth_A: Positive
-    closing_A: Positive
-    rim_A: float = Field(ge=0)
     error: float = Field(ge=0, le=0.1)
     source: str
 
@@ -132,9 +129,12 @@ class Potential(Settings):
     def _terms(self) -> dict[frozenset[str], Pair]:
         return {frozenset(pair.species): pair for pair in self.pairs}
 
-    def energy_and_force(
-        self, first: str, second: str, r: np.ndarray, coulomb: bool = True
-    ) -> tuple[np.ndarray, np.ndarray]:
+    @property
+    def masses_u(self) -> dict[str, float]:
+        """Mass of each element."""
+        return {name: ion.mass_u for name, ion in self.species.items()}
+
+    def energy_and_force(self, first: str, second: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Energy (eV) and force (eV/Å, positive = repulsion) of a pair at distances `r` (Å).
 
         Short-range terms are shifted so that energy and force vanish at the cutoff, as the damped
@@ -142,7 +142,7 @@ class Potential(Settings):
         """
         r = np.asarray(r, dtype=float)
         r_c = np.array([self.cutoff_A])
-        energy, force = self._coulomb(first, second, r) if coulomb else (np.zeros_like(r), np.zeros_like(r))
+        energy, force = self._coulomb(first, second, r)
         for term in self._terms[frozenset((first, second))].terms:
             value, slope = term.energy_and_slope(r)
             value_c, slope_c = term.energy_and_slope(r_c)
@@ -162,18 +162,17 @@ class Potential(Settings):
         value_c, force_c = bare(np.array([r_c]))
         return strength * (value - value_c + force_c * (r - r_c)), strength * (force - force_c)
 
-    def table(self, elements: tuple[str, ...], energy_scale: float = 1.0, coulomb: bool = True) -> str:
+    def table(self, elements: tuple[str, ...], energy_scale: float = 1.0) -> str:
         """LAMMPS `pair_style table` file: a section A_B for every pair of `elements`, and `contact` (`pair_table`).
 
         Parameters
         ----------
         elements : species in the order of their LAMMPS types.
         energy_scale : factor on every energy and force; 0.5 gives the twin with halved energies.
-        coulomb : False leaves the Coulomb sum to LAMMPS.
         """
         title = f"{' '.join(self.description.split())}; energies x {energy_scale}"
         sections: dict[str, EnergyAndForce] = {
-            f"{first}_{second}": partial(self.energy_and_force, first, second, coulomb=coulomb)
+            f"{first}_{second}": partial(self.energy_and_force, first, second)
             for first, second in combinations_with_replacement(elements, 2)
         }
         return pair_table(title, sections, self.cutoff_A, energy_scale)
@@ -197,18 +196,13 @@ class ForceField(Protocol):
     """What of a `Potential` molecular dynamics uses: a metal, and an oxide on a metal, have it too."""
 
     @property
-    def species(self) -> Mapping[str, Any]:
-        """What has the mass of each element."""
+    def masses_u(self) -> Mapping[str, float]:
+        """Mass of each element."""
         ...
 
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
         """Files for LAMMPS by name."""
         ...
-
-
-def masses_u(force: ForceField, elements: tuple[str, ...]) -> dict[str, float]:
-    """Mass of each element."""
-    return {element: force.species[element].mass_u for element in elements}
 
 
 EnergyAndForce = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]

@@ -37,6 +37,7 @@ REPLACED = {
     "hardness.plasticity": "`closing.stop: window` takes runs to their end",
     **dict.fromkeys(("elastic.ions", "elastic.relaxed_structures"), "ions are clamped in E(V)"),
     **dict.fromkeys(("elastic.poisson", "elastic.tensor_structures"), "state the range as elastic.poisson_ratio"),
+    **{f"elastic.dft.{key}": "PySCF computes; state an e_star of another code" for key in ("engine", "parameters")},
     "elastic.relaxation": "max_steps is dft.relaxation_steps, basis and cut-off are those of dft",
     "contact.unloading_radius": "take mechanics: coupled where opening matters",
     "contact.merge": "take mechanics: coupled, whose repulsion does not fall where asperities merge",

@@ -15,7 +15,6 @@ from ase import Atoms
 from ase.calculators.calculator import CalculationFailed, Calculator, all_changes
 from ase.units import Bohr, Hartree
 
-from atomistic.errors import InputError
 from atomistic.settings import DftSettings
 
 FUNCTIONALS = {
@@ -243,39 +242,27 @@ class PyscfGamma(Calculator):
 
 
 def make_calculator(
-    dft: DftSettings,
-    xc: str,
-    largest_cell: np.ndarray,
-    store: Store | None = None,
-    forces: bool = False,
-) -> Calculator:
+    dft: DftSettings, xc: str, largest_cell: np.ndarray, store: Store | None = None, forces: bool = False
+) -> PyscfGamma:
     """The DFT engine of the settings.
 
     Parameters
     ----------
     xc : "GGA" or "LDA"
     largest_cell : (3, 3) Å; the mesh is fixed to what this cell needs, so that it does not jump along a scan
-    store : finished calculations (PySCF only)
+    store : finished calculations
     forces : whether forces are wanted, not only energies
     """
-    if dft.engine == "pyscf":
-        cutoff_Ha = dft.forces_cutoff_Ha if forces else dft.cutoff_Ha
-        return PyscfGamma(
-            store=store,
-            xc=xc,
-            basis=dft.basis,
-            cutoff_Ha=cutoff_Ha,
-            mesh=commensurate_mesh(largest_cell, cutoff_Ha),
-            tolerance_Ha=SCF.forces_tolerance_Ha if forces else SCF.energy_tolerance_Ha,
-            max_cycles=SCF.max_cycles,
-        )
-    from ase.calculators.calculator import get_calculator_class
-
-    try:
-        parameters: dict[str, Any] = dict(dft.parameters)
-        return get_calculator_class(dft.engine)(**parameters)
-    except Exception as error:
-        raise InputError(f"elastic.dft.engine: ASE cannot set up {dft.engine}: {error}") from error
+    cutoff_Ha = dft.forces_cutoff_Ha if forces else dft.cutoff_Ha
+    return PyscfGamma(
+        store=store,
+        xc=xc,
+        basis=dft.basis,
+        cutoff_Ha=cutoff_Ha,
+        mesh=commensurate_mesh(largest_cell, cutoff_Ha),
+        tolerance_Ha=SCF.forces_tolerance_Ha if forces else SCF.energy_tolerance_Ha,
+        max_cycles=SCF.max_cycles,
+    )
 
 
 def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> np.ndarray | None:

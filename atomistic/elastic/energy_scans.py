@@ -13,7 +13,7 @@ import numpy as np
 from ase import Atoms
 from ase.calculators.calculator import CalculationFailed, Calculator
 
-from atomistic.elastic.dft import PyscfGamma, Solution, Store, make_calculator
+from atomistic.elastic.dft import Solution, Store, make_calculator
 from atomistic.elastic.equation_of_state import MIN_POINTS, fit_equation_of_state
 from atomistic.elastic.relaxation import strained
 from atomistic.settings import DftSettings
@@ -73,7 +73,7 @@ def scan_rows(
 
     Parameters
     ----------
-    start : former solutions to start from (PySCF only)
+    start : former solutions to start from
     rejected : why the structure failed its gate: nothing is computed, and every row says so
     """
     if xc == "LDA":
@@ -83,8 +83,7 @@ def scan_rows(
         points = [Point(s, v, float("nan"), False, 0.0, rejected) for s, v in zip(strains, volumes, strict=True)]
     else:
         calculator = make_calculator(dft, xc, atoms.cell.array * (1 + max(strains)), store)
-        if isinstance(calculator, PyscfGamma):
-            calculator.history = list(start)
+        calculator.history = list(start)
         points = scan_volumes(atoms, calculator, strains, progress)
     head = {"structure": name, "xc": xc, "ions": "clamped", "atoms": len(atoms)}
     return [{**head, **asdict(point)} for point in points]

@@ -15,35 +15,10 @@ from ase import Atoms
 from ase.data import atomic_numbers
 
 from atomistic.constants import AMU_PER_A3_IN_G_CM3
-from atomistic.covalent import core_commands, random_places, tersoff_table
+from atomistic.covalent import QUENCH, core_commands, random_places, tersoff_table
 from atomistic.errors import InputError
-from atomistic.materials import SEARCHED_A, Material, NetworkGlass, Supercell, Tersoff
+from atomistic.materials import SEARCHED_A, Material, NetworkGlass, Supercell
 from atomistic.settings import NitrideGlassSettings
-
-
-@dataclass(frozen=True)
-class Quench:
-    """How a cell is melted and quenched, beside its rate; films on the glass take the same temperatures.
-
-    Attributes
-    ----------
-    start_distance_A : random start: nothing closer than this
-    melt_K, melt_ps, final_K : temperature and time of the melt; temperature of the glass
-    free_below_K : a melt has no shape to keep; below this its network can still change and settles as a glass
-    timestep_fs : of the molecular dynamics
-    attempts : quenches until one passes the gates; of 28 atoms about one in sixty does
-    """
-
-    start_distance_A: float = 1.4
-    melt_K: float = 5000.0
-    melt_ps: float = 3.0
-    final_K: float = 300.0
-    free_below_K: float = 2500.0
-    timestep_fs: float = 1.0
-    attempts: int = 1000
-
-
-QUENCH = Quench()
 
 
 def crystal(material: Material, name: str, supercell: Supercell | None = None) -> Atoms:
@@ -79,8 +54,8 @@ def crystal(material: Material, name: str, supercell: Supercell | None = None) -
 
 
 @dataclass(frozen=True)
-class Gate:
-    """Verdict on a structure: measured numbers and, if it failed, the reasons."""
+class NetworkVerdict:
+    """Measured numbers of a structure and, if it failed, the reasons."""
 
     density_g_cm3: float
     coordination: dict[str, float]
@@ -90,12 +65,19 @@ class Gate:
     defects: int
     reasons: tuple[str, ...]
 
-    @property
-    def passed(self) -> bool:
-        return not self.reasons
+    def columns(self) -> dict[str, Any]:
+        """The numbers as columns of a table, in the order of its schema."""
+        return {
+            "density_g_cm3": self.density_g_cm3,
+            **{f"coordination_{element}": value for element, value in self.coordination.items()},
+            **{f"shortest_{pair}_A": value for pair, value in self.shortest_A.items()},
+            "bond_spread_A": self.bond_spread_A,
+            "symmetry_operations": self.symmetry_operations,
+            "defects": self.defects,
+        }
 
 
-def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None) -> Gate:
+def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None) -> NetworkVerdict:
     """Measure density, coordination, shortest distances and symmetry and hold them against `criteria`.
 
     Parameters
@@ -136,7 +118,7 @@ def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None
     operations = symmetry_operations(atoms, criteria.symmetry_tolerance_A)
     if operations > 1:
         reasons.append(f"{operations} symmetry operations: a crystal")
-    return Gate(density, coordination, shortest, spread, operations, defects, tuple(reasons))
+    return NetworkVerdict(density, coordination, shortest, spread, operations, defects, tuple(reasons))
 
 
 def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
@@ -168,17 +150,6 @@ def same_network(atoms: Atoms, others: Mapping[str, Atoms]) -> str | None:
 def no_insulator(gap_eV: float, criteria: NetworkGlass) -> list[str]:
     """Why a cell with this gap is no insulator; nothing where it is one or the engine does not tell its gap (NaN)."""
     return [f"gap {gap_eV:.2f} eV: no insulator"] if gap_eV < criteria.gap_eV else []
-
-
-def tersoff_calculator(parameters: Tersoff):
-    """The same potential as an ASE calculator (slow, but in-process: Hessians, checks on crystals)."""
-    from ase.calculators.tersoff import Tersoff, TersoffParameters
-
-    table = {}
-    for line in tersoff_table(parameters).splitlines()[1:]:
-        i, j, k, *numbers = line.split()
-        table[(i, j, k)] = TersoffParameters(*map(float, numbers))
-    return Tersoff(table)
 
 
 def random_structure(
@@ -229,12 +200,7 @@ def make_glass(
         attempts.append(
             {
                 "attempt": attempt,
-                "density_g_cm3": verdict.density_g_cm3,
-                **{f"coordination_{e}": n for e, n in verdict.coordination.items()},
-                **{f"shortest_{p}_A": d for p, d in verdict.shortest_A.items()},
-                "bond_spread_A": verdict.bond_spread_A,
-                "symmetry_operations": verdict.symmetry_operations,
-                "defects": verdict.defects,
+                **verdict.columns(),
                 "status": "rejected: " + "; ".join(reasons) if reasons else "accepted",
             }
         )

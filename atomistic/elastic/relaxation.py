@@ -1,7 +1,6 @@
 """Relaxation of the ions of a cell, from springs on its bonds; eV and Å."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from ase import Atoms
@@ -66,25 +65,36 @@ def spring_hessian(atoms: Atoms, springs: Springs = SPRINGS) -> np.ndarray:
     return slopes.T @ slopes + springs.floor_eV_A2 * np.eye(3 * len(atoms))
 
 
-class Rest(NamedTuple):
-    """Where a relaxation of ions ended.
+@dataclass(frozen=True)
+class Relaxation:
+    """What the relaxation of a glass did; by default nothing.
 
     Attributes
     ----------
     steps : ionic steps
-    force_left_eV_A, converged : largest force left, and whether it is below the goal
+    force_left_eV_A, converged : largest force left, and whether that met the goal
+    energy_gained_eV : below the quenched cell
+    gap_eV : between the highest occupied and the lowest empty level at the end; NaN if the engine does not tell
+    failure : why a calculation failed; the ions are then those of the quenched glass
     """
 
-    steps: int
-    force_left_eV_A: float
-    converged: bool
+    steps: int = 0
+    force_left_eV_A: float = float("nan")
+    converged: bool = False
+    energy_gained_eV: float = 0.0
+    gap_eV: float = float("nan")
+    failure: str = ""
 
 
-def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> Rest:
+def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> Relaxation:
     """Quasi-Newton relaxation of the ions (BFGS), cell fixed.
 
     It starts from the Hessian of the springs: from ASE's own start, a multiple of the unit matrix, a cell takes about
     three times as many steps.
+
+    Raises
+    ------
+    CalculationFailed : of the engine.
     """
     from ase.optimize import BFGS
 
@@ -97,13 +107,16 @@ def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> Rest:
             curvature, modes = np.linalg.eigh(self.state.hessian)
             self.state.hessian = modes * np.maximum(abs(curvature), SPRINGS.floor_eV_A2) @ modes.T
 
+    atoms.get_forces()  # asked for first, so that the energy comes from the same calculation
+    before = atoms.get_potential_energy()
     with Cautious(atoms, logfile=None, maxstep=SPRINGS.longest_step_A) as optimizer:
         optimizer.H0 = spring_hessian(atoms)
         converged = bool(optimizer.run(fmax=force_eV_A, steps=max_steps))
         left = float(np.linalg.norm(atoms.get_forces(), axis=1).max())
-        return Rest(int(optimizer.nsteps), left, converged)
+        gained = float(before - atoms.get_potential_energy())
+        return Relaxation(int(optimizer.nsteps), left, converged, gained, last_gap_eV(atoms.calc))
 
 
-def last_gap_eV(calculator: Calculator) -> float:
+def last_gap_eV(calculator: Calculator | None) -> float:
     """Gap between occupied and empty levels that a calculator found last; NaN if its engine does not tell."""
     return float(getattr(calculator, "gap_eV", np.nan))

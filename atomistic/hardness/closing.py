@@ -21,7 +21,7 @@ from atomistic.hardness.pressing import (
     prepare_body,
     press_body,
 )
-from atomistic.hardness.readout import OxideBond, PressedCell, Readout, Rows, slice_rows, witness_rows
+from atomistic.hardness.readout import OxideBond, PressedCell, Readout, Rows, witness_rows
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
 from atomistic.hardness.stack import Stack, check_film, cut_base, film_properties, lay
 from atomistic.hardness.top_attraction import attract_top, bulk_density_per_A3
@@ -42,13 +42,11 @@ class ClosedAsperity:
     curve : one row per average (columns as in docs/results.md).
     witness : one row per relaxed snapshot: bond exchanges and lasting lowering against the first, and the attraction of
         its top.
-    snapshots : slices through the contact of the relaxed snapshots, for pictures.
     summary : atoms, steps and the side of the cell.
     """
 
     curve: Rows
     witness: Rows
-    snapshots: Rows
     summary: dict[str, float]
 
 
@@ -72,10 +70,11 @@ def run_closing(
 
     Raises
     ------
-    InputError : a film that its asperity does not allow, or a base that is not given.
+    InputError : a film that its asperity does not allow, a base that is not given, or no calibration of the area.
     """
     wavelength_nm = run.asperity.tiles * float(glass.cell_A[0]) / 10
-    area, _ = area_of(run, potential, base)
+    calibrated(potential)  # raises where it is not
+    area = Area()
     on_base = run.asperity.film_nm is not None
     if on_base and base is not None:
         protocol = slowed(protocol, base[0].below_films.timestep_factor)
@@ -188,20 +187,6 @@ def weld(
     return body.force, prepare_body(run, body.atoms, body.formula, body.force, closing, protocol, workspace, place)
 
 
-def area_of(run: ClosingRun, potential: Potential, base: tuple[Base, Atoms] | None = None) -> tuple[Area, float]:
-    """The definition of contact area that was calibrated on bodies of a run's kind, and its largest error.
-
-    Raises
-    ------
-    InputError : none was.
-    """
-    area, error = calibrated(potential)
-    if run.asperity.film_nm is None or base is None:
-        return area, error
-    of = base[0].below_films.area_of_film if run.asperity.film_nm else base[0].below_films.area_of_base
-    return replace(area, depth_A=of.depth_A), of.error
-
-
 def oxide_bond(elements: tuple[str, ...], material: Material, potential: Potential) -> OxideBond | None:
     """What counts as a bond in a body with these elements of its types; None: it has no oxide."""
     ions = tuple(potential.materials[material.formula_text])
@@ -221,7 +206,7 @@ def _read(readout: Readout, plan: Plan, held_A: float, cell: PressedCell) -> Clo
         "wavelength_nm": cell.wavelength_A / 10,
     }
     witness = witness_rows(snapshots, plan.timestep, plan.speed, held_A)
-    return ClosedAsperity(readout.curve(segments), witness, slice_rows(snapshots, cell), summary)
+    return ClosedAsperity(readout.curve(segments), witness, summary)
 
 
 def attraction_row(readout: Readout, segment: int, cell: PressedCell) -> dict[str, float]:

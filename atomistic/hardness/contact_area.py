@@ -106,24 +106,17 @@ def _spacing(cell_A: tuple[float, float], area: Area) -> np.ndarray:
     return cell / np.maximum(1, np.round(cell / area.grid_A))
 
 
-def calibrated(potential: Potential) -> tuple[Area, float]:
-    """The area definition, and its largest error with a potential's glass, as a fraction.
+def calibrated(potential: Potential) -> float:
+    """Largest error of the area with a potential's glass, as a fraction.
 
     Raises
     ------
-    InputError : the potential's file has no calibration, or that of another definition.
+    InputError : the potential's file has no calibration.
     """
-    calibration = potential.contact_area
-    if calibration is None:
+    if potential.contact_area is None:
         raise InputError(
             f"potential {potential.name}: no calibration of the contact area; measure it (python -m evidence "
             "hardness.area) and write its largest error as `contact_area` into the potential's file (see "
             "config/potentials/pmmcs.yaml)"
         )
-    for key in ("depth_A", "closing_A", "rim_A"):
-        if getattr(Area, key) != getattr(calibration, key):
-            raise InputError(
-                f"potential {potential.name}: contact_area.{key} = {getattr(calibration, key):g}: the contact area is "
-                f"defined with {getattr(Area, key):g} A; calibrate it with that (python -m evidence hardness.area)"
-            )
-    return Area(), calibration.error
+    return potential.contact_area.error

@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from atomistic.lammps import Atoms, Progress
 from atomistic.materials import FilmBase, Material
@@ -36,8 +36,8 @@ class Base(ABC):
 
     @property
     @abstractmethod
-    def species(self) -> Mapping[str, Any]:
-        """What has the mass of its atoms, by element."""
+    def masses_u(self) -> Mapping[str, float]:
+        """Mass of each element."""
 
     @property
     @abstractmethod

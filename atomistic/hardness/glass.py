@@ -17,7 +17,7 @@ from atomistic.covalent import random_places
 from atomistic.errors import InputError
 from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
 from atomistic.materials import SEARCHED_A, SHORTEST_BOND_A, Material, OxideGlass
-from atomistic.potentials import ForceField, Potential, masses_u
+from atomistic.potentials import ForceField, Potential
 from atomistic.settings import GlassSettings
 
 NEAREST_START_A = 1.5  # random starts keep atoms this far apart
@@ -135,7 +135,7 @@ def run_segments(
     done = workspace.segments_done(len(segments))
     write_forcefield(workspace, force, elements, 1.0)
     if not done:
-        write_data(workspace / "start.data", start(), masses_u(force, elements))
+        write_data(workspace / "start.data", start(), force.masses_u)
     total = sum(segment["steps"] for segment in segments)
 
     def on_step(step: int) -> None:
@@ -190,7 +190,7 @@ def density_g_cm3(atoms: Atoms, force: ForceField) -> float:
 
 def mass_u(force: ForceField, atoms: Atoms) -> float:
     """Mass of all atoms."""
-    masses = np.array([force.species[element].mass_u for element in atoms.elements])
+    masses = np.array([force.masses_u[element] for element in atoms.elements])
     return float(masses[atoms.types - 1].sum())
 
 

@@ -11,7 +11,7 @@ from atomistic.hardness.plateau import RULES
 from atomistic.hardness.readout import PressedCell
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
 from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
-from atomistic.potentials import ForceField, masses_u
+from atomistic.potentials import ForceField
 from atomistic.settings import ClosingSettings
 
 
@@ -79,7 +79,7 @@ def prepare_body(
     done = workspace.segments_done(2)
     write_forcefield(workspace, potential, cut.elements, run.energy_scale)
     if not done:
-        write_data(workspace / "cut.data", cut, masses_u(potential, cut.elements))
+        write_data(workspace / "cut.data", cut, potential.masses_u)
     hot = max(protocol.temperature_K, protocol.anneal_temperature_K * run.energy_scale)
 
     def on_step(step: int) -> None:
@@ -133,7 +133,7 @@ def press_body(
     cell = PressedCell(float(body.cell_A[0]), len(body))
     write_forcefield(workspace, potential, body.elements, run.energy_scale)
     if not workspace.segments_done(1):
-        write_data(workspace / "annealed.data", body, masses_u(potential, body.elements))
+        write_data(workspace / "annealed.data", body, potential.masses_u)
 
     def on_step(step: int) -> None:
         if progress is not None:

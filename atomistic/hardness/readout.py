@@ -1,4 +1,4 @@
-"""What a closing run measured, read from the files that LAMMPS left: the curve, the witness, the pictures."""
+"""What a closing run measured, read from the files that LAMMPS left: the curve and the witness."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -237,13 +237,3 @@ def bonds_of(frame: Frame, bond: OxideBond | None, factor: float, wavelength_A: 
 def _top(frame: Frame) -> float:
     """Mean height of the highest atoms."""
     return float(np.mean(np.sort(frame[:, 3])[-TOP_ATOMS:]))
-
-
-def slice_rows(snapshots: Sequence[Relaxed], cell: PressedCell) -> Rows:
-    """Atoms of a 0.8 nm slice through the axis, of every relaxed snapshot."""
-    rows = []
-    for snapshot in snapshots:
-        off = np.abs(snapshot.frame[:, 2] - cell.axis_A) < 4.0
-        for kind, x, y, z in snapshot.frame[off].tolist():
-            rows.append({"step": snapshot.step, "type": int(kind), "x_nm": x / 10, "y_nm": y / 10, "z_nm": z / 10})
-    return rows

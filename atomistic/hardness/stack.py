@@ -7,7 +7,6 @@ Nobody published how atoms of the two potentials act on each other. The file of 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -37,9 +36,9 @@ class Stack:
     bond_factor: float = 1.0
 
     @property
-    def species(self) -> Mapping[str, Any]:
-        """What has the mass of each element."""
-        return {**self.oxide.species, **self.base.species}
+    def masses_u(self) -> Mapping[str, float]:
+        """Mass of each element."""
+        return {**self.oxide.masses_u, **self.base.masses_u}
 
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
         """What LAMMPS needs, as `Potential.files`; the scale is on the oxide and its bonds, the base keeps its own.

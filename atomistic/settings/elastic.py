@@ -1,11 +1,10 @@
 """Effective modulus E* from density functional theory (docs/elastic.md)."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, field_validator
 
 from atomistic.settings.base import Settings
-from atomistic.settings.engines import refused_parameter
 
 
 class NitrideGlassSettings(Settings):
@@ -25,17 +24,8 @@ class NitrideGlassSettings(Settings):
 
 
 class DftSettings(Settings):
-    """The density functional calculations."""
+    """The density functional calculations (PySCF)."""
 
-    engine: Literal["pyscf", "espresso", "vasp", "abinit", "cp2k", "gpaw", "siesta"] = Field(
-        default="pyscf",
-        description="pyscf (built in), or an ASE calculator configured in your own ASE configuration file",
-    )
-    parameters: dict[str, str | float | int | bool | dict[str, str | float | int | bool]] = Field(
-        default={},
-        description="keyword parameters of an ASE calculator other than pyscf: those of the physics "
-        "(atomistic/settings/engines.py), no commands, no folders",
-    )
     basis: str = Field(
         default="gth-dzvp-molopt-sr", pattern=r"^gth-[a-z0-9-]{1,56}$", description="GTH basis set by PySCF's name"
     )
@@ -57,12 +47,6 @@ class DftSettings(Settings):
     def forces_cutoff_Ha(self) -> float:
         """Plane-wave cutoff of forces: at 80 Ha they are within 0.5 eV/Å of those at 140; no volumes are compared."""
         return min(self.cutoff_Ha, 80.0)
-
-    @model_validator(mode="after")
-    def _only_physics(self) -> "DftSettings":
-        if mistake := refused_parameter(self.engine, self.parameters):
-            raise ValueError(mistake)
-        return self
 
 
 class ElasticSettings(Settings):

@@ -125,7 +125,7 @@ def prediction(others: FilmPoints, at: FilmPoints) -> np.ndarray:
 def laws() -> dict[str, Any]:
     """Fit of the law `film`, its draws, and hardness over 5 nm in three cases, with k and m of the prototype."""
     points, rng = points_of(load("hardness.films")), np.random.default_rng(43)
-    draws, area = likely(points, rng), titanium().below_films.area_of_film.error
+    draws, area = likely(points, rng), titanium().below_films.area_error
     shared = np.exp(rng.normal(0, np.linalg.norm([area / np.sqrt(3), *SYSTEMATIC.values()]), len(draws)))
     soft, size = rng.uniform(*SOFT_GPA, len(draws)), rng.uniform(*SIZE_EFFECT, len(draws))
     h_film, h_base, *_ = draws.T

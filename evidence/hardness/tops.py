@@ -18,7 +18,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from atomistic.hardness.closing import attraction_row, cut_body, oxide_bond
-from atomistic.hardness.contact_area import calibrated, contact_map, shares_in_contact
+from atomistic.hardness.contact_area import Area, contact_map, shares_in_contact
 from atomistic.hardness.glass import make_glass, write_forcefield
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.pressing import base_thickness_nm, plan_closing, prepare_body, press_body
@@ -33,7 +33,7 @@ from atomistic.hardness.top_attraction import (
 )
 from atomistic.lammps import Atoms, Workspace, run_lammps, write_data
 from atomistic.materials import load_materials, oxide_glasses
-from atomistic.potentials import Potential, load_potential, masses_u
+from atomistic.potentials import Potential, load_potential
 from atomistic.settings import ClosingSettings, GlassSettings, HardnessSettings
 from evidence.record import ROOT
 
@@ -54,7 +54,7 @@ def rows(given: Namespace) -> Iterator[dict]:
     """Close the smallest asperity of the defaults, then take a half-space away from each of its relaxed tops."""
     material = oxide_glasses(load_materials(ROOT / "config" / "materials").values())["SiO2"]
     potential = load_potential(ROOT / "config" / "potentials" / f"{given.potential}.yaml")
-    area, _ = calibrated(potential)
+    area = Area()
     asperity = min(HardnessSettings().asperities, key=lambda one: one.tiles)
     closing = ClosingSettings()
     wanted = HardnessSettings(asperities=(asperity,), seeds=given.seeds, energy_scales=given.energy_scales)
@@ -179,7 +179,7 @@ def pulled(top: Atoms, area_A2: float, density: float, potential: Potential, ene
     with tempfile.TemporaryDirectory() as folder:
         workspace = Workspace(Path(folder) / "pull", {}, "relax.in")
         box = np.array([top.cell_A[0], top.cell_A[1], highest + 40.0])
-        masses = masses_u(potential, top.elements)
+        masses = potential.masses_u
         write_data(workspace / "top.data", replace(top, positions_A=lifted, cell_A=box, velocities_A_ps=None), masses)
         write_forcefield(workspace, potential, top.elements, energy_scale)
         variables = {

@@ -269,14 +269,6 @@ def _hardness(root: Path) -> None:
             [{"step": step, "displacement_nm": step / 1000, "exchanged_bonds": step // 10} for step in steps],
         )
         rng = np.random.default_rng(0)
-        _write(
-            root / f"hardness/snapshots/{run}.csv",
-            [
-                {"step": step, "type": 1 + k % 2, "x_nm": x, "y_nm": 1.4, "z_nm": z}
-                for step in steps
-                for k, (x, z) in enumerate(rng.uniform(0, 3, (12, 2)).tolist())
-            ],
-        )
     _write(root / "hardness/points.csv", points)
     scatter = {"statistical_low_GPa": 6, "statistical_high_GPa": 8}
     fit = {

@@ -87,7 +87,6 @@ rule run_closing:
     output:
         curve=f"{RESULTS}/hardness/closing/{{run}}.csv",
         witness=f"{RESULTS}/hardness/witness/{{run}}.csv",
-        snapshots=f"{RESULTS}/hardness/snapshots/{{run}}.csv",
         summary=f"{RESULTS}/hardness/runs/{{run}}.json",
     log:
         f"{RESULTS}/logs/run_closing_{{run}}.log",
@@ -134,7 +133,6 @@ use rule run_closing as vary_closing with:
     output:
         curve=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.csv",
         witness=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.witness.csv",
-        snapshots=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.snapshots.csv",
         summary=f"{RESULTS}/accuracy/hardness/{{variation}}/{{run}}.json",
     log:
         f"{RESULTS}/logs/vary_closing_{{variation}}_{{run}}.log",

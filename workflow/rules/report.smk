@@ -14,7 +14,7 @@ def report_inputs():
         files += ["adhesion/summary.csv"]
     if needed("hardness"):
         files += ["hardness/points.csv", "hardness/fit.json"]
-        files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness", "snapshots") for run in CLOSINGS]
+        files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness") for run in CLOSINGS]
     if needed("elastic"):
         files += [f"elastic/{name}" for name in ("points.csv", "bulk_moduli.csv", "e_star.json", "e_star.h5")]
     if needed("topography"):

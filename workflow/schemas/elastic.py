@@ -11,10 +11,10 @@ _SCAN: tuple[Column, ...] = (
 _NETWORK: tuple[Column, ...] = (
     number("density_g_cm3", "g/cm³", "density"),
     number("coordination_*", "1", "mean coordination number of an element"),
-)
-_ORDER: tuple[Column, ...] = (
+    number("shortest_*_A", "Å", "shortest distance between two elements"),
     number("bond_spread_A", "Å", "standard deviation of the bond lengths"),
     integer("symmetry_operations", "that map the cell onto itself; one, the identity, in a glass"),
+    integer("defects", "atoms without their valence"),
 )
 
 TABLES = (
@@ -54,9 +54,6 @@ TABLES = (
             text("structure", "name of the structure"),
             integer("attempt", "number of the attempt, from 0"),
             *_NETWORK,
-            number("shortest_*_A", "Å", "shortest distance between two elements"),
-            *_ORDER,
-            integer("defects", "atoms without their valence"),
             text("status", "accepted, or rejected: why"),
         ),
     ),
@@ -67,8 +64,6 @@ TABLES = (
             text("structure", "name of the structure"),
             integer("atoms", "atoms in the cell"),
             *_NETWORK,
-            integer("defects", "atoms without their valence, after the relaxation"),
-            *_ORDER,
             integer("steps", "ionic steps of the relaxation"),
             number("force_left_eV_A", "eV/Å", "largest force left", empty=True),
             boolean("converged", "whether the forces met their goal"),

@@ -65,19 +65,6 @@ TABLES = (
         ),
     ),
     Table(
-        ("hardness/snapshots/*.csv", "accuracy/hardness/*/*.snapshots.csv"),
-        "One atom of a 0.8 nm slice through the peak, in a relaxed snapshot.",
-        (
-            _STEP,
-            integer(
-                "type", "kind of the atom, in the order of the body's elements: those below a film, cation, oxygen"
-            ),
-            number("x_nm", "nm", "position along the slice"),
-            number("y_nm", "nm", "position across the slice"),
-            number("z_nm", "nm", "height"),
-        ),
-    ),
-    Table(
         ("hardness/closing/*.csv", "accuracy/hardness/*/*.csv"),
         "One average of a closing run.",
         (

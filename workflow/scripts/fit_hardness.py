@@ -26,10 +26,9 @@ with job(snakemake) as run:
     rows = [point(curves[name], witnesses[name], summaries[name], params.potential) for name in summaries]
     write_csv(snakemake.output.points, rows)
     points, glasses = load_csv(snakemake.output.points), [load_json(path) for path in given.glasses]
-    _, area_error = calibrated(load_potential(given.potential))
+    area_error = calibrated(load_potential(given.potential))
     if given.base_material:
-        below = load_material(given.base_material).part("film_base")
-        area_error = max(area_error, below.area_of_film.error, below.area_of_base.error)
+        area_error = max(area_error, load_material(given.base_material).part("film_base").area_error)
         fit = fit_films(points, curves, glasses, area_error)
     else:
         settings = settings_from_job(FitSettings, params.fit)

@@ -10,7 +10,7 @@ from pathlib import Path
 from atomistic.hardness.glass import glass_properties, make_glass
 from atomistic.lammps import write_data
 from atomistic.materials import load_material
-from atomistic.potentials import load_potential, masses_u
+from atomistic.potentials import load_potential
 from atomistic.settings import GlassSettings
 from workflow.job import job, settings_from_job
 from workflow.results import atomic_path, write_json
@@ -23,7 +23,7 @@ with job(snakemake) as run:
     glass = make_glass(material, potential, settings, seed, Path(snakemake.params.work), run.progress)
     properties = glass_properties(material, potential, glass)
     with atomic_path(snakemake.output.atoms) as path:
-        write_data(path, glass, masses_u(potential, glass.elements))
+        write_data(path, glass, potential.masses_u)
     write_json(
         snakemake.output.properties,
         {"seed": seed, **properties, "wall_s": time.perf_counter() - started},

@@ -2,7 +2,7 @@
 
 In:  material, potential (YAML), glass (LAMMPS data file); base (LAMMPS data file), base_material (YAML) where another
      body lies below.
-Out: curve (GPa, nm), witness (bond exchanges, nm), snapshots (nm), summary.
+Out: curve (GPa, nm), witness (bond exchanges, nm), summary.
 """
 
 import resource
@@ -45,7 +45,6 @@ with job(snakemake) as run:
     lammps = resource.getrusage(resource.RUSAGE_CHILDREN)
     write_csv(snakemake.output.curve, closing.curve)
     write_csv(snakemake.output.witness, closing.witness)
-    write_csv(snakemake.output.snapshots, closing.snapshots)
     write_json(
         snakemake.output.summary,
         {

@@ -1,6 +1,5 @@
 """E(V) scans that survive failures, and E* with its parts."""
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +7,6 @@ import pytest
 from ase.build import bulk
 from ase.calculators.calculator import CalculationFailed
 from ase.calculators.emt import EMT
-from pydantic import ValidationError
 
 from atomistic.elastic.energy_scans import fit_scan, scan_rows, scan_volumes
 from atomistic.elastic.moduli import Modulus, effective_modulus, plane_strain_modulus, variance_shares
@@ -84,31 +82,6 @@ def test_nothing_trusted_gives_no_input():
     summary, _ = effective_modulus([], TITANIUM, ElasticSettings())
     assert summary["inputs"] == {}
     assert not summary["gate"]["passed"]
-
-
-@pytest.mark.parametrize(
-    ("engine", "parameters", "named"),
-    [
-        ("espresso", {"command": "rm"}, "parameters.command = 'rm'"),
-        ("espresso", {"directory": "/etc"}, "parameters.directory"),
-        ("espresso", {"input_data": {"outdir": "/etc"}}, "parameters.input_data.outdir"),
-        ("espresso", {"input_data": {"input_dft": "pbe'\n/\n&control outdir='/etc"}}, "a plain name"),
-        ("espresso", {"pseudopotentials": {"Si": "../../secret"}}, "a plain name"),
-        ("vasp", {"setups": {"Si'\n": "_sv"}}, "plain names"),
-        ("gpaw", {"txt": "/etc/passwd"}, "parameters.txt"),
-        ("cp2k", {"inp": "&GLOBAL"}, "parameters.inp"),
-        ("siesta", {"fdf_arguments": {"SystemLabel": "x"}}, "parameters.fdf_arguments"),
-        ("pyscf", {"verbose": 9}, "accepted: none"),
-    ],
-)
-def test_a_scene_gives_an_engine_physics_but_neither_program_nor_folder(engine, parameters, named):
-    with pytest.raises(ValidationError, match=re.escape(named)):
-        DftSettings(engine=engine, parameters=parameters)
-
-
-def test_parameters_of_the_physics_reach_the_engine():
-    given = {"input_data": {"ecutwfc": 40, "occupations": "fixed"}, "pseudopotentials": {"Si": "Si.pbe-n.UPF"}}
-    assert DftSettings(engine="espresso", parameters=given).parameters == given
 
 
 @pytest.mark.parametrize("bad", [{"poisson_ratio": (0.3, 0.5)}, {"strains": (-0.01, 0.0, 0.01)}])

@@ -16,11 +16,11 @@ from atomistic.elastic.networks import (
     random_structure,
     same_network,
     symmetry_operations,
-    tersoff_calculator,
 )
 from atomistic.errors import InputError
 from atomistic.materials import load_material
 from atomistic.settings import NitrideGlassSettings
+from tests.atomistic.cheap_potential import tersoff_calculator
 
 MATERIALS = Path(__file__).parents[3] / "config" / "materials"
 NITRIDE = load_material(MATERIALS / "silicon_nitride.yaml")

@@ -5,9 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from atomistic.elastic.networks import crystal, tersoff_calculator
+from atomistic.elastic.networks import crystal
 from atomistic.elastic.relaxation import relax_ions, spring_hessian
 from atomistic.materials import load_material
+from tests.atomistic.cheap_potential import tersoff_calculator
 
 MATERIALS = Path(__file__).parents[3] / "config" / "materials"
 NITRIDE = load_material(MATERIALS / "silicon_nitride.yaml")

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from ase.calculators.calculator import CalculationFailed
 
-from atomistic.elastic.networks import crystal, tersoff_calculator
+from atomistic.elastic.networks import crystal
 from atomistic.elastic.structures import relaxed_structure, structure_rows, trusted_moduli
 from atomistic.materials import load_material
+from tests.atomistic.cheap_potential import tersoff_calculator
 
 MATERIALS = Path(__file__).parents[3] / "config" / "materials"
 NITRIDE = load_material(MATERIALS / "silicon_nitride.yaml")

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import textwrap
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from atomistic.errors import InputError
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.glass import glass_properties, make_glass
 from atomistic.hardness.runs import PROTOCOL, planned_runs
-from atomistic.hardness.studies import glass_checks
+from atomistic.hardness.studies import free_motion, glass_checks, heated
 from atomistic.lammps import Atoms, Workspace, load_data, write_data
 from atomistic.settings import GlassSettings, HardnessSettings
 
@@ -87,7 +88,6 @@ def test_closing_conserves_energy_and_builds_up_stress(closing):
 def test_snapshots_without_the_flat(closing):
     assert closing.witness[0]["exchanged_bonds"] == 0
     assert closing.witness[-1]["exchanged_bonds"] >= closing.witness[0]["exchanged_bonds"]
-    assert {row["step"] for row in closing.snapshots} == {row["step"] for row in closing.witness}
 
 
 KILLED = """
@@ -157,7 +157,6 @@ def test_killed_closing_resumes_bit_for_bit(glass, potential, oxides, closing, t
         for a, b in zip(resumed.curve, closing.curve, strict=True)
     )
     assert resumed.witness == closing.witness
-    assert resumed.snapshots == closing.snapshots
 
 
 def test_a_changed_setting_does_not_resume_old_work(tmp_path):
@@ -211,9 +210,20 @@ def test_a_received_closing_cannot_run_commands(glass, potential, oxides, closin
 
 def test_stability_of_a_scene_passes(glass, potential, tmp_path):
     checks = glass_checks(potential, glass, (1.0, 0.5), tmp_path / "work")
-    assert {"room_x0.5_pmmcs_SiO", "half_energy_identity_pmmcs_SiO"} < {case for case, *_ in checks}
+    assert "room_x0.5_pmmcs_SiO" in {case for case, *_ in checks}
     verdicts = {case: check() for case, _, _, check in checks}
     assert {case: detail for case, (passed, detail) in verdicts.items() if not passed} == {}
+
+
+def test_halved_energies_move_as_full_ones_at_twice_the_temperature_in_longer_time(glass, potential, tmp_path):
+    """E/2 at T moves like E at 2T with time x sqrt 2: checks table, masses, units and time step at once."""
+    hot = heated(glass, potential, 600)
+    slow = replace(hot, velocities_A_ps=hot.velocities_A_ps / np.sqrt(2))
+    _, full = free_motion(hot, potential, tmp_path / "full", 1.0, 100)
+    _, halved = free_motion(slow, potential, tmp_path / "halved", float(np.sqrt(2)), 100, 0.5)
+    apart = full.positions_A - halved.positions_A
+    apart -= full.cell_A * np.round(apart / full.cell_A)
+    assert np.abs(apart).max() < 1e-5  # Å, after 0.1 ps
 
 
 HARD_CASES = {

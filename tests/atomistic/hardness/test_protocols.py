@@ -144,7 +144,8 @@ def test_the_damped_coulomb_sum_is_that_of_long_range_to_a_tenth_of_a_bond(name,
         workspace = Workspace(tmp_path / method, {}, FORCES)
         write_forcefield(workspace, own, atoms.elements, 1.0)
         if method == "pppm":
-            table = own.table(atoms.elements, coulomb=False)
+            bare = {name: ion.model_copy(update={"charge_e": 0.0}) for name, ion in own.species.items()}
+            table = own.model_copy(update={"species": bare}).table(atoms.elements)
             (workspace / "table").write_text(table, encoding="utf-8")
             lines = (workspace / "pairs").read_text(encoding="utf-8").replace(" table ", " table table ")
             style = f"pair_style hybrid/overlay table linear 4000 coul/long {own.cutoff_A}\npair_coeff * * coul/long\n"
