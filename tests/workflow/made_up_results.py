@@ -268,7 +268,6 @@ def _hardness(root: Path) -> None:
             root / f"hardness/witness/{run}.csv",
             [{"step": step, "displacement_nm": step / 1000, "exchanged_bonds": step // 10} for step in steps],
         )
-        rng = np.random.default_rng(0)
     _write(root / "hardness/points.csv", points)
     scatter = {"statistical_low_GPa": 6, "statistical_high_GPa": 8}
     fit = {
