@@ -56,7 +56,7 @@ def volume_points(
         "atoms": [(len(atoms), atoms, dft, settings.strains) for atoms in (cell, larger)],
     }
     for done, (knob, tries) in enumerate(knobs.items()):
-        found = []
+        tried = []
         for value, atoms, chosen, strains in tries:
             if progress:
                 progress(done / len(knobs), f"{knob} {value}")
@@ -65,9 +65,9 @@ def volume_points(
                 B = _fit(atoms, chosen, strains).B_GPa
             except InputError:  # too few strains converged
                 B = float("nan")
-            found.append((value, B, {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}))
-        reference, best, _ = found[-1]
-        for value, B, cost in found:
+            tried.append((value, B, {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}))
+        reference, best, _ = tried[-1]
+        for value, B, cost in tried:
             yield {
                 "case": f"B {B:.2f} GPa",
                 "knob": knob,

@@ -114,8 +114,8 @@ def film_checks(stack: Stack, body: Atoms, energy_scales: Sequence[float], work:
         raised = body.positions_A + np.where(film, lift_A, 0.0)[:, None] * [0, 0, 1]
         free = replace(body, positions_A=raised, cell_A=body.cell_A + np.array([0, 0, lift_A]))
         gained_eV = energy_at_rest(free, stack, work) - energy_at_rest(body, stack, work)
-        found = gained_eV / float(np.prod(body.cell_A[:2])) * EV_PER_A3_IN_GPA / 10
-        return low < found < high, f"{found:.2f} J/m2"
+        work_J_m2 = gained_eV / float(np.prod(body.cell_A[:2])) * EV_PER_A3_IN_GPA / 10
+        return low < work_J_m2 < high, f"{work_J_m2:.2f} J/m2"
 
     return [
         *(_keeps_energy(f"film_{label}", body, stack, work, *of) for label, *of in cases),
@@ -131,8 +131,8 @@ def _keeps_energy(
 
     def drift() -> tuple[bool, str]:
         record, _ = free_motion(heated(atoms, force, kelvin), force, work / "nve", step, round(4000 / step), scale)
-        found = drift_meV_atom_ps(record, len(atoms), step)
-        return abs(found) < RULES.max_drift_meV_atom_ps, f"{found:+.4f} meV per atom and ps"
+        slope = drift_meV_atom_ps(record, len(atoms), step)
+        return abs(slope) < RULES.max_drift_meV_atom_ps, f"{slope:+.4f} meV per atom and ps"
 
     what = f"{kelvin:g} K, energies x {scale:g}, {step:.3g} fs, 4 ps at constant energy"
     return case, what, f"drift below {RULES.max_drift_meV_atom_ps} meV per atom and ps", drift

@@ -248,7 +248,6 @@ def _hardness(root: Path) -> None:
             {
                 "run": run,
                 "energy_scale": scale,
-                "geometry": "asperity-flat",
                 "wavelength_nm": 5.8,
                 "status": "yield",
                 "contact_length_nm": 3.0,
@@ -296,7 +295,6 @@ def _hardness(root: Path) -> None:
                 for x in (0.5, 2.0, 10.0)
             ],
         },
-        "cost": {"atom_steps": 2e9, "lammps_cpu_s": 1500, "python_cpu_s": 30, "python_cpu_share": 0.02},
     }
     write_json(root / "hardness/fit.json", fit, PROVENANCE)
 
