@@ -101,7 +101,7 @@ def structure_rows(reports: Sequence[Mapping[str, Any]], quenches: Sequence[int]
     """Rows of elastic/structures.csv from the structures' reports and the number of quenches each one took."""
     return [
         {
-            **{key: value for key, value in report.items() if key not in ("relaxation", "gate")},
+            **{key: value for key, value in report.items() if key not in ("relaxation", "gate", "provenance")},
             **report["relaxation"],
             "quenches": count,
             "status": "accepted" if report["gate"]["passed"] else "rejected: " + "; ".join(report["gate"]["reasons"]),
