@@ -54,13 +54,7 @@ class Atoms:
 
 def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) -> None:
     """Write a LAMMPS data file (atom_style atomic, units metal)."""
-    lines = [
-        f"{'-'.join(atoms.elements)}",
-        "",
-        f"{len(atoms)} atoms",
-        f"{len(atoms.elements)} atom types",
-        "",
-    ]
+    lines = ["-".join(atoms.elements), "", f"{len(atoms)} atoms", f"{len(atoms.elements)} atom types", ""]
     x, y, z = atoms.cell_A.tolist()
     lines += [f"0 {x!r} xlo xhi", f"0 {y!r} ylo yhi", f"0 {z!r} zlo zhi"]
     lines += ["", "Masses", ""]
@@ -190,13 +184,7 @@ def run_lammps(
     InputError : LAMMPS stopped with an error; its message and the log are named.
     """
     command = [str(executable()), "-in", str(PROTOCOLS / script), "-log", "none", "-nocite", "-nonbuf"]
-    command += [
-        "-suffix",
-        "omp",
-        "-package",
-        "omp",
-        "1",
-    ]  # its pair table is ~15 % faster, also on one thread
+    command += "-suffix omp -package omp 1".split()  # its pair table is ~15 % faster, also on one thread
     for name, value in variables.items():
         values = [value] if isinstance(value, (str, int, float)) else list(value)  # type: ignore[call-overload]
         command += ["-var", name, *map(str, values)]

@@ -5,7 +5,7 @@ follow the strain is softer.
 """
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -16,13 +16,12 @@ from ase.calculators.calculator import CalculationFailed, Calculator
 from atomistic.elastic.dft import Solution, Store, make_calculator
 from atomistic.elastic.equation_of_state import MIN_POINTS, fit_equation_of_state
 from atomistic.elastic.relaxation import strained
+from atomistic.lammps import Progress
 from atomistic.settings import DftSettings
-
-Progress = Callable[[float, str], None]
 
 
 @dataclass(frozen=True)
-class Point:
+class ScanPoint:
     """One volume of an E(V) scan; `energy_eV` is NaN where the calculation failed, and `detail` says why."""
 
     strain: float
@@ -35,13 +34,13 @@ class Point:
 
 def scan_volumes(
     atoms: Atoms, calculator: Calculator, strains: Sequence[float], progress: Progress | None = None
-) -> list[Point]:
+) -> list[ScanPoint]:
     """Energy of a structure at each isotropic strain, ions clamped.
 
     The smallest strain comes first, then they go outwards: each calculation starts from its neighbours'.  One that
     fails is reported in its point and the scan goes on.
     """
-    points: dict[float, Point] = {}
+    points: dict[float, ScanPoint] = {}
     for strain in sorted(strains, key=lambda strain: (abs(strain), -strain)):
         if progress:
             progress(len(points) / len(strains), f"strain {strain:+.3f}")
@@ -54,7 +53,7 @@ def scan_volumes(
         except (CalculationFailed, NotImplementedError, np.linalg.LinAlgError, FloatingPointError) as error:
             detail = f"strain {strain:+.3f}: {error}"
         seconds = time.perf_counter() - start
-        points[strain] = Point(strain, float(trial.get_volume()), energy, not detail, seconds, detail)
+        points[strain] = ScanPoint(strain, float(trial.get_volume()), energy, not detail, seconds, detail)
     return [points[strain] for strain in sorted(points)]
 
 
@@ -80,7 +79,7 @@ def scan_rows(
         atoms = strained(atoms, -0.012)  # its volume is some 4 % smaller than that of GGA
     if rejected:
         volumes = [float(strained(atoms, strain).get_volume()) for strain in strains]
-        points = [Point(s, v, float("nan"), False, 0.0, rejected) for s, v in zip(strains, volumes, strict=True)]
+        points = [ScanPoint(s, v, float("nan"), False, 0.0, rejected) for s, v in zip(strains, volumes, strict=True)]
     else:
         calculator = make_calculator(dft, xc, atoms.cell.array * (1 + max(strains)), store)
         calculator.history = list(start)

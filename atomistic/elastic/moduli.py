@@ -120,6 +120,7 @@ def effective_modulus(
     Content of e_star.json, with `inputs` and `gate`, and the arrays of SAMPLE_COLUMNS; none without structures.
     """
     used = [m for m in moduli if m.xc == "GGA" and m.trusted]
+    B, B_error = np.array([(m.B_GPa, m.error_GPa) for m in used]).reshape(-1, 2).T
     shift = functional_shift(moduli)
     other: Polycrystal = counter_body.part("polycrystal")
     low, high = settings.poisson_ratio
@@ -127,7 +128,11 @@ def effective_modulus(
         "ions": "clamped",
         "structures_used": [m.structure for m in used],
         "kept_out": [asdict(m) for m in moduli if not m.trusted],
-        "B_GGA_GPa": spread([m.B_GPa for m in used]),
+        "B_GGA_GPa": {
+            "mean": float(B.mean()) if len(B) else None,
+            "std": float(B.std(ddof=1)) if len(B) > 1 else None,
+            "structures": len(B),
+        },
         "LDA_minus_GGA": shift,
         "poisson_ratio": {"distribution": "uniform", "a": low, "b": high},
         "counter_body": {
@@ -146,7 +151,6 @@ def effective_modulus(
     if not used:
         return summary, {}
     delta = shift["mean_GPa"] if shift["structures"] else 0.0
-    B, B_error = np.array([(m.B_GPa, m.error_GPa) for m in used]).T
     others = (settings.poisson_ratio, (other.young_GPa, other.young_std_GPa), other.poisson_ratio)
     summary |= variance_shares(B, B_error, delta, *others)
     jackknife = float("nan")
@@ -194,13 +198,3 @@ def _gate(structures: int, shift: Mapping[str, Any]) -> dict[str, Any]:
     if not shift["structures"]:
         reasons.append("no structure has both LDA and GGA: the model-form shift is unknown")
     return {"passed": not reasons, "reasons": reasons}
-
-
-def spread(values: Sequence[float] | np.ndarray) -> dict[str, Any]:
-    """Mean, standard deviation and number of values of structures; None where there are too few."""
-    array = np.array(values, float)
-    return {
-        "mean": float(array.mean()) if len(array) else None,
-        "std": float(array.std(ddof=1)) if len(array) > 1 else None,
-        "structures": len(array),
-    }

@@ -10,9 +10,8 @@ from ase.calculators.calculator import CalculationFailed, Calculator
 from atomistic.elastic.moduli import Modulus
 from atomistic.elastic.networks import NetworkVerdict, examine, no_insulator
 from atomistic.elastic.relaxation import Relaxation, relax_ions, strained
+from atomistic.lammps import Progress
 from atomistic.materials import NetworkGlass
-
-Progress = Callable[[float, str], None]
 
 
 @dataclass(frozen=True)

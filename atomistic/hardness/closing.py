@@ -169,24 +169,6 @@ def cut_body(
     return CutBody(cut, formula, Stack(potential, below, protocol.bond_factor))
 
 
-def weld(
-    run: ClosingRun,
-    glass: Atoms,
-    potential: Potential,
-    closing: ClosingSettings,
-    base: tuple[Base, Atoms],
-    work: Path,
-) -> tuple[Stack, Atoms]:
-    """The forces and the welded body of a run with a film, for checks."""
-    place = (run.seed, 0)
-    protocol = slowed(PROTOCOL, base[0].below_films.timestep_factor)
-    base_nm = base_thickness_nm(closing, run.asperity.tiles * float(glass.cell_A[0]) / 10)
-    body = cut_body(run, glass, potential, base_nm, place, protocol, base)
-    assert isinstance(body.force, Stack)
-    workspace = Workspace(work / "weld", {}, "anneal.in")
-    return body.force, prepare_body(run, body.atoms, body.formula, body.force, closing, protocol, workspace, place)
-
-
 def oxide_bond(elements: tuple[str, ...], material: Material, potential: Potential) -> OxideBond | None:
     """What counts as a bond in a body with these elements of its types; None: it has no oxide."""
     ions = tuple(potential.materials[material.formula_text])

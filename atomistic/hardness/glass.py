@@ -185,13 +185,8 @@ def schedule(settings: GlassSettings, segment_steps: int) -> list[dict]:
 
 def density_g_cm3(atoms: Atoms, force: ForceField) -> float:
     """Density of a periodic cell."""
-    return mass_u(force, atoms) / AVOGADRO / (float(np.prod(atoms.cell_A)) * 1e-24)
-
-
-def mass_u(force: ForceField, atoms: Atoms) -> float:
-    """Mass of all atoms."""
-    masses = np.array([force.masses_u[element] for element in atoms.elements])
-    return float(masses[atoms.types - 1].sum())
+    masses_u = np.array([force.masses_u[element] for element in atoms.elements])
+    return float(masses_u[atoms.types - 1].sum()) / AVOGADRO / (float(np.prod(atoms.cell_A)) * 1e-24)
 
 
 def unlike_neighbours(atoms: Atoms, kind: np.ndarray, reach_A: float) -> tuple[np.ndarray, np.ndarray]:

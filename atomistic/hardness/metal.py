@@ -83,11 +83,6 @@ class Metal(Base):
     styles = ("eam/alloy",)
 
     @property
-    def element(self) -> str:
-        """Its chemical symbol."""
-        return self.elements[0]
-
-    @property
     def eam(self) -> Eam:
         """Its potential."""
         return self.material.part("eam")
@@ -95,7 +90,7 @@ class Metal(Base):
     @property
     def masses_u(self) -> Mapping[str, float]:
         """Mass of its element."""
-        return {self.element: self.eam.mass_u}
+        return {self.elements[0]: self.eam.mass_u}
 
     @property
     def atoms_per_nm3(self) -> float:
@@ -105,24 +100,20 @@ class Metal(Base):
 
     def commands(self, above: int) -> list[str]:
         """Commands of its own atoms, type 1."""
-        return [f"pair_coeff * * eam/alloy metal.eam {' '.join([self.element, *['NULL'] * above])}"]
+        return [f"pair_coeff * * eam/alloy metal.eam {' '.join([*self.elements, *['NULL'] * above])}"]
 
     def tables(self) -> dict[str, str]:
-        """The potential."""
-        return {"metal.eam": self.setfl()}
-
-    def setfl(self) -> str:
         """The potential for LAMMPS's `pair_style eam/alloy`."""
         eam = self.eam
         count, end_A = METAL.points, METAL.cutoff_A
         density, r = np.linspace(0, METAL.most_density * eam.rho, count), np.linspace(0, end_A, count)
         text = io.StringIO()
-        text.write(f"{self.material.name}\n{eam.source}\n\n1 {self.element}\n")
+        text.write(f"{self.material.name}\n{eam.source}\n\n1 {self.elements[0]}\n")
         text.write(f"{count} {density[1]:.16g} {count} {r[1]:.16g} {end_A}\n0 {eam.mass_u} {eam.r_A} any\n")
         np.savetxt(text, embedding_energy(eam, density), fmt="%.16g")
         np.savetxt(text, electron_density(eam, r), fmt="%.16g")
         np.savetxt(text, r * pair_energy(eam, r), fmt="%.16g")
-        return text.getvalue()
+        return {"metal.eam": text.getvalue()}
 
     def make(self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None) -> Atoms:
         """A cube of grains as wide as the asperity, annealed at zero pressure and cooled to 300 K in the same time.
@@ -165,7 +156,7 @@ def crystal(metal: Metal, repeats: tuple[int, int, int]) -> Atoms:
     cell = np.array([a, a * np.sqrt(3), c])
     offsets = np.stack(np.meshgrid(*map(np.arange, repeats), indexing="ij"), axis=-1).reshape(-1, 3)
     positions = (offsets[:, None] + PLACES).reshape(-1, 3) * cell
-    return Atoms((metal.element,), np.ones(len(positions), int), positions, cell * repeats)
+    return Atoms(metal.elements, np.ones(len(positions), int), positions, cell * repeats)
 
 
 def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms:
@@ -191,7 +182,7 @@ def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms
     positions = np.mod(np.concatenate(grown), edge_A)
     near = KDTree(positions, boxsize=edge_A).query_pairs(METAL.too_near * metal.eam.r_A)
     positions = np.delete(positions, sorted({max(pair) for pair in near}), axis=0)
-    return Atoms((metal.element,), np.ones(len(positions), int), positions, np.full(3, edge_A))
+    return Atoms(metal.elements, np.ones(len(positions), int), positions, np.full(3, edge_A))
 
 
 def _segments() -> list[dict[str, Any]]:

@@ -162,7 +162,6 @@ rule compare_closings:
 
 rule check_hardness_stability:
     input:
-        **(of_base(SMALLEST) if SMALLEST.asperity.film_nm else {}),
         potential=BODIES.potential,
         glass=f"{RESULTS}/hardness/glass/{SMALLEST.seed}.data",
     output:
@@ -172,8 +171,6 @@ rule check_hardness_stability:
     params:
         material=HARDNESS["material"],
         energy_scales=HARDNESS["energy_scales"],
-        closing_run=SMALLEST.model_dump(mode="json"),
-        closing=HARDNESS["closing"],
         work=f"{RESULTS}/work/stability_hardness",
     message:
         "check the molecular dynamics in hard cases"

@@ -5,7 +5,7 @@ from pathlib import Path
 from ase.build import bulk
 
 from atomistic.elastic import studies
-from atomistic.elastic.energy_scans import Point
+from atomistic.elastic.energy_scans import ScanPoint
 from atomistic.elastic.networks import crystal
 from atomistic.elastic.studies import conductor, ensemble_points, stability_checks
 from atomistic.materials import load_material
@@ -34,7 +34,7 @@ def test_errors_are_those_against_the_finest_value_of_each_choice(monkeypatch):
         volumes = [float(atoms.get_volume() * (1 + strain) ** 3) for strain in strains]
         stiffness = 1.0 - 10.0 / calculator.parameters.cutoff_Ha
         return [
-            Point(s, v, stiffness * (v - volumes[2]) ** 2, True, 0.0) for s, v in zip(strains, volumes, strict=True)
+            ScanPoint(s, v, stiffness * (v - volumes[2]) ** 2, True, 0.0) for s, v in zip(strains, volumes, strict=True)
         ]
 
     monkeypatch.setattr(studies, "scan_volumes", scan)
