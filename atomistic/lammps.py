@@ -184,7 +184,7 @@ def run_lammps(
     InputError : LAMMPS stopped with an error; its message and the log are named.
     """
     command = [str(executable()), "-in", str(PROTOCOLS / script), "-log", "none", "-nocite", "-nonbuf"]
-    command += "-suffix omp -package omp 1".split()  # its pair table is ~15 % faster, also on one thread
+    command += ["-suffix", "omp", "-package", "omp", "1"]  # its pair table is ~15 % faster, also on one thread
     for name, value in variables.items():
         values = [value] if isinstance(value, (str, int, float)) else list(value)  # type: ignore[call-overload]
         command += ["-var", name, *map(str, values)]
