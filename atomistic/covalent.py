@@ -1,11 +1,37 @@
 """Covalent networks for LAMMPS: the Tersoff potential with soft cores between like atoms, and random starts."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
 from atomistic.materials import Core, Tersoff
+
+
+@dataclass(frozen=True)
+class Quench:
+    """How a cell is melted and quenched, beside its rate; a glass below films takes the same temperatures.
+
+    Attributes
+    ----------
+    start_distance_A : random start: nothing closer than this
+    melt_K, melt_ps, final_K : temperature and time of the melt; temperature of the glass
+    free_below_K : a melt has no shape to keep; below this its network can still change and settles as a glass
+    timestep_fs : of the molecular dynamics
+    attempts : quenches until one passes the gates; of 28 atoms about one in sixty does
+    """
+
+    start_distance_A: float = 1.4
+    melt_K: float = 5000.0
+    melt_ps: float = 3.0
+    final_K: float = 300.0
+    free_below_K: float = 2500.0
+    timestep_fs: float = 1.0
+    attempts: int = 1000
+
+
+QUENCH = Quench()
 
 
 def tersoff_table(parameters: Tersoff) -> str:

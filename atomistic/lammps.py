@@ -52,22 +52,11 @@ class Atoms:
         return Atoms(self.elements, self.types[keep], self.positions_A[keep], self.cell_A, velocities)
 
 
-def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float], below_A: float = 0.0) -> None:
-    """Write a LAMMPS data file (atom_style atomic, units metal).
-
-    Parameters
-    ----------
-    below_A : room below z = 0, for a body that may sink.
-    """
-    lines = [
-        f"{'-'.join(atoms.elements)}",
-        "",
-        f"{len(atoms)} atoms",
-        f"{len(atoms.elements)} atom types",
-        "",
-    ]
+def write_data(path: str | Path, atoms: Atoms, masses_u: Mapping[str, float]) -> None:
+    """Write a LAMMPS data file (atom_style atomic, units metal)."""
+    lines = ["-".join(atoms.elements), "", f"{len(atoms)} atoms", f"{len(atoms.elements)} atom types", ""]
     x, y, z = atoms.cell_A.tolist()
-    lines += [f"0 {x!r} xlo xhi", f"0 {y!r} ylo yhi", f"{-below_A if below_A else 0} {z!r} zlo zhi"]
+    lines += [f"0 {x!r} xlo xhi", f"0 {y!r} ylo yhi", f"0 {z!r} zlo zhi"]
     lines += ["", "Masses", ""]
     lines += [f"{k} {masses_u[element]} # {element}" for k, element in enumerate(atoms.elements, 1)]
     lines += ["", "Atoms # atomic", ""]
@@ -195,13 +184,7 @@ def run_lammps(
     InputError : LAMMPS stopped with an error; its message and the log are named.
     """
     command = [str(executable()), "-in", str(PROTOCOLS / script), "-log", "none", "-nocite", "-nonbuf"]
-    command += [
-        "-suffix",
-        "omp",
-        "-package",
-        "omp",
-        "1",
-    ]  # its pair table is ~15 % faster, also on one thread
+    command += ["-suffix", "omp", "-package", "omp", "1"]  # its pair table is ~15 % faster, also on one thread
     for name, value in variables.items():
         values = [value] if isinstance(value, (str, int, float)) else list(value)  # type: ignore[call-overload]
         command += ["-var", name, *map(str, values)]

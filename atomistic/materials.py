@@ -59,20 +59,6 @@ class Published(_Section):
     source: tuple[str, ...] = Field(min_length=1)
 
 
-class PublishedConstants(_Section):
-    """Known elastic constants of a crystal, GPa, in the axes of its file; those of a functional or of experiment."""
-
-    values_GPa: dict[Annotated[str, Field(pattern=r"^C[1-6][1-6]$")], float] = Field(min_length=1)
-    source: str
-
-
-class StrainedCell(_Section):
-    """Cell and mesh for the elastic constants of a crystal, where those of its E(V) are too coarse."""
-
-    supercell: Supercell
-    cutoff_Ha: Positive
-
-
 class Crystal(_Section):
     """A crystal by its space group; lengths in Å, angles in degrees."""
 
@@ -84,9 +70,7 @@ class Crystal(_Section):
     supercell: Supercell
     source: str
     cutoff_Ha: Positive | None = Field(default=None, description="of the density; None: that of the scene")
-    constants_cell: StrainedCell | None = Field(default=None, description="None: as for E(V)")
     published: dict[Literal["GGA", "LDA", "experiment"], Published] = Field(default={})
-    constants: dict[Literal["GGA", "experiment"], PublishedConstants] = Field(default={})
 
     @model_validator(mode="after")
     def _has_volume(self) -> "Crystal":
@@ -197,23 +181,6 @@ class Polycrystal(_Section):
     source: str
 
 
-class SingleCrystal(_Section):
-    """Elastic constants of a hexagonal crystal, GPa."""
-
-    C11: Positive
-    C12: float
-    C13: float
-    C33: Positive
-    C44: Positive
-    source: str
-
-    @model_validator(mode="after")
-    def _stable(self) -> "SingleCrystal":
-        if abs(self.C12) >= self.C11 or 2 * self.C13**2 >= self.C33 * (self.C11 + self.C12):
-            raise ValueError("not stable: needs C11 > |C12| and 2 C13^2 < C33 (C11 + C12)")
-        return self
-
-
 class Eam(_Section):
     """Embedded-atom potential of a metal in closed form (Zhou, Johnson and Wadley, doi:10.1103/PhysRevB.69.144113).
 
@@ -238,19 +205,12 @@ class Eam(_Section):
     source: str
 
 
-class Bond(_Section):
+class MorseBond(_Section):
     """Morse bond of an atom of the base and an ion of a film."""
 
     D_eV: Positive
     a_1_per_A: Positive
     r0_A: Positive
-
-
-class BodyArea(_Section):
-    """Depth within which atoms touch, as calibrated on bodies of one kind, and the largest error of the area."""
-
-    depth_A: Positive
-    error: float = Field(ge=0, le=0.1)
 
 
 class FilmBase(_Section):
@@ -263,24 +223,12 @@ class FilmBase(_Section):
         default=None, description="of a metal, whose grains make it soft: diameter of a sphere of their mean volume"
     )
     timestep_factor: float = Field(default=1.0, gt=0, le=1, description="on the time step of a closing")
-    bonds: dict[ElementPair, Bond] = Field(min_length=1)
+    bonds: dict[ElementPair, MorseBond] = Field(min_length=1)
     repelled: tuple[ElementPair, ...] = Field(description="pairs that only repel each other")
-    area_of_film: BodyArea
-    area_of_base: BodyArea
+    area_error: float = Field(
+        ge=0, le=0.1, description="largest of the contact area on a film or on the body by itself, as a fraction"
+    )
     source: str
-
-
-class PoissonRange(_Section):
-    """Range of Poisson's ratio."""
-
-    low: Ratio
-    high: Ratio
-    source: str
-
-    @model_validator(mode="after")
-    def _rises(self) -> "PoissonRange":
-        _rising((self.low, self.high))
-        return self
 
 
 class Material(_Section):
@@ -293,10 +241,8 @@ class Material(_Section):
     oxide_glass: OxideGlass | None = None
     network_glass: NetworkGlass | None = None
     polycrystal: Polycrystal | None = None
-    single_crystal_GPa: SingleCrystal | None = None
     eam: Eam | None = None
     film_base: FilmBase | None = None
-    poisson_ratio: PoissonRange | None = None
 
     @property
     def formula_text(self) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from functools import cached_property, partial
 from itertools import combinations_with_replacement
 from pathlib import Path
-from typing import Annotated, Any, Literal, Protocol
+from typing import Annotated, Literal, Protocol
 
 import numpy as np
 from pydantic import Field, ValidationError
@@ -20,11 +20,7 @@ from atomistic.constants import COULOMB_EV_A
 from atomistic.errors import InputError
 from atomistic.settings import Settings
 
-TABLE_POINTS = 4000
 TABLE_START_A = 0.4  # atoms nearer than this stop LAMMPS
-CONTACT_A = 3.0  # atoms of two bodies nearer than this touch: about the O-O distance across an interface
-CONTACT_EV = 0.1  # strength of their repulsion where the interface does not adhere
-CORE_RADIUS_A = 0.9  # below this every pair must repel; the shortest bond (Si-O) is 1.6 A
 
 Confidence = Literal["high", "medium", "low"]
 Positive = Annotated[float, Field(gt=0)]
@@ -104,29 +100,16 @@ class Source(Settings):
     doi: str | None
 
 
-class CounterfaceCalibration(Settings):
-    """What of an `AreaCalibration` differs where the counterface is of another potential's atoms."""
-
-    touch_A: Positive
-    error: float = Field(ge=0, le=0.1)
-
-
 class AreaCalibration(Settings):
-    """The definition of contact area that was tested on bodies of known section with a potential's glass; lengths in Å.
+    """How the definition of contact area was tested on bodies of known section with a potential's glass.
 
     Attributes
     ----------
     error : largest deviation from the known area, as a fraction.
-    counterfaces : by the name of a counterface's potential.
     """
 
-    depth_A: Positive
-    touch_A: Positive
-    closing_A: Positive
-    rim_A: float = Field(ge=0)
     error: float = Field(ge=0, le=0.1)
     source: str
-    counterfaces: dict[Name, CounterfaceCalibration] = Field(default={})
 
 
 class Potential(Settings):
@@ -146,9 +129,12 @@ class Potential(Settings):
     def _terms(self) -> dict[frozenset[str], Pair]:
         return {frozenset(pair.species): pair for pair in self.pairs}
 
-    def energy_and_force(
-        self, first: str, second: str, r: np.ndarray, coulomb: bool = True
-    ) -> tuple[np.ndarray, np.ndarray]:
+    @property
+    def masses_u(self) -> dict[str, float]:
+        """Mass of each element."""
+        return {name: ion.mass_u for name, ion in self.species.items()}
+
+    def energy_and_force(self, first: str, second: str, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Energy (eV) and force (eV/Å, positive = repulsion) of a pair at distances `r` (Å).
 
         Short-range terms are shifted so that energy and force vanish at the cutoff, as the damped
@@ -156,7 +142,7 @@ class Potential(Settings):
         """
         r = np.asarray(r, dtype=float)
         r_c = np.array([self.cutoff_A])
-        energy, force = self._coulomb(first, second, r) if coulomb else (np.zeros_like(r), np.zeros_like(r))
+        energy, force = self._coulomb(first, second, r)
         for term in self._terms[frozenset((first, second))].terms:
             value, slope = term.energy_and_slope(r)
             value_c, slope_c = term.energy_and_slope(r_c)
@@ -176,76 +162,47 @@ class Potential(Settings):
         value_c, force_c = bare(np.array([r_c]))
         return strength * (value - value_c + force_c * (r - r_c)), strength * (force - force_c)
 
-    def table(self, elements: tuple[str, ...], energy_scale: float = 1.0, coulomb: bool = True) -> str:
-        """LAMMPS `pair_style table` file: a section A_B for every pair of `elements`, and `contact`.
-
-        `contact` is what remains between two bodies that do not adhere (`contact_energy_and_force`).
+    def table(self, elements: tuple[str, ...], energy_scale: float = 1.0) -> str:
+        """LAMMPS `pair_style table` file: a section A_B for every pair of `elements`, and `contact` (`pair_table`).
 
         Parameters
         ----------
         elements : species in the order of their LAMMPS types.
         energy_scale : factor on every energy and force; 0.5 gives the twin with halved energies.
-        coulomb : False leaves the Coulomb sum to LAMMPS.
         """
         title = f"{' '.join(self.description.split())}; energies x {energy_scale}"
         sections: dict[str, EnergyAndForce] = {
-            f"{first}_{second}": partial(self.energy_and_force, first, second, coulomb=coulomb)
+            f"{first}_{second}": partial(self.energy_and_force, first, second)
             for first, second in combinations_with_replacement(elements, 2)
         }
         return pair_table(title, sections, self.cutoff_A, energy_scale)
 
-    def files(
-        self,
-        elements: tuple[str, ...],
-        energy_scale: float,
-        repelled: "Repelled | None" = None,
-    ) -> dict[str, str]:
-        """What LAMMPS needs by the name of its file: tables, and in `pairs` the commands that use them.
+    def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
+        """What LAMMPS needs by the name of its file: the table, and in `pairs` the commands that use it.
 
         Parameters
         ----------
-        elements : of each LAMMPS type; an element may stand for several types.
+        elements : of each LAMMPS type.
         """
-        bodies: list[tuple[str, Potential, tuple[str, ...]]] = [("table", self, elements)]
-        if repelled is not None:
-            bodies.append(("table_repelled", *repelled))
-        types = [(body, element) for body in bodies for element in body[2]]
         lines = ["pair_style table linear 4000"]
-        for i, (body, first) in enumerate(types, 1):
-            file, within, of_body = body
-            for j, (other, second) in enumerate(types[i - 1 :], i):
-                section = "_".join(sorted((first, second), key=of_body.index)) if other is body else "contact"
-                lines.append(f"pair_coeff {i} {j} {file} {section} {within.cutoff_A}")
+        for i, first in enumerate(elements, 1):
+            for j, second in enumerate(elements[i - 1 :], i):
+                lines.append(f"pair_coeff {i} {j} table {first}_{second} {self.cutoff_A}")
         lines += ["neighbor 0.6 bin", "neigh_modify every 2 delay 0 check yes"]
-        tables = {file: within.table(tuple(dict.fromkeys(of)), energy_scale) for file, within, of in bodies}
-        return {**tables, "pairs": "\n".join(lines) + "\n"}
-
-
-Repelled = tuple[Potential, tuple[str, ...]]
-"""Potential and elements of a second body, whose types follow, and which only repels the first."""
+        return {"table": self.table(elements, energy_scale), "pairs": "\n".join(lines) + "\n"}
 
 
 class ForceField(Protocol):
     """What of a `Potential` molecular dynamics uses: a metal, and an oxide on a metal, have it too."""
 
     @property
-    def species(self) -> Mapping[str, Any]:
-        """What has the mass of each element."""
+    def masses_u(self) -> Mapping[str, float]:
+        """Mass of each element."""
         ...
 
-    def files(
-        self,
-        elements: tuple[str, ...],
-        energy_scale: float,
-        repelled: Repelled | None = None,
-    ) -> dict[str, str]:
+    def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
         """Files for LAMMPS by name."""
         ...
-
-
-def masses_u(force: ForceField, elements: tuple[str, ...]) -> dict[str, float]:
-    """Mass of each element."""
-    return {element: force.species[element].mass_u for element in elements}
 
 
 EnergyAndForce = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -259,23 +216,28 @@ def pair_table(title: str, sections: Mapping[str, EnergyAndForce], cutoff_A: flo
     sections : energy (eV) and force (eV/Å) at distances (Å), by name.
     energy_scale : factor on all of them.
     """
-    r = np.sqrt(np.linspace(TABLE_START_A**2, cutoff_A**2, TABLE_POINTS))
+    points = 4000
+    r = np.sqrt(np.linspace(TABLE_START_A**2, cutoff_A**2, points))
     lines = io.StringIO()
     lines.write(f"# {title}; eV, Angstrom\n")
     for name, of in {**sections, "contact": contact_energy_and_force}.items():
         energy, force = of(r)
-        lines.write(f"\n{name}\nN {TABLE_POINTS} RSQ {TABLE_START_A} {cutoff_A}\n\n")
-        rows = np.column_stack([np.arange(1, TABLE_POINTS + 1), r, energy_scale * energy, energy_scale * force])
+        lines.write(f"\n{name}\nN {points} RSQ {TABLE_START_A} {cutoff_A}\n\n")
+        rows = np.column_stack([np.arange(1, points + 1), r, energy_scale * energy, energy_scale * force])
         np.savetxt(lines, rows, fmt="%d %.12g %.12g %.12g")
     return lines.getvalue()
 
 
 def contact_energy_and_force(r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Repulsion (eV, eV/Å) of atoms of two bodies without adhesion: 12-6 cut at its minimum (WCA)."""
-    x = (CONTACT_A / r) ** 6
-    energy = CONTACT_EV * (x**2 - 2 * x + 1)
-    force = 12 * CONTACT_EV * (x**2 - x) / r
-    return np.where(r < CONTACT_A, energy, 0.0), np.where(r < CONTACT_A, force, 0.0)
+    """Repulsion (eV, eV/Å) of atoms that only repel each other: 12-6 cut at its minimum (WCA).
+
+    The radius of 3 Å is about the O-O distance across an interface.
+    """
+    radius_A, depth_eV = 3.0, 0.1
+    x = (radius_A / r) ** 6
+    energy = depth_eV * (x**2 - 2 * x + 1)
+    force = 12 * depth_eV * (x**2 - x) / r
+    return np.where(r < radius_A, energy, 0.0), np.where(r < radius_A, force, 0.0)
 
 
 def load_potential(path: str | Path) -> Potential:
@@ -326,11 +288,12 @@ def _check(path: Path, potential: Potential) -> None:
         charge = sum(count * potential.species[ion].charge_e for ion, count in formula.items())
         if abs(charge) > 1e-9:
             raise InputError(f"{path}: material {name} has charge {charge:+g} e per formula unit; it must be neutral")
-    r = np.linspace(TABLE_START_A, CORE_RADIUS_A, 200)
+    core_A = 0.9  # below this every pair must repel; the shortest bond (Si-O) is 1.6 A
+    r = np.linspace(TABLE_START_A, core_A, 200)
     for first, second in combinations_with_replacement(potential.species, 2):
         _, force = potential.energy_and_force(first, second, r)
         if np.any(force <= 0):
             raise InputError(
                 f"{path}: pair {first}-{second} attracts at {r[force <= 0].max():.2f} A: "
-                f"it needs a repulsive core (add a `power` term) below {CORE_RADIUS_A} A"
+                f"it needs a repulsive core (add a `power` term) below {core_A} A"
             )

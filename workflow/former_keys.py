@@ -27,11 +27,16 @@ REPLACED = {
     },
     **{f"inputs.{row}.prior": "without `values` the prior is that of the stage" for row in BY_NAME},
     "hardness.area": "the potential's file says with what its area is calibrated",
+    **{
+        f"hardness.closing.{key}": "a rigid flat at constant speed presses every asperity"
+        for key in ("counterface", "control", "interface", "counter_material", "counter_potential", "dwell_ps")
+    },
+    "hardness.fit.h_macro": "H_macro is that of fit.h_macro_GPa",
     "hardness.plasticity": "`closing.stop: window` takes runs to their end",
-    "elastic.ions": "ions are clamped in E(V), and follow where poisson is computed",
-    "elastic.relaxed_structures": "poisson 'computed' lets ions follow the strain",
+    **dict.fromkeys(("elastic.ions", "elastic.relaxed_structures"), "ions are clamped in E(V)"),
+    **dict.fromkeys(("elastic.poisson", "elastic.tensor_structures"), "state the range as elastic.poisson_ratio"),
+    **{f"elastic.dft.{key}": "PySCF computes; state an e_star of another code" for key in ("engine", "parameters")},
     "elastic.relaxation": "max_steps is dft.relaxation_steps, basis and cut-off are those of dft",
-    "elastic.tensor": "structures is elastic.tensor_structures, the others are fixed",
     "contact.unloading_radius": "take mechanics: coupled where opening matters",
     "contact.merge": "take mechanics: coupled, whose repulsion does not fall where asperities merge",
     **{f"contact.surface.{key}": "give `heights`" for key in ("moments", "skewness", "kurtosis")},

@@ -107,7 +107,7 @@ def _stages(scene: Scene) -> Iterator[str]:
         scene.topography.scans or synthetic.small_scans or synthetic.large_scans
     ):
         yield "topography.scans: empty, and synthetic.small_scans and large_scans are 0: nothing to analyse; give scans"
-    if "elastic" in scene.stages() and scene.elastic.dft.engine == "pyscf":
+    if "elastic" in scene.stages():
         yield from _unknown_bases(scene)
 
 

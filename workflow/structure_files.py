@@ -1,17 +1,14 @@
-"""Files of the elastic stage: structures as XYZ, orbitals as HDF5, finished SCF calculations as a directory."""
+"""Files of the elastic stage: structures as XYZ, finished SCF calculations as a directory."""
 
 import io
 import shutil
-from collections.abc import Iterator, Mapping, MutableMapping
+from collections.abc import Iterator, MutableMapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from ase import Atoms
-from ase.calculators.calculator import Calculator
 
-from atomistic.elastic.dft import PyscfGamma, Solution
-from workflow.results import Dataset, atomic_path, load_h5, write_h5
+from workflow.results import atomic_path
 
 
 def structure_text(atoms: Atoms) -> str:
@@ -30,25 +27,6 @@ def load_structure(path: str | Path) -> Atoms:
     from ase.io import read
 
     return read(io.StringIO(Path(path).read_text(encoding="utf-8")), format="extxyz")  # type: ignore[return-value]
-
-
-def write_start(path: str | Path, calculator: Calculator | None, provenance: Mapping[str, Any]) -> None:
-    """Keep the orbitals that a relaxation with PySCF ended with, for the next job to start from."""
-    groups = {}
-    if isinstance(calculator, PyscfGamma) and calculator.history:
-        overlap, orbitals = calculator.history[-1]
-        groups["last"] = {
-            "overlap": Dataset(overlap, "1", "overlap of the basis", ("orbital", "orbital")),
-            "orbitals": Dataset(orbitals, "1", "coefficients of the occupied orbitals", ("orbital", "occupied")),
-        }
-    write_h5(path, groups, {}, provenance)
-
-
-def start_from(calculator: Calculator, path: str | Path) -> None:
-    """Let a calculator start from what `write_start` kept."""
-    groups = load_h5(path)[0]
-    if isinstance(calculator, PyscfGamma) and "last" in groups:
-        calculator.history = [Solution(groups["last"]["overlap"], groups["last"]["orbitals"])]
 
 
 class ScfStore(MutableMapping[str, dict[str, np.ndarray]]):

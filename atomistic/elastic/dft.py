@@ -7,15 +7,14 @@ the number of grid points jumps along E(V) and so does the energy.
 
 import hashlib
 from collections.abc import MutableMapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from ase import Atoms
 from ase.calculators.calculator import CalculationFailed, Calculator, all_changes
-from ase.stress import full_3x3_to_voigt_6_stress
 from ase.units import Bohr, Hartree
 
-from atomistic.errors import InputError
 from atomistic.settings import DftSettings
 
 FUNCTIONALS = {
@@ -27,15 +26,36 @@ FUNCTIONALS = {
 Store = MutableMapping[str, dict[str, np.ndarray]]
 """Finished calculations by key; the caller decides whether it lives in memory or on disk."""
 
-ENERGY_TOLERANCE_HA = 1e-6  # of the SCF, per cell; B of β-Si3N4 is then within 0.01 % of its value at 1e-8
-FORCES_TOLERANCE_HA = 1e-7  # the same where forces or stress are computed
-MAX_CYCLES = 50  # of an SCF; a glass with a gap takes 8 to 14
-COARSE = 0.6  # mesh on which an SCF without a former one starts, over the mesh itself: a fifth of the points
-COARSE_TOLERANCE_HA = 1e-3
-SINGLE_PRECISION_HA = 1e-7  # SCF tolerance from which orbitals on the grid need no double precision
-ROUNDING_HA = 5e-8  # per atom: the energy's jitter from cycle to cycle in single precision stays below it
-HISTORY = 5  # former solutions a start is extrapolated from
-GUESS_DAMPING = 1e-7  # of the weights' normal equations
+
+@dataclass(frozen=True)
+class ScfNumerics:
+    """How tightly energies converge; no scene sets it.
+
+    Attributes
+    ----------
+    energy_tolerance_Ha : of the SCF, per cell; B of β-Si3N4 is then within 0.01 % of its value at 1e-8
+    forces_tolerance_Ha : the same where forces are computed
+    max_cycles : of an SCF; a glass with a gap takes 8 to 14
+    coarse : mesh on which an SCF without a former one starts, over the mesh itself: a fifth of the points
+    coarse_tolerance_Ha : of that start
+    single_precision_Ha : SCF tolerance from which orbitals on the grid need no double precision
+    rounding_Ha : per atom: the energy's jitter from cycle to cycle in single precision stays below it
+    history : former solutions a start is extrapolated from
+    guess_damping : of the weights' normal equations
+    """
+
+    energy_tolerance_Ha: float = 1e-6
+    forces_tolerance_Ha: float = 1e-7
+    max_cycles: int = 50
+    coarse: float = 0.6
+    coarse_tolerance_Ha: float = 1e-3
+    single_precision_Ha: float = 1e-7
+    rounding_Ha: float = 5e-8
+    history: int = 5
+    guess_damping: float = 1e-7
+
+
+SCF = ScfNumerics()
 
 
 class Solution(NamedTuple):
@@ -107,7 +127,7 @@ class PyscfGamma(Calculator):
 
     parameters: Any  # a dictionary with attributes (ASE)
 
-    implemented_properties = ["energy", "forces", "stress"]  # noqa: RUF012 (ASE's interface)
+    implemented_properties = ["energy", "forces"]  # noqa: RUF012 (ASE's interface)
     default_parameters: dict[str, Any] = {  # noqa: RUF012
         "xc": "GGA",
         "basis": "gth-dzvp-molopt-sr",
@@ -130,7 +150,7 @@ class PyscfGamma(Calculator):
         assert self.atoms is not None
         p = self.parameters
         mesh = p.mesh or commensurate_mesh(self.atoms.cell.array, p.cutoff_Ha)
-        wanted = next((name for name in ("stress", "forces") if name in properties), "energy")
+        wanted = "forces" if "forces" in properties else "energy"
         key = self._key(mesh, wanted)
         if key not in self.store:
             self.store[key] = self._solve(mesh, wanted)
@@ -141,13 +161,11 @@ class PyscfGamma(Calculator):
         if not bool(solved["converged"]):
             self.history = []
             raise ScfNotConverged(f"SCF not converged in {p.max_cycles} cycles (gap {self.gap_eV:.2f} eV)")
-        self.history = [*self.history, Solution(solved["overlap"], solved["orbitals"])][-HISTORY:]
+        self.history = [*self.history, Solution(solved["overlap"], solved["orbitals"])][-SCF.history :]
         energy = float(solved["energy_Ha"]) * Hartree
         self.results: dict[str, Any] = {"energy": energy, "free_energy": energy}
-        if wanted != "energy":
+        if wanted == "forces":
             self.results["forces"] = solved["forces"] * Hartree / Bohr
-        if wanted == "stress":
-            self.results["stress"] = full_3x3_to_voigt_6_stress(solved["stress"] * Hartree / Bohr**3)
 
     def check_state(self, atoms, tol=1e-15):
         return super().check_state(atoms, tol=tol)
@@ -173,9 +191,9 @@ class PyscfGamma(Calculator):
         mf: Any = dft.RKS(cell)
         mf.xc = FUNCTIONALS[p.xc][0]
         mf.verbose = 0
-        single = p.tolerance_Ha >= SINGLE_PRECISION_HA
+        single = p.tolerance_Ha >= SCF.single_precision_Ha
         # the gradient feels no rounding and decides: its square is about the error of the energy
-        mf.conv_tol = max(p.tolerance_Ha, ROUNDING_HA * cell.natm) if single else p.tolerance_Ha
+        mf.conv_tol = max(p.tolerance_Ha, SCF.rounding_Ha * cell.natm) if single else p.tolerance_Ha
         mf.conv_tol_grad = np.sqrt(p.tolerance_Ha) * (1 if single else 10)
         mf.max_cycle = p.max_cycles
         mf.conv_check = False  # the extra cycle after convergence would change the energy by less than the tolerance
@@ -199,11 +217,8 @@ class PyscfGamma(Calculator):
             "overlap": overlap,
             "gap_Ha": np.array(levels[~filled].min() - levels[filled].max() if not filled.all() else np.inf),
         }
-        if wanted == "energy" or not converged:
-            return solved
-        solved["forces"], stress = mf._numint.forces_and_stress(mf, with_stress=wanted == "stress")
-        if stress is not None:
-            solved["stress"] = stress
+        if wanted == "forces" and converged:
+            solved["forces"] = mf._numint.forces(mf)
         return solved
 
     @staticmethod
@@ -219,105 +234,35 @@ class PyscfGamma(Calculator):
         c = extrapolated_orbitals([old for old in self.history if old.orbitals.shape == shape], overlap)
         if c is not None:
             return lib.tag_array(2 * c @ c.T, mo_coeff=c, mo_occ=np.full(c.shape[1], 2.0))
-        coarse = self._mean_field(tuple(int(np.ceil(COARSE * n)) for n in cell.mesh))
+        coarse = self._mean_field(tuple(int(np.ceil(SCF.coarse * n)) for n in cell.mesh))
         self._keep_overlap(coarse, overlap)
-        coarse.conv_tol, coarse.conv_tol_grad = COARSE_TOLERANCE_HA, 10 * np.sqrt(COARSE_TOLERANCE_HA)
+        coarse.conv_tol, coarse.conv_tol_grad = SCF.coarse_tolerance_Ha, 10 * np.sqrt(SCF.coarse_tolerance_Ha)
         coarse.kernel()  # where it does not converge the fine mesh goes on from where it ended
         return coarse.make_rdm1()
 
 
 def make_calculator(
-    dft: DftSettings,
-    xc: str,
-    largest_cell: np.ndarray,
-    store: Store | None = None,
-    cutoff_Ha: float | None = None,
-    forces: bool = False,
-) -> Calculator:
+    dft: DftSettings, xc: str, largest_cell: np.ndarray, store: Store | None = None, forces: bool = False
+) -> PyscfGamma:
     """The DFT engine of the settings.
 
     Parameters
     ----------
     xc : "GGA" or "LDA"
     largest_cell : (3, 3) Å; the mesh is fixed to what this cell needs, so that it does not jump along a scan
-    store, cutoff_Ha : finished calculations, and a cut-off in place of that of the settings (PySCF only)
+    store : finished calculations
     forces : whether forces are wanted, not only energies
     """
-    if dft.engine == "pyscf":
-        cutoff_Ha = cutoff_Ha or (dft.forces_cutoff_Ha if forces else dft.cutoff_Ha)
-        return PyscfGamma(
-            store=store,
-            xc=xc,
-            basis=dft.basis,
-            cutoff_Ha=cutoff_Ha,
-            mesh=commensurate_mesh(largest_cell, cutoff_Ha),
-            tolerance_Ha=FORCES_TOLERANCE_HA if forces else ENERGY_TOLERANCE_HA,
-            max_cycles=MAX_CYCLES,
-        )
-    from ase.calculators.calculator import get_calculator_class
-
-    try:
-        parameters: dict[str, Any] = dict(dft.parameters)
-        return get_calculator_class(dft.engine)(**parameters)
-    except Exception as error:
-        raise InputError(f"elastic.dft.engine: ASE cannot set up {dft.engine}: {error}") from error
-
-
-class ShiftedMesh(Calculator):
-    """An engine whose mesh lies aside by a share of its step along every lattice vector.
-
-    Attributes
-    ----------
-    engine : shared with other shifts, so that each calculation starts from the orbitals of all
-    """
-
-    implemented_properties = PyscfGamma.implemented_properties
-
-    def __init__(self, engine: PyscfGamma, share: float):
-        super().__init__()
-        self.engine, self.share = engine, share
-
-    def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes):
-        super().calculate(atoms, properties, system_changes)
-        assert self.atoms is not None
-        p = self.engine.parameters
-        mesh = np.array(p.mesh or commensurate_mesh(self.atoms.cell.array, p.cutoff_Ha))
-        moved = self.atoms.copy()
-        moved.positions += self.share / mesh @ self.atoms.cell.array
-        self.engine.calculate(moved, properties, all_changes)
-        self.results = self.engine.results
-
-
-class TwoMeshes(Calculator):
-    """Means of an engine's energy, forces and stress on its mesh and on the mesh half a step aside.
-
-    On a mesh the energy ripples as an atom moves through it, most where the pseudopotential is hard.  Half a step along
-    every lattice vector turns the sign of the ripple's first harmonic, so the mean does not have it; a mesh so fine
-    that the ripple vanishes would cost more than two coarse ones.
-
-    Attributes
-    ----------
-    sides : the engine on either mesh
-    """
-
-    implemented_properties = PyscfGamma.implemented_properties
-
-    def __init__(self, engine: PyscfGamma):
-        super().__init__()
-        self.sides = (ShiftedMesh(engine, 0.0), ShiftedMesh(engine, 0.5))
-
-    @property
-    def gap_eV(self) -> float:
-        """Of the last calculation."""
-        return self.sides[0].engine.gap_eV
-
-    def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes):
-        super().calculate(atoms, properties, system_changes)
-        both = []
-        for side in self.sides:
-            side.calculate(self.atoms, properties, system_changes)
-            both.append(side.results)
-        self.results = {name: 0.5 * (both[0][name] + both[1][name]) for name in both[0]}
+    cutoff_Ha = dft.forces_cutoff_Ha if forces else dft.cutoff_Ha
+    return PyscfGamma(
+        store=store,
+        xc=xc,
+        basis=dft.basis,
+        cutoff_Ha=cutoff_Ha,
+        mesh=commensurate_mesh(largest_cell, cutoff_Ha),
+        tolerance_Ha=SCF.forces_tolerance_Ha if forces else SCF.energy_tolerance_Ha,
+        max_cycles=SCF.max_cycles,
+    )
 
 
 def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> np.ndarray | None:
@@ -336,7 +281,7 @@ def extrapolated_orbitals(history: Sequence[Solution], overlap: np.ndarray) -> n
         wanted = (overlap - last.overlap).ravel()
         gram = known @ known.T
         # also by the size of what is wanted: former geometries that differ by rounding alone get no weight
-        gram += GUESS_DAMPING * (np.trace(gram) + wanted @ wanted) * np.eye(len(older))
+        gram += SCF.guess_damping * (np.trace(gram) + wanted @ wanted) * np.eye(len(older))
         weights = np.linalg.lstsq(gram, known @ wanted)[0]  # tolerates repeated geometries
         c = (1 - weights.sum()) * c
         for weight, old in zip(weights, older, strict=True):

@@ -1,27 +1,27 @@
 """Energy-volume scans E(V) under isotropic strain, and the bulk modulus of each.
 
 Ions keep their fractional coordinates (they are "clamped": every bond scales), as in the paper.  A glass whose ions
-follow the strain is softer: its elastic constants (`atomistic.elastic.constants`) say by how much.
+follow the strain is softer.
 """
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from ase import Atoms
 from ase.calculators.calculator import CalculationFailed, Calculator
 
+from atomistic.elastic.dft import Solution, Store, make_calculator
 from atomistic.elastic.equation_of_state import MIN_POINTS, fit_equation_of_state
 from atomistic.elastic.relaxation import strained
-
-Progress = Callable[[float, str], None]
-LDA_CENTRE = -0.012  # strain about which LDA is scanned: its volume is some 4 % smaller than that of GGA
+from atomistic.lammps import Progress
+from atomistic.settings import DftSettings
 
 
 @dataclass(frozen=True)
-class Point:
+class ScanPoint:
     """One volume of an E(V) scan; `energy_eV` is NaN where the calculation failed, and `detail` says why."""
 
     strain: float
@@ -34,13 +34,13 @@ class Point:
 
 def scan_volumes(
     atoms: Atoms, calculator: Calculator, strains: Sequence[float], progress: Progress | None = None
-) -> list[Point]:
+) -> list[ScanPoint]:
     """Energy of a structure at each isotropic strain, ions clamped.
 
     The smallest strain comes first, then they go outwards: each calculation starts from its neighbours'.  One that
     fails is reported in its point and the scan goes on.
     """
-    points: dict[float, Point] = {}
+    points: dict[float, ScanPoint] = {}
     for strain in sorted(strains, key=lambda strain: (abs(strain), -strain)):
         if progress:
             progress(len(points) / len(strains), f"strain {strain:+.3f}")
@@ -53,14 +53,39 @@ def scan_volumes(
         except (CalculationFailed, NotImplementedError, np.linalg.LinAlgError, FloatingPointError) as error:
             detail = f"strain {strain:+.3f}: {error}"
         seconds = time.perf_counter() - start
-        points[strain] = Point(strain, float(trial.get_volume()), energy, not detail, seconds, detail)
+        points[strain] = ScanPoint(strain, float(trial.get_volume()), energy, not detail, seconds, detail)
     return [points[strain] for strain in sorted(points)]
 
 
-def rejected_points(atoms: Atoms, strains: Sequence[float], reason: str) -> list[Point]:
-    """The scan of a structure that failed its gate: nothing computed, the reason in every point."""
-    volumes = [float(strained(atoms, strain).get_volume()) for strain in strains]
-    return [Point(s, v, float("nan"), False, 0.0, reason) for s, v in zip(strains, volumes, strict=True)]
+def scan_rows(
+    name: str,
+    atoms: Atoms,
+    xc: str,
+    dft: DftSettings,
+    strains: Sequence[float],
+    store: Store | None = None,
+    start: Sequence[Solution] = (),
+    rejected: str = "",
+    progress: Progress | None = None,
+) -> list[dict[str, Any]]:
+    """Rows of elastic/points.csv of one structure and functional.
+
+    Parameters
+    ----------
+    start : former solutions to start from
+    rejected : why the structure failed its gate: nothing is computed, and every row says so
+    """
+    if xc == "LDA":
+        atoms = strained(atoms, -0.012)  # its volume is some 4 % smaller than that of GGA
+    if rejected:
+        volumes = [float(strained(atoms, strain).get_volume()) for strain in strains]
+        points = [ScanPoint(s, v, float("nan"), False, 0.0, rejected) for s, v in zip(strains, volumes, strict=True)]
+    else:
+        calculator = make_calculator(dft, xc, atoms.cell.array * (1 + max(strains)), store)
+        calculator.history = list(start)
+        points = scan_volumes(atoms, calculator, strains, progress)
+    head = {"structure": name, "xc": xc, "ions": "clamped", "atoms": len(atoms)}
+    return [{**head, **asdict(point)} for point in points]
 
 
 def fit_scan(scan: Sequence[Mapping[str, str]]) -> dict[str, Any]:

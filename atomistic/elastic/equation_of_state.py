@@ -48,16 +48,6 @@ class EquationOfState:
     points: int
     flags: tuple[str, ...]
 
-    @property
-    def trusted(self) -> bool:
-        return not self.flags
-
-
-def birch_murnaghan(volume, V0, E0, B, B_prime):
-    """E(V) in eV; B in eV/Å³."""
-    x = (V0 / np.asarray(volume)) ** (2 / 3)
-    return E0 + 9 / 16 * V0 * B * ((x - 1) ** 3 * B_prime + (x - 1) ** 2 * (6 - 4 * x))
-
 
 def vinet(volume, V0, E0, B, B_prime):
     """E(V) in eV; B in eV/Å³."""

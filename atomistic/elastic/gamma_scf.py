@@ -11,7 +11,7 @@ with the GTH local pseudopotential v_loc, v_Hartree and all gradients by FFT.  F
 exactly, on the same grid.  For GGA, ∇ρ here is the derivative of the gridded density (as in PySCF's multigrid and
 in plane-wave codes), whereas FFTDF takes it from orbital gradients: the two differ by the error of the mesh.
 Because gradient and divergence are each other's negative adjoints on the grid, V is the exact derivative of the
-discrete energy, and so are forces and stress.  Atomic units throughout.
+discrete energy, and so are forces.  Atomic units throughout.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -24,14 +24,11 @@ from pyscf.pbc.gto import ewald_methods
 from pyscf.pbc.gto.pseudo import pp_int
 from pyscf.pbc.lib.kpts_helper import is_gamma_point
 
-from atomistic.elastic.orbitals_on_grid import atom_orbitals, collocate, pulay_terms
+from atomistic.elastic.orbitals_on_grid import atom_orbitals, collocate, pulay_term
 
 if TYPE_CHECKING:
     from pyscf.pbc.gto import Cell
 
-STEP_OF_K = 1e-4  # 1/bohr; the error of a slope by it is (step × 30 bohr)²/6, some 1e-6
-STEP_OF_STRAIN = 1e-4
-PROJECTOR_SLOPES = ("int1e_ipovlp", "int1e_r2_origi_ip2", "int1e_r4_origi_ip2")  # <p|∇µ>; the first <∇p|µ>
 LAG = 0.002  # share of the electrons that may have moved since the last full matrix; 0.02 costs a cycle now and then
 BLOCK = 4096  # grid points per matrix product: a block of 364 orbitals stays in the cache
 
@@ -67,7 +64,7 @@ class CachedGrid(MultiGridNumInt2):
         self.wave_vectors = _wave_vectors(cell, self.mesh)
         g2 = np.einsum("xijk,xijk->ijk", self.wave_vectors[1], self.wave_vectors[1])
         self.coulomb = np.divide(4 * np.pi, g2, out=np.zeros_like(g2), where=g2 > 0)
-        self.local_form = {s: local_pseudopotential(cell._pseudo[s], g2)[0] for s in cell._pseudo}
+        self.local_form = {s: local_pseudopotential(cell._pseudo[s], g2) for s in cell._pseudo}
         local = np.zeros(g2.shape, dtype=complex)
         for atom in range(cell.natm):
             local += self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
@@ -197,25 +194,18 @@ class CachedGrid(MultiGridNumInt2):
     def get_pp(self, kpts=None, return_full=False):
         return np.asarray(pp_int.get_pp_nl(self.cell)).real
 
-    # -- forces and stress
-    def forces_and_stress(self, mf: Any, with_stress: bool = True) -> tuple[np.ndarray, np.ndarray | None]:
-        """Forces (atoms, 3), hartree/bohr, and the stress dE/dε / V, (3, 3), hartree/bohr³, tension positive.
+    # -- forces
+    def forces(self, mf: Any) -> np.ndarray:
+        """Forces (atoms, 3), hartree/bohr: the exact derivative of the discrete energy.
 
-        Both are exact derivatives of the discrete energy.  The grid breaks translation symmetry a little ("egg box"),
-        so forces sum to ~1e-3: their mean is subtracted.
-        The strain moves grid, ions and orbitals together at fixed fractional coordinates, as a scan on a fixed mesh
-        does, so the stress is the exact slope of such a scan.
+        The grid breaks translation symmetry a little ("egg box"), so forces sum to ~1e-3: their mean is subtracted.
         """
         cell = self.cell
         dm = np.asarray(mf.make_rdm1())
         energy_weighted = (mf.mo_coeff * (mf.mo_occ * mf.mo_energy)) @ mf.mo_coeff.T
-        # Γ, and for the stress a small step along each axis of k: Σ_L L <∇µ|ν_L> is the slope of Σ_L exp(ikL) <∇µ|ν_L>
-        k_points = np.vstack([np.zeros(3), STEP_OF_K * np.eye(3)]) if with_stress else np.zeros((1, 3))
-        by_ion, strained = nonlocal_slopes(cell, dm, k_points)
-        gradient = ewald_methods.ewald_nuc_grad(cell) + by_ion
+        gradient = ewald_methods.ewald_nuc_grad(cell) + nonlocal_slopes(cell, dm)
         kinetic, overlap = (  # hermi 2: antihermitian, so PySCF computes half
-            [-np.asarray(m) for m in cell.pbc_intor(name, hermi=2, kpts=k_points)]
-            for name in ("int1e_ipkin", "int1e_ipovlp")
+            -np.asarray(cell.pbc_intor(name, hermi=2)) for name in ("int1e_ipkin", "int1e_ipovlp")
         )
         factor, _ = self.occupied_orbitals(mf.make_rdm1())
         rho = self.density(mf.make_rdm1())
@@ -230,152 +220,70 @@ class CachedGrid(MultiGridNumInt2):
             twice[-1] = 1.0
         for atom in range(cell.natm):
             a, b = slices[atom, 2:]
-            gradient[atom] += 2 * np.einsum("xuv,uv->x", np.real(kinetic[0][:, a:b]), dm[a:b])
-            gradient[atom] -= 2 * np.einsum("xuv,uv->x", np.real(overlap[0][:, a:b]), energy_weighted[a:b])
-            pulay = pulay_terms(
+            gradient[atom] += 2 * np.einsum("xuv,uv->x", np.real(kinetic[:, a:b]), dm[a:b])
+            gradient[atom] -= 2 * np.einsum("xuv,uv->x", np.real(overlap[:, a:b]), energy_weighted[a:b])
+            gradient[atom] -= 2 * pulay_term(
                 self.atoms[atom], self.lattice, tuple(self.mesh), factor[a:b].astype(self.precision) @ waves
             )
-            gradient[atom] -= 2 * pulay[0]
-            strained += 2 * pulay[1:]
             form = self.local_form[cell.atom_symbol(atom)] * self._phase(cell.atom_coords()[atom])
             product = np.imag(form * spectrum.conj()) * twice
             gradient[atom] += np.einsum("xijk,ijk->x", self.wave_vectors[1], product) / self.points
-        forces = -(gradient - gradient.mean(axis=0))
-        if not with_stress:
-            return forces, None
-        strained += self._strain_slope_of_pairs(kinetic, dm) - self._strain_slope_of_pairs(overlap, energy_weighted)
-        strained += self._strain_slope_of_fields(mf.xc, rho, spectrum, twice)
-        strained += self._strain_slope_of_ions()
-        return forces, (strained + strained.T) / (2 * cell.vol)
-
-    def _strain_slope_of_pairs(self, slopes: list[np.ndarray], dm: np.ndarray) -> np.ndarray:
-        """dE/dε of Σ D <µ|O|ν>, where O is 1 or the kinetic energy: from the vectors between µ and ν.
-
-        Parameters
-        ----------
-        slopes : derivatives by the position of µ at Γ and a small step along each axis of k, (3, orbitals, orbitals)
-        """
-        centres = self.cell.atom_coords()[orbital_atoms(self.cell)]
-        at_gamma = np.real(slopes[0]) * dm
-        total = (at_gamma.sum(axis=1) - at_gamma.sum(axis=2)) @ centres
-        for axis, matrix in enumerate(slopes[1:]):
-            total[:, axis] += np.einsum("xuv,uv->x", np.imag(matrix), dm) / STEP_OF_K
-        return -total  # towards µ is away from ν
-
-    def _strain_slope_of_fields(self, xc_code: str, rho: np.ndarray, spectrum: np.ndarray, twice: np.ndarray):
-        """dE/dε of Hartree, local pseudopotential and exchange-correlation with the values of ρ on the grid held.
-
-        Parameters
-        ----------
-        spectrum, twice : half spectrum of ρ, and how many wave vectors each plane of it stands for
-        """
-        g = self.wave_vectors[1]
-        g2 = np.einsum("xijk,xijk->ijk", g, g)
-        # energies per G² as (d/dG²) times -2 G_a G_b
-        coulomb = self.coulomb * abs(spectrum) ** 2 * twice * (self.weight / self.points)
-        by_g2 = -0.5 * np.divide(coulomb, g2, out=np.zeros_like(g2), where=g2 > 0)
-        slope = {s: local_pseudopotential(self.cell._pseudo[s], g2)[1] for s in self.cell._pseudo}
-        for atom in range(self.cell.natm):
-            form = slope[self.cell.atom_symbol(atom)] * self._phase(self.cell.atom_coords()[atom])
-            by_g2 += np.real(form * spectrum.conj()) * twice / self.points
-        total = -2 * np.einsum("ijk,xijk,yijk->xy", by_g2, g, g, optimize=True)
-        total += 0.5 * coulomb.sum() * np.eye(3)
-        if self._xc_type(xc_code) == "LDA":
-            energy = self.eval_xc_eff(xc_code, rho, deriv=0, xctype="LDA")[0]
-        else:
-            fields = np.concatenate([rho[None], self.gradient(rho)])
-            energy, potential = self.eval_xc_eff(xc_code, fields, deriv=1, xctype="GGA")[:2]
-            total -= self.weight * fields[1:] @ potential[1:4].T
-        return total + self.weight * (rho @ energy) * np.eye(3)
-
-    def _strain_slope_of_ions(self) -> np.ndarray:
-        """dE/dε of the ions' Coulomb energy, by central differences."""
-        total = np.zeros((3, 3))
-        for a, b in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)):
-            for sign in (1, -1):
-                strain = np.eye(3)
-                strain[a, b] += 0.5 * sign * STEP_OF_STRAIN
-                strain[b, a] += 0.5 * sign * STEP_OF_STRAIN
-                cell = self.cell.set_geom_(
-                    self.cell.atom_coords() @ strain, "B", a=self.lattice @ strain, inplace=False
-                )
-                total[a, b] += 0.5 * sign * cell.energy_nuc() / STEP_OF_STRAIN
-        return total + np.triu(total, 1).T
+        return -(gradient - gradient.mean(axis=0))
 
 
-def nonlocal_slopes(cell: Any, dm: np.ndarray, k_points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """dE/dR of every ion and dE/dε of E = Σ D_µν <µ|p> h <p|ν> (Hartwigsen et al., PRB 58, 3641 (1998)).
+def nonlocal_slopes(cell: Any, dm: np.ndarray) -> np.ndarray:
+    """dE/dR of every ion of E = Σ D_µν <µ|p> h <p|ν> (Hartwigsen et al., PRB 58, 3641 (1998)), (ions, 3) hartree/bohr.
 
-    An overlap of a projector and an orbital depends on the vector between their centres alone.  Under a strain that
-    vector changes by ε times itself; the lattice vectors in it come from the slope by k of the Bloch sums.
+    An overlap of a projector and an orbital depends on the vector between their centres alone.
 
     Parameters
     ----------
     cell : PySCF's
     dm : density matrix, (orbitals, orbitals)
-    k_points : Γ, and where the strain is asked for a small step along each axis, 1/bohr
-
-    Returns
-    -------
-    (ions, 3) hartree/bohr and (3, 3) hartree, zero for Γ alone
     """
     projectors, strengths = pp_int.fake_cell_vnl(cell)
-    overlaps = pp_int._int_vnl(cell, projectors, strengths, k_points[:1])
-    slopes = pp_int._int_vnl(cell, projectors, strengths, k_points, PROJECTOR_SLOPES, 3)
-    centres, atoms = cell.atom_coords(), orbital_atoms(cell)
-    by_ion, by_strain = np.zeros((cell.natm, 3)), np.zeros((3, 3))
+    gamma = np.zeros((1, 3))
+    overlaps = pp_int._int_vnl(cell, projectors, strengths, gamma)
+    # <p|∇µ>; the first <∇p|µ>
+    slopes = pp_int._int_vnl(
+        cell, projectors, strengths, gamma, ("int1e_ipovlp", "int1e_r2_origi_ip2", "int1e_r4_origi_ip2"), 3
+    )
+    atoms = np.repeat(np.arange(cell.natm), np.diff(cell.aoslice_by_atom()[:, 2:]).ravel())  # of every orbital
+    by_ion = np.zeros((cell.natm, 3))
     taken = [0, 0, 0]
     for block, strength in enumerate(strengths):
         rows = []
         for i in range(len(strength)):
             rows.append(slice(taken[i], taken[i] + 2 * projectors.bas_angular(block) + 1))
             taken[i] = rows[i].stop
-        ion = projectors.bas_atom(block)
         onto = [np.real(overlaps[j][0][rows[j]]) @ dm for j in range(len(strength))]
         for i, row in enumerate(rows):
             # 2 from bra and ket; the orbital's centre moves against ∇µ
             weight = (-2 if i else 2) * sum(h * part for h, part in zip(strength[i], onto, strict=True))
             per_orbital = np.einsum("xpu,pu->ux", np.real(slopes[i][0][:, row]), weight)
             np.add.at(by_ion, atoms, per_orbital)
-            by_ion[ion] -= per_orbital.sum(axis=0)
-            by_strain += per_orbital.T @ (centres[atoms] - centres[ion])
-            for axis, slope in enumerate(slopes[i][1:]):
-                by_strain[:, axis] += np.einsum("xpu,pu->x", np.imag(slope[:, row]), weight) / STEP_OF_K
-    return by_ion, by_strain
+            by_ion[projectors.bas_atom(block)] -= per_orbital.sum(axis=0)
+    return by_ion
 
 
-def orbital_atoms(cell: Any) -> np.ndarray:
-    """The atom of every orbital, (orbitals,)."""
-    return np.repeat(np.arange(cell.natm), np.diff(cell.aoslice_by_atom()[:, 2:]).ravel())
-
-
-def local_pseudopotential(pseudo: list, g2: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Fourier transform of the local GTH pseudopotential, and its derivative by the squared length of G.
-
-    Goedecker et al., PRB 54, 1703 (1996), eq. 5.
+def local_pseudopotential(pseudo: list, g2: np.ndarray) -> np.ndarray:
+    """Fourier transform of the local GTH pseudopotential (Goedecker et al., PRB 54, 1703 (1996), eq. 5).
 
     Parameters
     ----------
     pseudo : PySCF's parsed GTH entry
-    g2 : squared length of G, 1/bohr²; at G = 0 the divergence is left out (it cancels against Hartree and Ewald terms),
-        and the derivative is zero
+    g2 : squared length of G, 1/bohr²; at G = 0 the divergence is left out (it cancels against Hartree and Ewald terms)
     """
     charge = sum(pseudo[0])
     radius, n, c = pseudo[1:4]
     c = list(c[:n]) + [0.0] * (4 - n)
     x2 = g2 * radius**2
     polynomial = c[0] + c[1] * (3 - x2) + c[2] * (15 - 10 * x2 + x2**2) + c[3] * (105 - 105 * x2 + 21 * x2**2 - x2**3)
-    slope = -c[1] + c[2] * (2 * x2 - 10) + c[3] * (42 * x2 - 105 - 3 * x2**2)
     gauss = np.exp(-0.5 * x2)
     coulomb = np.divide(
         -4 * np.pi * charge * gauss, g2, out=np.full_like(g2, 2 * np.pi * charge * radius**2), where=g2 > 0
     )
-    inverse = np.divide(1.0, g2, out=np.zeros_like(g2), where=g2 > 0)
-    coulomb_slope = 4 * np.pi * charge * gauss * inverse * (0.5 * radius**2 + inverse)
-    return (
-        coulomb + (2 * np.pi) ** 1.5 * radius**3 * gauss * polynomial,
-        coulomb_slope + (2 * np.pi) ** 1.5 * radius**5 * gauss * (slope - 0.5 * polynomial),
-    )
+    return coulomb + (2 * np.pi) ** 1.5 * radius**3 * gauss * polynomial
 
 
 def _wave_vectors(cell: "Cell", mesh: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -15,16 +15,10 @@ from ase import Atoms
 from ase.data import atomic_numbers
 
 from atomistic.constants import AMU_PER_A3_IN_G_CM3
-from atomistic.covalent import core_commands, random_places, tersoff_table
+from atomistic.covalent import QUENCH, core_commands, random_places, tersoff_table
 from atomistic.errors import InputError
-from atomistic.materials import SEARCHED_A, Material, NetworkGlass, Supercell, Tersoff
+from atomistic.materials import SEARCHED_A, Material, NetworkGlass, Supercell
 from atomistic.settings import NitrideGlassSettings
-
-START_DISTANCE_A = 1.4  # random start: nothing closer than this
-MELT_K, MELT_PS, FINAL_K = 5000.0, 3.0, 300.0
-TIMESTEP_FS = 1.0
-ATTEMPTS = 1000  # quenches until one passes the gates; of 28 atoms about one in sixty does
-FREE_BELOW_K = 2500.0  # a melt has no shape to keep; below this its network can still change and settles as a glass
 
 
 def crystal(material: Material, name: str, supercell: Supercell | None = None) -> Atoms:
@@ -60,8 +54,8 @@ def crystal(material: Material, name: str, supercell: Supercell | None = None) -
 
 
 @dataclass(frozen=True)
-class Gate:
-    """Verdict on a structure: measured numbers and, if it failed, the reasons."""
+class NetworkVerdict:
+    """Measured numbers of a structure and, if it failed, the reasons."""
 
     density_g_cm3: float
     coordination: dict[str, float]
@@ -71,12 +65,19 @@ class Gate:
     defects: int
     reasons: tuple[str, ...]
 
-    @property
-    def passed(self) -> bool:
-        return not self.reasons
+    def columns(self) -> dict[str, Any]:
+        """The numbers as columns of a table, in the order of its schema."""
+        return {
+            "density_g_cm3": self.density_g_cm3,
+            **{f"coordination_{element}": value for element, value in self.coordination.items()},
+            **{f"shortest_{pair}_A": value for pair, value in self.shortest_A.items()},
+            "bond_spread_A": self.bond_spread_A,
+            "symmetry_operations": self.symmetry_operations,
+            "defects": self.defects,
+        }
 
 
-def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None) -> Gate:
+def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None) -> NetworkVerdict:
     """Measure density, coordination, shortest distances and symmetry and hold them against `criteria`.
 
     Parameters
@@ -117,7 +118,7 @@ def examine(atoms: Atoms, criteria: NetworkGlass, max_defects: int | None = None
     operations = symmetry_operations(atoms, criteria.symmetry_tolerance_A)
     if operations > 1:
         reasons.append(f"{operations} symmetry operations: a crystal")
-    return Gate(density, coordination, shortest, spread, operations, defects, tuple(reasons))
+    return NetworkVerdict(density, coordination, shortest, spread, operations, defects, tuple(reasons))
 
 
 def symmetry_operations(atoms: Atoms, tolerance_A: float) -> int:
@@ -151,17 +152,6 @@ def no_insulator(gap_eV: float, criteria: NetworkGlass) -> list[str]:
     return [f"gap {gap_eV:.2f} eV: no insulator"] if gap_eV < criteria.gap_eV else []
 
 
-def tersoff_calculator(parameters: Tersoff):
-    """The same potential as an ASE calculator (slow, but in-process: Hessians, checks on crystals)."""
-    from ase.calculators.tersoff import Tersoff, TersoffParameters
-
-    table = {}
-    for line in tersoff_table(parameters).splitlines()[1:]:
-        i, j, k, *numbers = line.split()
-        table[(i, j, k)] = TersoffParameters(*map(float, numbers))
-    return Tersoff(table)
-
-
 def random_structure(
     formula: Mapping[str, int], units: int, density_g_cm3: float, seed: int, edges: Sequence[float] = (1, 1, 1)
 ) -> Atoms:
@@ -172,7 +162,7 @@ def random_structure(
     edge = shape * (atoms.get_masses().sum() * AMU_PER_A3_IN_G_CM3 / density_g_cm3 / shape.prod()) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 5]))
     atoms.set_cell(edge)
-    atoms.positions = random_places(len(symbols), edge, START_DISTANCE_A, rng)
+    atoms.positions = random_places(len(symbols), edge, QUENCH.start_distance_A, rng)
     return atoms
 
 
@@ -198,9 +188,9 @@ def make_glass(
     """
     attempts: list[dict[str, Any]] = []
     atoms, network = Atoms(), material.part("network_glass")
-    for attempt in range(ATTEMPTS):
+    for attempt in range(QUENCH.attempts):
         if progress:
-            progress(attempt / ATTEMPTS, f"melt and quench, attempt {attempt + 1}")
+            progress(attempt / QUENCH.attempts, f"melt and quench, attempt {attempt + 1}")
         quench_seed = int(np.random.SeedSequence([seed, attempt]).generate_state(1)[0] % 900_000_000) + 1
         atoms = quench(material, settings, quench_seed, work)
         verdict = examine(atoms, network, settings.max_defects)
@@ -210,12 +200,7 @@ def make_glass(
         attempts.append(
             {
                 "attempt": attempt,
-                "density_g_cm3": verdict.density_g_cm3,
-                **{f"coordination_{e}": n for e, n in verdict.coordination.items()},
-                **{f"shortest_{p}_A": d for p, d in verdict.shortest_A.items()},
-                "bond_spread_A": verdict.bond_spread_A,
-                "symmetry_operations": verdict.symmetry_operations,
-                "defects": verdict.defects,
+                **verdict.columns(),
                 "status": "rejected: " + "; ".join(reasons) if reasons else "accepted",
             }
         )
@@ -227,8 +212,8 @@ def make_glass(
 def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: Path) -> Atoms:
     """One melt and quench, then ions and cell at rest together (LAMMPS, `protocols/nitride.in`).
 
-    Down to `FREE_BELOW_K` the volume is constant; below it volume and shape follow a pressure of zero.  In the box of
-    the melt a network is left under up to 30 GPa of shear stress, and slides far when it is let go.
+    Down to `QUENCH.free_below_K` the volume is constant; below it volume and shape follow a pressure of zero.  In the
+    box of the melt a network is left under up to 30 GPa of shear stress, and slides far when it is let go.
     """
     from ase.io import read
 
@@ -260,7 +245,7 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
         LammpsAtoms(elements, types, start.positions, np.diag(start.cell.array)),
         network.masses_u,
     )
-    steps_per_ps = 1000 / TIMESTEP_FS
+    steps_per_ps = 1000 / QUENCH.timestep_fs
     steps_per_K = steps_per_ps / settings.quench_rate_K_ps
     run_lammps(
         "nitride.in",
@@ -268,13 +253,13 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
         {
             "elements": " ".join(elements),
             "seed": seed,
-            "timestep": TIMESTEP_FS / 1000,
-            "melt": MELT_K,
-            "free": FREE_BELOW_K,
-            "final": FINAL_K,
-            "melt_steps": round(MELT_PS * steps_per_ps),
-            "quench_steps": round((MELT_K - FREE_BELOW_K) * steps_per_K),
-            "free_steps": round((FREE_BELOW_K - FINAL_K) * steps_per_K),
+            "timestep": QUENCH.timestep_fs / 1000,
+            "melt": QUENCH.melt_K,
+            "free": QUENCH.free_below_K,
+            "final": QUENCH.final_K,
+            "melt_steps": round(QUENCH.melt_ps * steps_per_ps),
+            "quench_steps": round((QUENCH.melt_K - QUENCH.free_below_K) * steps_per_K),
+            "free_steps": round((QUENCH.free_below_K - QUENCH.final_K) * steps_per_K),
         },
     )
     numbers = {kind: atomic_numbers[element] for kind, element in enumerate(elements, 1)}

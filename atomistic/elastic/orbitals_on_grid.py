@@ -1,5 +1,4 @@
-"""Contracted Gaussian orbitals on a uniform periodic grid: values, and the force and stress a potential
-exerts on them.
+"""Contracted Gaussian orbitals on a uniform periodic grid: values, and the force a potential exerts on them.
 
 Atomic units throughout (bohr, hartree).  The orbitals are PySCF's: real solid harmonics times contracted
 Gaussians, in PySCF's order, summed over all periodic images within `radius`.  Along a grid line the Gaussians
@@ -106,13 +105,12 @@ def collocate(
     return values
 
 
-def pulay_terms(
+def pulay_term(
     atom: AtomOrbitals, lattice: np.ndarray, mesh: tuple[int, int, int], potential_density: np.ndarray
 ) -> np.ndarray:
-    """What a potential does to the orbitals of one atom when it moves or the lattice is strained, shape (4, 3).
+    """What a potential does to the orbitals of one atom when it moves, shape (3,).
 
-    Row 0 is the sum over grid points and orbitals µ of ∇φ_µ(r) times the potential density of µ at r; row 1 + b is
-    the same sum weighted by component b of r as seen from the atom (bohr).
+    It is the sum over grid points and orbitals µ of ∇φ_µ(r) times the potential density of µ at r.
 
     Parameters
     ----------
@@ -265,7 +263,7 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
     longest = high[2] - low[2] + 2
     gaussians = np.empty((n_primitives, longest))
     f, slope, x, y, z, radial, gx, gy, gz, a0, a1, a2, a3, a4 = np.empty((14, longest))
-    total = np.zeros((4, 3))
+    total = np.zeros(3)
     for i in range(low[0], high[0] + 1):
         for j in range(low[1], high[1] + 1):
             origin, step, middle, begin, end = _closest(centre, lattice, mesh, i, j, radius)
@@ -326,22 +324,16 @@ def _contract_gradient(field, lattice, mesh, centre, exponents, angular, contrac
                 gx[k] += radial[k] * x[k]
                 gy[k] += radial[k] * y[k]
                 gz[k] += radial[k] * z[k]
-            _add_moments(total, 0, gx, x, y, z, n)
-            _add_moments(total, 1, gy, x, y, z, n)
-            _add_moments(total, 2, gz, x, y, z, n)
+            total[0] += _sum(gx, n)
+            total[1] += _sum(gy, n)
+            total[2] += _sum(gz, n)
     return total
 
 
 @numba.njit(cache=True, fastmath={"contract", "reassoc"}, error_model="numpy")
-def _add_moments(total, axis, slope, x, y, z, n):
-    """Add Σ slope and Σ slope (x, y, z) to the column `axis`."""
-    s = sx = sy = sz = 0.0
+def _sum(values, n):
+    """Sum of the first n values; in a loop of its own it is fast, and rounds as it always did."""
+    s = 0.0
     for k in range(n):
-        s += slope[k]
-        sx += slope[k] * x[k]
-        sy += slope[k] * y[k]
-        sz += slope[k] * z[k]
-    total[0, axis] += s
-    total[1, axis] += sx
-    total[2, axis] += sy
-    total[3, axis] += sz
+        s += values[k]
+    return s

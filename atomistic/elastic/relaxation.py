@@ -1,17 +1,34 @@
-"""Relaxation of the ions of a cell, or of ions and cell together, from springs on its bonds; eV and Å."""
+"""Relaxation of the ions of a cell, from springs on its bonds; eV and Å."""
 
-from typing import Any, NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 from ase import Atoms
 from ase.calculators.calculator import Calculator
 
-BOND_A, EDGE_A = 2.3, 3.2  # longest Si-N bond, longest edge of a tetrahedron of N
-# of springs along bonds, across them, along edges and under every coordinate, after the forces that a glass met on its
-# way to rest; only the speed depends on them
-ALONG_EV_A2, ACROSS_EV_A2, EDGE_EV_A2, FLOOR_EV_A2 = 14.0, 2.5, 3.5, 2.0
-LONGEST_STEP_A = 0.3
-COORDINATE_EV_A2, CELL_STIFFNESS_EV_A3 = 25.0, 1.5  # of a bond, and 240 GPa: by these a strain counts as a coordinate
+
+@dataclass(frozen=True)
+class Springs:
+    """Springs after the forces that a glass met on its way to rest; only the speed depends on them.
+
+    Attributes
+    ----------
+    bond_A, edge_A : longest Si-N bond, longest edge of a tetrahedron of N
+    along_eV_A2, across_eV_A2, along_edge_eV_A2 : springs along bonds, across them, and along edges
+    floor_eV_A2 : spring under every coordinate
+    longest_step_A : of an atom
+    """
+
+    bond_A: float = 2.3
+    edge_A: float = 3.2
+    along_eV_A2: float = 14.0
+    across_eV_A2: float = 2.5
+    along_edge_eV_A2: float = 3.5
+    floor_eV_A2: float = 2.0
+    longest_step_A: float = 0.3
+
+
+SPRINGS = Springs()
 
 
 def strained(atoms: Atoms, strain: float) -> Atoms:
@@ -21,86 +38,64 @@ def strained(atoms: Atoms, strain: float) -> Atoms:
     return result
 
 
-def cell_scale_A(atoms: Atoms) -> float:
-    """Length by which a strain becomes a coordinate as stiff as a bond."""
-    return float(np.sqrt(atoms.get_volume() * CELL_STIFFNESS_EV_A3 / COORDINATE_EV_A2))
-
-
-def spring_hessian(atoms: Atoms) -> np.ndarray:
-    """Hessian of ions and cell by springs along and across bonds between unlike atoms and along edges between N.
-
-    Shape (3n + 9, 3n + 9), eV/Å²; the last nine are the strain's components times `cell_scale_A`.
-    """
+def spring_hessian(atoms: Atoms, springs: Springs = SPRINGS) -> np.ndarray:
+    """Hessian by springs along and across bonds between unlike atoms and along edges between N, (3n, 3n), eV/Å²."""
     from ase.neighborlist import neighbor_list
 
-    n, scale = len(atoms), cell_scale_A(atoms)
     symbols = np.array(atoms.get_chemical_symbols())
     stretched = []  # weighted slopes of the springs' lengths by every coordinate
-    for i, j, vector in zip(*neighbor_list("ijD", atoms, EDGE_A), strict=True):
+    for i, j, vector in zip(*neighbor_list("ijD", atoms, springs.edge_A), strict=True):
         if i > j:
             continue  # the list names every pair twice
         length = np.linalg.norm(vector)
         projector = np.outer(vector, vector) / length**2
         if symbols[i] == symbols[j] == "N":
-            directions = np.sqrt(EDGE_EV_A2) * projector
-        elif symbols[i] != symbols[j] and length <= BOND_A:
-            directions = np.sqrt(ALONG_EV_A2) * projector + np.sqrt(ACROSS_EV_A2) * (np.eye(3) - projector)
+            directions = np.sqrt(springs.along_edge_eV_A2) * projector
+        elif symbols[i] != symbols[j] and length <= springs.bond_A:
+            across = np.sqrt(springs.across_eV_A2) * (np.eye(3) - projector)
+            directions = np.sqrt(springs.along_eV_A2) * projector + across
         else:
             continue
         for direction in directions:
-            slope = np.zeros((n + 3, 3))
+            slope = np.zeros((len(atoms), 3))
             slope[j] += direction
             slope[i] -= direction
-            strain = np.outer(vector, direction) / scale
-            slope[n:] += 0.5 * (strain + strain.T)  # a turn costs nothing
             stretched.append(slope.ravel())
-    slopes = np.array(stretched).reshape(-1, 3 * n + 9)
-    return slopes.T @ slopes + FLOOR_EV_A2 * np.eye(3 * n + 9)
+    slopes = np.array(stretched).reshape(-1, 3 * len(atoms))
+    return slopes.T @ slopes + springs.floor_eV_A2 * np.eye(3 * len(atoms))
 
 
-class Rest(NamedTuple):
-    """Where a relaxation of ions ended.
+@dataclass(frozen=True)
+class Relaxation:
+    """What the relaxation of a glass did; by default nothing.
 
     Attributes
     ----------
     steps : ionic steps
-    force_left_eV_A, converged : largest force left, and whether it is below the goal
-    hessian_eV_A2 : as the optimiser has it in the end, (3n, 3n), or (3n + 9, 3n + 9) where the cell relaxes
+    force_left_eV_A, converged : largest force left, and whether that met the goal
+    energy_gained_eV : below the quenched cell
+    gap_eV : between the highest occupied and the lowest empty level at the end; NaN if the engine does not tell
+    failure : why a calculation failed; the ions are then those of the quenched glass
     """
 
-    steps: int
-    force_left_eV_A: float
-    converged: bool
-    hessian_eV_A2: np.ndarray
+    steps: int = 0
+    force_left_eV_A: float = float("nan")
+    converged: bool = False
+    energy_gained_eV: float = 0.0
+    gap_eV: float = float("nan")
+    failure: str = ""
 
 
-def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> Rest:
+def relax_ions(atoms: Atoms, force_eV_A: float, max_steps: int) -> Relaxation:
     """Quasi-Newton relaxation of the ions (BFGS), cell fixed.
 
     It starts from the Hessian of the springs: from ASE's own start, a multiple of the unit matrix, a cell takes about
     three times as many steps.
+
+    Raises
+    ------
+    CalculationFailed : of the engine.
     """
-    n = 3 * len(atoms)
-    return _minimise(atoms, atoms, force_eV_A, max_steps, spring_hessian(atoms)[:n, :n])
-
-
-def relax_cell(atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndarray | None = None) -> Rest:
-    """Quasi-Newton relaxation of ions and cell together until forces and all stresses nearly vanish.
-
-    Parameters
-    ----------
-    force_eV_A : largest force left on an atom; a stress counts as the force that its strain exerts on a coordinate as
-        stiff as a bond, in a cell of 28 atoms 0.1 eV/Å for 0.2 GPa
-    hessian : of ions and cell to start from, as a former relaxation left it; None takes springs
-    """
-    from ase.filters import FrechetCellFilter
-
-    target = FrechetCellFilter(atoms, exp_cell_factor=cell_scale_A(atoms))
-    return _minimise(target, atoms, force_eV_A, max_steps, spring_hessian(atoms) if hessian is None else hessian)
-
-
-def _minimise(target: Any, atoms: Atoms, force_eV_A: float, max_steps: int, hessian: np.ndarray) -> Rest:
-    """BFGS on what moves, the atoms themselves or a filter of them."""
     from ase.optimize import BFGS
 
     class Cautious(BFGS):
@@ -110,20 +105,18 @@ def _minimise(target: Any, atoms: Atoms, force_eV_A: float, max_steps: int, hess
             super().update(pos, forces, pos0, forces0)
             assert self.state is not None
             curvature, modes = np.linalg.eigh(self.state.hessian)
-            self.state.hessian = modes * np.maximum(abs(curvature), FLOOR_EV_A2) @ modes.T
+            self.state.hessian = modes * np.maximum(abs(curvature), SPRINGS.floor_eV_A2) @ modes.T
 
-    with Cautious(target, logfile=None, maxstep=LONGEST_STEP_A) as optimizer:
-        optimizer.H0 = hessian
+    atoms.get_forces()  # asked for first, so that the energy comes from the same calculation
+    before = atoms.get_potential_energy()
+    with Cautious(atoms, logfile=None, maxstep=SPRINGS.longest_step_A) as optimizer:
+        optimizer.H0 = spring_hessian(atoms)
         converged = bool(optimizer.run(fmax=force_eV_A, steps=max_steps))
-        forces = target.get_forces()
-        final = np.asarray(optimizer.H0)
-        if optimizer.state is not None:
-            optimizer.update(target.get_positions().ravel(), forces.ravel(), optimizer.pos0, optimizer.forces0)
-            final = np.asarray(optimizer.H)
         left = float(np.linalg.norm(atoms.get_forces(), axis=1).max())
-        return Rest(int(optimizer.nsteps), left, converged, final)
+        gained = float(before - atoms.get_potential_energy())
+        return Relaxation(int(optimizer.nsteps), left, converged, gained, last_gap_eV(atoms.calc))
 
 
-def last_gap_eV(calculator: Calculator) -> float:
+def last_gap_eV(calculator: Calculator | None) -> float:
     """Gap between occupied and empty levels that a calculator found last; NaN if its engine does not tell."""
     return float(getattr(calculator, "gap_eV", np.nan))

@@ -8,33 +8,10 @@ from ase import Atoms
 from ase.calculators.calculator import CalculationFailed, Calculator
 
 from atomistic.elastic.moduli import Modulus
-from atomistic.elastic.networks import Gate, examine, no_insulator
-from atomistic.elastic.relaxation import last_gap_eV, relax_ions, strained
+from atomistic.elastic.networks import NetworkVerdict, examine, no_insulator
+from atomistic.elastic.relaxation import Relaxation, relax_ions, strained
+from atomistic.lammps import Progress
 from atomistic.materials import NetworkGlass
-
-Progress = Callable[[float, str], None]
-FORCE_EV_A = 0.3  # largest force left on an atom before the E(V) scan
-
-
-@dataclass(frozen=True)
-class Relaxation:
-    """What the relaxation of a glass did; by default nothing.
-
-    Attributes
-    ----------
-    steps : ionic steps
-    force_left_eV_A, converged : largest force left, and whether that met the goal
-    energy_gained_eV : below the quenched cell
-    gap_eV : between the highest occupied and the lowest empty level at the end; NaN if the engine does not tell
-    failure : why a calculation failed; the ions are then those of the quenched glass
-    """
-
-    steps: int = 0
-    force_left_eV_A: float = float("nan")
-    converged: bool = False
-    energy_gained_eV: float = 0.0
-    gap_eV: float = float("nan")
-    failure: str = ""
 
 
 @dataclass(frozen=True)
@@ -50,7 +27,7 @@ class Structure:
 
     atoms: Atoms
     calculator: Calculator | None
-    verdict: Gate
+    verdict: NetworkVerdict
     relaxation: Relaxation
     reasons: tuple[str, ...]
 
@@ -59,11 +36,7 @@ class Structure:
         return {
             "structure": name,
             "atoms": len(self.atoms),
-            "density_g_cm3": self.verdict.density_g_cm3,
-            **{f"coordination_{element}": value for element, value in self.verdict.coordination.items()},
-            "defects": self.verdict.defects,
-            "bond_spread_A": self.verdict.bond_spread_A,
-            "symmetry_operations": self.verdict.symmetry_operations,
+            **self.verdict.columns(),
             "relaxation": asdict(self.relaxation),
             "gate": {"passed": not self.reasons, "reasons": list(self.reasons)},
         }
@@ -90,26 +63,18 @@ def relaxed_structure(
     if refused:
         return Structure(quenched, None, examine(quenched, criteria), Relaxation(), (refused,))
     calculator, atoms = make_calculator(), strained(quenched, 0.0)
-    done = _relax(atoms, calculator, max_steps, progress) if max_steps else Relaxation()
+    atoms.calc, done = calculator, Relaxation()
+    if progress:
+        progress(0.0, f"relaxing ions, at most {max_steps} steps")
+    if max_steps:
+        try:
+            done = relax_ions(atoms, 0.3, max_steps)  # eV/Å, largest force left before the E(V) scan
+        except CalculationFailed as error:
+            done = Relaxation(failure=f"relaxation: {error}")
     atoms = strained(quenched if done.failure else atoms, 0.0)
     verdict = examine(atoms, criteria)
     reasons = [*verdict.reasons, *filter(None, [done.failure]), *no_insulator(done.gap_eV, criteria)]
     return Structure(atoms, calculator, verdict, done, tuple(reasons))
-
-
-def _relax(atoms: Atoms, calculator: Calculator, max_steps: int, progress: Progress | None) -> Relaxation:
-    """Move the ions to rest, in as many steps as there may be."""
-    atoms.calc = calculator
-    if progress:
-        progress(0.0, f"relaxing ions, at most {max_steps} steps")
-    try:
-        atoms.get_forces()  # asked for first, so that the energy comes from the same calculation
-        before = atoms.get_potential_energy()
-        rest = relax_ions(atoms, FORCE_EV_A, max_steps)
-        gained = float(before - atoms.get_potential_energy())
-    except CalculationFailed as error:
-        return Relaxation(failure=f"relaxation: {error}")
-    return Relaxation(rest.steps, rest.force_left_eV_A, rest.converged, gained, last_gap_eV(calculator))
 
 
 def trusted_moduli(fits: Sequence[Mapping[str, str]], reports: Sequence[Mapping[str, Any]]) -> list[Modulus]:
@@ -135,13 +100,7 @@ def structure_rows(reports: Sequence[Mapping[str, Any]], quenches: Sequence[int]
     """Rows of elastic/structures.csv from the structures' reports and the number of quenches each one took."""
     return [
         {
-            "structure": report["structure"],
-            "atoms": report["atoms"],
-            "density_g_cm3": report["density_g_cm3"],
-            **{key: value for key, value in report.items() if key.startswith("coordination_")},
-            "defects": report["defects"],
-            "bond_spread_A": report["bond_spread_A"],
-            "symmetry_operations": report["symmetry_operations"],
+            **{key: value for key, value in report.items() if key not in ("relaxation", "gate", "provenance")},
             **report["relaxation"],
             "quenches": count,
             "status": "accepted" if report["gate"]["passed"] else "rejected: " + "; ".join(report["gate"]["reasons"]),

@@ -1,15 +1,10 @@
-"""Bodies cut from a tiling of a glass cell: asperities (eq. 6 of Kim et al. 2013), flats, and a pair."""
-
-from dataclasses import replace
+"""Asperities (eq. 6 of Kim et al. 2013) cut from a tiling of a glass cell."""
 
 import numpy as np
 
 from atomistic.lammps import Atoms
 
-VACUUM_A = 15.0
-STRAY_A = 2.5  # atoms this far above the eighth-highest one belong to no surface
-TOP_ATOMS = 8
-MEAN_HEIGHT = -4 / np.pi**2  # in amplitudes: of the smaller of two sines
+TOP_ATOMS = 8  # the highest atoms, whose height is that of the top
 
 
 def profile(x: np.ndarray, y: np.ndarray, wavelength: float, amplitude: float) -> np.ndarray:
@@ -40,7 +35,7 @@ def cut_asperity(glass: Atoms, tiles: int, amplitude_A: float, base_A: float, se
     types = np.tile(glass.types, len(offsets))
     top = base_A + profile(positions[:, 0], positions[:, 1], wavelength, amplitude_A)
     inside = (positions[:, 2] >= 0) & (positions[:, 2] < top)
-    cell = np.array([wavelength, wavelength, base_A + amplitude_A + VACUUM_A])
+    cell = np.array([wavelength, wavelength, base_A + amplitude_A + 15.0])
     cut = Atoms(glass.elements, types[inside], positions[inside], cell)
     return neutralise(cut, formula_of(glass))
 
@@ -70,37 +65,6 @@ def neutralise(atoms: Atoms, formula: np.ndarray) -> Atoms:
 
 
 def remove_strays(atoms: Atoms, formula: np.ndarray) -> Atoms:
-    """Remove atoms that stand alone above the surface, keeping the sample neutral."""
+    """Remove atoms more than 2.5 Å above the eighth-highest one, keeping the sample neutral: they are no surface."""
     height = atoms.positions_A[:, 2]
-    return neutralise(atoms.take(height <= top_height(height) + STRAY_A), formula)
-
-
-def top_height(height: np.ndarray) -> float:
-    """Height of the eighth-highest atom."""
-    return float(np.partition(height, -TOP_ATOMS)[-TOP_ATOMS])
-
-
-def with_vacuum(atoms: Atoms, height_A: float) -> Atoms:
-    """The same atoms in a cell of another height."""
-    return replace(atoms, cell_A=np.array([*atoms.cell_A[:2], height_A]))
-
-
-def facing(lower: Atoms, upper: Atoms, gap_A: float) -> tuple[Atoms, float]:
-    """`upper` turned over and placed above `lower`, as one set of atoms with types of its own.
-
-    The gap is that of the two highest atoms.
-
-    Returns
-    -------
-    atoms : those of `lower` first; elements and types of `upper` follow those of `lower`.
-    ceiling : height at which the (rigid) bottom of `upper` now lies, Å.
-    """
-    ceiling = float(np.max(lower.positions_A[:, 2]) + gap_A + np.max(upper.positions_A[:, 2]))
-    turned = upper.positions_A * [1, 1, -1] + [0, 0, ceiling]
-    positions = np.concatenate([lower.positions_A, turned])
-    velocities = None
-    if lower.velocities_A_ps is not None and upper.velocities_A_ps is not None:
-        velocities = np.concatenate([lower.velocities_A_ps, upper.velocities_A_ps * [1, 1, -1]])
-    types = np.concatenate([lower.types, upper.types + len(lower.elements)])
-    cell = np.array([*lower.cell_A[:2], ceiling + VACUUM_A])
-    return Atoms(lower.elements + upper.elements, types, positions, cell, velocities), ceiling
+    return neutralise(atoms.take(height <= float(np.partition(height, -TOP_ATOMS)[-TOP_ATOMS]) + 2.5), formula)

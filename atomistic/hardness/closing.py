@@ -1,4 +1,4 @@
-"""One closing run: cut, anneal, press against the counterface, relax without it; returns the measured curve."""
+"""One closing run: cut, anneal, press by the flat, relax without it; returns the measured curve."""
 
 import shutil
 from dataclasses import asdict, dataclass, replace
@@ -19,9 +19,9 @@ from atomistic.hardness.pressing import (
     lammps_seed,
     plan_closing,
     prepare_body,
-    press_bodies,
+    press_body,
 )
-from atomistic.hardness.readout import Bond, Geometry, Readout, Rows, slice_rows, witness_rows
+from atomistic.hardness.readout import OxideBond, PressedCell, Readout, Rows, witness_rows
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
 from atomistic.hardness.stack import Stack, check_film, cut_base, film_properties, lay
 from atomistic.hardness.top_attraction import attract_top, bulk_density_per_A3
@@ -30,26 +30,23 @@ from atomistic.materials import Material
 from atomistic.potentials import ForceField, Potential
 from atomistic.settings import ClosingSettings
 
-MAX_STRAIN = 0.01  # of a counterface whose cell differs from the asperity's
 NO_TOP: dict[str, float] = dict.fromkeys(("top_area_nm2", "top_force_over_hamaker", "top_work_over_hamaker"), np.nan)
 
 
 @dataclass(frozen=True)
-class Closing:
+class ClosedAsperity:
     """Result of a closing run.
 
     Attributes
     ----------
-    curve : one row per average (columns as in docs/hardness.md).
+    curve : one row per average (columns as in docs/results.md).
     witness : one row per relaxed snapshot: bond exchanges and lasting lowering against the first, and the attraction of
         its top.
-    snapshots : slices through the contact of the relaxed snapshots, for pictures.
     summary : atoms, steps and the side of the cell.
     """
 
     curve: Rows
     witness: Rows
-    snapshots: Rows
     summary: dict[str, float]
 
 
@@ -62,79 +59,66 @@ def run_closing(
     work: Path,
     protocol: Protocol = PROTOCOL,
     progress: Progress | None = None,
-    counter_glass: Atoms | None = None,
-    counter_potential: Potential | None = None,
     base: tuple[Base, Atoms] | None = None,
-) -> Closing:
+) -> ClosedAsperity:
     """Carry out a run, or go on with it if `work` holds its restart files; `work` is deleted at the end.
 
     Parameters
     ----------
     material, glass : oxide of the asperity, and a cell of its glass.
-    counter_glass, counter_potential : glass and potential of a counterface of oxide; None: those of the asperity.
     base : what lies below a film, and a cell of it (`Base.make`).
 
     Raises
     ------
-    InputError : a film that its asperity does not allow, or a base that is not given.
+    InputError : a film that its asperity does not allow, a base that is not given, or no calibration of the area.
     """
     wavelength_nm = run.asperity.tiles * float(glass.cell_A[0]) / 10
-    area, _ = area_of(run, potential, counter_potential, base)
+    calibrated(potential)  # raises where it is not
+    area = Area()
     on_base = run.asperity.film_nm is not None
     if on_base and base is not None:
         protocol = slowed(protocol, base[0].below_films.timestep_factor)
     plan = plan_closing(closing, run, protocol)
     identity = {
-        "potential": [within.model_dump() for within in (potential, counter_potential or potential)],
+        "potential": potential.model_dump(),
         "run": [run.model_dump(), material.formula_text, closing.model_dump(), protocol.model_dump(), asdict(area)],
-        "glass": [[g.cell_A.tolist(), g.positions_A.sum(axis=0).tolist()] for g in (glass, counter_glass or glass)],
+        "glass": [glass.cell_A.tolist(), glass.positions_A.sum(axis=0).tolist()],
     }
     if base is not None:
         identity["base"] = [base[0].material.model_dump(), base[1].positions_A.sum(axis=0).tolist()]
     place = (run.seed, run.asperity.tiles, round(1000 * run.asperity.amplitude_nm))
     aside = Workspace(work / "anneal", identity, "anneal.in")
-    body = cut_body(run, glass, potential, base_thickness_nm(closing, wavelength_nm, protocol), place, protocol, base)
-    bodies = [prepare_body(run, body.cut, body.formula, body.force, closing, protocol, aside, place, progress)]
-    above = None
-    if closing.counterface != "flat":
-        relief = 10 * run.asperity.amplitude_nm if closing.counterface == "asperity" else 0.0
-        counter, thickness_A = commensurate(counter_glass or glass, glass), 10 * protocol.counter_base_nm
-        aside, place_above = Workspace(work / "anneal_counter", identity, "anneal.in"), (*place, 6)
-        cut = cut_asperity(counter, run.asperity.tiles, relief, thickness_A, lammps_seed(*place_above, 3))
-        force, formula = counter_potential or potential, formula_of(counter)
-        bodies.append(prepare_body(run, cut, formula, force, closing, protocol, aside, place_above, progress))
-        above = force if closing.interface == "repulsive" else None
+    cut = cut_body(run, glass, potential, base_thickness_nm(closing, wavelength_nm, protocol), place, protocol, base)
+    body = prepare_body(run, cut.atoms, cut.formula, cut.force, closing, protocol, aside, place, progress)
     workspace = Workspace(work / "closing", identity, "closing.in")
-    bond = oxide_bond(bodies[0].elements, material, potential)
+    bond = oxide_bond(body.elements, material, potential)
 
     @cache
-    def readout(geometry: Geometry) -> Readout:
-        return Readout(workspace, plan.segment_steps, plan.timestep, protocol.samples, area, geometry, bond)
+    def readout(cell: PressedCell) -> Readout:
+        return Readout(workspace, plan.segment_steps, plan.timestep, protocol.samples, area, cell, bond)
 
-    def read(geometry: Geometry, reached: Plan) -> Closing:
+    def read(cell: PressedCell, reached: Plan) -> ClosedAsperity:
         relaxed = range(reached.segments + 1)
         if missing := [n for n in relaxed if not (workspace / f"relaxed.{n}").exists()]:
             run_lammps("relax.in", workspace, {"pairs": "pairs", "segment": missing})
-        return _read(readout(geometry), reached, 10 * protocol.frozen_nm, geometry)
+        return _read(readout(cell), reached, 10 * protocol.frozen_nm, cell)
 
-    def complete(geometry: Geometry, segments: int) -> bool:
-        cell_nm2 = (geometry.wavelength_A / 10) ** 2
-        curve = readout(geometry).curve(range(1, segments + 1))
+    def complete(cell: PressedCell, segments: int) -> bool:
+        cell_nm2 = (cell.wavelength_A / 10) ** 2
+        curve = readout(cell).curve(range(1, segments + 1))
         if curve[-1]["contact_area_nm2"] < RULES.stop_area_fraction * cell_nm2:
             return False
-        measured = read(geometry, replace(plan, segments=segments))
+        measured = read(cell, replace(plan, segments=segments))
         curve, witness = measured.curve, measured.witness
         return may_stop(curve, witness, cell_nm2, closing.stop, protocol.approach_nm, on_base=on_base)
 
-    geometry, reached = press_bodies(
-        run, bodies, body.force, closing, protocol, plan, place, workspace, complete, progress, above
-    )
-    result, snapshots = read(geometry, reached), range(reached.segments + 1)
+    cell, reached = press_body(run, body, cut.force, closing, protocol, plan, place, workspace, complete, progress)
+    result, snapshots = read(cell, reached), range(reached.segments + 1)
     # atoms of a base pull otherwise: their tops say nothing of the oxide's
-    tops = [NO_TOP if on_base else attraction_row(readout(geometry), n, geometry) for n in snapshots]
+    tops = [NO_TOP if on_base else attraction_row(readout(cell), n, cell) for n in snapshots]
     if run.asperity.film_nm and base is not None:
-        start, end = (readout(geometry).relaxed(n).frame for n in (0, reached.segments))
-        result.summary.update(film_properties(start, end, geometry.wavelength_A, len(base[0].elements)))
+        start, end = (readout(cell).relaxed(n).frame for n in (0, reached.segments))
+        result.summary.update(film_properties(start, end, cell.wavelength_A, len(base[0].elements)))
     shutil.rmtree(work)
     return replace(result, witness=[{**row, **top} for row, top in zip(result.witness, tops, strict=True)])
 
@@ -143,7 +127,7 @@ def run_closing(
 class CutBody:
     """What is annealed and pressed: atoms, those of each type in a unit of its formula, and their forces."""
 
-    cut: Atoms
+    atoms: Atoms
     formula: np.ndarray
     force: ForceField
 
@@ -185,77 +169,32 @@ def cut_body(
     return CutBody(cut, formula, Stack(potential, below, protocol.bond_factor))
 
 
-def weld(
-    run: ClosingRun,
-    glass: Atoms,
-    potential: Potential,
-    closing: ClosingSettings,
-    base: tuple[Base, Atoms],
-    work: Path,
-) -> tuple[Stack, Atoms]:
-    """The forces and the welded body of a run with a film, for checks."""
-    place = (run.seed, 0)
-    protocol = slowed(PROTOCOL, base[0].below_films.timestep_factor)
-    base_nm = base_thickness_nm(closing, run.asperity.tiles * float(glass.cell_A[0]) / 10)
-    body = cut_body(run, glass, potential, base_nm, place, protocol, base)
-    assert isinstance(body.force, Stack)
-    workspace = Workspace(work / "weld", {}, "anneal.in")
-    return body.force, prepare_body(run, body.cut, body.formula, body.force, closing, protocol, workspace, place)
-
-
-def area_of(
-    run: ClosingRun,
-    potential: Potential,
-    counter_potential: Potential | None = None,
-    base: tuple[Base, Atoms] | None = None,
-) -> tuple[Area, float]:
-    """The definition of contact area that was calibrated on bodies of a run's kind, and its largest error.
-
-    Raises
-    ------
-    InputError : none was.
-    """
-    area, error = calibrated(potential, counter_potential)
-    if run.asperity.film_nm is None or base is None:
-        return area, error
-    of = base[0].below_films.area_of_film if run.asperity.film_nm else base[0].below_films.area_of_base
-    return replace(area, depth_A=of.depth_A), of.error
-
-
-def oxide_bond(elements: tuple[str, ...], material: Material, potential: Potential) -> Bond | None:
+def oxide_bond(elements: tuple[str, ...], material: Material, potential: Potential) -> OxideBond | None:
     """What counts as a bond in a body with these elements of its types; None: it has no oxide."""
     ions = tuple(potential.materials[material.formula_text])
     if not set(ions) <= set(elements):
         return None
     cation, anion = sorted(ions, key=cations(material, potential).__contains__, reverse=True)
     types = {element: kind for kind, element in enumerate(elements, 1)}  # the last of an element is the film's
-    return Bond(types[cation], types[anion], material.part("oxide_glass").cutoff_A)
+    return OxideBond(types[cation], types[anion], material.part("oxide_glass").cutoff_A)
 
 
-def _read(readout: Readout, plan: Plan, held_A: float, geometry: Geometry) -> Closing:
+def _read(readout: Readout, plan: Plan, held_A: float, cell: PressedCell) -> ClosedAsperity:
     segments = range(1, plan.segments + 1)
-    curve = readout.curve(segments)
-
-    def displacement_nm(step: int) -> float:
-        if plan.dwell_steps:
-            return float(np.interp(step, [row["step"] for row in curve], [row["displacement_nm"] for row in curve]))
-        return step * plan.timestep * plan.speed / 10
-
     snapshots = [readout.relaxed(n) for n in (0, *segments)]
     summary: dict[str, float] = {
-        "atoms": geometry.atoms,
+        "atoms": cell.atoms,
         "steps": plan.total_steps,
-        "restart_steps": plan.segment_steps,
-        "wavelength_nm": geometry.wavelength_A / 10,
+        "wavelength_nm": cell.wavelength_A / 10,
     }
-    return Closing(curve, witness_rows(snapshots, displacement_nm, held_A), slice_rows(snapshots, geometry), summary)
+    witness = witness_rows(snapshots, plan.timestep, plan.speed, held_A)
+    return ClosedAsperity(readout.curve(segments), witness, summary)
 
 
-def attraction_row(readout: Readout, segment: int, geometry: Geometry) -> dict[str, float]:
+def attraction_row(readout: Readout, segment: int, cell: PressedCell) -> dict[str, float]:
     """What `attract_top` says of the top after a segment, as columns of the witness; NaN while the contact is small."""
-    top = None
     if segment and (sample := readout.last_sample(segment)).area_A2 >= (10 * RULES.min_length_nm) ** 2:
-        side, axis = (geometry.wavelength_A, geometry.wavelength_A), (geometry.axis_A, geometry.axis_A)
+        side, axis = (cell.wavelength_A, cell.wavelength_A), (cell.axis_A, cell.axis_A)
         places = readout.relaxed(segment).frame[:, 1:4]
         in_contact = contact_map(sample.touching_A, side, readout.area, axis)
         shares = shares_in_contact(places[:, :2], in_contact, side, axis)
@@ -264,19 +203,3 @@ def attraction_row(readout: Readout, segment: int, geometry: Geometry) -> dict[s
         values = (top.area_A2 / 100, 10 * top.force_per_A, top.work)
         return dict(zip(NO_TOP, values, strict=True))
     return NO_TOP
-
-
-def commensurate(counter: Atoms, glass: Atoms) -> Atoms:
-    """The counterface's glass in a cell as wide as the asperity's.
-
-    Raises
-    ------
-    InputError : that would strain it by more than `MAX_STRAIN`.
-    """
-    factor = glass.cell_A[0] / counter.cell_A[0]
-    if abs(factor - 1) > MAX_STRAIN:
-        raise InputError(
-            f"the counterface's glass cell of {counter.cell_A[0]:.2f} A would be strained by {factor - 1:+.1%} beside "
-            f"one of {glass.cell_A[0]:.2f} A (gate {MAX_STRAIN:.0%}): quench it with the edge of the asperity's cell"
-        )
-    return replace(counter, positions_A=factor * counter.positions_A, cell_A=factor * counter.cell_A)

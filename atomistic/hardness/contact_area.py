@@ -22,13 +22,11 @@ class Area:
     Attributes
     ----------
     depth_A : atoms nearer than this to the counterface, or beyond it, touch.
-    touch_A : distance of two atoms that defines zero gap for atomic counterfaces; by the potential's calibration.
     closing_A : the space between touching atoms is contact where a disc of this radius does not fit.
     rim_A : the rim of the contact lies this far outside the outermost touching atoms.
     """
 
     depth_A: float = 0.5
-    touch_A: float = 2.4
     closing_A: float = 4.0
     rim_A: float = 1.7
     grid_A: float = 0.5
@@ -108,37 +106,17 @@ def _spacing(cell_A: tuple[float, float], area: Area) -> np.ndarray:
     return cell / np.maximum(1, np.round(cell / area.grid_A))
 
 
-def calibrated(potential: Potential, counter_potential: Potential | None = None) -> tuple[Area, float]:
-    """The area definition with a potential's own distance of touch, and its largest error, as a fraction.
-
-    Parameters
-    ----------
-    counter_potential : of a counterface of other atoms.
+def calibrated(potential: Potential) -> float:
+    """Largest error of the area with a potential's glass, as a fraction.
 
     Raises
     ------
-    InputError : the potential's file has no calibration, or that of another definition.
+    InputError : the potential's file has no calibration.
     """
-    calibration = potential.contact_area
-    if calibration is None:
+    if potential.contact_area is None:
         raise InputError(
             f"potential {potential.name}: no calibration of the contact area; measure it (python -m evidence "
             "hardness.area) and write its largest error as `contact_area` into the potential's file (see "
             "config/potentials/pmmcs.yaml)"
         )
-    for key in ("depth_A", "closing_A", "rim_A"):
-        if getattr(Area, key) != getattr(calibration, key):
-            raise InputError(
-                f"potential {potential.name}: contact_area.{key} = {getattr(calibration, key):g}: the contact area is "
-                f"defined with {getattr(Area, key):g} A; calibrate it with that (python -m evidence hardness.area)"
-            )
-    if counter_potential is None or counter_potential.name == potential.name:
-        return Area(touch_A=calibration.touch_A), calibration.error
-    against = calibration.counterfaces.get(counter_potential.name)
-    if against is None:
-        raise InputError(
-            f"potential {potential.name}: no calibration of the contact area against {counter_potential.name}; measure "
-            "it (python -m evidence hardness.area --counter-potential) and write `contact_area.counterfaces` into the "
-            "potential's file (see config/potentials/pmmcs.yaml)"
-        )
-    return Area(touch_A=against.touch_A), against.error
+    return potential.contact_area.error

@@ -4,12 +4,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from atomistic.errors import InputError
 from atomistic.lammps import Atoms, Progress
 from atomistic.materials import FilmBase, Material
-from atomistic.potentials import Repelled
 
 NEIGHBOURS = ("neighbor 1.0 bin", "neigh_modify every 2 delay 0 check yes")
 
@@ -21,12 +19,10 @@ class Base(ABC):
     Attributes
     ----------
     styles : its parts of a `pair_style hybrid/overlay`.
-    molten_K : a temperature at which it is liquid, for checks.
     """
 
     material: Material
     styles: ClassVar[tuple[str, ...]]
-    molten_K: ClassVar[float]
 
     @property
     def elements(self) -> tuple[str, ...]:
@@ -40,17 +36,13 @@ class Base(ABC):
 
     @property
     @abstractmethod
-    def species(self) -> Mapping[str, Any]:
-        """What has the mass of its atoms, by element."""
+    def masses_u(self) -> Mapping[str, float]:
+        """Mass of each element."""
 
     @property
     @abstractmethod
     def atoms_per_nm3(self) -> float:
         """About, for estimates of cost."""
-
-    @abstractmethod
-    def softened(self, factor: float) -> "Base":
-        """The same with all energies times a factor: for checks."""
 
     @abstractmethod
     def commands(self, above: int) -> list[str]:
@@ -82,17 +74,7 @@ class Base(ABC):
     def make_atom_steps(self, edge_A: float, tiles: int) -> float:
         """Atoms times MD steps of `make`."""
 
-    def files(self, elements: tuple[str, ...], energy_scale: float, repelled: Repelled | None = None) -> dict[str, str]:
-        """What LAMMPS needs for a body without a film, as `Potential.files`; it keeps its energies at every scale.
-
-        Raises
-        ------
-        InputError : a counterface of atoms.
-        """
-        if repelled is not None or len(elements) > len(self.elements):
-            raise InputError(
-                f"hardness.closing.counterface: {self.material.name} without a film is pressed by a flat only, since "
-                "nothing is known of how its atoms meet others; set film_nm above 0, or counterface to flat"
-            )
+    def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
+        """What LAMMPS needs for a body without a film, as `Potential.files`; it keeps its energies at every scale."""
         lines = [f"pair_style hybrid/overlay {' '.join(self.styles)}", *self.commands(0), *NEIGHBOURS]
         return {**self.tables(), "pairs": "\n".join(lines) + "\n"}

@@ -6,23 +6,41 @@ of the base by itself films of none. Beside it stand the two laws that know no f
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from atomistic.hardness.plateau import RULES
-from atomistic.hardness.size_effect import MIN_SHARE, SYSTEMATIC, Point, cost_of, spearman, summary
+from atomistic.hardness.size_effect import FIT_RULES, SYSTEMATIC, Run, spearman, summary
 
-QUANTILES = 200
-BOND = 0.5
-"""Standard deviation of ln k by the assumed bonds of film and metal: films with bonds half and 1.5 times as deep have
-stresses that differ by 4 % with a scatter of 10 % (accuracy/hardness.csv of scene films), seven times as much in k."""
-BIN_NM = 0.5  # of contact length: a run has one mean stress in each
-LEAST_POINTS, LEAST_THICKNESSES = 3, 2
-DRAWS, TRIALS = 2000, 400_000
-PRIOR = ((2, 20), (0.5, 100), (1e-3, 10), (0.5, 4))  # of H_film, H_base, k, m
-LENGTHS_OVER_THICKNESS = np.geomspace(0.5, 10, 30)
+
+@dataclass(frozen=True)
+class FilmFit:
+    """How the law of films is fitted.
+
+    Attributes
+    ----------
+    bond : standard deviation of ln k by the assumed bonds of film and metal: films with bonds half and 1.5 times as
+        deep have stresses that differ by 4 % with a scatter of 10 % (accuracy/hardness.csv of scene films), seven times
+        as much in k.
+    bin_nm : of contact length: a run has one mean stress in each.
+    least_points, least_thicknesses : mean stresses of films, and their thicknesses.
+    trials, draws : values drawn from the prior, and how many of them are kept by their likelihood.
+    prior : ranges of H_film, H_base, k, m.
+    """
+
+    bond: float = 0.5
+    bin_nm: float = 0.5
+    least_points: int = 3
+    least_thicknesses: int = 2
+    trials: int = 400_000
+    draws: int = 2000
+    prior: tuple[tuple[float, float], ...] = ((2, 20), (0.5, 100), (1e-3, 10), (0.5, 4))
+
+
+FILM_FIT = FilmFit()
 Law = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -51,7 +69,7 @@ class FilmPoints(NamedTuple):
     @property
     def bin(self) -> np.ndarray:
         """Which bin of contact length each is of."""
-        return (self.length_nm // BIN_NM).astype(int)
+        return (self.length_nm // FILM_FIT.bin_nm).astype(int)
 
     @property
     def length_over_thickness(self) -> np.ndarray:
@@ -59,7 +77,7 @@ class FilmPoints(NamedTuple):
         return (self.length_nm / np.where(self.film, self.thickness_nm, np.inf))[self.film]
 
 
-def points_of(points: Sequence[Point], curves: Mapping[str, Sequence[Mapping[str, float]]]) -> FilmPoints:
+def points_of(points: Sequence[Run], curves: Mapping[str, Sequence[Mapping[str, float]]]) -> FilmPoints:
     """The mean stresses of sound runs with the highest energies.
 
     Parameters
@@ -79,8 +97,8 @@ def mean_stresses(curve: Sequence[Mapping[str, float]], wavelength_nm: float) ->
     """Mean contact length (nm) and stress (GPa) in every bin of length, while the contact is judged."""
     length, stress = (np.array([row[f"contact_{key}"] for row in curve]) for key in ("length_nm", "stress_GPa"))
     widest, means = RULES.max_area_fraction**0.5 * wavelength_nm, []
-    for low in np.arange(RULES.min_length_nm, widest, BIN_NM):
-        here = (length >= low) & (length < min(low + BIN_NM, widest)) & (stress > 0)
+    for low in np.arange(RULES.min_length_nm, widest, FILM_FIT.bin_nm):
+        here = (length >= low) & (length < min(low + FILM_FIT.bin_nm, widest)) & (stress > 0)
         if here.any():
             means.append((float(np.mean(length[here])), float(np.mean(stress[here]))))
     return means
@@ -89,10 +107,10 @@ def mean_stresses(curve: Sequence[Mapping[str, float]], wavelength_nm: float) ->
 def too_few(points: FilmPoints) -> str | None:
     """Why no law of films can be fitted; None where it can."""
     films, thicknesses = int(points.film.sum()), len(np.unique(points.thickness_nm[points.film]))
-    if films < LEAST_POINTS or thicknesses < LEAST_THICKNESSES:
+    if films < FILM_FIT.least_points or thicknesses < FILM_FIT.least_thicknesses:
         return (
-            f"{films} mean stresses of films of {thicknesses} thicknesses: a law of films needs {LEAST_POINTS} of "
-            f"{LEAST_THICKNESSES}; add thicknesses (film_nm) or seeds"
+            f"{films} mean stresses of films of {thicknesses} thicknesses: a law of films needs "
+            f"{FILM_FIT.least_points} of {FILM_FIT.least_thicknesses}; add thicknesses (film_nm) or seeds"
         )
     for thickness, name, how in ((np.inf, "oxide throughout", "without film_nm"), (0.0, "base", "with film_nm: 0")):
         if not np.any(points.thickness_nm == thickness):
@@ -166,24 +184,24 @@ def error_left_out(
 
 
 def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
-    """H_film, H_base, k and m by their likelihood, shape (`DRAWS`, 4); `PRIOR` is flat in the logarithms and in m.
+    """H_film, H_base, k and m by their likelihood, shape (draws, 4); the prior is flat in the logarithms and in m.
 
     The misfits of a run are one error, so that N runs of unknown scatter have the likelihood S^(-N/2), S the sum of
     squares (the scatter's own prior is Jeffreys's): seeds are too few for a bootstrap.
     """
-    low, high = np.array(PRIOR).T
-    values = rng.uniform([*np.log(low[:3]), low[3]], [*np.log(high[:3]), high[3]], (TRIALS, 4))
+    low, high = np.array(FILM_FIT.prior).T
+    values = rng.uniform([*np.log(low[:3]), low[3]], [*np.log(high[:3]), high[3]], (FILM_FIT.trials, 4))
     values[:, :3] = np.exp(values[:, :3])
-    squares = np.zeros(TRIALS)
+    squares = np.zeros(FILM_FIT.trials)
     for _, thickness, length, stress in zip(*points, strict=True):
         squares += np.log(film(values.T, length, thickness) / stress) ** 2
     runs = len(set(zip(points.seed, points.thickness_nm, strict=True)))
     weights = (squares / squares.min()) ** (-runs / 2)
-    return values[rng.choice(TRIALS, DRAWS, p=weights / weights.sum())]
+    return values[rng.choice(FILM_FIT.trials, FILM_FIT.draws, p=weights / weights.sum())]
 
 
 def fit_films(
-    points: Sequence[Point],
+    points: Sequence[Run],
     curves: Mapping[str, Sequence[Mapping[str, float]]],
     glasses: Sequence[Mapping[str, Any]],
     area_error: float,
@@ -205,18 +223,21 @@ def fit_films(
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
     unsound = [{"run": point["run"], "status": point["status"]} for point in points if point["sound"] != "True"]
     sound = len(points) - len(unsound)
-    if sound < MIN_SHARE * len(points):
-        reasons.append(f"only {sound} of {len(points)} runs are sound (gate {MIN_SHARE:.0%})")
+    if sound < FIT_RULES.least_share * len(points):
+        reasons.append(f"only {sound} of {len(points)} runs are sound (gate {FIT_RULES.least_share:.0%})")
     of = points_of(points, curves)
     if few := too_few(of):
         reasons.append(few)
-    counts = {"points_used": sound, "points_total": len(points), "points_rejected": unsound, "cost": cost_of(points)}
+    counts = {"points_used": sound, "points_total": len(points), "points_rejected": unsound}
     result = {"method": "film", **counts, "inputs": {}, "gate": {"passed": not reasons, "reasons": reasons}}
     if few:
         return result
     rng = np.random.default_rng(np.random.SeedSequence([43]))
     draws = likely(of, rng)
-    shared = rng.normal(size=(2, DRAWS)) * [[np.linalg.norm([area_error / 3**0.5, *SYSTEMATIC.values()])], [BOND]]
+    shared = rng.normal(size=(2, FILM_FIT.draws)) * [
+        [np.linalg.norm([area_error / 3**0.5, *SYSTEMATIC.values()])],
+        [FILM_FIT.bond],
+    ]
     draws *= np.exp([shared[0], shared[0], shared[1], 0 * shared[1]]).T
     h_film, base, k, m = draws.T
     result["inputs"] = {
@@ -229,7 +250,7 @@ def fit_films(
         "left_out": {name: left_out(name, of) for name in LAWS},
         "length_over_thickness": [float(of.length_over_thickness.min()), float(of.length_over_thickness.max())],
         "share": [
-            {"length_over_thickness": at, **summary(1 / (1 + k * at**m))} for at in LENGTHS_OVER_THICKNESS.tolist()
+            {"length_over_thickness": at, **summary(1 / (1 + k * at**m))} for at in np.geomspace(0.5, 10, 30).tolist()
         ],
     }
     return result
@@ -237,5 +258,5 @@ def fit_films(
 
 def _samples(values: np.ndarray, unit: str) -> dict[str, Any]:
     """An input's distribution: its quantiles, each as likely as the others."""
-    shares = (np.arange(QUANTILES) + 0.5) / QUANTILES
+    shares = (np.arange(200) + 0.5) / 200
     return {"distribution": "samples", "values": np.quantile(values, shares).tolist(), "unit": unit}

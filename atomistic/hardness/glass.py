@@ -1,7 +1,7 @@
 """Oxide glass by melt and quench, and the gates it must pass.
 
-A glass cell is periodic, and cubic unless it takes the edge of another; bodies are cut from a tiling of it, so that a
-wavelength is a whole number of cells and nothing is strained.
+A glass cell is periodic and cubic; bodies are cut from a tiling of it, so that a wavelength is a whole number of cells
+and nothing is strained.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -17,13 +17,12 @@ from atomistic.covalent import random_places
 from atomistic.errors import InputError
 from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
 from atomistic.materials import SEARCHED_A, SHORTEST_BOND_A, Material, OxideGlass
-from atomistic.potentials import ForceField, Potential, Repelled, masses_u
+from atomistic.potentials import ForceField, Potential
 from atomistic.settings import GlassSettings
 
 NEAREST_START_A = 1.5  # random starts keep atoms this far apart
 MELT_K, FINAL_K = 4000.0, 300.0  # every shipped potential melts in some ps; the temperature of the closings
 TIMESTEP_FS = 2.0  # energy is kept to 0.2 meV per atom and ps, also in the melt (stability/hardness.csv)
-SEGMENT_STEPS = 5000  # a killed quench loses at most as many
 
 
 def cations(material: Material, potential: Potential) -> tuple[str, ...]:
@@ -31,30 +30,18 @@ def cations(material: Material, potential: Potential) -> tuple[str, ...]:
     return tuple(ion for ion in potential.materials[material.formula_text] if potential.species[ion].charge_e > 0)
 
 
-def random_start(
-    material: Material, potential: Potential, settings: GlassSettings, seed: int, edge_A: float | None = None
-) -> Atoms:
-    """Ions at random places of a cube of the experimental density, no two nearer than 1.5 Å.
-
-    The number of atoms follows from `settings.atoms`, or from the edge of the cube where one is given.
-    """
+def random_start(material: Material, potential: Potential, settings: GlassSettings, seed: int) -> Atoms:
+    """Ions at random places of a cube of the experimental density, no two nearer than 1.5 Å."""
     formula = _formula(material, potential)
-    reference: OxideGlass = material.part("oxide_glass")
     elements = tuple(formula)
-    unit_g = sum(count * potential.species[ion].mass_u for ion, count in formula.items()) / AVOGADRO
-    units = max(
-        1,
-        round(
-            1e-24 * edge_A**3 * reference.density_g_cm3 / unit_g if edge_A else settings.atoms / sum(formula.values())
-        ),
-    )
+    units = max(1, round(settings.atoms / sum(formula.values())))
     counts = [units * count for count in formula.values()]
     mass_g = sum(n * potential.species[ion].mass_u for n, ion in zip(counts, elements, strict=True)) / AVOGADRO
-    length = edge_A or (mass_g / reference.density_g_cm3 * 1e24) ** (1 / 3)
+    edge_A = (mass_g / material.part("oxide_glass").density_g_cm3 * 1e24) ** (1 / 3)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 1]))
-    placed = random_places(sum(counts), np.full(3, length), NEAREST_START_A, rng)
+    placed = random_places(sum(counts), np.full(3, edge_A), NEAREST_START_A, rng)
     types = rng.permutation(np.repeat(np.arange(1, len(elements) + 1), counts))
-    return Atoms(elements, types, placed, np.full(3, length))
+    return Atoms(elements, types, placed, np.full(3, edge_A))
 
 
 def _formula(material: Material, potential: Potential) -> Mapping[str, int]:
@@ -67,11 +54,7 @@ def _formula(material: Material, potential: Potential) -> Mapping[str, int]:
 
 
 def write_forcefield(
-    workspace: Workspace,
-    potential: ForceField,
-    elements: tuple[str, ...],
-    energy_scale: float,
-    repelled: Repelled | None = None,
+    workspace: Workspace, potential: ForceField, elements: tuple[str, ...], energy_scale: float
 ) -> None:
     """Write the tables of a potential and the commands that use them (file `pairs`) into a workspace.
 
@@ -79,10 +62,9 @@ def write_forcefield(
 
     Parameters
     ----------
-    elements : of each LAMMPS type; an element may stand for several types.
-    repelled : a second body; None: there is none that only repels.
+    elements : of each LAMMPS type.
     """
-    for file, text in potential.files(elements, energy_scale, repelled).items():
+    for file, text in potential.files(elements, energy_scale).items():
         (workspace / file).write_text(text, encoding="utf-8")
 
 
@@ -93,20 +75,18 @@ def make_glass(
     seed: int,
     work: Path,
     progress: Progress | None = None,
-    edge_A: float | None = None,
-    segment_steps: int = SEGMENT_STEPS,
+    segment_steps: int = 5000,
 ) -> Atoms:
     """Melt a random start and quench it; resumes in `work` after a kill.
 
     Parameters
     ----------
     material : an oxide, with the `oxide_glass` that its file in config/materials gives.
-    edge_A : edges x and y of the cell, kept throughout, so that the glass tiles beside another one without strain;
-        the height follows a pressure of zero.  None: all three do, and stay equal.
+    segment_steps : a killed quench loses at most as many.
 
     Returns
     -------
-    Atoms at `FINAL_K`, cell at the volume of the last step.
+    Atoms at 300 K, cell at the volume of the last step.
 
     Raises
     ------
@@ -118,15 +98,14 @@ def make_glass(
         "settings": settings.model_dump(),
         "seed": seed,
         "of": [material.formula_text, material.part("oxide_glass").density_g_cm3],
-        "edge": edge_A,
         "constants": [MELT_K, FINAL_K, TIMESTEP_FS, segment_steps],
     }
     return run_segments(
         Workspace(work, identity, "glass.in"),
         potential,
         elements,
-        lambda: random_start(material, potential, settings, seed, edge_A),
-        schedule(settings, "npt" if edge_A is None else "npt_height", segment_steps),
+        lambda: random_start(material, potential, settings, seed),
+        schedule(settings, segment_steps),
         1 + int(np.random.SeedSequence([seed, 2]).generate_state(1)[0] % 900_000_000),
         TIMESTEP_FS,
         "melt and quench",
@@ -156,7 +135,7 @@ def run_segments(
     done = workspace.segments_done(len(segments))
     write_forcefield(workspace, force, elements, 1.0)
     if not done:
-        write_data(workspace / "start.data", start(), masses_u(force, elements))
+        write_data(workspace / "start.data", start(), force.masses_u)
     total = sum(segment["steps"] for segment in segments)
 
     def on_step(step: int) -> None:
@@ -184,8 +163,8 @@ def total_ps(settings: GlassSettings) -> float:
     return settings.melt_ps + (MELT_K - FINAL_K) / settings.quench_rate_K_ps + settings.rest_ps
 
 
-def schedule(settings: GlassSettings, ensemble: str, segment_steps: int) -> list[dict]:
-    """Segments of the melt (constant volume), and of the quench and the rest in `ensemble` of glass.in."""
+def schedule(settings: GlassSettings, segment_steps: int) -> list[dict]:
+    """Segments of the melt (constant volume), and of the quench and the rest (zero pressure)."""
 
     def steps(duration_ps: float) -> int:
         return max(1, round(1000 * duration_ps / TIMESTEP_FS))
@@ -199,21 +178,15 @@ def schedule(settings: GlassSettings, ensemble: str, segment_steps: int) -> list
         {"ensemble": "nvt", "from": melt, "to": melt, "steps": steps(0.7 * settings.melt_ps)},
     ]
     segments += [
-        {"ensemble": ensemble, "from": high, "to": low, "steps": steps(quench_ps / parts)}
-        for high, low in pairwise(ramp)
+        {"ensemble": "npt", "from": high, "to": low, "steps": steps(quench_ps / parts)} for high, low in pairwise(ramp)
     ]
-    return [*segments, {"ensemble": ensemble, "from": end, "to": end, "steps": steps(settings.rest_ps)}]
+    return [*segments, {"ensemble": "npt", "from": end, "to": end, "steps": steps(settings.rest_ps)}]
 
 
 def density_g_cm3(atoms: Atoms, force: ForceField) -> float:
     """Density of a periodic cell."""
-    return mass_u(force, atoms) / AVOGADRO / (float(np.prod(atoms.cell_A)) * 1e-24)
-
-
-def mass_u(force: ForceField, atoms: Atoms) -> float:
-    """Mass of all atoms."""
-    masses = np.array([force.species[element].mass_u for element in atoms.elements])
-    return float(masses[atoms.types - 1].sum())
+    masses_u = np.array([force.masses_u[element] for element in atoms.elements])
+    return float(masses_u[atoms.types - 1].sum()) / AVOGADRO / (float(np.prod(atoms.cell_A)) * 1e-24)
 
 
 def unlike_neighbours(atoms: Atoms, kind: np.ndarray, reach_A: float) -> tuple[np.ndarray, np.ndarray]:

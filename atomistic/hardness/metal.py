@@ -19,14 +19,37 @@ from atomistic.hardness.glass import run_segments
 from atomistic.lammps import Atoms, Progress, Workspace
 from atomistic.materials import Eam
 
-POINTS = 5000
-CUTOFF_A = 7.0  # all functions of titanium are below 2e-6 eV there; at the authors' 6.56 A lies a shell of neighbours
-MOST_DENSITY = 4.0  # end of the table of embedding, over the density of the crystal
-TOO_NEAR = 0.75  # of the nearest distance: of two atoms of different grains that are nearer one is left out
-ANNEAL_K, ANNEAL_PS, FINAL_K, TIMESTEP_FS = 900.0, 10.0, 300.0, 3.0
-MAX_STRAIN = 0.01  # of the dense body, brought to the width of the asperity
-ANNEALED_DENSITY = 0.972  # of grains after the anneal, over the crystal at 0 K (study hardness.metal)
-WIDENINGS = 3  # the number of atoms follows the width to 0.1 %
+
+@dataclass(frozen=True)
+class MetalNumerics:
+    """How the potential is tabulated and a body of grains is made.
+
+    Attributes
+    ----------
+    points, cutoff_A : of the tables; all functions of titanium are below 2e-6 eV at 7 Å; at the authors' 6.56 Å lies a
+        shell of neighbours.
+    most_density : end of the table of embedding, over the density of the crystal.
+    too_near : of the nearest distance: of two atoms of different grains that are nearer one is left out.
+    anneal_K, anneal_ps, final_K, timestep_fs : of the anneal.
+    max_strain : of the dense body, brought to the width of the asperity.
+    annealed_density : of grains after the anneal, over the crystal at 0 K (study `hardness.metal`).
+    widenings : steps in which the number of atoms follows the width, to 0.1 %.
+    """
+
+    points: int = 5000
+    cutoff_A: float = 7.0
+    most_density: float = 4.0
+    too_near: float = 0.75
+    anneal_K: float = 900.0
+    anneal_ps: float = 10.0
+    final_K: float = 300.0
+    timestep_fs: float = 3.0
+    max_strain: float = 0.01
+    annealed_density: float = 0.972
+    widenings: int = 3
+
+
+METAL = MetalNumerics()
 PLACES = np.array([[0, 0, 0], [1 / 2, 1 / 2, 0], [1 / 2, 5 / 6, 1 / 2], [0, 1 / 3, 1 / 2]])
 """Atoms of the cell with edges a, a sqrt(3) and c."""
 
@@ -58,12 +81,6 @@ class Metal(Base):
     """A metal below films, or by itself."""
 
     styles = ("eam/alloy",)
-    molten_K = 2800.0
-
-    @property
-    def element(self) -> str:
-        """Its chemical symbol."""
-        return self.elements[0]
 
     @property
     def eam(self) -> Eam:
@@ -71,9 +88,9 @@ class Metal(Base):
         return self.material.part("eam")
 
     @property
-    def species(self) -> Mapping[str, Any]:
-        """What has the mass of its atoms, by element."""
-        return {self.element: self.eam}
+    def masses_u(self) -> Mapping[str, float]:
+        """Mass of its element."""
+        return {self.elements[0]: self.eam.mass_u}
 
     @property
     def atoms_per_nm3(self) -> float:
@@ -81,34 +98,22 @@ class Metal(Base):
         a, c = self.eam.lattice_A
         return 4e3 / (a**2 * np.sqrt(3) * c)
 
-    def softened(self, factor: float) -> "Metal":
-        """The same metal with all energies times a factor: for checks."""
-        single, several = ("A_eV", "B_eV", "F_outer_eV"), ("F_inner_eV", "F_middle_eV")
-        eam = self.eam.model_copy(
-            update={key: factor * getattr(self.eam, key) for key in single}
-            | {key: tuple(factor * value for value in getattr(self.eam, key)) for key in several}
-        )
-        return Metal(self.material.model_copy(update={"eam": eam}))
-
     def commands(self, above: int) -> list[str]:
         """Commands of its own atoms, type 1."""
-        return [f"pair_coeff * * eam/alloy {METAL_FILE} {' '.join([self.element, *['NULL'] * above])}"]
+        return [f"pair_coeff * * eam/alloy metal.eam {' '.join([*self.elements, *['NULL'] * above])}"]
 
     def tables(self) -> dict[str, str]:
-        """The potential."""
-        return {METAL_FILE: self.setfl()}
-
-    def setfl(self) -> str:
         """The potential for LAMMPS's `pair_style eam/alloy`."""
         eam = self.eam
-        density, r = np.linspace(0, MOST_DENSITY * eam.rho, POINTS), np.linspace(0, CUTOFF_A, POINTS)
+        count, end_A = METAL.points, METAL.cutoff_A
+        density, r = np.linspace(0, METAL.most_density * eam.rho, count), np.linspace(0, end_A, count)
         text = io.StringIO()
-        text.write(f"{self.material.name}\n{eam.source}\n\n1 {self.element}\n")
-        text.write(f"{POINTS} {density[1]:.16g} {POINTS} {r[1]:.16g} {CUTOFF_A}\n0 {eam.mass_u} {eam.r_A} any\n")
+        text.write(f"{self.material.name}\n{eam.source}\n\n1 {self.elements[0]}\n")
+        text.write(f"{count} {density[1]:.16g} {count} {r[1]:.16g} {end_A}\n0 {eam.mass_u} {eam.r_A} any\n")
         np.savetxt(text, embedding_energy(eam, density), fmt="%.16g")
         np.savetxt(text, electron_density(eam, r), fmt="%.16g")
         np.savetxt(text, r * pair_energy(eam, r), fmt="%.16g")
-        return text.getvalue()
+        return {"metal.eam": text.getvalue()}
 
     def make(self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None) -> Atoms:
         """A cube of grains as wide as the asperity, annealed at zero pressure and cooled to 300 K in the same time.
@@ -128,15 +133,15 @@ class Metal(Base):
             lambda: _wide_enough(self, wide_A, seed),
             segments,
             1 + seed,
-            TIMESTEP_FS,
+            METAL.timestep_fs,
             "annealing the metal",
             progress,
         )
         factor = wide_A / body.cell_A[0]
-        if abs(factor - 1) > MAX_STRAIN:
+        if abs(factor - 1) > METAL.max_strain:
             raise InputError(
                 f"{self.material.name}: its cube would be strained by {factor - 1:+.1%} to the {wide_A:.1f} A of the "
-                f"asperity (gate {MAX_STRAIN:.0%}); take a wider asperity (tiles)"
+                f"asperity (gate {METAL.max_strain:.0%}); take a wider asperity (tiles)"
             )
         return replace(body, positions_A=factor * body.positions_A, cell_A=factor * body.cell_A)
 
@@ -145,16 +150,13 @@ class Metal(Base):
         return (tiles * edge_A / 10) ** 3 * self.atoms_per_nm3 * sum(segment["steps"] for segment in _segments())
 
 
-METAL_FILE = "metal.eam"
-
-
 def crystal(metal: Metal, repeats: tuple[int, int, int]) -> Atoms:
     """A hexagonal crystal with its axis upright, in cells of a, a sqrt(3) and c."""
     a, c = metal.eam.lattice_A
     cell = np.array([a, a * np.sqrt(3), c])
     offsets = np.stack(np.meshgrid(*map(np.arange, repeats), indexing="ij"), axis=-1).reshape(-1, 3)
     positions = (offsets[:, None] + PLACES).reshape(-1, 3) * cell
-    return Atoms((metal.element,), np.ones(len(positions), int), positions, cell * repeats)
+    return Atoms(metal.elements, np.ones(len(positions), int), positions, cell * repeats)
 
 
 def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms:
@@ -178,24 +180,28 @@ def polycrystal(metal: Metal, edge_A: float, grain_A: float, seed: int) -> Atoms
         places = turn.apply(one.positions_A - one.cell_A / 2 + rng.uniform(-1, 1, 3)) + centre
         grown.append(places[nearest.query(places)[1] == k * len(images) + len(images) // 2])
     positions = np.mod(np.concatenate(grown), edge_A)
-    near = KDTree(positions, boxsize=edge_A).query_pairs(TOO_NEAR * metal.eam.r_A)
+    near = KDTree(positions, boxsize=edge_A).query_pairs(METAL.too_near * metal.eam.r_A)
     positions = np.delete(positions, sorted({max(pair) for pair in near}), axis=0)
-    return Atoms((metal.element,), np.ones(len(positions), int), positions, np.full(3, edge_A))
+    return Atoms(metal.elements, np.ones(len(positions), int), positions, np.full(3, edge_A))
 
 
 def _segments() -> list[dict[str, Any]]:
     """Anneal, cooling and rest, as `run_segments` takes them."""
-    steps = round(1000 * ANNEAL_PS / TIMESTEP_FS)
-    parts = [(ANNEAL_K, ANNEAL_K, steps), (ANNEAL_K, FINAL_K, steps), (FINAL_K, FINAL_K, steps // 3)]
+    steps = round(1000 * METAL.anneal_ps / METAL.timestep_fs)
+    parts = [
+        (METAL.anneal_K, METAL.anneal_K, steps),
+        (METAL.anneal_K, METAL.final_K, steps),
+        (METAL.final_K, METAL.final_K, steps // 3),
+    ]
     return [{"ensemble": "npt", "from": start, "to": end, "steps": count} for start, end, count in parts]
 
 
 def _wide_enough(metal: Metal, edge_A: float, seed: int) -> Atoms:
     """Grains in a cube whose atoms fill one of `edge_A` once they are dense."""
     assert metal.below_films.grain_nm is not None  # of a Material
-    grain_A, volume_A3 = 10 * metal.below_films.grain_nm, 1e3 / (metal.atoms_per_nm3 * ANNEALED_DENSITY)
+    grain_A, volume_A3 = 10 * metal.below_films.grain_nm, 1e3 / (metal.atoms_per_nm3 * METAL.annealed_density)
     start_A, atoms = edge_A, polycrystal(metal, edge_A, grain_A, seed)
-    for _ in range(WIDENINGS):
+    for _ in range(METAL.widenings):
         start_A *= edge_A / (len(atoms) * volume_A3) ** (1 / 3)
         atoms = polycrystal(metal, start_A, grain_A, seed)
     return atoms

@@ -6,23 +6,28 @@ The schedule is that of the elastic stage (`atomistic/elastic/networks.py`), in 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from atomistic.constants import AVOGADRO
-from atomistic.covalent import core_commands, random_places, tersoff_table
+from atomistic.covalent import Quench, core_commands, random_places, tersoff_table
 from atomistic.errors import InputError
 from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import NEAREST_START_A, density_g_cm3, run_segments, unlike_neighbours
 from atomistic.lammps import Atoms, Progress, Workspace
-from atomistic.materials import Core, NetworkGlass, Tersoff
+from atomistic.materials import NetworkGlass
 
-MELT_K, FREE_BELOW_K, FINAL_K = 5000.0, 2500.0, 300.0
-MELT_PS, QUENCH_K_PS, REST_PS = 3.0, 100.0, 3.0
-TIMESTEP_FS = 1.0
-FILE = "base.tersoff"
+
+@dataclass(frozen=True)
+class SlowQuench(Quench):
+    """The quench of the elastic stage, with its rate and a rest at the end."""
+
+    rate_K_ps: float = 100.0
+    rest_ps: float = 3.0
+
+
+QUENCH = SlowQuench()
 
 
 @dataclass(frozen=True)
@@ -30,7 +35,6 @@ class Network(Base):
     """A glass of covalent bonds below films, or by itself."""
 
     styles = ("tersoff", "harmonic/cut")
-    molten_K = MELT_K
 
     @property
     def network(self) -> NetworkGlass:
@@ -38,9 +42,9 @@ class Network(Base):
         return self.material.part("network_glass")
 
     @property
-    def species(self) -> Mapping[str, Any]:
-        """What has the mass of its atoms, by element."""
-        return {element: SimpleNamespace(mass_u=mass) for element, mass in self.network.masses_u.items()}
+    def masses_u(self) -> Mapping[str, float]:
+        """Mass of each element."""
+        return self.network.masses_u
 
     @property
     def atoms_per_nm3(self) -> float:
@@ -49,32 +53,14 @@ class Network(Base):
         atoms = sum(self.material.formula.values())
         return atoms * self.network.start_density_g_cm3 * AVOGADRO / unit_u * 1e-21
 
-    def softened(self, factor: float) -> "Network":
-        """The same glass with all energies times a factor."""
-        network = self.network.model_copy(update={"tersoff": self._tersoff(factor), "cores": self._cores(factor)})
-        return Network(self.material.model_copy(update={"network_glass": network}))
-
-    def _tersoff(self, factor: float) -> Tersoff:
-        atoms = {
-            element: atom.model_copy(update={"A": factor * atom.A, "B": factor * atom.B})
-            for element, atom in self.network.tersoff.elements.items()
-        }
-        return self.network.tersoff.model_copy(update={"elements": atoms})
-
-    def _cores(self, factor: float) -> dict[str, Core]:
-        return {
-            pair: core.model_copy(update={"k_eV_A2": factor * core.k_eV_A2})
-            for pair, core in self.network.cores.items()
-        }
-
     def commands(self, above: int) -> list[str]:
         """Commands of its own atoms, the first types."""
         types = " ".join([*self.elements, *["NULL"] * above])
-        return [f"pair_coeff * * tersoff {FILE} {types}", *core_commands(self.network.cores, self.elements)]
+        return [f"pair_coeff * * tersoff base.tersoff {types}", *core_commands(self.network.cores, self.elements)]
 
     def tables(self) -> dict[str, str]:
         """The Tersoff potential."""
-        return {FILE: tersoff_table(self.network.tersoff)}
+        return {"base.tersoff": tersoff_table(self.network.tersoff)}
 
     def make(self, edge_A: float, tiles: int, seed: int, work: Path, progress: Progress | None = None) -> Atoms:
         """A cell as wide as one of the oxide's glass, its height at zero pressure and 300 K; resumes in `work`.
@@ -92,7 +78,7 @@ class Network(Base):
             lambda: self._random_start(edge_A, seed),
             segments,
             1 + seed,
-            TIMESTEP_FS,
+            QUENCH.timestep_fs,
             f"melt and quench of {self.material.name}",
             progress,
         )
@@ -138,15 +124,16 @@ class Network(Base):
 
 
 def _segments() -> list[dict[str, Any]]:
-    """Melt and quench, as `run_segments` takes them: at constant volume, below `FREE_BELOW_K` the height is free."""
+    """Melt and quench, as `run_segments` takes them: at constant volume, then the height is free."""
+    melt, free, end = QUENCH.melt_K, QUENCH.free_below_K, QUENCH.final_K
     parts = [
-        ("nvt", 1.5 * MELT_K, MELT_K, 0.2 * MELT_PS),
-        ("nvt", MELT_K, MELT_K, 0.8 * MELT_PS),
-        ("nvt", MELT_K, FREE_BELOW_K, (MELT_K - FREE_BELOW_K) / QUENCH_K_PS),
-        ("npt_height", FREE_BELOW_K, FINAL_K, (FREE_BELOW_K - FINAL_K) / QUENCH_K_PS),
-        ("npt_height", FINAL_K, FINAL_K, REST_PS),
+        ("nvt", 1.5 * melt, melt, 0.2 * QUENCH.melt_ps),
+        ("nvt", melt, melt, 0.8 * QUENCH.melt_ps),
+        ("nvt", melt, free, (melt - free) / QUENCH.rate_K_ps),
+        ("npt_height", free, end, (free - end) / QUENCH.rate_K_ps),
+        ("npt_height", end, end, QUENCH.rest_ps),
     ]
     return [
-        {"ensemble": ensemble, "from": start, "to": end, "steps": round(1000 * duration_ps / TIMESTEP_FS)}
+        {"ensemble": ensemble, "from": start, "to": end, "steps": round(1000 * duration_ps / QUENCH.timestep_fs)}
         for ensemble, start, end, duration_ps in parts
     ]

@@ -10,15 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from atomistic.hardness.runs import PROTOCOL, geometry
-from atomistic.settings import ClosingSettings
+from atomistic.hardness.runs import PROTOCOL
 
 Rows = Sequence[Mapping[str, float]]
-
-ROUNDING_NM = 1e-6  # of a travel that is a whole number of steps
-LATEST_START = 3  # of as many parts of the averages beyond the onset, the first is the last to hold the plateau's start
-CLEARLY_MORE = 1.5  # times the independent averages
-SAME_SHAPE = (0.5, 0.6)  # contact length over wavelength: runs of one shape are alike there, whatever their size
 
 
 @dataclass(frozen=True)
@@ -34,6 +28,9 @@ class Rules:
     stop_interval, stop_points, stop_area_fraction : a run has settled once half the 68 % interval of its plateau is
         this share of it, with as many averages, on this share of the cell (a larger asperity is to give a larger one).
     max_drift_meV_atom_ps, max_warming_K : largest drift of the conserved energy, largest rise of temperature.
+    latest_start : of as many parts of the averages beyond the onset, the first is the last to hold the plateau's start.
+    clearly_more : times the independent averages.
+    same_shape : contact length over wavelength: runs of one shape are alike there, whatever their size.
     """
 
     min_length_nm: float = 2.0
@@ -47,6 +44,9 @@ class Rules:
     stop_area_fraction: float = 0.25
     max_drift_meV_atom_ps: float = 0.2
     max_warming_K: float = 150.0
+    latest_start: int = 3
+    clearly_more: float = 1.5
+    same_shape: tuple[float, float] = (0.5, 0.6)
 
 
 RULES = Rules()
@@ -80,8 +80,8 @@ class Hardness:
     status : yield, no_yield, or "rejected: why".
     sound : whether energy, temperature, film and range of contact are as they must be, whatever became of the plateau.
     plateau_exponent : n of stress ~ length^n on the plateau.
-    same_shape_GPa, same_shape_length_nm : mean stress and contact length where the contact is `SAME_SHAPE` of the
-        wavelength wide.
+    same_shape_GPa, same_shape_length_nm : mean stress and contact length where the contact is `Rules.same_shape`
+        of the wavelength wide.
     """
 
     status: str
@@ -136,7 +136,7 @@ def plastic_onset(witness: Rows, apart_nm: float, rules: Rules = RULES, by_bonds
     displacement = np.array([row["displacement_nm"] for row in witness])
     new = np.array([row["new_exchanges"] for row in witness])
     lowering = 10 * np.array([row["lowering_nm"] for row in witness])
-    apart = displacement <= apart_nm + ROUNDING_NM
+    apart = displacement <= apart_nm + 1e-6  # a travel is a whole number of steps, rounded
     before = apart & (np.arange(len(witness)) > 0)
     if not np.any(before):
         return Onset(None, float("nan"))
@@ -187,7 +187,6 @@ def find_hardness(
     fraction = column["contact_area_nm2"] / cell_area_nm2
     # what comes back after the contact was too wide is not used; one that shrinks for a moment goes on
     window = (length >= rules.min_length_nm) & (np.maximum.accumulate(fraction) <= rules.max_area_fraction)
-    # counterfaces of atoms start farther apart than the approach
     apart = np.max(travel[np.cumsum(fraction) == 0], initial=approach_nm)
     onset = plastic_onset(witness, float(apart), rules, by_bonds=not on_base)
     measured: dict[str, Any] = {
@@ -202,7 +201,7 @@ def find_hardness(
     if np.sum(window) < rules.min_points:
         return Hardness("rejected: contact too small for the window of lengths", **measured)
     measured["sound"] = True
-    low, high = (share * np.sqrt(cell_area_nm2) for share in SAME_SHAPE)
+    low, high = (share * np.sqrt(cell_area_nm2) for share in rules.same_shape)
     if np.any(alike := window & (length >= low) & (length < high)):
         measured["same_shape_GPa"] = float(np.mean(stress[alike]))
         measured["same_shape_length_nm"] = float(np.mean(length[alike]))
@@ -277,20 +276,18 @@ def may_stop(
     return hardness.plateau_exponent <= rules.max_exponent and narrow
 
 
-def point(
-    curve: Rows, witness: Rows, run: Mapping[str, Any], closing: ClosingSettings, potential: str
-) -> dict[str, Any]:
+def point(curve: Rows, witness: Rows, run: Mapping[str, Any], potential: str) -> dict[str, Any]:
     """Row of points.csv of a run, given its summary `run` and the name of its potential."""
-    copied = ("energy_scale", "asperity", "wavelength_nm", "amplitude_nm", "film_nm", "seed", "atoms", "restart_steps")
+    copied = ("energy_scale", "asperity", "wavelength_nm", "amplitude_nm", "film_nm", "seed", "atoms")
     hardness = find_hardness(curve, witness, run["wavelength_nm"] ** 2, on_base=run["film_nm"] is not None)
     if run["film_nm"] and (fault := film_fault(run)):
         hardness = replace(hardness, status=f"rejected: {fault}", sound=False)
     return {
         "run": run["run"],
         "potential": potential,
-        "geometry": geometry(closing),
-        **{key: run[key] for key in (*copied, "lammps_cpu_s", "python_cpu_s")},
+        **{key: run[key] for key in copied},
         "atom_steps": run["atoms"] * run["steps"],
+        "lammps_cpu_s": run["lammps_cpu_s"],
         **asdict(hardness),
     }
 
@@ -341,9 +338,9 @@ def settled(stress: np.ndarray) -> int:
     narrow.  A start beyond the first third would make plateaus of the ends of elastic curves.  Both by the rates of
     study `hardness.detection`.
     """
-    independent = [_effective_number(stress[start:]) for start in range(len(stress) // LATEST_START + 1)]
+    independent = [_effective_number(stress[start:]) for start in range(len(stress) // RULES.latest_start + 1)]
     best = int(np.argmax(independent))
-    return best if independent[best] > CLEARLY_MORE * independent[0] else 0
+    return best if independent[best] > RULES.clearly_more * independent[0] else 0
 
 
 def _effective_number(values: np.ndarray) -> float:

@@ -1,45 +1,36 @@
-"""What a closing run measured, read from the files that LAMMPS left: the curve, the witness, the pictures."""
+"""What a closing run measured, read from the files that LAMMPS left: the curve and the witness."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import KDTree
 
 from atomistic.constants import EV_PER_A3_IN_GPA
+from atomistic.hardness.asperity import TOP_ATOMS
 from atomistic.hardness.contact_area import Area, contact_area
 from atomistic.lammps import Workspace, load_averages, load_dump
 
-NEAR, FAR = 0.9, 1.2  # bond lengths in units of the first minimum of g(r)
-TOP_ATOMS = 8
-SLICE_A = 4.0  # half the thickness of the slices for pictures
 Rows = list[dict[str, float]]
 Bonds = set[tuple[int, int]]
 Frame = np.ndarray  # rows (type, x, y, z), ordered by atom id
 
 
 @dataclass(frozen=True)
-class Geometry:
-    """Where the contact is: periodic cell, axis of the contact, atoms below and above; lengths in Å.
-
-    Attributes
-    ----------
-    lower : atoms of the asperity; ids above belong to the counterface.
-    """
+class PressedCell:
+    """The periodic cell of a pressed body, Å; `atoms` counts its atoms."""
 
     wavelength_A: float
-    lower: int
     atoms: int
-    bodies: int
 
     @property
     def axis_A(self) -> float:
-        """x and y of the peak."""
+        """x and y of the peak, where the contact is."""
         return self.wavelength_A / 4
 
 
 @dataclass(frozen=True)
-class Bond:
+class OxideBond:
     """What joins cation and anion, by their types in a body; `length_A` is the first minimum of their g(r)."""
 
     cation: int
@@ -53,7 +44,7 @@ class Sample:
 
     Attributes
     ----------
-    averages : position, force, temperature, driving force, as the script wrote them.
+    averages : position, force and temperature, as the script wrote them.
     area_A2 : contact area, Å².
     touching_A : places (x, y) of the atoms in contact, shape (atoms, 2).
     """
@@ -65,7 +56,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class Relaxed:
-    """A snapshot relaxed without its counterface, with its bonds shorter than `NEAR` and `FAR`."""
+    """A snapshot relaxed without its counterface, with its bonds shorter than 0.9 and 1.2 of `OxideBond.length_A`."""
 
     step: int
     frame: Frame
@@ -88,11 +79,11 @@ class Readout:
         timestep_ps: float,
         per_average: int,
         area: Area,
-        geometry: Geometry,
-        bond: Bond | None,
+        cell: PressedCell,
+        bond: OxideBond | None,
     ) -> None:
         self._workspace, self._segment_steps, self._timestep_ps = workspace, segment_steps, timestep_ps
-        self._per_average, self.area, self._geometry = per_average, area, geometry
+        self._per_average, self.area, self._cell = per_average, area, cell
         self._bond = bond
         self._samples: dict[int, dict[int, Sample]] = {}
         self._ends: dict[int, np.ndarray] = {}
@@ -103,11 +94,11 @@ class Readout:
         samples: dict[int, Sample] = {}
         for n in segments:  # the last step of a segment may stand in the next one again: the first one counts
             if n not in self._samples:
-                self._samples[n] = load_samples(self._workspace, n, self.area, self._geometry)
+                self._samples[n] = load_samples(self._workspace, n, self.area, self._cell)
             samples = self._samples[n] | samples
         ends = {n: self._end(n) for n in (segments[0] - 1, *segments)}
         drift = energy_drift(ends, self._segment_steps, samples)
-        return curve_rows(samples, drift, self._timestep_ps, self._per_average, self._geometry)
+        return curve_rows(samples, drift, self._timestep_ps, self._per_average, self._cell)
 
     def _end(self, segment: int) -> np.ndarray:
         """Position, energy and heat at the end of a segment."""
@@ -124,21 +115,21 @@ class Readout:
         """The relaxed snapshot after a segment; 0: before the first."""
         if segment not in self._relaxed:
             [(step, table)] = load_dump(self._workspace / f"relaxed.{segment}")
-            frame, wavelength = table[:, 1:5], self._geometry.wavelength_A
-            near, far = (bonds_of(frame, self._bond, factor, wavelength) for factor in (NEAR, FAR))
+            frame, wavelength = table[:, 1:5], self._cell.wavelength_A
+            near, far = (bonds_of(frame, self._bond, factor, wavelength) for factor in (0.9, 1.2))
             self._relaxed[segment] = Relaxed(step, frame, (near, far))
         return self._relaxed[segment]
 
 
-def load_samples(workspace: Workspace, segment: int, area: Area, geometry: Geometry) -> dict[int, Sample]:
+def load_samples(workspace: Workspace, segment: int, area: Area, cell: PressedCell) -> dict[int, Sample]:
     """What a segment measured, by step."""
     near = dict(load_dump(workspace / f"near.{segment}"))
-    cell, axis = (geometry.wavelength_A, geometry.wavelength_A), (geometry.axis_A, geometry.axis_A)
+    side, axis = (cell.wavelength_A, cell.wavelength_A), (cell.axis_A, cell.axis_A)
     samples = {}
     for step, *averages in load_averages(workspace / f"averages.{segment}"):
-        places, beyond = beyond_counterface(near[int(step)], geometry, area.touch_A)
-        touching = places[beyond > -area.depth_A]
-        samples[int(step)] = Sample(np.array(averages), contact_area(touching, cell, area, axis), touching)
+        atoms = near[int(step)]  # id, type, x, y, z, and how far beyond the flat
+        touching = atoms[atoms[:, 5] > -area.depth_A, 2:4]
+        samples[int(step)] = Sample(np.array(averages), contact_area(touching, side, area, axis), touching)
     return samples
 
 
@@ -155,7 +146,7 @@ def energy_drift(ends: Mapping[int, np.ndarray], segment_steps: int, samples: Ma
     numbers = sorted(ends)
     place, energy, heat = np.array([ends[n] for n in numbers]).T
     steps = sorted(samples)
-    position, _, _, drive = np.array([samples[step].averages for step in steps]).T
+    position, drive, _ = np.array([samples[step].averages for step in steps]).T
     # between the samples by trapezoids, since the force rises; beyond the last before an end it is held
     between = np.concatenate([[0.0], np.cumsum(0.5 * (drive[1:] + drive[:-1]) * (position[:-1] - position[1:]))])
     last = np.searchsorted(steps, segment_steps * np.array(numbers[1:]), side="right") - 1
@@ -165,7 +156,7 @@ def energy_drift(ends: Mapping[int, np.ndarray], segment_steps: int, samples: Ma
 
 
 def curve_rows(
-    samples: Mapping[int, Sample], drift: Mapping[int, float], timestep_ps: float, per_average: int, geometry: Geometry
+    samples: Mapping[int, Sample], drift: Mapping[int, float], timestep_ps: float, per_average: int, cell: PressedCell
 ) -> Rows:
     """Rows of the curve of the samples of consecutive segments.
 
@@ -174,7 +165,7 @@ def curve_rows(
     drift : of `energy_drift`; a row has the value between two ends of segments on the line through them.
     """
     steps = sorted(samples)
-    position, force, temperature, _ = np.array([samples[step].averages for step in steps]).T
+    position, force, temperature = np.array([samples[step].averages for step in steps]).T
     gained = np.interp(steps, list(drift), list(drift.values()))
     curve = []
     for k in range(0, len(steps) - per_average + 1, per_average):
@@ -186,41 +177,29 @@ def curve_rows(
                 "time_ps": steps[k + per_average - 1] * timestep_ps,
                 "displacement_nm": float(position[0] - np.mean(position[part])) / 10,
                 "force_nN": push * EV_PER_A3_IN_GPA / 100,
-                "nominal_stress_GPa": push / geometry.wavelength_A**2 * EV_PER_A3_IN_GPA,
+                "nominal_stress_GPa": push / cell.wavelength_A**2 * EV_PER_A3_IN_GPA,
                 "contact_area_nm2": contact / 100,
                 "contact_length_nm": float(np.sqrt(contact)) / 10,
                 "contact_stress_GPa": push / contact * EV_PER_A3_IN_GPA if contact > 0 else float("nan"),
                 "temperature_K": float(np.mean(temperature[part])),
-                "energy_drift_meV_per_atom": 1000 * float(np.mean(gained[part])) / geometry.atoms,
+                "energy_drift_meV_per_atom": 1000 * float(np.mean(gained[part])) / cell.atoms,
                 "contact_atoms": float(np.mean([len(sample.touching_A) for sample in averaged])),
-                "atoms": geometry.atoms,
+                "atoms": cell.atoms,
             }
         )
     return curve
 
 
-def beyond_counterface(near: np.ndarray, geometry: Geometry, touch_A: float) -> tuple[np.ndarray, np.ndarray]:
-    """Places (x, y) of the asperity's atoms near the contact, and how far they lie beyond the counterface.
-
-    Beyond a body of atoms: how much nearer than `touch_A` its nearest atom is.
-    """
-    if geometry.bodies == 1:
-        return near[:, 2:4], near[:, 5]
-    below = near[:, 0] <= geometry.lower
-    if np.all(below) or not np.any(below):
-        return np.empty((0, 2)), np.empty(0)
-    box = np.array([geometry.wavelength_A, geometry.wavelength_A, 0.0])  # 0: not periodic
-    positions = near[:, 2:5].copy()
-    positions[:, :2] = np.mod(positions[:, :2], geometry.wavelength_A)
-    distance, _ = KDTree(positions[~below], boxsize=box).query(positions[below])
-    return near[below, 2:4], touch_A - distance
-
-
-def witness_rows(snapshots: Sequence[Relaxed], displacement_nm: Callable[[int], float], held_A: float) -> Rows:
+def witness_rows(snapshots: Sequence[Relaxed], timestep_ps: float, speed_A_ps: float, held_A: float) -> Rows:
     """Bonds exchanged and lowering of the top since the first snapshot (no contact yet).
 
-    A bond counts as broken (formed) when its length passes from below `NEAR` to above `FAR` times the first
-    minimum of g(r) (or back): bonds that flicker about one cutoff do not count.
+    A bond counts as broken (formed) when its length passes from below 0.9 to above 1.2 times the first minimum
+    of g(r) (or back): bonds that flicker about one cutoff do not count.
+
+    Parameters
+    ----------
+    speed_A_ps : of the flat.
+    held_A : thickness of the rigid bottom.
     """
     first = snapshots[0].frame
     held = first[:, 3] < first[:, 3].min() + 0.8 * held_A
@@ -228,7 +207,7 @@ def witness_rows(snapshots: Sequence[Relaxed], displacement_nm: Callable[[int], 
     return [
         {
             "step": snapshot.step,
-            "displacement_nm": displacement_nm(snapshot.step),
+            "displacement_nm": snapshot.step * timestep_ps * speed_A_ps / 10,
             "exchanged_bonds": _exchanges(snapshots[0].bonds, snapshot.bonds),
             "new_exchanges": _exchanges(snapshots[max(0, k - 1)].bonds, snapshot.bonds),
             "lowering_nm": float(tops[0] - tops[k]) / 10,
@@ -242,7 +221,7 @@ def _exchanges(before: tuple[Bonds, Bonds], after: tuple[Bonds, Bonds]) -> int:
     return len(before[0] - after[1]) + len(after[0] - before[1])
 
 
-def bonds_of(frame: Frame, bond: Bond | None, factor: float, wavelength_A: float) -> Bonds:
+def bonds_of(frame: Frame, bond: OxideBond | None, factor: float, wavelength_A: float) -> Bonds:
     """Pairs of cation and anion nearer to each other than `factor` times the length of a bond, as rows of the frame."""
     if bond is None:
         return set()
@@ -258,13 +237,3 @@ def bonds_of(frame: Frame, bond: Bond | None, factor: float, wavelength_A: float
 def _top(frame: Frame) -> float:
     """Mean height of the highest atoms."""
     return float(np.mean(np.sort(frame[:, 3])[-TOP_ATOMS:]))
-
-
-def slice_rows(snapshots: Sequence[Relaxed], geometry: Geometry) -> Rows:
-    """Atoms of a 0.8 nm slice through the axis, of every relaxed snapshot."""
-    rows = []
-    for snapshot in snapshots:
-        off = np.abs(snapshot.frame[:, 2] - geometry.axis_A) < SLICE_A
-        for kind, x, y, z in snapshot.frame[off].tolist():
-            rows.append({"step": snapshot.step, "type": int(kind), "x_nm": x / 10, "y_nm": y / 10, "z_nm": z / 10})
-    return rows

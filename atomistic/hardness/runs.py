@@ -2,9 +2,7 @@
 
 import math
 
-from atomistic.settings import AsperitySettings, ClosingSettings, HardnessSettings, Settings
-
-SCALE_NAMES = {1.0: "full", 0.5: "halved"}
+from atomistic.settings import AsperitySettings, HardnessSettings, Settings
 
 
 class ClosingRun(Settings):
@@ -26,15 +24,11 @@ class Protocol(Settings):
     timestep_fs : over the square root of the energy scale: softer bonds vibrate more slowly.
     temperature_K : of the closing; the anneal of the cut surface is hotter (times the energy scale).
     base_over_contact : thickness of the base over the largest contact; thinner is felt (study `hardness.choices`).
-    counter_base_nm : thickness of a counterface of atoms.
     frozen_nm, thermostat_nm : thickness of the rigid bottom, and of the Langevin layer above it.
     wall_stiffness_eV_A3 : K of a flat, F = K depth^2, times the energy scale.
     approach_nm : clearance at the start; bonds exchanged on this way are the background.
     averaged_travel_A, samples : travel over which area and force are averaged, snapshots of an average.
-    segment_nm, segment_force_steps : travel, or steps of force, between restart files and relaxed snapshots.
-    force_step_MPa : rise of the nominal stress at each step of controlled force (Kim et al. 2013).
-    max_stress_GPa : nominal stress at the end of controlled force.
-    damping_ps : controlled force: time in which the sample's motion as a whole is damped.
+    segment_nm : travel between restart files and relaxed snapshots.
     bond_factor : on the depth of the bonds of film and base, which are assumed.
     """
 
@@ -42,7 +36,6 @@ class Protocol(Settings):
     temperature_K: float = 300.0
     anneal_temperature_K: float = 1000.0
     base_over_contact: float = 1.0
-    counter_base_nm: float = 2.5
     frozen_nm: float = 0.5
     thermostat_nm: float = 0.7
     wall_stiffness_eV_A3: float = 10.0
@@ -50,10 +43,6 @@ class Protocol(Settings):
     averaged_travel_A: float = 0.25
     samples: int = 5
     segment_nm: float = 0.1
-    segment_force_steps: int = 10
-    force_step_MPa: float = 20.0
-    max_stress_GPa: float = 5.0
-    damping_ps: float = 1.0
     bond_factor: float = 1.0
 
 
@@ -70,9 +59,10 @@ def planned_runs(settings: HardnessSettings) -> list[ClosingRun]:
 
     A base keeps its energies, and oxide with halved ones is no harder than titanium: no effect of a film would be left.
     """
+    names = {1.0: "full", 0.5: "halved"}
     return [
         ClosingRun(
-            name=f"{asperity.name}_seed{seed}_{SCALE_NAMES.get(scale, f'x{scale:g}')}",
+            name=f"{asperity.name}_seed{seed}_{names.get(scale, f'x{scale:g}')}",
             asperity=asperity,
             seed=seed,
             energy_scale=scale,
@@ -95,18 +85,3 @@ def smallest_run(settings: HardnessSettings) -> ClosingRun:
             -run.energy_scale,
         ),
     )
-
-
-def needs_counter_glass(settings: HardnessSettings) -> bool:
-    """Is the counterface of another oxide than the asperity, or of another potential's glass?"""
-    closing = settings.closing
-    another = closing.counter_potential is not None or closing.counter_material != settings.material
-    return closing.counterface in ("oxide", "asperity") and another
-
-
-def geometry(closing: ClosingSettings) -> str:
-    """What is pressed against what, in words."""
-    words = f"asperity-{closing.counterface}"
-    if closing.counterface != "flat":
-        words += f" {closing.counter_material} {closing.interface}"
-    return words if closing.control == "speed" else f"{words}, force"

@@ -5,10 +5,8 @@ Nobody published how atoms of the two potentials act on each other. The file of 
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
-from itertools import combinations_with_replacement
-from typing import Any
 
 import numpy as np
 
@@ -19,12 +17,9 @@ from atomistic.hardness.metal import Metal
 from atomistic.hardness.network import Network
 from atomistic.lammps import Atoms
 from atomistic.materials import Material
-from atomistic.potentials import Morse, Potential, Repelled, pair_table
+from atomistic.potentials import Morse, Potential, pair_table
 
 GAP_A = 1.6  # between the surfaces that are laid on each other
-COLUMN_A = 4.0  # of the map of gaps
-LEAST_FILM_NM = 0.3  # one layer of tetrahedra
-SLIP_DEPTH_A = 6.0  # of the base below the contact whose way is compared with that of the film
 
 
 @dataclass(frozen=True)
@@ -41,58 +36,38 @@ class Stack:
     bond_factor: float = 1.0
 
     @property
-    def species(self) -> Mapping[str, Any]:
-        """What has the mass of each element."""
-        return {**self.oxide.species, **self.base.species}
+    def masses_u(self) -> Mapping[str, float]:
+        """Mass of each element."""
+        return {**self.oxide.masses_u, **self.base.masses_u}
 
-    def files(
-        self,
-        elements: tuple[str, ...],
-        energy_scale: float,
-        repelled: Repelled | None = None,
-    ) -> dict[str, str]:
+    def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
         """What LAMMPS needs, as `Potential.files`; the scale is on the oxide and its bonds, the base keeps its own.
 
         Raises
         ------
         InputError : an ion without cross terms to the base.
         """
-        below = len(self.base.elements)
+        below, end = len(self.base.elements), self.oxide.cutoff_A
         ions = elements[below:]
-        above, of_above = repelled or (self.oxide, ())
-        end = self.oxide.cutoff_A
         check_ions(self.base.material, ions)
-
-        def pair(i: int, j: int) -> str:
-            (body, first), (other, second) = types[i - 1], types[j - 1]
-            if body == "base" and other == "table":
-                name = f"{first}-{second}"
-                return f"cross {name if name in self.base.below_films.bonds else 'contact'} {end}"
-            if body != other:
-                return f"table contact {end}"
-            order, within = (list(ions), self.oxide) if body == "table" else (list(of_above), above)
-            first, second = sorted((first, second), key=order.index)
-            return f"{body} {first}_{second} {within.cutoff_A}"
-
-        types = [
-            *(("base", element) for element in self.base.elements),
-            *(("table", element) for element in ions),
-            *(("table_above", element) for element in of_above),
-        ]
         lines = [
             f"pair_style hybrid/overlay table linear 4000 {' '.join(self.base.styles)}",
-            *self.base.commands(len(types) - below),
+            *self.base.commands(len(ions)),
         ]
-        for i, j in combinations_with_replacement(range(1, len(types) + 1), 2):
-            if j > below:
-                lines.append(f"pair_coeff {i} {j} table {pair(i, j)}")
-        files = {
+        for i, first in enumerate(elements, 1):
+            for j, second in enumerate(elements[i - 1 :], i):
+                if i > below:
+                    lines.append(f"pair_coeff {i} {j} table table {first}_{second} {end}")
+                elif j > below:
+                    name = f"{first}-{second}"
+                    section = name if name in self.base.below_films.bonds else "contact"
+                    lines.append(f"pair_coeff {i} {j} table cross {section} {end}")
+        return {
             **self.base.tables(),
-            "table": self.oxide.table(tuple(dict.fromkeys(ions)), energy_scale),
+            "table": self.oxide.table(ions, energy_scale),
             "cross": self._cross(energy_scale),
             "pairs": "\n".join([*lines, *NEIGHBOURS]) + "\n",
         }
-        return files | ({"table_above": above.table(tuple(dict.fromkeys(of_above)), energy_scale)} if of_above else {})
 
     def _cross(self, energy_scale: float) -> str:
         """Table of the base with each ion that it binds, and of the repulsion of the others."""
@@ -147,10 +122,11 @@ def check_film(film_nm: float, widest_nm: float) -> None:
     ------
     InputError : of those two.
     """
-    if not LEAST_FILM_NM <= film_nm <= widest_nm:
+    least_nm = 0.3  # one layer of tetrahedra
+    if not least_nm <= film_nm <= widest_nm:
         raise InputError(
             f"film_nm = {film_nm:g}: on an asperity whose widest judged contact is {widest_nm:.1f} nm, accepted are "
-            f"{LEAST_FILM_NM:g} (one layer) to {widest_nm:.1f} nm, beyond which no contact feels the base; or take "
+            f"{least_nm:g} (one layer) to {widest_nm:.1f} nm, beyond which no contact feels the base; or take "
             "more tiles"
         )
 
@@ -194,7 +170,7 @@ def film_properties(start: np.ndarray, end: np.ndarray, wavelength_A: float, bel
     -------
     covered_share, gap_95_A (95 % quantile over columns of atoms), slid_A.
     """
-    number = max(1, int(wavelength_A // COLUMN_A))
+    number = max(1, int(wavelength_A // 4.0))  # columns of 4 Å map the gaps
     places = (np.mod(start[:, 1:3] / wavelength_A, 1) * number).astype(int)
     column = places[:, 0] + number * places[:, 1]
     z, film = start[:, 3], start[:, 0] > below
@@ -205,21 +181,10 @@ def film_properties(start: np.ndarray, end: np.ndarray, wavelength_A: float, bel
     moved = end[:, 1:3] - start[:, 1:3]
     moved -= wavelength_A * np.round(moved / wavelength_A)
     near = np.hypot(*(start[:, 1:3] - wavelength_A / 4).T) < wavelength_A / 4
-    beneath = near & ~film & (z > z[near & ~film].max() - SLIP_DEPTH_A)
+    beneath = near & ~film & (z > z[near & ~film].max() - 6.0)  # its way is compared with that of the film
     slid = np.median(moved[near & film], axis=0) - np.median(moved[beneath], axis=0)
     return {
         "covered_share": float(np.mean(np.isfinite(low))),
         "gap_95_A": float(np.quantile((low - top)[both], 0.95)),
         "slid_A": float(np.hypot(*slid)),
     }
-
-
-def lifted(body: Atoms, height_A: float, below: int) -> Atoms:
-    """The stack with its film lifted off by a height: for checks.
-
-    Parameters
-    ----------
-    below : the types of the base.
-    """
-    shift = np.where(body.types > below, height_A, 0.0)[:, None] * [0, 0, 1]
-    return replace(body, positions_A=body.positions_A + shift, cell_A=body.cell_A + np.array([0, 0, height_A]))

@@ -40,40 +40,14 @@ class AsperitySettings(Settings):
 
 
 class ClosingSettings(Settings):
-    """Closing of an asperity against a counterface."""
+    """Closing of an asperity against a rigid flat, frictionless and repulsive."""
 
-    counterface: Literal["flat", "oxide", "asperity"] = Field(
-        default="flat",
-        description="flat: rigid, frictionless, repulsive, without atoms; "
-        "oxide, asperity: atoms of counter_material, flat or after eq. 6",
-    )
-    control: Literal["speed", "force"] = Field(
-        default="speed",
-        description="speed: constant closing speed; force: closing force raised in steps (Kim et al. 2013)",
-    )
-    interface: Literal["repulsive", "adhesive"] = Field(
-        default="repulsive",
-        description="atoms of a counterface of oxide: a short-range repulsion alone, or the potential itself",
-    )
-    counter_material: str = Field(default="SiO2", description="oxide of the counterface, by its formula")
-    counter_potential: str | None = Field(
-        default=None,
-        description="potential of that oxide, as `potential`, where it is another (the interface is then repulsive: "
-        "what acts between atoms of two potentials is not known); null: that of the asperity",
-    )
     speed_m_s: float = Field(default=50, gt=0, le=1000, description="closing speed", json_schema_extra={"unit": "m/s"})
-    dwell_ps: float = Field(
-        default=10,
-        ge=0.1,
-        le=1000,
-        description="control force: time after each step of 20 MPa (Kim et al. 2013)",
-        json_schema_extra={"unit": "ps"},
-    )
     depth_over_amplitude: float = Field(
         default=2.2,
         gt=0,
         le=4,
-        description="largest travel below the highest atom, in amplitudes; two bodies that yield share it",
+        description="largest travel below the highest atom, in amplitudes",
     )
     stop: Literal["settled", "window"] = Field(
         default="settled",
@@ -105,13 +79,9 @@ class ClosingSettings(Settings):
 class FitSettings(Settings):
     """Fit of H(A) = H_macro + H' A^-0.25."""
 
-    h_macro: Literal["literature", "free"] = Field(
-        default="literature",
-        description="literature: H_macro from h_macro_GPa, H' from the points; free: both from the points",
-    )
     h_macro_GPa: tuple[float, float] = Field(
         default=(0.7, 3.2),
-        description="literature range of H_macro (Kim et al. 2013, Table 1)",
+        description="range of H_macro, from which H' follows (default: Kim et al. 2013, Table 1)",
         json_schema_extra={"unit": "GPa"},
     )
 
@@ -150,26 +120,11 @@ class HardnessSettings(Settings):
     fit: FitSettings = FitSettings()
 
     @model_validator(mode="after")
-    def _one_potential_adheres(self) -> "HardnessSettings":
-        if self.closing.counter_potential is not None and self.closing.interface == "adhesive":
-            raise ValueError(
-                f"closing.counter_potential {self.closing.counter_potential!r:.60}: nothing is known of how atoms of "
-                "two potentials attract; set closing.interface to repulsive, or leave counter_potential out"
-            )
-        return self
-
-    @model_validator(mode="after")
     def _films_have_a_base(self) -> "HardnessSettings":
         films = [asperity.name for asperity in self.asperities if asperity.film_nm is not None]
         if films and self.base is None:
             raise ValueError(
                 f"asperities: {films[0]} has a film_nm, but there is no base; name what lies below (titanium)"
-            )
-        bare = [asperity.name for asperity in self.asperities if asperity.film_nm == 0]
-        if bare and self.closing.counterface != "flat":
-            raise ValueError(
-                f"asperities: {bare[0]} is a base without a film (film_nm: 0), which only a flat presses: nothing is "
-                "known of how its atoms meet others; leave it out, or set closing.counterface to flat"
             )
         if self.base is not None and not films:
             raise ValueError(f"base {self.base!r:.60}: no asperity has a film_nm; add it, or leave base out")

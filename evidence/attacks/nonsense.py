@@ -51,10 +51,6 @@ NONSENSE: dict[str, tuple[str, str]] = {
     "tag of nothing": ("contact: {pixels: ! 5}", "plain values only"),
     "fifty thousand values": ("x: [" + 60_000 * "1," + "]", "more than 50000 values"),
     "program as a key": ("hardness: {closing: {launcher: rm}}", "unknown key"),
-    "folder of an engine": (
-        "elastic: {dft: {engine: espresso, parameters: {directory: /etc}}}",
-        "not a parameter that a scene may give",
-    ),
     "negative RMS": (scene(rms="{values: [-2, 15]}"), "inputs.rms: spans -2 .. 15"),
     "RMS of a metre": (scene(rms="{distribution: fixed, values: [1.0e+9]}"), "inputs.rms: spans"),
     "RMS from high to low": (scene(rms="{values: [15, 2]}"), "the first must not exceed the second"),

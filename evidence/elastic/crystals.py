@@ -6,11 +6,9 @@ stands beside one of the same functional, or of experiment where none is known. 
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
-from atomistic.elastic.dft import make_calculator
-from atomistic.elastic.energy_scans import fit_scan, scan_volumes
+from atomistic.elastic.energy_scans import fit_scan, scan_rows
 from atomistic.elastic.networks import crystal
 from atomistic.materials import load_materials
 from atomistic.settings import ElasticSettings
@@ -29,11 +27,9 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         for name, data in material.crystals.items():
             for xc in ("GGA", "LDA") if name in given.crystals else ():
                 atoms = crystal(material, name)
-                largest = atoms.cell.array * (1 + max(settings.strains))
-                engine = make_calculator(settings.dft, xc, largest, cutoff_Ha=data.cutoff_Ha)
-                points = scan_volumes(atoms, engine, settings.strains)
-                head = {"structure": name, "xc": xc, "ions": "clamped", "atoms": len(atoms)}
-                fit = fit_scan([{key: str(value) for key, value in {**head, **asdict(p)}.items()} for p in points])
+                dft = settings.dft.model_copy(update={"cutoff_Ha": data.cutoff_Ha or settings.dft.cutoff_Ha})
+                points = scan_rows(name, atoms, xc, dft, settings.strains)
+                fit = fit_scan([{key: str(value) for key, value in row.items()} for row in points])
                 kind = xc if xc in data.published else "experiment"
                 known = data.published[kind]
                 yield {
@@ -45,7 +41,7 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
                     "published_B_GPa": known.B_GPa,
                     "published_V0_A3": known.V0_A3,
                     "published_source": " ".join(known.source),
-                    "wall_s": sum(point.wall_s for point in points),
+                    "wall_s": sum(row["wall_s"] for row in points),
                 }
 
 

@@ -1,10 +1,10 @@
 """How large is the error of the contact area?
 
-Bodies whose section is known: a flat slab of glass is pressed at 300 K by a flat, or by a second slab that only
-repels it.  Its frozen snapshots have the layer of atoms of a contact under load.  Tiled and cut by planes, by a sphere
-and by a wave of the slopes in use, they have a section that geometry gives exactly.  The potential's file then gets
-the largest error as `contact_area`; the distance at which atoms touch is chosen so that the error is smallest. With
-`--base` the slabs are that metal, and a film of the glass on it; the metal's file gets both errors (`film_base`).
+Bodies whose section is known: a flat slab of glass is pressed at 300 K by a flat.  Its frozen snapshots have the layer
+of atoms of a contact under load.  Tiled and cut by planes, by a sphere and by a wave of the slopes in use, they have a
+section that geometry gives exactly.  The potential's file then gets the largest error as `contact_area`. With `--base`
+the slabs are that metal, and a film of the glass on it; the metal's file gets both errors (`film_base`). Rows with two
+`bodies` are of slabs pressed by a second one, which the stage did until commit 884b5d7.
 """
 
 import tempfile
@@ -17,12 +17,11 @@ import numpy as np
 
 from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.asperity import cut_asperity, formula_of
-from atomistic.hardness.closing import CutBody, commensurate, cut_body
+from atomistic.hardness.closing import CutBody, cut_body
 from atomistic.hardness.contact_area import Area, contact_area
 from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import make_glass
-from atomistic.hardness.pressing import lammps_seed, plan_closing, prepare_body, press_bodies
-from atomistic.hardness.readout import beyond_counterface
+from atomistic.hardness.pressing import lammps_seed, plan_closing, prepare_body, press_body
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
 from atomistic.hardness.stack import base_of
 from atomistic.lammps import Atoms, Workspace, load_averages, load_dump
@@ -31,7 +30,7 @@ from atomistic.potentials import Potential, load_potential
 from atomistic.settings import AsperitySettings, ClosingSettings, GlassSettings
 from evidence.record import ROOT
 
-SLAB_TILES, SLAB_BASE_NM, SLAB_TRAVEL_A = 2, 2.0, (7.0, 12.0)  # against a wall, against a second slab
+SLAB_TILES, SLAB_BASE_NM, SLAB_TRAVEL_A = 2, 2.0, 7.0
 STRESS_GPA = (6.0, 14.0)  # of the snapshots in use, at full energies: about the hardness
 SLAB_FILM_NM = 1.2
 LENGTHS_NM = (2.0, 3.0, 4.0, 6.0, 8.0)
@@ -40,66 +39,54 @@ TRIALS = 24
 
 
 def arguments(parser: ArgumentParser) -> None:
-    """Potentials and oxides of both bodies."""
+    """Potential, oxide and base."""
     parser.add_argument("--potential", default="pmmcs", help="of config/potentials")
     parser.add_argument("--material", default="SiO2")
-    parser.add_argument("--counter-potential", help="of a second slab, where it is another")
-    parser.add_argument("--counter-material", default="TiO2", help="of a slab of another potential")
     parser.add_argument("--base", help="metal of config/materials, for slabs of it and of a film on it")
-    parser.add_argument("--touch", type=float, default=2.4, help="distance of atoms that touch, A")
     parser.add_argument("--energy-scales", type=float, nargs="+", default=[1.0, 0.5])
 
 
 def rows(given: Namespace) -> Iterator[dict]:
-    """Cut bodies of one slab at each energy scale, then of two slabs (of one slab alone for a second potential)."""
+    """Cut bodies of a slab of glass at each energy scale, or of slabs of the base and of a film on it."""
     oxides = oxide_glasses(load_materials(ROOT / "config" / "materials").values())
     first = load_potential(ROOT / "config" / "potentials" / f"{given.potential}.yaml")
-    area = Area(touch_A=given.touch)
+    area = Area()
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         glass = make_glass(oxides[given.material], first, GlassSettings(), 1, work / "glass")
-        slabs, cases = [(first, glass)] * 2, [*((scale, 1) for scale in given.energy_scales), (1.0, 2)]
         if given.base:
             below = base_of(load_material(ROOT / "config" / "materials" / f"{given.base}.yaml"))
             protocol = slowed(PROTOCOL, below.below_films.timestep_factor)
             for name, slab in on_base(glass, first, below, work).items():
-                for row in cut_bodies(pressed_layers([slab], 1.0, area, work / name, protocol), area):
-                    yield {"potential": name, "energy_scale": 1.0, "bodies": 1, "touch_A": given.touch, **row}
+                for row in cut_bodies(pressed_layers(slab, 1.0, area, work / name, protocol), area):
+                    yield {"potential": name, "energy_scale": 1.0, "bodies": 1, "touch_A": 2.4, **row}
             return
-        if given.counter_potential:
-            second = load_potential(ROOT / "config" / "potentials" / f"{given.counter_potential}.yaml")
-            edge, oxide = float(glass.cell_A[0]), oxides[given.counter_material]
-            other = make_glass(oxide, second, GlassSettings(), 1, work / "counter_glass", edge_A=edge)
-            slabs, cases = [(first, glass), (second, commensurate(other, glass))], [(1.0, 2)]
-        for scale, bodies in cases:
-            cut = [slab_of(oxide, cell, k) for k, (oxide, cell) in enumerate(slabs[:bodies])]
-            layers = pressed_layers(cut, scale, area, work / f"{scale:g}_{bodies}")
-            names = " on ".join(dict.fromkeys(slab[0].name for slab in slabs[:bodies]))
-            for row in cut_bodies(layers, area):
-                yield {"potential": names, "energy_scale": scale, "bodies": bodies, "touch_A": given.touch, **row}
+        for scale in given.energy_scales:
+            slab = cut_asperity(glass, SLAB_TILES, 0.0, 10 * SLAB_BASE_NM, lammps_seed(1, 0, 3))
+            body = CutBody(slab, formula_of(glass), first)
+            for row in cut_bodies(pressed_layers(body, scale, area, work / f"{scale:g}"), area):
+                yield {"potential": first.name, "energy_scale": scale, "bodies": 1, "touch_A": 2.4, **row}
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """Largest and mean error of each pair of bodies, where the distance of touch is that in use."""
+    """Largest error of each body."""
     groups: dict[str, list[float]] = {}
     for row in rows:
-        name = {"pmmcs on matsui_akaogi": "oxides"}.get(row["potential"], row["potential"].replace(" ", "_"))
-        if row["touch_A"] == ("2.55" if name == "oxides" else "2.4"):
-            name += "_halved" * (float(row["energy_scale"]) == 0.5)
-            name += "_pair" * (row["bodies"] == "2" and name != "oxides")
+        if row["bodies"] == "1" and row["touch_A"] == "2.4":
+            name = row["potential"].replace(" ", "_") + "_halved" * (float(row["energy_scale"]) == 0.5)
             groups.setdefault(name, []).append(abs(float(row["error"])))
     return {name: f"{100 * max(errors):.1f} %" for name, errors in groups.items()}
 
 
 @dataclass(frozen=True)
 class Layer:
-    """The atoms next to the counterface in one snapshot of a pressed slab; lengths in Å.
+    """The atoms next to the flat in one snapshot of a pressed slab; lengths in Å.
 
     Attributes
     ----------
     cell : side of the periodic cell.
     places : x and y, shape (atoms, 2).
-    beyond : how far each lies beyond the counterface.
+    beyond : how far each lies beyond the flat.
     depth : how far each lies below the plane of contact, at least 0.
     """
 
@@ -107,12 +94,6 @@ class Layer:
     places: np.ndarray
     beyond: np.ndarray
     depth: np.ndarray
-
-
-def slab_of(potential: Potential, glass: Atoms, number: int) -> CutBody:
-    """A flat slab of glass."""
-    cut = cut_asperity(glass, SLAB_TILES, 0.0, 10 * SLAB_BASE_NM, lammps_seed(1, number, 3))
-    return CutBody(cut, formula_of(glass), potential)
 
 
 def on_base(glass: Atoms, potential: Potential, below: Base, work: Path) -> dict[str, CutBody]:
@@ -132,48 +113,34 @@ def _flat_run(energy_scale: float, film_nm: float | None = None) -> ClosingRun:
 
 
 def pressed_layers(
-    slabs: Sequence[CutBody], energy_scale: float, area: Area, work: Path, protocol: Protocol = PROTOCOL
+    slab: CutBody, energy_scale: float, area: Area, work: Path, protocol: Protocol = PROTOCOL
 ) -> list[Layer]:
-    """Press a slab against a rigid flat (or, where there are two, against the second, which only repels it).
+    """Press a slab by the rigid flat.
 
     Parameters
     ----------
-    slabs : of cells of one width.
+    slab : flat.
     """
-    bodies = len(slabs)
-    closing = ClosingSettings(counterface="oxide" if bodies == 2 else "flat")
-    run = _flat_run(energy_scale)
+    closing, run = ClosingSettings(), _flat_run(energy_scale)
     plan = plan_closing(closing, run, protocol)
     start = plan.segments * plan.segment_steps  # from the clearance to first touch; the slab is pressed after it
-    steps = start + round(SLAB_TRAVEL_A[bodies - 1] / (plan.speed * plan.timestep))
+    steps = start + round(SLAB_TRAVEL_A / (plan.speed * plan.timestep))
     plan = replace(plan, segments=-(-steps // plan.segment_steps))
-    annealed = []
-    for k, slab in enumerate(slabs):
-        aside = Workspace(work / f"anneal{k}", {}, "anneal.in")
-        annealed.append(prepare_body(run, slab.cut, slab.formula, slab.force, closing, protocol, aside, (1, k)))
+    aside, place = Workspace(work / "anneal", {}, "anneal.in"), (1, 0)
+    annealed = prepare_body(run, slab.atoms, slab.formula, slab.force, closing, protocol, aside, place)
     workspace = Workspace(work / "pressed", {}, "closing.in")
-    geometry, _ = press_bodies(
-        run,
-        annealed,
-        slabs[0].force,
-        closing,
-        protocol,
-        plan,
-        (1, 9),
-        workspace,
-        lambda geometry, segments: False,
-        counter_potential=slabs[1].force if bodies == 2 else None,  # pyright: ignore[reportArgumentType]
+    cell, _ = press_body(
+        run, annealed, slab.force, closing, protocol, plan, (1, 9), workspace, lambda cell, segments: False
     )
     low, high = (run.energy_scale * stress for stress in STRESS_GPA)
     layers = []
     for n in range(1, plan.segments + 1):
         force = {int(row[0]): row[2] for row in load_averages(workspace / f"averages.{n}")}
         for step, near in load_dump(workspace / f"near.{n}"):
-            if low < force.get(step, 0.0) / geometry.wavelength_A**2 * EV_PER_A3_IN_GPA < high:
-                places, beyond = beyond_counterface(near, geometry, area.touch_A)
-                height = near[near[:, 0] <= geometry.lower, 4]
-                plane = np.mean(height[beyond > -area.depth_A]) if len(annealed) == 2 else np.max(height - beyond)
-                layers.append(Layer(geometry.wavelength_A, places, beyond, np.maximum(0.0, plane - height)))
+            if low < force.get(step, 0.0) / cell.wavelength_A**2 * EV_PER_A3_IN_GPA < high:
+                places, height, beyond = near[:, 2:4], near[:, 4], near[:, 5]
+                plane = np.max(height - beyond)
+                layers.append(Layer(cell.wavelength_A, places, beyond, np.maximum(0.0, plane - height)))
     return layers
 
 

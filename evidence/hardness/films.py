@@ -1,6 +1,8 @@
 """Which law of hardness foretells films on titanium, and what of the paper's fall from 10 to 2 GPa is the film's?
 
-The dielectric of the paper, silica on silicon nitride, is pressed by scene `nitride`.
+The dielectric of the paper, silica on silicon nitride, is pressed by scene `nitride`. Rows of scenes `..._by_force`
+and `..._on_asperity` were pressed by controlled force and by an asperity of silica, which the stage did until commit
+884b5d7.
 
 The closing runs of a scene with films, as `films`: oxide throughout, the metal by itself, and films of some
 thicknesses. Each row is the mean stress of a run at a contact length. The constant and eq. 4 (`paper`) know only the
@@ -69,9 +71,10 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
         ]
         drop = slope_drop(curve)
         for length, stress in mean_stresses(curve, float(point["wavelength_nm"])):
-            copied = ("geometry", "seed", "film_nm", "sound", "status", "contact_length_nm", "hardness_GPa")
+            copied = ("seed", "film_nm", "sound", "status", "contact_length_nm", "hardness_GPa")
             yield {
                 "scene": name,
+                "geometry": "asperity-flat",
                 **{key: point[key] for key in copied},
                 **dict(zip(("slope_length_nm", "slope_GPa"), drop, strict=True)),
                 "length_nm": length,
@@ -122,7 +125,7 @@ def prediction(others: FilmPoints, at: FilmPoints) -> np.ndarray:
 def laws() -> dict[str, Any]:
     """Fit of the law `film`, its draws, and hardness over 5 nm in three cases, with k and m of the prototype."""
     points, rng = points_of(load("hardness.films")), np.random.default_rng(43)
-    draws, area = likely(points, rng), titanium().below_films.area_of_film.error
+    draws, area = likely(points, rng), titanium().below_films.area_error
     shared = np.exp(rng.normal(0, np.linalg.norm([area / np.sqrt(3), *SYSTEMATIC.values()]), len(draws)))
     soft, size = rng.uniform(*SOFT_GPA, len(draws)), rng.uniform(*SIZE_EFFECT, len(draws))
     h_film, h_base, *_ = draws.T

@@ -21,10 +21,8 @@ from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.glass import run_segments
 from atomistic.hardness.metal import (
-    CUTOFF_A,
-    FINAL_K,
+    METAL,
     PLACES,
-    TIMESTEP_FS,
     Metal,
     crystal,
     electron_density,
@@ -33,7 +31,7 @@ from atomistic.hardness.metal import (
 )
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
-from atomistic.hardness.stability import drift_meV_atom_ps, free_motion, heated
+from atomistic.hardness.studies import drift_meV_atom_ps, free_motion, heated
 from atomistic.lammps import Atoms, Workspace
 from atomistic.materials import Eam, load_material
 from atomistic.settings import AsperitySettings, ClosingSettings
@@ -180,12 +178,14 @@ def dislocated(metal: Metal, whole: Atoms, seed: int, work: Path) -> Atoms:
         apart -= whole.cell_A[:2] * np.round(apart / whole.cell_A[:2])
         at = round((k + 0.5) / LOOPS * whole.cell_A[2] / spacing)
         missing |= (np.hypot(*apart.T) < LOOP_A) & (plane == at)
-    steps = round(1000 * LOOP_PS / TIMESTEP_FS)
-    parts = [(LOOP_K, LOOP_K), (LOOP_K, FINAL_K), (FINAL_K, FINAL_K)]
+    steps = round(1000 * LOOP_PS / METAL.timestep_fs)
+    parts = [(LOOP_K, LOOP_K), (LOOP_K, METAL.final_K), (METAL.final_K, METAL.final_K)]
     segments = [{"ensemble": "npt_height", "from": start, "to": end, "steps": steps} for start, end in parts]
     workspace = Workspace(work, {"seed": seed}, "glass.in")
     start = whole.take(~missing)
-    return run_segments(workspace, metal, whole.elements, lambda: start, segments, seed, TIMESTEP_FS, "anneal", None)
+    return run_segments(
+        workspace, metal, whole.elements, lambda: start, segments, seed, METAL.timestep_fs, "anneal", None
+    )
 
 
 def disordered_share(body: Atoms) -> float:
@@ -223,11 +223,11 @@ def lattice_energy(eam: Eam, cell_A: np.ndarray, places: np.ndarray) -> float:
     cell_A : rows are its edges, (3, 3). places : fractions of them, (atoms, 3).
     """
     heights = 1 / np.linalg.norm(np.linalg.inv(cell_A), axis=0)
-    ranges = [np.arange(-n, n + 1) for n in np.ceil(CUTOFF_A / heights).astype(int)]
+    ranges = [np.arange(-n, n + 1) for n in np.ceil(METAL.cutoff_A / heights).astype(int)]
     shifts = np.stack(np.meshgrid(*ranges, indexing="ij"), axis=-1).reshape(-1, 3)
     apart = (places[None, :, None] - places[:, None, None] + shifts) @ cell_A
     r = np.linalg.norm(apart, axis=-1)
-    met = (r > 1e-6) & (r < CUTOFF_A)
+    met = (r > 1e-6) & (r < METAL.cutoff_A)
     r = np.where(met, r, 1.0)
     density = np.where(met, electron_density(eam, r), 0.0).sum(axis=(1, 2))
     pairs = np.where(met, pair_energy(eam, r), 0.0).sum() / 2

@@ -1,7 +1,8 @@
 """Does hardness fall as the contact grows?
 
 The closing runs of a scene: `sizes` takes asperities of one shape to the end of their window, `reduced` stops them once
-their plateau is known, `oxide_on_oxide` presses them by controlled force against titania.  Runs of one shape are alike
+their plateau is known, `oxide_on_oxide` pressed them by controlled force against titania, which the stage did until
+commit 884b5d7.  Runs of one shape are alike
 where the contact is 0.5 to 0.6 wavelengths wide, whatever their size: the columns `same_shape`.
 
 The rows of 2026-11-23 were not made by this command.  They were copied, rounded, from the page that the runs were first
@@ -30,9 +31,7 @@ COLUMNS = (
 
 def arguments(parser: ArgumentParser) -> None:
     """The scene, which may take 16 hours of one core."""
-    parser.add_argument(
-        "scene", nargs="?", default="sizes", help="name, or file as evidence/scenes/oxide_on_oxide.yaml"
-    )
+    parser.add_argument("scene", nargs="?", default="sizes", help="name, or file")
     parser.add_argument("--cores", type=int, default=os.cpu_count())
 
 

@@ -18,11 +18,11 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from atomistic.hardness.closing import attraction_row, cut_body, oxide_bond
-from atomistic.hardness.contact_area import calibrated, contact_map, shares_in_contact
+from atomistic.hardness.contact_area import Area, contact_map, shares_in_contact
 from atomistic.hardness.glass import make_glass, write_forcefield
 from atomistic.hardness.plateau import RULES
-from atomistic.hardness.pressing import base_thickness_nm, plan_closing, prepare_body, press_bodies
-from atomistic.hardness.readout import Geometry, Readout
+from atomistic.hardness.pressing import base_thickness_nm, plan_closing, prepare_body, press_body
+from atomistic.hardness.readout import PressedCell, Readout
 from atomistic.hardness.runs import PROTOCOL, planned_runs
 from atomistic.hardness.top_attraction import (
     TopAttraction,
@@ -33,7 +33,7 @@ from atomistic.hardness.top_attraction import (
 )
 from atomistic.lammps import Atoms, Workspace, run_lammps, write_data
 from atomistic.materials import load_materials, oxide_glasses
-from atomistic.potentials import Potential, load_potential, masses_u
+from atomistic.potentials import Potential, load_potential
 from atomistic.settings import ClosingSettings, GlassSettings, HardnessSettings
 from evidence.record import ROOT
 
@@ -54,7 +54,7 @@ def rows(given: Namespace) -> Iterator[dict]:
     """Close the smallest asperity of the defaults, then take a half-space away from each of its relaxed tops."""
     material = oxide_glasses(load_materials(ROOT / "config" / "materials").values())["SiO2"]
     potential = load_potential(ROOT / "config" / "potentials" / f"{given.potential}.yaml")
-    area, _ = calibrated(potential)
+    area = Area()
     asperity = min(HardnessSettings().asperities, key=lambda one: one.tiles)
     closing = ClosingSettings()
     wanted = HardnessSettings(asperities=(asperity,), seeds=given.seeds, energy_scales=given.energy_scales)
@@ -67,26 +67,22 @@ def rows(given: Namespace) -> Iterator[dict]:
             base_nm = base_thickness_nm(closing, run.asperity.tiles * float(glass.cell_A[0]) / 10, PROTOCOL)
             cut = cut_body(run, glass, potential, base_nm, place, PROTOCOL)
             aside, bond = Workspace(work / "anneal", {}, "anneal.in"), oxide_bond(glass.elements, material, potential)
-            body = prepare_body(run, cut.cut, cut.formula, potential, closing, PROTOCOL, aside, place)
+            body = prepare_body(run, cut.atoms, cut.formula, potential, closing, PROTOCOL, aside, place)
             workspace = Workspace(work / "closing", {}, "closing.in")
 
-            def readout(geometry: Geometry, plan=plan, workspace=workspace, bond=bond) -> Readout:
+            def readout(cell: PressedCell, plan=plan, workspace=workspace, bond=bond) -> Readout:
                 steps = plan.segment_steps, plan.timestep, PROTOCOL.samples
-                return Readout(workspace, *steps, area, geometry, bond)
+                return Readout(workspace, *steps, area, cell, bond)
 
-            def wide_enough(geometry: Geometry, segments: int, readout=readout) -> bool:
-                contact_nm2 = readout(geometry).curve(range(1, segments + 1))[-1]["contact_area_nm2"]
-                return contact_nm2 > RULES.max_area_fraction * geometry.wavelength_A**2 / 100
+            def wide_enough(cell: PressedCell, segments: int, readout=readout) -> bool:
+                contact_nm2 = readout(cell).curve(range(1, segments + 1))[-1]["contact_area_nm2"]
+                return contact_nm2 > RULES.max_area_fraction * cell.wavelength_A**2 / 100
 
-            geometry, reached = press_bodies(
-                run, [body], potential, closing, PROTOCOL, plan, place, workspace, wide_enough
-            )
+            cell, reached = press_body(run, body, potential, closing, PROTOCOL, plan, place, workspace, wide_enough)
             run_lammps("relax.in", workspace, {"pairs": "pairs", "segment": range(reached.segments + 1)})
-            read = readout(geometry)
+            read = readout(cell)
             read.curve(range(1, reached.segments + 1))
-            counted = [
-                n for n in range(1, reached.segments + 1) if attraction_row(read, n, geometry)["top_area_nm2"] > 0
-            ]
+            counted = [n for n in range(1, reached.segments + 1) if attraction_row(read, n, cell)["top_area_nm2"] > 0]
             for n in counted[:: given.every]:
                 body = replace(
                     body, positions_A=read.relaxed(n).frame[:, 1:4], types=read.relaxed(n).frame[:, 0].astype(int)
@@ -95,18 +91,18 @@ def rows(given: Namespace) -> Iterator[dict]:
                     "potential": potential.name,
                     "run": run.name,
                     "snapshot": n,
-                    **top_rows(read, n, geometry, body, potential, run.energy_scale),
-                    **slab_rows(read, n, geometry, glass),
+                    **top_rows(read, n, cell, body, potential, run.energy_scale),
+                    **slab_rows(read, n, cell, glass),
                 }
 
 
 def top_rows(
-    read: Readout, segment: int, geometry: Geometry, top: Atoms, potential: Potential, energy_scale: float
+    read: Readout, segment: int, cell: PressedCell, top: Atoms, potential: Potential, energy_scale: float
 ) -> dict[str, float]:
     """Contact area and cut-offs of one top: rigid below its contact, rigid as a whole, with free atoms as a whole."""
-    below = attraction_row(read, segment, geometry)
+    below = attraction_row(read, segment, cell)
     area_A2 = 100 * below["top_area_nm2"]
-    density = bulk_density_per_A3(read.relaxed(0).frame[:, 1:4], geometry.wavelength_A**2)
+    density = bulk_density_per_A3(read.relaxed(0).frame[:, 1:4], cell.wavelength_A**2)
     heights = top.positions_A[:, 2]
     judged = {
         "below": TopAttraction(area_A2, below["top_force_over_hamaker"] / 10, below["top_work_over_hamaker"]),
@@ -119,10 +115,10 @@ def top_rows(
     return found
 
 
-def slab_rows(read: Readout, segment: int, geometry: Geometry, glass: Atoms) -> dict[str, float]:
+def slab_rows(read: Readout, segment: int, cell: PressedCell, glass: Atoms) -> dict[str, float]:
     """Cut-offs of the rigid top below its contact beside slabs of its glass: mean and scatter over registries."""
     sample, places = read.last_sample(segment), read.relaxed(segment).frame[:, 1:4]
-    side, axis = geometry.wavelength_A, (geometry.axis_A, geometry.axis_A)
+    side, axis = cell.wavelength_A, (cell.axis_A, cell.axis_A)
     shares = shares_in_contact(
         places[:, :2], contact_map(sample.touching_A, (side, side), read.area, axis), (side, side), axis
     )
@@ -183,7 +179,7 @@ def pulled(top: Atoms, area_A2: float, density: float, potential: Potential, ene
     with tempfile.TemporaryDirectory() as folder:
         workspace = Workspace(Path(folder) / "pull", {}, "relax.in")
         box = np.array([top.cell_A[0], top.cell_A[1], highest + 40.0])
-        masses = masses_u(potential, top.elements)
+        masses = potential.masses_u
         write_data(workspace / "top.data", replace(top, positions_A=lifted, cell_A=box, velocities_A_ps=None), masses)
         write_forcefield(workspace, potential, top.elements, energy_scale)
         variables = {

@@ -19,12 +19,9 @@ def test_the_defaults_of_the_settings_are_among_the_shipped_materials():
     materials = load_materials(FOLDER)
     oxides = oxide_glasses(materials.values())
     hardness, elastic = HardnessSettings(), ElasticSettings()
-    assert {hardness.material, hardness.closing.counter_material} <= set(oxides)
+    assert hardness.material in oxides
     assert materials[elastic.counter_body].polycrystal is not None
-    computed = materials[elastic.material]
-    assert computed.network_glass is not None
-    assert computed.poisson_ratio is not None
-    assert elastic.poisson_ratio == (computed.poisson_ratio.low, computed.poisson_ratio.high)
+    assert materials[elastic.material].network_glass is not None
 
 
 @pytest.mark.parametrize(("name", "quenched_g_cm3"), [("silicon_dioxide", 2.33), ("titanium_dioxide", 3.8)])
@@ -39,16 +36,17 @@ def test_number_density_of_a_quenched_glass_is_that_of_its_stated_density(name, 
 
 def test_polycrystalline_titanium_is_the_average_of_its_crystal():
     """Voigt-Reuss-Hill average of a hexagonal crystal (Hill, Proc. Phys. Soc. A 65, 349 (1952))."""
-    titanium = load_material(FOLDER / "titanium.yaml")
-    crystal, body = titanium.single_crystal_GPa, titanium.part("polycrystal")
-    assert crystal is not None
+    body = load_material(FOLDER / "titanium.yaml").part("polycrystal")
+    C11, C12, C13, C33, C44 = (
+        162.4,
+        92.0,
+        69.0,
+        180.7,
+        46.7,
+    )  # GPa, 298 K: Fisher and Renken, doi:10.1103/PhysRev.135.A482
     C = np.zeros((6, 6))
-    C[:3, :3] = [
-        [crystal.C11, crystal.C12, crystal.C13],
-        [crystal.C12, crystal.C11, crystal.C13],
-        [crystal.C13, crystal.C13, crystal.C33],
-    ]
-    C[3:, 3:] = np.diag([crystal.C44, crystal.C44, (crystal.C11 - crystal.C12) / 2])
+    C[:3, :3] = [[C11, C12, C13], [C12, C11, C13], [C13, C13, C33]]
+    C[3:, 3:] = np.diag([C44, C44, (C11 - C12) / 2])
     S = np.linalg.inv(C)
 
     def average(matrix, shear):
@@ -101,10 +99,8 @@ def changed(tmp_path, name, where, value):
         ("silicon_nitride", "network_glass/masses_u", {"Si": 28}, ["masses_u", "must have Si, N"]),
         ("silicon_nitride", "network_glass/tersoff/elements/Si/S", 2.4, ["Si", "S = 2.4", "R = 2.5"]),
         ("silicon_nitride", "network_glass/tersoff/elements/Si/lambda", None, ["Si.lambda", "required"]),
-        ("silicon_nitride", "poisson_ratio/high", 0.5, ["poisson_ratio.high", "less than 0.5"]),
         ("titanium", "polycrystal/poisson_ratio", 0.5, ["polycrystal.poisson_ratio", "less than 0.5"]),
         ("titanium", "polycrystal/young_GPa", "stiff", ["polycrystal.young_GPa", "stiff", "number"]),
-        ("titanium", "single_crystal_GPa/C12", 170, ["not stable", "C11 > |C12|"]),
     ],
 )
 def test_a_bad_file_gets_one_line_that_names_it(tmp_path, name, where, value, words):

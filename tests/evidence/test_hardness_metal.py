@@ -17,7 +17,7 @@ def test_another_code_reads_the_file_and_finds_the_energy_of_the_sum(metal, tmp_
     eam = pytest.importorskip("ase.calculators.eam")
     from ase import Atoms
 
-    (tmp_path / "ti.eam.alloy").write_text(metal.setfl())
+    (tmp_path / "ti.eam.alloy").write_text(metal.tables()["metal.eam"])
     cell = np.array([2.93, 5.10, 4.80])  # away from rest
     atoms = Atoms("Ti4", scaled_positions=PLACES, cell=cell, pbc=True).repeat((3, 2, 2))
     atoms.calc = eam.EAM(potential=str(tmp_path / "ti.eam.alloy"))

@@ -247,7 +247,6 @@ def _hardness(root: Path) -> None:
             {
                 "run": run,
                 "energy_scale": scale,
-                "geometry": "asperity-flat",
                 "wavelength_nm": 5.8,
                 "status": "yield",
                 "contact_length_nm": 3.0,
@@ -266,15 +265,6 @@ def _hardness(root: Path) -> None:
         _write(
             root / f"hardness/witness/{run}.csv",
             [{"step": step, "displacement_nm": step / 1000, "exchanged_bonds": step // 10} for step in steps],
-        )
-        rng = np.random.default_rng(0)
-        _write(
-            root / f"hardness/snapshots/{run}.csv",
-            [
-                {"step": step, "type": 1 + k % 2, "x_nm": x, "y_nm": 1.4, "z_nm": z}
-                for step in steps
-                for k, (x, z) in enumerate(rng.uniform(0, 3, (12, 2)).tolist())
-            ],
         )
     _write(root / "hardness/points.csv", points)
     scatter = {"statistical_low_GPa": 6, "statistical_high_GPa": 8}
@@ -304,7 +294,6 @@ def _hardness(root: Path) -> None:
                 for x in (0.5, 2.0, 10.0)
             ],
         },
-        "cost": {"atom_steps": 2e9, "lammps_cpu_s": 1500, "python_cpu_s": 30, "python_cpu_share": 0.02},
     }
     write_json(root / "hardness/fit.json", fit, PROVENANCE)
 
@@ -335,16 +324,7 @@ def _elastic(root: Path) -> None:
     gate = {"passed": True, "reasons": []}
     used = [f"a{i:02d}" for i in range(1, 4)]
     e_star = {"mean_GPa": 90.0, "std_GPa": 4.0, "structures_used": used, "notes": ["no broken <bonds>"], "gate": gate}
-    e_star["shares"] = {"structure": {"total": 0.2}, "anisotropy": {"total": 0.3}, "counter_body": {"total": 0.5}}
-    shares = {"poisson_ratio": {"total": 0.41}}
-    by_literature = {"mean_GPa": 100.0, "std_GPa": 3.0, "shares": shares, "structures_used": used}
-    e_star |= {"structures_used": used[:2], "by_literature_poisson": by_literature}
-    rows = []
-    for name in used[:2]:
-        moduli = {"B_GPa": 190, "G_GPa": 100, "E_GPa": 255, "nu": 0.277, "B_error_GPa": 1, "G_error_GPa": 8}
-        doubts = "bond lengths spread by 0.020 A only: crystalline" if name == used[1] else ""
-        rows.append({"structure": name, "ions": "relaxed", **moduli, "flags": "", "doubts": doubts})
-    _write(root / "elastic/isotropic_moduli.csv", rows)
+    e_star["shares"] = {"structure": {"total": 0.2}, "poisson_ratio": {"total": 0.3}, "counter_body": {"total": 0.5}}
     write_json(root / "elastic/e_star.json", e_star, PROVENANCE)
     values = Dataset(np.random.default_rng(1).normal(90, 4, 500), "GPa", "E*", ("sample",))
     write_h5(root / "elastic/e_star.h5", {"samples": {"e_star_GPa": values}}, {}, PROVENANCE)

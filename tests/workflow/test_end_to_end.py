@@ -18,7 +18,7 @@ from workflow.job import result_checksum
 
 # one job of each stage; its log is opened when it starts, so killing at its first sight interrupts that very job
 STAGES = {
-    "elastic": "scan_volumes",
+    "elastic": "scan_glass",
     "topography": "analyse_scans",
     "inputs": "collect_inputs",
     "pad": "press_pads",
@@ -115,7 +115,7 @@ def test_a_deleted_stage_is_made_again_with_what_depends_on_it(finished):
     planned = set(finished.planned("ci"))
     kept.rename(path)
     assert planned >= {"fit_law", "propagate_uncertainty", "render_report"}
-    assert not {"compute_runs", "run_closing", "scan_volumes", "analyse_scans"} & planned
+    assert not {"compute_runs", "run_closing", "scan_glass", "analyse_scans"} & planned
 
 
 def test_a_run_killed_in_every_stage_ends_with_the_same_results(finished, make_workflow, tmp_path):

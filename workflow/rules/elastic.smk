@@ -1,30 +1,24 @@
 ELASTIC = settings("elastic")
 GLASSES = [f"a{k:02d}" for k in range(1, ELASTIC["structures"] + 1)]
-CRYSTALS = {}  # name → file that holds it
-if needed("elastic"):
-    for key, part in (("material", "network_glass"), ("counter_body", "polycrystal")):
-        known = [name for name, material in MATERIALS.items() if getattr(material, part) is not None]
-        if ELASTIC[key] not in known:
-            refuse(
-                f"{SCENE_GIVEN}: elastic.{key}: no material {ELASTIC[key]!r:.60} with {part}; known: {', '.join(known)}"
-            )
-for material in MATERIALS.values():
-    CRYSTALS |= dict.fromkeys(material.crystals, material_path(material))
-for crystal in ELASTIC["crystals"]:
-    if crystal not in CRYSTALS:
-        refuse(f"{SCENE_GIVEN}: elastic.crystals: no crystal {crystal!r:.60}; known: {', '.join(CRYSTALS)}")
-LDA_GLASSES = GLASSES[: ELASTIC["lda_structures"]]
-TENSORS = GLASSES[: ELASTIC["tensor_structures"]] if ELASTIC["poisson"] == "computed" else []
-VOLUME_SCANS = [f"{name}_{xc}" for name in ELASTIC["crystals"] for xc in ("GGA", "LDA")]
-VOLUME_SCANS += [f"{name}_GGA" for name in GLASSES] + [f"{name}_LDA" for name in LDA_GLASSES]
+CRYSTALS = {name: material_path(material) for material in MATERIALS.values() for name in material.crystals}
 MATERIAL = str(CONFIG / "materials" / f"{ELASTIC['material']}.yaml")
 COUNTER_BODY = str(CONFIG / "materials" / f"{ELASTIC['counter_body']}.yaml")
+
+for key, name, known in (
+    ("material", ELASTIC["material"], [name for name, one in MATERIALS.items() if one.network_glass is not None]),
+    ("counter_body", ELASTIC["counter_body"], [name for name, one in MATERIALS.items() if one.polycrystal is not None]),
+    *(("crystals", name, list(CRYSTALS)) for name in ELASTIC["crystals"]),
+):
+    if needed("elastic") and name not in known:
+        refuse(f"{SCENE_GIVEN}: elastic.{key} = {name!r:.60}: not known; known are {', '.join(known)}")
+if needed("elastic"):
+    ACCURACY.append(f"{RESULTS}/accuracy/elastic.csv")
+    STABILITY.append(f"{RESULTS}/stability/elastic.csv")
 
 
 wildcard_constraints:
     amorphous="a\\d+",
-    structure="|".join(["a\\d+", *CRYSTALS]),
-    xc="GGA|LDA",
+    crystal="|".join(CRYSTALS),
 
 
 rule elastic:
@@ -57,7 +51,7 @@ rule make_amorphous:
         "../scripts/make_amorphous.py"
 
 
-rule relax_amorphous:
+rule scan_glass:
     input:
         material=MATERIAL,
         structure=f"{RESULTS}/elastic/quenched/{{amorphous}}.xyz",
@@ -65,122 +59,61 @@ rule relax_amorphous:
     output:
         structure=f"{RESULTS}/elastic/structures/{{amorphous}}.xyz",
         report=f"{RESULTS}/elastic/structures/{{amorphous}}.json",
-        start=f"{RESULTS}/elastic/structures/{{amorphous}}.h5",
+        points=f"{RESULTS}/elastic/scans/{{amorphous}}.csv",
     log:
-        f"{RESULTS}/logs/relax_amorphous_{{amorphous}}.log",
+        f"{RESULTS}/logs/scan_glass_{{amorphous}}.log",
     priority: 90
     params:
         dft=ELASTIC["dft"],
-        store=f"{RESULTS}/work/scf/relax_{{amorphous}}",
+        strains=ELASTIC["strains"],
+        functionals=lambda wildcards: (
+            ["GGA", "LDA"] if wildcards.amorphous in GLASSES[: ELASTIC["lda_structures"]] else ["GGA"]
+        ),
+        store=f"{RESULTS}/work/scf/{{amorphous}}",
     message:
-        "relax amorphous cell {wildcards.amorphous}"
+        "relax amorphous cell {wildcards.amorphous} and scan its E(V)"
     script:
-        "../scripts/relax_amorphous.py"
+        "../scripts/scan_glass.py"
 
 
-def to_scan(wildcards):
-    """A relaxed glass with its verdict and the orbitals to start from, or the material of a crystal."""
-    if wildcards.structure in CRYSTALS:
-        return {"material": CRYSTALS[wildcards.structure]}
-    stem = f"{RESULTS}/elastic/structures/{wildcards.structure}"
-    return {"structure": f"{stem}.xyz", "report": f"{stem}.json", "start": f"{stem}.h5"}
-
-
-rule scan_volumes:
+rule scan_crystal:
     input:
-        unpack(to_scan),
+        material=lambda wildcards: CRYSTALS[wildcards.crystal],
     output:
-        points=f"{RESULTS}/elastic/scans/{{structure}}_{{xc}}.csv",
+        points=f"{RESULTS}/elastic/scans/{{crystal}}.csv",
     log:
-        f"{RESULTS}/logs/scan_volumes_{{structure}}_{{xc}}.log",
+        f"{RESULTS}/logs/scan_crystal_{{crystal}}.log",
     priority: 80
     params:
+        dft=ELASTIC["dft"],
         strains=ELASTIC["strains"],
-        dft=ELASTIC["dft"],
-        store=f"{RESULTS}/work/scf/{{structure}}_{{xc}}",
+        store=f"{RESULTS}/work/scf/{{crystal}}",
     message:
-        "E(V) of {wildcards.structure}, {wildcards.xc}"
+        "E(V) of {wildcards.crystal}"
     script:
-        "../scripts/scan_volumes.py"
-
-
-rule fit_bulk_moduli:
-    input:
-        scans=[f"{RESULTS}/elastic/scans/{scan}.csv" for scan in VOLUME_SCANS],
-    output:
-        points=f"{RESULTS}/elastic/points.csv",
-        moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
-    log:
-        f"{RESULTS}/logs/fit_bulk_moduli.log",
-    message:
-        "fit equations of state"
-    script:
-        "../scripts/fit_bulk_moduli.py"
-
-
-rule measure_tensor:
-    input:
-        material=MATERIAL,
-        structure=f"{RESULTS}/elastic/structures/{{amorphous}}.xyz",
-        report=f"{RESULTS}/elastic/structures/{{amorphous}}.json",
-        start=f"{RESULTS}/elastic/structures/{{amorphous}}.h5",
-    output:
-        tensor=f"{RESULTS}/elastic/tensors/{{amorphous}}.json",
-        at_rest=f"{RESULTS}/elastic/tensors/{{amorphous}}.xyz",
-    log:
-        f"{RESULTS}/logs/measure_tensor_{{amorphous}}.log",
-    priority: 94
-    params:
-        dft=ELASTIC["dft"],
-        store=f"{RESULTS}/work/scf/tensor_{{amorphous}}",
-    message:
-        "elastic constants of {wildcards.amorphous}"
-    script:
-        "../scripts/measure_tensor.py"
-
-
-rule average_tensors:
-    input:
-        tensors=[f"{RESULTS}/elastic/tensors/{name}.json" for name in TENSORS],
-        at_rest=[f"{RESULTS}/elastic/tensors/{name}.xyz" for name in TENSORS],
-    output:
-        table=f"{RESULTS}/elastic/isotropic_moduli.csv",
-    log:
-        f"{RESULTS}/logs/average_tensors.log",
-    message:
-        "bulk and shear modulus, E and Poisson's ratio from elastic constants"
-    script:
-        "../scripts/average_tensors.py"
-
-
-# the glasses' own Poisson's ratios, where they are wanted
-ISOTROPIC = {"isotropic": f"{RESULTS}/elastic/isotropic_moduli.csv"} if TENSORS else {}
+        "../scripts/scan_crystal.py"
 
 
 rule combine_e_star:
     input:
-        **ISOTROPIC,
-        moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
+        scans=[f"{RESULTS}/elastic/scans/{name}.csv" for name in (*ELASTIC["crystals"], *GLASSES)],
         structures=[f"{RESULTS}/elastic/structures/{name}.json" for name in GLASSES],
         attempts=[f"{RESULTS}/elastic/quenched/{name}.csv" for name in GLASSES],
         counter_body=COUNTER_BODY,
     output:
+        points=f"{RESULTS}/elastic/points.csv",
+        moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
+        structures=f"{RESULTS}/elastic/structures.csv",
         e_star=report(f"{RESULTS}/elastic/e_star.json", caption="../captions/e_star.rst", category="Inputs"),
         samples=f"{RESULTS}/elastic/e_star.h5",
-        structures=f"{RESULTS}/elastic/structures.csv",
     log:
         f"{RESULTS}/logs/combine_e_star.log",
     params:
         settings=ELASTIC,
     message:
-        "combine E* from bulk moduli, Poisson's ratio and the counter body"
+        "fit equations of state, and combine E* with Poisson's ratio and the counter body"
     script:
         "../scripts/combine_e_star.py"
-
-
-if needed("elastic"):
-    ACCURACY.append(f"{RESULTS}/accuracy/elastic.csv")
-    STABILITY.append(f"{RESULTS}/stability/elastic.csv")
 
 
 rule measure_elastic_accuracy:
@@ -195,7 +128,7 @@ rule measure_elastic_accuracy:
     params:
         settings=ELASTIC,
     message:
-        "measure the error of bulk and shear modulus against run time"
+        "measure the error of the bulk modulus against run time"
     script:
         "../scripts/measure_elastic_accuracy.py"
 

@@ -12,10 +12,9 @@ def report_inputs():
         files += ["pad/inputs.csv", "pad/curves.csv", "device/pad_switch.json"]
     if needed("hardness"):
         files += ["hardness/points.csv", "hardness/fit.json"]
-        files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness", "snapshots") for run in CLOSINGS]
+        files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness") for run in CLOSINGS]
     if needed("elastic"):
         files += [f"elastic/{name}" for name in ("points.csv", "bulk_moduli.csv", "e_star.json", "e_star.h5")]
-        files += ["elastic/isotropic_moduli.csv"] if TENSORS else []
     if needed("topography"):
         files += ["topography/spectra.h5", "topography/parameters.json"]
         files += [str(Path(path).relative_to(RESULTS)) for path in JUDGED]
@@ -44,15 +43,12 @@ def kept_files():
     if "pad" in SCENE.tails:
         parts += [rules.assemble_pad]
     if needed("hardness"):
-        parts += [rules.find_hardness, rules.fit_hardness]
+        parts += [rules.fit_hardness]
         files += expand(rules.make_glass.output, glass=SCENE.hardness.seeds)
         files += expand(rules.run_closing.output, run=CLOSINGS)
-        if COUNTER_GLASS:
-            files += expand(rules.make_counter_glass.output, glass=SCENE.hardness.seeds)
     if needed("elastic"):
-        parts += [rules.fit_bulk_moduli, rules.combine_e_star]
-        files += expand([*rules.make_amorphous.output, *rules.relax_amorphous.output], amorphous=GLASSES)
-        parts += [rules.average_tensors] if TENSORS else []
+        parts += [rules.combine_e_star]
+        files += expand([*rules.make_amorphous.output, *rules.scan_glass.output], amorphous=GLASSES)
     if needed("topography"):
         parts += [rules.pool_spectra] if TOPOGRAPHY.scans else [rules.write_synthetic_scans, rules.pool_spectra]
     files += [file for part in parts for file in (*part.input, *part.output)]

@@ -11,10 +11,10 @@ _SCAN: tuple[Column, ...] = (
 _NETWORK: tuple[Column, ...] = (
     number("density_g_cm3", "g/cm³", "density"),
     number("coordination_*", "1", "mean coordination number of an element"),
-)
-_ORDER: tuple[Column, ...] = (
+    number("shortest_*_A", "Å", "shortest distance between two elements"),
     number("bond_spread_A", "Å", "standard deviation of the bond lengths"),
     integer("symmetry_operations", "that map the cell onto itself; one, the identity, in a glass"),
+    integer("defects", "atoms without their valence"),
 )
 
 TABLES = (
@@ -48,33 +48,12 @@ TABLES = (
         ),
     ),
     Table(
-        ("elastic/isotropic_moduli.csv",),
-        "Isotropic moduli of one structure from its elastic constants, ions clamped or relaxed.",
-        (
-            text("structure", "name of the structure"),
-            integer("atoms", "atoms in the cell"),
-            number("density_g_cm3", "g/cm³", "density at rest, without stress"),
-            text("ions", "clamped or relaxed"),
-            number("B_GPa", "GPa", "bulk modulus, mean of Voigt's and Reuss's bounds", empty=True),
-            number("G_GPa", "GPa", "shear modulus, mean of Voigt's and Reuss's bounds", empty=True),
-            number("E_GPa", "GPa", "Young's modulus", empty=True),
-            number("nu", "1", "Poisson's ratio", empty=True),
-            number("B_error_GPa", "GPa", "half of the distance between the bounds of B", empty=True),
-            number("G_error_GPa", "GPa", "half of the distance between the bounds of G", empty=True),
-            text("flags", "why they are not trusted", empty=True),
-            text("doubts", "why the cell at rest is no insulating glass; it enters E* all the same", empty=True),
-        ),
-    ),
-    Table(
         ("elastic/quenched/*.csv",),
         "One attempt to melt and quench a cell.",
         (
             text("structure", "name of the structure"),
             integer("attempt", "number of the attempt, from 0"),
             *_NETWORK,
-            number("shortest_*_A", "Å", "shortest distance between two elements"),
-            *_ORDER,
-            integer("defects", "atoms without their valence"),
             text("status", "accepted, or rejected: why"),
         ),
     ),
@@ -85,8 +64,6 @@ TABLES = (
             text("structure", "name of the structure"),
             integer("atoms", "atoms in the cell"),
             *_NETWORK,
-            integer("defects", "atoms without their valence, after the relaxation"),
-            *_ORDER,
             integer("steps", "ionic steps of the relaxation"),
             number("force_left_eV_A", "eV/Å", "largest force left", empty=True),
             boolean("converged", "whether the forces met their goal"),

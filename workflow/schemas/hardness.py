@@ -3,24 +3,9 @@
 from workflow.schemas.table import Table, boolean, integer, number, text
 
 _STEP = integer("step", "MD step")
-_DISPLACEMENT = number("displacement_nm", "nm", "travel of the counterface since the start")
+_DISPLACEMENT = number("displacement_nm", "nm", "travel of the flat since the start")
 
 TABLES = (
-    Table(
-        ("hardness/plan.csv",),
-        "A closing run to come; the last row, `all`, is the sum.",
-        (
-            text("run", "name of the closing run, or all"),
-            number("wavelength_nm", "nm", "side of the cell", empty=True),
-            integer("atoms", "estimated number of atoms", empty=True),
-            integer("steps", "MD steps", empty=True),
-            integer("restart_steps", "MD steps that a killed run loses at most", empty=True),
-            number("atom_steps", "1", "atoms times MD steps"),
-            number("core_hours", "h", "estimated processor time"),
-            number("hours", "h", "estimated run time", empty=True),
-            integer("processes", "MPI processes of the run", empty=True),
-        ),
-    ),
     Table(
         ("hardness/points.csv",),
         "One closing run.",
@@ -28,7 +13,6 @@ TABLES = (
             text("run", "name of the closing run"),
             text("potential", "interatomic potential"),
             number("energy_scale", "1", "factor on the potential's energies (1 full, 0.5 halved)"),
-            text("geometry", "shapes of the two bodies"),
             text("asperity", "name of the asperity in the scene"),
             number("wavelength_nm", "nm", "wavelength of the asperity, side of the cell"),
             number("amplitude_nm", "nm", "amplitude of the asperity"),
@@ -63,9 +47,7 @@ TABLES = (
             number("drift_meV_atom_ps", "meV/atom/ps", "drift of the energy balance"),
             number("warming_K", "K", "highest temperature above that of the start"),
             integer("atom_steps", "atoms times MD steps"),
-            integer("restart_steps", "MD steps that a killed run loses at most"),
             number("lammps_cpu_s", "s", "processor time of LAMMPS"),
-            number("python_cpu_s", "s", "processor time of the script"),
         ),
     ),
     Table(
@@ -83,26 +65,13 @@ TABLES = (
         ),
     ),
     Table(
-        ("hardness/snapshots/*.csv", "accuracy/hardness/*/*.snapshots.csv"),
-        "One atom of a 0.8 nm slice through the peak, in a relaxed snapshot.",
-        (
-            _STEP,
-            integer(
-                "type", "kind of the atom, in the order of the body's elements: those below a film, cation, oxygen"
-            ),
-            number("x_nm", "nm", "position along the slice"),
-            number("y_nm", "nm", "position across the slice"),
-            number("z_nm", "nm", "height"),
-        ),
-    ),
-    Table(
         ("hardness/closing/*.csv", "accuracy/hardness/*/*.csv"),
         "One average of a closing run.",
         (
             _STEP,
-            number("time_ps", "ps", "time since the counterface began to move"),
+            number("time_ps", "ps", "time since the flat began to move"),
             _DISPLACEMENT,
-            number("force_nN", "nN", "force on the counterface"),
+            number("force_nN", "nN", "force on the flat"),
             number("nominal_stress_GPa", "GPa", "force over the cross-section of the cell"),
             number("contact_area_nm2", "nm²", "contact area"),
             number("contact_length_nm", "nm", "square root of the contact area"),

@@ -1,7 +1,7 @@
 """Elastic stage in hard cases.  In: material.  Out: stability/elastic.csv."""
 
 from atomistic.elastic.networks import crystal
-from atomistic.elastic.stability import stability_checks
+from atomistic.elastic.studies import stability_checks
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
 from workflow.checks import stability_rows

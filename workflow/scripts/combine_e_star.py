@@ -1,6 +1,13 @@
-"""Combine E*.  In: elastic/bulk_moduli.csv (GPa), counter body.  Out: e_star.json, e_star.h5, structures.csv."""
+"""Fit equations of state and combine E*.
 
-from atomistic.elastic.moduli import SAMPLE_COLUMNS, effective_modulus, with_computed_poisson
+In:  elastic/scans/*.csv (Å3, eV), structures, quenches, counter body.
+Out: elastic/points.csv (Å3, eV), bulk_moduli.csv (GPa), structures.csv, e_star.json, e_star.h5.
+"""
+
+from itertools import groupby
+
+from atomistic.elastic.energy_scans import fit_scan
+from atomistic.elastic.moduli import SAMPLE_COLUMNS, effective_modulus
 from atomistic.elastic.structures import structure_rows, trusted_moduli
 from atomistic.materials import load_material
 from atomistic.settings import ElasticSettings
@@ -9,14 +16,14 @@ from workflow.results import Dataset, load_csv, load_json, write_csv, write_h5, 
 
 with job(snakemake) as run:
     settings = settings_from_job(ElasticSettings, snakemake.params.settings)
-    counter_body = load_material(snakemake.input.counter_body)
+    points = [row for path in snakemake.input.scans for row in load_csv(path)]
+    fits = [fit_scan(list(scan)) for _, scan in groupby(points, lambda row: (row["structure"], row["xc"]))]
     reports = [load_json(path) for path in snakemake.input.structures]
     quenches = [len(load_csv(path)) for path in snakemake.input.attempts]
-    moduli = trusted_moduli(load_csv(snakemake.input.moduli), reports)
-    summary, samples = effective_modulus(moduli, counter_body, settings)
-    if snakemake.input.get("isotropic"):
-        isotropic = load_csv(snakemake.input.isotropic)
-        summary, samples = with_computed_poisson(summary, isotropic, counter_body, settings)
+    counter_body = load_material(snakemake.input.counter_body)
+    summary, samples = effective_modulus(trusted_moduli(fits, reports), counter_body, settings)
+    write_csv(snakemake.output.points, points)
+    write_csv(snakemake.output.moduli, fits)
     write_csv(snakemake.output.structures, structure_rows(reports, quenches))
     group = {key: Dataset(values, *SAMPLE_COLUMNS[key], ("sample",)) for key, values in samples.items()}
     write_h5(snakemake.output.samples, {"samples": group}, {"ions": summary["ions"]}, run.provenance)

@@ -5,7 +5,7 @@ In:  accuracy/hardness/VARIATION/RUN.{csv,witness.csv,json}.  Out: accuracy/hard
 
 from pathlib import Path
 
-from atomistic.hardness.accuracy import compare
+from atomistic.hardness.studies import compare
 from atomistic.settings import ClosingSettings
 from workflow.checks import accuracy_rows
 from workflow.job import job, settings_from_job

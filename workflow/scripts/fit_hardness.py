@@ -1,36 +1,38 @@
-"""Fit H(A) to the MD points, or the law of films to their curves, and the cut-off of the attraction to the tops.
+"""Hardness of each closing run, or the reason why there is none; the fit to all of them.
 
-In:  points.csv (GPa, nm), witnesses and curves of the runs, glass/*.json, potential (YAML), counter_potentials: one
-     where the counterface is of another oxide or potential, base_material (YAML): below films.
-Out: fit.json (H_macro in GPa, H' in GPa nm^0.5, law of films, cut-off D0 of the attraction in nm, gate).
+In:  curves, witnesses (GPa, nm) and summaries of the runs, glass/*.json, potential (YAML), base_material (YAML): below
+     films.
+Out: points.csv (GPa, nm), fit.json (H_macro in GPa, H' in GPa nm^0.5, law of films, cut-off D0 of the attraction in nm,
+     gate).
 """
-
-from pathlib import Path
 
 from atomistic.hardness.contact_area import calibrated
 from atomistic.hardness.film_law import fit_films
+from atomistic.hardness.plateau import point
 from atomistic.hardness.size_effect import fit_size_effect
 from atomistic.hardness.top_attraction import gap_cutoff
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
 from atomistic.settings import FitSettings
 from workflow.job import job, settings_from_job
-from workflow.results import load_csv, load_json, load_numbers, write_json
+from workflow.results import load_csv, load_json, load_numbers, write_csv, write_json
 
 with job(snakemake) as run:
-    settings = settings_from_job(FitSettings, snakemake.params.fit)
-    glasses = [load_json(path) for path in snakemake.input.glasses]
-    counter = [load_potential(path) for path in snakemake.input.counter_potentials]
-    _, area_error = calibrated(load_potential(snakemake.input.potential), *counter)
-    points = load_csv(snakemake.input.points)
-    if snakemake.input.curves:
-        below = load_material(snakemake.input.base_material).part("film_base")
-        area_error = max(area_error, below.area_of_film.error, below.area_of_base.error)
-        curves = {Path(path).stem: load_numbers(path) for path in snakemake.input.curves}
+    given, params = snakemake.input, snakemake.params
+    summaries = {summary["run"]: summary for summary in map(load_json, given.summaries)}
+    curves, witnesses = (
+        dict(zip(summaries, map(load_numbers, files), strict=True)) for files in (given.curves, given.witnesses)
+    )
+    rows = [point(curves[name], witnesses[name], summaries[name], params.potential) for name in summaries]
+    write_csv(snakemake.output.points, rows)
+    points, glasses = load_csv(snakemake.output.points), [load_json(path) for path in given.glasses]
+    area_error = calibrated(load_potential(given.potential))
+    if given.base_material:
+        area_error = max(area_error, load_material(given.base_material).part("film_base").area_error)
         fit = fit_films(points, curves, glasses, area_error)
     else:
-        fit = fit_size_effect(points, glasses, settings, snakemake.params.energy_scales, area_error)
-    witnesses = {Path(path).stem: load_numbers(path) for path in snakemake.input.witnesses}
+        settings = settings_from_job(FitSettings, params.fit)
+        fit = fit_size_effect(points, glasses, settings, params.energy_scales, area_error)
     used = {p["run"]: int(p["seed"]) for p in points if p["status"] == "yield" and not p["film_nm"]}
     if cutoff := gap_cutoff({name: witnesses[name] for name in used}, used):
         fit["tops"] = cutoff.pop("runs")

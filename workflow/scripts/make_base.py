@@ -9,7 +9,6 @@ from pathlib import Path
 from atomistic.hardness.stack import base_of
 from atomistic.lammps import load_data, write_data
 from atomistic.materials import load_material
-from atomistic.potentials import masses_u
 from workflow.job import job
 from workflow.results import atomic_path
 
@@ -18,4 +17,4 @@ with job(snakemake) as run:
     edge_A = float(load_data(snakemake.input.glass, ()).cell_A[0])
     cell = base.make(edge_A, params.tiles, params.seed, Path(params.work), run.progress)
     with atomic_path(snakemake.output.atoms) as path:
-        write_data(path, cell, masses_u(base, cell.elements))
+        write_data(path, cell, base.masses_u)

@@ -1,6 +1,6 @@
 """Melt and quench one glass cell.
 
-In:  material, potential (YAML); beside: data file of the glass whose edge it takes (counterfaces only).
+In:  material, potential (YAML).
 Out: glass (LAMMPS data file, Å), properties (density, coordination, gate).
 """
 
@@ -8,9 +8,9 @@ import time
 from pathlib import Path
 
 from atomistic.hardness.glass import glass_properties, make_glass
-from atomistic.lammps import load_data, write_data
+from atomistic.lammps import write_data
 from atomistic.materials import load_material
-from atomistic.potentials import load_potential, masses_u
+from atomistic.potentials import load_potential
 from atomistic.settings import GlassSettings
 from workflow.job import job, settings_from_job
 from workflow.results import atomic_path, write_json
@@ -19,13 +19,11 @@ with job(snakemake) as run:
     material, seed = load_material(snakemake.input.material), int(snakemake.params.seed)
     settings = settings_from_job(GlassSettings, snakemake.params.glass)
     potential = load_potential(snakemake.input.potential)
-    beside = snakemake.input.get("beside")
-    edge_A = float(load_data(beside, ()).cell_A[0]) if beside else None
     started = time.perf_counter()
-    glass = make_glass(material, potential, settings, seed, Path(snakemake.params.work), run.progress, edge_A)
+    glass = make_glass(material, potential, settings, seed, Path(snakemake.params.work), run.progress)
     properties = glass_properties(material, potential, glass)
     with atomic_path(snakemake.output.atoms) as path:
-        write_data(path, glass, masses_u(potential, glass.elements))
+        write_data(path, glass, potential.masses_u)
     write_json(
         snakemake.output.properties,
         {"seed": seed, **properties, "wall_s": time.perf_counter() - started},

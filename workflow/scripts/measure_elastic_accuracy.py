@@ -1,7 +1,7 @@
-"""Error of B and G against run time.  In: material, bulk moduli, points.  Out: accuracy/elastic.csv."""
+"""Error of B against run time.  In: material, bulk moduli, points.  Out: accuracy/elastic.csv."""
 
-from atomistic.elastic.accuracy import ensemble_points, shear_points, volume_points
 from atomistic.elastic.networks import crystal
+from atomistic.elastic.studies import ensemble_points, volume_points
 from atomistic.materials import load_material
 from atomistic.settings import ElasticSettings
 from workflow.checks import accuracy_rows
@@ -16,10 +16,7 @@ with job(snakemake) as run:
     names = {row["structure"] for row in clamped}
     cost = sum(float(p["wall_s"]) for p in load_csv(snakemake.input.points) if p["structure"] in names)
     rows = list(accuracy_rows("elastic", ensemble_points([float(row["B_GPa"]) for row in clamped], cost)))
-    if settings.dft.engine == "pyscf":  # the parameters of other engines are the user's
-        name = next(iter(material.crystals), "")
-        small, larger = crystal(material, name, (1, 1, 1)), crystal(material, name)
-        rows += accuracy_rows("elastic", volume_points(small, larger, settings, run.progress))
-        if settings.poisson == "computed":
-            rows += accuracy_rows("elastic", shear_points(larger, settings, run.progress))
+    name = next(iter(material.crystals), "")
+    small, larger = crystal(material, name, (1, 1, 1)), crystal(material, name)
+    rows += accuracy_rows("elastic", volume_points(small, larger, settings, run.progress))
     write_csv(snakemake.output.table, rows)

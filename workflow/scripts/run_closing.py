@@ -1,8 +1,8 @@
-"""Close one asperity against its counterface.
+"""Close one asperity against a flat.
 
-In:  material, potential (YAML), glass (LAMMPS data file); counter_glass, counter_potential where the counterface is of
-     another oxide or potential; base (LAMMPS data file), base_material (YAML) where another body lies below.
-Out: curve (GPa, nm), witness (bond exchanges, nm), snapshots (nm), summary.
+In:  material, potential (YAML), glass (LAMMPS data file); base (LAMMPS data file), base_material (YAML) where another
+     body lies below.
+Out: curve (GPa, nm), witness (bond exchanges, nm), summary.
 """
 
 import resource
@@ -26,10 +26,6 @@ with job(snakemake) as run:
     potential = load_potential(snakemake.input.potential)
     material = load_material(snakemake.input.material)
     glass = load_data(snakemake.input.glass, tuple(potential.materials[material.formula_text]))
-    counter_glass = counter_potential = None
-    if counter := snakemake.input.get("counter_glass"):
-        counter_potential = load_potential(snakemake.input.counter_potential)
-        counter_glass = load_data(counter, tuple(counter_potential.materials[settings.counter_material]))
     base = None
     if cell := snakemake.input.get("base"):
         below = base_of(load_material(snakemake.input.base_material))
@@ -44,14 +40,11 @@ with job(snakemake) as run:
         Path(snakemake.params.work),
         protocol,
         run.progress,
-        counter_glass,
-        counter_potential,
         base,
     )
     lammps = resource.getrusage(resource.RUSAGE_CHILDREN)
     write_csv(snakemake.output.curve, closing.curve)
     write_csv(snakemake.output.witness, closing.witness)
-    write_csv(snakemake.output.snapshots, closing.snapshots)
     write_json(
         snakemake.output.summary,
         {

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from scipy import fft
 
-from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, base_seconds, plan_rows
+from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, base_seconds, closing_seconds
 from atomistic.hardness.glass import TIMESTEP_FS, total_ps
 from atomistic.hardness.stack import base_of
 from atomistic.materials import Material
@@ -47,8 +47,7 @@ TRANSFORM_S = 0.0049  # of `relative_speed` on the development machine
 
 GROWS_BY = {  # the key that makes a rule's jobs many or long
     **dict.fromkeys(("make_glass", "make_base", "run_closing"), "hardness.seeds"),
-    **dict.fromkeys(("make_amorphous", "relax_amorphous", "scan_volumes"), "elastic.structures"),
-    "measure_tensor": "elastic.tensor_structures",
+    **dict.fromkeys(("make_amorphous", "scan_glass"), "elastic.structures"),
     "compute_runs": "uncertainty.seeds",
     "compute_direct_runs": "uncertainty.direct_runs",
     "press_pads": "pad.points",
@@ -84,11 +83,9 @@ class Costs:
         self.closing_s: dict[str, float] = {}  # by closing run
         self.base_s: dict[str, float] = {}  # of the body below films, by its width in glass cells
         if "hardness" in scene.stages():
-            bodies = (scene.hardness.material, scene.hardness.closing.counter_material)
-            oxide, counter = (materials[formula] for formula in bodies)
+            oxide = materials[scene.hardness.material]
             base = base_of(materials[scene.hardness.base]) if scene.hardness.base else None
-            rows = plan_rows(scene.hardness, oxide, counter, base)
-            self.closing_s = {str(row["run"]): 3600 * float(row["core_hours"]) for row in rows[:-1]}
+            self.closing_s = closing_seconds(scene.hardness, oxide, base)
             if base is not None:
                 widths = {asperity.tiles for asperity in scene.hardness.asperities}
                 self.base_s = {str(tiles): base_seconds(scene.hardness, oxide, base, tiles) for tiles in widths}
@@ -201,7 +198,7 @@ def _design_runs(costs: Costs) -> int:
 
 FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     **_each(0.0, "write_scene", "collect_inputs", "collect_pad_inputs", "combine_e_star", "collect_priors"),
-    **_each(0.5, "find_hardness", "fit_hardness", "fit_bulk_moduli", "fit_nominal_law", "average_tensors"),
+    **_each(0.5, "fit_hardness", "fit_nominal_law"),
     **_each(2.0, "pool_spectra"),
     **_each(5.0, "write_synthetic_scans"),
     **_each(8.5, "rank_sensitivity"),
@@ -209,16 +206,16 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     **_each(60.0, "make_circuit"),
     **_each(180.0, "find_failure_rate", "measure_failure_accuracy"),
     **_each(1100.0, "measure_elastic_accuracy"),
-    **dict.fromkeys(
-        ("make_glass", "make_counter_glass"), lambda c, _: _glass_steps(c.scene) / ATOM_STEPS_PER_CORE_SECOND
-    ),
+    "make_glass": lambda c, _: _glass_steps(c.scene) / ATOM_STEPS_PER_CORE_SECOND,
     "make_base": lambda c, job: c.base_s[job["tiles"]],
     "run_closing": lambda c, job: c.closing_s[job["run"]],
     "make_amorphous": lambda c, _: 1.3 * _quenches(c.scene.elastic.glass) * c.scene.elastic.glass.formula_units / 4,
-    "relax_amorphous": lambda c, _: c.scf_s(8.0 * (1 + c.scene.elastic.dft.relaxation_steps)),
-    "scan_volumes": lambda c, _: c.scf_s(9.0 * len(c.scene.elastic.strains), tight=False),
-    # ions and cell come to rest in some 27 states, then 14 at rest and strained, and 24 displaced ones
-    "measure_tensor": lambda c, _: c.scf_s(12.0 * 65),
+    # with LDA twice as many strains, as of the first glasses
+    "scan_glass": lambda c, _: (
+        c.scf_s(8.0 * (1 + c.scene.elastic.dft.relaxation_steps))
+        + c.scf_s(13.0 * len(c.scene.elastic.strains), tight=False)
+    ),
+    "scan_crystal": lambda c, _: c.scf_s(18.0 * len(c.scene.elastic.strains), tight=False),
     # six scans, after the import of their readers
     "analyse_scans": lambda c, _: 4.0 + 4.8 * c.scene.topography.synthetic.pixels**2 / GRID,
     "judge_scans": lambda c, _: 3.0 + 3.0 * len(c.scene.topography.scans),

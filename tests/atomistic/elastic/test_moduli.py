@@ -1,6 +1,5 @@
 """E(V) scans that survive failures, and E* with its parts."""
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -8,9 +7,8 @@ import pytest
 from ase.build import bulk
 from ase.calculators.calculator import CalculationFailed
 from ase.calculators.emt import EMT
-from pydantic import ValidationError
 
-from atomistic.elastic.energy_scans import fit_scan, rejected_points, scan_volumes
+from atomistic.elastic.energy_scans import fit_scan, scan_rows, scan_volumes
 from atomistic.elastic.moduli import Modulus, effective_modulus, plane_strain_modulus, variance_shares
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings, ElasticSettings
@@ -86,31 +84,6 @@ def test_nothing_trusted_gives_no_input():
     assert not summary["gate"]["passed"]
 
 
-@pytest.mark.parametrize(
-    ("engine", "parameters", "named"),
-    [
-        ("espresso", {"command": "rm"}, "parameters.command = 'rm'"),
-        ("espresso", {"directory": "/etc"}, "parameters.directory"),
-        ("espresso", {"input_data": {"outdir": "/etc"}}, "parameters.input_data.outdir"),
-        ("espresso", {"input_data": {"input_dft": "pbe'\n/\n&control outdir='/etc"}}, "a plain name"),
-        ("espresso", {"pseudopotentials": {"Si": "../../secret"}}, "a plain name"),
-        ("vasp", {"setups": {"Si'\n": "_sv"}}, "plain names"),
-        ("gpaw", {"txt": "/etc/passwd"}, "parameters.txt"),
-        ("cp2k", {"inp": "&GLOBAL"}, "parameters.inp"),
-        ("siesta", {"fdf_arguments": {"SystemLabel": "x"}}, "parameters.fdf_arguments"),
-        ("pyscf", {"verbose": 9}, "accepted: none"),
-    ],
-)
-def test_a_scene_gives_an_engine_physics_but_neither_program_nor_folder(engine, parameters, named):
-    with pytest.raises(ValidationError, match=re.escape(named)):
-        DftSettings(engine=engine, parameters=parameters)
-
-
-def test_parameters_of_the_physics_reach_the_engine():
-    given = {"input_data": {"ecutwfc": 40, "occupations": "fixed"}, "pseudopotentials": {"Si": "Si.pbe-n.UPF"}}
-    assert DftSettings(engine="espresso", parameters=given).parameters == given
-
-
 @pytest.mark.parametrize("bad", [{"poisson_ratio": (0.3, 0.5)}, {"strains": (-0.01, 0.0, 0.01)}])
 def test_poisson_ratio_of_a_liquid_and_too_few_strains_are_refused(bad):
     with pytest.raises(ValueError, match=r"0\.5|at least 5"):
@@ -118,8 +91,7 @@ def test_poisson_ratio_of_a_liquid_and_too_few_strains_are_refused(bad):
 
 
 def test_rejected_glass_costs_nothing_and_carries_its_reason():
-    points = rejected_points(bulk("Cu"), STRAINS, "6 atoms without their valence")
-    row = {"structure": "a08", "xc": "GGA", "ions": "clamped", "atoms": "28"}
-    fit = fit_scan([{**row, **{k: str(v) for k, v in vars(p).items()}} for p in points])
+    rows = scan_rows("a08", bulk("Cu"), "GGA", DftSettings(), STRAINS, rejected="6 atoms without their valence")
+    fit = fit_scan([{key: str(value) for key, value in row.items()} for row in rows])
     assert fit["B_GPa"] is None
     assert fit["flags"].count("6 atoms without their valence") == 1

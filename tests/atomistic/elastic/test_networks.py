@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from atomistic.covalent import core_commands, tersoff_table
+from atomistic.covalent import Quench, core_commands, tersoff_table
 from atomistic.elastic import networks
 from atomistic.elastic.networks import (
     crystal,
@@ -16,11 +16,11 @@ from atomistic.elastic.networks import (
     random_structure,
     same_network,
     symmetry_operations,
-    tersoff_calculator,
 )
 from atomistic.errors import InputError
 from atomistic.materials import load_material
 from atomistic.settings import NitrideGlassSettings
+from tests.atomistic.cheap_potential import tersoff_calculator
 
 MATERIALS = Path(__file__).parents[3] / "config" / "materials"
 NITRIDE = load_material(MATERIALS / "silicon_nitride.yaml")
@@ -147,7 +147,7 @@ def test_a_quench_goes_on_when_it_ends_in_a_network_that_is_there_already(tmp_pa
 
 
 def test_a_quenched_cell_rests_in_a_shape_of_its_own(tmp_path, monkeypatch):
-    monkeypatch.setattr(networks, "MELT_PS", 0.5)
+    monkeypatch.setattr(networks, "QUENCH", Quench(melt_ps=0.5))
     settings = NitrideGlassSettings(formula_units=2, quench_rate_K_ps=2000)
     first, again = (quench(NITRIDE, settings, 3, tmp_path) for _ in range(2))
     assert np.array_equal(first.positions, again.positions)

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import textwrap
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from atomistic.errors import InputError
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.glass import glass_properties, make_glass
 from atomistic.hardness.runs import PROTOCOL, planned_runs
-from atomistic.hardness.stability import stability_checks
+from atomistic.hardness.studies import free_motion, glass_checks, heated
 from atomistic.lammps import Atoms, Workspace, load_data, write_data
 from atomistic.settings import GlassSettings, HardnessSettings
 
@@ -87,7 +88,6 @@ def test_closing_conserves_energy_and_builds_up_stress(closing):
 def test_snapshots_without_the_flat(closing):
     assert closing.witness[0]["exchanged_bonds"] == 0
     assert closing.witness[-1]["exchanged_bonds"] >= closing.witness[0]["exchanged_bonds"]
-    assert {row["step"] for row in closing.snapshots} == {row["step"] for row in closing.witness}
 
 
 KILLED = """
@@ -157,7 +157,6 @@ def test_killed_closing_resumes_bit_for_bit(glass, potential, oxides, closing, t
         for a, b in zip(resumed.curve, closing.curve, strict=True)
     )
     assert resumed.witness == closing.witness
-    assert resumed.snapshots == closing.snapshots
 
 
 def test_a_changed_setting_does_not_resume_old_work(tmp_path):
@@ -210,19 +209,27 @@ def test_a_received_closing_cannot_run_commands(glass, potential, oxides, closin
 
 
 def test_stability_of_a_scene_passes(glass, potential, tmp_path):
-    checks = stability_checks([(potential, glass)], (1.0, 0.5), tmp_path / "work")
-    assert {"room_x0.5_pmmcs_SiO", "half_energy_identity_pmmcs_SiO"} < {case for case, *_ in checks}
+    checks = glass_checks(potential, glass, (1.0, 0.5), tmp_path / "work")
+    assert "room_x0.5_pmmcs_SiO" in {case for case, *_ in checks}
     verdicts = {case: check() for case, _, _, check in checks}
     assert {case: detail for case, (passed, detail) in verdicts.items() if not passed} == {}
 
 
+def test_halved_energies_move_as_full_ones_at_twice_the_temperature_in_longer_time(glass, potential, tmp_path):
+    """E/2 at T moves like E at 2T with time x sqrt 2: checks table, masses, units and time step at once."""
+    hot = heated(glass, potential, 600)
+    slow = replace(hot, velocities_A_ps=hot.velocities_A_ps / np.sqrt(2))
+    _, full = free_motion(hot, potential, tmp_path / "full", 1.0, 100)
+    _, halved = free_motion(slow, potential, tmp_path / "halved", float(np.sqrt(2)), 100, 0.5)
+    apart = full.positions_A - halved.positions_A
+    apart -= full.cell_A * np.round(apart / full.cell_A)
+    assert np.abs(apart).max() < 1e-5  # Å, after 0.1 ps
+
+
 HARD_CASES = {
-    "snap-in of an adhesive oxide": ({"counterface": "oxide", "interface": "adhesive"}, {}),
     "hot": ({}, {"temperature_K": 1200.0}),
     "cold": ({}, {"temperature_K": 10.0}),
     "fast": ({"speed_m_s": 1000}, {}),
-    "force": ({"control": "force", "dwell_ps": 0.2}, {"force_step_MPa": 60.0}),
-    "tenfold force": ({"control": "force", "dwell_ps": 0.2}, {"force_step_MPa": 600.0}),
 }
 
 
@@ -234,10 +241,9 @@ def test_a_hard_case_loses_no_atom_and_keeps_its_energy(case, glass, potential, 
     """
     changed, protocol = HARD_CASES[case]
     closing = SETTINGS.closing.model_copy(update={"anneal_ps": 0.5, **changed})
-    short = {"counter_base_nm": 1.4, "max_stress_GPa": 3.0, "segment_force_steps": 5}
     [run, _] = planned_runs(SETTINGS)
     curve = run_closing(
-        run, oxides["SiO2"], glass, potential, closing, tmp_path, THIN.model_copy(update={**short, **protocol})
+        run, oxides["SiO2"], glass, potential, closing, tmp_path, THIN.model_copy(update=protocol)
     ).curve
     elapsed_ps = max(curve[-1]["time_ps"] - curve[0]["time_ps"], 1.0)
     drift = (curve[-1]["energy_drift_meV_per_atom"] - curve[0]["energy_drift_meV_per_atom"]) / elapsed_ps

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from atomistic.hardness.plateau import RULES, find_hardness, interval_of_mean, may_stop, plastic_onset, point, settled
-from atomistic.settings import ClosingSettings
 
 APPROACH_NM = 0.3
 TRAVEL = np.arange(0.0125, 1.2, 0.025)
@@ -142,12 +141,11 @@ def test_a_lowering_that_recovers_is_no_onset():
 def test_a_point_names_what_was_pressed_and_what_it_cost():
     facts = {
         "run": "r", "energy_scale": 1.0, "amplitude_nm": 0.4, "film_nm": None, "asperity": "small",
-        "wavelength_nm": 6.0, "seed": 1, "atoms": 100, "steps": 1000, "restart_steps": 250,
-        "lammps_cpu_s": 9.0, "python_cpu_s": 0.1,
+        "wavelength_nm": 6.0, "seed": 1, "atoms": 100, "steps": 1000,
+        "lammps_cpu_s": 9.0,
     }  # fmt: skip
-    closing = ClosingSettings(counterface="oxide", counter_material="TiO2")
-    row = point(curve(plateau), witness(), facts, closing, "pmmcs")
-    assert row["geometry"] == "asperity-oxide TiO2 repulsive"
+    row = point(curve(plateau), witness(), facts, "pmmcs")
+    assert (row["asperity"], row["potential"]) == ("small", "pmmcs")
     assert row["status"] == "yield"
     assert row["atom_steps"] == 100_000
 

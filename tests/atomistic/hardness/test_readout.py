@@ -9,7 +9,7 @@ from atomistic.lammps import load_dump
 def samples(position, drive):
     """Samples every 10 steps; position of what moves (Å) and driving force (eV/Å)."""
     return {
-        10 * (k + 1): Sample(np.array([x, force, 300.0, force]), 0.0, 0)
+        10 * (k + 1): Sample(np.array([x, force, 300.0]), 0.0, 0)
         for k, (x, force) in enumerate(zip(position, drive, strict=True))
     }
 

@@ -1,5 +1,6 @@
 """A film of oxide on a metal or a nitride: its forces, how it lies, and tiny ones pressed for real."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,17 +9,16 @@ from pydantic import ValidationError
 from scipy.spatial import KDTree
 
 from atomistic.errors import InputError
-from atomistic.hardness.accuracy import variations
-from atomistic.hardness.closing import area_of, cut_body, oxide_bond, run_closing
-from atomistic.hardness.cost import plan_rows
+from atomistic.hardness.closing import cut_body, oxide_bond, run_closing
+from atomistic.hardness.cost import closing_seconds
 from atomistic.hardness.glass import make_glass
-from atomistic.hardness.metal import TOO_NEAR, Metal, polycrystal
-from atomistic.hardness.network import Network
+from atomistic.hardness.metal import METAL, Metal, MetalNumerics, polycrystal
+from atomistic.hardness.network import Network, SlowQuench
 from atomistic.hardness.plateau import film_fault, plastic_onset, point
-from atomistic.hardness.readout import Bond, bonds_of
+from atomistic.hardness.readout import OxideBond, bonds_of
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, planned_runs, smallest_run
-from atomistic.hardness.stability import LIFT_A, film_checks, free_motion
-from atomistic.hardness.stack import GAP_A, Stack, base_of, check_film, cut_base, film_properties, lay, lifted
+from atomistic.hardness.stack import GAP_A, Stack, base_of, check_film, cut_base, film_properties, lay
+from atomistic.hardness.studies import free_motion, variations
 from atomistic.lammps import Atoms
 from atomistic.materials import load_material
 from atomistic.settings import AsperitySettings, ClosingSettings, GlassSettings, HardnessSettings
@@ -44,8 +44,7 @@ def glass(potential, oxides, tmp_path_factory):
 def base(metal, glass, tmp_path_factory):
     """A cube as wide as two glass cells, hardly annealed."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("atomistic.hardness.metal.ANNEAL_PS", 0.5)
-        patch.setattr("atomistic.hardness.metal.MAX_STRAIN", 0.05)
+        patch.setattr("atomistic.hardness.metal.METAL", MetalNumerics(anneal_ps=0.5, max_strain=0.05))
         return metal, metal.make(float(glass.cell_A[0]), 2, 1, tmp_path_factory.mktemp("base") / "work")
 
 
@@ -54,8 +53,8 @@ def nitride(glass, tmp_path_factory):
     """A cell as wide as one of the glass, melted and quenched in a moment."""
     network = Network(load_material(NITRIDE))
     with pytest.MonkeyPatch.context() as patch:
-        for name, value in (("MELT_PS", 0.3), ("QUENCH_K_PS", 3000.0), ("REST_PS", 0.3)):
-            patch.setattr(f"atomistic.hardness.network.{name}", value)
+        quick = SlowQuench(melt_ps=0.3, rate_K_ps=3000.0, rest_ps=0.3)
+        patch.setattr("atomistic.hardness.network.QUENCH", quick)
         patch.setattr(Network, "faults", lambda network, glass: [])
         return network, network.make(float(glass.cell_A[0]), 2, 1, tmp_path_factory.mktemp("nitride") / "work")
 
@@ -68,7 +67,7 @@ def run_of(film_nm, scale=1.0):
 def test_grains_fill_the_cell_and_keep_apart(metal):
     body = polycrystal(metal, 40.0, 35.0, 1)
     assert body.positions_A.min() >= 0
-    assert not KDTree(body.positions_A, boxsize=body.cell_A).query_pairs(TOO_NEAR * metal.eam.r_A)
+    assert not KDTree(body.positions_A, boxsize=body.cell_A).query_pairs(METAL.too_near * metal.eam.r_A)
     assert 0.88 < len(body) / 40.0**3 * 1e3 / metal.atoms_per_nm3 < 1.0  # grain boundaries close in the anneal
     neighbours = KDTree(body.positions_A, boxsize=body.cell_A).query_ball_point(body.positions_A, 3.5)
     assert np.median([len(found) - 1 for found in neighbours]) == 12  # of hexagonal packing
@@ -91,26 +90,16 @@ def test_the_bond_of_metal_and_oxide_has_its_depth_and_the_force_of_its_energy(m
 
 
 def test_each_pair_of_types_has_its_force(metal, potential):
-    def commands(*elements, **repelled):
-        text = Stack(potential, metal).files(elements, 1.0, **repelled)["pairs"]
-        return [line.removeprefix("pair_coeff ") for line in text.splitlines() if line.startswith("pair_coeff")]
-
-    own = [
+    text = Stack(potential, metal).files(("Ti", "Si", "O"), 1.0)["pairs"]
+    commands = [line.removeprefix("pair_coeff ") for line in text.splitlines() if line.startswith("pair_coeff")]
+    assert commands == [
+        "* * eam/alloy metal.eam Ti NULL NULL",
         "1 2 table cross contact 6.5",
         "1 3 table cross Ti-O 6.5",
         "2 2 table table Si_Si 6.5",
         "2 3 table table Si_O 6.5",
         "3 3 table table O_O 6.5",
     ]
-    assert commands("Ti", "Si", "O") == ["* * eam/alloy metal.eam Ti NULL NULL", *own]
-    above = commands("Ti", "Si", "O", repelled=(potential, ("Si", "O")))
-    assert set(own) < set(above)
-    assert "1 5 table table contact 6.5" in above
-    assert "3 4 table table contact 6.5" in above
-    assert "4 5 table table_above Si_O 6.5" in above
-    adhering = commands("Ti", "Si", "O", "Si", "O")
-    assert "1 5 table cross Ti-O 6.5" in adhering
-    assert "3 4 table table Si_O 6.5" in adhering
 
 
 def test_a_nitride_has_its_own_silicon_and_bonds_both_ways(potential):
@@ -135,27 +124,22 @@ def test_a_nitride_has_its_own_silicon_and_bonds_both_ways(potential):
 def test_a_film_far_off_leaves_the_energies_of_both_bodies(potential, glass, base, nitride, tmp_path):
     """Each type has its own forces, also where base and film both have silicon."""
 
-    def energy(atoms, force):
-        return free_motion(atoms, force, tmp_path / "still", 0.01, 1)[0][0, 1]
-
     for body, cell in (base, nitride):
         below = len(body.elements)
-        apart = lifted(lay(cell, glass, 2, 2.5, 6.0, 10.0, 1), LIFT_A, below)
+        body_under_film = lay(cell, glass, 2, 2.5, 6.0, 10.0, 1)
+        lift = np.where(body_under_film.types > below, 60.0, 0.0)[:, None] * [0, 0, 1]
+        edges = body_under_film.cell_A + np.array([0, 0, 60.0])
+        apart = replace(body_under_film, positions_A=body_under_film.positions_A + lift, cell_A=edges)
         of_base, of_film = apart.types <= below, apart.types > below
         parts = [
             Atoms(body.elements, apart.types[of_base], apart.positions_A[of_base], apart.cell_A),
             Atoms(glass.elements, apart.types[of_film] - below, apart.positions_A[of_film], apart.cell_A),
         ]
-        whole = energy(apart, Stack(potential, body))
-        assert whole == pytest.approx(energy(parts[0], body) + energy(parts[1], potential), rel=1e-9)
-
-
-def test_a_softer_base_has_the_energies_times_the_factor(metal, glass, base, nitride, tmp_path):
-    for body, cell in (base, nitride):
-        energies = [
-            free_motion(cell, force, tmp_path / "still", 0.01, 1)[0][0, 1] for force in (body, body.softened(0.1))
-        ]
-        assert energies[1] == pytest.approx(0.1 * energies[0], rel=1e-6)
+        whole, *alone = (
+            free_motion(atoms, force, tmp_path / "still", 0.01, 1)[0][0, 1]
+            for atoms, force in ((apart, Stack(potential, body)), (parts[0], body), (parts[1], potential))
+        )
+        assert whole == pytest.approx(sum(alone), rel=1e-9)
 
 
 def test_a_glass_of_the_base_is_judged_by_its_file(nitride):
@@ -214,7 +198,7 @@ def test_a_film_that_came_off_or_slid_does_not_count():
 
 def test_bonds_join_cation_and_anion_of_the_film_alone(potential, oxides):
     bond = oxide_bond(("Ti", "Si", "O"), oxides["SiO2"], potential)
-    assert bond == Bond(2, 3, 2.2)
+    assert bond == OxideBond(2, 3, 2.2)
     frame = np.array([[1, 0, 0, 0], [2, 3, 0, 0], [3, 4.6, 0, 0], [3, 1.6, 0, 0], [1, 1.5, 0, 0]])
     assert bonds_of(frame, bond, 1.0, 50.0) == {(1, 2), (1, 3)}
     assert oxide_bond(("Ti",), oxides["SiO2"], potential) is None
@@ -249,7 +233,7 @@ def test_a_film_that_is_stopped_goes_on_as_if_it_had_not_been(pressed, potential
     with pytest.raises(Stopped):
         run_closing(*given, stop, base=base)
     resumed = run_closing(*given, base=base)
-    for part in ("curve", "witness", "snapshots", "summary"):
+    for part in ("curve", "witness", "summary"):
         np.testing.assert_equal(getattr(resumed, part), getattr(pressed, part))  # bit for bit; NaN where no stress is
 
 
@@ -257,70 +241,29 @@ def test_a_film_is_pressed_and_keeps_its_energy(pressed):
     column = {name: np.array([row[name] for row in pressed.curve]) for name in pressed.curve[0]}
     assert column["force_nN"].max() > 1
     assert np.abs(column["energy_drift_meV_per_atom"]).max() < 3
-    assert {row["type"] for row in pressed.snapshots} == {1, 2, 3}
     assert all(np.isnan(row["top_force_over_hamaker"]) for row in pressed.witness)
     assert pressed.summary["covered_share"] > 0.9
     assert pressed.summary["slid_A"] < 2.1
     summary = {**pressed.summary, "run": "tiny", "energy_scale": 1.0, "asperity": "tiny", "amplitude_nm": 0.25}
-    summary |= {"film_nm": 0.4, "seed": 1, "lammps_cpu_s": 1.0, "python_cpu_s": 1.0, "slid_A": 5.0}
-    row = point(pressed.curve, pressed.witness, summary, CLOSING, "pmmcs")
+    summary |= {"film_nm": 0.4, "seed": 1, "lammps_cpu_s": 1.0, "slid_A": 5.0}
+    row = point(pressed.curve, pressed.witness, summary, "pmmcs")
     assert row["status"] == "rejected: the film slid by 5.0 A over its base (gate 2.1 A)"
 
 
 def test_a_film_on_nitride_and_nitride_itself_are_pressed(potential, oxides, glass, nitride, tmp_path):
     quick = CLOSING.model_copy(update={"speed_m_s": 800, "depth_over_amplitude": 1.5})
-    for film_nm, types in ((0.4, {1, 2, 3, 4}), (0.0, {1, 2})):
+    for film_nm in (0.4, 0.0):
         work = tmp_path / f"{film_nm:g}"
         closing = run_closing(run_of(film_nm), oxides["SiO2"], glass, potential, quick, work, QUICK, base=nitride)
         assert max(row["force_nN"] for row in closing.curve) > 1
-        assert {row["type"] for row in closing.snapshots} == types
         assert np.abs([row["energy_drift_meV_per_atom"] for row in closing.curve]).max() < 3
     silicon, nitrogen = np.bincount(cut_base(nitride[1], glass, 2, 2.5, 12.0, 1).types)[1:]
     assert 4 * silicon == 3 * nitrogen
 
 
-def test_the_metal_is_pressed_by_a_flat_only(potential, oxides, glass, base, tmp_path):
+def test_the_metal_is_pressed_by_itself(potential, oxides, glass, base, tmp_path):
     closing = run_closing(run_of(0.0), oxides["SiO2"], glass, potential, CLOSING, tmp_path / "work", QUICK, base=base)
     assert max(row["force_nN"] for row in closing.curve) > 1
-    assert {row["type"] for row in closing.snapshots} == {1}
-    oxide = CLOSING.model_copy(update={"counterface": "oxide"})
-    with pytest.raises(InputError, match="titanium without a film is pressed by a flat only"):
-        run_closing(run_of(0.0), oxides["SiO2"], glass, potential, oxide, tmp_path / "other", QUICK, base=base)
-
-
-@pytest.mark.parametrize("below", ["base", "nitride"])
-def test_a_film_is_pressed_by_atoms(below, request, potential, oxides, glass, tmp_path):
-    asperity = CLOSING.model_copy(update={"counterface": "asperity", "speed_m_s": 800})
-    thin = QUICK.model_copy(update={"counter_base_nm": 1.0})
-    base = request.getfixturevalue(below)
-    closing = run_closing(run_of(0.4), oxides["SiO2"], glass, potential, asperity, tmp_path / "work", thin, base=base)
-    assert max(row["force_nN"] for row in closing.curve) > 0.5
-    assert min(row["force_nN"] for row in closing.curve) >= 0  # they only repel each other
-
-
-def test_a_film_is_pressed_by_force(potential, oxides, glass, base, tmp_path):
-    """The force at the end is that of its step; the run ends where the contact has taken up its share of the cell."""
-    force = CLOSING.model_copy(update={"control": "force", "dwell_ps": 0.2})
-    steps = {"force_step_MPa": 60.0, "max_stress_GPa": 3.0, "segment_force_steps": 5}
-    short = QUICK.model_copy(update=steps)
-    closing = run_closing(run_of(0.4), oxides["SiO2"], glass, potential, force, tmp_path / "work", short, base=base)
-    nominal = [row["nominal_stress_GPa"] for row in closing.curve]
-    assert nominal[-1] == pytest.approx(0.06 * len(nominal), rel=0.3)  # the sample still swings
-    assert np.abs([row["energy_drift_meV_per_atom"] for row in closing.curve]).max() < 3
-
-
-def test_hard_cases_of_a_film_hold(potential, metal, glass, base, tmp_path):
-    body = lay(base[1], glass, 2, 0.0, 6.0, 10.0, 1)
-    settled = Atoms(body.elements, body.types, body.positions_A, body.cell_A)
-    checks = {case: check for case, *_, check in film_checks(Stack(potential, metal), settled, (1.0,), tmp_path)}
-    assert len(checks) >= 9
-    assert checks["film_off_its_base"]()[0]
-
-
-def test_the_area_of_each_kind_of_body_is_its_own(potential, base, metal):
-    assert area_of(run_of(0.4), potential, base=base)[1] == metal.below_films.area_of_film.error
-    assert area_of(run_of(0.0), potential, base=base)[1] == metal.below_films.area_of_base.error
-    assert area_of(run_of(None), potential, base=base)[1] == potential.contact_area.error
 
 
 def test_a_film_thinner_than_a_layer_or_thicker_than_the_widest_contact_is_refused(potential, glass, base):
@@ -360,18 +303,16 @@ def test_films_have_one_energy_scale_and_the_thinnest_film_shows_the_accuracy():
 
 def test_the_plan_prices_the_metal_and_refuses_a_film_too_thick(oxides):
     titanium = base_of(load_material(TITANIUM))
-    rows = {row["run"]: row for row in plan_rows(stacked_settings(), oxides["SiO2"], oxides["SiO2"], titanium)}
-    assert rows["thick_seed1_full"]["atoms"] > rows["thin_seed1_full"]["atoms"] > rows["metal_seed1_full"]["atoms"]
+    seconds = closing_seconds(stacked_settings(), oxides["SiO2"], titanium)
+    assert seconds["thick_seed1_full"] > seconds["thin_seed1_full"] > seconds["metal_seed1_full"]
     thick = stacked_settings(asperities=[{"name": "a", "tiles": 2, "amplitude_nm": 0.5, "film_nm": 5}])
     with pytest.raises(InputError, match="film_nm = 5: on an asperity whose widest judged contact is 3"):
-        plan_rows(thick, oxides["SiO2"], oxides["SiO2"], titanium)
+        closing_seconds(thick, oxides["SiO2"], titanium)
 
 
 def test_films_and_their_metal_belong_together():
     with pytest.raises(ValidationError, match="thin has a film_nm, but there is no base; name what lies below"):
         stacked_settings(base=None, asperities=[{"name": "thin", "tiles": 2, "amplitude_nm": 0.5, "film_nm": 0.6}])
-    with pytest.raises(ValidationError, match="which only a flat presses: nothing is known of how"):
-        stacked_settings(closing={"counterface": "asperity"})
     with pytest.raises(ValidationError, match="no asperity has a film_nm; add it, or leave base out"):
         stacked_settings(asperities=[{"name": "oxide", "tiles": 2, "amplitude_nm": 0.5}])
 
@@ -388,6 +329,6 @@ def test_metals_are_checked_on_loading(tmp_path):
     path.write_text(text.replace("  eta: 0.558572\n", ""))
     with pytest.raises(InputError, match=r"eam\.eta: Field required"):
         load_material(path)
-    path.write_text(text.replace("  area_of_base: {depth_A: 0.5, error: 0.025}\n", ""))
-    with pytest.raises(InputError, match=r"film_base\.area_of_base: Field required"):
+    path.write_text(text.replace("  area_error: 0.05", "  # area_error: 0.05"))
+    with pytest.raises(InputError, match=r"film_base\.area_error: Field required"):
         load_material(path)

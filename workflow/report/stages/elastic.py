@@ -6,15 +6,13 @@ from typing import Any
 import numpy as np
 
 from workflow.report.available import Results
-from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, draw
+from workflow.report.drawing import BLUE, ORANGE, SERIES, draw
 from workflow.report.numbers import column, number, show
 from workflow.report.page import Section, Table
 
 SHARES = {
     "structure": "structure of the glass",
     "fit": "misfit of E(V)",
-    "anisotropy": "anisotropy of a small cell",
-    "size": "size of the cell",
     "functional": "functional (GGA or LDA)",
     "poisson_ratio": "Poisson's ratio",
     "counter_body": "counter body",
@@ -36,8 +34,8 @@ def describe(results: Results) -> Section | None:
     )
     section.add(
         elastic_distribution(results),
-        "Left: bulk moduli of the glasses by E(V) and, where elastic constants were computed, by these; dashed: a "
-        "crystal. Right: the modulus E* of the contact, variability and model-form error included.",
+        "Left: bulk moduli of the glasses by E(V); dashed: a crystal. Right: the modulus E* of the contact, "
+        "variability and model-form error included.",
         "Figure 5",
         wide=True,
     )
@@ -56,61 +54,28 @@ def describe(results: Results) -> Section | None:
     section.blocks.append(Table("Equation of state of every structure, ions clamped", header, lines))
     if summary.get("shares"):
         section.blocks.append(shares_table(summary))
-    if results.has("elastic/isotropic_moduli.csv"):
-        section.blocks.append(isotropic_table(results))
-        literature = summary["by_literature_poisson"]
-        section.notes.append(
-            "With Poisson's ratio from the literature and the bulk modulus alone E* would be "
-            f"{show(literature['mean_GPa'])} ± {show(literature['std_GPa'])} GPa."
-        )
-        section.files.append("elastic/isotropic_moduli.csv")
     section.notes += summary.get("notes", [])
     section.files += ["elastic/points.csv", "elastic/bulk_moduli.csv", "elastic/e_star.json"]
     return section
 
 
 def shares_table(summary: Mapping[str, Any]) -> Table:
-    """What the variance of E* comes from, and would come from with Poisson's ratio from the literature."""
-    methods = {"share of the variance": summary["shares"]}
-    if "by_literature_poisson" in summary:
-        methods["with Poisson's ratio from the literature"] = summary["by_literature_poisson"]["shares"]
-    lines = [
-        (words, *(f"{shares[key]['total']:.0%}" if shares.get(key) else "–" for shares in methods.values()))
-        for key, words in SHARES.items()
-        if any(shares.get(key) for shares in methods.values())
-    ]
-    return Table("What the variance of E* comes from", ("source", *methods), lines)
-
-
-def isotropic_table(results: Results) -> Table:
-    """Moduli of every structure from its elastic constants."""
-    columns = ("B_GPa", "G_GPa", "E_GPa", "nu", "B_error_GPa", "G_error_GPa")
-    lines = [
-        (
-            row["structure"],
-            row["ions"],
-            *(show(row.get(key), 3) for key in columns),
-            "; ".join(filter(None, (row["flags"], row["doubts"]))) or "–",
-        )
-        for row in results.csv("elastic/isotropic_moduli.csv")
-    ]
-    header = ("structure", "ions", "B (GPa)", "G (GPa)", "E (GPa)", "ν", "± B", "± G", "flags and doubts")
-    return Table("Isotropic moduli from elastic constants; ± is half of the distance between the bounds", header, lines)
+    """What the variance of E* comes from."""
+    shares = summary["shares"]
+    lines = [(words, f"{shares[key]['total']:.0%}") for key, words in SHARES.items() if shares.get(key)]
+    return Table("What the variance of E* comes from", ("source", "share of the variance"), lines)
 
 
 def elastic_distribution(results: Results) -> str | None:
     """Figure 5: bulk moduli of the ensemble and the resulting E*."""
     rows = results.csv("elastic/bulk_moduli.csv")
     summary = results.json("elastic/e_star.json")
-    constants = results.csv("elastic/isotropic_moduli.csv") if results.has("elastic/isotropic_moduli.csv") else []
     samples = results.h5("elastic/e_star.h5")[0].get("samples", {}) if results.has("elastic/e_star.h5") else {}
-    by_volume = summary.get("by_literature_poisson", summary)  # elastic constants leave out more than E(V) does
-    glasses = {*by_volume.get("structures_used", []), *(kept["structure"] for kept in summary.get("kept_out", []))}
+    glasses = {*summary.get("structures_used", []), *(kept["structure"] for kept in summary.get("kept_out", []))}
     trusted = [row for row in rows if not row.get("flags") and np.isfinite(number(row.get("B_GPa")))]
-    relaxed = [row for row in constants if row["ions"] == "relaxed" and not row["flags"]]
 
     def plot(axis, other):
-        every = column([*trusted, *relaxed], "B_GPa")
+        every = column(trusted, "B_GPa")
         bins = np.linspace(every.min() - 5, every.max() + 5, 12) if every.size else np.linspace(0, 1, 2)
         for xc, color in zip(sorted({row["xc"] for row in rows}), SERIES, strict=False):
             kind = [row for row in trusted if row["xc"] == xc]
@@ -121,9 +86,6 @@ def elastic_distribution(results: Results) -> str | None:
                 if row["structure"] not in glasses:
                     crystal = f"{row['structure']} crystal, {xc.upper()}"
                     axis.axvline(number(row["B_GPa"]), color=color, linestyle="--", label=crystal)
-        if relaxed:
-            label = "GGA, elastic constants, relaxed ions"
-            axis.hist(column(relaxed, "B_GPa"), bins=bins, color=INK, histtype="step", label=label)
         axis.set(xlabel="bulk modulus B (GPa)", ylabel="structures")
         axis.set_ylim(0, 1.7 * axis.get_ylim()[1])  # room for the legend
         axis.yaxis.get_major_locator().set_params(integer=True)

@@ -58,7 +58,6 @@ def describe(results: Results) -> Section | None:
         (
             row["run"],
             show(row.get("energy_scale")),
-            row.get("geometry", ""),
             show(row.get("film_nm")) if row.get("film_nm") else "–",
             show(row.get("wavelength_nm")),
             show(row.get("contact_length_nm")),
@@ -70,12 +69,11 @@ def describe(results: Results) -> Section | None:
         for row in points
     ]
     header = (
-        "run", "energy scale", "geometry", "film (nm)", "λ (nm)", "contact length (nm)", "hardness (GPa)",
+        "run", "energy scale", "film (nm)", "λ (nm)", "contact length (nm)", "hardness (GPa)",
         "bond exchanges per 0.1 nm: before → onset → after", "p of the onset", "status",
     )  # fmt: skip
-    for place in (3, 2):  # one film, or one geometry: its column says nothing
-        if len({line[place] for line in lines}) == 1:
-            header, *lines = ((*line[:place], *line[place + 1 :]) for line in (header, *lines))
+    if len({line[2] for line in lines}) == 1:  # no film: the column says nothing
+        header, *lines = ((*line[:2], *line[3:]) for line in (header, *lines))
     section.blocks.append(Table("Every run and what became of it", header, lines))
     section.notes += _fit_notes(fit)
     section.files += ["hardness/points.csv", "hardness/fit.json"]
@@ -213,9 +211,8 @@ def _range(row: Row, name: str) -> str:
 def _fit_notes(fit: dict[str, Any]) -> list[str]:
     """Both constants in use, and the attraction of the tops."""
     notes = []
-    literature = "from the literature" if fit.get("method") == "literature" else "from the points"
     for key, label, unit, origin in (
-        ("H_macro_GPa", "H_macro", "GPa", literature),
+        ("H_macro_GPa", "H_macro", "GPa", "from the literature"),
         ("H_prime_GPa_nm0.5", "H′", "GPa nm½", "from the points"),
     ):
         if isinstance(entry := fit.get(key), dict):

@@ -4,9 +4,10 @@ from pathlib import Path
 
 from ase.build import bulk
 
-from atomistic.elastic.accuracy import ensemble_points, volume_points
+from atomistic.elastic import studies
+from atomistic.elastic.energy_scans import ScanPoint
 from atomistic.elastic.networks import crystal
-from atomistic.elastic.stability import conductor, stability_checks
+from atomistic.elastic.studies import conductor, ensemble_points, stability_checks
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings, ElasticSettings
 
@@ -27,19 +28,26 @@ def test_hard_cases_have_names_of_their_own():
 
 
 def test_errors_are_those_against_the_finest_value_of_each_choice(monkeypatch):
-    from atomistic.elastic import accuracy
+    """Energies of a spring stand for the engine: B is then 100 GPa whatever the choice, but for the cut-off."""
 
-    monkeypatch.setattr(accuracy, "LARGE_BASIS", "gth-dzvp-molopt-sr")
-    monkeypatch.setattr(accuracy, "CUTOFFS", (1.0, 1.4))
-    monkeypatch.setattr(accuracy, "TOLERANCES_HA", (1e-4, 1e-6))
-    coarse = SMALL.model_copy(update={"cutoff_Ha": 20.0})
+    def scan(atoms, calculator, strains):
+        volumes = [float(atoms.get_volume() * (1 + strain) ** 3) for strain in strains]
+        stiffness = 1.0 - 10.0 / calculator.parameters.cutoff_Ha
+        return [
+            ScanPoint(s, v, stiffness * (v - volumes[2]) ** 2, True, 0.0) for s, v in zip(strains, volumes, strict=True)
+        ]
+
+    monkeypatch.setattr(studies, "scan_volumes", scan)
     silicon = load_material(NITRIDE_FILE.with_name("silicon.yaml"))
-    small = crystal(silicon, "silicon", (1, 1, 1))
-    points = list(volume_points(small, crystal(silicon, "silicon", (2, 1, 1)), ElasticSettings(dft=coarse)))
-    knobs = {point["knob"] for point in points}
-    assert knobs == {"cutoff_Ha", "tolerance_Ha", "basis", "atoms", "strain_range", "strains"}
-    finest = {point["knob"]: point["error"] for point in points if point["knob"] != "strain_range"}
-    assert set(finest.values()) == {0.0}  # the last value of each is its reference
+    cells = [crystal(silicon, "silicon", (1, 1, cells)) for cells in (1, 2)]
+    points = list(studies.volume_points(*cells, ElasticSettings(dft=SMALL)))
+    assert {point["knob"] for point in points} == {"cutoff_Ha", "basis", "largest strain", "atoms"}
+    assert {point["knob"]: point["error"] for point in points} == dict.fromkeys(
+        ("cutoff_Ha", "basis", "largest strain", "atoms"), 0.0
+    )  # the last value of each is its reference
+    errors = [point["error"] for point in points if point["knob"] == "cutoff_Ha"]
+    assert errors == sorted(errors)
+    assert errors[0] < -0.1
 
 
 def test_error_of_the_mean_falls_with_the_number_of_structures():

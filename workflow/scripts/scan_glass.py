@@ -1,17 +1,21 @@
-"""Relax one amorphous cell by DFT.  In: elastic/quenched/NAME.{xyz,csv}.  Out: elastic/structures/NAME.*."""
+"""Relax one amorphous cell by DFT and scan its E(V).
+
+In:  elastic/quenched/NAME.{xyz,csv}.  Out: elastic/structures/NAME.{xyz (Å),json}, elastic/scans/NAME.csv (Å3, eV).
+"""
 
 from pathlib import Path
 
 from atomistic.elastic.dft import make_calculator
+from atomistic.elastic.energy_scans import scan_rows
 from atomistic.elastic.structures import relaxed_structure
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
 from workflow.job import job, settings_from_job
-from workflow.results import load_csv, write_json, write_text
-from workflow.structure_files import ScfStore, load_structure, structure_text, write_start
+from workflow.results import load_csv, write_csv, write_json, write_text
+from workflow.structure_files import ScfStore, load_structure, structure_text
 
 with job(snakemake) as run:
-    material = load_material(snakemake.input.material)
+    material, name = load_material(snakemake.input.material), snakemake.wildcards.amorphous
     dft = settings_from_job(DftSettings, snakemake.params.dft)
     store = ScfStore(Path(snakemake.params.store))
     quenched = load_structure(snakemake.input.structure)
@@ -25,7 +29,12 @@ with job(snakemake) as run:
         "" if status == "accepted" else status.removeprefix("rejected: "),
         run.progress,
     )
+    start, rejected = getattr(relaxed.calculator, "history", [])[-1:], "; ".join(relaxed.reasons)
+    scans = [
+        scan_rows(name, relaxed.atoms, xc, dft, snakemake.params.strains, store, start, rejected, run.progress)
+        for xc in snakemake.params.functionals
+    ]
     write_text(snakemake.output.structure, structure_text(relaxed.atoms))
-    write_start(snakemake.output.start, relaxed.calculator, run.provenance)
-    write_json(snakemake.output.report, relaxed.report(snakemake.wildcards.amorphous), run.provenance)
+    write_json(snakemake.output.report, relaxed.report(name), run.provenance)
+    write_csv(snakemake.output.points, [row for scan in scans for row in scan])
     store.remove()

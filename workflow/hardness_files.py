@@ -1,0 +1,84 @@
+"""Which files and closing runs the hardness stage of a scene has, and whether they fit together."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from atomistic.errors import InputError
+from atomistic.hardness.runs import ClosingRun, planned_runs, smallest_run
+from atomistic.materials import Material, oxide_glasses
+from atomistic.settings import HardnessSettings
+
+
+@dataclass(frozen=True)
+class HardnessFiles:
+    """Files that a scene's hardness section names, and its runs.
+
+    Attributes
+    ----------
+    material, base : of the asperity, and of the body below films; None: there is none.
+    closings : closing runs by name; `smallest` is the cheapest of them.
+    """
+
+    potential: str
+    material: str
+    base: str | None
+    closings: dict[str, ClosingRun]
+    smallest: ClosingRun
+
+
+def hardness_files(
+    settings: HardnessSettings, materials: Mapping[str, Material], config: Path, locate: Callable[[str], str]
+) -> HardnessFiles:
+    """Files and runs of a scene.
+
+    Parameters
+    ----------
+    config : folder of the shipped data.
+    locate : finds a file that the scene names by its path.
+
+    Raises
+    ------
+    InputError : a name that is not known.
+    """
+    oxides = oxide_glasses(materials.values())
+    bases = [name for name, material in materials.items() if material.film_base is not None]
+    potential = settings.potential
+    if not potential.endswith((".yaml", ".yml")):
+        _known("potential", potential, [path.stem for path in (config / "potentials").glob("*.yaml")], ", or a path")
+    _known("material", settings.material, oxides)
+    if settings.base is not None:
+        _known("base", settings.base, bases)
+    folder = config / "materials"
+    return HardnessFiles(
+        locate(potential)
+        if potential.endswith((".yaml", ".yml"))
+        else str(config / "potentials" / f"{potential}.yaml"),
+        str(folder / f"{oxides[settings.material].name}.yaml"),
+        None if settings.base is None else str(folder / f"{settings.base}.yaml"),
+        {run.name: run for run in planned_runs(settings)},
+        smallest_run(settings),
+    )
+
+
+def check_bodies(settings: HardnessSettings, files: HardnessFiles, materials: Mapping[str, Material]) -> None:
+    """Refuse before the first job what it would refuse: a bad potential, a film that does not fit its asperity or base.
+
+    Raises
+    ------
+    InputError : of the first of them.
+    """
+    from atomistic.hardness.cost import closing_seconds  # jobs do without
+    from atomistic.hardness.stack import base_of, check_ions
+    from atomistic.potentials import load_potential
+
+    potential = load_potential(files.potential)
+    base = None if settings.base is None else base_of(materials[settings.base])
+    if base is not None:
+        check_ions(base.material, potential.materials.get(settings.material, {}))
+    closing_seconds(settings, oxide_glasses(materials.values())[settings.material], base)
+
+
+def _known(key: str, name: str, known: Iterable[str], more: str = "") -> None:
+    if name not in (names := sorted(known)):
+        raise InputError(f"hardness.{key} = {name!r:.60}: not known; known are {', '.join(names)}{more}")
