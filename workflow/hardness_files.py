@@ -44,16 +44,17 @@ def hardness_files(
     oxides = oxide_glasses(materials.values())
     bases = [name for name, material in materials.items() if material.film_base is not None]
     potential = settings.potential
-    if not potential.endswith((".yaml", ".yml")):
+    if potential.endswith((".yaml", ".yml")):
+        potential = locate(potential)
+    else:
         _known("potential", potential, [path.stem for path in (config / "potentials").glob("*.yaml")], ", or a path")
+        potential = str(config / "potentials" / f"{potential}.yaml")
     _known("material", settings.material, oxides)
     if settings.base is not None:
         _known("base", settings.base, bases)
     folder = config / "materials"
     return HardnessFiles(
-        locate(potential)
-        if potential.endswith((".yaml", ".yml"))
-        else str(config / "potentials" / f"{potential}.yaml"),
+        potential,
         str(folder / f"{oxides[settings.material].name}.yaml"),
         None if settings.base is None else str(folder / f"{settings.base}.yaml"),
         {run.name: run for run in planned_runs(settings)},
