@@ -36,13 +36,13 @@ def label(sites, place, pressure, pixels, number):
 
 @njit(cache=True)
 def displace(table, scale, pixels, sites, pressure, others, displacement):
-    """Displacement (nm) of other sites by the pressures of some."""
+    """Add to the displacements (nm) of other sites what pressures (GPa) of some make."""
     rows = np.empty(sites.size, np.int64)
     cols = np.empty(sites.size, np.int64)
     value = np.empty(sites.size)
     count = 0
     for k in range(sites.size):
-        if pressure[k] > 0.0:
+        if pressure[k] != 0.0:
             rows[count], cols[count] = sites[k] // pixels, sites[k] % pixels
             value[count] = scale * pressure[k]
             count += 1
@@ -52,7 +52,7 @@ def displace(table, scale, pixels, sites, pressure, others, displacement):
         for k in range(count):
             dr, dc = abs(row - rows[k]), abs(col - cols[k])
             total += value[k] * table[np.uint64(min(dr, pixels - dr)), np.uint64(min(dc, pixels - dc))]
-        displacement[m] = total
+        displacement[m] += total
 
 
 @njit(cache=True)

@@ -100,6 +100,22 @@ def classify(gap, pressure, displacement, limit, stiffness, n, state):
 
 
 @njit(cache=True)
+def bind(pressure, limit, state, change, n):
+    """Put the sites apart and those at their limit on their bounds, the others between them; whether any changes."""
+    changed = False
+    for k in range(n):
+        new = min(max(pressure[k], 0.0), limit[k])
+        if state[k] == 0:
+            new = 0.0
+        elif state[k] == 2:
+            new = limit[k]
+        change[k] = new - pressure[k]
+        changed |= change[k] != 0.0
+        pressure[k] = new
+    return changed
+
+
+@njit(cache=True)
 def close_gaps(block, gap, goal, share):
     """Pressures that close the gaps of some sites, by conjugate gradients.
 
@@ -152,26 +168,16 @@ def solve(matrix, n, gap, limit, stiffness, tolerance, pressure, displacement):
     block = np.empty((0, 0), np.float32)
     for step in range(NEWTON_STEPS):
         moved = classify(gap, pressure, displacement, limit, stiffness, n, state) > 0 or step == 0
-        largest = 0.0
-        count = 0
-        for k in range(n):
-            new = min(max(pressure[k], 0.0), limit[k])
-            if state[k] == 0:
-                new = 0.0
-            elif state[k] == 2:
-                new = limit[k]
-            else:
-                count += 1
-            change[k] = new - pressure[k]
-            pressure[k] = new
-            largest = max(largest, new)
+        bind(pressure, limit, state, change, n)
+        largest = pressure[:n].max() if n else 0.0
         multiply(matrix, n, change, moves)
         displacement[:n] += moves
         if residual(gap, pressure, displacement, limit, stiffness, n) <= tolerance:
             return step, True
+        free = np.flatnonzero(state == 1)
+        count = free.size
         if count == 0:
             continue
-        free = np.flatnonzero(state == 1)
         if moved:
             block = np.empty((count, count), np.float32)
             for k in range(count):

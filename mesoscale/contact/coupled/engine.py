@@ -37,8 +37,8 @@ class CoupledContact(Contact):
     TOLERANCE = 1e-9  # aimed at, residual of the pressures over the largest one
     GRID_TOLERANCE = 1e-7  # the same where the whole grid is transformed: half the time of 1e-9
     SETTLED = 1e-6  # demanded
-    # Sites that a dense matrix holds, per pixel of a side: beyond, transforms of the whole grid cost less (elastic and
-    # plastic steps alike, on 64^2 to 256^2 sites). The other bound keeps the matrix below 140 MB.
+    # Sites that a dense matrix holds, per pixel of a side: beyond, transforms of the whole grid cost less. With 4 and 8
+    # pads of 128^2 sites take 0.8 of the time with 16. The other bound keeps the matrix below 140 MB.
     DENSE_PER_PIXEL = 4
     LONGEST_GUESS = 2.0  # over the last step: so far pressures are taken to go on as in it
     DENSE = 4096
@@ -122,7 +122,7 @@ class CoupledContact(Contact):
             self.displacement = self.grid.displace(self.sites, self.pressure)
         else:
             self.grid.field = kept.field
-            self.displacement = self.grid.gather(self.sites, kept.field)
+            self.displacement = kept.field[self.sites]
 
     def move_to(self, separation: float, with_flow: bool) -> State:
         """Bring the flat down to a separation; it may be undone by `back` until the next move."""
@@ -149,14 +149,14 @@ class CoupledContact(Contact):
         now, before = self.before, self.earlier
         last = now.separation - before.separation
         share = (separation - now.separation) / last if last and math.isfinite(last) else 0.0
-        if not 0.0 < share <= self.LONGEST_GUESS or (self.grid is not None and before.field is None):
-            return
-        change = now.pressure.copy()
-        change[self.place[before.sites]] -= before.pressure
-        self.pressure += share * change
-        if self.grid is not None and now.field is not None and before.field is not None:
-            self.grid.field = now.field + share * (now.field - before.field)
-            self.displacement = self.grid.gather(self.sites, self.grid.field)
+        if 0.0 < share <= self.LONGEST_GUESS and (now.field is None) == (before.field is None):
+            change = now.pressure.copy()
+            change[self.place[before.sites]] -= before.pressure
+            self.pressure += share * change
+            if self.grid is not None and now.field is not None and before.field is not None:
+                self.grid.field = now.field + share * (now.field - before.field)
+        if self.grid is not None:
+            self.displacement = self.grid.field[self.sites]
 
     def remarks(self) -> dict[str, float]:
         """What says whether the model holds, for the flags of a cycle (`validity`); the contact as it is now."""
@@ -283,10 +283,12 @@ class CoupledContact(Contact):
             apply = matrix.__matmul__
         else:
             norm = float(self.grid.compliance.max())
-            apply = partial(self.grid.displace, self.sites)
+            apply = partial(self.grid.displacement_at, self.sites)
         self.pressure, self.displacement, _, _ = grid.project(
             apply, norm, gap, limit, self.stiffness, self.TOLERANCE, self.pressure
         )
+        if self.grid is not None:
+            self.displacement = self.grid.displace(self.sites, self.pressure)
         sites = self.sites.size
         worst = dense.residual(gap, self.pressure, self.displacement, limit, self.stiffness, sites)
         return worst <= self.SETTLED
@@ -331,7 +333,7 @@ class CoupledContact(Contact):
             dense.extend(self.matrix, self.table, self.scale, self.sites, old, count, self.n)
             self.displacement = np.zeros(count)
         else:
-            self.displacement = self.grid.gather(self.sites, self.grid.field)
+            self.displacement = self.grid.field[self.sites]
 
     def _whole(self) -> grid.Grid:
         return grid.Grid(self.n, self.length, self.e_star, self.bodies)

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from scipy import fft
 
-from mesoscale.contact.coupled import dense, half_space
+from mesoscale.contact.coupled import clusters, dense, half_space
 from mesoscale.settings.contact import Body
 
 NEWTON_STEPS = 60
@@ -70,10 +70,14 @@ class Grid:
         """Values on all sites at some of them."""
         return everywhere if sites.size == self.field.size else everywhere[sites]
 
+    def displacement_at(self, sites: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+        """Displacement (nm) of some sites by their pressures (GPa), in the precision of the pressures."""
+        return self.gather(sites, self.displacement(self.spread(sites, pressure)))
+
     def displace(self, sites: np.ndarray, pressure: np.ndarray) -> np.ndarray:
-        """Displacement (nm) of some sites by their pressures (GPa); that of all is kept in `field`."""
+        """The same; that of all sites is kept in `field`, which nothing changes in place."""
         self.field = self.displacement(self.spread(sites, pressure))
-        return self.gather(sites, self.field).copy()
+        return self.field[sites]
 
 
 def solve(
@@ -106,7 +110,7 @@ def solve(
     change, block, exact = np.zeros(gap.size), None, False
     for step in range(NEWTON_STEPS):
         moved = dense.classify(gap, pressure, displacement, limit, stiffness, gap.size, state) > 0 or step == 0
-        if _bind(pressure, limit, state, change):
+        if dense.bind(pressure, limit, state, change, gap.size):
             exact = False
             _follow(grid, table, sites, change, displacement)
         if dense.residual(gap, pressure, displacement, limit, stiffness, gap.size) <= tolerance:
@@ -136,45 +140,12 @@ def solve(
 
 
 def _follow(grid: Grid, table: np.ndarray, sites: np.ndarray, change: np.ndarray, displacement: np.ndarray) -> None:
-    """Add what a change of the pressures (GPa) displaces: of few sites by the table, of many by a transform.
-
-    The transform is in single precision where the change is small.
-    """
-    changed = np.count_nonzero(change)
-    if changed * sites.size <= TABLE_SHARE * grid.field.size:
-        add_displacement(table, grid.scale, grid.shape[0], sites, change, displacement)
+    """Add what a change of the pressures (GPa) displaces: of few sites by the table, of many in single precision."""
+    if np.count_nonzero(change) * sites.size <= TABLE_SHARE * grid.field.size:
+        clusters.displace(table, grid.scale, grid.shape[0], sites, change, sites, displacement)
         return
     largest = float(np.abs(change).max())
-    everywhere = grid.spread(sites, (change / largest).astype(np.float32))
-    displacement += largest * grid.gather(sites, grid.displacement(everywhere))
-
-
-@njit(cache=True)
-def add_displacement(table, scale, pixels, sites, change, displacement):
-    """Add to the displacements (nm) of sites what changes of their pressures (GPa) make."""
-    for k in range(sites.size):
-        if change[k] == 0.0:
-            continue
-        row, col, value = sites[k] // pixels, sites[k] % pixels, scale * change[k]
-        for m in range(sites.size):
-            dr, dc = abs(row - sites[m] // pixels), abs(col - sites[m] % pixels)
-            displacement[m] += value * table[min(dr, pixels - dr), min(dc, pixels - dc)]
-
-
-@njit(cache=True)
-def _bind(pressure, limit, state, change):
-    """Put the sites apart and those at their limit on their bounds, the others between them; whether any changes."""
-    changed = False
-    for k in range(pressure.size):
-        new = min(max(pressure[k], 0.0), limit[k])
-        if state[k] == 0:
-            new = 0.0
-        elif state[k] == 2:
-            new = limit[k]
-        change[k] = new - pressure[k]
-        changed |= change[k] != 0.0
-        pressure[k] = new
-    return changed
+    displacement += largest * grid.displacement_at(sites, (change / largest).astype(np.float32))
 
 
 def _close_gaps(
@@ -201,7 +172,7 @@ def _close_gaps(
         z = grid.gather(sites, grid.pressure(grid.spread(sites, r)))
         rz = _turn(z, r, free, last, d)
         last = rz
-        q = grid.gather(sites, grid.displacement(grid.spread(sites, d)))
+        q = grid.displacement_at(sites, d)
         dq = float(d @ q)
         if not dq > 1e-7 * rz:  # rounding of what moves nothing
             break

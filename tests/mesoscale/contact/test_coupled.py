@@ -261,6 +261,22 @@ def test_gradient_projection_finds_what_active_sets_find(dense, monkeypatch):
     monkeypatch.setattr("mesoscale.contact.coupled.engine.dense.solve", refused)
     assert contacts[1].move_to(separation, True).settled
     np.testing.assert_allclose(on_grid(contacts[1]), on_grid(contacts[0]), atol=1e-6 * on_grid(contacts[0]).max())
+    assert contacts[1].attraction(separation) == pytest.approx(contacts[0].attraction(separation), rel=1e-6)
+
+
+@pytest.mark.parametrize("dense", [0, 4096])
+def test_a_step_that_is_undone_leaves_no_trace(dense):
+    contact = CoupledContact(synthesize(64, 62.5, 0.15, 0.75, 2.0, 4), INPUTS, coupled(64, 62.5, model="elastic"))
+    contact.dense = dense
+    first = contact.touching_separation
+    separation = first - 4.5
+    contact.move_to(separation, False)
+    force, attraction = contact.force, contact.attraction(separation)
+    for depth in (5.0, 0.5, 5.2, 4.6):  # the second one on, all sites of the grid are known; steps both ways
+        contact.move_to(first - depth, False)
+        contact.back()
+        assert contact.force == pytest.approx(force, rel=1e-12)
+        assert contact.attraction(separation) == pytest.approx(attraction, rel=1e-12)
 
 
 def test_a_step_that_does_not_settle_is_counted(monkeypatch):
