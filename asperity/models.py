@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.calibration.observables import LEVELS, force_levels_nN
-from mesoscale.calibration.observed import separations_at
+from mesoscale.calibration.observables import LEVELS, force_levels_nN, separations_at
 from mesoscale.checks import check_seed
 from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.errors import InputError

@@ -3,36 +3,42 @@
 Truths are drawn from the prior, data from the engine's own surfaces at these truths, and every posterior is that of the
 product's responses and likelihood, by importance sampling of prior draws. Ranks of the truths are uniform if all is
 well (Talts et al., arXiv 1804.06788). A set is left out only where its own datum is missing: a surface that never
-pushes that much, a switch that sticks; that depends on the data alone, and so keeps ranks uniform.
+pushes that much. That depends on the data alone, and so keeps ranks uniform.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import kstest
 
-from mesoscale.calibration.likelihood import SWITCH_KINDS, Posterior, Predicted, posterior_of
-from mesoscale.calibration.measurements import CURVES as CURVE_KINDS
 from mesoscale.calibration.measurements import Measurements
-from mesoscale.calibration.observables import CURVES, LAWS, LEVELS, NAMES, curve_names, force_levels_nN
-from mesoscale.calibration.posterior import Cycles, cycles_of_rows, expected_of, observe_runs, responses_of
-from mesoscale.calibration.surfaces import SCALAR_COLUMNS
-from mesoscale.calibration.switches import SwitchModel
+from mesoscale.calibration.observables import (
+    CURVES,
+    LEVELS,
+    NAMES,
+    SCALARS,
+    Cycles,
+    curve_names,
+    cycles_of_rows,
+    force_levels_nN,
+    observe_runs,
+)
+from mesoscale.calibration.posterior import Model
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import input_table
-from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings
+from mesoscale.settings import ContactSettings
 from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
 
-SETS, SURFACES = 250, 16
+SETS, SURFACES = 250, 10
 """Made-up truths, and surfaces at each; coverage is then known to 1.9 %."""
-POOL, PARTS = 4000, 8
-"""Draws of the prior that are weighed for every set, and in how many parts they are predicted."""
+POOL = 4000
+"""Draws of the prior that are weighed for every set."""
 FEWEST_EFFECTIVE = 50.0
 """A posterior with fewer effective draws is counted and left out: its ranks would be too coarse."""
 FIRST_SET_SEED = 1_900_000_000
@@ -54,15 +60,13 @@ class Case:
 
     Attributes
     ----------
-    count : surfaces, values or switches.
-    cells : of a switch; all cells are surfaces of the engine.
+    count : surfaces or values.
     wrong : whether the surfaces have another law of attraction than the responses.
     """
 
     kind: str
     count: int
     discrepancy: float = 0.0
-    cells: int = 1
     wrong: bool = False
 
 
@@ -75,9 +79,6 @@ CASES = (
     Case("pull_off", 10),
     Case("hardness", 3),
     Case("modulus", 1),
-    Case("release", 1, cells=16),
-    Case("pull_in", 1, cells=16),
-    Case("sticking", 4, cells=4),
     Case("pull_off", 10, wrong=True),
     Case("pull_off", 10, discrepancy=PULL_OFF_SPREAD, wrong=True),
 )
@@ -96,19 +97,20 @@ def rows(given: Any) -> Iterator[dict[str, Any]]:
     with ProcessPoolExecutor() as workers:
         parts = list(workers.map(_observed, over_prior, [CONTACT] * len(over_prior)))
         known = {}
-        for wrong, count in ((False, SURFACES), (True, 10)):
+        for wrong in (False, True):
             at_truths = [
                 [
                     Run(k, -1, FIRST_SET_SEED + 10_000 + 100 * number + k, dict(zip(table.names, truth, strict=True)))
-                    for k in range(count)
+                    for k in range(SURFACES)
                 ]
                 for number, truth in enumerate(truths.tolist())
             ]
             contacts = [CONTACT.model_copy(update={"gap_cutoff_nm": d0} if wrong else {}) for d0 in drawn.tolist()]
             known[wrong] = np.array([cycles.y for cycles in workers.map(_observed, at_truths, contacts)])
     cycles = Cycles(np.vstack([part.x for part in parts]), np.vstack([part.y for part in parts]))
-    for case in CASES:
-        yield coverage_row(case, table, cycles, truths, known[case.wrong], pool)
+    with ProcessPoolExecutor() as workers:
+        asked = [workers.submit(coverage_row, case, table, cycles, truths, known[case.wrong], pool) for case in CASES]
+        yield from (one.result() for one in asked)
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
@@ -133,16 +135,14 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     }
 
 
-def table_of(
-    case: Case, y: Array, x: Array, names: Sequence[str], switch: SwitchModel, rng: np.random.Generator
-) -> Measurements | None:
+def table_of(case: Case, y: Array, x: Array, names: Sequence[str], rng: np.random.Generator) -> Measurements | None:
     """Data with drawn errors from the surfaces y (SURFACES, k) at inputs x (n,); None where a datum is missing."""
     kind, count = case.kind, case.count
     named = dict(zip(names, x.tolist(), strict=True))
     specimens = tuple(f"s{k}" for k in range(count))
     noise = rng.standard_normal(count)
-    if kind in SCALAR_COLUMNS:
-        truth = y[:count, NAMES.index(SCALAR_COLUMNS[kind])]
+    if kind in SCALARS:
+        truth = y[:count, NAMES.index(SCALARS[kind])]
         error = 0.1 * truth if kind == "pull_off" else np.full(count, 0.5)
         columns = {kind: truth + error * noise, f"{kind}_error": error}
     elif kind == "hardness":
@@ -151,11 +151,9 @@ def table_of(
         columns = {"area": area, "hardness": truth + 0.3 * noise, "hardness_error": np.full(count, 0.3)}
     elif kind == "modulus":
         columns = {"e_star": named["e_star"] + 3 * noise, "e_star_error": np.full(count, 3.0)}
-    elif kind in CURVE_KINDS:
+    else:
         columns = _curves(kind, y[:count], rng)
         specimens = tuple(np.repeat(specimens, FORCE_POINTS).tolist())
-    else:
-        columns = _switches(case, y, named["hamaker"], switch, noise)
     if not all(np.isfinite(values).all() for values in columns.values()):
         return None
     return Measurements(kind, columns, specimens, False, case.discrepancy, "made up")
@@ -178,19 +176,6 @@ def _curves(kind: str, y: Array, rng: np.random.Generator) -> dict[str, Array]:
     }
 
 
-def _switches(case: Case, y: Array, hamaker: float, switch: SwitchModel, noise: Array) -> dict[str, Array]:
-    """Voltages of switches whose laws are averages of the engine's over their cells; NaN where one sticks."""
-    laws = y[: case.count * case.cells, -len(LAWS) :].reshape(case.count, case.cells, len(LAWS)).mean(axis=1)
-    closing, opening = switch.laws(laws, np.full(case.count, hamaker))
-    if case.kind == "sticking":
-        release = switch.release_V(opening)
-        stuck = np.where(np.isfinite(release), release <= 0, np.nan).sum()
-        return {"stuck": np.array([stuck]), "switches": np.array([float(case.count)])}
-    volts, error = (switch.release_V(opening), 0.2) if case.kind == "release" else (switch.pull_in_V(closing), 1e-3)
-    measured = np.where(volts > 0, volts, np.nan) + error * noise
-    return {case.kind: measured, f"{case.kind}_error": np.full(case.count, error)}
-
-
 def coverage_row(
     case: Case, table: InputTable, cycles: Cycles, truths: Array, surfaces: Array, pool: Array
 ) -> dict[str, Any]:
@@ -203,21 +188,17 @@ def coverage_row(
     surfaces : observables at each, shape (sets, SURFACES, k).
     pool : draws of the prior, shape (p, n).
     """
-    law = LawSettings()
-    responses, laws = responses_of(table, cycles)
-    expected = expected_of(cycles)
-    switch = replace(SwitchModel.of(DeviceSettings(), law, CONTACT.length_nm**2), cells=float(case.cells))
+    model = Model(table, cycles, {}, CONTACT.max_force_nN)
     rng = np.random.default_rng(np.random.SeedSequence([0x5BC, CASES.index(case)]))
-    predicted: list[Predicted] = []
     ranks, effective, missing = [], [], 0
     for truth, y in zip(truths, surfaces, strict=True):
-        data = table_of(case, y, truth, table.names, switch, rng)
+        data = table_of(case, y, truth, table.names, rng)
         if data is None:
             missing += 1
             continue
-        posterior = posterior_of(table, [data], responses, laws, switch, CONTACT.max_force_nN, expected)
-        predicted = predicted or [posterior.predict(part) for part in np.array_split(pool, PARTS)]
-        weights = _weights(posterior, predicted)
+        logs = np.concatenate([model.posterior([data]).log_likelihood(part) for part in np.array_split(pool, 8)])
+        weights = np.exp(logs - logs.max())
+        weights /= weights.sum()
         effective.append(1 / (weights**2).sum())
         if effective[-1] > FEWEST_EFFECTIVE:
             ranks.append((weights[:, None] * (pool < truth)).sum(axis=0))
@@ -225,7 +206,6 @@ def coverage_row(
     row: dict[str, Any] = {
         "kind": case.kind,
         "data": case.count,
-        "cells": case.cells if case.kind in SWITCH_KINDS else "",
         "wrong_d0": case.wrong,
         "discrepancy": round(case.discrepancy, 3),
         "sets": len(ranks),
@@ -240,12 +220,5 @@ def coverage_row(
     return row
 
 
-def _weights(posterior: Posterior, predicted: Sequence[Predicted]) -> Array:
-    """Weights of the draws behind a prediction, of sum 1."""
-    logs = np.concatenate([posterior.likelihood_of(part) for part in predicted])
-    weights = np.exp(logs - logs.max())
-    return weights / weights.sum()
-
-
 def _observed(runs: Sequence[Run], contact: ContactSettings) -> Cycles:
-    return cycles_of_rows(observe_runs(runs, contact, LawSettings()), list(runs[0].values))
+    return cycles_of_rows(observe_runs(runs, contact), list(runs[0].values))

@@ -1,20 +1,21 @@
-"""What does the shipped example of a calibration (scene `made_up`) have at its known truth?
+"""Does the shipped example of a calibration (scene `made_up`) find its known truth?
 
 Its tables in config/measurements/made_up were made by `tables(TRUTH, CONTACT, 20, EXAMPLE_SEED)`: the engine's surfaces
-with drawn errors. The row holds the release voltage of the default switch on the mean law of surfaces at this truth.
+with drawn errors. Results are those of target `calibrate`.
 """
 
+from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mesoscale.calibration.observables import LAWS, force_levels_nN
-from mesoscale.calibration.observed import observe, separations_at
-from mesoscale.calibration.switches import SwitchModel
+from mesoscale.calibration.observables import force_levels_nN, separations_at
 from mesoscale.contact import run_cycle
 from mesoscale.inputs.contact import contact_of
-from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings
+from mesoscale.settings import ContactSettings
+from workflow.results import load_csv
 
 TRUTH = {"hamaker": 0.21, "e_star": 93.0, "h_macro": 1.5, "h_prime": 8.0, "q0": 0.022, "hurst": 0.8, "rms": 5.0}
 EXAMPLE_SEED = 77_000_000
@@ -22,28 +23,30 @@ SEPARATION_ERROR_NM, PULL_OFF_ERROR, HARDNESS_ERROR, MODULUS_ERROR_GPA = 0.2, 0.
 POINTS = 25  # of a curve
 INDENTS_NM2 = (40.0, 100.0, 400.0, 1000.0, 4000.0)
 CONTACT = ContactSettings(pixels=256, attraction="clamped")
-SURFACES, FIRST_SURFACE, RESAMPLES = 400, 78_000_000, 200
 
 
-def rows(given: Any) -> Iterator[dict[str, Any]]:
-    """The release voltage at the truth, with its standard error over surfaces."""
-    inputs, chosen = contact_of(TRUTH, CONTACT)
-    seen = [
-        observe(run_cycle(inputs, chosen, FIRST_SURFACE + k), LawSettings(), CONTACT.max_force_nN)
-        for k in range(SURFACES)
-    ]
-    laws = np.array([[row[law.name] for law in LAWS] for row in seen])
-    laws = laws[np.isfinite(laws).all(axis=1)]
-    picks = np.random.default_rng(1).integers(len(laws), size=(RESAMPLES, len(laws)))
-    means = np.vstack([laws.mean(axis=0), laws[picks].mean(axis=1)])
-    switch = SwitchModel.of(DeviceSettings(), LawSettings(), CONTACT.length_nm**2)
-    volts = switch.release_V(switch.laws(means, np.full(len(means), TRUTH["hamaker"]))[1])
-    yield {"surfaces": len(laws), "release_V": volts[0], "error_V": volts[1:].std()}
+def arguments(parser: ArgumentParser) -> None:
+    """Results of the scene."""
+    parser.add_argument("results", type=Path)
+
+
+def rows(given: Namespace) -> Iterator[dict[str, Any]]:
+    """A row for each input."""
+    for row in load_csv(given.results / "calibration/summary.csv"):
+        ends = {name: float(row[name]) for name in row if name.endswith(("q05", "q50", "q95"))}
+        yield {"input": row["parameter"], "unit": row["unit"], "truth": TRUTH[row["parameter"]], **ends}
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """The release voltage with its error."""
-    return {"release": f"{float(rows[-1]['release_V']):.2f} ± {float(rows[-1]['error_V']):.2f} V"}
+    """How many truths the intervals hold, and how far the narrowest goes."""
+    last = rows[-len(TRUTH) :]
+    held = [float(row["posterior_q05"]) < float(row["truth"]) < float(row["posterior_q95"]) for row in last]
+    widths = [
+        (float(row["posterior_q95"]) - float(row["posterior_q05"]))
+        / (float(row["prior_q95"]) - float(row["prior_q05"]))
+        for row in last
+    ]
+    return {"held": f"{sum(held)} of {len(held)}", "narrowest": f"{100 * min(widths):.0f} %"}
 
 
 def tables(

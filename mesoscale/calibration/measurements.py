@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.calibration.observables import CURVES
 from mesoscale.errors import InputError
 from mesoscale.settings.measurements import MeasurementTable
 from mesoscale.tables import foreign_table
@@ -23,23 +24,13 @@ UNITS = {
     "count": {"": 1.0},
 }
 """Units by quantity with their factor to the first one."""
-
+CURVE = {"separation": "length", "force": "force", "separation_error": "length", "force_error": "force"}
 COLUMNS: dict[str, dict[str, str]] = {
-    "closing_curves": {
-        "separation": "length",
-        "force": "force",
-        "separation_error": "length",
-        "force_error": "force",
-    },
-    "opening_curves": {
-        "separation": "length",
-        "force": "force",
-        "separation_error": "length",
-        "force_error": "force",
-    },
+    "closing_curves": CURVE,
+    "opening_curves": CURVE,
     "contact_begin": {"contact_begin": "length", "contact_begin_error": "length"},
     "pull_off": {"pull_off": "force", "pull_off_error": "force"},
-    "hardness": {"area": "area", "hardness": "pressure", "hardness_error": "pressure"},
+    "hardness": {"hardness": "pressure", "hardness_error": "pressure", "area": "area"},
     "modulus": {"e_star": "pressure", "e_star_error": "pressure"},
     "release": {"release": "voltage", "release_error": "voltage"},
     "pull_in": {"pull_in": "voltage", "pull_in_error": "voltage"},
@@ -48,11 +39,6 @@ COLUMNS: dict[str, dict[str, str]] = {
 """Quantities of each kind of table with what they measure; the column's name ends with the unit."""
 OPTIONAL = ("separation_error", "force_error")
 """One of them is needed."""
-CURVES = ("closing_curves", "opening_curves")
-ON_SURFACES = (*CURVES, "contact_begin", "pull_off")
-"""Kinds that name, or may name, the specimen; the same name means the same surface."""
-FEWEST_POINTS = 5
-"""Of a curve: its law has four numbers, one more tells whether they fit (a zero that is unknown replaces one)."""
 
 
 @dataclass(frozen=True)
@@ -119,18 +105,15 @@ def _places(file: str, kind: str, header: Sequence[str]) -> dict[str, tuple[int,
     for quantity, measure in COLUMNS[kind].items():
         names = {f"{quantity}_{unit}" if unit else quantity: factor for unit, factor in UNITS[measure].items()}
         matches = [(place, names[name]) for place, name in enumerate(header) if name in names]
+        near = [name for name in header if name.startswith(quantity) and not name.startswith(f"{quantity}_error")]
         if len(matches) > 1:
             raise InputError(f"{file}: column {quantity} stands there twice; leave one")
         if matches:
             places[quantity] = matches[0]
-            continue
-        near = [name for name in header if name == quantity or name.startswith(f"{quantity}_")]
-        near = [name for name in near if not name.startswith(f"{quantity}_error")]
-        if near and near[0] == quantity:
-            raise InputError(f"{file}: column {quantity} has no unit; name it {' or '.join(names)}")
-        if near:
-            raise InputError(f"{file}: column {near[0]}: unknown unit; name it {' or '.join(names)}")
-        if quantity not in OPTIONAL:
+        elif near:
+            fault = "has no unit" if near[0] == quantity else "has an unknown unit"
+            raise InputError(f"{file}: column {near[0]} {fault}; name it {' or '.join(names)}")
+        elif quantity not in OPTIONAL:
             raise InputError(f"{file}: no column {quantity} with its unit; name it {' or '.join(names)}")
     if kind in CURVES and not any(name in places for name in OPTIONAL):
         raise InputError(f"{file}: no errors; give separation_error_nm or force_error_nN or both")
@@ -149,60 +132,49 @@ def _number(file: str, line: int, header: Sequence[str], row: Sequence[str], pla
 
 
 def _check(data: Measurements) -> None:
-    for name, values in data.columns.items():
-        if name.endswith("_error"):
-            wrong = np.flatnonzero(values <= 0)
-            if data.kind in CURVES:  # one of the two errors may be zero
-                wrong = np.flatnonzero(values < 0)
-            if wrong.size:
-                raise InputError(
-                    f"{data.file}: row {wrong[0] + 1}, {name} = {values[wrong[0]]:g}: an error is positive; give one "
-                    "standard deviation"
-                )
+    columns = data.columns
+    for name in columns:
+        if name.endswith("_error"):  # of a curve, one of the two errors may be zero
+            wrong = columns[name] < 0 if data.kind in CURVES else columns[name] <= 0
+            _refuse(data, wrong, "an error is positive; give one standard deviation", name)
     if data.kind in CURVES:
-        _check_curves(data)
-        return
-    if data.kind == "sticking":
-        stuck, switches = data.columns["stuck"], data.columns["switches"]
-        wrong = np.flatnonzero((switches < 1) | (stuck < 0) | (stuck > switches) | (stuck % 1 > 0) | (switches % 1 > 0))
-        if wrong.size:
-            raise InputError(
-                f"{data.file}: row {wrong[0] + 1}: {stuck[wrong[0]]:g} stuck of {switches[wrong[0]]:g} switches; "
-                "accepted are whole numbers, stuck at most switches; are the columns swapped?"
-            )
-        return
-    value = next(iter(name for name in data.columns if f"{name}_error" in data.columns))
-    wrong = np.flatnonzero(data.columns[value] <= 0)
-    if wrong.size:
-        raise InputError(
-            f"{data.file}: row {wrong[0] + 1}, {value} = {data.columns[value][wrong[0]]:g}: accepted is a positive "
-            "number" + ("; a switch that stuck belongs to a table of kind sticking" if data.kind == "release" else "")
+        _refuse(
+            data,
+            np.all([columns.get(name, 0 * columns["force"]) == 0 for name in OPTIONAL], axis=0),
+            "both errors are zero",
         )
-    if (data.columns[f"{value}_error"] > data.columns[value]).all():
-        raise InputError(
-            f"{data.file}: {value}_error exceeds {value} in every row; are the columns swapped? A value that is known "
-            "no better than that teaches nothing"
-        )
+        for specimen, points in by_specimen(data).items():
+            _check_curve(f"{data.file}: curve {specimen}", columns["separation"][points], columns["force"][points])
+    elif data.kind == "sticking":
+        stuck, switches = columns["stuck"], columns["switches"]
+        wrong = (switches < 1) | (stuck < 0) | (stuck > switches) | (stuck % 1 > 0) | (switches % 1 > 0)
+        _refuse(data, wrong, "accepted are whole numbers, stuck at most switches; are the columns swapped?", "stuck")
+    else:
+        value = next(iter(COLUMNS[data.kind]))
+        stuck = "; a switch that stuck belongs to a table of kind sticking" if data.kind == "release" else ""
+        _refuse(data, columns[value] <= 0, f"accepted is a positive number{stuck}", value)
+        if (columns[f"{value}_error"] > columns[value]).all():
+            raise InputError(f"{data.file}: {value}_error exceeds {value} in every row; are the columns swapped?")
 
 
-def _check_curves(data: Measurements) -> None:
-    total = sum(data.columns.get(name, np.zeros(len(data))) for name in OPTIONAL)
-    if (np.asarray(total) <= 0).any():
-        raise InputError(f"{data.file}: row {int(np.argmin(total)) + 1}: both errors are zero; one must be positive")
-    for specimen, points in by_specimen(data).items():
-        if len(points) < FEWEST_POINTS:
-            raise InputError(
-                f"{data.file}: curve {specimen} has {len(points)} points; a curve has four unknowns, so at least "
-                f"{FEWEST_POINTS} are needed"
-            )
-        separation, force = (data.columns[name][points] for name in ("separation", "force"))
-        if np.ptp(separation) == 0 or np.ptp(force) == 0:
-            raise InputError(f"{data.file}: curve {specimen}: separation or force does not change; give a curve")
-        if np.corrcoef(separation, force)[0, 1] > 0:
-            raise InputError(
-                f"{data.file}: curve {specimen}: force rises with separation; count repulsion positive and separation "
-                "away from the contact, and look whether columns are swapped"
-            )
+def _refuse(data: Measurements, wrong: NDArray[np.bool_], why: str, column: str | None = None) -> None:
+    """Refuse the first row that is wrong, with its value in a column."""
+    if np.any(wrong):
+        row = int(np.argmax(wrong))
+        value = f", {column} = {data.columns[column][row]:g}" if column else ""
+        raise InputError(f"{data.file}: row {row + 1}{value}: {why}")
+
+
+def _check_curve(curve: str, separation: Array, force: Array) -> None:
+    if len(separation) < 5:  # its law has four numbers, one more tells whether they fit
+        raise InputError(f"{curve} has {len(separation)} points; a curve has four unknowns, so at least 5 are needed")
+    if np.ptp(separation) == 0 or np.ptp(force) == 0:
+        raise InputError(f"{curve}: separation or force does not change; give a curve")
+    if np.corrcoef(separation, force)[0, 1] > 0:
+        raise InputError(
+            f"{curve}: force rises with separation; count repulsion positive and separation away from the contact, and "
+            "look whether columns are swapped"
+        )
 
 
 def by_specimen(data: Measurements) -> Mapping[str, NDArray[np.int_]]:

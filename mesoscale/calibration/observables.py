@@ -4,35 +4,27 @@ A curve is given by its separation at the lowest of some net forces and by its s
 one surface to another the steps scatter log-normally; an unknown zero of the instrument touches the first number alone.
 """
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.law.parameters import FITTED, LAW
+from mesoscale.contact import Cycle
+from mesoscale.contact.cycle import Branch
+from mesoscale.settings import ContactSettings
+from mesoscale.uncertainty.designs import Run
+from mesoscale.uncertainty.runs import compute_all
 
 Array = NDArray[np.float64]
 
 LEVELS = 6
 """Net forces of a curve, evenly in logarithm."""
-LOWEST_SHARE, HIGHEST_SHARE = 0.02, 0.5
-"""The lowest and the highest as shares of the largest repulsion; attraction keeps net forces below it."""
-
-
-@dataclass(frozen=True)
-class Observable:
-    """A number that one surface gives.
-
-    Attributes
-    ----------
-    name : column of result files.
-    unit, scale : what has a response: `length`, its ratio to the RMS height; `log_length`, the logarithm of that;
-        `inverse_length`, the inverse of that; `log`.
-    """
-
-    name: str
-    unit: str
-    scale: str
+CURVES = {"closing_curves": "closing", "opening_curves": "opening"}
+"""Branch by kind of measurement."""
+SCALARS = {"contact_begin": "contact_begin_nm", "pull_off": "pull_off_nN"}
+"""Observable by kind of measurement."""
 
 
 def curve_names(branch: str) -> list[str]:
@@ -40,28 +32,90 @@ def curve_names(branch: str) -> list[str]:
     return [f"{branch}_begin_nm", *(f"{branch}_step_{k}_nm" for k in range(1, LEVELS))]
 
 
-def _curve(branch: str) -> tuple[Observable, ...]:
-    begin, *steps = curve_names(branch)
-    return Observable(begin, "nm", "length"), *(Observable(name, "nm", "log_length") for name in steps)
-
-
-CURVES = {"closing_curves": "closing", "opening_curves": "opening"}
-"""Branch by kind of measurement."""
-OBSERVABLES = (
-    *_curve("closing"),
-    *_curve("opening"),
-    Observable("contact_begin_nm", "nm", "inverse_length"),  # hardly skewed so (`first_contact`)
-    Observable("pull_off_nN", "nN", "log"),
-)
+NAMES = (*curve_names("closing"), *curve_names("opening"), *SCALARS.values())
 """What can be measured of a surface."""
-LAWS = tuple(
-    Observable(name, row.unit, "length" if row.any_sign else "log_length" if row.unit == "nm" else "log")
-    for name, row in zip(FITTED, 2 * LAW, strict=True)
-)
-"""The laws of both branches, behind the switch."""
-NAMES = tuple(row.name for row in (*OBSERVABLES, *LAWS))
+
+
+def enter_by_logarithm(names: Sequence[str]) -> NDArray[np.bool_]:
+    """Which observables scatter log-normally: all but the separations of curves, whose zero is no point of physics."""
+    return np.array([name not in ("closing_begin_nm", "opening_begin_nm") for name in names])
 
 
 def force_levels_nN(max_force_nN: float) -> Array:
-    """Net forces (nN) of the curves' observables, shape (LEVELS,)."""
-    return max_force_nN * np.geomspace(LOWEST_SHARE, HIGHEST_SHARE, LEVELS)
+    """Net forces (nN) of the curves' observables, shape (LEVELS,); below the largest repulsion by attraction."""
+    return max_force_nN * np.geomspace(0.02, 0.5, LEVELS)
+
+
+def observe(cycle: Cycle, max_force_nN: float) -> dict[str, float]:
+    """All observables of a cycle by name; NaN where the cycle does not give one."""
+    values = []
+    for branch in (cycle.closing, cycle.opening):
+        separations = separations_at(branch, force_levels_nN(max_force_nN))
+        values += [separations[0], *(separations[:-1] - separations[1:])]
+    deepest = float(-cycle.opening.net_nN.min())
+    values += [cycle.first_contact_nm, deepest if deepest > 0 else np.nan]
+    return dict(zip(NAMES, map(float, values), strict=True))
+
+
+def separations_at(branch: Branch, forces_nN: Array) -> Array:
+    """Separations (nm) at which the net force first reaches given ones, coming from afar; NaN where it never does.
+
+    Parameters
+    ----------
+    forces_nN : rising, positive, shape (k,).
+    """
+    order = np.argsort(branch.separation_nm, kind="stable")[::-1]
+    separation = branch.separation_nm[order]
+    # a force-controlled instrument passes over a drop of the force
+    net = np.maximum.accumulate(branch.net_nN[order])
+    positive = net > 0
+    if positive.sum() < 2:
+        return np.full(len(forces_nN), np.nan)
+    net, separation = net[positive], separation[positive]
+    keep = np.concatenate([[True], np.diff(net) > 0])
+    log_net, separation = np.log(net[keep]), separation[keep]
+    return np.interp(np.log(forces_nN), log_net, separation, left=separation[0], right=np.nan)
+
+
+@dataclass(frozen=True)
+class Cycles:
+    """Contact cycles behind the responses.
+
+    Attributes
+    ----------
+    x : inputs, shape (m, n).
+    y : observables in the order of NAMES, shape (m, k); NaN where missing.
+    """
+
+    x: Array
+    y: Array
+
+    def of(self, names: Sequence[str]) -> Array:
+        """Some observables, their logarithms where they enter by them, shape (m, len(names)); NaN where missing."""
+        y = self.y[:, [NAMES.index(name) for name in names]]
+        by_logarithm = enter_by_logarithm(names)
+        return np.where(by_logarithm, np.log(np.where(~by_logarithm | (y > 0), np.abs(y), np.nan)), y)
+
+    def __add__(self, other: "Cycles") -> "Cycles":
+        """These and further ones."""
+        return Cycles(np.vstack([self.x, other.x]), np.vstack([self.y, other.y]))
+
+
+def observe_runs(
+    runs: Sequence[Run], contact: ContactSettings, progress: Callable[[float, str], None] | None = None
+) -> list[dict[str, float]]:
+    """Compute cycles: one row each with seed, inputs and observables; NaN where a cycle failed."""
+    rows = []
+    for run, cycle in compute_all(runs, contact, progress):
+        seen = dict.fromkeys(NAMES, np.nan) if isinstance(cycle, str) else observe(cycle, contact.max_force_nN)
+        rows.append({"run": run.index, "seed": run.seed, **run.values, **seen})
+    return rows
+
+
+def cycles_of_rows(rows: Sequence[Mapping[str, Any]], names: Sequence[str]) -> Cycles:
+    """Cycles from rows of `observe_runs`, or the same as text, with inputs of these names."""
+
+    def columns(chosen: Sequence[str]) -> Array:
+        return np.array([[float(row[name]) if row[name] != "" else np.nan for name in chosen] for row in rows])
+
+    return Cycles(columns(names), columns(NAMES))

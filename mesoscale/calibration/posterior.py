@@ -1,50 +1,149 @@
 """From measurements to the posterior of the inputs, with responses that are refined where it lies."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtr
 
-from mesoscale.calibration.likelihood import SWITCH_KINDS, Posterior, posterior_of
-from mesoscale.calibration.measurements import ON_SURFACES, Measurements
-from mesoscale.calibration.observables import LAWS, NAMES, OBSERVABLES
-from mesoscale.calibration.observed import observe
-from mesoscale.calibration.responses import ResponseFits, Responses, fit_responses, transformed
-from mesoscale.calibration.sampling import MAX_STEPS, SEED, Chain, sample
-from mesoscale.calibration.surfaces import Expected, SurfaceData
-from mesoscale.calibration.switches import SwitchModel
+from mesoscale.calibration.measurements import Measurements
+from mesoscale.calibration.observables import Cycles, cycles_of_rows, observe_runs
+from mesoscale.calibration.sampling import Chain, Sampling, sample
+from mesoscale.calibration.surfaces import KINDS, SurfaceData, expected_over_prior, surface_data
+from mesoscale.calibration.values import ValueData
+from mesoscale.calibration.voltages import StickingData, Voltage
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings, MeasurementsSettings
+from mesoscale.inputs.hardness import HardnessLaw
+from mesoscale.settings import ContactSettings, MeasurementsSettings
 from mesoscale.uncertainty.designs import Run
-from mesoscale.uncertainty.runs import compute_all
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
-FIRST_SEED = 1_500_000_000
-"""Surfaces of the cycles over the prior differ from those of all other designs."""
-FIRST_LOCAL_SEED = 1_700_000_000
-WIDENING = 1.3
-"""Cycles near the posterior are spread wider than it, so that its tails are known, too."""
+FIRST_SEED, FIRST_LOCAL_SEED = 1_500_000_000, 1_700_000_000
+"""Surfaces of the cycles over the prior, and where the posterior lies, differ from those of all other designs."""
 RESPONSE_ERROR = 0.5
 """Error of the responses that is small enough, in standard deviations of the posterior prediction."""
 
 
 @dataclass(frozen=True)
-class Cycles:
-    """Contact cycles behind the responses.
+class Posterior:
+    """Density of the inputs in the space where their prior is standard normal.
 
     Attributes
     ----------
-    x : inputs, shape (m, n).
-    y : observables and laws in the order of NAMES, shape (m, k); NaN where missing.
+    prior, parts : data that are independent of each other at given inputs.
     """
 
-    x: Array
-    y: Array
+    prior: InputTable
+    parts: tuple[SurfaceData | ValueData | StickingData, ...]
+
+    @cached_property
+    def free(self) -> NDArray[np.int_]:
+        """Inputs that have a width; the others are not sampled."""
+        return np.flatnonzero([np.ptp(row.distribution.span()) > 0 for row in self.prior.rows])
+
+    @property
+    def surfaces(self) -> SurfaceData | None:
+        """The part that was measured on surfaces."""
+        return next((part for part in self.parts if isinstance(part, SurfaceData)), None)
+
+    def inputs(self, z: Array) -> Array:
+        """Inputs (m, n) from points z (m, free) where their prior is standard normal."""
+        every = np.zeros((len(z), len(self.prior.rows)))
+        every[:, self.free] = z
+        return self.prior.transform(np.clip(ndtr(every), 1e-15, 1 - 1e-15))  # an unbounded prior stays finite
+
+    def log_likelihood(self, x: Array) -> Array:
+        """Logarithm of the likelihood at inputs x (m, n), shape (m,)."""
+        return sum((part.log_likelihood(x) for part in self.parts), np.zeros(len(x)))
+
+    def simulated(self, x: Array, rng: np.random.Generator) -> "Posterior":
+        """The posterior of data made up at inputs x (1, n), with the same errors as the measured ones."""
+        return Posterior(self.prior, tuple(part.simulated(x, rng) for part in self.parts))
+
+    def draw(self, settings: Sampling | None = None, progress: Progress | None = None) -> Chain:
+        """Samples."""
+        return sample(lambda z: self.log_likelihood(self.inputs(z)), len(self.free), settings, progress)
+
+
+@dataclass(frozen=True)
+class Model:
+    """What measurements are compared with.
+
+    Attributes
+    ----------
+    cycles : contact cycles behind the responses.
+    voltages : pull-in and release of the switch; needed for tables on switches alone.
+    """
+
+    prior: InputTable
+    cycles: Cycles
+    voltages: Mapping[str, Voltage]
+    max_force_nN: float
+
+    def posterior(self, tables: Sequence[Measurements]) -> Posterior:
+        """The posterior given some tables of measurements.
+
+        Raises
+        ------
+        InputError : see `surface_data`.
+        """
+        surfaces = surface_data(tables, self.cycles, self.prior, self.max_force_nN)
+        others = tuple(self._part(data) for data in tables if data.kind not in KINDS)
+        return Posterior(self.prior, (surfaces, *others) if surfaces else others)
+
+    def _part(self, data: Measurements) -> ValueData | StickingData:
+        """The data of a table that was measured on no surface."""
+        column = "e_star" if data.kind == "modulus" else data.kind
+        if column == "sticking":
+            release = self.voltages["release"]
+            return StickingData(data.columns["stuck"], data.columns["switches"], data.discrepancy, release)
+        values, errors = data.columns[column], data.columns[f"{column}_error"]
+        if column in ("release", "pull_in"):
+            volts = self.voltages[column]
+            return ValueData(
+                values, errors, lambda x: volts(x)[:, None], data.discrepancy, volts.shared_V, volts.each_V
+            )
+
+        def model(x: Array) -> Array:
+            inputs = {name: x[:, [k]] for k, name in enumerate(self.prior.names)}
+            return inputs["e_star"] if column == "e_star" else HardnessLaw.of(inputs).pressure(data.columns["area"])
+
+        return ValueData(values, errors, model, data.discrepancy)
+
+    def check_range(self, data: Measurements) -> None:
+        """Refuse a table that the model cannot give anywhere in the prior.
+
+        Raises
+        ------
+        InputError
+        """
+        (part,) = self.posterior([data]).parts
+        if isinstance(part, StickingData):
+            return
+        if isinstance(part, SurfaceData):
+            shares = part.misfits(*expected_over_prior(self.cycles, part.responses.names))
+            if shares.min() < 1e-9:  # six standard deviations of one number
+                name = part.specimens[int(shares.argmin())]
+                raise InputError(
+                    f"{data.file}: {data.kind} of {name}: the model gives nothing like it anywhere in the prior; look "
+                    "at units, columns and contact area, or widen the inputs"
+                )
+            return
+        model = part.model(self.prior.sample(2000, 1))
+        low, high = model.min(axis=0), model.max(axis=0)
+        reach = 0.5 * (high - low) + 3 * np.hypot(part.errors, np.hypot(part.shared, part.single))
+        wrong = np.flatnonzero((part.values > high + reach) | (part.values < low - reach))
+        if wrong.size:
+            raise InputError(
+                f"{data.file}: row {wrong[0] + 1}: {data.kind} = {part.values[wrong[0]]:.4g}: the model gives "
+                f"{low.min():.3g} .. {high.max():.3g} anywhere in the prior; look at unit and columns, or widen the "
+                "inputs"
+            )
 
 
 @dataclass(frozen=True)
@@ -53,28 +152,17 @@ class Calibration:
 
     Attributes
     ----------
-    posterior, chain, x : samples of the inputs, shape (s, n).
-    responses : of the observables, to be picked from.
-    laws, expected, switch, checks : the responses where the posterior lies, one row per round and observable.
-    cycles : how many are behind the responses.
-    added : those of them where the posterior lies, as rows of `observe_runs`.
+    tables, model : with the cycles of all rounds.
+    x : samples of the inputs, shape (s, n).
+    error_share : largest error of the responses in standard deviations of the posterior prediction, by observable.
     """
 
+    tables: tuple[Measurements, ...]
+    model: Model
     posterior: Posterior
     chain: Chain
     x: Array
-    responses: ResponseFits
-    laws: Responses
-    expected: Expected
-    switch: SwitchModel
-    checks: list[dict[str, Any]] = field(default_factory=list)
-    cycles: int = 0
-    added: list[dict[str, Any]] = field(default_factory=list)
-
-    def given(self, tables: Sequence[Measurements], max_force_nN: float) -> Posterior:
-        """The posterior given other tables, by the same responses."""
-        prior = self.posterior.table
-        return posterior_of(prior, tables, self.responses, self.laws, self.switch, max_force_nN, self.expected)
+    error_share: Mapping[str, float]
 
     @property
     def reasons(self) -> list[str]:
@@ -82,60 +170,10 @@ class Calibration:
         return [] if self.chain.converged else [f"the chain has not converged: {self.chain.reason}"]
 
 
-def observe_runs(
-    runs: Sequence[Run], contact: ContactSettings, law: LawSettings, progress: Progress | None = None
-) -> list[dict[str, float]]:
-    """Compute cycles: one row each with seed, inputs and what can be measured; NaN where a cycle failed."""
-    rows = []
-    for run, cycle in compute_all(runs, contact, progress):
-        nothing = dict.fromkeys(NAMES, np.nan)
-        seen = nothing if isinstance(cycle, str) else observe(cycle, law, contact.max_force_nN)
-        rows.append({"run": run.index, "seed": run.seed, **run.values, **seen})
-    return rows
-
-
-def cycles_of_rows(rows: Sequence[Mapping[str, Any]], names: Sequence[str]) -> Cycles:
-    """Cycles from rows of `observe_runs`, or the same as text."""
-
-    def column(row: Mapping[str, Any], name: str) -> float:
-        return float(row[name]) if row[name] != "" else np.nan
-
-    x = np.array([[column(row, name) for name in names] for row in rows])
-    return Cycles(x, np.array([[column(row, name) for name in NAMES] for row in rows]))
-
-
-def expected_of(cycles: Cycles) -> Expected:
-    """What the prior expects of the observables."""
-    seen = transformed(OBSERVABLES, cycles.y[:, : len(OBSERVABLES)])
-    mean = np.nanmean(seen, axis=0)
-    centred = np.where(np.isnan(seen), 0.0, seen - mean)
-    return Expected(
-        tuple(row.name for row in OBSERVABLES), mean, np.cov(centred, rowvar=False) + 1e-6 * np.eye(len(OBSERVABLES))
-    )
-
-
-def responses_of(table: InputTable, cycles: Cycles) -> tuple[ResponseFits, Responses]:
-    """Responses of the observables, to be picked from, and of the laws.
-
-    Raises
-    ------
-    InputError : too few cycles give all of the laws.
-    """
-    ranges, rms = table.ranges(), table.names.index("rms")
-    count = len(OBSERVABLES)
-    return (
-        ResponseFits(OBSERVABLES, cycles.x, cycles.y[:, :count], ranges, rms),
-        fit_responses(LAWS, cycles.x, cycles.y[:, count:], ranges, rms, "the laws"),
-    )
-
-
 def calibrate(
-    table: InputTable,
     tables: Sequence[Measurements],
-    cycles: Cycles,
+    model: Model,
     contact: ContactSettings,
-    law: LawSettings,
-    device: DeviceSettings,
     settings: MeasurementsSettings,
     progress: Progress | None = None,
 ) -> Calibration:
@@ -143,8 +181,7 @@ def calibrate(
 
     Parameters
     ----------
-    table : the prior.
-    cycles : over the prior; more are added where the posterior lies.
+    model : with cycles over the prior; more are added where the posterior lies.
 
     Raises
     ------
@@ -152,108 +189,35 @@ def calibrate(
     """
     if not tables:
         raise InputError("measurements.tables: is empty; name at least one table of measurements")
-    switch = SwitchModel.of(device, law, contact.length_nm**2)
-    expected = expected_of(cycles)
-    needs_cycles = any(data.kind in (*ON_SURFACES, *SWITCH_KINDS) for data in tables)
-    checks: list[dict[str, Any]] = []
-    rng = np.random.default_rng(np.random.SeedSequence([SEED, 0xCB]))
-    turn, local = 0, []
+    for data in tables:
+        model.check_range(data)
+    rng = np.random.default_rng(np.random.SeedSequence([Sampling.seed, 0xCB]))
+    turn = 0
     while True:
-        responses, laws = responses_of(table, cycles)
-        posterior = posterior_of(table, tables, responses, laws, switch, contact.max_force_nN, expected)
-        chain = draw(posterior, progress=progress)
-        rows = response_errors(posterior, chain, turn)
-        checks += rows
-        small = all(row["error_share"] <= RESPONSE_ERROR for row in rows)
-        if not needs_cycles or not chain.converged or turn == settings.rounds or (turn > 0 and small):
-            break
-        picks = rng.integers(len(chain.z), size=settings.local_runs)
-        centre = chain.z.mean(axis=0)
-        x = posterior.inputs(centre + WIDENING * (chain.z[picks] - centre))
+        posterior = model.posterior(tables)
+        chain = posterior.draw(progress=progress)
+        shares = _error_shares(posterior, chain)
+        exact = max(shares.values(), default=0.0) <= RESPONSE_ERROR and (turn > 0 or not shares)
+        if exact or not chain.converged or turn == settings.rounds:
+            return Calibration(tuple(tables), model, posterior, chain, posterior.inputs(chain.z), shares)
+        picks, centre = rng.integers(len(chain.z), size=settings.local_runs), chain.z.mean(axis=0)
+        x = posterior.inputs(centre + 1.3 * (chain.z[picks] - centre))  # wider, so that its tails are known, too
         first = turn * settings.local_runs
         runs = [
-            Run(first + k, -1, FIRST_LOCAL_SEED + first + k, dict(zip(table.names, row, strict=True)))
+            Run(first + k, -1, FIRST_LOCAL_SEED + first + k, dict(zip(model.prior.names, row, strict=True)))
             for k, row in enumerate(x.tolist())
         ]
-        observed = observe_runs(runs, contact, law, progress)
-        local += observed
-        added = cycles_of_rows(observed, table.names)
-        for row, bias in zip(rows, response_bias(posterior, added), strict=True):
-            row |= bias
-        cycles = Cycles(np.vstack([cycles.x, added.x]), np.vstack([cycles.y, added.y]))
+        added = cycles_of_rows(observe_runs(runs, contact, progress), model.prior.names)
+        model = Model(model.prior, model.cycles + added, model.voltages, model.max_force_nN)
         turn += 1
-    return Calibration(
-        posterior, chain, posterior.inputs(chain.z), responses, laws, expected, switch, checks, len(cycles.x), local
-    )
 
 
-def draw(posterior: Posterior, max_steps: int = MAX_STEPS, progress: Progress | None = None) -> Chain:
-    """Samples of a posterior."""
-    return sample(
-        lambda z: posterior.log_likelihood(posterior.inputs(z)),
-        len(posterior.free),
-        max_steps=max_steps,
-        progress=progress,
-    )
-
-
-def _seen(posterior: Posterior) -> tuple[Responses, tuple[str, ...]] | None:
-    """The responses that the data of a posterior use."""
-    if isinstance(posterior.surfaces, SurfaceData) and posterior.surface_responses is not None:
-        return posterior.surface_responses, posterior.surfaces.names
-    if posterior.switches and posterior.law_responses is not None:
-        return posterior.law_responses, tuple(row.name for row in LAWS)
-    return None
-
-
-def response_errors(posterior: Posterior, chain: Chain, turn: int) -> list[dict[str, Any]]:
-    """Error of the responses beside the width of the posterior, one row per observable that the data use."""
-    seen = _seen(posterior)
-    if seen is None:
-        return []
-    responses, names = seen
+def _error_shares(posterior: Posterior, chain: Chain) -> dict[str, float]:
+    """Error of the responses beside the width of the posterior, by observable that the data use."""
+    if posterior.surfaces is None:
+        return {}
+    responses = posterior.surfaces.responses
     prediction = responses(posterior.inputs(chain.z[:: max(1, len(chain.z) // 500)]))
     known = np.einsum("mkk->mk", prediction.scatter) * prediction.error[:, None]
-    error, width = np.sqrt(known.mean(axis=0)), prediction.mean.std(axis=0)
-    return [
-        {
-            "round": turn,
-            "observable": name,
-            "runs": responses.runs,
-            "terms": len(responses.degrees),
-            "error": error[k],
-            "posterior_sd": width[k],
-            "error_share": error[k] / width[k],
-            "bias": "",
-            "bias_error": "",
-        }
-        for k, name in enumerate(names)
-    ]
-
-
-def response_remarks(result: Calibration) -> list[str]:
-    """What the last round left of the responses' error, in words; nothing where it is small enough."""
-    last = [row for row in result.checks if row["round"] == result.checks[-1]["round"]]
-    worst = max(last, key=lambda row: row["error_share"], default=None)
-    if worst is None or worst["error_share"] <= RESPONSE_ERROR:
-        return []
-    return [
-        f"the responses' error is {worst['error_share']:.2g} of the posterior's width ({worst['observable']}), above "
-        f"{RESPONSE_ERROR:g}; it is part of that width: raise "
-        "measurements.local_runs or measurements.rounds to narrow it"
-    ]
-
-
-def response_bias(posterior: Posterior, added: Cycles) -> list[dict[str, float]]:
-    """Mean difference of new cycles from responses that have not seen them, with its standard error."""
-    seen = _seen(posterior)
-    if seen is None:
-        return []
-    responses, names = seen
-    places = [NAMES.index(name) for name in names]
-    off = transformed(responses.observables, added.y[:, places]) - responses(added.x).mean
-    count = np.maximum(np.isfinite(off).sum(axis=0), 1)
-    return [
-        {"bias": float(bias), "bias_error": float(error)}
-        for bias, error in zip(np.nanmean(off, axis=0), np.nanstd(off, axis=0) / np.sqrt(count), strict=True)
-    ]
+    shares = np.sqrt(known.mean(axis=0)) / prediction.mean.std(axis=0)
+    return dict(zip(responses.names, shares.tolist(), strict=True))

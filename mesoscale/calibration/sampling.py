@@ -1,70 +1,44 @@
-"""Sampling of a posterior by independent ensembles of walkers, with the tests that say whether it has converged.
+"""Sampling of a posterior by independent ensembles of walkers, and whether they have converged.
 
-Ensemble sampler: emcee (Foreman-Mackey et al., PASP 125, 306, 2013, doi 10.1086/670067). Three in ten moves are
-by a normal distribution fitted to the ensemble's past. Of the others, a fifth of the difference of two walkers follows
-curved ridges, and the whole difference jumps between separate modes (differential evolution: ter Braak, Stat. Comput.
-16, 239, 2006, doi 10.1007/s11222-006-8769-1).
+Ensemble sampler: emcee (Foreman-Mackey et al., PASP 125, 306, 2013, doi 10.1086/670067). Most moves take a share of the
+difference of two walkers, which follows ridges; the whole difference jumps between separate modes (differential
+evolution: ter Braak, Stat. Comput. 16, 239, 2006, doi 10.1007/s11222-006-8769-1).
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtri
-from scipy.stats import rankdata
 
 from mesoscale.extras import needs
 
 Array = NDArray[np.float64]
 
-ENSEMBLES = 4
-PRIOR_DRAWS = 20000
-"""Draws of the prior, from which the walkers start by their likelihood: every mode with its share."""
-BLOCK = 200
-"""Steps between two looks at convergence."""
-LARGEST_R_HAT = 1.01
-"""Of bulk and tails (Vehtari et al., Bayesian Analysis 16, 667, 2021, doi 10.1214/20-BA1221)."""
-FEWEST_EFFECTIVE = 400.0
-"""Independent draws that bulk and tails of every input need (the same reference)."""
-TAILS = (0.05, 0.95)
-FITTED_PER_INPUT = 20
-"""Draws behind the first normal proposal."""
-SMALLEST_VARIANCE = 1e-14
-WALKERS = 32
-"""Of each ensemble."""
-MAX_STEPS = 4000
-"""Of each ensemble, after which sampling is given up; a posterior of twenty curves takes 200 to 400."""
-SAMPLES = 4000
-"""Draws that are kept."""
-SEED = 1
 
+@dataclass(frozen=True)
+class Sampling:
+    """Numbers of the sampler.
 
-class NormalProposal:
-    """Proposals reversible with respect to a normal distribution that is fitted to draws; called by emcee.
-
-    Towards the mean and away from it by a random share (Rudolf and Sprungk, Found. Comput. Math. 18, 309, 2018,
-    doi 10.1007/s10208-016-9340-x), half of them to an independent draw, so that a posterior that is nearly normal takes
-    few steps. Fitting it to the chain's own past keeps the limit (Haario et al., Bernoulli 7, 223, 2001).
+    Attributes
+    ----------
+    walkers : of each ensemble.
+    prior_draws : draws of the prior, from which the walkers start by their likelihood: every mode with its share.
+    block : steps between two looks at convergence.
+    max_steps : of each ensemble, after which sampling is given up.
+    largest_r_hat, fewest_effective : limits of Vehtari et al., Bayesian Analysis 16, 667, 2021, doi 10.1214/20-BA1221.
+    samples : draws that are kept.
     """
 
-    def __init__(self, draws: Array) -> None:
-        self.fit(draws)
-
-    def fit(self, draws: Array) -> None:
-        """Take mean and covariance of draws, shape (s, n)."""
-        size = draws.shape[1]
-        self.mean = draws.mean(axis=0)
-        covariance = np.cov(draws, rowvar=False).reshape(size, size)
-        self.root = np.linalg.cholesky(covariance + SMALLEST_VARIANCE * np.eye(size))
-
-    def __call__(self, x: Array, random: np.random.RandomState) -> tuple[Array, Array]:
-        """New points for x (m, n), and the logarithm of the ratio of the normal densities, old to new."""
-        share = np.where(random.rand(len(x), 1) < 0.5, 1.0, random.rand(len(x), 1))
-        off = np.linalg.solve(self.root, (x - self.mean).T).T
-        new = np.sqrt(1 - share**2) * off + share * random.randn(*x.shape)
-        return self.mean + new @ self.root.T, 0.5 * ((new**2).sum(axis=1) - (off**2).sum(axis=1))
+    ensembles: int = 4
+    walkers: int = 32
+    prior_draws: int = 5000
+    block: int = 200
+    max_steps: int = 10_000
+    largest_r_hat: float = 1.01
+    fewest_effective: float = 400.0
+    samples: int = 4000
+    seed: int = 1
 
 
 @dataclass(frozen=True)
@@ -75,76 +49,29 @@ class Chain:
     ----------
     z : draws, shape (s, n).
     log_likelihood : shape (s,).
-    converged, r_hat : largest over the inputs, bulk and tails: halves of ensembles against each other.
-    effective : independent draws behind the worst of them.
+    r_hat : largest over the inputs and the density, halves of ensembles against each other.
+    effective : independent draws of the worst of them.
     steps : of each ensemble, after burn-in.
-    acceptance, autocorrelation : longest autocorrelation time, in steps.
     reason : why it has not converged, in words; empty if it has.
     """
 
     z: Array
     log_likelihood: Array
-    converged: bool
     r_hat: float
     effective: float
     steps: int
-    acceptance: float
-    autocorrelation: float
     reason: str
 
-
-def started(
-    log_likelihood: Callable[[Array], Array], dimensions: int, walkers: int, seed: int
-) -> list[tuple[Any, Any, NormalProposal]]:
-    """Samplers of emcee with the state from which each goes on and its proposal; see `sample` for the parameters."""
-    with needs("calibration"):
-        import emcee
-
-    def log_density(z: Array) -> Array:
-        value = log_likelihood(z) - 0.5 * (z**2).sum(axis=1)
-        return np.where(np.isfinite(value), value, -np.inf)
-
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xCA]))
-    pool = rng.standard_normal((PRIOR_DRAWS, dimensions))
-    weights = np.concatenate([log_likelihood(part) for part in np.array_split(pool, PRIOR_DRAWS // 500)])
-    weights = np.where(np.isfinite(weights), weights, -np.inf)
-    samplers = []
-    for ensemble in range(ENSEMBLES):
-        proposal = NormalProposal(pool[_starts(weights, FITTED_PER_INPUT * dimensions, rng)])
-        start = pool[_starts(weights, walkers, rng)] + 1e-2 * rng.standard_normal((walkers, dimensions))
-        sampler = emcee.EnsembleSampler(
-            walkers,
-            dimensions,
-            log_density,
-            moves=[
-                (emcee.moves.MHMove(proposal), 0.3),
-                (emcee.moves.DEMove(), 0.2),
-                (emcee.moves.DEMove(gamma0=0.2), 0.3),
-                (emcee.moves.DEMove(gamma0=1.0), 0.1),
-                (emcee.moves.StretchMove(), 0.1),
-            ],
-            vectorize=True,
-        )
-        sampler.random_state = np.random.RandomState([seed, ensemble]).get_state()
-        samplers.append((sampler, start, proposal))
-    return samplers
-
-
-def advanced(samplers: list[tuple[Any, Any, NormalProposal]], steps: int) -> list[tuple[Any, Any, NormalProposal]]:
-    """The same samplers after further steps, with proposals fitted to the second half of all steps."""
-    samplers = [(sampler, sampler.run_mcmc(state, steps), proposal) for sampler, state, proposal in samplers]
-    for sampler, _, proposal in samplers:
-        proposal.fit(sampler.get_chain(discard=sampler.iteration // 2, flat=True))
-    return samplers
+    @property
+    def converged(self) -> bool:
+        """Whether the draws are those of the posterior."""
+        return not self.reason
 
 
 def sample(
     log_likelihood: Callable[[Array], Array],
     dimensions: int,
-    walkers: int = WALKERS,
-    max_steps: int = MAX_STEPS,
-    samples: int = SAMPLES,
-    seed: int = SEED,
+    settings: Sampling | None = None,
     progress: Callable[[float, str], None] | None = None,
 ) -> Chain:
     """Sample a posterior whose prior is standard normal.
@@ -152,43 +79,56 @@ def sample(
     Parameters
     ----------
     log_likelihood : of points z (m, n), shape (m,).
-    walkers : of each of four ensembles.
-    max_steps : of each ensemble, after which sampling is given up.
-    samples : draws that are returned.
     """
-    samplers = started(log_likelihood, dimensions, walkers, seed)
-    done, diagnosis = 0, (np.inf, 0.0, np.inf)
-    while done < max_steps:
-        done += BLOCK
-        samplers = advanced(samplers, BLOCK)
-        diagnosis = diagnose(np.stack([sampler.get_chain(discard=done // 2) for sampler, *_ in samplers]))
+    with needs("calibration"):
+        import emcee
+
+    def log_density(z: Array) -> Array:
+        value = log_likelihood(z) - 0.5 * (z**2).sum(axis=1)
+        return np.where(np.isfinite(value), value, -np.inf)
+
+    numbers = settings or Sampling()
+    rng = np.random.default_rng(np.random.SeedSequence([numbers.seed, 0xCA]))
+    pool = rng.standard_normal((numbers.prior_draws, dimensions))
+    weights = np.concatenate([log_likelihood(part) for part in np.array_split(pool, numbers.prior_draws // 500)])
+    walkers = max(numbers.walkers, 4 * dimensions)
+    samplers, states = [], []
+    for ensemble in range(numbers.ensembles):
+        jumps = [
+            (emcee.moves.DEMove(), 0.3),
+            (emcee.moves.DEMove(gamma0=0.2), 0.4),
+            (emcee.moves.DEMove(gamma0=1), 0.2),
+        ]
+        moves = [*jumps, (emcee.moves.StretchMove(), 0.1)]
+        sampler = emcee.EnsembleSampler(walkers, dimensions, log_density, moves=moves, vectorize=True)
+        sampler.random_state = np.random.RandomState([numbers.seed, ensemble]).get_state()
+        samplers.append(sampler)
+        start = pool[_starts(np.where(np.isfinite(weights), weights, -np.inf), walkers, rng)]
+        states.append(start + 1e-2 * rng.standard_normal(start.shape))
+    r_hat, effective, done = np.inf, 0.0, 0
+    while done < numbers.max_steps and not (r_hat < numbers.largest_r_hat and effective > numbers.fewest_effective):
+        states = [sampler.run_mcmc(state, numbers.block) for sampler, state in zip(samplers, states, strict=True)]
+        done += numbers.block
+        # the density beside the inputs: walkers that still fall onto a ridge do not show in those
+        chains = [
+            np.dstack([sampler.get_chain(discard=done // 2), sampler.get_log_prob(discard=done // 2)])
+            for sampler in samplers
+        ]
+        r_hat, effective = diagnose(np.stack(chains))
         if progress:
-            progress(done / max_steps, f"step {done}, R-hat {diagnosis[0]:.3f}, {diagnosis[1]:.0f} independent draws")
-        if diagnosis[0] < LARGEST_R_HAT and diagnosis[1] > FEWEST_EFFECTIVE:
-            break
-    r_hat, effective, longest = diagnosis
-    half = done // 2
-    draws = np.concatenate([sampler.get_chain(discard=half, flat=True) for sampler, *_ in samplers])
-    logs = np.concatenate([sampler.get_log_prob(discard=half, flat=True) for sampler, *_ in samplers])
+            share = done / numbers.max_steps
+            progress(share, f"step {done}, R-hat {r_hat:.3f}, {effective:.0f} independent draws")
+    draws = np.concatenate([sampler.get_chain(discard=done // 2, flat=True) for sampler in samplers])
+    logs = np.concatenate([sampler.get_log_prob(discard=done // 2, flat=True) for sampler in samplers])
     # at random: an even stride would follow the same few walkers
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 0xCC]))
-    picks = rng.choice(len(draws), min(samples, len(draws)), replace=False)
+    picks = rng.choice(len(draws), min(numbers.samples, len(draws)), replace=False)
     reasons = []
-    if not r_hat < LARGEST_R_HAT:
-        reasons.append(f"R-hat {r_hat:.3f}, above {LARGEST_R_HAT}")
-    if not effective > FEWEST_EFFECTIVE:
-        reasons.append(f"{effective:.0f} independent draws, fewer than {FEWEST_EFFECTIVE:.0f}")
-    return Chain(
-        draws[picks],
-        (logs + 0.5 * (draws**2).sum(axis=1))[picks],
-        not reasons,
-        r_hat,
-        effective,
-        half,
-        float(np.mean([sampler.acceptance_fraction.mean() for sampler, *_ in samplers])),
-        longest,
-        "; ".join(reasons),
-    )
+    if not r_hat < numbers.largest_r_hat:
+        reasons.append(f"R-hat {r_hat:.3f}, above {numbers.largest_r_hat}")
+    if not effective > numbers.fewest_effective:
+        reasons.append(f"{effective:.0f} independent draws, fewer than {numbers.fewest_effective:.0f}")
+    log_likelihoods = (logs + 0.5 * (draws**2).sum(axis=1))[picks]
+    return Chain(draws[picks], log_likelihoods, r_hat, effective, done - done // 2, "; ".join(reasons))
 
 
 def _starts(log_weights: Array, count: int, rng: np.random.Generator) -> NDArray[np.int_]:
@@ -200,51 +140,31 @@ def _starts(log_weights: Array, count: int, rng: np.random.Generator) -> NDArray
         if 1 / (weights**2).sum() > 4 * count or temper < 1e-6:
             break
         temper *= 0.7
-    replace = int((weights > 0).sum()) < count
-    return rng.choice(len(weights), size=count, replace=replace, p=weights)
+    return rng.choice(len(weights), size=count, replace=int((weights > 0).sum()) < count, p=weights)
 
 
-def diagnose(chains: Array) -> tuple[float, float, float]:
-    """Largest R-hat, fewest independent draws, longest autocorrelation time over the inputs.
+def diagnose(chains: Array) -> tuple[float, float]:
+    """Largest R-hat and fewest independent draws over the inputs.
 
-    The bulk of an input is seen by its rank-normalised values, its tails by whether they lie below a quantile (Vehtari
-    et al., section 4). Walkers of an ensemble move by each other, so the series whose autocorrelation counts is the
-    mean over the ensemble (Goodman and Weare, Comm. App. Math. Comp. Sci. 5, 65, 2010, doi 10.2140/camcos.2010.5.65).
+    Walkers of an ensemble move by each other, so an ensemble is one chain: R-hat is that of the means of its halves
+    (nested R-hat: Margossian et al., arXiv 2110.13017). Ranks keep a few far draws from hiding
+    the others (Vehtari et al.).
 
     Parameters
     ----------
     chains : shape (ensembles, steps, walkers, n).
     """
-    size, half = chains[..., 0].size, chains.shape[1] // 2
-    r_hat, effective, longest = 1.0, np.inf, 0.0
-    for values in np.moveaxis(chains, -1, 0):
-        ranks = rankdata(values).reshape(values.shape)
-        bulk = ndtri((ranks - 0.375) / (size + 0.25))
-        for seen in (bulk, *(1.0 * (ranks < share * size) for share in TAILS)):
-            means = seen.mean(axis=2)
-            series = np.concatenate([means[:, :half], means[:, -half:]])
-            variance = seen.var()
-            # nested R-hat: an ensemble's walkers are one chain of many draws (Margossian et al., arXiv 2110.13017)
-            r_hat = max(r_hat, float(np.sqrt(1 + series.mean(axis=1).var(ddof=1) / variance)))
-            time, of_means = autocorrelation(series)
-            effective = min(effective, float(variance / of_means * series.size / time))
-            longest = max(longest, time)
-    return r_hat, effective, longest
+    from emcee.autocorr import integrated_time
+    from scipy.stats import rankdata  # slow to import
 
-
-def autocorrelation(series: Array) -> tuple[float, float]:
-    """Integrated autocorrelation time of several series (m, t) of one process, in steps, and its variance.
-
-    Autocovariances within the series and the variance between them, summed over Geyer's initial monotone sequence of
-    pairs (Vehtari et al., section 3.2).
-    """
-    count, steps = series.shape
-    power = np.abs(np.fft.rfft(series - series.mean(axis=1, keepdims=True), n=2 * steps)) ** 2
-    covariance = np.fft.irfft(power)[:, :steps].mean(axis=0) / steps
-    variance = covariance[0] + series.mean(axis=1).var(ddof=1)
-    correlation = 1 - (covariance[0] * steps / (steps - 1) - covariance) / variance
-    correlation[0] = 1.0
-    pairs = correlation[: steps // 2 * 2].reshape(-1, 2).sum(axis=1)
-    pairs = np.minimum.accumulate(pairs)
-    time = 2 * float(pairs[pairs > 0].sum()) - 1
-    return max(time, 1 / np.log10(count * steps)), variance  # that of alternating series is bounded (the same section)
+    half, chains = chains.shape[1] // 2, rankdata(chains.reshape(-1, chains.shape[-1]), axis=0).reshape(chains.shape)
+    variance = chains.var(axis=(0, 1, 2))
+    means = np.concatenate([chains[:, :half].mean(axis=(1, 2)), chains[:, half:].mean(axis=(1, 2))])
+    r_hat = np.sqrt(1 + means.var(axis=0, ddof=1) / variance)
+    # the series whose autocorrelation counts is the ensemble's mean (Goodman and Weare, Comm. App. Math. Comp. Sci. 5,
+    # 65, 2010, doi 10.2140/camcos.2010.5.65)
+    series = chains.mean(axis=2)
+    times = np.mean([integrated_time(one[:, None], tol=0, quiet=True) for one in series], axis=0)
+    of_means = series.var(axis=(0, 1))
+    effective = variance / of_means * series.shape[0] * series.shape[1] / times
+    return float(r_hat.max()), float(effective.min())

@@ -398,13 +398,8 @@ def _calibration(root: Path) -> None:
     prior = {"prior_q05": 2.0, "prior_q50": 8.0, "prior_q95": 14.0}
     after = {"posterior_q05": 4.5, "posterior_q50": 5.0, "posterior_q95": 5.5}
     names = [{"parameter": name, "unit": row[0]} for name, row in INPUTS.items()]
-    _write(root / "calibration/summary.csv", [{**name, **prior, **after, "bits": 1.5} for name in names])
+    _write(root / "calibration/summary.csv", [{**name, **prior, **after} for name in names])
     far = "contradicts what the other measurements and the prior lead to"
-    lessons = [
-        {"kind": "pull_off", "rows": 20, "alone_bits": 1.25, "probability": 0.5, "verdict": "agrees"},
-        {"kind": "hardness", "rows": 5, "alone_bits": 3.0, "probability": 0.0, "verdict": far},
-    ]
-    _write(root / "calibration/learned.csv", lessons)
     curves = [
         {"quantity": f"{branch} separation", "unit": "nm", "force_nN": force, **prior, **after}
         for branch in ("closing", "opening")
@@ -414,17 +409,14 @@ def _calibration(root: Path) -> None:
         root / "calibration/predictive.csv",
         [*curves, {"quantity": "release", "unit": "V", "force_nN": "", **prior, **after}],
     )
-    further = {"width_now_V": 1.0, "standard_error": 0.012}
-    rows = [
-        {"kind": "contact_begin", "measurement": "ten", "width_then_V": 0.4, "reduction": 0.6, **further},
-        {"kind": "sticking", "measurement": "twenty", "width_then_V": 1.0, "reduction": -1e-16, **further},
-    ]
-    _write(root / "calibration/next.csv", rows)
-    _write(root / "calibration/next_on_pad.csv", [{**rows[0], "solved": 100, "refused": 28}])
-    tables = {kind: {"file": f"{kind}.csv", "source": "made up, no measurement"} for kind in ("pull_off", "hardness")}
+    verdicts = {"pull_off": (0.5, "agrees"), "hardness": (0.0, far)}
+    tables = {
+        kind: {"rows": 20, "probability": share, "verdict": verdict, "source": "made up, no measurement"}
+        for kind, (share, verdict) in verdicts.items()
+    }
     chain = {"sampler": "emcee 3", "r_hat": 1.004, "independent_draws": 1700.0}
     content = {"gate": {"passed": True, "reasons": []}, "remarks": [f"hardness (hardness.csv) {far}"], "chain": chain}
-    content |= {"information_bits": 8.6, "cycles": 1700, "response_error_share": 0.45, "points_left_out": 3}
+    content |= {"cycles": 1700, "response_error_share": 0.45, "points_left_out": 3}
     write_json(root / "calibration/posterior.json", {**content, "tables": tables}, PROVENANCE)
 
 

@@ -92,6 +92,16 @@ def test_only_scenes_with_measurements_schedule_a_calibration(plan):
     for scene in ("ci", "paper", "reduced", "full", "literature"):
         assert not calibration & plan(scene)
     assert plan("made_up") >= calibration | MESOSCALE | REPORT
+    assert "press_prior_pads" not in plan("made_up")
+
+
+def test_voltages_of_switches_are_compared_with_pads_over_the_prior(make_workflow, tmp_path):
+    workflow = make_workflow(tmp_path)
+    (tmp_path / "volts.csv").write_text("release_V,release_error_V\n12,0.5\n")
+    (tmp_path / "mine.yaml").write_text("measurements: {tables: [{kind: release, file: volts.csv}]}")
+    jobs = set(workflow.jobs(workflow.plan(str(tmp_path / "mine.yaml"), "calibrate")))
+    assert jobs >= {"collect_prior_pad_inputs", "press_prior_pads", "sample_posterior"}
+    assert not jobs & {"press_pads", "collect_inputs"}
 
 
 def test_studies_run_only_where_they_are_asked_for(plan):

@@ -6,6 +6,12 @@ MEASUREMENT_FILES = {
     for k, table in enumerate(SCENE.measurements.tables)
 }
 MEASUREMENT_CHUNKS = chunk_bounds(SCENE.measurements.runs)
+PRIOR_PADS = {}
+if {"release", "pull_in", "sticking"} & set(MEASUREMENT_FILES):
+    PRIOR_PADS = {
+        "inputs": f"{RESULTS}/calibration/pad_inputs.csv",
+        "pads": [f"{RESULTS}/calibration/pads/chunk_{chunk}.h5" for chunk in POINT_CHUNKS],
+    }
 PRIORS = SCENE.inputs.priors()
 if workflow.is_main_process and MEASUREMENT_FILES:  # a table that cannot be used is told before the first cycle
     from mesoscale.calibration.measurements import load_measurements
@@ -54,7 +60,6 @@ rule observe_cycles:
         mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
-        law=settings("law"),
         bounds=lambda wildcards: MEASUREMENT_CHUNKS[wildcards.chunk],
     message:
         f"compute what can be measured of contact cycles, chunk {{wildcards.chunk}} of {len(MEASUREMENT_CHUNKS)}"
@@ -62,20 +67,40 @@ rule observe_cycles:
         "../scripts/observe_cycles.py"
 
 
+# voltages of switches are compared with switches on pads that are pressed over the prior
+use rule collect_pad_inputs as collect_prior_pad_inputs with:
+    input:
+        **SURFACE,
+        inputs=f"{RESULTS}/calibration/priors.csv",
+    output:
+        f"{RESULTS}/calibration/pad_inputs.csv",
+    log:
+        f"{RESULTS}/logs/collect_prior_pad_inputs.log",
+
+
+use rule press_pads as press_prior_pads with:
+    input:
+        **SURFACE,
+        inputs=f"{RESULTS}/calibration/pad_inputs.csv",
+    output:
+        f"{RESULTS}/calibration/pads/chunk_{{chunk}}.h5",
+    log:
+        f"{RESULTS}/logs/press_prior_pads_{{chunk}}.log",
+    message:
+        f"press pads over the prior, chunk {{wildcards.chunk}} of {len(POINT_CHUNKS) - 1} and central"
+
+
 rule sample_posterior:
     input:
         **MEASUREMENT_FILES,
         **SURFACE,
+        **PRIOR_PADS,
         priors=f"{RESULTS}/calibration/priors.csv",
         cycles=[f"{RESULTS}/calibration/cycles/chunk_{chunk}.csv" for chunk in MEASUREMENT_CHUNKS],
     output:
         samples=f"{RESULTS}/calibration/samples.csv",
         summary=f"{RESULTS}/calibration/summary.csv",
-        learned=f"{RESULTS}/calibration/learned.csv",
-        next=f"{RESULTS}/calibration/next.csv",
         predictive=f"{RESULTS}/calibration/predictive.csv",
-        responses=f"{RESULTS}/calibration/responses.csv",
-        local_cycles=f"{RESULTS}/calibration/local_cycles.csv",
         posterior=f"{RESULTS}/calibration/posterior.json",
     log:
         f"{RESULTS}/logs/sample_posterior.log",
@@ -85,33 +110,9 @@ rule sample_posterior:
     params:
         settings=settings("measurements"),
         contact=settings("contact"),
-        law=settings("law"),
         device=settings("device"),
+        pad=settings("pad"),
     message:
         "sample the posterior of the inputs"
     script:
         "../scripts/sample_posterior.py"
-
-
-rule rank_next_on_pad:
-    input:
-        **SURFACE,
-        priors=f"{RESULTS}/calibration/priors.csv",
-        inputs=f"{RESULTS}/pad/inputs.csv",
-        cycles=[f"{RESULTS}/calibration/cycles/chunk_{chunk}.csv" for chunk in MEASUREMENT_CHUNKS],
-        local_cycles=f"{RESULTS}/calibration/local_cycles.csv",
-        model=f"{RESULTS}/pad/model.h5",
-    output:
-        f"{RESULTS}/calibration/next_on_pad.csv",
-    log:
-        f"{RESULTS}/logs/rank_next_on_pad.log",
-    threads: 1
-    params:
-        contact=settings("contact"),
-        law=settings("law"),
-        device=settings("device"),
-        pad=settings("pad"),
-    message:
-        "rank what to measure next for the switch on the pad"
-    script:
-        "../scripts/rank_next_on_pad.py"

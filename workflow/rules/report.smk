@@ -26,10 +26,7 @@ def report_inputs():
     if SCENE.history.cycles > 0:
         files += [f"history/{name}" for name in ("cycles.csv", "dwell.csv", "curves.h5")]
     if SCENE.measurements.tables:
-        tables = ("samples", "summary", "learned", "next", "predictive", "responses")
-        files += ["calibration/posterior.json", *(f"calibration/{table}.csv" for table in tables)]
-        if SCENE.pad.points and "pad" in SCENE.tails:
-            files += ["calibration/next_on_pad.csv"]
+        files += [f"calibration/{name}" for name in ("posterior.json", "samples.csv", "summary.csv", "predictive.csv")]
     studies = [*ACCURACY, *STABILITY] if SCENE.report.studies else []
     return [f"{RESULTS}/{name}" for name in files] + studies
 

@@ -1,46 +1,36 @@
 """Sample the posterior of the inputs, given the scene's measurements.
 
-In: the tables of measurements, calibration/priors.csv, calibration/cycles/chunk_NNN.csv.
-Out: calibration/posterior.json, and what it means: samples.csv, summary.csv (prior and posterior of the inputs),
-learned.csv (bits, contradictions), next.csv (what to measure), predictive.csv, responses.csv (their error),
-local_cycles.csv (where the posterior lies).
+In: the tables of measurements, calibration/priors.csv, calibration/cycles/chunk_NNN.csv; with voltages of switches
+calibration/pad_inputs.csv and calibration/pads/chunk_NNN.h5 (GPa against nm; V).
+Out: calibration/posterior.json, samples.csv, summary.csv (prior and posterior of the inputs), predictive.csv (what the
+next surface and switch show).
 """
 
-from mesoscale.calibration.further import next_measurements
-from mesoscale.calibration.learning import check_range, learned, outliers
 from mesoscale.calibration.measurements import load_measurements
-from mesoscale.calibration.posterior import calibrate, cycles_of_rows, response_remarks
-from mesoscale.calibration.summary import posterior_json, predictive_rows, sample_rows, summary_rows
-from mesoscale.calibration.switches import SwitchModel
+from mesoscale.calibration.observables import cycles_of_rows
+from mesoscale.calibration.posterior import Model, calibrate
+from mesoscale.calibration.summary import checks, posterior_json, predictive_rows, sample_rows, summary_rows
+from mesoscale.calibration.voltages import fit_voltages
 from mesoscale.inputs.table import from_rows
-from mesoscale.settings import DeviceSettings, LawSettings, MeasurementsSettings
+from mesoscale.settings import MeasurementsSettings
 from workflow.contact_settings import contact_settings
 from workflow.job import job, settings_from_job
+from workflow.pad_files import load_model, points_of_job
 from workflow.results import load_csv, write_csv, write_json
 
 with job(snakemake) as run:
     settings = settings_from_job(MeasurementsSettings, snakemake.params.settings)
     contact = contact_settings(snakemake.params.contact, snakemake)
-    law = settings_from_job(LawSettings, snakemake.params.law)
     tables = [load_measurements(table, snakemake.input[table.kind]) for table in settings.tables]
     prior = from_rows(load_csv(snakemake.input.priors))
     rows = [row for path in snakemake.input.cycles for row in load_csv(path)]
-    cycles = cycles_of_rows(rows, prior.names)
-    device = settings_from_job(DeviceSettings, snakemake.params.device)
-    switch = SwitchModel.of(device, law, contact.length_nm**2)
-    check_range(tables, prior, cycles, contact.max_force_nN, switch)
-    result = calibrate(prior, tables, cycles, contact, law, device, settings, run.progress)
-
-    write_csv(snakemake.output.responses, result.checks)
-    write_csv(snakemake.output.local_cycles, result.added)
-    converged = result.chain.converged
-    lessons = learned(result, tables, contact.max_force_nN) if converged else []
-    write_csv(snakemake.output.learned, lessons)
-    further = next_measurements(result, contact.max_force_nN) if converged else []
-    write_csv(snakemake.output.next, further)
-    write_csv(snakemake.output.predictive, predictive_rows(result, contact.max_force_nN))
+    voltages = {}
+    if pads := snakemake.input.get("pads"):
+        voltages = fit_voltages(load_model(pads, points_of_job(snakemake)[0]), prior)
+    model = Model(prior, cycles_of_rows(rows, prior.names), voltages, contact.max_force_nN)
+    result = calibrate(tables, model, contact, settings, run.progress)
+    write_csv(snakemake.output.predictive, predictive_rows(result))
     write_csv(snakemake.output.summary, summary_rows(result))
     write_csv(snakemake.output.samples, sample_rows(result))
-    remarks = [*outliers(result), *response_remarks(result)] if converged else []
-    content = posterior_json(result, tables, lessons, remarks)
-    write_json(snakemake.output.posterior, content, run.provenance)
+    agreement = checks(result) if result.chain.converged else {}
+    write_json(snakemake.output.posterior, posterior_json(result, agreement), run.provenance)

@@ -198,11 +198,11 @@ def _design_runs(costs: Costs) -> int:
 
 FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     **_each(0.0, "write_scene", "collect_inputs", "collect_pad_inputs", "combine_e_star", "collect_priors"),
+    **_each(0.0, "collect_prior_pad_inputs"),
     **_each(0.5, "fit_hardness", "fit_nominal_law"),
     **_each(2.0, "pool_spectra"),
     **_each(5.0, "write_synthetic_scans"),
     **_each(8.5, "rank_sensitivity"),
-    **_each(20.0, "rank_next_on_pad"),
     **_each(60.0, "make_circuit"),
     **_each(180.0, "find_failure_rate", "measure_failure_accuracy"),
     **_each(1100.0, "measure_elastic_accuracy"),
@@ -228,12 +228,12 @@ FIRST_GUESS: dict[str, Callable[[Costs, Any], float]] = {
     "fit_law": lambda c, _: 0.01 * _design_runs(c),
     "propagate_uncertainty": lambda c, _: 0.5 + 0.0082 * c.scene.uncertainty.direct_runs,
     "observe_cycles": lambda c, _: c.cycles_s(min(CHUNK_RUNS, c.scene.measurements.runs)),
-    # chains of all tables and of subsets of them, and the cycles where the posterior lies
+    # chains of all tables and of all but one of them, and the cycles where the posterior lies
     "sample_posterior": lambda c, _: (
-        10.0 * (2 * len(c.scene.measurements.tables) + 1 + c.scene.measurements.rounds)
+        10.0 * (len(c.scene.measurements.tables) + 1 + c.scene.measurements.rounds)
         + c.cycles_s(c.scene.measurements.rounds * c.scene.measurements.local_runs)
     ),
-    "press_pads": lambda c, job: c.points_s(job["chunk"] == "central"),
+    **dict.fromkeys(("press_pads", "press_prior_pads"), lambda c, job: c.points_s(job["chunk"] == "central")),
     "assemble_pad": lambda c, _: 3.0,
     "measure_pad_accuracy": lambda c, _: 60.0 + c.cells_s(30 * c.scene.pad.point_cells),
     "follow_history": lambda c, _: history_s(c.scene.history, c.scene.contact),

@@ -3,17 +3,16 @@
 import numpy as np
 import pytest
 
-from mesoscale.calibration.observables import LAWS, NAMES, OBSERVABLES
-from mesoscale.calibration.posterior import Cycles
+from mesoscale.calibration.observables import NAMES, Cycles
+from mesoscale.calibration.posterior import Model
 from mesoscale.inputs.table import input_table
 
 MAX_FORCE_NN = 7000.0
 
 
 def made_up_observables(x, rng):
-    """Observables and laws of one surface per row of inputs (m, 7); shaped like those of the engine."""
+    """Observables of one surface per row of inputs (m, 7); shaped like those of the engine."""
     hamaker, e_star, _, h_prime, q0, hurst, rms = x.T
-    ones = np.ones(len(x))
     begin = rms * (3.0 + 0.4 * hurst + 0.3 * rng.standard_normal(len(x)))
     steps = [
         rms
@@ -21,9 +20,8 @@ def made_up_observables(x, rng):
         for _ in range(5)
     ]
     pull_off = np.exp(4.5 + 8 * (hamaker - 0.21) - 0.08 * rms + 0.3 * rng.standard_normal(len(x)))
-    law = [begin + 2, 1e-4 * ones * np.exp(-0.08 * rms), 5e-4 * ones, 0.4 * rms]
-    law = [value * np.exp(0.1 * rng.standard_normal(len(x))) for value in law]
-    return np.column_stack([begin, *steps, begin - 1, *steps, begin + 2, pull_off, *law, *law])
+    touch = rms * np.exp(1.2 + 0.1 * rng.standard_normal(len(x)))
+    return np.column_stack([begin, *steps, begin - 1, *steps, touch, pull_off])
 
 
 @pytest.fixture(scope="session")
@@ -35,5 +33,10 @@ def prior():
 def cycles(prior):
     x = prior.sample(900, 3)
     y = made_up_observables(x, np.random.default_rng(3))
-    assert y.shape[1] == len(NAMES) == len(OBSERVABLES) + len(LAWS)
+    assert y.shape[1] == len(NAMES)
     return Cycles(x, y)
+
+
+@pytest.fixture(scope="session")
+def model(prior, cycles):
+    return Model(prior, cycles, {}, MAX_FORCE_NN)

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from mesoscale.calibration.likelihood import DirectData
+from mesoscale.calibration.measurements import Measurements
+from mesoscale.calibration.observables import NAMES, Cycles
+from mesoscale.calibration.posterior import Model
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.hardness import HardnessLaw
@@ -61,9 +63,12 @@ def test_values_of_a_table_reach_the_contact():
 
 
 def test_measured_hardness_is_compared_with_the_law_of_the_scene():
-    samples = {name: np.array([value, value]) for name, value in FILM._asdict().items()}
-    data = DirectData("hardness", AREAS, np.ones(4), AREAS, 0.0)
-    np.testing.assert_allclose(data.model(samples), [FILM.pressure(AREAS)] * 2)
+    prior = input_table(hardness="film", **rows())
+    columns = {"hardness": np.ones(4), "hardness_error": np.ones(4), "area": AREAS}
+    data = Measurements("hardness", columns, tuple("abcd"), False, 0.0, "hardness.csv")
+    (part,) = Model(prior, Cycles(np.empty((0, 0)), np.empty((0, len(NAMES)))), {}, 7000.0).posterior([data]).parts
+    x = np.array([[getattr(FILM, name, prior.medians()[name]) for name in prior.names]] * 2)
+    np.testing.assert_allclose(part.model(x), [FILM.pressure(AREAS)] * 2)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,119 @@
+"""Measured voltages of switches, compared with the switches on pads that were pressed over the prior.
+
+Each voltage is a regression over these switches, in the inputs and in all else that they differ by. What the inputs do
+is the response; the rest is scatter, shared by all measured switches (D0, what devices have in common, how places of
+the film differ, what the regression misses) or of each. A switch that sticks has a release below zero that is not
+known: its expected value is put in its place until the regression no longer changes (Dempster, Laird and Rubin, J. R.
+Statist. Soc. B 39, 1, 1977, section 4.2).
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammaln, log_ndtr, ndtr
+
+from mesoscale.device.points import PadModel
+from mesoscale.errors import InputError
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.uncertainty.regression import refit, sparse_chaos
+from mesoscale.uncertainty.surrogate import Surrogate
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Voltage:
+    """A voltage of the switch over the prior.
+
+    Attributes
+    ----------
+    response : to the inputs, averaged over all else (V; below zero: it sticks).
+    shared_V, each_V : standard deviations about it, of all switches together and from one to the next.
+    """
+
+    response: Surrogate
+    shared_V: float
+    each_V: float
+
+    def __call__(self, x: Array) -> Array:
+        """Its mean at inputs x (m, n), shape (m,)."""
+        return self.response(np.clip(x, *self.response.ranges.T))
+
+
+def fit_voltages(model: PadModel, prior: InputTable) -> dict[str, Voltage]:
+    """Pull-in and release of the switches on pads that were pressed over the prior.
+
+    Raises
+    ------
+    InputError : too few of the switches have an answer, or let go.
+    """
+    design, solved = model.design, [model.points[k] for k in model.solved]
+    others = [k for k in design.varying if design.names[k] not in prior.names]
+    of_device = np.array([design.causes[k] == "device_each" for k in others], bool)
+    inputs = np.array([[point.point.values[name] for name in prior.names] for point in solved])
+    drawn = np.hstack([inputs.reshape(len(solved), -1), design.probability[model.solved][:, others]])
+    ranges = np.vstack([prior.ranges(), np.tile([0.0, 1.0], (len(others), 1))])
+    x, release = np.clip(drawn, *ranges.T), model.states("release_V")
+    if (release > 0).sum() < 2 * len(ranges):
+        raise InputError(
+            f"pad.points: {(release > 0).sum()} of {len(model.points)} switches over the prior let go, and "
+            f"{2 * len(ranges)} are needed to compare measured voltages with: raise it, or narrow the inputs"
+        )
+    return {
+        "pull_in": _regressed(x, model.states("pull_in_V"), ranges, of_device),
+        "release": _regressed(x, release, ranges, of_device),
+    }
+
+
+def _regressed(x: Array, volts: Array, ranges: Array, of_device: NDArray[np.bool_]) -> Voltage:
+    """Regression in inputs and, behind them, in the probabilities of all else, of which some are of each device."""
+    stuck, values = volts == 0.0, volts.copy()
+    values[stuck], fit, missed_V = -volts.std(), Surrogate(ranges, np.zeros((1, len(ranges)), int), np.zeros(1)), 0.0
+    for step in range(300):  # where half of the switches stick, it takes a hundred
+        if step % 50 == 0:
+            fit = sparse_chaos(x, values, ranges, degree=2)
+        else:
+            fit = refit(fit.scaled(x), values, ranges, fit.degrees, "identity")
+        off = values - fit(x)
+        missed_V = np.sqrt((off**2).sum() / max(len(x) - len(fit.degrees), 1))
+        expected = fit(x)[stuck]
+        depth = -expected / max(missed_V, 1e-9)
+        below = expected - missed_V * np.exp(-0.5 * depth**2 - 0.5 * np.log(2 * np.pi) - log_ndtr(depth))
+        settled = np.allclose(below, values[stuck], atol=1e-3 * volts.std())
+        values[stuck] = below
+        if settled and step % 50 == 0:  # terms that are selected anew change nothing
+            break
+    inputs = len(ranges) - len(of_device)
+    of_others = fit.degrees[:, inputs:]
+    variance = fit.coefficients**2 / np.prod(2 * fit.degrees + 1, axis=1)
+    of_each = (of_others[:, of_device] > 0).any(axis=1)
+    of_inputs = ~(of_others > 0).any(axis=1)
+    response = Surrogate(ranges[:inputs], fit.degrees[of_inputs][:, :inputs], fit.coefficients[of_inputs])
+    shared_V = np.sqrt(variance[~of_each & ~of_inputs].sum() + missed_V**2)
+    return Voltage(response, float(shared_V), float(np.sqrt(variance[of_each].sum())))
+
+
+@dataclass(frozen=True)
+class StickingData:
+    """How many switches stuck."""
+
+    stuck: Array
+    switches: Array
+    discrepancy: float
+    release: Voltage
+
+    def log_likelihood(self, x: Array) -> Array:
+        """Logarithm of the likelihood at inputs x (m, n), shape (m,)."""
+        margin, stuck, total = self._margin(x), self.stuck.sum(), self.switches.sum()
+        ways = gammaln(total + 1) - gammaln(stuck + 1) - gammaln(total - stuck + 1)
+        return ways + stuck * log_ndtr(-margin) + (total - stuck) * log_ndtr(margin)
+
+    def simulated(self, x: Array, rng: np.random.Generator) -> "StickingData":
+        """Data drawn at inputs x (1, n)."""
+        return replace(self, stuck=rng.binomial(self.switches.astype(int), ndtr(-self._margin(x))).astype(float))
+
+    def _margin(self, x: Array) -> Array:
+        """Release in standard deviations above sticking."""
+        release, volts = self.release(x), self.release
+        return release / np.sqrt((self.discrepancy * release) ** 2 + volts.shared_V**2 + volts.each_V**2 + 1e-6)
