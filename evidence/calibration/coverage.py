@@ -24,7 +24,7 @@ from mesoscale.calibration.surfaces import SCALAR_COLUMNS
 from mesoscale.calibration.switches import SwitchModel
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import input_table
-from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings
+from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
@@ -203,10 +203,9 @@ def coverage_row(
     surfaces : observables at each, shape (sets, SURFACES, k).
     pool : draws of the prior, shape (p, n).
     """
-    law = LawSettings()
     responses, laws = responses_of(table, cycles)
     expected = expected_of(cycles)
-    switch = replace(SwitchModel.of(DeviceSettings(), law, CONTACT.length_nm**2), cells=float(case.cells))
+    switch = replace(SwitchModel.of(DeviceSettings(), CONTACT.length_nm**2), cells=float(case.cells))
     rng = np.random.default_rng(np.random.SeedSequence([0x5BC, CASES.index(case)]))
     predicted: list[Predicted] = []
     ranks, effective, missing = [], [], 0
@@ -248,4 +247,4 @@ def _weights(posterior: Posterior, predicted: Sequence[Predicted]) -> Array:
 
 
 def _observed(runs: Sequence[Run], contact: ContactSettings) -> Cycles:
-    return cycles_of_rows(observe_runs(runs, contact, LawSettings()), list(runs[0].values))
+    return cycles_of_rows(observe_runs(runs, contact), list(runs[0].values))

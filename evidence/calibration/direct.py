@@ -25,7 +25,7 @@ from mesoscale.calibration.posterior import calibrate, cycles_of_rows, observe_r
 from mesoscale.calibration.sampling import sample
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import input_table
-from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, LawSettings, MeasurementsSettings
+from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, MeasurementsSettings
 from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
@@ -80,7 +80,7 @@ def prior() -> InputTable:
 
 def observed(values: dict[str, float], seed: int) -> Array:
     """First contact (nm) and pull-off force (nN) of one surface; NaN where a cycle fails."""
-    (row,) = observe_runs([Run(0, -1, seed, values)], CONTACT, LawSettings())
+    (row,) = observe_runs([Run(0, -1, seed, values)], CONTACT)
     return np.array([row["contact_begin_nm"], row["pull_off_nN"]])
 
 
@@ -128,10 +128,8 @@ def by_responses(table: InputTable, data: Array) -> Array:
         )
     ]
     runs = random_runs(table, 0, 800, seed=3, first_surface=FIRST_SURFACE - 10_000)
-    cycles = cycles_of_rows(observe_runs(runs, CONTACT, LawSettings()), table.names)
-    posterior = calibrate(
-        table, tables, cycles, CONTACT, LawSettings(), DeviceSettings(), MeasurementsSettings()
-    ).posterior
+    cycles = cycles_of_rows(observe_runs(runs, CONTACT), table.names)
+    posterior = calibrate(table, tables, cycles, CONTACT, DeviceSettings(), MeasurementsSettings()).posterior
     chain = sample(lambda z: posterior.log_likelihood(posterior.inputs(z)), len(posterior.free), 400, 8000, 50000)
     if not chain.converged:
         raise RuntimeError(chain.reason)

@@ -14,7 +14,7 @@ from mesoscale.calibration.observed import observe, separations_at
 from mesoscale.calibration.switches import SwitchModel
 from mesoscale.contact import run_cycle
 from mesoscale.inputs.contact import contact_of
-from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings
+from mesoscale.settings import ContactSettings, DeviceSettings
 
 TRUTH = {"hamaker": 0.21, "e_star": 93.0, "h_macro": 1.5, "h_prime": 8.0, "q0": 0.022, "hurst": 0.8, "rms": 5.0}
 EXAMPLE_SEED = 77_000_000
@@ -28,15 +28,12 @@ SURFACES, FIRST_SURFACE, RESAMPLES = 400, 78_000_000, 200
 def rows(given: Any) -> Iterator[dict[str, Any]]:
     """The release voltage at the truth, with its standard error over surfaces."""
     inputs, chosen = contact_of(TRUTH, CONTACT)
-    seen = [
-        observe(run_cycle(inputs, chosen, FIRST_SURFACE + k), LawSettings(), CONTACT.max_force_nN)
-        for k in range(SURFACES)
-    ]
+    seen = [observe(run_cycle(inputs, chosen, FIRST_SURFACE + k), CONTACT.max_force_nN) for k in range(SURFACES)]
     laws = np.array([[row[law.name] for law in LAWS] for row in seen])
     laws = laws[np.isfinite(laws).all(axis=1)]
     picks = np.random.default_rng(1).integers(len(laws), size=(RESAMPLES, len(laws)))
     means = np.vstack([laws.mean(axis=0), laws[picks].mean(axis=1)])
-    switch = SwitchModel.of(DeviceSettings(), LawSettings(), CONTACT.length_nm**2)
+    switch = SwitchModel.of(DeviceSettings(), CONTACT.length_nm**2)
     volts = switch.release_V(switch.laws(means, np.full(len(means), TRUTH["hamaker"]))[1])
     yield {"surfaces": len(laws), "release_V": volts[0], "error_V": volts[1:].std()}
 

@@ -7,12 +7,11 @@ from mesoscale.calibration.observables import NAMES, force_levels_nN
 from mesoscale.contact import Cycle
 from mesoscale.contact.cycle import Branch
 from mesoscale.law.branches import fit_cycle
-from mesoscale.settings import LawSettings
 
 Array = NDArray[np.float64]
 
 
-def observe(cycle: Cycle, law: LawSettings, max_force_nN: float) -> dict[str, float]:
+def observe(cycle: Cycle, max_force_nN: float) -> dict[str, float]:
     """All numbers of a cycle by name; NaN where the cycle does not give one."""
     forces = force_levels_nN(max_force_nN)
     values = []
@@ -21,7 +20,7 @@ def observe(cycle: Cycle, law: LawSettings, max_force_nN: float) -> dict[str, fl
         values += [separations[0], *(separations[:-1] - separations[1:])]
     deepest = float(-cycle.opening.net_nN.min())
     values += [cycle.first_contact_nm, deepest if deepest > 0 else np.nan]
-    outcome = fit_cycle(cycle, law)
+    outcome = fit_cycle(cycle)
     values += [*outcome.closing.parameters, *outcome.opening.parameters]
     return dict(zip(NAMES, map(float, values), strict=True))
 

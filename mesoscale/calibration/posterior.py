@@ -17,7 +17,7 @@ from mesoscale.calibration.surfaces import Expected, SurfaceData
 from mesoscale.calibration.switches import SwitchModel
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings, MeasurementsSettings
+from mesoscale.settings import ContactSettings, DeviceSettings, MeasurementsSettings
 from mesoscale.uncertainty.designs import Run
 from mesoscale.uncertainty.runs import compute_all
 
@@ -83,13 +83,13 @@ class Calibration:
 
 
 def observe_runs(
-    runs: Sequence[Run], contact: ContactSettings, law: LawSettings, progress: Progress | None = None
+    runs: Sequence[Run], contact: ContactSettings, progress: Progress | None = None
 ) -> list[dict[str, float]]:
     """Compute cycles: one row each with seed, inputs and what can be measured; NaN where a cycle failed."""
     rows = []
     for run, cycle in compute_all(runs, contact, progress):
         nothing = dict.fromkeys(NAMES, np.nan)
-        seen = nothing if isinstance(cycle, str) else observe(cycle, law, contact.max_force_nN)
+        seen = nothing if isinstance(cycle, str) else observe(cycle, contact.max_force_nN)
         rows.append({"run": run.index, "seed": run.seed, **run.values, **seen})
     return rows
 
@@ -134,7 +134,6 @@ def calibrate(
     tables: Sequence[Measurements],
     cycles: Cycles,
     contact: ContactSettings,
-    law: LawSettings,
     device: DeviceSettings,
     settings: MeasurementsSettings,
     progress: Progress | None = None,
@@ -152,7 +151,7 @@ def calibrate(
     """
     if not tables:
         raise InputError("measurements.tables: is empty; name at least one table of measurements")
-    switch = SwitchModel.of(device, law, contact.length_nm**2)
+    switch = SwitchModel.of(device, contact.length_nm**2)
     expected = expected_of(cycles)
     needs_cycles = any(data.kind in (*ON_SURFACES, *SWITCH_KINDS) for data in tables)
     checks: list[dict[str, Any]] = []
@@ -175,7 +174,7 @@ def calibrate(
             Run(first + k, -1, FIRST_LOCAL_SEED + first + k, dict(zip(table.names, row, strict=True)))
             for k, row in enumerate(x.tolist())
         ]
-        observed = observe_runs(runs, contact, law, progress)
+        observed = observe_runs(runs, contact, progress)
         local += observed
         added = cycles_of_rows(observed, table.names)
         for row, bias in zip(rows, response_bias(posterior, added), strict=True):

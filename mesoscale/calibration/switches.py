@@ -18,8 +18,8 @@ from mesoscale.device.plate import GPA, NM, VACUUM_PERMITTIVITY, Plate, plate_fr
 from mesoscale.device.spread import departed
 from mesoscale.law.compact import Law
 from mesoscale.law.parameters import PARAMETERS
-from mesoscale.law.samples import column, onset_nm, pressure_GPa, scale_adhesion
-from mesoscale.settings import DeviceSettings, LawSettings
+from mesoscale.law.samples import column, onset_nm, pressure_GPa
+from mesoscale.settings import DeviceSettings
 
 Array = NDArray[np.float64]
 
@@ -37,20 +37,18 @@ class SwitchModel:
 
     Attributes
     ----------
-    switch, adhesion_scale, law, cells : cells that a landed switch averages.
+    switch, cells : cells that a landed switch averages.
     last_share : share of the electrode that comes off last; 1 of a plate on a given spring.
     scatter_V : of pull-in and release, by what all devices share and by what differs between them (V).
     """
 
     switch: Plate
     last_share: float
-    adhesion_scale: float
-    law: LawSettings
     cells: float
     scatter_V: Mapping[str, tuple[float, float]]
 
     @classmethod
-    def of(cls, device: DeviceSettings, law: LawSettings, cell_area_nm2: float) -> "SwitchModel":
+    def of(cls, device: DeviceSettings, cell_area_nm2: float) -> "SwitchModel":
         """The switch that the settings describe.
 
         A clamped beam held down at mid-span has the curvature 24 g / L^2 there, so what comes off last are the places
@@ -58,9 +56,9 @@ class SwitchModel:
         """
         switch, last_share = plate_from_settings(device), 1.0
         if device.bends:
-            last_share = min(float(np.sqrt(law.rho_a_nm / (3.0 * switch.gap_nm))), 1.0)
+            last_share = min(float(np.sqrt(Law.rho_a_nm / (3.0 * switch.gap_nm))), 1.0)
         cells = max(last_share * switch.area_m2 * 1e18 / cell_area_nm2, 1.0)
-        return cls(switch, last_share, device.adhesion_scale, law, cells, device_scatter_V(device))
+        return cls(switch, last_share, cells, device_scatter_V(device))
 
     def path_V2(self, separation_nm: Array, law: Law, share: float) -> Array:
         """W(s) with the law on a share of the electrode; below zero where adhesion holds it without any voltage."""
@@ -71,15 +69,10 @@ class SwitchModel:
         """Laws of closing and opening from values (m, 8) of the observables LAWS."""
         count = len(PARAMETERS)
         laws = [
-            Law(
-                **dict(zip(PARAMETERS, part.T, strict=True)),
-                hamaker=hamaker,
-                rho_a_nm=self.law.rho_a_nm,
-                shield_nm=self.law.shield_nm,
-            )
+            Law(**dict(zip(PARAMETERS, part.T, strict=True)), hamaker=hamaker)
             for part in (values[:, :count], values[:, count:])
         ]
-        return scale_adhesion(laws[0], self.adhesion_scale), scale_adhesion(laws[1], self.adhesion_scale)
+        return laws[0], laws[1]
 
     def release_V(self, opening: Law) -> Array:
         """Release voltages with sign: below zero by the square root of what keeps a stuck switch closed, shape (m,)."""

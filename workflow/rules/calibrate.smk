@@ -54,7 +54,6 @@ rule observe_cycles:
         mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
-        law=settings("law"),
         bounds=lambda wildcards: MEASUREMENT_CHUNKS[wildcards.chunk],
     message:
         f"compute what can be measured of contact cycles, chunk {{wildcards.chunk}} of {len(MEASUREMENT_CHUNKS)}"
@@ -85,7 +84,6 @@ rule sample_posterior:
     params:
         settings=settings("measurements"),
         contact=settings("contact"),
-        law=settings("law"),
         device=settings("device"),
     message:
         "sample the posterior of the inputs"
@@ -108,7 +106,6 @@ rule rank_next_on_pad:
     threads: 1
     params:
         contact=settings("contact"),
-        law=settings("law"),
         device=settings("device"),
         pad=settings("pad"),
     message:

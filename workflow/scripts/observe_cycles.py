@@ -5,15 +5,13 @@ In: calibration/priors.csv.  Out: calibration/cycles/chunk_NNN.csv (inputs, seed
 
 from mesoscale.calibration.posterior import FIRST_SEED, observe_runs
 from mesoscale.inputs.table import from_rows
-from mesoscale.settings import LawSettings
 from mesoscale.uncertainty.designs import random_runs
 from workflow.contact_settings import contact_settings
-from workflow.job import job, settings_from_job
+from workflow.job import job
 from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
     table = from_rows(load_csv(snakemake.input.inputs))
     runs = random_runs(table, *snakemake.params.bounds, first_surface=FIRST_SEED)
-    law = settings_from_job(LawSettings, snakemake.params.law)
     contact = contact_settings(snakemake.params.contact, snakemake)
-    write_csv(snakemake.output[0], observe_runs(runs, contact, law, run.progress))
+    write_csv(snakemake.output[0], observe_runs(runs, contact, run.progress))

@@ -13,7 +13,7 @@ from mesoscale.calibration.posterior import calibrate, cycles_of_rows, response_
 from mesoscale.calibration.summary import posterior_json, predictive_rows, sample_rows, summary_rows
 from mesoscale.calibration.switches import SwitchModel
 from mesoscale.inputs.table import from_rows
-from mesoscale.settings import DeviceSettings, LawSettings, MeasurementsSettings
+from mesoscale.settings import DeviceSettings, MeasurementsSettings
 from workflow.contact_settings import contact_settings
 from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_csv, write_json
@@ -21,15 +21,14 @@ from workflow.results import load_csv, write_csv, write_json
 with job(snakemake) as run:
     settings = settings_from_job(MeasurementsSettings, snakemake.params.settings)
     contact = contact_settings(snakemake.params.contact, snakemake)
-    law = settings_from_job(LawSettings, snakemake.params.law)
     tables = [load_measurements(table, snakemake.input[table.kind]) for table in settings.tables]
     prior = from_rows(load_csv(snakemake.input.priors))
     rows = [row for path in snakemake.input.cycles for row in load_csv(path)]
     cycles = cycles_of_rows(rows, prior.names)
     device = settings_from_job(DeviceSettings, snakemake.params.device)
-    switch = SwitchModel.of(device, law, contact.length_nm**2)
+    switch = SwitchModel.of(device, contact.length_nm**2)
     check_range(tables, prior, cycles, contact.max_force_nN, switch)
-    result = calibrate(prior, tables, cycles, contact, law, device, settings, run.progress)
+    result = calibrate(prior, tables, cycles, contact, device, settings, run.progress)
 
     write_csv(snakemake.output.responses, result.checks)
     write_csv(snakemake.output.local_cycles, result.added)

@@ -30,7 +30,7 @@ from mesoscale.calibration.switches import SwitchModel
 from mesoscale.errors import InputError
 from mesoscale.inputs.distributions import Distribution, InputTable
 from mesoscale.inputs.table import input_table
-from mesoscale.settings import ContactSettings, DeviceSettings, LawSettings
+from mesoscale.settings import ContactSettings, DeviceSettings
 from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ class Bench:
         table = input_table()
         over = random_runs(table, 0, RUNS, seed=7, first_surface=FIRST_SURFACE)
         at_truth = [Run(k, -1, FIRST_SURFACE - 1 - k, TRUTH) for k in range(SURFACES)]
-        rows = [observe_runs(runs, CONTACT, LawSettings()) for runs in (over, at_truth)]
+        rows = [observe_runs(runs, CONTACT) for runs in (over, at_truth)]
         cycles, seen = (cycles_of_rows(part, table.names) for part in rows)
         return cls(table, cycles, seen.y)
 
@@ -92,7 +92,7 @@ class Bench:
     @property
     def switch(self) -> SwitchModel:
         """The switch of the default settings."""
-        return SwitchModel.of(DeviceSettings(), LawSettings(), CONTACT.length_nm**2)
+        return SwitchModel.of(DeviceSettings(), CONTACT.length_nm**2)
 
     def column(self, result: Calibration, name: str) -> Array:
         """Samples of one input."""

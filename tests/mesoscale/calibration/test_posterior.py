@@ -24,7 +24,7 @@ from mesoscale.calibration.surfaces import check_points
 from mesoscale.calibration.switches import SwitchModel, law_values
 from mesoscale.errors import InputError
 from mesoscale.law.parameters import PARAMETERS
-from mesoscale.settings import DeviceSettings, LawSettings
+from mesoscale.settings import DeviceSettings
 from tests.mesoscale.calibration.conftest import MAX_FORCE_NN, made_up_observables
 
 AREAS_NM2 = np.array([40.0, 100.0, 400.0, 4000.0])  # one area alone leaves a ridge of H_macro and H', slow to sample
@@ -34,7 +34,7 @@ TRUTH = np.array([[0.21, 91.0, 1.5, 8.0, 0.022, 0.8, 5.0]])
 @pytest.fixture(scope="module")
 def parts(prior, cycles):
     responses, laws = responses_of(prior, cycles)
-    switch = SwitchModel.of(DeviceSettings(), LawSettings(), 1e6)
+    switch = SwitchModel.of(DeviceSettings(), 1e6)
     return responses, laws, switch, expected_of(cycles)
 
 
