@@ -28,14 +28,14 @@ class Knob:
 
     Attributes
     ----------
-    metric : what the error is.
+    metric : what the error is; one, or one of each case.
     reference : what the error is against, in words.
     tries : computed as they are asked for.
     cases : quantities whose error it is.
     """
 
     name: str
-    metric: str
+    metric: str | Sequence[str]
     reference: str
     tries: Iterable[Try]
     cases: Sequence[str] = ("release",)
@@ -44,14 +44,15 @@ class Knob:
 def rows_of(knobs: Sequence[Knob], progress: Progress | None = None) -> Iterator[Row]:
     """Rows of an accuracy table without the stage: every case of every value of every knob."""
     for done, knob in enumerate(knobs):
+        metrics = [knob.metric] * len(knob.cases) if isinstance(knob.metric, str) else knob.metric
         for value, error, cost in knob.tries:
-            for case, one in zip(knob.cases, np.atleast_1d(error).tolist(), strict=True):
+            for case, one, metric in zip(knob.cases, np.atleast_1d(error).tolist(), metrics, strict=True):
                 yield {
                     "case": case,
                     "knob": knob.name,
                     "value": value,
                     "error": one,
-                    "error_metric": knob.metric,
+                    "error_metric": metric,
                     "reference": knob.reference,
                     "wall_s": float(cost[0]),
                     "cpu_s": float(cost[1]),
@@ -60,11 +61,16 @@ def rows_of(knobs: Sequence[Knob], progress: Progress | None = None) -> Iterator
                 progress((done + 0.5) / len(knobs), f"{knob.name} {value}")
 
 
+def clock() -> Array:
+    """Wall and processor time (s)."""
+    return np.array([time.perf_counter(), time.process_time()])
+
+
 def timed(compute: Callable[[], T], repeats: int = 1) -> tuple[T, Array]:
     """What is computed, and the wall and processor time (s) of one of its repeats."""
-    started = np.array([time.perf_counter(), time.process_time()])
+    started = clock()
     result = compute()
-    return result, (np.array([time.perf_counter(), time.process_time()]) - started) / repeats
+    return result, (clock() - started) / repeats
 
 
 def deviation(tried: Any, wanted: Any) -> ArrayLike:
