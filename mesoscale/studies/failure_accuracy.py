@@ -44,12 +44,12 @@ def accuracy_points(population: Population, allowed: float, progress: Progress |
     case, metric = ["failing by the response"], "relative deviation over 4 seeds"
     yield from rows_of([Knob("points of a level", metric, "their mean", map(level, LEVELS), case)])
     corrections = [timed(partial(corrected, response, times, hold, runs=runs)) for runs in RUNS]
-    tries = [Try(found.runs, found.variation, cost) for found, cost in corrections]
+    tries = [Try(rate.runs, rate.variation, cost) for rate, cost in corrections]
     reported = Knob("switches that correct it", "coefficient of variation", "reported by the run", tries, ["failing"])
     yield from rows_of([reported])
     best = corrections[-1][0]
     if best.events:
-        shares = [(each.sample(times, hold, 0).probability, each.switches, cost) for each, cost in responses]
+        shares = [(learner.sample(times, hold, 0).probability, learner.switches, cost) for learner, cost in responses]
         fewer = [Try(switches, abs(share / best.probability - 1.0), cost) for share, switches, cost in shares]
         against = f"corrected by {best.runs} switches"
         yield from rows_of([Knob("switches it learns from", "relative deviation", against, fewer, case)])

@@ -55,12 +55,12 @@ def _values(base: ScanSet) -> dict[str, list[Value]]:
 def _tried(settings: TopographySettings, knob: str, tried: Value) -> Try:
     """RMS errors of q0, slope and RMS height."""
     value, truth, radius_nm = tried
-    told = settings if radius_nm is None else settings.model_copy(update={"tip_radius_nm": radius_nm})
+    analysis = settings if radius_nm is None else settings.model_copy(update={"tip_radius_nm": radius_nm})
     errors, costs = [], []
     for repeat in range(3):
         scans = [item.scan for item in synthetic_scans(truth.model_copy(update={"seed": truth.seed + 1000 * repeat}))]
-        found, cost = timed(partial(_estimates, scans, told, knob, value))
-        q0, slope, rms = (found.get(name, np.nan) for name in METRICS)
+        estimates, cost = timed(partial(_estimates, scans, analysis, knob, value))
+        q0, slope, rms = (estimates.get(name, np.nan) for name in METRICS)
         errors.append([q0 / truth.q0 - 1, slope - truth.slope, rms / truth.rms_nm - 1])
         costs.append(cost)
     return Try(value, np.sqrt(np.mean(np.square(errors), axis=0)), np.mean(costs, axis=0))
