@@ -9,7 +9,7 @@ from mesoscale.inputs.table import input_table
 from mesoscale.law.branches import laws_of
 from mesoscale.law.compact import Law, force, pressure
 from mesoscale.scan_checks.surface import contacting_heights
-from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, LawSettings, PadSettings, TopographySettings
+from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, PadSettings, TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.uncertainty.runs import MonteCarlo, monte_carlo
 
@@ -25,7 +25,6 @@ __all__ = [
     "InputRow",
     "InputTable",
     "Law",
-    "LawSettings",
     "MissingExtra",
     "MonteCarlo",
     "PadSettings",

@@ -35,7 +35,6 @@ TARGETS = {
     "resistance": "electrical resistance of metal on metal against force",
     "calibrate": "inputs narrowed by your measurements of contacts",
     "history": "cycle after cycle, with creep",
-    "model_form": "both mechanics of the contact compared",
     "accuracy": "error against run time of the scene's stages",
     "stability": "stiff and extreme cases",
     "report": "the page, and all that it needs",

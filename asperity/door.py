@@ -8,9 +8,9 @@ from pathlib import Path
 from asperity.bundle import ROOT
 from asperity.film import MATERIAL, RECOMMENDED, Film, pixels_for
 from mesoscale.errors import InputError
-from mesoscale.inputs.definitions import definition
 from mesoscale.inputs.table import PAPER_ROWS
 from mesoscale.settings import DeviceSettings, InputRow
+from mesoscale.settings.definitions import definition
 from mesoscale.topography.measurements import files_in
 from mesoscale.topography.measurements.loading import load_measurements
 

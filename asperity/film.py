@@ -18,7 +18,6 @@ from mesoscale.device.release import switch_on_pad
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.inputs.contact import contact_of
-from mesoscale.inputs.definitions import definition
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import PAPER_ROWS, check_resolved, film_table, input_table
 from mesoscale.settings import (
@@ -30,6 +29,7 @@ from mesoscale.settings import (
     TopographySettings,
 )
 from mesoscale.settings.contact import NOMINAL_SEED
+from mesoscale.settings.definitions import definition
 from mesoscale.topography.measurements import files_in
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import Measurement, load_measurements, with_limits

@@ -18,7 +18,7 @@ from mesoscale.law.branches import laws_of
 from mesoscale.law.parameters import PARAMETERS
 from mesoscale.pad.cells import PadGrid, close_cells, sample_cells
 from mesoscale.pad.curves import assemble
-from mesoscale.settings import ContactSettings, LawSettings, Settings
+from mesoscale.settings import ContactSettings, Settings
 
 Config = Mapping[str, Any]
 
@@ -119,7 +119,7 @@ def _contact_cycle(inputs: ContactInputs, config: Config) -> Sequence[Any]:
 
 def _law(inputs: ContactInputs, config: Config) -> Sequence[Any]:
     """Parameters of the law, closing and opening."""
-    laws = laws_of(_cycle(inputs, config), _settings(LawSettings, config, "law"))
+    laws = laws_of(_cycle(inputs, config))
     return [[getattr(law, name) for name in PARAMETERS] for law in laws]
 
 
@@ -146,7 +146,7 @@ MODELS = {
     model.name: model
     for model in (
         Model("contact_cycle", ("seed", "contact"), _contact_cycle, lambda config: [3, LEVELS, LEVELS]),
-        Model("law", ("seed", "contact", "law"), _law, lambda config: [len(PARAMETERS)] * 2),
+        Model("law", ("seed", "contact"), _law, lambda config: [len(PARAMETERS)] * 2),
         Model(
             "pad",
             ("seed", "cells", "separations_nm", "contact"),

@@ -3,7 +3,7 @@
 A key that went without a successor is refused as every unknown key is: with the list of those accepted.
 """
 
-from mesoscale.inputs.definitions import BY_NAME
+from mesoscale.settings.definitions import BY_NAME
 from mesoscale.settings.inputs import FORMS
 
 RENAMED = {
@@ -41,9 +41,14 @@ REPLACED = {
     "contact.merge": "take mechanics: coupled, whose repulsion does not fall where asperities merge",
     **{f"contact.surface.{key}": "give `heights`" for key in ("moments", "skewness", "kurtosis")},
     "topography.method": "maximum likelihood; parameters.json has the paper's line fits, too",
-    "coupling": "see target model_form",
+    "coupling": "both mechanics were compared once (docs/contact.md)",
     "adhesion": "device/pad_switch.json has the adhesion of the pad",
+    "law": "d_c is where the first asperity touches, rho_a is the paper's 2 nm",
+    **dict.fromkeys(("uncertainty.surrogate", "uncertainty.response"), "responses are regressions of direct runs"),
+    "uncertainty.samples": "always 10,000",
+    "uncertainty.model_form_pairs": "both mechanics were compared once (docs/contact.md)",
     **{f"pad.{key}": "it follows from the switch" for key in ("max_pressure_MPa", "pilot_cells", "depths", "grid")},
+    "device.adhesion_scale": "it acted on the calibration alone; inputs.adhesion states the attraction",
     "pad.gap_cutoff_high_nm": "for another range of D0 than up to 0.3 nm give inputs.gap_cutoff",
 }
 FORMER_KEYS = {

@@ -25,7 +25,6 @@ from mesoscale.settings import (
     FailureSettings,
     HistorySettings,
     InputsSettings,
-    LawSettings,
     MeasurementsSettings,
     PadSettings,
     ResistanceSettings,
@@ -85,7 +84,6 @@ class Scene(Settings):
     elastic: ElasticSettings = ElasticSettings()
     topography: TopographySettings = TopographySettings()
     contact: ContactSettings = ContactSettings()
-    law: LawSettings = LawSettings()
     pad: PadSettings = PadSettings()
     uncertainty: UncertaintySettings = UncertaintySettings()
     device: DeviceSettings = DeviceSettings()

@@ -10,10 +10,10 @@ from collections.abc import Iterator, Mapping
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
 from mesoscale.errors import InputError
-from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.table import check_literature
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.contact import base_modulus
+from mesoscale.settings.definitions import BY_NAME
 from workflow.scene import ROOT, Scene
 from workflow.terminal.cost import history_s
 from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
@@ -81,10 +81,10 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
 
 def _stages(scene: Scene) -> Iterator[str]:
     uncertainty, needed = scene.uncertainty, 2 * len(scene.inputs.rows())
-    if uncertainty.response == "regression" and uncertainty.direct_runs < needed:
+    if uncertainty.direct_runs < needed:
         yield (
             f"uncertainty.direct_runs = {uncertainty.direct_runs}: a regression over {needed // 2} inputs needs at "
-            f"least {needed}; give more, or set uncertainty.response to polynomial"
+            f"least {needed}; give more"
         )
     if scene.history.cycles and scene.contact.model != "plastic":
         yield (

@@ -4,43 +4,34 @@ from typing import Annotated
 
 from pydantic import Field, field_validator
 
+from asperity.keys import key
 from atomistic.settings.base import Settings
 
 
 class NitrideGlassSettings(Settings):
     """Melt and quench of a small amorphous Si3N4 cell (Tersoff potential and soft cores)."""
 
-    formula_units: int = Field(default=4, ge=2, le=64, description="formula units of 7 atoms per cell")
-    quench_rate_K_ps: float = Field(
-        default=300, gt=0, le=5000, description="cooling rate", json_schema_extra={"unit": "K/ps"}
-    )
-    max_defects: int = Field(
-        default=0,
-        ge=0,
-        le=1000,
-        description="atoms of a quenched cell that may lack or exceed their valence; 3 of 28 are as many as in large "
+    formula_units: int = key(4, "formula units of 7 atoms per cell", "[2, 64]")
+    quench_rate_K_ps: float = key(300, "cooling rate", "(0, 5000] K/ps")
+    max_defects: int = key(
+        0,
+        "atoms of a quenched cell that may lack or exceed their valence; 3 of 28 are as many as in large "
         "melt-quenched models",
+        "[0, 1000]",
     )
 
 
 class DftSettings(Settings):
     """The density functional calculations (PySCF)."""
 
-    basis: str = Field(
-        default="gth-dzvp-molopt-sr", pattern=r"^gth-[a-z0-9-]{1,56}$", description="GTH basis set by PySCF's name"
+    basis: str = key("gth-dzvp-molopt-sr", "GTH basis set by PySCF's name", pattern=r"^gth-[a-z0-9-]{1,56}$")
+    cutoff_Ha: float = key(
+        100, "plane-wave cutoff of the density; at most 80 where forces are computed", "[20, 1000] hartree"
     )
-    cutoff_Ha: float = Field(
-        default=100,
-        ge=20,
-        le=1000,
-        description="plane-wave cutoff of the density; at most 80 where forces are computed",
-        json_schema_extra={"unit": "hartree"},
-    )
-    relaxation_steps: int = Field(
-        default=15,
-        ge=0,
-        le=500,
-        description="steps that the ions of a quenched glass may take to rest; 0 keeps the cheap potential's geometry",
+    relaxation_steps: int = key(
+        15,
+        "steps that the ions of a quenched glass may take to rest; 0 keeps the cheap potential's geometry",
+        "[0, 500]",
     )
 
     @property
@@ -52,32 +43,25 @@ class DftSettings(Settings):
 class ElasticSettings(Settings):
     """Effective modulus E* from density functional theory (docs/elastic.md)."""
 
-    material: str = Field(
-        default="silicon_nitride",
-        pattern=r"^[A-Za-z0-9_-]{1,60}$",
-        description="file in config/materials: the computed body",
+    material: str = key(
+        "silicon_nitride", "file in config/materials: the computed body", pattern=r"^[A-Za-z0-9_-]{1,60}$"
     )
-    counter_body: str = Field(
-        default="titanium",
-        pattern=r"^[A-Za-z0-9_-]{1,60}$",
-        description="file in config/materials: the other body, from experiment",
+    counter_body: str = key(
+        "titanium", "file in config/materials: the other body, from experiment", pattern=r"^[A-Za-z0-9_-]{1,60}$"
     )
-    structures: int = Field(default=8, ge=1, le=1000, description="glasses whose E(V) is computed with GGA")
-    lda_structures: int = Field(default=4, ge=0, le=1000, description="the first of them, also with LDA")
-    crystals: tuple[str, ...] = Field(
-        default=("beta",), description="crystals of the material scanned beside the glass, to anchor the engine"
+    structures: int = key(8, "glasses whose E(V) is computed with GGA", "[1, 1000]")
+    lda_structures: int = key(4, "the first of them, also with LDA", "[0, 1000]")
+    crystals: tuple[str, ...] = key(
+        ("beta",), "crystals of the material scanned beside the glass, to anchor the engine"
     )
-    strains: tuple[Annotated[float, Field(gt=-0.2, lt=0.2)], ...] = Field(
-        default=(-0.03, -0.015, 0.0, 0.015, 0.03),
-        min_length=5,
-        description="linear isotropic strains of an E(V) scan; at least five",
+    strains: tuple[Annotated[float, Field(gt=-0.2, lt=0.2)], ...] = key(
+        (-0.03, -0.015, 0.0, 0.015, 0.03), "linear isotropic strains of an E(V) scan; at least five", min_length=5
     )
-    poisson_ratio: tuple[float, float] = Field(
-        default=(0.15, 0.25),
-        description="range of the glass's Poisson ratio; the default is that of Kim et al. (2013)",
+    poisson_ratio: tuple[float, float] = key(
+        (0.15, 0.25), "range of the glass's Poisson ratio; the default is that of Kim et al. (2013)"
     )
-    samples: int = Field(default=20_000, ge=100, le=10_000_000, description="samples of E*")
-    seed: int = Field(default=1, ge=0, le=1_000_000, description="seed of the glasses and of the samples of E*")
+    samples: int = key(20_000, "samples of E*", "[100, 10_000_000]")
+    seed: int = key(1, "seed of the glasses and of the samples of E*", "[0, 1_000_000]")
     glass: NitrideGlassSettings = NitrideGlassSettings()
     dft: DftSettings = DftSettings()
 

@@ -4,116 +4,79 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from asperity.keys import key
 from atomistic.settings.base import Settings
 
 
 class GlassSettings(Settings):
     """Melt and quench of a periodic glass cell."""
 
-    atoms: int = Field(default=690, ge=100, le=2_000_000, description="atoms of the cell, about")
-    melt_ps: float = Field(default=8, gt=0, le=10_000, description="time in the melt", json_schema_extra={"unit": "ps"})
-    quench_rate_K_ps: float = Field(
-        default=50, gt=0, le=2000, description="cooling rate at zero pressure", json_schema_extra={"unit": "K/ps"}
-    )
-    rest_ps: float = Field(
-        default=4, gt=0, le=10_000, description="rest after the quench", json_schema_extra={"unit": "ps"}
-    )
+    atoms: int = key(690, "atoms of the cell, about", "[100, 2_000_000]")
+    melt_ps: float = key(8, "time in the melt", "(0, 10_000] ps")
+    quench_rate_K_ps: float = key(50, "cooling rate at zero pressure", "(0, 2000] K/ps")
+    rest_ps: float = key(4, "rest after the quench", "(0, 10_000] ps")
 
 
 class AsperitySettings(Settings):
     """One asperity, Z = min[A sin(2 pi x / lambda), A sin(2 pi y / lambda)] (Kim et al. 2013, eq. 6)."""
 
-    name: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9]{0,39}$", description="name in file names and tables")
-    tiles: int = Field(
-        ge=1,
-        le=40,
-        description="wavelength lambda in glass cells, so that nothing is strained",
-    )
-    amplitude_nm: float = Field(gt=0, le=10, description="amplitude A", json_schema_extra={"unit": "nm"})
-    film_nm: float | None = Field(
-        default=None,
-        ge=0,
-        le=100,
-        description="thickness of the oxide on hardness.base; 0: the base without oxide; null: oxide throughout",
-        json_schema_extra={"unit": "nm"},
+    name: str = key(..., "name in file names and tables", pattern=r"^[A-Za-z][A-Za-z0-9]{0,39}$")
+    tiles: int = key(..., "wavelength lambda in glass cells, so that nothing is strained", "[1, 40]")
+    amplitude_nm: float = key(..., "amplitude A", "(0, 10] nm")
+    film_nm: float | None = key(
+        None,
+        "thickness of the oxide on hardness.base; 0: the base without oxide; null: oxide throughout",
+        "[0, 100] nm",
     )
 
 
 class ClosingSettings(Settings):
     """Closing of an asperity against a rigid flat, frictionless and repulsive."""
 
-    speed_m_s: float = Field(default=50, gt=0, le=1000, description="closing speed", json_schema_extra={"unit": "m/s"})
-    depth_over_amplitude: float = Field(
-        default=2.2,
-        gt=0,
-        le=4,
-        description="largest travel below the highest atom, in amplitudes",
+    speed_m_s: float = key(50, "closing speed", "(0, 1000] m/s")
+    depth_over_amplitude: float = key(2.2, "largest travel below the highest atom, in amplitudes", "(0, 4]")
+    stop: Literal["settled", "window"] = key(
+        "settled",
+        "settled: a run ends once the mean stress of its plateau is known to 4 %; window: it ends where the "
+        "contact takes up half of the cell",
     )
-    stop: Literal["settled", "window"] = Field(
-        default="settled",
-        description="settled: a run ends once the mean stress of its plateau is known to 4 %; "
-        "window: it ends where the contact takes up half of the cell",
+    base_nm: float = key(
+        2.6, "least thickness below the mean height; always at least the width of the largest contact", "[1, 100] nm"
     )
-    base_nm: float = Field(
-        default=2.6,
-        ge=1,
-        le=100,
-        description="least thickness below the mean height; always at least the width of the largest contact",
-        json_schema_extra={"unit": "nm"},
-    )
-    anneal_ps: float = Field(
-        default=5,
-        gt=0,
-        le=10_000,
-        description="time of the anneal of the cut surface and again of its cooling",
-        json_schema_extra={"unit": "ps"},
-    )
-    processes: int = Field(
-        default=1,
-        ge=1,
-        le=4096,
-        description="MPI processes of one closing run, started as docs/cluster.md says",
-    )
+    anneal_ps: float = key(5, "time of the anneal of the cut surface and again of its cooling", "(0, 10_000] ps")
+    processes: int = key(1, "MPI processes of one closing run, started as docs/cluster.md says", "[1, 4096]")
 
 
 class FitSettings(Settings):
     """Fit of H(A) = H_macro + H' A^-0.25."""
 
-    h_macro_GPa: tuple[float, float] = Field(
-        default=(0.7, 3.2),
-        description="range of H_macro, from which H' follows (default: Kim et al. 2013, Table 1)",
-        json_schema_extra={"unit": "GPa"},
+    h_macro_GPa: tuple[float, float] = key(
+        (0.7, 3.2), "range of H_macro, from which H' follows (default: Kim et al. 2013, Table 1)", "GPa"
     )
 
 
 class HardnessSettings(Settings):
     """Size-dependent hardness from molecular dynamics (docs/hardness.md)."""
 
-    potential: str = Field(default="pmmcs", description="name of a file in config/potentials, or a path")
-    material: str = Field(
-        default="SiO2", description="oxide of the asperity: formula of a file in config/materials with an oxide_glass"
+    potential: str = key("pmmcs", "name of a file in config/potentials, or a path")
+    material: str = key("SiO2", "oxide of the asperity: formula of a file in config/materials with an oxide_glass")
+    base: str | None = key(
+        None,
+        "body below the films of asperities with a film_nm: titanium, silicon_nitride, or another file in "
+        "config/materials with a film_base",
     )
-    base: str | None = Field(
-        default=None,
-        description="body below the films of asperities with a film_nm: titanium, silicon_nitride, or another file "
-        "in config/materials with a film_base",
+    energy_scales: tuple[Annotated[float, Field(gt=0, le=2)], ...] = key(
+        (1.0, 0.5), "factors on all energies; 0.5 is the model-form twin", min_length=1
     )
-    energy_scales: tuple[Annotated[float, Field(gt=0, le=2)], ...] = Field(
-        default=(1.0, 0.5),
-        min_length=1,
-        description="factors on all energies; 0.5 is the model-form twin",
-    )
-    seeds: tuple[Annotated[int, Field(ge=0, le=1_000_000)], ...] = Field(
-        default=(1, 2), min_length=1, description="seeds of the glasses"
-    )
-    asperities: tuple[AsperitySettings, ...] = Field(
-        default=(
+    seeds: tuple[Annotated[int, Field(ge=0, le=1_000_000)], ...] = key((1, 2), "seeds of the glasses", min_length=1)
+    asperities: tuple[AsperitySettings, ...] = key(
+        (
             AsperitySettings(name="small", tiles=2, amplitude_nm=0.43),
             AsperitySettings(name="medium", tiles=3, amplitude_nm=0.64),
             AsperitySettings(name="large", tiles=4, amplitude_nm=0.86),
         ),
+        "asperities to close",
         min_length=1,
-        description="asperities to close",
     )
     glass: GlassSettings = GlassSettings()
     closing: ClosingSettings = ClosingSettings()

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from evidence.contact.draws import MIDDLE
-from mesoscale.contact.accuracy import accuracy_points
 from mesoscale.settings import ContactSettings
+from mesoscale.studies.contact_accuracy import accuracy_points
 
 SETTINGS = {
     "asperity": ContactSettings(attraction="clamped"),

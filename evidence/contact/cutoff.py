@@ -16,8 +16,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from evidence.contact.draws import MIDDLE
-from mesoscale.settings import ContactSettings, LawSettings
-from mesoscale.uncertainty.model_form import QUANTITIES, quantities
+from mesoscale.contact.energy import opening_stiffness, pull_off
+from mesoscale.law.branches import fit_cycle
+from mesoscale.law.parameters import OUTPUTS
+from mesoscale.settings import ContactSettings
 from mesoscale.uncertainty.runs import compute
 
 INPUTS = {
@@ -25,7 +27,7 @@ INPUTS = {
     "hurst 0.46": replace(MIDDLE, hurst=0.46),
     "scans": replace(MIDDLE, hurst=0.42, rms=5.5),  # the synthetic scans of scene `reduced`
 }
-NAMES = tuple(quantity.name for quantity in QUANTITIES)
+NAMES = (*OUTPUTS, "pull_off_nN", "opening_stiffness_nN_nm")
 LARGEST_ERROR = 0.02  # of an output (of d_c and its change: in RMS heights), by which a grid is judged
 SHARE_OF_SCATTER = 0.2  # or, where that is more, this share of the deviation between surfaces
 
@@ -70,7 +72,9 @@ def _cycle(case: Case, seed: int) -> dict[str, Any]:
     cycle = compute(
         asdict(INPUTS[case.inputs]), seed, settings.model_copy(update={"max_force_nN": force, "attraction": "clamped"})
     )
-    values = np.full(len(NAMES), np.nan) if isinstance(cycle, str) else quantities(cycle, LawSettings())
+    values = np.full(len(NAMES), np.nan)
+    if not isinstance(cycle, str):
+        values = np.append(fit_cycle(cycle).outputs, [pull_off(cycle.opening), opening_stiffness(cycle.opening)])
     return {**case._asdict(), "seed": seed, **dict(zip(NAMES, values.tolist(), strict=True))}
 
 

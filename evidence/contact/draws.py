@@ -1,9 +1,9 @@
 """Does every contact that can be drawn from Table 1 close, settle and keep the laws of physics?
 
 Each draw is closed and opened by both engines on grids of the same cell of 1 um^2, and judged by the invariants of
-`mesoscale.contact.stability`. Coupled plastic surfaces are closed twice: the second cycle must be elastic, but for the
-jumps that it reports. Adhesive ones have cells of 0.16 um^2, whose sites their attraction allows, and a D0 as tops of
-atoms have it. Rows that the table has are not run again.
+`mesoscale.studies.contact_stability`. Coupled plastic surfaces are closed twice: the second cycle must be elastic, but
+for the jumps that it reports. Adhesive ones have cells of 0.16 um^2, whose sites their attraction allows, and a D0 as
+tops of atoms have it. Rows that the table has are not run again.
 """
 
 import argparse
@@ -20,9 +20,9 @@ from evidence.record import load
 from mesoscale.contact import ContactInputs, run_cycle
 from mesoscale.contact.energy import dissipated_energy, work
 from mesoscale.contact.numerics import NUMERICS, Numerics
-from mesoscale.contact.stability import FINER, violations
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
+from mesoscale.studies.contact_stability import FINER, violations
 
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
 """The paper's mean inputs."""

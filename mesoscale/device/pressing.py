@@ -34,7 +34,7 @@ class LargestPressure:
 
 def pressing(settings: DeviceSettings) -> DeviceSettings:
     """The switch that a pad is computed for, without what does not press."""
-    return settings.model_copy(update={"tilt_nm": 0.0, "adhesion_scale": 1.0, "spread": EXACT})
+    return settings.model_copy(update={"tilt_nm": 0.0, "spread": EXACT})
 
 
 def pressure_to_compute(settings: DeviceSettings) -> LargestPressure:

@@ -5,14 +5,14 @@ from dataclasses import dataclass, fields
 
 from mesoscale.checks import check_number
 from mesoscale.errors import InputError
-from mesoscale.inputs.definitions import BY_NAME, RMS_SCATTER, definition
 from mesoscale.inputs.hardness import HardnessLaw
 from mesoscale.settings import ContactSettings
+from mesoscale.settings.definitions import BY_NAME, RMS_SCATTER, definition
 
 
 @dataclass(frozen=True)
 class ContactInputs:
-    """The seven inputs of Table 1, and a film; their accepted ranges stand in `mesoscale.inputs.definitions`.
+    """The seven inputs of Table 1, and a film; their accepted ranges stand in `mesoscale.settings.definitions`.
 
     Attributes
     ----------

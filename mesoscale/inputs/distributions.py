@@ -9,9 +9,6 @@ from mesoscale.errors import InputError
 
 Array = NDArray[np.float64]
 
-CENTRAL_SHARE = 0.999
-"""Central share of an unbounded distribution that responses and nodes span."""
-
 
 @dataclass(frozen=True)
 class Distribution:
@@ -50,7 +47,7 @@ class Distribution:
         below, above = ndtr((self.low - self.a) / self.b), ndtr((self.high - self.a) / self.b)
         return np.clip(self.a + self.b * ndtri(below + p * (above - below)), self.low, self.high)
 
-    def span(self, central_share: float = CENTRAL_SHARE) -> tuple[float, float]:
+    def span(self, central_share: float = 0.999) -> tuple[float, float]:
         """Ends of the range that responses cover.
 
         All of a bounded distribution; the central share of an unbounded one.

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
-from mesoscale.inputs.definitions import BY_NAME, RMS_SCATTER
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput, correlation_matrix
 from mesoscale.settings import TABLE_1, DistributionRow, InputRow, InputsSettings
 from mesoscale.settings.contact import AttractionLaw
+from mesoscale.settings.definitions import BY_NAME, RMS_SCATTER
 from mesoscale.tables import foreign_table
 
 NUMBERS = ("a", "b", "low", "high")

@@ -13,7 +13,6 @@ from mesoscale.law.compact import Law
 from mesoscale.law.fit import LawFit, contact_separation, fit_branch, row_of
 from mesoscale.law.parameters import PARAMETERS
 from mesoscale.law.wells import well_row
-from mesoscale.settings import LawSettings
 
 Array = NDArray[np.float64]
 
@@ -44,7 +43,7 @@ class Outcome:
 NO_FIT = LawFit(np.nan, np.nan, np.nan, np.nan, status="no_curve")
 
 
-def fit_cycle(cycle: Cycle, settings: LawSettings) -> Outcome:
+def fit_cycle(cycle: Cycle) -> Outcome:
     """The law fitted to both branches of a cycle."""
     fits = [
         fit_curve(
@@ -54,33 +53,29 @@ def fit_cycle(cycle: Cycle, settings: LawSettings) -> Outcome:
             cycle.cell_area_nm2,
             cycle.inputs.hamaker,
             touch,
-            settings,
         )
         for branch, touch in ((cycle.closing, cycle.first_contact_nm), (cycle.opening, cycle.last_contact_nm))
     ]
     return Outcome(fits[0], fits[1], "ok" if cycle.converged else "unconverged")
 
 
-def laws_of(cycle: Cycle, settings: LawSettings | None = None) -> tuple[Law, Law]:
+def laws_of(cycle: Cycle) -> tuple[Law, Law]:
     """The force-separation laws of closing and opening, ready for `pressure`, `force` and a switch.
 
     Raises
     ------
     InputError : a branch does not determine its law; the message says why.
     """
-    settings = settings or LawSettings()
-    outcome = fit_cycle(cycle, settings)
+    outcome = fit_cycle(cycle)
     for branch, fit in (("closing", outcome.closing), ("opening", outcome.opening)):
         if not np.isfinite(fit.parameters).all():
-            raise InputError(f"law of {branch}: {fit.status}; choose a larger force or another definition of contact")
-    closing, opening = (law_of_fit(fit, cycle.inputs.hamaker, settings) for fit in (outcome.closing, outcome.opening))
-    return closing, opening
+            raise InputError(f"law of {branch}: {fit.status}; choose a larger force")
+    return law_of_fit(outcome.closing, cycle.inputs.hamaker), law_of_fit(outcome.opening, cycle.inputs.hamaker)
 
 
-def law_of_fit(fit: LawFit, hamaker: float, settings: LawSettings) -> Law:
+def law_of_fit(fit: LawFit, hamaker: float) -> Law:
     """The law with the four numbers of a fit; Hamaker constant in 1e-18 J."""
-    values = dict(zip(PARAMETERS, fit.parameters.tolist(), strict=True))
-    return Law(**values, hamaker=hamaker, rho_a_nm=settings.rho_a_nm, shield_nm=settings.shield_nm)
+    return Law(**dict(zip(PARAMETERS, fit.parameters.tolist(), strict=True)), hamaker=hamaker)
 
 
 def fit_curve(
@@ -90,13 +85,10 @@ def fit_curve(
     cell_area_nm2: float,
     hamaker: float,
     touch_nm: float | None,
-    settings: LawSettings,
 ) -> LawFit:
-    """The law fitted to one branch, d_c taken from the curve as the settings define it."""
-    d_c = None
-    if settings.contact_definition != "free_fit":
-        d_c = contact_separation(separation_nm, repulsive_nN, settings, touch_nm)
-    return fit_branch(separation_nm, repulsive_nN, attractive_nN, cell_area_nm2, hamaker, d_c, settings)
+    """The law fitted to one branch; d_c is the exact separation of first (last) contact where it is known."""
+    d_c = contact_separation(separation_nm, repulsive_nN, touch_nm)
+    return fit_branch(separation_nm, repulsive_nN, attractive_nN, cell_area_nm2, hamaker, d_c)
 
 
 @dataclass(frozen=True)
@@ -121,10 +113,11 @@ class StoredFit:
         """Columns of the tables in law/."""
         return {"branch": self.branch, **row_of(self.fit), "curve_status": self.curve_status}
 
-    def well_row(self, settings: LawSettings) -> dict[str, Any]:
+    @property
+    def well_row(self) -> dict[str, Any]:
         """Columns of law/wells.csv."""
         known = np.isfinite(self.fit.parameters).all()
-        law = law_of_fit(self.fit, self.hamaker, settings) if known else None
+        law = law_of_fit(self.fit, self.hamaker) if known else None
         return {"branch": self.branch, **well_row(law, self.curve)}
 
 
@@ -133,7 +126,6 @@ def fit_stored(
     name: str,
     attributes: Mapping[str, Any],
     cell_area_nm2: float,
-    settings: LawSettings,
 ) -> Iterator[StoredFit]:
     """The law fitted to both branches of a stored curve.
 
@@ -148,7 +140,7 @@ def fit_stored(
             curve = curves[f"{name}/{branch}"]
             forces = curve["repulsive_nN"], curve["attractive_nN"]
             hamaker, touched = float(attributes["hamaker"]), attributes.get(touch)
-            fit = fit_curve(curve["separation_nm"], *forces, cell_area_nm2, hamaker, touched, settings)
+            fit = fit_curve(curve["separation_nm"], *forces, cell_area_nm2, hamaker, touched)
             order = np.argsort(curve["separation_nm"], kind="stable")
             repulsive, attractive = (force[order] / cell_area_nm2 for force in forces)
             pressures = (curve["separation_nm"][order], repulsive, attractive)

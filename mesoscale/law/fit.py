@@ -14,22 +14,35 @@ from numpy.typing import ArrayLike, NDArray
 
 from mesoscale.checks import checked_array
 from mesoscale.errors import InputError
-from mesoscale.law.compact import shielded_hamaker
+from mesoscale.law.compact import Law, shielded_hamaker
 from mesoscale.law.parameters import PARAMETERS
-from mesoscale.settings import LawSettings
 
 Array = NDArray[np.float64]
 
-POINTS = 200
-"""Even points in separation that a branch is resampled to."""
-FEWEST_POINTS = 4
-"""Of the curve in contact: two parameters and an error."""
-SHALLOWEST, DEEPEST = 0.2, 200.0
-"""Window over rho_r: a shallower one shows a straight line, a deeper one a step."""
-LARGEST_ERROR = 1.0
-"""Relative error of C_r and rho_r from which on they are not identified."""
-LARGEST_RESIDUAL = 0.15
-"""Misfit over the largest repulsion from which on a fit is called poor."""
+
+@dataclass(frozen=True)
+class FitNumerics:
+    """Choices of the fit; no scene sets them.
+
+    Attributes
+    ----------
+    points : even points in separation that a branch is resampled to.
+    fewest_points : of the curve in contact: two parameters and an error.
+    shallowest, deepest : window over rho_r: a shallower one shows a straight line, a deeper one a step.
+    largest_error : relative error of C_r and rho_r from which on they are not identified.
+    largest_residual : misfit over the largest repulsion from which on a fit is called poor.
+    """
+
+    points: int = 200
+    fewest_points: int = 4
+    shallowest: float = 0.2
+    deepest: float = 200.0
+    largest_error: float = 1.0
+    largest_residual: float = 0.15
+
+
+FIT = FitNumerics()
+"""What every fit uses."""
 
 
 @dataclass(frozen=True)
@@ -58,38 +71,41 @@ class LawFit:
         return np.array([getattr(self, name) for name in PARAMETERS])
 
 
-def contact_separation(
-    separation_nm: Array, repulsive_nN: Array, settings: LawSettings, first_contact_nm: float | None = None
-) -> float:
-    """The separation d_c at initial contact (for an opening branch: at last contact), NaN without contact.
+def contact_separation(separation_nm: Array, repulsive_nN: Array, touch_nm: float | None = None) -> float:
+    """The separation d_c where the first asperity touches (of an opening branch: the last one), NaN without contact.
+
+    It is an extreme value of the surface, which grows with the sample area.
 
     Parameters
     ----------
     separation_nm, repulsive_nN : one branch in any order, shape (n,).
-    first_contact_nm : the engine's exact separation of first contact, if it is known for this branch.
-
-    Notes
-    -----
-    `first_contact`: where the first (last) asperity touches; an extreme value of the surface, which grows
-    with the sample area. `force_fraction`: where the repulsion reaches a fraction of its maximum, linear
-    between points; less noisy, smaller by about rho_r ln(...). `free_fit` needs `fit_branch`.
+    touch_nm : the engine's exact value, if it is known for this branch; else that of the nearest point outside.
     """
     order = np.argsort(separation_nm)[::-1]
     h, f = np.asarray(separation_nm, float)[order], np.asarray(repulsive_nN, float)[order]
     touching = np.flatnonzero(f > 0)
     if touching.size == 0:
         return np.nan
-    first = touching[0]
-    if settings.contact_definition == "force_fraction":
-        target = settings.force_fraction * f.max()
-        index = int(np.flatnonzero(f >= target)[0])
-        if index == 0:
-            return float(h[0])
-        share = (target - f[index - 1]) / (f[index] - f[index - 1])
-        return float(h[index - 1] + share * (h[index] - h[index - 1]))
-    if first_contact_nm is not None and np.isfinite(first_contact_nm):
-        return float(first_contact_nm)
-    return float(h[first - 1] if first > 0 else h[first])
+    if touch_nm is not None and np.isfinite(touch_nm):
+        return float(touch_nm)
+    return float(h[max(touching[0] - 1, 0)])
+
+
+def separation_at_share(separation_nm: Array, repulsive_nN: Array, share: float) -> float:
+    """The separation where the repulsion reaches a share of its maximum, linear between points; NaN without contact.
+
+    Unlike first contact it depends on how the curve was computed. It is smaller by about rho_r ln(...).
+    """
+    order = np.argsort(separation_nm)[::-1]
+    h, f = np.asarray(separation_nm, float)[order], np.asarray(repulsive_nN, float)[order]
+    if not (f > 0).any():
+        return np.nan
+    target = share * f.max()
+    index = int(np.flatnonzero(f >= target)[0])
+    if index == 0:
+        return float(h[0])
+    between = (target - f[index - 1]) / (f[index] - f[index - 1])
+    return float(h[index - 1] + between * (h[index] - h[index - 1]))
 
 
 def fit_branch(
@@ -99,7 +115,6 @@ def fit_branch(
     cell_area_nm2: float,
     hamaker: float,
     d_c_nm: float | None = None,
-    settings: LawSettings | None = None,
 ) -> LawFit:
     """Fit the law to one branch of a force-separation curve.
 
@@ -113,8 +128,7 @@ def fit_branch(
     separation_nm, repulsive_nN, attractive_nN : the branch, shape (n,), any order; attraction negative.
     cell_area_nm2 : area of the cell.
     hamaker : Hamaker constant (1e-18 J).
-    d_c_nm : separation at contact; None takes it from the curve by `settings.contact_definition`.
-    settings : what d_c is, and rho_a.
+    d_c_nm : separation at contact; None takes it from the curve (`contact_separation`).
 
     Returns
     -------
@@ -125,7 +139,6 @@ def fit_branch(
     ------
     InputError : arrays of unequal length or not finite.
     """
-    settings = settings or LawSettings()
     named = (("separation_nm", separation_nm), ("repulsive_nN", repulsive_nN), ("attractive_nN", attractive_nN))
     h, repulsive, attractive = (checked_array(f"law fit: {name}", x, name.rpartition("_")[2]) for name, x in named)
     if not (h.ndim == 1 and h.shape == repulsive.shape == attractive.shape):
@@ -136,23 +149,21 @@ def fit_branch(
     order = np.argsort(h, kind="stable")
     h, repulsive, attractive = h[order], repulsive[order] / cell_area_nm2, attractive[order] / cell_area_nm2
 
-    if d_c_nm is None and settings.contact_definition == "free_fit":
-        d_c_nm = _free_contact_separation(h, repulsive, attractive, hamaker, settings)
-    elif d_c_nm is None:
-        d_c_nm = contact_separation(h, repulsive, settings)
+    if d_c_nm is None:
+        d_c_nm = contact_separation(h, repulsive)
     if not np.isfinite(d_c_nm) or repulsive.max(initial=0.0) <= 0:
         return LawFit(np.nan, np.nan, np.nan, np.nan, status="no_contact")
     inside = (h < d_c_nm) & (repulsive > 0)
-    if inside.sum() < FEWEST_POINTS:
+    if inside.sum() < FIT.fewest_points:
         return LawFit(d_c_nm, np.nan, np.nan, np.nan, status="few_points")
     scale = repulsive.max()
 
-    C_a, C_a_var, misfit_a = _fit_attraction(h, attractive, d_c_nm, hamaker, settings)
-    h_r = np.linspace(h.min(), d_c_nm, POINTS, endpoint=False)
+    C_a, C_a_var, misfit_a = _fit_attraction(h, attractive, d_c_nm, hamaker)
+    h_r = np.linspace(h.min(), d_c_nm, FIT.points, endpoint=False)
     depth, f_r = d_c_nm - h_r, np.interp(h_r, h, repulsive)
     rho, at_bound = _best_rho(depth, f_r)
     C_r = float(_prefactor(depth, f_r, np.array([rho]))[0][0])
-    covariance = _covariance(depth, f_r, C_r, rho, C_a_var, points=min(int(inside.sum()), POINTS))
+    covariance = _covariance(depth, f_r, C_r, rho, C_a_var, points=min(int(inside.sum()), FIT.points))
     residual = float(np.sqrt(np.mean((f_r - C_r * np.expm1(depth / rho)) ** 2) + misfit_a**2) / scale)
 
     fit = LawFit(float(d_c_nm), C_a, C_r, rho, covariance, residual)
@@ -160,9 +171,9 @@ def fit_branch(
         why = "the curve is a straight line, only C_r/rho_r is determined" if at_bound > 0 else "a step at the end"
         return _without_repulsion(fit, f"not_identifiable: {why}")
     relative_error = np.sqrt(np.diag(covariance)[1:]) / np.array([C_r, rho])
-    if not np.all(relative_error < LARGEST_ERROR):
+    if not np.all(relative_error < FIT.largest_error):
         return _without_repulsion(fit, "not_identifiable: relative error of C_r or rho_r above the gate")
-    if residual > LARGEST_RESIDUAL:
+    if residual > FIT.largest_residual:
         return replace(fit, status="poor_fit")
     return fit
 
@@ -171,20 +182,18 @@ def _without_repulsion(fit: LawFit, status: str) -> LawFit:
     return replace(fit, C_r_GPa=np.nan, rho_r_nm=np.nan, status=status)
 
 
-def _fit_attraction(
-    h: Array, attractive: Array, d_c: float, hamaker: float, settings: LawSettings
-) -> tuple[float, float, float]:
+def _fit_attraction(h: Array, attractive: Array, d_c: float, hamaker: float) -> tuple[float, float, float]:
     """C_a (GPa/nm), its variance and the rms misfit (GPa); NaN without a point below the kink."""
-    kink = d_c + settings.rho_a_nm
+    kink = d_c + Law.rho_a_nm
     top = min(kink, h.max())
     if top <= h.min():
         return np.nan, np.nan, 0.0
-    grid = np.linspace(h.min(), top, POINTS)
-    excess = shielded_hamaker(grid, hamaker, settings.shield_nm) - np.interp(grid, h, attractive)
+    grid = np.linspace(h.min(), top, FIT.points)
+    excess = shielded_hamaker(grid, hamaker, Law.shield_nm) - np.interp(grid, h, attractive)
     arm = np.maximum(kink - grid, 0.0)
     C_a = float(arm @ excess / (arm @ arm))
     misfit = excess - C_a * arm
-    points = max(2, min(POINTS, int((h <= top).sum())))
+    points = max(2, min(FIT.points, int((h <= top).sum())))
     variance = float(np.mean(misfit**2) * len(grid) / (points - 1) / (arm @ arm))
     return C_a, variance, float(np.sqrt(np.mean(misfit**2)))
 
@@ -203,7 +212,7 @@ def _prefactor(depth: Array, f: Array, rho: Array) -> tuple[Array, Array]:
 def _best_rho(depth: Array, f: Array) -> tuple[float, int]:
     """rho_r of least misfit, and -1 or +1 if it lies at the lower or upper end of the accepted range."""
     span = depth.max()
-    low, high = np.log(span / DEEPEST), np.log(span / SHALLOWEST)
+    low, high = np.log(span / FIT.deepest), np.log(span / FIT.shallowest)
     grid = np.linspace(low, high, 48)
     misfit = _prefactor(depth, f, np.exp(grid))[1]
     best = int(np.argmin(misfit))
@@ -232,36 +241,6 @@ def _covariance(depth: Array, f: Array, C_r: float, rho: float, C_a_var: float, 
     inverse = np.linalg.pinv((jacobian / norms).T @ (jacobian / norms))
     covariance[1:, 1:] = variance * inverse / np.outer(norms, norms)
     return covariance
-
-
-def _free_contact_separation(
-    h: Array, repulsive: Array, attractive: Array, hamaker: float, settings: LawSettings
-) -> float:
-    """d_c as a fit parameter shared by both forces: least total misfit, between mid-curve and first contact.
-
-    The attraction's kink at d_c + rho_a is what breaks the degeneracy of the repulsion.
-    """
-    touching = h[repulsive > 0]
-    if touching.size < FEWEST_POINTS:
-        return np.nan
-    left, right = float(touching.min()) + 1e-3 * float(np.ptp(touching)), float(touching.max())
-
-    def total_misfit(d_c: float) -> float:
-        _, _, misfit_a = _fit_attraction(h, attractive, d_c, hamaker, settings)
-        # the same window for every trial d_c, else the shortest window wins
-        grid = np.linspace(h.min(), touching.max(), POINTS)
-        f = np.interp(grid, h, repulsive)
-        depth = np.maximum(d_c - grid, 0.0)
-        rho, _ = _best_rho(depth, f)
-        misfit_r = _prefactor(depth, f, np.array([rho]))[1][0] / len(grid)
-        return misfit_r + misfit_a**2
-
-    trials = np.linspace(left, right, 25)
-    for _ in range(3):
-        values = [total_misfit(d_c) for d_c in trials]
-        k = int(np.argmin(values))
-        trials = np.linspace(trials[max(k - 1, 0)], trials[min(k + 1, len(trials) - 1)], 11)
-    return float(trials[5])
 
 
 def row_of(fit: LawFit) -> dict[str, Any]:

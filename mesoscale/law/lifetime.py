@@ -10,7 +10,7 @@ from mesoscale.contact.history import HeldCycle, follow, hardness_factor
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.branches import fit_cycle
 from mesoscale.law.parameters import PARAMETERS
-from mesoscale.settings import ContactSettings, HistorySettings, LawSettings
+from mesoscale.settings import ContactSettings, HistorySettings
 from mesoscale.settings.contact import NOMINAL_SEED
 
 
@@ -36,10 +36,10 @@ def shown_cycles(settings: HistorySettings) -> set[int]:
     return {1, min(2, settings.cycles), *np.geomspace(1, settings.cycles, 5).round().astype(int).tolist()}
 
 
-def cycle_row(seed: int, held: HeldCycle, law: LawSettings) -> dict[str, Any]:
+def cycle_row(seed: int, held: HeldCycle) -> dict[str, Any]:
     """Row of history/cycles.csv: the cycle, and the law of its opening."""
     cycle = held.cycle
-    opening = fit_cycle(cycle, law).opening
+    opening = fit_cycle(cycle).opening
     return {
         "seed": seed,
         "cycle": held.number,

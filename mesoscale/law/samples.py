@@ -13,8 +13,6 @@ from mesoscale.law.parameters import BRANCHES, PARAMETERS
 Array = NDArray[np.float64]
 
 QUANTILES = {"pressure_q05_GPa": 0.05, "pressure_q50_GPa": 0.5, "pressure_q95_GPa": 0.95}
-MOST_SAMPLES = 4000
-"""Samples of the law that are taken: quantiles are then known to 1 % in probability."""
 SAMPLED = (*PARAMETERS, "hamaker")  # what differs between samples; the lengths rho_a and shield are fixed
 
 
@@ -29,29 +27,22 @@ def onset_nm(law: Law) -> Array:
     return np.asarray(law.d_c_nm, dtype=float) + law.rho_a_nm
 
 
-def scale_adhesion(law: Law, factor: float) -> Law:
-    """The law with both attractive terms multiplied by `factor`; 0 leaves the repulsion alone."""
-    return replace(law, hamaker=np.asarray(law.hamaker) * factor, C_a_GPa_nm=np.asarray(law.C_a_GPa_nm) * factor)
-
-
 def column(law: Law) -> Law:
     """Samples as column vectors, ready to meet rows of separations."""
     return _map(law, lambda value: value[:, None] if value.ndim == 1 else value)
 
 
-def law_from_columns(columns: Mapping[str, Any], branch: str, rho_a_nm: float, shield_nm: float) -> Law:
+def law_from_columns(columns: Mapping[str, Any], branch: str) -> Law:
     """Law of one branch from columns named `<branch>_<parameter>` and `hamaker`."""
-    values = {name: np.asarray(columns[f"{branch}_{name}"], dtype=float) for name in PARAMETERS}
-    return Law(**values, hamaker=np.asarray(columns["hamaker"], dtype=float), rho_a_nm=rho_a_nm, shield_nm=shield_nm)
+    d_c, C_a, C_r, rho_r = (np.asarray(columns[f"{branch}_{name}"], dtype=float) for name in PARAMETERS)
+    return Law(d_c, C_a, C_r, rho_r, np.asarray(columns["hamaker"], dtype=float))
 
 
 def _map(law: Law, function: Callable[[Array], Array]) -> Law:
     return replace(law, **{name: function(np.asarray(getattr(law, name), float)) for name in SAMPLED})
 
 
-def band_rows(
-    columns: Mapping[str, Array], rho_a_nm: float, shield_nm: float, points: int = 301
-) -> Iterator[dict[str, Any]]:
+def band_rows(columns: Mapping[str, Array], points: int = 301) -> Iterator[dict[str, Any]]:
     """Rows of uq/law.csv: the pressure over samples of the law, branch by branch.
 
     Parameters
@@ -59,14 +50,16 @@ def band_rows(
     columns : of uq/samples.csv, shape (samples,) each; samples without a positive C_r and rho_r are left out.
     """
     for branch in BRANCHES:
-        law = law_from_columns(columns, branch, rho_a_nm, shield_nm)
+        law = law_from_columns(columns, branch)
         usable = np.logical_and.reduce([np.isfinite(getattr(law, name)) for name in SAMPLED])
         usable &= (np.asarray(law.C_r_GPa) > 0) & (np.asarray(law.rho_r_nm) > 0)
-        law = _map(law, lambda value, usable=usable: value[usable][:MOST_SAMPLES])
+        law = _map(
+            law, lambda value, usable=usable: value[usable][:4000]
+        )  # quantiles are then known to 1 % in probability
         if not usable.any():
             continue
         touch, decay = (float(np.median(getattr(law, name))) for name in ("d_c_nm", "rho_r_nm"))
-        gaps = np.linspace(max(touch - 8.0 * decay, 0.0), touch + rho_a_nm + 8.0 * decay, points)
+        gaps = np.linspace(max(touch - 8.0 * decay, 0.0), touch + law.rho_a_nm + 8.0 * decay, points)
         many = column(law)
         for gap in gaps:
             spread = np.quantile(pressure_GPa(np.array([gap]), many), list(QUANTILES.values()))

@@ -17,8 +17,6 @@ Array = NDArray[np.float64]
 
 MOST_MISSED = 0.25
 """Relative distance of the law's well depth from the curve's beyond which the law misses it."""
-POINTS = 2000
-"""Separations at which the law's well is sought: 40 nm in steps of 0.02 nm, a hundredth of rho_a."""
 MICRO = 1e6
 """GPa to kPa, and GPa nm, which is J/m^2, to uJ/m^2."""
 
@@ -50,7 +48,7 @@ def well_of(separation_nm: Array, net_GPa: Array) -> Well:
 
 def well_of_law(law: Law, low_nm: float, high_nm: float) -> Well:
     """The well of a law between two separations, its two kinks among the points."""
-    at = np.linspace(low_nm, high_nm, POINTS)
+    at = np.linspace(low_nm, high_nm, 2000)  # 40 nm in steps of 0.02 nm, a hundredth of rho_a
     kinks = np.array([float(np.asarray(law.d_c_nm)), float(np.asarray(law.d_c_nm)) + law.rho_a_nm])
     at = np.unique(np.concatenate([at, kinks[(kinks > low_nm) & (kinks < high_nm)]]))
     attractive, repulsive = pressure(at, law)

@@ -6,7 +6,6 @@ from mesoscale.settings.device import DeviceSettings
 from mesoscale.settings.failure import FailureSettings
 from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import TABLE_1, Correlation, DistributionRow, InputRow, InputsSettings
-from mesoscale.settings.law import LawSettings
 from mesoscale.settings.measurements import MeasurementsSettings, MeasurementTable
 from mesoscale.settings.pad import PadSettings
 from mesoscale.settings.resistance import ResistanceSettings
@@ -24,7 +23,6 @@ __all__ = [
     "InputRow",
     "InputsSettings",
     "InstrumentSettings",
-    "LawSettings",
     "MeasurementTable",
     "MeasurementsSettings",
     "PadSettings",

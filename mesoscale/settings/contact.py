@@ -4,8 +4,9 @@ import math
 from collections.abc import Sequence
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
+from asperity.keys import key
 from mesoscale.settings.base import Settings
 from mesoscale.settings.surface import SurfaceSettings
 
@@ -25,41 +26,29 @@ NOMINAL_LOADS_NN = (1e3, 3e3, 7e3, 1e4, 2e4, 5e4)
 class ReadingSettings(Settings):
     """What the paper leaves open; the defaults come nearest to its Tables 2 and 3, and physics would choose them."""
 
-    convention: Literal["profile", "areal"] = Field(
-        default="areal",
-        description="slope of the two-dimensional PSD: -(2H+1), as the paper prints it, or -(2H+2), an isotropic "
-        "surface's",
+    convention: Literal["profile", "areal"] = key(
+        "areal", "slope of the two-dimensional PSD: -(2H+1), as the paper prints it, or -(2H+2), an isotropic surface's"
     )
-    prefactor: Literal["paper", "hertz"] = Field(
-        default="hertz", description="p of eq. 3: 2/3 as printed, or Hertz's 4/3"
+    prefactor: Literal["paper", "hertz"] = key("hertz", "p of eq. 3: 2/3 as printed, or Hertz's 4/3")
+    radius: Literal["curvature", "truncation"] = key(
+        "curvature", "asperity radius: mean curvature of the sites (eq. 2), or R = A/(2 pi delta)"
     )
-    radius: Literal["curvature", "truncation"] = Field(
-        default="curvature",
-        description="asperity radius: mean curvature of the sites (eq. 2), or R = A/(2 pi delta)",
+    area: Literal["sites", "hertz"] = key(
+        "sites", "asperity area in eq. 4: its contacting sites, or Hertz's pi R delta"
     )
-    area: Literal["sites", "hertz"] = Field(
-        default="sites",
-        description="asperity area in eq. 4: its contacting sites, or Hertz's pi R delta",
+    flow_pair: Literal["paper", "wide"] = key(
+        "wide", "second Gaussian of a flow: 3 times the radius of curvature (s2 = 3^(1/4) s1), or the width"
     )
-    flow_pair: Literal["paper", "wide"] = Field(
-        default="wide",
-        description="second Gaussian of a flow: 3 times the radius of curvature (s2 = 3^(1/4) s1), or the width",
-    )
-    touching_attracts: bool = Field(
-        default=False,
-        description="whether sites in contact attract (with the gap D0) or are left out of eq. 1",
-    )
+    touching_attracts: bool = key(False, "whether sites in contact attract (with the gap D0) or are left out of eq. 1")
 
 
 class MaterialSettings(Settings):
     """An elastic layer of one of the two bodies, or its base."""
 
     # the table of influences resolves the ratios of these bounds (tests/mesoscale/contact/test_layers.py)
-    young_GPa: float = Field(ge=1e-6, le=1e6, description="Young's modulus", json_schema_extra={"unit": "GPa"})
-    poisson: float = Field(ge=0, lt=0.5, description="Poisson's ratio")
-    thickness_nm: float | None = Field(
-        default=None, ge=0, le=1e6, description="thickness, above 0; null: the base", json_schema_extra={"unit": "nm"}
-    )
+    young_GPa: float = key(..., "Young's modulus", "[1e-6, 1e6] GPa")
+    poisson: float = key(..., "Poisson's ratio", "[0, 0.5)")
+    thickness_nm: float | None = key(None, "thickness, above 0; null: the base", "[0, 1e6] nm")
 
 
 Body = tuple[MaterialSettings, ...]
@@ -74,62 +63,46 @@ def base_modulus(bodies: Sequence[Body]) -> float:
 class ContactSettings(Settings):
     """Mesoscale contact model (docs/contact.md)."""
 
-    mechanics: Literal["asperity", "coupled", "adhesive"] = Field(
-        default="asperity",
-        description="how asperities carry load: each on its own by eq. 3, all on one elastic half-space, or on "
-        "one that the attraction deforms, too",
+    mechanics: Literal["asperity", "coupled", "adhesive"] = key(
+        "asperity",
+        "how asperities carry load: each on its own by eq. 3, all on one elastic half-space, or on one that the "
+        "attraction deforms, too",
     )
-    model: Literal["elastic", "nonlinear", "plastic"] = Field(
-        default="plastic",
-        description="asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the surface",
+    model: Literal["elastic", "nonlinear", "plastic"] = key(
+        "plastic", "asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the surface"
     )
-    pixels: int = Field(default=1024, ge=32, le=16384, description="grid points per side")
-    length_nm: float = Field(
-        default=1000.0,
-        ge=1,
-        le=1e6,
-        description="side of the square, periodic cell; with measured scans left out: it holds the shortest measured "
-        "waves and most of the RMS height (docs/topography.md, Cells), and max_force_nN grows with its area",
-        json_schema_extra={"unit": "nm"},
+    pixels: int = key(1024, "grid points per side", "[32, 16_384]")
+    length_nm: float = key(
+        1000.0,
+        "side of the square, periodic cell; with measured scans left out: it holds the shortest measured waves "
+        "and most of the RMS height (docs/topography.md, Cells), and max_force_nN grows with its area",
+        "[1, 1e6] nm",
     )
-    max_force_nN: float = Field(
-        default=7000.0,
-        gt=0,
-        le=1e12,
-        description="repulsive force at which closing turns into opening",
-        json_schema_extra={"unit": "nN"},
-    )
-    q1_per_nm: float | None = Field(
-        default=None,
-        gt=0,
-        description="short-wave cut-off of the spectrum; null: the grid's Nyquist limit",
-        json_schema_extra={"unit": "1/nm"},
+    max_force_nN: float = key(7000.0, "repulsive force at which closing turns into opening", "(0, 1e12] nN")
+    q1_per_nm: float | None = key(
+        None, "short-wave cut-off of the spectrum; null: the grid's Nyquist limit", "(0, inf) 1/nm"
     )
     surface: SurfaceSettings = SurfaceSettings()
-    attraction: AttractionLaw = Field(
-        default="offset",
-        description="law of eq. 1: A_H/(6 pi (g + D0)^3), the walls D0 apart at touch; or A_H/(6 pi max(g, D0)^3), the "
+    attraction: AttractionLaw = key(
+        "offset",
+        "law of eq. 1: A_H/(6 pi (g + D0)^3), the walls D0 apart at touch; or A_H/(6 pi max(g, D0)^3), the "
         "paper's, which spends twice its work within D0 again",
     )
-    gap_cutoff_nm: float = Field(
-        default=0.165,
-        gt=0,
-        le=30,
-        description="D0 of the attraction: the distance of the walls at touch (offset), or the least gap (clamped)",
-        json_schema_extra={"unit": "nm"},
+    gap_cutoff_nm: float = key(
+        0.165,
+        "D0 of the attraction: the distance of the walls at touch (offset), or the least gap (clamped)",
+        "(0, 30] nm",
     )
-    retardation_nm: float | None = Field(
-        default=None,
-        ge=1,
-        le=1e6,
-        description="wavelength of Gregory's retardation of the attraction, about 100 nm for most solids; null: none",
-        json_schema_extra={"unit": "nm"},
+    retardation_nm: float | None = key(
+        None,
+        "wavelength of Gregory's retardation of the attraction, about 100 nm for most solids; null: none",
+        "[1, 1e6] nm",
     )
-    bodies: tuple[Body, ...] = Field(
-        default=(),
+    bodies: tuple[Body, ...] = key(
+        (),
+        "elastic layers of the two bodies, each from its surface down to its base; e_star is then that of the "
+        "bases together, and scales all layers; empty: e_star alone (mechanics: coupled or adhesive)",
         max_length=2,
-        description="elastic layers of the two bodies, each from its surface down to its base; e_star is then that of "
-        "the bases together, and scales all layers; empty: e_star alone (mechanics: coupled or adhesive)",
     )
     reading: ReadingSettings = ReadingSettings()
 

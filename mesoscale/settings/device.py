@@ -4,33 +4,23 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import Field, model_validator
-from pydantic.config import JsonDict
+from pydantic import model_validator
 
+from asperity.keys import key
 from mesoscale.settings.base import Settings
 from mesoscale.settings.inputs import DistributionRow
 
-UM: JsonDict = {"unit": "um"}
-NM: JsonDict = {"unit": "nm"}
-GPA: JsonDict = {"unit": "GPa"}
-MPA: JsonDict = {"unit": "MPa"}
-SHARE: JsonDict = {"unit": "share of the length"}
-LARGEST_BOW_NM = 1e5
-PLACES_AT_REST = 1000
-"""Parts of the beam among whose ends the lowest place at rest is sought."""
 REFERENCE_C = 20.0
 """Temperature at which stress and shape at rest are stated."""
-WIDE = 5.0
-"""A beam at least this many times as wide as thick bends as a plate (Osterberg and Senturia, J. MEMS 6 (1997) 107)."""
 Part = tuple[float, float]
 
 
 class SpreadRow(DistributionRow):
     """By how much one property of the device departs from its stated value."""
 
-    relative: bool = Field(default=False, description="whether departures are shares of the stated value")
-    varies: Literal["common", "each"] = Field(
-        default="each", description="one unknown value for all devices (common), or another for each of them"
+    relative: bool = key(False, "whether departures are shares of the stated value")
+    varies: Literal["common", "each"] = key(
+        "each", "one unknown value for all devices (common), or another for each of them"
     )
 
 
@@ -38,7 +28,7 @@ ASSUMED = "assumption, to be replaced by a measurement"
 
 
 def _departs(name: str, row: SpreadRow | None) -> Any:
-    return Field(default=row, description=f"departures of device.{name}; null: exactly known")
+    return key(row, f"departures of device.{name}; null: exactly known")
 
 
 def _normal(deviation: float, source: str = ASSUMED, **what: Any) -> SpreadRow:
@@ -75,9 +65,9 @@ class SpreadSettings(Settings):
 
 
 SPREAD = tuple(SpreadSettings.model_fields)
+"""The properties of a device that can be uncertain."""
 OF_A_PLATE = ("gap_um", "dielectric_nm", "permittivity")
 """What can vary of a plate on a spring."""
-"""The properties of a device that can be uncertain."""
 
 
 class DeviceSettings(Settings):
@@ -86,152 +76,76 @@ class DeviceSettings(Settings):
     The defaults are the published fixed-fixed beam of the PRISM capacitive switch.
     """
 
-    ends: Literal["clamped", "cantilever"] = Field(
-        default="clamped", description="beam clamped at both ends, or at its first end only"
+    ends: Literal["clamped", "cantilever"] = key("clamped", "beam clamped at both ends, or at its first end only")
+    length_um: float = key(510.0, "length of the beam", "[0.01, 1e5] um")
+    width_um: float = key(123.0, "width of the beam", "[0.01, 1e5] um")
+    thickness_um: float = key(4.0, "thickness of the beam", "[0.001, 1000] um")
+    gap_um: float = key(3.49, "distance from the beam at rest to the mean plane of the dielectric", "(0.01, 1000] um")
+    youngs_modulus_GPa: float = key(89.3, "Young's modulus of the beam", "[0.001, 2000] GPa")
+    poisson_ratio: float = key(0.3, "Poisson's ratio of the beam", "[0, 0.5)")
+    bends_as: Literal["beam", "plate"] | None = key(
+        None, "bends with E (beam) or E/(1 - nu^2) (plate); null: as a plate from a width of 5 thicknesses on"
     )
-    length_um: float = Field(default=510.0, ge=0.01, le=1e5, description="length of the beam", json_schema_extra=UM)
-    width_um: float = Field(default=123.0, ge=0.01, le=1e5, description="width of the beam", json_schema_extra=UM)
-    thickness_um: float = Field(
-        default=4.0, ge=0.001, le=1e3, description="thickness of the beam", json_schema_extra=UM
+    residual_stress_MPa: float = key(
+        0.0,
+        "residual stress of the beam at rest at 20 C; negative: compressive, and beyond Euler's it buckles",
+        "[-2000, 2000] MPa",
     )
-    gap_um: float = Field(
-        default=3.49,
-        gt=0.01,
-        le=1e3,
-        description="distance from the beam at rest to the mean plane of the dielectric",
-        json_schema_extra=UM,
+    buckled: Literal["up", "down"] = key(
+        "up", "side to which a beam stands that its stress buckles; up: away from the dielectric"
     )
-    youngs_modulus_GPa: float = Field(
-        default=89.3, ge=1e-3, le=2000, description="Young's modulus of the beam", json_schema_extra=GPA
+    temperature_C: float = key(REFERENCE_C, "temperature of the switch", "[-270, 2000] C")
+    expansion_ppm_C: float = key(13.4, "thermal expansion of the beam; the default is nickel's", "[-100, 1000] 1e-6/C")
+    substrate_expansion_ppm_C: float = key(
+        2.6, "thermal expansion of the substrate between the anchors; the default is silicon's", "[-100, 1000] 1e-6/C"
     )
-    poisson_ratio: float = Field(default=0.3, ge=0, lt=0.5, description="Poisson's ratio of the beam")
-    bends_as: Literal["beam", "plate"] | None = Field(
-        default=None,
-        description="bends with E (beam) or E/(1 - nu^2) (plate); null: as a plate from a width of 5 thicknesses on",
+    anchor_um_per_N: float = key(
+        0.0, "by how much both anchors together give way to the axial force; 0: rigid", "[0, 1e9] um/N"
     )
-    residual_stress_MPa: float = Field(
-        default=0.0,
-        ge=-2000,
-        le=2000,
-        description="residual stress of the beam at rest at 20 C; negative: compressive, and beyond Euler's it buckles",
-        json_schema_extra=MPA,
+    spring_N_per_m: float | None = key(
+        None, "stiffness of a parallel-plate switch; null computes it from the beam", "[1e-9, 1e6] N/m"
     )
-    buckled: Literal["up", "down"] = Field(
-        default="up", description="side to which a beam stands that its stress buckles; up: away from the dielectric"
+    electrode_um2: float | None = key(
+        None, "electrode area of a parallel-plate switch; null is length times width", "[0.0001, 1e9] um^2"
     )
-    temperature_C: float = Field(
-        default=REFERENCE_C, ge=-270, le=2000, description="temperature of the switch", json_schema_extra={"unit": "C"}
+    electrode: Part = key(
+        (0.0, 1.0), "part of the beam over the electrode that pulls it, from and to", "share of the length"
     )
-    expansion_ppm_C: float = Field(
-        default=13.4,
-        ge=-100,
-        le=1000,
-        description="thermal expansion of the beam; the default is nickel's",
-        json_schema_extra={"unit": "1e-6/C"},
+    contact: Part = key(
+        (0.0, 1.0),
+        "part of the beam over the rough pad, from and to; elsewhere it lands on stoppers",
+        "share of the length",
     )
-    substrate_expansion_ppm_C: float = Field(
-        default=2.6,
-        ge=-100,
-        le=1000,
-        description="thermal expansion of the substrate between the anchors; the default is silicon's",
-        json_schema_extra={"unit": "1e-6/C"},
+    dimple_nm: float = key(0.0, "height of a dimple under the contact part", "[0, 1e5] nm")
+    stopper_nm: float = key(
+        0.0,
+        "height of the stoppers, rigid, where the beam has no contact part; 0: the dielectric itself",
+        "[0, 1e5] nm",
     )
-    anchor_um_per_N: float = Field(
-        default=0.0,
-        ge=0,
-        le=1e9,
-        description="by how much both anchors together give way to the axial force; 0: rigid",
-        json_schema_extra={"unit": "um/N"},
+    fringe: float = key(
+        0.64,
+        "pull of the field at the sides, as this many gaps of more width; 0.64 of a thin strip over a plane "
+        "(Palmer, Trans. AIEE 56 (1937) 363)",
+        "[0, 10]",
     )
-    spring_N_per_m: float | None = Field(
-        default=None,
-        ge=1e-9,
-        le=1e6,
-        description="stiffness of a parallel-plate switch; null computes it from the beam",
-        json_schema_extra={"unit": "N/m"},
+    bow_nm: float = key(
+        0.0,
+        "how much farther from the dielectric the beam is in its middle (of a cantilever: at its tip) than at "
+        "its anchors, at rest",
+        "[-1e5, 1e5] nm",
     )
-    electrode_um2: float | None = Field(
-        default=None,
-        ge=1e-4,
-        le=1e9,
-        description="electrode area of a parallel-plate switch; null is length times width",
-        json_schema_extra={"unit": "um^2"},
+    tilt_nm: float = key(
+        0.0, "how much farther from the dielectric the last end of the beam is than the first", "[-1e5, 1e5] nm"
     )
-    electrode: Part = Field(
-        default=(0.0, 1.0),
-        description="part of the beam over the electrode that pulls it, from and to",
-        json_schema_extra=SHARE,
+    spread: SpreadSettings = key(SpreadSettings(), "departures from these properties, as uncertain inputs")
+    dielectric_nm: float = key(200.0, "thickness of the dielectric", "[0, 1e5] nm")
+    permittivity: float = key(7.9, "relative permittivity of the dielectric", "[1, 1e5]")
+    density_g_cm3: float = key(
+        8.9, "density of the electrode, for its motion; the default is nickel's", "[0.01, 30] g/cm^3"
     )
-    contact: Part = Field(
-        default=(0.0, 1.0),
-        description="part of the beam over the rough pad, from and to; elsewhere it lands on stoppers",
-        json_schema_extra=SHARE,
-    )
-    dimple_nm: float = Field(
-        default=0.0, ge=0, le=1e5, description="height of a dimple under the contact part", json_schema_extra=NM
-    )
-    stopper_nm: float = Field(
-        default=0.0,
-        ge=0,
-        le=1e5,
-        description="height of the stoppers, rigid, where the beam has no contact part; 0: the dielectric itself",
-        json_schema_extra=NM,
-    )
-    fringe: float = Field(
-        default=0.64,
-        ge=0,
-        le=10,
-        description="pull of the field at the sides, as this many gaps of more width; 0.64 of a thin strip over a "
-        "plane (Palmer, Trans. AIEE 56 (1937) 363)",
-    )
-    bow_nm: float = Field(
-        default=0.0,
-        ge=-LARGEST_BOW_NM,
-        le=LARGEST_BOW_NM,
-        description="how much farther from the dielectric the beam is in its middle (of a cantilever: at its tip) than "
-        "at its anchors, at rest",
-        json_schema_extra=NM,
-    )
-    tilt_nm: float = Field(
-        default=0.0,
-        ge=-1e5,
-        le=1e5,
-        description="how much farther from the dielectric the last end of the beam is than the first",
-        json_schema_extra=NM,
-    )
-    spread: SpreadSettings = Field(
-        default=SpreadSettings(), description="departures from these properties, as uncertain inputs"
-    )
-    dielectric_nm: float = Field(
-        default=200.0, ge=0, le=1e5, description="thickness of the dielectric", json_schema_extra=NM
-    )
-    permittivity: float = Field(default=7.9, ge=1, le=1e5, description="relative permittivity of the dielectric")
-    adhesion_scale: float = Field(
-        default=1.0,
-        ge=0,
-        le=10,
-        description="factor on the attraction of the law; 0.1 brings it near measured dry adhesion",
-    )
-    density_g_cm3: float = Field(
-        default=8.9,
-        ge=0.01,
-        le=30,
-        description="density of the electrode, for its motion; the default is nickel's",
-        json_schema_extra={"unit": "g/cm^3"},
-    )
-    gas_kPa: float = Field(
-        default=101.325,
-        ge=1e-6,
-        le=1e4,
-        description="pressure of the air around the electrode, for its motion",
-        json_schema_extra={"unit": "kPa"},
-    )
-    hold_voltage_V: float | None = Field(
-        default=None,
-        gt=0,
-        le=1e5,
-        description="voltage of the closed switch; null is its own pull-in voltage",
-        json_schema_extra={"unit": "V"},
+    gas_kPa: float = key(101.325, "pressure of the air around the electrode, for its motion", "[1e-6, 1e4] kPa")
+    hold_voltage_V: float | None = key(
+        None, "voltage of the closed switch; null is its own pull-in voltage", "(0, 1e5] V"
     )
 
     @model_validator(mode="after")
@@ -262,7 +176,7 @@ class DeviceSettings(Settings):
     @property
     def bending_GPa(self) -> float:
         """Modulus of bending: E, or E / (1 - nu^2) of a wide beam, whose edges cannot curl."""
-        wide = self.width_um >= WIDE * self.thickness_um
+        wide = self.width_um >= 5.0 * self.thickness_um  # Osterberg and Senturia, J. MEMS 6 (1997) 107
         plate = wide if self.bends_as is None else self.bends_as == "plate"
         return self.youngs_modulus_GPa / (1.0 - self.poisson_ratio**2 if plate else 1.0)
 
@@ -289,7 +203,7 @@ class DeviceSettings(Settings):
     @property
     def touching_at_rest(self) -> str:
         """One line on a bending electrode that touches at rest; empty where it does not."""
-        shares = np.linspace(0.0, 1.0, PLACES_AT_REST + 1)
+        shares = np.linspace(0.0, 1.0, 1001)
         height = 1e3 * self.gap_um + self.shape_at_rest_nm(shares)
         within = (self.contact[0] <= shares) & (shares <= self.contact[1])
         lowest_nm = float((height - np.where(within, self.dimple_nm, self.stopper_nm)).min())

@@ -1,23 +1,15 @@
 """Settings of the failure rate."""
 
-from pydantic import Field
-
+from asperity.keys import key
 from mesoscale.settings.base import Settings
 
 
 class FailureSettings(Settings):
     """Rate at which switches fail (docs/failure.md); off by default."""
 
-    probability: float | None = Field(
-        default=None,
-        gt=0,
-        lt=1,
-        description="share of the switches that may fail, such as 1e-6; null: the stage is not run",
+    probability: float | None = key(
+        None, "share of the switches that may fail, such as 1e-6; null: the stage is not run", "(0, 1)"
     )
-    release_V: float = Field(
-        default=0.0,
-        ge=0,
-        le=1e5,
-        description="a switch that is still closed at this voltage has failed; 0: one that sticks",
-        json_schema_extra={"unit": "V"},
+    release_V: float = key(
+        0.0, "a switch that is still closed at this voltage has failed; 0: one that sticks", "[0, 1e5] V"
     )

@@ -2,8 +2,9 @@
 
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
+from asperity.keys import key
 from mesoscale.settings.base import Settings
 
 DWELL_STEPS = 12
@@ -13,40 +14,16 @@ DWELL_STEPS = 12
 class HistorySettings(Settings):
     """Repeated closing of one surface, held closed under creep (docs/history.md); off by default."""
 
-    cycles: int = Field(
-        default=0,
-        ge=0,
-        le=100000,
-        description="closing-opening cycles of each surface; 0: the stage is not run",
+    cycles: int = key(0, "closing-opening cycles of each surface; 0: the stage is not run", "[0, 100_000]")
+    seeds: int = key(4, "surfaces that are followed", "[1, 1000]")
+    creep: Literal["none", "power", "logarithmic"] = key(
+        "none",
+        "how the hardness falls while the contact is held: not, as (1 + m t/t0)^(-1/m), or as 1/(1 + c ln(1 + t/t0))",
     )
-    seeds: int = Field(default=4, ge=1, le=1000, description="surfaces that are followed")
-    creep: Literal["none", "power", "logarithmic"] = Field(
-        default="none",
-        description="how the hardness falls while the contact is held: not, as (1 + m t/t0)^(-1/m), or as "
-        "1/(1 + c ln(1 + t/t0))",
-    )
-    dwell_s: float = Field(
-        default=0.0,
-        ge=0,
-        le=1e12,
-        description="time that every cycle holds the largest force; needs a creep law",
-        json_schema_extra={"unit": "s"},
-    )
-    creep_time_s: float = Field(
-        default=1.0, gt=0, le=1e12, description="t0 of the creep laws", json_schema_extra={"unit": "s"}
-    )
-    creep_exponent: float = Field(
-        default=30.0,
-        ge=1,
-        le=1000,
-        description="m: an asperity's pressure p relaxes at the rate (p/H)^m",
-    )
-    creep_strength: float = Field(
-        default=0.02,
-        ge=0,
-        le=10,
-        description="c: share of the hardness lost per e-fold of time",
-    )
+    dwell_s: float = key(0.0, "time that every cycle holds the largest force; needs a creep law", "[0, 1e12] s")
+    creep_time_s: float = key(1.0, "t0 of the creep laws", "(0, 1e12] s")
+    creep_exponent: float = key(30.0, "m: an asperity's pressure p relaxes at the rate (p/H)^m", "[1, 1000]")
+    creep_strength: float = key(0.02, "c: share of the hardness lost per e-fold of time", "[0, 10]")
 
     @model_validator(mode="after")
     def _a_dwell_needs_creep(self) -> "HistorySettings":

@@ -5,9 +5,10 @@ from typing import Any, Literal, Self, cast
 
 from pydantic import Field, create_model, field_validator, model_validator
 
-from mesoscale.inputs.definitions import BY_NAME, INPUTS, InputDefinition
+from asperity.keys import key
 from mesoscale.settings.base import Settings
 from mesoscale.settings.contact import RANGE_IN_D0, WORK_FACTOR, AttractionLaw
+from mesoscale.settings.definitions import BY_NAME, INPUTS, InputDefinition
 
 NUMBERS = {"uniform": 2, "normal": 2, "truncated_normal": 4, "fixed": 1}
 """How many numbers state a distribution; `samples` has a file instead."""
@@ -20,14 +21,14 @@ FORMS = (
 class DistributionRow(Settings):
     """A distribution as a scene states it."""
 
-    distribution: Literal["uniform", "normal", "truncated_normal", "samples", "fixed"] = Field(
-        default="uniform", description="form of the distribution that `values` state"
+    distribution: Literal["uniform", "normal", "truncated_normal", "samples", "fixed"] = key(
+        "uniform", "form of the distribution that `values` state"
     )
     values: tuple[float, ...] | str | None = Field(
         default=None,
         description=f"its numbers, in the input's unit: {FORMS} (one sample a row, in a column named like the input)",
     )
-    source: str = Field(default="", max_length=500, description="where the values come from, shown in the report")
+    source: str = key("", "where the values come from, shown in the report", max_length=500)
 
     @field_validator("values", mode="before")
     @classmethod
@@ -69,10 +70,11 @@ class DistributionRow(Settings):
 class InputRow(DistributionRow):
     """One uncertain input: where its distribution comes from and, for literature, what it is."""
 
-    origin: Literal["literature", "hardness", "elastic", "topography", "calibration"] = Field(
-        default="literature",
-        description="where the distribution comes from: this file; the result of that stage; or the calibration with "
-        "the scene's measurements, whose prior is stated here or, without values, by the stage that computes the input",
+    origin: Literal["literature", "hardness", "elastic", "topography", "calibration"] = key(
+        "literature",
+        "where the distribution comes from: this file; the result of that stage; or the calibration with the "
+        "scene's measurements, whose prior is stated here or, without values, by the stage that computes the "
+        "input",
     )
 
     @model_validator(mode="after")
@@ -88,9 +90,9 @@ class InputRow(DistributionRow):
 class Correlation(Settings):
     """Dependence of two inputs."""
 
-    first: str = Field(description="name of an input")
-    second: str = Field(description="name of another input")
-    rank: float = Field(gt=-1, lt=1, description="Spearman's rank correlation of the two")
+    first: str = key(..., "name of an input")
+    second: str = key(..., "name of another input")
+    rank: float = key(..., "Spearman's rank correlation of the two", "(-1, 1)")
 
 
 HardnessLawName = Literal["constant", "paper", "film"]
@@ -100,17 +102,11 @@ TABLE_1 = "Kim et al. (2013), Table 1"
 class WorkAndRangeSettings(Settings):
     """The attraction of two flats by its work and range, which stand for A_H and D0 (docs/contact.md, Attraction)."""
 
-    work_mJ_m2: float = Field(
-        gt=0,
-        le=1e5,
-        description="work that separates two flats from touch",
-        json_schema_extra={"unit": "mJ/m^2"},
-    )
-    range_nm: float = Field(
-        ge=1e-3,
-        le=15,
-        description="that work over the largest attraction: D0/2 by contact.attraction offset, 3/2 D0 by clamped",
-        json_schema_extra={"unit": "nm"},
+    work_mJ_m2: float = key(..., "work that separates two flats from touch", "(0, 100000] mJ/m^2")
+    range_nm: float = key(
+        ...,
+        "that work over the largest attraction: D0/2 by contact.attraction offset, 3/2 D0 by clamped",
+        "[0.001, 15] nm",
     )
 
     def gap_cutoff_nm(self, law: AttractionLaw) -> float:
@@ -137,16 +133,16 @@ def _key(row: InputDefinition) -> Any:
 class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.name: _key(row) for row in INPUTS})):
     """Origin and distribution of the uncertain inputs (docs/uncertainty.md)."""
 
-    hardness: HardnessLawName = Field(
-        default="paper",
-        description="law of hardness against contact area: constant (h_macro), eq. 4 (h_macro, h_prime), or film on a "
-        "base (h_film, t_film, k_film, m_film; h_macro of the base)",
+    hardness: HardnessLawName = key(
+        "paper",
+        "law of hardness against contact area: constant (h_macro), eq. 4 (h_macro, h_prime), or film on a base "
+        "(h_film, t_film, k_film, m_film; h_macro of the base)",
     )
-    adhesion: WorkAndRangeSettings | None = Field(
-        default=None, description="work and range of the attraction, in place of hamaker and gap_cutoff; null: by these"
+    adhesion: WorkAndRangeSettings | None = key(
+        None, "work and range of the attraction, in place of hamaker and gap_cutoff; null: by these"
     )
-    correlations: tuple[Correlation, ...] = Field(
-        default=(), description="rank correlations between inputs, besides those that a stage reports itself"
+    correlations: tuple[Correlation, ...] = key(
+        (), "rank correlations between inputs, besides those that a stage reports itself"
     )
 
     @model_validator(mode="after")

@@ -2,8 +2,9 @@
 
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
+from asperity.keys import key
 from mesoscale.settings.base import Settings
 
 
@@ -20,41 +21,30 @@ class MeasurementTable(Settings):
         "release",
         "pull_in",
         "sticking",
-    ] = Field(description="what was measured")
-    file: str = Field(description="CSV file, its columns named with their units (docs/calibration.md)")
-    zero: Literal["unknown", "known"] = Field(
-        default="unknown",
-        description="curves: whether separations count from the mean plane, or from a zero that is unknown for each "
-        "specimen",
+    ] = key(..., "what was measured")
+    file: str = key(..., "CSV file, its columns named with their units (docs/calibration.md)")
+    zero: Literal["unknown", "known"] = key(
+        "unknown",
+        "curves: whether separations count from the mean plane, or from a zero that is unknown for each specimen",
     )
-    discrepancy: float = Field(
-        default=0.0,
-        ge=0,
-        le=1000,
-        description="standard deviation of the model's own error, common to all data of the table: in nm for curves "
-        "and contact_begin, else a share of the value",
+    discrepancy: float = key(
+        0.0,
+        "standard deviation of the model's own error, common to all data of the table: in nm for curves and "
+        "contact_begin, else a share of the value",
+        "[0, 1000]",
     )
-    source: str = Field(default="", description="where the measurements come from, shown in the report")
+    source: str = key("", "where the measurements come from, shown in the report")
 
 
 class MeasurementsSettings(Settings):
     """Measurements and the calibration of the inputs with them (docs/calibration.md); off without tables."""
 
-    tables: tuple[MeasurementTable, ...] = Field(
-        default=(), description="tables of measurements, one of each kind at most; none: the stage is not run"
+    tables: tuple[MeasurementTable, ...] = key(
+        (), "tables of measurements, one of each kind at most; none: the stage is not run"
     )
-    runs: int = Field(
-        default=800, ge=50, le=10**6, description="contact cycles over the whole prior behind the responses"
-    )
-    local_runs: int = Field(
-        default=300, ge=20, le=10**6, description="contact cycles where the posterior lies, added at a time"
-    )
-    rounds: int = Field(
-        default=3,
-        ge=0,
-        le=20,
-        description="how often they are added at most, until the responses are exact enough",
-    )
+    runs: int = key(800, "contact cycles over the whole prior behind the responses", "[50, 1_000_000]")
+    local_runs: int = key(300, "contact cycles where the posterior lies, added at a time", "[20, 1_000_000]")
+    rounds: int = key(3, "how often they are added at most, until the responses are exact enough", "[0, 20]")
 
     @model_validator(mode="after")
     def _one_table_of_a_kind(self) -> "MeasurementsSettings":

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, field_validator
 
+from asperity.keys import key
 from mesoscale.settings.base import Settings
 
 Scatter = Annotated[float, Field(ge=0, le=2)]
@@ -17,24 +18,21 @@ POINTS_PER_JOB = {"asperity": 16, "coupled": 16, "adhesive": 2}
 class PadSettings(Settings):
     """Pads of many cells that share one separation (docs/pad.md)."""
 
-    cells: int = Field(default=64, ge=2, le=100_000, description="cells of the pad at central inputs")
-    points: int = Field(
-        default=128,
-        ge=0,
-        le=100_000,
-        description="points of the joint distribution of inputs, D0 and devices, each with a pad and a switch of its "
-        "own: the interval of the release; 0: none",
+    cells: int = key(64, "cells of the pad at central inputs", "[2, 100_000]")
+    points: int = key(
+        128,
+        "points of the joint distribution of inputs, D0 and devices, each with a pad and a switch of its own: "
+        "the interval of the release; 0: none",
+        "[0, 100_000]",
     )
-    point_cells: int = Field(
-        default=12,
-        ge=2,
-        le=10_000,
-        description="cells of each of these pads; a point that they leave undecided has four times as many",
+    point_cells: int = key(
+        12, "cells of each of these pads; a point that they leave undecided has four times as many", "[2, 10_000]"
     )
-    rms_scatter: tuple[Scatter, Scatter] | None = Field(
-        default=None,
-        description="range of the standard deviation of ln RMS between places of a film, of which a pad holds all; "
-        "`inputs.rms` is then that of the median place. null: by topography where RMS comes from there, else none",
+    rms_scatter: tuple[Scatter, Scatter] | None = key(
+        None,
+        "range of the standard deviation of ln RMS between places of a film, of which a pad holds all; "
+        "`inputs.rms` is then that of the median place. null: by topography where RMS comes from there, else "
+        "none",
     )
 
     @field_validator("rms_scatter")

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from asperity.keys import key
 from mesoscale.settings.base import Settings
 
 Resistivity = Annotated[float, Field(gt=0, le=1e18)]
@@ -12,19 +13,13 @@ Resistivity = Annotated[float, Field(gt=0, le=1e18)]
 class ResistanceSettings(Settings):
     """Electrical resistance of metal on metal (docs/resistance.md); off by default."""
 
-    resistivities_nOhm_m: tuple[Resistivity, Resistivity] | None = Field(
-        default=None,
-        description="resistivities of the two bodies, such as [22, 22] for gold; null: the stage is not run",
-        json_schema_extra={"unit": "nOhm m"},
+    resistivities_nOhm_m: tuple[Resistivity, Resistivity] | None = key(
+        None, "resistivities of the two bodies, such as [22, 22] for gold; null: the stage is not run", "nOhm m"
     )
-    film_Ohm_um2: float = Field(
-        default=0.0,
-        ge=0,
-        le=1e12,
-        description="resistance of a thin film on the contact times its area, in series",
-        json_schema_extra={"unit": "Ohm um^2"},
+    film_Ohm_um2: float = key(
+        0.0, "resistance of a thin film on the contact times its area, in series", "[0, 1e12] Ohm um^2"
     )
-    runs: int = Field(default=64, ge=8, le=100000, description="surfaces, each with its own draw of the inputs")
+    runs: int = key(64, "surfaces, each with its own draw of the inputs", "[8, 100_000]")
 
     @model_validator(mode="after")
     def _a_film_needs_metals(self) -> "ResistanceSettings":

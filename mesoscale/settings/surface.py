@@ -4,6 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from asperity.keys import key
 from mesoscale.settings.base import Settings
 
 Positive = Annotated[float, Field(gt=0, le=1e12)]
@@ -12,33 +13,26 @@ Positive = Annotated[float, Field(gt=0, le=1e12)]
 class CounterfaceSettings(Settings):
     """A second rough surface: the flat meets the sum of both spectra, the effective roughness."""
 
-    q0: float = Field(gt=0, le=10, description="its roll-off wave vector", json_schema_extra={"unit": "1/nm"})
-    hurst: float = Field(gt=0, le=2, description="its Hurst exponent, in contact.reading.convention")
-    rms_nm: float = Field(gt=0, le=1e4, description="its RMS height", json_schema_extra={"unit": "nm"})
+    q0: float = key(..., "its roll-off wave vector", "(0, 10] 1/nm")
+    hurst: float = key(..., "its Hurst exponent, in contact.reading.convention", "(0, 2]")
+    rms_nm: float = key(..., "its RMS height", "(0, 1e4] nm")
 
 
 class SpectrumSettings(Settings):
     """A spectrum by points instead of the form of eq. 9; only its shape counts, the RMS is that of Table 1."""
 
-    q: tuple[Positive, ...] = Field(
-        min_length=2, max_length=10000, description="wave vectors in rising order", json_schema_extra={"unit": "1/nm"}
-    )
-    psd: tuple[Positive, ...] = Field(
-        min_length=2,
-        max_length=10000,
-        description="C at these, of the two-dimensional spectrum",
-        json_schema_extra={"unit": "nm^4"},
+    q: tuple[Positive, ...] = key(..., "wave vectors in rising order", "1/nm", min_length=2, max_length=10000)
+    psd: tuple[Positive, ...] = key(
+        ..., "C at these, of the two-dimensional spectrum", "nm^4", min_length=2, max_length=10000
     )
 
-    q0: Positive | None = Field(
-        default=None,
-        description="with `hurst`: eq. 9 nearest to the points; the inputs' q0 and hurst then bend the spectrum by the "
-        "ratio of their eq. 9 to this one; null: they are unused",
-        json_schema_extra={"unit": "1/nm"},
+    q0: Positive | None = key(
+        None,
+        "with `hurst`: eq. 9 nearest to the points; the inputs' q0 and hurst then bend the spectrum by the ratio "
+        "of their eq. 9 to this one; null: they are unused",
+        "1/nm",
     )
-    hurst: float | None = Field(
-        default=None, gt=0, le=2, description="its Hurst exponent, in contact.reading.convention"
-    )
+    hurst: float | None = key(None, "its Hurst exponent, in contact.reading.convention", "(0, 2]")
 
     @model_validator(mode="after")
     def _a_function(self) -> "SpectrumSettings":
@@ -54,17 +48,15 @@ class SpectrumSettings(Settings):
 class SurfaceSettings(Settings):
     """The contacting surface (docs/topography.md, Surfaces)."""
 
-    spectrum: SpectrumSettings | None = Field(
-        default=None, description="spectrum by points (q0 and hurst of Table 1 are then unused); null: eq. 9"
+    spectrum: SpectrumSettings | None = key(
+        None, "spectrum by points (q0 and hurst of Table 1 are then unused); null: eq. 9"
     )
-    counterface: CounterfaceSettings | None = Field(
-        default=None, description="second rough surface; null: the counterface is flat"
-    )
-    heights: tuple[Annotated[float, Field(ge=-1000, le=1000)], ...] = Field(
-        default=(),
-        max_length=111,
-        description="measured heights: their values in units of the RMS at the normal variables -5, -4.9, ... 6 (as "
+    counterface: CounterfaceSettings | None = key(None, "second rough surface; null: the counterface is flat")
+    heights: tuple[Annotated[float, Field(ge=-1000, le=1000)], ...] = key(
+        (),
+        "measured heights: their values in units of the RMS at the normal variables -5, -4.9, ... 6 (as "
         "topography/parameters.json has them); empty: a normal distribution",
+        max_length=111,
     )
 
     @model_validator(mode="after")

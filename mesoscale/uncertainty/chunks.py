@@ -4,25 +4,13 @@ from mesoscale.settings import UncertaintySettings
 
 CHUNK_RUNS = 200
 """Contact cycles per job and file: jobs of some seconds to minutes, of which an interruption loses one."""
-
-
 MOST_REPEATED = 100
 """Direct runs that are repeated on a second surface: they tell scatter between surfaces from what inputs explain."""
 
 
-def collocation_level(settings: UncertaintySettings) -> int:
-    """Level of the sparse grid."""
-    return 2 if settings.surrogate == "level2" else 1
-
-
-def node_count(inputs: int, level: int) -> int:
-    """Number of nodes of the sparse grid: 2n + 1 at level 1, 2n² + 2n + 1 at level 2."""
-    return 2 * inputs + 1 if level == 1 else 2 * inputs**2 + 2 * inputs + 1
-
-
 def collocation_run_count(inputs: int, settings: UncertaintySettings) -> int:
-    """Number of contact cycles of the collocation."""
-    return node_count(inputs, collocation_level(settings)) * settings.seeds
+    """Number of contact cycles of the collocation: 2n + 1 nodes on each surface."""
+    return (2 * inputs + 1) * settings.seeds
 
 
 def chunk_bounds(runs: int, chunk_runs: int = CHUNK_RUNS) -> dict[str, tuple[int, int]]:

@@ -34,9 +34,9 @@ class Run:
     values: dict[str, float]
 
 
-def collocation_runs(table: InputTable, level: int, first: int, last: int) -> list[Run]:
+def collocation_runs(table: InputTable, first: int, last: int) -> list[Run]:
     """Runs first .. last-1 of the collocation: all nodes of surface 0, then all of the next one."""
-    grid = nodes(len(table.rows), level)
+    grid = nodes(len(table.rows))
     values = to_values(grid, table.ranges())
     return [
         Run(

@@ -15,12 +15,8 @@ from mesoscale.uncertainty.surrogate import Response, evaluate
 Array = NDArray[np.float64]
 Responses = Sequence[Response | None]
 
-EXPLAINED = 0.8
-"""Share of what inputs can explain that a response must explain of runs left out: less than it with 95 % fails."""
 TOLERANCE = 0.05
 """Relative violation of physics that is put down to the scatter of the fit."""
-BASES, LEVELS = 256, 7
-"""Other inputs drawn, and values of the one that is moved."""
 SHARES = np.array([0.1, 0.25, 0.5, 1.0])
 """Of the largest pressure of the fits, at which curves are compared."""
 STIFFENING = {"e_star": "E*", "h_macro": "H_macro", "h_prime": "H′", "h_film": "H_film"}
@@ -49,7 +45,7 @@ def explained(first: Array, second: Array, predicted: Array, rng: np.random.Gene
     row["explained"] = 1.0 - wrong.mean() / explicable.mean() if known else np.nan
     if not known:
         row["doubt"] = f"nothing but scatter between surfaces is seen in {len(first)} pairs at equal inputs"
-    elif np.nanquantile(shares, 0.95) < EXPLAINED:
+    elif np.nanquantile(shares, 0.95) < 0.8:  # of runs left out; less than it with 95 % fails
         row["doubt"] = f"the response explains {max(row['explained'], 0.0):.0%} of what the inputs explain"
     return row
 
@@ -66,7 +62,7 @@ def against_physics(responses: Responses, table: InputTable, most_GPa: float) ->
     """
     if any(response is None for response in responses):
         return {}
-    base = table.sample(BASES, SAMPLE_SEED)
+    base = table.sample(256, SAMPLE_SEED)
     low, high = (table.ranges()[:, k] for k in (0, 1))
     base = np.clip(base, low, high)
     reasons = {}
@@ -76,9 +72,9 @@ def against_physics(responses: Responses, table: InputTable, most_GPa: float) ->
         k = table.names.index(name)
         if high[k] <= low[k]:
             continue
-        moved = [_moved(base, k, value) for value in np.linspace(low[k], high[k], LEVELS)]
+        moved = [_moved(base, k, value) for value in np.linspace(low[k], high[k], 7)]
         laws = [evaluate(responses, x)[:, CLOSING] for x in moved]
-        at = _separations(laws[LEVELS // 2], most_GPa)
+        at = _separations(laws[len(laws) // 2], most_GPa)
         course = np.array([_repulsion(law, at).mean(axis=0) for law in laws]) / (SHARES * most_GPa)
         fall = float((np.maximum.accumulate(course) - course).max())
         if fall > TOLERANCE:

@@ -7,16 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.parameters import CLOSING, FITTED, LAW, LAW_OUTPUTS, OPENING, OUTPUTS, PARAMETERS
 from mesoscale.settings import UncertaintySettings
-from mesoscale.uncertainty.chunks import collocation_level
-from mesoscale.uncertainty.collocation import interpolating_response, level1_response
+from mesoscale.settings.definitions import BY_NAME
+from mesoscale.uncertainty.collocation import level1_response
 from mesoscale.uncertainty.designs import SAMPLE_SEED
 from mesoscale.uncertainty.surrogate import (
     Below,
-    Points,
     Response,
     Scatter,
     Surrogate,
@@ -27,6 +25,10 @@ from mesoscale.uncertainty.surrogate import (
 )
 
 Array = NDArray[np.float64]
+Direct = tuple[Array, Array]
+"""Inputs (m, n) of direct runs, and their closing and opening parameters (m, len(FITTED)), NaN where missing."""
+SAMPLES = 10_000
+"""Samples of the inputs sent through the responses: their quantiles are then known to 0.5 % in probability."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,18 @@ class NodeOutputs:
     def paper_outputs(self) -> Array:
         """The outputs of Table 2: closing, and opening minus closing; same shape."""
         return to_paper_outputs(self.values)
+
+    @property
+    def over_seeds(self) -> Array:
+        """Mean over the seeds that have an output at all nodes, shape (nodes, len(FITTED)); NaN where none has."""
+        complete = np.isfinite(self.values).all(axis=1)
+        return np.stack(
+            [
+                self.values[has, :, k].mean(axis=0) if has.any() else np.full(self.values.shape[1], np.nan)
+                for k, has in enumerate(np.asarray(complete).T)
+            ],
+            axis=1,
+        )
 
 
 def to_paper_outputs(parameters: Array) -> Array:
@@ -67,100 +81,43 @@ def nodes_of_rows(rows: Iterable[Mapping[str, str]]) -> NodeOutputs:
     return NodeOutputs(seeds, values)
 
 
-def transform_of(output: int, settings: UncertaintySettings) -> str:
-    """Transform of the response of entry `output` of FITTED."""
-    return "identity" if settings.response == "linear" or LAW[output % len(LAW)].any_sign else "log"
-
-
 CLOSING_CONTACT, OPENING_CONTACT = (FITTED.index(f"{branch}_d_c_nm") for branch in ("closing", "opening"))
-SMALLEST_DROP_NM = 0.01
-"""Last contact lies at least so far below first contact where the logarithm of their distance is fitted."""
 
 
-def exported_responses(
-    nodes: NodeOutputs, direct: tuple[Array, Array], ranges: Array, settings: UncertaintySettings
-) -> list[Response | None]:
-    """The responses behind samples, Sobol' indices and surrogate.json, one per entry of FITTED.
-
-    Parameters
-    ----------
-    direct : inputs (m, n) and closing and opening parameters (m, len(FITTED)) of the direct runs, for `regression`.
+def exported_responses(direct: Direct, ranges: Array, settings: UncertaintySettings) -> list[Response | None]:
+    """The regressions behind samples, Sobol' indices and surrogate.json, one per entry of FITTED.
 
     Returns
     -------
-    None for an output that no seed (or too few runs) determines; nothing is filled in.
+    None for an output that too few runs determine; nothing is filled in.
     """
-    responses: list[Response | None] = []
-    for k in range(len(FITTED)):
-        transform = transform_of(k, settings)
-        if settings.response == "regression":
-            responses.append(_regression(direct[0], direct[1][:, k], ranges, transform))
-        else:
-            responses.append(_through_nodes(nodes.values[:, :, k], ranges, transform, settings))
+    x, y = direct
+    signs = [row.any_sign for row in LAW] * 2
+    responses: list[Response | None] = [_regression(x, y[:, k], ranges, any_sign) for k, any_sign in enumerate(signs)]
     above = responses[CLOSING_CONTACT]
-    if settings.opening_contact == "below_closing" and settings.response != "linear" and isinstance(above, Surrogate):
-        fell = [
-            np.maximum(y[..., CLOSING_CONTACT] - y[..., OPENING_CONTACT], SMALLEST_DROP_NM)
-            for y in (direct[1], nodes.values)
-        ]
-        if settings.response == "regression":
-            drop = _regression(direct[0], fell[0], ranges, "log")
-        else:
-            drop = _through_nodes(fell[1], ranges, "log", settings)
+    if settings.opening_contact == "below_closing" and isinstance(above, Surrogate):
+        # at least 0.01 nm, so that there is a logarithm
+        fell = np.maximum(y[:, CLOSING_CONTACT] - y[:, OPENING_CONTACT], 0.01)
+        drop = _regression(x, fell, ranges, any_sign=False)
         responses[OPENING_CONTACT] = Below(FITTED[CLOSING_CONTACT], above, drop) if drop else None
     return responses
 
 
-def _through_nodes(y: Array, ranges: Array, transform: str, settings: UncertaintySettings) -> Surrogate | None:
-    """The response through the values at the nodes (seeds, nodes), averaged over the seeds that have all."""
-    complete = np.isfinite(y).all(axis=1)
-    average = y[complete].mean(axis=0) if complete.any() else np.full(y.shape[1], np.nan)
-    if not np.isfinite(average).all() or (transform == "log" and (average <= 0).any()):
-        return None
-    if settings.response == "linear":
-        return level1_response(average[: 2 * len(ranges) + 1], ranges)
-    return interpolating_response(average, ranges, collocation_level(settings), transform)
-
-
-OUTPUT_TRANSFORMS = tuple("identity" if row.any_sign else "log" for row in LAW_OUTPUTS)
-"""Transforms of the regressions of the outputs of Table 2: closing as exported, changes of any sign."""
-
-
-@dataclass(frozen=True)
-class Change:
-    """Opening minus closing response of a parameter."""
-
-    closing: Response
-    opening: Response
-
-    def __call__(self, x: Array | Points) -> Array:
-        """Change at inputs x of shape (m, n)."""
-        return self.opening(x) - self.closing(x)
-
-
-def output_responses(
-    exported: Sequence[Response | None], direct: tuple[Array, Array], ranges: Array, settings: UncertaintySettings
-) -> list[Response | Change | None]:
+def output_responses(exported: Sequence[Response | None], direct: Direct, ranges: Array) -> list[Response | None]:
     """Responses of the outputs of Table 2, behind indices and elementary effects, from the exported ones.
 
-    By regression a change on opening has a response of its own: as a small difference of two large numbers it would
-    inherit the errors of both (docs/uncertainty.md).
+    A change on opening has a response of its own: as a small difference of two large numbers it would inherit the
+    errors of both.
     """
-    changes: list[Response | Change | None] = []
-    outputs = to_paper_outputs(direct[1])
-    for k, (closing, opening) in enumerate(zip(exported[CLOSING], exported[OPENING], strict=True), OPENING.start):
-        if settings.response == "regression":
-            changes.append(_regression(direct[0], outputs[:, k], ranges, OUTPUT_TRANSFORMS[k]))
-        else:
-            changes.append(Change(closing, opening) if closing and opening else None)
-    return [*exported[CLOSING], *changes]
+    changes = to_paper_outputs(direct[1])[:, OPENING]
+    return [*exported[CLOSING], *(_regression(direct[0], change, ranges, any_sign=True) for change in changes.T)]
 
 
-def _regression(x: Array, y: Array, ranges: Array, transform: str) -> Surrogate | None:
+def _regression(x: Array, y: Array, ranges: Array, any_sign: bool) -> Surrogate | None:
     from mesoscale.uncertainty.regression import sparse_chaos
 
     try:
-        return sparse_chaos(x, y, ranges, transform=transform)
+        return sparse_chaos(x, y, ranges, transform="identity" if any_sign else "log")
     except ValueError:  # too few usable runs; the count of missing ones is in uq/validation.csv
         return None
 
@@ -174,7 +131,7 @@ class Propagation:
     samples : samples of the inputs, shape (m, n).
     outputs : closing and opening parameters of every sample through the exported responses, shape (m, len(FITTED)).
     cells : the same of single cells, with the scatter from one surface to the next; NaN without direct runs.
-    responses : one per entry of FITTED; None where no seed has all nodes.
+    responses : one per entry of FITTED; None where too few direct runs determine it.
     scatter : joint scatter of single cells about the responses that exist; None with too few direct runs.
     by_seed : mean and deviation of the outputs of Table 2 of every seed's own response, shape (seeds, 2, len(OUTPUTS)).
     variances : var(E[Y|X]), of the inputs, and E[Var(Y|X)], of the seeds, by the linear responses, shape (2,
@@ -196,24 +153,18 @@ class Propagation:
             return self.variances[1] / self.variances.sum(axis=0)
 
 
-def propagate(
-    nodes: NodeOutputs,
-    table: InputTable,
-    settings: UncertaintySettings,
-    direct: tuple[Array, Array] | None = None,
-) -> Propagation:
-    """Send samples of the inputs through every seed's linear response and through the exported responses.
+def propagate(nodes: NodeOutputs, table: InputTable, settings: UncertaintySettings, direct: Direct) -> Propagation:
+    """Send samples of the inputs through every seed's linear response and through the regressions.
 
-    A seed with a missing node has no response for that output; nothing is filled in.
+    A seed with a missing node has no linear response for that output; nothing is filled in.
     """
     ranges = table.ranges()
-    samples = table.sample(settings.samples, SAMPLE_SEED)
+    samples = table.sample(SAMPLES, SAMPLE_SEED)
     seeds = len(nodes.seeds)
     total, total_squares = np.zeros((2, len(samples), len(OUTPUTS)))
     by_seed = np.full((seeds, 2, len(OUTPUTS)), np.nan)
     for s in range(seeds):
-        y = np.stack([_linear(nodes.values[s, :, k], ranges, samples) for k in range(len(FITTED))], axis=1)
-        y = to_paper_outputs(y)
+        y = to_paper_outputs(linear_outputs(nodes.values[s], ranges, samples))
         by_seed[s] = y.mean(axis=0), y.std(axis=0)
         usable = np.isfinite(by_seed[s, 0])
         total[:, usable] += y[:, usable]
@@ -224,25 +175,24 @@ def propagate(
         within = np.maximum(total_squares / used - mean**2, 0).mean(axis=0) * used / (used - 1)
         between = np.maximum(mean.var(axis=0) - within / used, 0)
         variances = np.where(used > 1, np.stack([between, within]), np.nan)
-    known = direct or (np.empty((0, len(ranges))), np.empty((0, len(FITTED))))
-    responses = exported_responses(nodes, known, ranges, settings)
+    responses = exported_responses(direct, ranges, settings)
     outputs = evaluate(responses, samples)
-    cells = with_scatter(outputs, responses, known, settings.response == "regression", SAMPLE_SEED)
+    cells = with_scatter(outputs, responses, direct, SAMPLE_SEED)
     existing = [k for k, response in enumerate(responses) if response is not None]
     scatter = joint_scatter(
-        [response for response in responses if response is not None],
-        (known[0], known[1][:, existing]),
-        settings.response == "regression",
+        [response for response in responses if response is not None], (direct[0], direct[1][:, existing])
     )
     return Propagation(samples, outputs, cells, responses, scatter, by_seed, variances)
 
 
-def _linear(y: Array, ranges: Array, samples: Array) -> Array:
-    """The paper's linear response from the nodes of level 1, which come first."""
-    y = y[: 2 * len(ranges) + 1]
-    if not np.isfinite(y).all():
-        return np.full(len(samples), np.nan)
-    return level1_response(y, ranges)(samples)
+def linear_outputs(values: Array, ranges: Array, x: Array) -> Array:
+    """Closing and opening parameters at inputs x (m, n) by the paper's linear responses, shape (m, len(FITTED)).
+
+    Parameters
+    ----------
+    values : the parameters at the nodes, shape (2n + 1, len(FITTED)); one that a node lacks is NaN everywhere.
+    """
+    return evaluate([level1_response(y, ranges) if np.isfinite(y).all() else None for y in values.T], x)
 
 
 def output_rows(
@@ -315,7 +265,6 @@ def surrogate_json(
     result: Propagation,
     nodes: NodeOutputs,
     table: InputTable,
-    settings: UncertaintySettings,
     law: Mapping[str, float],
     paper: Mapping[str, tuple[float, float]],
 ) -> dict[str, Any]:
@@ -350,9 +299,7 @@ def surrogate_json(
         "about": "value = transform(sum of coefficient * product of Legendre P_degree(u)), u = 2 (x - low) / "
         "(high - low) - 1; valid for low <= x <= high; the mean over random surfaces"
         + ("; with `below`: the output of that name less this" if any("below" in output for output in outputs) else ""),
-        "method": f"{settings.response} ({settings.surrogate} design)"
-        if settings.response != "regression"
-        else "regression",
+        "method": "regression",
         "seeds": len(nodes.seeds),
         "inputs": inputs,
         "law": dict(law),

@@ -8,13 +8,8 @@ from mesoscale.uncertainty.surrogate import Surrogate, basis_matrix
 
 Array = NDArray[np.float64]
 
-DEGREE = 3
-"""Highest total degree; degrees 1 to 3 differ by less than the study can tell (evidence uncertainty.work_precision)."""
-HYPERBOLIC = 0.7
-"""Norm that thins terms of many inputs."""
 
-
-def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity", degree: int = DEGREE) -> Surrogate:
+def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity", degree: int = 3) -> Surrogate:
     """Sparse Legendre expansion of y, averaged over the scatter that x does not explain.
 
     Linear terms of all inputs are kept, if the runs allow it; those of higher degree are selected.
@@ -26,7 +21,8 @@ def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity",
     ranges : shape (n, 2).
     transform : log fits ln y, then scales the response so that its mean over the runs is theirs (it would be
         too low by the scatter that x does not explain).
-    degree : highest total degree; terms of many inputs are thinned by the hyperbolic norm.
+    degree : highest total degree; 1 to 3 differ by less than the study can tell (evidence uncertainty.work_precision).
+        Terms of many inputs are thinned by the hyperbolic norm.
 
     Raises
     ------
@@ -49,7 +45,7 @@ def sparse_chaos(x: Array, y: Array, ranges: Array, transform: str = "identity",
     varying = np.flatnonzero(np.ptp(u, axis=0) > 0)
     if not len(varying):
         return Surrogate(ranges, np.zeros((1, inputs), int), np.array([centre]), transform)
-    enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(len(varying), HYPERBOLIC)
+    enumerate_terms = ot.HyperbolicAnisotropicEnumerateFunction(len(varying), 0.7)
     basis = ot.OrthogonalProductPolynomialFactory([ot.LegendreFactory()] * len(varying), enumerate_terms)
     most = max(2, int(0.8 * usable.sum()))
     size = min(enumerate_terms.getBasisSizeFromTotalDegree(degree), most)

@@ -14,7 +14,7 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.law.branches import NO_FIT, Outcome, fit_cycle
 from mesoscale.law.compact import Law
 from mesoscale.law.parameters import PARAMETERS
-from mesoscale.settings import ContactSettings, LawSettings
+from mesoscale.settings import ContactSettings
 from mesoscale.uncertainty.designs import Run, random_runs
 
 Array = NDArray[np.float64]
@@ -45,10 +45,7 @@ def compute_all(
 
 
 def compute_rows(
-    runs: Sequence[Run],
-    contact: ContactSettings,
-    law: LawSettings,
-    progress: Callable[[float, str], None] | None = None,
+    runs: Sequence[Run], contact: ContactSettings, progress: Callable[[float, str], None] | None = None
 ) -> Iterator[dict[str, float | int | str]]:
     """Compute runs and fit the law to each: one row per run with inputs, seed and parameters."""
     for run, cycle in compute_all(runs, contact, progress):
@@ -56,7 +53,7 @@ def compute_rows(
         if isinstance(cycle, str):
             outcome = Outcome(NO_FIT, NO_FIT, cycle)
         else:
-            outcome = fit_cycle(cycle, law)
+            outcome = fit_cycle(cycle)
             touch = cycle.first_contact_nm
         row: dict[str, float | int | str] = {"run": run.index, "seed": run.seed, **run.values}
         for branch, fit in (("closing", outcome.closing), ("opening", outcome.opening)):
@@ -89,7 +86,6 @@ def monte_carlo(
     contact: ContactSettings,
     samples: int,
     seed: int = 1,
-    law: LawSettings | None = None,
     progress: Callable[[float, str], None] | None = None,
 ) -> MonteCarlo:
     """Close and open `samples` random surfaces, each with its own draw of the inputs, and fit the law to each.
@@ -103,11 +99,10 @@ def monte_carlo(
     check_seed(seed)
     if isinstance(samples, bool) or not isinstance(samples, int) or samples < 1:
         raise InputError(f"samples = {samples!r}: accepted is a whole number >= 1")
-    law = law or LawSettings()
     runs = random_runs(table, 0, samples, seed)
     kept, parameters, failed = [], [], []
     for run, cycle in compute_all(runs, contact, progress):
-        outcome = Outcome(NO_FIT, NO_FIT, cycle) if isinstance(cycle, str) else fit_cycle(cycle, law)
+        outcome = Outcome(NO_FIT, NO_FIT, cycle) if isinstance(cycle, str) else fit_cycle(cycle)
         pair = np.stack([outcome.closing.parameters, outcome.opening.parameters])
         if outcome.status == "ok" and np.isfinite(pair).all():
             kept.append(list(run.values.values()))
@@ -118,9 +113,8 @@ def monte_carlo(
     if not kept:
         raise InputError(f"none of {samples} samples gave a law: {'; '.join(dict.fromkeys(failed))}")
     inputs = dict(zip(table.names, np.array(kept).T, strict=True))
-    fixed = {"hamaker": inputs["hamaker"], "rho_a_nm": law.rho_a_nm, "shield_nm": law.shield_nm}
     closing, opening = (
-        Law(**dict(zip(PARAMETERS, columns, strict=True)), **fixed)
+        Law(**dict(zip(PARAMETERS, columns, strict=True)), hamaker=inputs["hamaker"])
         for columns in np.stack(parameters).transpose(1, 2, 0)
     )
     return MonteCarlo(inputs, closing, opening, tuple(failed))

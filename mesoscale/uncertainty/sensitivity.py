@@ -1,7 +1,6 @@
 """Which input matters: elementary effects (the paper's Table 3) and Sobol' indices with intervals."""
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,12 +8,12 @@ from numpy.typing import NDArray
 
 from mesoscale.extras import needs
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.law.parameters import FITTED, LAW_OUTPUTS, OUTPUTS
+from mesoscale.law.parameters import LAW_OUTPUTS, OUTPUTS
 from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.collocation import elementary_effects
 from mesoscale.uncertainty.designs import SAMPLE_SEED
 from mesoscale.uncertainty.propagation import (
-    Change,
+    Direct,
     NodeOutputs,
     exported_responses,
     output_responses,
@@ -81,26 +80,23 @@ def sensitivity_rows(
     seed_share: Array,
     paper: Mapping[str, Mapping[str, float]],
     paper_as_printed: Mapping[str, Mapping[str, float]],
-    direct: tuple[Array, Array] | None = None,
+    direct: Direct,
 ) -> list[dict[str, Any]]:
     """Rows of uq/sensitivity.csv: every output with every input.
 
     mu* is the mean over seeds of every seed's own value on the nodes of level 1 (the paper's one star), beside
     its scatter. Sobol' indices are those of the exported responses, averaged over random surfaces; their intervals
-    (5 to 95 %) come from resampling the samples behind them together with the seeds, or with the direct runs if
-    the responses are fitted to these.
+    (5 to 95 %) come from resampling the samples behind them together with the direct runs.
     """
     y = nodes.paper_outputs
     ranges = table.ranges()
     inputs = len(table.rows)
-    direct = direct or (np.empty((0, inputs)), np.empty((0, len(FITTED))))
-    responses = output_responses(exported_responses(nodes, direct, ranges, settings), direct, ranges, settings)
-    first, total = index_intervals(responses, nodes, direct, table, settings)
+    responses = output_responses(exported_responses(direct, ranges, settings), direct, ranges)
+    first, total = index_intervals(responses, direct, table)
     rows = []
     for k, output in enumerate(LAW_OUTPUTS):
-        lines = y[:, : 2 * len(ranges) + 1, k]
-        lines = lines[np.isfinite(lines).all(axis=1)]
-        effects = np.array([elementary_effects(line, inputs) for line in lines]).reshape(-1, inputs)
+        lines = y[np.isfinite(y[:, :, k]).all(axis=1), :, k]
+        effects = np.array([elementary_effects(line) for line in lines]).reshape(-1, inputs)
         for i, row in enumerate(table.rows):
             mu_star = effects[:, i].mean() if len(effects) else np.nan
             scatter = effects[:, i].std(ddof=1) if len(effects) > 1 else np.nan
@@ -130,20 +126,13 @@ def sensitivity_rows(
     return rows
 
 
-def index_intervals(
-    responses: Sequence[Response | Change | None],
-    nodes: NodeOutputs,
-    direct: tuple[Array, Array],
-    table: InputTable,
-    settings: UncertaintySettings,
-) -> tuple[Array, Array]:
+def index_intervals(responses: Sequence[Response | None], direct: Direct, table: InputTable) -> tuple[Array, Array]:
     """First-order and total indices of the outputs: estimate, lower and upper end, shape (3, len(OUTPUTS), n).
 
     Parameters
     ----------
-    responses : of the outputs; what they come from, `nodes` or `direct`, is resampled for the ends.
+    responses : of the outputs; the direct runs behind them are resampled for the ends.
     """
-    ranges = table.ranges()
     points = pick_freeze(table, SOBOL_SAMPLES, SAMPLE_SEED)
     rng = np.random.default_rng(np.random.SeedSequence([SAMPLE_SEED, 0xB0]))
     estimate = response_indices(points, responses)
@@ -151,25 +140,17 @@ def index_intervals(
     resampled = []
     for _ in range(SOBOL_RESAMPLES):
         # other samples as well: heavy tails make the estimators themselves uncertain
-        again = partial(response_indices, points[:, rng.integers(points.shape[1], size=points.shape[1])])
-        if settings.response == "regression":
-            picks = rng.integers(len(direct[0]), size=len(direct[0])) if len(direct[0]) else np.empty(0, int)
-            resampled.append(again(_refitted(responses, direct[0][picks], outputs[picks])))
-        elif len(nodes.seeds) > 1:
-            chosen = rng.integers(len(nodes.seeds), size=len(nodes.seeds))
-            others = NodeOutputs(nodes.seeds, nodes.values[chosen])
-            exported = exported_responses(others, direct, ranges, settings)
-            resampled.append(again(output_responses(exported, direct, ranges, settings)))
-    ends = np.full((2, *estimate.shape), np.nan)
-    if resampled:
-        draws = np.array(resampled)
-        known = np.isfinite(draws).all(axis=0)
-        ends[:, known] = np.quantile(draws[:, known], [0.05, 0.95], axis=0)
+        again = points[:, rng.integers(points.shape[1], size=points.shape[1])]
+        picks = rng.integers(len(direct[0]), size=len(direct[0])) if len(direct[0]) else np.empty(0, int)
+        resampled.append(response_indices(again, _refitted(responses, direct[0][picks], outputs[picks])))
+    ends, draws = np.full((2, *estimate.shape), np.nan), np.array(resampled)
+    known = np.isfinite(draws).all(axis=0)
+    ends[:, known] = np.quantile(draws[:, known], [0.05, 0.95], axis=0)
     first, total = (np.stack([estimate[j], ends[0, j], ends[1, j]]) for j in (0, 1))
     return first, total
 
 
-def response_indices(points: Array, responses: Sequence[Response | Change | None]) -> Array:
+def response_indices(points: Array, responses: Sequence[Response | None]) -> Array:
     """First-order and total indices of the outputs by their responses, shape (2, len(OUTPUTS), n).
 
     Parameters
@@ -181,7 +162,7 @@ def response_indices(points: Array, responses: Sequence[Response | Change | None
     return np.stack([sobol_indices(y[0, :, k], y[1, :, k], y[2:, :, k]) for k in range(len(OUTPUTS))], axis=1)
 
 
-def _refitted(responses: Sequence[Response | Change | None], x: Array, y: Array) -> list[Surrogate | None]:
+def _refitted(responses: Sequence[Response | None], x: Array, y: Array) -> list[Surrogate | None]:
     """The regression responses with their terms kept and their coefficients fitted to other runs."""
     again: list[Surrogate | None] = []
     for k, response in enumerate(responses):

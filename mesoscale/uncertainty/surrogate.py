@@ -144,6 +144,7 @@ def from_json(content: Mapping[str, Any]) -> dict[str, Response]:
 
 
 FEWEST_RUNS = 20
+"""Complete runs below which there is no scatter of single cells."""
 
 
 @dataclass(frozen=True)
@@ -167,14 +168,14 @@ class Scatter:
     runs: int
 
 
-def joint_scatter(responses: Sequence[Response], direct: tuple[Array, Array], fitted: bool) -> Scatter | None:
+def joint_scatter(responses: Sequence[Response], direct: tuple[Array, Array]) -> Scatter | None:
     """Residuals of direct runs in the transformed space as a joint normal distribution.
 
     Parameters
     ----------
     responses : n of them.
-    direct : inputs (r, m) and outputs (r, n) of direct runs, each on a surface of its own.
-    fitted : whether the responses were fitted to these runs; deviations are then widened by the terms' number.
+    direct : inputs (r, m) and outputs (r, n) of the direct runs that the responses were fitted to, each on a surface
+        of its own; deviations are widened by the terms' number.
 
     Returns
     -------
@@ -188,7 +189,7 @@ def joint_scatter(responses: Sequence[Response], direct: tuple[Array, Array], fi
     positive = np.asarray(((truth > 0) & (smooth > 0)).all(axis=0))
     with np.errstate(invalid="ignore", divide="ignore"):
         residuals = np.where(positive, np.log(truth / smooth), truth - smooth)
-    widening = np.array([_widening(response, len(truth), fitted) for response in responses])
+    widening = np.array([_widening(response, len(truth)) for response in responses])
     return Scatter(
         tuple(np.where(positive, "log", "identity").tolist()),
         residuals.mean(axis=0),
@@ -197,15 +198,12 @@ def joint_scatter(responses: Sequence[Response], direct: tuple[Array, Array], fi
     )
 
 
-def _widening(response: Response, runs: int, fitted: bool) -> float:
+def _widening(response: Response, runs: int) -> float:
     """How much smaller the residuals of a least-squares fit are than those of runs that it has not seen."""
-    terms = len(response.degrees) if fitted else 0
-    return float(np.sqrt(runs / max(runs - terms, 1)))
+    return float(np.sqrt(runs / max(runs - len(response.degrees), 1)))
 
 
-def with_scatter(
-    outputs: Array, responses: Sequence[Response | None], direct: tuple[Array, Array], fitted: bool, seed: int
-) -> Array:
+def with_scatter(outputs: Array, responses: Sequence[Response | None], direct: tuple[Array, Array], seed: int) -> Array:
     """Outputs of single cells: those of the responses times residuals drawn from direct runs.
 
     Residuals of all outputs of a run are drawn together, which keeps their dependence. They are ratios where a
@@ -214,8 +212,8 @@ def with_scatter(
     Parameters
     ----------
     outputs : closing and opening parameters by the responses, shape (m, k).
-    direct : inputs (r, n) and closing and opening parameters (r, k) of direct runs.
-    fitted : whether the responses were fitted to these runs; residuals are then widened by the terms' number.
+    direct : inputs (r, n) and closing and opening parameters (r, k) of the direct runs that the responses were fitted
+        to; residuals are widened by the terms' number.
 
     Returns
     -------
@@ -232,7 +230,7 @@ def with_scatter(
     for k, response in enumerate(responses):
         if response is None:
             continue
-        widening = _widening(response, int(complete.sum()), fitted)
+        widening = _widening(response, int(complete.sum()))
         truth, smooth = y[complete, k], predicted[complete, k]
         if (smooth > 0).all() and (outputs[:, k] > 0).all():
             ratio = truth / smooth

@@ -15,15 +15,16 @@ from mesoscale.settings.uncertainty import RESAMPLES
 from mesoscale.uncertainty.designs import SAMPLE_SEED
 from mesoscale.uncertainty.doubts import against_physics, explained
 from mesoscale.uncertainty.propagation import (
+    Direct,
     NodeOutputs,
     Propagation,
     exported_responses,
+    linear_outputs,
     to_paper_outputs,
 )
-from mesoscale.uncertainty.surrogate import Response, evaluate
+from mesoscale.uncertainty.surrogate import evaluate
 
 Array = NDArray[np.float64]
-Responses = Sequence[Response | None]
 
 STATISTICS: dict[str, Callable[..., Any]] = {
     "mean": np.mean,
@@ -34,7 +35,7 @@ STATISTICS: dict[str, Callable[..., Any]] = {
 }
 
 
-def direct_runs_of_rows(rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int) -> tuple[Array, Array]:
+def direct_runs_of_rows(rows: Iterable[Mapping[str, str]], names: Sequence[str], count: int) -> Direct:
     """Inputs (m, n) and parameters (m, len(FITTED)) of the first `count` runs; NaN where missing."""
     rows = list(islice(rows, count))
     inputs = np.array([[float(row[name]) for name in names] for row in rows]).reshape(len(rows), len(names))
@@ -42,32 +43,23 @@ def direct_runs_of_rows(rows: Iterable[Mapping[str, str]], names: Sequence[str],
     return inputs, outputs.reshape(len(rows), len(FITTED))
 
 
-def held_out_predictions(
-    direct: tuple[Array, Array],
-    nodes: NodeOutputs,
-    responses: Responses,
-    ranges: Array,
-    settings: UncertaintySettings,
-) -> Array:
+def held_out_predictions(direct: Direct, ranges: Array, settings: UncertaintySettings) -> Array:
     """Closing and opening parameters of every direct run by responses that never saw it, shape (m, len(FITTED)).
 
-    Responses from the nodes are independent of the direct runs. A regression response is fitted to these, so it
-    is fitted anew, terms and coefficients, without each fifth of them (five-fold cross-validation).
+    The responses are fitted anew, terms and coefficients, without each fifth of the runs (five-fold cross-validation).
     """
     x, y = direct
-    if settings.response != "regression":
-        return evaluate(responses, x)
     predicted = np.full_like(y, np.nan)
     folds = np.arange(len(x)) % 5
     for fold in range(5):
         rest, held = folds != fold, folds == fold
-        again = exported_responses(nodes, (x[rest], y[rest]), ranges, settings)
+        again = exported_responses((x[rest], y[rest]), ranges, settings)
         predicted[held] = evaluate(again, x[held])
     return predicted
 
 
 def validation_rows(
-    direct: tuple[Array, Array],
+    direct: Direct,
     nodes: NodeOutputs,
     table: InputTable,
     result: Propagation,
@@ -93,12 +85,10 @@ def validation_rows(
     outputs = direct[1]
     ranges = table.ranges()
     cells = np.where(np.isfinite(result.cells), result.cells, result.outputs)
-    predicted = to_paper_outputs(held_out_predictions(direct, nodes, result.responses, ranges, settings))
+    predicted = to_paper_outputs(held_out_predictions(direct, ranges, settings))
     repeated = to_paper_outputs(again)
     physics = against_physics(result.responses, table, most_GPa)
-    linear_settings = settings.model_copy(update={"response": "linear"})
-    linear_responses = exported_responses(nodes, direct, ranges, linear_settings)
-    linear = to_paper_outputs(held_out_predictions(direct, nodes, linear_responses, ranges, linear_settings))
+    linear = to_paper_outputs(linear_outputs(nodes.over_seeds, ranges, direct[0]))
     truth, samples = to_paper_outputs(outputs), to_paper_outputs(cells)
     rng = np.random.default_rng(np.random.SeedSequence([SAMPLE_SEED, 0xB1]))
     rows = []

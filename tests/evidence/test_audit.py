@@ -10,7 +10,7 @@ from evidence.record import load
 from evidence.uncertainty.audit import COUPLED, LAW_READINGS, MISPRINT, contact_readings, rank, with_reading
 from mesoscale.inputs.table import collect
 from mesoscale.law.parameters import LAW_OUTPUTS
-from mesoscale.settings import ContactSettings, LawSettings, ReadingSettings
+from mesoscale.settings import ContactSettings, ReadingSettings
 from mesoscale.uncertainty.collocation import nodes
 from mesoscale.uncertainty.paper_tables import table2, table3
 from tests.mesoscale import paper
@@ -33,7 +33,7 @@ def made_up(shift=0.0, scatter=0.0, missing=False):
     y = np.empty((6, 15, len(LAW_OUTPUTS)))
     for seed in range(6):
         off = shift + scatter * rng.normal()
-        for node, u in enumerate(nodes(7, 1)):
+        for node, u in enumerate(nodes(7)):
             for k, output in enumerate(LAW_OUTPUTS):
                 mean, deviation = TWO[output.short]
                 effects = [x if (x := THREE[output.short][key]) < MISPRINT * deviation else 0.0 for key in TABLE.names]
@@ -74,13 +74,13 @@ def test_readings_become_settings():
     assert (reading.convention, reading.flow_pair, reading.prefactor) == ("areal", "paper", "hertz")
     assert (reading.radius, reading.area, reading.touching_attracts) == ("truncation", "sites", False)
     assert len(contact_readings()) == 48
-    assert set(LAW_READINGS) >= {"first_contact", "force_0.03", "free_fit"}
+    assert set(LAW_READINGS) >= {"first_contact", "force_0.03"}
 
 
 def test_the_nearest_reading_is_the_default_and_can_be_audited_with_coupled_asperities():
     first = load("uncertainty.audit")[0]
-    for contact, law in ((ContactSettings(), LawSettings()), (paper.CONTACT, paper.LAW)):
+    assert first["law"] == "first_contact"
+    for contact in (ContactSettings(), paper.CONTACT):
         assert with_reading(first["contact"], contact) == contact
-        assert law.model_copy(update=LAW_READINGS[first["law"]]) == law
     coupled = with_reading(f"{first['contact']}.{COUPLED}", ContactSettings(reading=ReadingSettings(prefactor="paper")))
     assert coupled == with_reading(first["contact"], ContactSettings(mechanics="coupled"))

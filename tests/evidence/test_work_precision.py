@@ -78,16 +78,16 @@ def test_scatter_gives_single_cells_the_variance_of_the_runs(runs):
     ranges = np.array([[0.0, 1.0]] * 3)
     degrees = np.vstack([np.zeros((1, 3), int), np.eye(3, dtype=int)])
     response = Surrogate(ranges, degrees, np.array([13.0, 0.5, 1.0, 1.5]))
-    cells = with_scatter(np.repeat(response(x)[:, None], 8, axis=1), [response] * 4 + [None] * 4, (x, y), False, 1)
+    cells = with_scatter(np.repeat(response(x)[:, None], 8, axis=1), [response] * 4 + [None] * 4, (x, y), 1)
     assert cells[:, 0].var() == pytest.approx(y[:, 0].var(), rel=0.1)
     # drawn together: outputs with equal residuals stay equal
     assert cells[:, 1] == pytest.approx(cells[:, 0])
     assert np.isnan(cells[:, 4:]).all()
-    assert np.isnan(with_scatter(cells[:, :], [response] * 8, (x[:5], y[:5]), False, 1)).all()
+    assert np.isnan(with_scatter(cells[:, :], [response] * 8, (x[:5], y[:5]), 1)).all()
 
 
 def given_nodes(table, seeds=4):
-    values = 10 + to_values(nodes(3, 1), table.ranges()) @ SLOPES
+    values = 10 + to_values(nodes(3), table.ranges()) @ SLOPES
     shifts = np.linspace(-0.1, 0.1, seeds)[:, None]
     return NodeOutputs(list(range(seeds)), np.stack([values + shifts] * 4 + [2 * (values + shifts)] * 4, axis=-1))
 

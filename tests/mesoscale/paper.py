@@ -5,7 +5,7 @@ from pathlib import Path
 
 import yaml
 
-from mesoscale.settings import ContactSettings, InputsSettings, LawSettings
+from mesoscale.settings import ContactSettings, InputsSettings
 
 _SCENES = Path(__file__).parents[2] / "config" / "scenes"
 _TABLE, _SCENE = (
@@ -13,4 +13,3 @@ _TABLE, _SCENE = (
 )
 INPUTS = InputsSettings.model_validate_json(json.dumps(_TABLE["inputs"]))  # JSON: a list may fill a tuple
 CONTACT = ContactSettings.model_validate_json(json.dumps(_SCENE["contact"]))
-LAW = LawSettings.model_validate_json(json.dumps(_SCENE["law"]))

@@ -39,7 +39,6 @@ def write_all(root: Path) -> list[Path]:
     _topography(root)
     _history(root)
     _failure(root)
-    _model_form(root)
     _calibration(root)
     _studies(root)
     return sorted(path for path in root.rglob("*") if path.is_file())
@@ -201,7 +200,7 @@ def _law_band(root: Path) -> None:
 
     rows = load_numbers(root / "uq/samples.csv")
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    _write(root / "uq/law.csv", band_rows(columns, 2.0, 2.0))
+    _write(root / "uq/law.csv", band_rows(columns))
 
 
 def _pad(root: Path) -> None:
@@ -382,16 +381,6 @@ def _history(root: Path) -> None:
     _write(root / "history/cycles.csv", cycles)
     _write(root / "history/dwell.csv", dwell)
     write_h5(root / "history/curves.h5", groups, {"cell_area_nm2": 1e6}, PROVENANCE, facts)
-
-
-def _model_form(root: Path) -> None:
-    pairs = {"pairs": 100, "asperity_mean": 2.0, "asperity_dev": 1.0, "coupled_mean": 5.0, "coupled_dev": 1.0}
-    found = {"shift": 3.0, "shift_low": 2.5, "shift_high": 3.5, "cost_ratio": 25.0}
-    rows = [
-        {"quantity": "rho_r_nm", "unit": "nm", **pairs, **found, "correlation": 0.9},
-        {"quantity": "pull_off_nN", "unit": "nN", **pairs, **found, "ratio": 2.5, "ratio_low": 2, "ratio_high": 3},
-    ]
-    _write(root / "uq/model_form.csv", rows)
 
 
 def _calibration(root: Path) -> None:

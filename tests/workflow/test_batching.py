@@ -5,7 +5,7 @@ import tracemalloc
 import pytest
 
 from mesoscale.inputs.table import collect
-from mesoscale.settings import ContactSettings, LawSettings
+from mesoscale.settings import ContactSettings
 from mesoscale.uncertainty.designs import random_runs
 from mesoscale.uncertainty.runs import compute_rows
 from workflow.scene import load_scene
@@ -44,7 +44,7 @@ def peak_of():
         runs = random_runs(table, 0, count)
         tracemalloc.start()
         try:
-            for _ in compute_rows(runs, ContactSettings(pixels=64), LawSettings()):
+            for _ in compute_rows(runs, ContactSettings(pixels=64)):
                 pass
             return tracemalloc.get_traced_memory()[1]
         finally:

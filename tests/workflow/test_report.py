@@ -29,7 +29,7 @@ from workflow.report.stages.inputs import _distribution
 from workflow.report.studies import recommended
 
 SECTIONS = ("hardness", "elastic", "topography", "curves", "uncertainty", "sensitivity", "pad")
-ON_TOP = ("model-form", "history", "calibration", "accuracy", "stability")
+ON_TOP = ("history", "calibration", "accuracy", "stability")
 
 
 @pytest.fixture(scope="module")
@@ -192,11 +192,6 @@ def test_stability_tells_what_did_not_pass(page):
 
 def test_history_says_its_answer(page):
     assert "The last cycle loses 1.6 % of the energy that the first one lost" in page
-
-
-def test_model_form_says_what_shifts_and_what_the_cheap_engine_saves(page):
-    assert "3.00 [2.50, 3.50]" in page
-    assert "costs 25 times as much" in page
 
 
 def test_figures_follow_the_page_colours():

@@ -4,7 +4,7 @@ from workflow.report.available import Results
 
 _ASPERITY = (
     "Contact area is where a plane cuts the surface, which overestimates it.",
-    "Each asperity is pressed on its own. On opening this is too compliant; target model_form tells by how much.",
+    "Each asperity is pressed on its own. On opening this is too compliant (docs/contact.md).",
 )
 _COUPLED = ("Flowed volume is not kept: the rim that it would make carries no load.",)
 _UNDEFORMED = (  # python -m evidence contact.adhesion, pad.answers

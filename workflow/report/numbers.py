@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.law.parameters import LAW_OUTPUTS, LawParameter
+from mesoscale.settings.definitions import BY_NAME
 from workflow.report.available import Row
 
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

@@ -24,7 +24,6 @@ rule follow_history:
     params:
         settings=settings("history"),
         contact=settings("contact"),
-        law=settings("law"),
     message:
         "close and open again and again"
     script:

@@ -1,4 +1,4 @@
-from mesoscale.uncertainty.chunks import chunk_bounds, collocation_level, collocation_run_count
+from mesoscale.uncertainty.chunks import chunk_bounds, collocation_run_count
 
 RUN_CHUNKS = chunk_bounds(collocation_run_count(len(SCENE.inputs.rows()), SCENE.uncertainty))
 
@@ -22,7 +22,6 @@ rule compute_runs:
         mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
-        level=collocation_level(SCENE.uncertainty),  # nothing else: more seeds keep the old chunks
         bounds=lambda wildcards: RUN_CHUNKS[wildcards.chunk],
     message:
         f"compute contact cycles, chunk {{wildcards.chunk}} of {len(RUN_CHUNKS)}"
@@ -40,8 +39,6 @@ rule fit_law:
     log:
         f"{RESULTS}/logs/fit_law.log",
     threads: 1
-    params:
-        settings=settings("law"),
     message:
         "fit the force-separation law"
     script:
@@ -55,8 +52,6 @@ rule fit_nominal_law:
         f"{RESULTS}/law/nominal.csv",
     log:
         f"{RESULTS}/logs/fit_nominal_law.log",
-    params:
-        settings=settings("law"),
     message:
         "fit the law to the nominal curves"
     script:

@@ -57,7 +57,7 @@ def studies_at_hand():
 
     As parameters, not inputs: they are shown without being scheduled, and a new one renews the page.
     """
-    found = rules.model_form.input + ([] if SCENE.report.studies else [*ACCURACY, *STABILITY])
+    found = [] if SCENE.report.studies else [*ACCURACY, *STABILITY]
     return {name: file_checksum(name) for name in found if Path(name).is_file()}
 
 

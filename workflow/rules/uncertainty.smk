@@ -3,7 +3,6 @@ from mesoscale.uncertainty.chunks import MOST_REPEATED, full_chunks
 DIRECT_CHUNKS = full_chunks(SCENE.uncertainty.direct_runs)
 # more runs add files and leave these as they are
 DIRECT = [f"{RESULTS}/uq/direct/chunk_{chunk}.csv" for chunk in DIRECT_CHUNKS]
-PAIR_CHUNKS = chunk_bounds(SCENE.uncertainty.model_form_pairs, 20)
 
 
 rule uq:
@@ -30,7 +29,6 @@ rule compute_direct_runs:
         mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
-        law=settings("law"),
         bounds=lambda wildcards: DIRECT_CHUNKS[wildcards.chunk],
     message:
         f"compute direct contact cycles, chunk {{wildcards.chunk}} of {len(DIRECT_CHUNKS)}"
@@ -53,7 +51,6 @@ rule repeat_direct_runs:
         mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
-        law=settings("law"),
         bounds=(0, min(MOST_REPEATED, SCENE.uncertainty.direct_runs)),
     message:
         "repeat direct contact cycles on other surfaces"
@@ -80,7 +77,6 @@ rule propagate_uncertainty:
         mem_mb=PROPAGATION_MB,
     params:
         settings=settings("uncertainty"),
-        law=settings("law"),
         max_force_nN=SCENE.contact.max_force_nN,
         length_nm=SCENE.contact.length_nm,
     message:
@@ -122,7 +118,6 @@ rule measure_uncertainty_accuracy:
     threads: 1
     params:
         contact=settings("contact"),
-        law=settings("law"),
         settings=settings("uncertainty"),
     message:
         "measure the error of the regression against the number of direct runs"
@@ -132,41 +127,3 @@ rule measure_uncertainty_accuracy:
 
 if "law" in SCENE.tails:
     ACCURACY.append(f"{RESULTS}/accuracy/uncertainty.csv")
-
-
-# Asperities on their own and coupled, side by side
-rule model_form:
-    input:
-        f"{RESULTS}/uq/model_form.csv",
-
-
-rule compute_pairs:
-    input:
-        **SURFACE,
-        inputs=f"{RESULTS}/inputs.csv",
-    output:
-        f"{RESULTS}/uq/model_form/pairs_{{chunk}}.csv",
-    log:
-        f"{RESULTS}/logs/compute_pairs_{{chunk}}.log",
-    threads: 1
-    params:
-        contact=settings("contact"),
-        law=settings("law"),
-        bounds=lambda wildcards: PAIR_CHUNKS[wildcards.chunk],
-    message:
-        "compute contact cycles with both mechanics, chunk {wildcards.chunk}"
-    script:
-        "../scripts/compute_pairs.py"
-
-
-rule compare_mechanics:
-    input:
-        expand(rules.compute_pairs.output[0], chunk=PAIR_CHUNKS),
-    output:
-        f"{RESULTS}/uq/model_form.csv",
-    log:
-        f"{RESULTS}/logs/compare_mechanics.log",
-    message:
-        "compare the mechanics of the contact"
-    script:
-        "../scripts/compare_mechanics.py"

@@ -1,7 +1,7 @@
 """Tables of the calibration."""
 
 from mesoscale.calibration.observables import NAMES
-from mesoscale.inputs.definitions import INPUTS
+from mesoscale.settings.definitions import INPUTS
 from workflow.schemas.inputs_and_law import SEED
 from workflow.schemas.table import Table, integer, number, text
 

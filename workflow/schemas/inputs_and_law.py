@@ -1,7 +1,7 @@
 """Tables of the uncertain inputs, of the law and of the cycles behind it."""
 
-from mesoscale.inputs.definitions import INPUTS
 from mesoscale.law.parameters import LAW
+from mesoscale.settings.definitions import INPUTS
 from workflow.schemas.table import Column, Table, boolean, integer, number, text
 
 INPUT_VALUES = tuple(number(row.name, row.unit, f"{row.label} of the run", optional=row.may_lack) for row in INPUTS)

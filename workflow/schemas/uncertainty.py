@@ -1,6 +1,6 @@
 """Tables of uncertainty and sensitivity."""
 
-from mesoscale.law.parameters import LAW, LAW_OUTPUTS
+from mesoscale.law.parameters import LAW
 from workflow.schemas.inputs_and_law import BRANCH, INPUT_VALUES, SEED
 from workflow.schemas.table import Column, Table, integer, number, text
 
@@ -132,59 +132,6 @@ _DIRECT = Table(
     ),
 )
 
-_MECHANICS = {"asperity": "asperities on their own", "coupled": "coupled asperities"}
-_SWITCH = (
-    number("pull_off_nN", "nN", "largest net attraction of the cell on opening", empty=True),
-    number("opening_stiffness_nN_nm", "nN/nm", "fall of the repulsion to its half over the way to there", empty=True),
-)
-_PAIRS = Table(
-    ("uq/model_form/pairs_*.csv",),
-    "One direct run by both mechanics of the contact, on the same surface.",
-    (
-        integer("run", "number of the run"),
-        SEED,
-        *INPUT_VALUES,
-        *(
-            column
-            for name, words in _MECHANICS.items()
-            for column in (
-                *(number(f"{name}_{row.name}", row.unit, f"{row.meaning}, {words}", True) for row in LAW_OUTPUTS),
-                *(number(f"{name}_{row.name}", row.unit, f"{row.meaning}, {words}", True) for row in _SWITCH),
-                text(f"{name}_status", f"{words}: ok, unconverged, or failed: why"),
-                number(f"{name}_cpu_s", "s", f"processor time, {words}"),
-            )
-        ),
-    ),
-)
-
-_MODEL_FORM = Table(
-    ("uq/model_form.csv",),
-    "A quantity by both mechanics of the contact, over the inputs' distribution; 90 % intervals.",
-    (
-        text("quantity", "output of Table 2, pull_off_nN or opening_stiffness_nN_nm"),
-        _UNIT,
-        integer("pairs", "runs with a value by both mechanics"),
-        integer("asperity_missing", "runs without a value by asperities on their own"),
-        integer("coupled_missing", "runs without a value by coupled asperities"),
-        *(
-            column
-            for name, words in _MECHANICS.items()
-            for column in (
-                *_in_unit(f"{name}_mean", f"mean, {words}", empty=True),
-                *_in_unit(f"{name}_dev", f"standard deviation, {words}", empty=True),
-            )
-        ),
-        *_in_unit("shift", "mean of coupled minus on their own", "90 % interval", empty=True),
-        number("shift_over_dev", "1", "shift over the standard deviation of asperities on their own", empty=True),
-        *_with_ends(
-            number("ratio", "1", "median of coupled over on their own; none for quantities of any sign", empty=True),
-            "90 % interval",
-        ),
-        number("correlation", "1", "correlation of the two over the runs", empty=True),
-        number("cost_ratio", "1", "processor time of a coupled cycle over that of one on its own"),
-    ),
-)
-
 _SAMPLES = Table(
     ("uq/samples.csv",),
     "One sample of the inputs through the exported responses; nan where an output has none.",
@@ -210,6 +157,4 @@ TABLES = (
     _LAW,
     _VALIDATION,
     _DIRECT,
-    _PAIRS,
-    _MODEL_FORM,
 )

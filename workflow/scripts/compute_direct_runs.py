@@ -5,11 +5,10 @@ parameters of both branches, statuses).
 """
 
 from mesoscale.inputs.table import from_rows
-from mesoscale.settings import LawSettings
 from mesoscale.uncertainty.designs import FIRST_RANDOM_SEED, FIRST_SECOND_SURFACE, random_runs
 from mesoscale.uncertainty.runs import compute_rows
 from workflow.contact_settings import contact_settings
-from workflow.job import job, settings_from_job
+from workflow.job import job
 from workflow.results import load_csv, write_csv
 
 with job(snakemake) as run:
@@ -19,5 +18,4 @@ with job(snakemake) as run:
         first_surface=FIRST_SECOND_SURFACE if snakemake.rule == "repeat_direct_runs" else FIRST_RANDOM_SEED,
     )
     contact = contact_settings(snakemake.params.contact, snakemake)
-    law = settings_from_job(LawSettings, snakemake.params.law)
-    write_csv(snakemake.output[0], compute_rows(runs, contact, law, run.progress))
+    write_csv(snakemake.output[0], compute_rows(runs, contact, run.progress))

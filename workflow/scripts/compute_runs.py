@@ -16,7 +16,7 @@ from workflow.results import Dataset, load_csv, write_h5
 with job(snakemake) as run:
     contact = contact_settings(snakemake.params.contact, snakemake)
     table = from_rows(load_csv(snakemake.input.inputs))
-    runs = collocation_runs(table, snakemake.params.level, *snakemake.params.bounds)
+    runs = collocation_runs(table, *snakemake.params.bounds)
     groups, attributes = {}, {}
     for item, cycle in compute_all(runs, contact, run.progress):
         name = f"run_{item.index:04d}"

@@ -6,12 +6,10 @@ per run and branch.
 
 from mesoscale.inputs.table import from_rows
 from mesoscale.law.branches import fit_stored
-from mesoscale.settings import LawSettings
-from workflow.job import job, settings_from_job
+from workflow.job import job
 from workflow.results import load_csv, load_h5, write_csv
 
 with job(snakemake) as run:
-    settings = settings_from_job(LawSettings, snakemake.params.settings)
     names = from_rows(load_csv(snakemake.input.inputs)).names
     rows, wells = [], []
     for done, path in enumerate(snakemake.input.chunks):
@@ -20,9 +18,9 @@ with job(snakemake) as run:
             attrs = attributes[name]
             head = {key: attrs[key] for key in ("run", "node", "seed")}
             values = {key: attrs[key] for key in names}
-            for stored in fit_stored(curves, name, attrs, root["cell_area_nm2"], settings):
+            for stored in fit_stored(curves, name, attrs, root["cell_area_nm2"]):
                 rows.append({**head, **stored.row, **values})
-                wells.append({**head, **stored.well_row(settings)})
+                wells.append({**head, **stored.well_row})
         run.progress((done + 1) / len(snakemake.input.chunks), "curves fitted")
     for table, path in ((rows, snakemake.output.parameters), (wells, snakemake.output.wells)):
         table.sort(key=lambda row: row["run"])

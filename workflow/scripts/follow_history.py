@@ -10,7 +10,7 @@ from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.law.lifetime import cycle_row, dwell_rows, follow_all, shown_cycles
-from mesoscale.settings import HistorySettings, LawSettings
+from mesoscale.settings import HistorySettings
 from mesoscale.settings.contact import NOMINAL_SEED
 from workflow.contact_settings import contact_settings
 from workflow.job import job, settings_from_job
@@ -18,14 +18,13 @@ from workflow.results import Dataset, load_csv, write_csv, write_h5
 
 with job(snakemake) as run:
     settings = settings_from_job(HistorySettings, snakemake.params.settings)
-    law = settings_from_job(LawSettings, snakemake.params.law)
     contact = contact_settings(snakemake.params.contact, snakemake)
     middle = medians(load_csv(snakemake.input.inputs))
     inputs, contact = contact_of(middle, contact)
     cycles, dwell, groups, attributes = [], [], {}, {}
     shown = shown_cycles(settings)
     for seed, held in follow_all(inputs, contact, settings, run.progress):
-        cycles.append(cycle_row(seed, held, law))
+        cycles.append(cycle_row(seed, held))
         dwell += dwell_rows(seed, held, contact, settings)
         if seed == NOMINAL_SEED and held.number in shown:
             name = f"cycle_{held.number:04d}"

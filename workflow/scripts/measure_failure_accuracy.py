@@ -3,7 +3,7 @@
 In: pad/inputs.csv, pad/model.h5.  Out: accuracy/failure.csv (s).
 """
 
-from mesoscale.failure.accuracy import accuracy_points
+from mesoscale.studies.failure_accuracy import accuracy_points
 from workflow.checks import accuracy_rows
 from workflow.failing import load_population
 from workflow.job import job

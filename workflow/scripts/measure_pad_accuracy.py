@@ -3,7 +3,7 @@
 In: pad/inputs.csv, pad/model.h5.  Out: accuracy/pad.csv (V, s).
 """
 
-from mesoscale.device.accuracy import accuracy_points
+from mesoscale.studies.pad_accuracy import accuracy_points
 from workflow.checks import accuracy_rows
 from workflow.job import job
 from workflow.pad_files import load_model, points_of_job

@@ -4,7 +4,7 @@ In: nothing (synthetic scans with known truth).  Out: accuracy/topography.csv.
 """
 
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.accuracy import accuracy_points
+from mesoscale.studies.topography_accuracy import accuracy_points
 from workflow.checks import accuracy_rows
 from workflow.job import job, settings_from_job
 from workflow.results import write_csv

@@ -8,9 +8,10 @@ uq/law.csv (nm, GPa/nm, GPa).
 import numpy as np
 
 from mesoscale.inputs.table import from_rows
+from mesoscale.law.compact import Law
 from mesoscale.law.parameters import FITTED
 from mesoscale.law.samples import band_rows
-from mesoscale.settings import LawSettings, UncertaintySettings
+from mesoscale.settings import UncertaintySettings
 from mesoscale.uncertainty.paper_tables import table2
 from mesoscale.uncertainty.propagation import nodes_of_rows, output_rows, propagate, surrogate_json
 from mesoscale.uncertainty.validation import direct_runs_of_rows, validation_rows
@@ -19,7 +20,6 @@ from workflow.results import load_csv, write_csv, write_json
 
 with job(snakemake) as run:
     settings = settings_from_job(UncertaintySettings, snakemake.params.settings)
-    law = settings_from_job(LawSettings, snakemake.params.law)
     table = from_rows(load_csv(snakemake.input.inputs))
     nodes = nodes_of_rows(load_csv(snakemake.input.parameters))
     paper_rows = load_csv(snakemake.input.table2)
@@ -32,16 +32,16 @@ with job(snakemake) as run:
     result = propagate(nodes, table, settings, direct)
     write_csv(snakemake.output.outputs, output_rows(nodes, result, paper, table2(paper_rows, exchanged=True)))
     most_GPa = snakemake.params.max_force_nN / snakemake.params.length_nm**2  # 1 GPa nm^2 = 1 nN
-    constants = {"rho_a_nm": law.rho_a_nm, "alpha_nm": law.shield_nm, "most_GPa": most_GPa}
+    constants = {"rho_a_nm": Law.rho_a_nm, "alpha_nm": Law.shield_nm, "most_GPa": most_GPa}
     write_json(
         snakemake.output.surrogate,
-        surrogate_json(result, nodes, table, settings, constants, paper),
+        surrogate_json(result, nodes, table, constants, paper),
         run.provenance,
     )
     names, values = [*table.names, *FITTED], np.hstack([result.samples, result.outputs])
     write_csv(snakemake.output.samples, (dict(zip(names, line, strict=True)) for line in values.tolist()))
     columns = dict(zip(names, values.T, strict=True))
-    write_csv(snakemake.output.law, band_rows(columns, law.rho_a_nm, law.shield_nm))
+    write_csv(snakemake.output.law, band_rows(columns))
 
     repeated = (row for path in snakemake.input.again for row in load_csv(path))
     again = direct_runs_of_rows(repeated, table.names, settings.direct_runs)[1]

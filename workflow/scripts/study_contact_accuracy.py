@@ -3,9 +3,9 @@
 In: inputs.csv.  Out: accuracy/contact.csv.
 """
 
-from mesoscale.contact.accuracy import accuracy_points
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
+from mesoscale.studies.contact_accuracy import accuracy_points
 from workflow.checks import accuracy_rows
 from workflow.contact_settings import contact_settings
 from workflow.job import job

@@ -3,9 +3,9 @@
 In: inputs.csv.  Out: stability/contact.csv.
 """
 
-from mesoscale.contact.stability import stability_checks
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
+from mesoscale.studies.contact_stability import stability_checks
 from workflow.checks import stability_rows
 from workflow.contact_settings import contact_settings
 from workflow.job import job

@@ -12,10 +12,10 @@ from mesoscale.contact.coupled import half_space, validity
 from mesoscale.contact.coupled.adhesive import AdhesiveContact
 from mesoscale.contact.displacement import close_by_separation
 from mesoscale.contact.energy import dissipated_energy, pull_off, work
-from mesoscale.contact.stability import violations
 from mesoscale.contact.surface import random_surface
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings
+from mesoscale.studies.contact_stability import violations
 from mesoscale.topography.synthesis import synthesize
 from tests.mesoscale.contact import axisymmetric, exact
 

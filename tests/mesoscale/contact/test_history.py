@@ -7,9 +7,9 @@ import pytest
 
 from evidence.contact.draws import MIDDLE
 from mesoscale.contact.history import follow, hardness_factor
-from mesoscale.contact.stability import violations
 from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings, HistorySettings
+from mesoscale.studies.contact_stability import violations
 
 # smoother surfaces have fewer asperities, and the force jumps where they merge
 CONTACT = ContactSettings(pixels=128, reading={"convention": "profile"})

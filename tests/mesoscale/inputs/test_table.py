@@ -8,9 +8,9 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import FilmInputs, contact_of
-from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.inputs.table import check_resolved, collect, film_table, from_rows, input_table, to_rows
 from mesoscale.settings import ContactSettings, Correlation, InputRow, InputsSettings, PadSettings
+from mesoscale.settings.definitions import BY_NAME
 from tests.mesoscale import paper
 
 PAPER = paper.INPUTS

@@ -5,8 +5,7 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.law.compact import Law, force, pressure
-from mesoscale.law.fit import contact_separation, fit_branch, row_of
-from mesoscale.settings import LawSettings
+from mesoscale.law.fit import contact_separation, fit_branch, row_of, separation_at_share
 
 AREA = 1e6
 TRUE = Law(d_c_nm=32.0, C_a_GPa_nm=15e-5, C_r_GPa=6e-4, rho_r_nm=3.3, hamaker=0.215)
@@ -88,22 +87,14 @@ def test_degeneracy_shifting_contact_moves_the_prefactor_by_the_exponential():
 def test_contact_is_the_separation_at_first_touch():
     separation, repulsive, _ = curve(points=371)
     step = separation[1] - separation[0]
-    first = LawSettings(contact_definition="first_contact")
-    assert contact_separation(separation, repulsive, first) == pytest.approx(32.0, abs=step)
-    assert contact_separation(separation, repulsive, first, 31.5) == 31.5
+    assert contact_separation(separation, repulsive) == pytest.approx(32.0, abs=step)
+    assert contact_separation(separation, repulsive, 31.5) == 31.5
 
 
 def test_contact_by_share_of_the_largest_force():
     separation, repulsive, _ = curve(points=2000)
-    settings = LawSettings(contact_definition="force_fraction", force_fraction=0.01)
     exact = 32.0 - 3.3 * np.log1p(0.01 * np.expm1(9.0 / 3.3))
-    assert contact_separation(separation, repulsive, settings) == pytest.approx(exact, abs=1e-3)
-
-
-def test_free_fit_finds_contact_from_the_kink_of_the_attraction():
-    settings = LawSettings(contact_definition="free_fit")
-    fit = fit_branch(*curve(points=400), AREA, 0.215, None, settings)
-    assert fit.d_c_nm == pytest.approx(32.0, abs=0.3)
+    assert separation_at_share(separation, repulsive, 0.01) == pytest.approx(exact, abs=1e-3)
 
 
 def test_noise_is_covered_by_the_covariance():

@@ -3,19 +3,10 @@
 import numpy as np
 import pytest
 
-from mesoscale.law.compact import Law, pressure
 from mesoscale.law.parameters import BRANCHES
-from mesoscale.law.samples import band_rows, pressure_GPa, scale_adhesion
+from mesoscale.law.samples import band_rows
 
 NUMBERS = {"d_c_nm": 31.8, "C_a_GPa_nm": 0.0, "C_r_GPa": 6.4e-4, "rho_r_nm": 3.31}
-LAW = Law(31.8, 15.1e-5, 6.4e-4, 3.31, hamaker=0.215)
-
-
-def test_scaled_adhesion_leaves_the_repulsion():
-    s = np.linspace(0, 60, 61)
-    attraction, repulsion = pressure(s, LAW)
-    np.testing.assert_allclose(pressure_GPa(s, scale_adhesion(LAW, 0)), repulsion, rtol=1e-15)
-    np.testing.assert_allclose(pressure_GPa(s, scale_adhesion(LAW, 0.1)), repulsion + 0.1 * attraction, rtol=1e-12)
 
 
 def test_the_band_is_that_of_the_samples_with_a_law():
@@ -24,7 +15,7 @@ def test_the_band_is_that_of_the_samples_with_a_law():
     columns = {f"{branch}_{name}": np.full(103, value) for branch in BRANCHES for name, value in NUMBERS.items()}
     for branch in BRANCHES:
         columns[f"{branch}_C_r_GPa"] = np.append(factors * 6.4e-4, [np.nan, -1.0])  # two without a law
-    rows = list(band_rows(columns | {"hamaker": np.zeros(103)}, 2.0, 2.0, points=40))
+    rows = list(band_rows(columns | {"hamaker": np.zeros(103)}, points=40))
     assert [row["branch"] for row in rows] == ["closing"] * 40 + ["opening"] * 40
     touching = [row for row in rows if row["gap_nm"] < 31.0]
     for row in touching:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesoscale.inputs.table import collect
-from mesoscale.settings import ContactSettings, InputRow, LawSettings, UncertaintySettings
+from mesoscale.settings import ContactSettings, InputRow, UncertaintySettings
 from mesoscale.uncertainty import sensitivity
 from mesoscale.uncertainty.designs import collocation_runs, random_runs
 from mesoscale.uncertainty.propagation import NodeOutputs, propagate
@@ -18,7 +18,7 @@ CONTACT = ContactSettings(pixels=64)
 
 
 def law_of(runs, names):
-    rows = [{key: str(value) for key, value in row.items()} for row in compute_rows(runs, CONTACT, LawSettings())]
+    rows = [{key: str(value) for key, value in row.items()} for row in compute_rows(runs, CONTACT)]
     return direct_runs_of_rows(rows, names, len(rows))
 
 
@@ -40,8 +40,8 @@ def test_d0_as_eighth_input_moves_the_attraction_alone(monkeypatch):
     for name, count in {"SOBOL_SAMPLES": 128, "SOBOL_RESAMPLES": 3}.items():
         monkeypatch.setattr(sensitivity, name, count)
     table = collect(PAPER.model_copy(update={"gap_cutoff": InputRow(values=(0.165, 0.3))}), {}, {})
-    settings = UncertaintySettings(samples=500, direct_runs=150)
-    _, y = law_of(collocation_runs(table, 1, 0, 34), table.names)
+    settings = UncertaintySettings(direct_runs=150)
+    _, y = law_of(collocation_runs(table, 0, 34), table.names)
     nodes = NodeOutputs([0, 1], y.reshape(2, 17, 8))
     direct = law_of(random_runs(table, 0, 150), table.names)
     result = propagate(nodes, table, settings, direct)

@@ -7,7 +7,7 @@ from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import collect
 from mesoscale.law.branches import fit_cycle
 from mesoscale.law.parameters import FITTED
-from mesoscale.settings import ContactSettings, LawSettings
+from mesoscale.settings import ContactSettings
 from mesoscale.uncertainty import runs as runs_module
 from mesoscale.uncertainty.designs import Run, collocation_runs, random_runs
 from mesoscale.uncertainty.runs import compute, compute_all, compute_rows
@@ -15,7 +15,7 @@ from tests.mesoscale import paper
 
 PAPER = collect(paper.INPUTS, {}, {})
 CONTACT = ContactSettings(pixels=64)
-CENTRE = collocation_runs(PAPER, 1, 0, 1)[0].values
+CENTRE = collocation_runs(PAPER, 0, 1)[0].values
 
 
 def computed(values, seed):
@@ -25,7 +25,7 @@ def computed(values, seed):
 
 
 def test_runs_of_a_chunk_go_through_the_nodes_of_one_surface_after_the_other():
-    runs = collocation_runs(PAPER, 1, 14, 16)
+    runs = collocation_runs(PAPER, 14, 16)
     assert [run.seed for run in runs] == [0, 1]
     assert [run.node for run in runs] == [14, 0]
 
@@ -39,7 +39,7 @@ def test_random_runs_can_be_cut_anywhere():
 
 def test_a_cycle_gives_eight_outputs():
     cycle = computed(CENTRE, 0)
-    outcome = fit_cycle(cycle, LawSettings(contact_definition="first_contact"))
+    outcome = fit_cycle(cycle)
     assert outcome.outputs.shape == (8,)
     assert outcome.closing.d_c_nm == pytest.approx(cycle.first_contact_nm)
     # a smooth closing: contact a few rms from the mean plane
@@ -53,7 +53,7 @@ def test_rough_responses_touch_at_separations_in_proportion_to_rms():
 
 
 def test_a_failing_engine_is_reported_and_leaves_no_numbers():
-    rows = list(compute_rows([Run(0, -1, 1, {**CENTRE, "e_star": -1.0})], CONTACT, LawSettings()))
+    rows = list(compute_rows([Run(0, -1, 1, {**CENTRE, "e_star": -1.0})], CONTACT))
     assert str(rows[0]["curve_status"]).startswith("failed: InputError")
     assert all(rows[0][name] == "" for name in FITTED)
 
@@ -77,7 +77,7 @@ def test_the_cut_off_is_an_input_and_never_beyond_the_grid():
 def test_the_eighth_input_reaches_the_engine():
     inputs, settings = contact_of({**CENTRE, "gap_cutoff": 0.3}, CONTACT)
     assert settings.gap_cutoff_nm == 0.3
-    near, far = (fit_cycle(computed({**CENTRE, "gap_cutoff": d}, 1), LawSettings()) for d in (0.165, 0.3))
+    near, far = (fit_cycle(computed({**CENTRE, "gap_cutoff": d}, 1)) for d in (0.165, 0.3))
     assert near.closing.C_a_GPa_nm > far.closing.C_a_GPa_nm
     assert np.isclose(near.closing.rho_r_nm, far.closing.rho_r_nm)
     assert inputs.rms == CENTRE["rms"]

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from mesoscale.inputs.definitions import definition
 from mesoscale.law.parameters import PARAMETERS
+from mesoscale.settings.definitions import definition
 from workflow.report.available import Results
 from workflow.report.gates import faint_outputs
 from workflow.report.numbers import shown_unit

@@ -12,7 +12,6 @@ from workflow.report.stages import (
     hardness,
     history,
     inputs,
-    model_form,
     pad,
     resistance,
     sensitivity,
@@ -22,6 +21,6 @@ from workflow.report.stages import (
 
 PARTS = (
     ("switch", "The switch", (pad, circuit, failure, resistance, history)),
-    ("contact", "The contact", (contact, uncertainty, sensitivity, model_form)),
+    ("contact", "The contact", (contact, uncertainty, sensitivity)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

@@ -7,9 +7,9 @@ import pytest
 
 from evidence.contact.draws import MIDDLE, RANGES, draw_inputs
 from mesoscale.contact import run_cycle
-from mesoscale.contact.stability import Case, extreme_cases, judge, stability_checks, violations
 from mesoscale.contact.surface import random_surface
 from mesoscale.settings import ContactSettings
+from mesoscale.studies.contact_stability import Case, extreme_cases, judge, stability_checks, violations
 from mesoscale.topography.synthesis import synthesize
 from tests.mesoscale import paper
 
@@ -73,7 +73,7 @@ def test_a_scene_is_tried_at_its_own_inputs_and_settings():
 
 
 def test_a_check_says_what_broke(monkeypatch):
-    monkeypatch.setattr("mesoscale.contact.stability.violations", lambda *_: ["volume changed"])
+    monkeypatch.setattr("mesoscale.studies.contact_stability.violations", lambda *_: ["volume changed"])
     (*_, check) = stability_checks(MIDDLE, SETTINGS["asperity"])[0]
     passed, detail = check()
     assert not passed

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from evidence.pad.rare_failures import population
-from mesoscale.failure.accuracy import LEVELS, RUNS, accuracy_points
+from mesoscale.studies.failure_accuracy import LEVELS, RUNS, accuracy_points
 
 
 @pytest.fixture(scope="module")

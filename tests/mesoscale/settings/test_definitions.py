@@ -4,8 +4,8 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import contact_of
-from mesoscale.inputs.definitions import INPUTS
 from mesoscale.settings import ContactSettings
+from mesoscale.settings.definitions import INPUTS
 
 MIDDLE = {"hamaker": 0.2, "e_star": 90.0, "h_macro": 2.0, "h_prime": 8.0, "q0": 0.025, "hurst": 0.7, "rms": 5.0}
 

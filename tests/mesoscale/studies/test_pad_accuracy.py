@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from mesoscale.device import accuracy
 from mesoscale.device.points import PadModel, central_point, plan_points, solve_point, solve_points
 from mesoscale.inputs.distributions import Distribution, InputTable, UncertainInput
 from mesoscale.settings import ContactSettings, DeviceSettings
+from mesoscale.studies.pad_accuracy import Tried, accuracy_points
 
 FIXED = {"e_star": 91.0, "h_macro": 1.95, "h_prime": 8.375, "q0": 0.025, "hurst": 0.75}
 RANGES = {"hamaker": (0.2, 0.23), "rms": (7.5, 9.5)}
@@ -29,13 +29,8 @@ def rows():
     numbered = list(enumerate(design.points, 1))[:1]
     (one,) = solve_points(numbered, CONTACT, 2)
     model = PadModel(central, design, (one,) * 32)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(accuracy, "CELLS", (2, 4))
-        patch.setattr(accuracy, "OTHERS", 2)
-        patch.setattr(accuracy, "SIDES", (2,))
-        patch.setattr(accuracy, "ELEMENTS", (16, 32, 64, 128))
-        patch.setattr(accuracy, "FINEST_ELEMENTS", 256)
-        return list(accuracy.accuracy_points(model, TABLE, CONTACT, 2))
+    tried = Tried(cells=(2, 4), others=2, sides=(2,), elements=(16, 32, 64, 128))
+    return list(accuracy_points(model, TABLE, CONTACT, 2, tried=tried))
 
 
 def test_every_choice_has_errors_and_times(rows):
