@@ -97,7 +97,7 @@ rule rank_next_on_pad:
     input:
         **SURFACE,
         priors=f"{RESULTS}/calibration/priors.csv",
-        inputs=f"{RESULTS}/pad/inputs.csv",
+        inputs=f"{RESULTS}/inputs.csv",
         cycles=[f"{RESULTS}/calibration/cycles/chunk_{chunk}.csv" for chunk in MEASUREMENT_CHUNKS],
         local_cycles=f"{RESULTS}/calibration/local_cycles.csv",
         model=f"{RESULTS}/pad/model.h5",

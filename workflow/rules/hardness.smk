@@ -52,6 +52,7 @@ if needed("hardness"):
     ACCURACY.append(f"{RESULTS}/accuracy/hardness.csv")
     STABILITY.append(f"{RESULTS}/stability/hardness.csv")
 
+CLOSING_PLAN = []  # what each closing run costs
 
 if needed("hardness") and workflow.is_main_process:
     from atomistic.hardness.cost import plan_rows  # jobs do without
@@ -61,7 +62,8 @@ if needed("hardness") and workflow.is_main_process:
         below = base_of(MATERIALS[HARDNESS["base"]]) if BASE else None
         if below is not None:
             check_ions(below.material, load_potential(POTENTIAL).materials.get(HARDNESS["material"], {}))
-        plan_rows(SCENE.hardness, OXIDES[HARDNESS["material"]], OXIDES[HARDNESS["closing"]["counter_material"]], below)
+        bodies = OXIDES[HARDNESS["material"]], OXIDES[HARDNESS["closing"]["counter_material"]]
+        CLOSING_PLAN = plan_rows(SCENE.hardness, *bodies, below)
     except InputError as error:
         refuse(f"{SCENE_GIVEN}: hardness.asperities: {error}")
 

@@ -5,11 +5,6 @@ from workflow.terminal.memory import history_MB
 
 rule history:
     input:
-        f"{RESULTS}/history/cycles.csv",
-
-
-rule follow_history:
-    input:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
@@ -17,8 +12,7 @@ rule follow_history:
         dwell=f"{RESULTS}/history/dwell.csv",
         curves=f"{RESULTS}/history/curves.h5",
     log:
-        f"{RESULTS}/logs/follow_history.log",
-    threads: 1
+        f"{RESULTS}/logs/history.log",
     resources:
         mem_mb=history_MB(SCENE.history, SCENE.contact),
     params:

@@ -3,7 +3,7 @@ from workflow.checksums import file_checksum
 
 def report_inputs():
     """Result files of exactly the stages that the scene needs; each has its section in the page."""
-    files = ["scene.yaml", "inputs.csv", "curves/nominal.h5", "curves/spots.h5"]
+    files = ["inputs.csv", "curves/nominal.h5", "curves/spots.h5"]
     if "law" in SCENE.tails:
         files += ["law/parameters.csv", "law/wells.csv", "law/nominal.csv"]
         names = ("outputs.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv", "law.csv")
@@ -41,10 +41,10 @@ def kept_files():
     """What jobs of the scene leave beside the files of the report."""
     parts, files = [], []
     if "law" in SCENE.tails:
-        parts += [rules.fit_law, rules.fit_nominal_law, rules.propagate_uncertainty]
+        parts += [rules.law, rules.uq]
         files += DIRECT
     if "pad" in SCENE.tails:
-        parts += [rules.assemble_pad]
+        parts += [rules.device]
     if needed("hardness"):
         parts += [rules.find_hardness, rules.fit_hardness]
         files += expand(rules.make_glass.output, glass=SCENE.hardness.seeds)
@@ -78,20 +78,16 @@ def page_parts():
 
 rule report:
     input:
-        f"{RESULTS}/report.html",
-
-
-rule render_report:
-    input:
         report_inputs(),
         style=page_parts(),
     output:
-        report(f"{RESULTS}/report.html", caption="../captions/report.rst", category="Report"),
+        page=f"{RESULTS}/report.html",
+        record=f"{RESULTS}/scene.yaml",
     log:
-        f"{RESULTS}/logs/render_report.log",
+        f"{RESULTS}/logs/report.log",
     params:
         root=RESULTS,
-        scene=SCENE.name,
+        scene=RESOLVED,
         studies=studies_at_hand(),
     message:
         "write the report"

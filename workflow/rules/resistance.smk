@@ -3,18 +3,12 @@
 
 rule resistance:
     input:
-        f"{RESULTS}/device/resistance.csv",
-
-
-rule measure_resistance:
-    input:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/device/resistance.csv",
     log:
-        f"{RESULTS}/logs/measure_resistance.log",
-    threads: 1
+        f"{RESULTS}/logs/resistance.log",
     resources:
         mem_mb=CONTACT_MB,
     params:

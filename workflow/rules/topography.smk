@@ -28,14 +28,6 @@ if TOPOGRAPHY.scans and SURFACE:
     JUDGED = [f"{RESULTS}/topography/judged.csv", f"{RESULTS}/topography/unseen.csv"]
 
 
-rule topography:
-    input:
-        JUDGED,
-        f"{RESULTS}/topography/spectra.h5",
-        f"{RESULTS}/topography/parameters.json",
-        f"{RESULTS}/topography/surface.png",
-
-
 if not TOPOGRAPHY.scans:
 
     rule write_synthetic_scans:
@@ -77,9 +69,7 @@ rule pool_spectra:
         truth=[] if TOPOGRAPHY.scans else f"{RESULTS}/topography/truth.json",
     output:
         spectra=f"{RESULTS}/topography/spectra.h5",
-        parameters=report(
-            f"{RESULTS}/topography/parameters.json", caption="../captions/topography.rst", category="Inputs"
-        ),
+        parameters=f"{RESULTS}/topography/parameters.json",
     log:
         f"{RESULTS}/logs/pool_spectra.log",
     params:
@@ -94,14 +84,15 @@ rule pool_spectra:
         "../scripts/pool_spectra.py"
 
 
-rule draw_surface:
+rule topography:
     input:
+        JUDGED,
         spectra=f"{RESULTS}/topography/spectra.h5",
         parameters=f"{RESULTS}/topography/parameters.json",
     output:
         f"{RESULTS}/topography/surface.png",
     log:
-        f"{RESULTS}/logs/draw_surface.log",
+        f"{RESULTS}/logs/topography.log",
     message:
         "draw the surface and its spectrum"
     script:
@@ -112,50 +103,18 @@ rule judge_scans:
     input:
         chunks=rules.pool_spectra.input.chunks,
         scans=SCAN_FILES,
-        parameters=f"{RESULTS}/topography/parameters.json",
+        topography=f"{RESULTS}/topography/parameters.json",
         inputs=f"{RESULTS}/inputs.csv",
     output:
-        f"{RESULTS}/topography/judged.csv",
+        judged=f"{RESULTS}/topography/judged.csv",
+        unseen=f"{RESULTS}/topography/unseen.csv",
     log:
         f"{RESULTS}/logs/judge_scans.log",
     params:
         settings=settings("topography"),
         contact=settings("contact"),
-    message:
-        "press the scans beside surfaces made from the others' description"
-    script:
-        "../scripts/judge_scans.py"
-
-
-rule weigh_unseen_waves:
-    input:
-        topography=f"{RESULTS}/topography/parameters.json",
-        inputs=f"{RESULTS}/inputs.csv",
-    output:
-        f"{RESULTS}/topography/unseen.csv",
-    log:
-        f"{RESULTS}/logs/weigh_unseen_waves.log",
-    params:
-        contact=settings("contact"),
         law=settings("law"),
     message:
-        "weigh the waves that no instrument saw"
+        "press the scans beside surfaces made from the others' description, and weigh the waves that none saw"
     script:
-        "../scripts/weigh_unseen_waves.py"
-
-
-if needed("topography"):
-    ACCURACY.append(f"{RESULTS}/accuracy/topography.csv")
-
-
-rule measure_topography_accuracy:
-    output:
-        f"{RESULTS}/accuracy/topography.csv",
-    log:
-        f"{RESULTS}/logs/measure_topography_accuracy.log",
-    params:
-        settings=settings("topography"),
-    message:
-        "measure error against run time of the scan analysis"
-    script:
-        "../scripts/measure_topography_accuracy.py"
+        "../scripts/judge_scans.py"

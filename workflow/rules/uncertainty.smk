@@ -3,17 +3,10 @@ from mesoscale.uncertainty.chunks import MOST_REPEATED, full_chunks
 DIRECT_CHUNKS = full_chunks(SCENE.uncertainty.direct_runs)
 # more runs add files and leave these as they are
 DIRECT = [f"{RESULTS}/uq/direct/chunk_{chunk}.csv" for chunk in DIRECT_CHUNKS]
+DIRECT_RUNS = {f"chunk_{chunk}": bounds for chunk, bounds in DIRECT_CHUNKS.items()}
+# the first ones once more on other surfaces, for the scatter between these apart from what the inputs explain
+DIRECT_RUNS["again"] = (0, min(MOST_REPEATED, SCENE.uncertainty.direct_runs))
 PAIR_CHUNKS = chunk_bounds(SCENE.uncertainty.model_form_pairs, 20)
-
-
-rule uq:
-    input:
-        in_tail("law", *(f"{RESULTS}/uq/{name}" for name in ("outputs.csv", "surrogate.json", "validation.csv"))),
-
-
-rule sensitivity:
-    input:
-        in_tail("law", f"{RESULTS}/uq/sensitivity.csv"),
 
 
 rule compute_direct_runs:
@@ -21,61 +14,42 @@ rule compute_direct_runs:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
-        f"{RESULTS}/uq/direct/chunk_{{chunk}}.csv",
+        f"{RESULTS}/uq/direct/{{direct}}.csv",
     log:
-        f"{RESULTS}/logs/compute_direct_runs_{{chunk}}.log",
+        f"{RESULTS}/logs/compute_direct_runs_{{direct}}.log",
+    wildcard_constraints:
+        direct="chunk_\\d+|again",
     priority: 1  # a chain of jobs waits for them
-    threads: 1
     resources:
         mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
         law=settings("law"),
-        bounds=lambda wildcards: DIRECT_CHUNKS[wildcards.chunk],
+        bounds=lambda wildcards: DIRECT_RUNS[wildcards.direct],
     message:
-        f"compute direct contact cycles, chunk {{wildcards.chunk}} of {len(DIRECT_CHUNKS)}"
+        f"compute direct contact cycles, {{wildcards.direct}} of {len(DIRECT_CHUNKS)}"
     script:
         "../scripts/compute_direct_runs.py"
 
 
-# Scatter between surfaces, apart from what the inputs explain
-rule repeat_direct_runs:
+rule uq:
     input:
-        **SURFACE,
-        inputs=f"{RESULTS}/inputs.csv",
-    output:
-        f"{RESULTS}/uq/again.csv",
-    log:
-        f"{RESULTS}/logs/repeat_direct_runs.log",
-    priority: 1
-    threads: 1
-    resources:
-        mem_mb=CONTACT_MB,
-    params:
-        contact=settings("contact"),
-        law=settings("law"),
-        bounds=(0, min(MOST_REPEATED, SCENE.uncertainty.direct_runs)),
-    message:
-        "repeat direct contact cycles on other surfaces"
-    script:
-        "../scripts/compute_direct_runs.py"
-
-
-rule propagate_uncertainty:
-    input:
+        in_tail("law"),
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
         direct=DIRECT,
-        again=rules.repeat_direct_runs.output if DIRECT else [],
+        again=f"{RESULTS}/uq/direct/again.csv" if DIRECT else [],
         table2=str(CONFIG / "paper" / "table2.csv"),
+        table3=str(CONFIG / "paper" / "table3.csv"),
     output:
-        outputs=report(f"{RESULTS}/uq/outputs.csv", caption="../captions/outputs.rst", category="Uncertainty"),
+        outputs=f"{RESULTS}/uq/outputs.csv",
+        sensitivity=f"{RESULTS}/uq/sensitivity.csv",
         surrogate=f"{RESULTS}/uq/surrogate.json",
         samples=f"{RESULTS}/uq/samples.csv",
         validation=f"{RESULTS}/uq/validation.csv",
         law=f"{RESULTS}/uq/law.csv",
     log:
-        f"{RESULTS}/logs/propagate_uncertainty.log",
+        f"{RESULTS}/logs/uq.log",
     resources:
         mem_mb=PROPAGATION_MB,
     params:
@@ -84,54 +58,9 @@ rule propagate_uncertainty:
         max_force_nN=SCENE.contact.max_force_nN,
         length_nm=SCENE.contact.length_nm,
     message:
-        "propagate the uncertainty of the inputs"
+        "propagate the uncertainty of the inputs, and rank them"
     script:
         "../scripts/propagate_uncertainty.py"
-
-
-rule rank_sensitivity:
-    input:
-        inputs=f"{RESULTS}/inputs.csv",
-        parameters=f"{RESULTS}/law/parameters.csv",
-        outputs=f"{RESULTS}/uq/outputs.csv",
-        direct=DIRECT,
-        table3=str(CONFIG / "paper" / "table3.csv"),
-    output:
-        report(f"{RESULTS}/uq/sensitivity.csv", caption="../captions/sensitivity.rst", category="Uncertainty"),
-    log:
-        f"{RESULTS}/logs/rank_sensitivity.log",
-    resources:
-        mem_mb=PROPAGATION_MB,
-    params:
-        settings=settings("uncertainty"),
-    message:
-        "rank the inputs by sensitivity"
-    script:
-        "../scripts/rank_sensitivity.py"
-
-
-rule measure_uncertainty_accuracy:
-    input:
-        **SURFACE,
-        inputs=f"{RESULTS}/inputs.csv",
-        direct=DIRECT,
-    output:
-        f"{RESULTS}/accuracy/uncertainty.csv",
-    log:
-        f"{RESULTS}/logs/measure_uncertainty_accuracy.log",
-    threads: 1
-    params:
-        contact=settings("contact"),
-        law=settings("law"),
-        settings=settings("uncertainty"),
-    message:
-        "measure the error of the regression against the number of direct runs"
-    script:
-        "../scripts/measure_uncertainty_accuracy.py"
-
-
-if "law" in SCENE.tails:
-    ACCURACY.append(f"{RESULTS}/accuracy/uncertainty.csv")
 
 
 # Asperities on their own and coupled, side by side
@@ -148,7 +77,6 @@ rule compute_pairs:
         f"{RESULTS}/uq/model_form/pairs_{{chunk}}.csv",
     log:
         f"{RESULTS}/logs/compute_pairs_{{chunk}}.log",
-    threads: 1
     params:
         contact=settings("contact"),
         law=settings("law"),

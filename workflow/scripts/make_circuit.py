@@ -1,6 +1,6 @@
 """Make the switch for circuit simulators: central, corners and draws; its C-V loop and its transient.
 
-In: pad/inputs.csv, pad/model.h5.
+In: inputs.csv, pad/model.h5.
 Out: device/circuit/*.sub and *.va, device/circuit.json, device/circuit.csv, device/loop.csv (fF, V),
 device/transient.csv (us).
 """

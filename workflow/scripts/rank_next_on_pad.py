@@ -1,6 +1,6 @@
 """Rank what to measure next for the switch on the pad.
 
-In: calibration/priors.csv, pad/inputs.csv, pad/model.h5, calibration/cycles/chunk_NNN.csv,
+In: calibration/priors.csv, inputs.csv, pad/model.h5, calibration/cycles/chunk_NNN.csv,
 calibration/local_cycles.csv.
 Out: calibration/next_on_pad.csv (V), without rows where too few switches on the pad have an answer.
 """
