@@ -20,6 +20,7 @@ if workflow.is_main_process and MEASUREMENT_FILES:  # a table that cannot be use
 
 
 rule calibrate:
+    """inputs narrowed by your measurements of contacts"""
     input:
         f"{RESULTS}/calibration/posterior.json",
 

@@ -1,4 +1,5 @@
 rule curves:
+    """force against separation at central inputs"""
     input:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
@@ -15,3 +16,6 @@ rule curves:
         "compute the nominal force-separation curves"
     script:
         "../scripts/compute_nominal.py"
+
+
+SHOWN += rules.curves.output

@@ -28,6 +28,7 @@ wildcard_constraints:
 
 
 rule elastic:
+    """effective modulus from density functional theory"""
     input:
         f"{RESULTS}/elastic/e_star.json",
 

@@ -2,6 +2,7 @@
 
 
 rule failure:
+    """how often the switch fails, down to one in a million"""
     input:
         **PRESSED,
     output:
@@ -21,6 +22,7 @@ rule failure:
 
 
 rule circuit:
+    """the switch for simulators: corners, draws, C-V loop, transient"""
     input:
         **PRESSED,
     output:
@@ -39,3 +41,7 @@ rule circuit:
         "make the switch for circuit simulators"
     script:
         "../scripts/make_circuit.py"
+
+
+if SCENE.failure.probability is not None and "pad" in SCENE.tails:
+    SHOWN += [*rules.failure.output, *rules.circuit.output[1:]]

@@ -96,6 +96,7 @@ wildcard_constraints:
 
 
 rule hardness:
+    """hardness from molecular dynamics"""
     input:
         f"{RESULTS}/hardness/fit.json",
 

@@ -4,6 +4,7 @@ from workflow.terminal.memory import history_MB
 
 
 rule history:
+    """cycle after cycle, with creep"""
     input:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
@@ -23,3 +24,7 @@ rule history:
         "close and open again and again"
     script:
         "../scripts/follow_history.py"
+
+
+if SCENE.history.cycles > 0:
+    SHOWN += rules.history.output

@@ -19,6 +19,7 @@ if workflow.is_main_process:
 
 
 rule inputs:
+    """table of the uncertain inputs"""
     input:
         **INPUT_STAGES,
         **SAMPLES,
@@ -33,3 +34,6 @@ rule inputs:
         "collect the uncertain inputs"
     script:
         "../scripts/collect_inputs.py"
+
+
+SHOWN += rules.inputs.output

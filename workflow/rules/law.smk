@@ -25,6 +25,7 @@ rule compute_runs:
 
 
 rule law:
+    """compact law of one cell"""
     input:
         in_tail("law"),
         inputs=f"{RESULTS}/inputs.csv",
@@ -42,3 +43,8 @@ rule law:
         "fit the force-separation law"
     script:
         "../scripts/fit_law.py"
+
+
+if "law" in SCENE.tails:
+    SHOWN += rules.law.output
+    KEPT += rules.law.input.chunks

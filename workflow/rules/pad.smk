@@ -35,6 +35,7 @@ rule press_pads:
 
 
 rule device:
+    """pads at points of all that is uncertain, and the switch on them"""
     input:
         in_tail("pad"),
         **SURFACE,
@@ -58,3 +59,8 @@ rule device:
         "assemble the pad, and say what the switch does"
     script:
         "../scripts/assemble_pad.py"
+
+
+if "pad" in SCENE.tails:
+    SHOWN += rules.device.output
+    KEPT += rules.device.input.chunks

@@ -1,64 +1,22 @@
 from workflow.checksums import file_checksum
 
-
-def report_inputs():
-    """Result files of exactly the stages that the scene needs; each has its section in the page."""
-    files = ["inputs.csv", "curves/nominal.h5", "curves/spots.h5"]
-    if "law" in SCENE.tails:
-        files += ["law/parameters.csv", "law/wells.csv", "law/nominal.csv"]
-        names = ("outputs.csv", "samples.csv", "surrogate.json", "validation.csv", "sensitivity.csv", "law.csv")
-        files += [f"uq/{name}" for name in names]
-    if "pad" in SCENE.tails:
-        files += ["pad/inputs.csv", "pad/curves.csv", "device/pad_switch.json"]
-    if ADHESION.pads > 0:
-        files += ["adhesion/summary.csv"]
-    if needed("hardness"):
-        files += ["hardness/points.csv", "hardness/fit.json"]
-        files += [f"hardness/{part}/{run}.csv" for part in ("closing", "witness", "snapshots") for run in CLOSINGS]
-    if needed("elastic"):
-        files += [f"elastic/{name}" for name in ("points.csv", "bulk_moduli.csv", "e_star.json", "e_star.h5")]
-        files += ["elastic/isotropic_moduli.csv"] if TENSORS else []
-    if needed("topography"):
-        files += ["topography/spectra.h5", "topography/parameters.json"]
-        files += [str(Path(path).relative_to(RESULTS)) for path in JUDGED]
-    if SCENE.failure.probability is not None and "pad" in SCENE.tails:
-        files += ["device/failure.json", "device/failure.csv"]
-        files += [f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "transient.csv")]
-    if SCENE.resistance.resistivities_nOhm_m is not None:
-        files += ["device/resistance.csv"]
-    if SCENE.history.cycles > 0:
-        files += [f"history/{name}" for name in ("cycles.csv", "dwell.csv", "curves.h5")]
-    if SCENE.measurements.tables:
-        tables = ("samples", "summary", "learned", "next", "predictive", "responses")
-        files += ["calibration/posterior.json", *(f"calibration/{table}.csv" for table in tables)]
-        if SCENE.pad.points and "pad" in SCENE.tails:
-            files += ["calibration/next_on_pad.csv"]
-    studies = [*ACCURACY, *STABILITY] if SCENE.report.studies else []
-    return [f"{RESULTS}/{name}" for name in files] + studies
-
-
-def kept_files():
-    """What jobs of the scene leave beside the files of the report."""
-    parts, files = [], []
-    if "law" in SCENE.tails:
-        parts += [rules.law, rules.uq]
-        files += DIRECT
-    if "pad" in SCENE.tails:
-        parts += [rules.device]
-    if needed("hardness"):
-        parts += [rules.find_hardness, rules.fit_hardness]
-        files += expand(rules.make_glass.output, glass=SCENE.hardness.seeds)
-        files += expand(rules.run_closing.output, run=CLOSINGS)
-        if COUNTER_GLASS:
-            files += expand(rules.make_counter_glass.output, glass=SCENE.hardness.seeds)
-    if needed("elastic"):
-        parts += [rules.fit_bulk_moduli, rules.combine_e_star]
-        files += expand([*rules.make_amorphous.output, *rules.relax_amorphous.output], amorphous=GLASSES)
-        parts += [rules.average_tensors] if TENSORS else []
-    if needed("topography"):
-        parts += [rules.pool_spectra] if TOPOGRAPHY.scans else [rules.write_synthetic_scans, rules.pool_spectra]
-    files += [file for part in parts for file in (*part.input, *part.output)]
-    return sorted({file for file in files if file.startswith(RESULTS)})
+if needed("hardness"):
+    SHOWN += [*rules.find_hardness.output, *rules.fit_hardness.output]
+    SHOWN += expand(rules.run_closing.output, run=CLOSINGS)
+    KEPT += expand(rules.make_glass.output, glass=SCENE.hardness.seeds)
+    KEPT += expand(rules.make_counter_glass.output, glass=SCENE.hardness.seeds) if COUNTER_GLASS else []
+if needed("elastic"):
+    SHOWN += [*rules.fit_bulk_moduli.output, *rules.combine_e_star.output]
+    SHOWN += rules.average_tensors.output if TENSORS else []
+    KEPT += rules.fit_bulk_moduli.input
+    KEPT += rules.average_tensors.input if TENSORS else []
+    KEPT += expand([*rules.make_amorphous.output, *rules.relax_amorphous.output], amorphous=GLASSES)
+if SCENE.measurements.tables:
+    SHOWN += rules.sample_posterior.output
+    if SCENE.pad.points and "pad" in SCENE.tails:
+        SHOWN += rules.rank_next_on_pad.output
+if SCENE.report.studies:
+    SHOWN += [*ACCURACY, *STABILITY]
 
 
 def studies_at_hand():
@@ -77,8 +35,9 @@ def page_parts():
 
 
 rule report:
+    """the page, and all that it needs"""
     input:
-        report_inputs(),
+        SHOWN,
         style=page_parts(),
     output:
         page=f"{RESULTS}/report.html",

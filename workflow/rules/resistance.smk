@@ -2,6 +2,7 @@
 
 
 rule resistance:
+    """electrical resistance of metal on metal against force"""
     input:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
@@ -18,3 +19,7 @@ rule resistance:
         "measure the resistance of closing and opening contacts"
     script:
         "../scripts/measure_resistance.py"
+
+
+if SCENE.resistance.resistivities_nOhm_m is not None:
+    SHOWN += rules.resistance.output

@@ -22,11 +22,13 @@ if "pad" in SCENE.tails:
 
 
 rule accuracy:
+    """error against run time of the scene's stages"""
     input:
         ACCURACY,
 
 
 rule stability:
+    """stiff and extreme cases"""
     input:
         STABILITY,
 

@@ -85,6 +85,7 @@ rule pool_spectra:
 
 
 rule topography:
+    """what the measurements show, and the surface behind them"""
     input:
         JUDGED,
         spectra=f"{RESULTS}/topography/spectra.h5",
@@ -118,3 +119,9 @@ rule judge_scans:
         "press the scans beside surfaces made from the others' description, and weigh the waves that none saw"
     script:
         "../scripts/judge_scans.py"
+
+
+if needed("topography"):
+    SHOWN += [*JUDGED, *rules.pool_spectra.output]
+    KEPT += rules.pool_spectra.input.chunks
+    KEPT += [] if TOPOGRAPHY.scans else rules.write_synthetic_scans.output

@@ -3,9 +3,8 @@ from mesoscale.uncertainty.chunks import MOST_REPEATED, full_chunks
 DIRECT_CHUNKS = full_chunks(SCENE.uncertainty.direct_runs)
 # more runs add files and leave these as they are
 DIRECT = [f"{RESULTS}/uq/direct/chunk_{chunk}.csv" for chunk in DIRECT_CHUNKS]
-DIRECT_RUNS = {f"chunk_{chunk}": bounds for chunk, bounds in DIRECT_CHUNKS.items()}
 # the first ones once more on other surfaces, for the scatter between these apart from what the inputs explain
-DIRECT_RUNS["again"] = (0, min(MOST_REPEATED, SCENE.uncertainty.direct_runs))
+AGAIN = (0, min(MOST_REPEATED, SCENE.uncertainty.direct_runs))
 PAIR_CHUNKS = chunk_bounds(SCENE.uncertainty.model_form_pairs, 20)
 
 
@@ -14,31 +13,30 @@ rule compute_direct_runs:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
-        f"{RESULTS}/uq/direct/{{direct}}.csv",
+        f"{RESULTS}/uq/direct/chunk_{{chunk}}.csv",
     log:
-        f"{RESULTS}/logs/compute_direct_runs_{{direct}}.log",
-    wildcard_constraints:
-        direct="chunk_\\d+|again",
+        f"{RESULTS}/logs/compute_direct_runs_{{chunk}}.log",
     priority: 1  # a chain of jobs waits for them
     resources:
         mem_mb=CONTACT_MB,
     params:
         contact=settings("contact"),
         law=settings("law"),
-        bounds=lambda wildcards: DIRECT_RUNS[wildcards.direct],
+        bounds=lambda wildcards: {**DIRECT_CHUNKS, "again": AGAIN}[wildcards.chunk],
     message:
-        f"compute direct contact cycles, {{wildcards.direct}} of {len(DIRECT_CHUNKS)}"
+        f"compute direct contact cycles, chunk {{wildcards.chunk}} of {len(DIRECT_CHUNKS)}"
     script:
         "../scripts/compute_direct_runs.py"
 
 
 rule uq:
+    """what the uncertain inputs do to the law, and which causes the spread"""
     input:
         in_tail("law"),
         inputs=f"{RESULTS}/inputs.csv",
         parameters=f"{RESULTS}/law/parameters.csv",
         direct=DIRECT,
-        again=f"{RESULTS}/uq/direct/again.csv" if DIRECT else [],
+        again=[f"{RESULTS}/uq/direct/chunk_again.csv"] if DIRECT else [],
         table2=str(CONFIG / "paper" / "table2.csv"),
         table3=str(CONFIG / "paper" / "table3.csv"),
     output:
@@ -61,6 +59,11 @@ rule uq:
         "propagate the uncertainty of the inputs, and rank them"
     script:
         "../scripts/propagate_uncertainty.py"
+
+
+if "law" in SCENE.tails:
+    SHOWN += rules.uq.output
+    KEPT += [*rules.uq.input.direct, *rules.uq.input.again]
 
 
 # Asperities on their own and coupled, side by side

@@ -94,7 +94,7 @@ _VALIDATION = Table(
         number(
             "surface_share",
             "1",
-            "share of the variance between surfaces at equal inputs, by uq/direct/again.csv",
+            "share of the variance between surfaces at equal inputs, by uq/direct/chunk_again.csv",
             empty=True,
         ),
         number("explained", "1", "share of the rest that the response explains of runs left out", empty=True),
@@ -123,7 +123,7 @@ _SENSITIVITY = Table(
 )
 
 _DIRECT = Table(
-    ("uq/direct/chunk_*.csv", "uq/direct/again.csv"),
+    ("uq/direct/chunk_*.csv",),
     "One direct run: cycle and law of its own inputs on its own surface.",
     (
         integer("run", "number of the run"),

@@ -1,7 +1,7 @@
 """Compute a chunk of direct contact cycles and keep their law.
 
-In: inputs.csv.  Out: uq/direct/chunk_NNN.csv, or uq/direct/again.csv with the same inputs on other surfaces (inputs,
-seed, parameters of both branches, statuses).
+In: inputs.csv.  Out: uq/direct/chunk_NNN.csv, or chunk_again.csv with the same inputs on other surfaces (inputs, seed,
+parameters of both branches, statuses).
 """
 
 from mesoscale.inputs.table import from_rows
@@ -16,7 +16,7 @@ with job(snakemake) as run:
     runs = random_runs(
         from_rows(load_csv(snakemake.input.inputs)),
         *snakemake.params.bounds,
-        first_surface=FIRST_SECOND_SURFACE if snakemake.wildcards.direct == "again" else FIRST_RANDOM_SEED,
+        first_surface=FIRST_SECOND_SURFACE if snakemake.wildcards.chunk == "again" else FIRST_RANDOM_SEED,
     )
     contact = contact_settings(snakemake.params.contact, snakemake)
     law = settings_from_job(LawSettings, snakemake.params.law)

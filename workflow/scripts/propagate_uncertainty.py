@@ -1,6 +1,6 @@
 """Propagate the inputs' uncertainty through the responses, validate these, and rank the inputs.
 
-In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, uq/direct/again.csv, the paper's Tables 2 and 3.
+In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, uq/direct/chunk_again.csv, the paper's Tables 2 and 3.
 Out: uq/outputs.csv (Table 2), uq/sensitivity.csv (Table 3), uq/surrogate.json, uq/samples.csv, uq/validation.csv,
 uq/law.csv (nm, GPa/nm, GPa).
 """
