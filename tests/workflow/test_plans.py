@@ -71,7 +71,7 @@ def test_the_resistance_is_measured_where_a_scene_has_metals(plan):
 
 def test_adhesion_is_computed_where_a_scene_asks_for_it(plan):
     assert "open_pads" not in plan("paper")
-    wanted = {"collect_inputs", "collect_pad_inputs", "open_pads", "summarise_adhesion"}
+    wanted = {"inputs", "press_pads", "device", "open_pads", "summarise_adhesion"}
     assert plan("adhesion", "adhesion") == wanted
 
 

@@ -30,7 +30,7 @@ rule compute_direct_runs:
 
 
 rule uq:
-    """what the uncertain inputs do to the law, and which causes the spread"""
+    """what uncertain inputs do to the law, and which cause the spread"""
     input:
         in_tail("law"),
         inputs=f"{RESULTS}/inputs.csv",
