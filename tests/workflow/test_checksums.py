@@ -116,4 +116,4 @@ def test_the_next_run_makes_a_damaged_result_again_and_sees_a_changed_file_of_sa
     assert inputs.read_bytes() == whole
 
     samples.write_text("rms\n5\n6\n8\n")
-    assert workflow_in.planned(str(scene), "inputs") == {"collect_inputs": 1}
+    assert workflow_in.planned(str(scene), "inputs") == {"inputs": 1}
