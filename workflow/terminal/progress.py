@@ -174,4 +174,6 @@ def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: st
 
 
 def _say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
+    # in one piece: a reader that leaves after the first line must not end the run within the text
+    sys.stderr.write(f"{text}\n")
+    sys.stderr.flush()
