@@ -226,7 +226,8 @@ def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False)
         options = ["--resources", f"mem_mb={_memory_MB()}", "--quiet", "host", "reason"]
     _become(
         *("-c", START, "--snakefile", str(ROOT / "Snakefile"), "--profile", "none", "--workflow-profile", "none"),
-        *("--rerun-incomplete", "--nolock", *options, "--cores", given.cores, *given.target),
+        *("--rerun-incomplete", "--nolock", "--max-checksum-file-size", "1000000000"),  # as workflow/profiles/local
+        *(*options, "--cores", given.cores, *given.target),
         *("--config", f"scene={as_word(given.scene)}", *([f"hours={given.hours:g}"] if given.hours else [])),
         *(["show=true"] if show else []),
     )

@@ -4,7 +4,6 @@ import json
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from pathlib import Path
 
 from asperity.bundle import ROOT
 from asperity.film import MATERIAL, RECOMMENDED, Film, pixels_for

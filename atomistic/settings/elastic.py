@@ -12,7 +12,7 @@ class NitrideGlassSettings(Settings):
 
     formula_units: int = Field(default=4, ge=2, le=64, description="formula units of 7 atoms per cell")
     quench_rate_K_ps: float = Field(
-        default=300, gt=0, le=5000, description="cooling rate", json_schema_extra={"unit": "K/ps"}
+        default=300, ge=1e-3, le=5000, description="cooling rate", json_schema_extra={"unit": "K/ps"}
     )
     max_defects: int = Field(
         default=0,

@@ -11,12 +11,14 @@ class GlassSettings(Settings):
     """Melt and quench of a periodic glass cell."""
 
     atoms: int = Field(default=690, ge=100, le=2_000_000, description="atoms of the cell, about")
-    melt_ps: float = Field(default=8, gt=0, le=10_000, description="time in the melt", json_schema_extra={"unit": "ps"})
+    melt_ps: float = Field(
+        default=8, ge=1e-3, le=10_000, description="time in the melt", json_schema_extra={"unit": "ps"}
+    )
     quench_rate_K_ps: float = Field(
-        default=50, gt=0, le=2000, description="cooling rate at zero pressure", json_schema_extra={"unit": "K/ps"}
+        default=50, ge=1e-3, le=2000, description="cooling rate at zero pressure", json_schema_extra={"unit": "K/ps"}
     )
     rest_ps: float = Field(
-        default=4, gt=0, le=10_000, description="rest after the quench", json_schema_extra={"unit": "ps"}
+        default=4, ge=1e-3, le=10_000, description="rest after the quench", json_schema_extra={"unit": "ps"}
     )
 
 
@@ -29,7 +31,7 @@ class AsperitySettings(Settings):
         le=40,
         description="wavelength lambda in glass cells, so that nothing is strained",
     )
-    amplitude_nm: float = Field(gt=0, le=10, description="amplitude A", json_schema_extra={"unit": "nm"})
+    amplitude_nm: float = Field(ge=1e-3, le=10, description="amplitude A", json_schema_extra={"unit": "nm"})
     film_nm: float | None = Field(
         default=None,
         ge=0,
@@ -42,10 +44,12 @@ class AsperitySettings(Settings):
 class ClosingSettings(Settings):
     """Closing of an asperity against a rigid flat, frictionless and repulsive."""
 
-    speed_m_s: float = Field(default=50, gt=0, le=1000, description="closing speed", json_schema_extra={"unit": "m/s"})
+    speed_m_s: float = Field(
+        default=50, ge=1e-3, le=1000, description="closing speed", json_schema_extra={"unit": "m/s"}
+    )
     depth_over_amplitude: float = Field(
         default=2.2,
-        gt=0,
+        ge=0.01,
         le=4,
         description="largest travel below the highest atom, in amplitudes",
     )
@@ -63,7 +67,7 @@ class ClosingSettings(Settings):
     )
     anneal_ps: float = Field(
         default=5,
-        gt=0,
+        ge=1e-3,
         le=10_000,
         description="time of the anneal of the cut surface and again of its cooling",
         json_schema_extra={"unit": "ps"},
@@ -98,7 +102,7 @@ class HardnessSettings(Settings):
         description="body below the films of asperities with a film_nm: titanium, silicon_nitride, or another file "
         "in config/materials with a film_base",
     )
-    energy_scales: tuple[Annotated[float, Field(gt=0, le=2)], ...] = Field(
+    energy_scales: tuple[Annotated[float, Field(ge=1e-3, le=2)], ...] = Field(
         default=(1.0, 0.5),
         min_length=1,
         description="factors on all energies; 0.5 is the model-form twin",

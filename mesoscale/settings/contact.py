@@ -94,14 +94,15 @@ class ContactSettings(Settings):
     )
     max_force_nN: float = Field(
         default=7000.0,
-        gt=0,
+        ge=1e-3,
         le=1e12,
         description="repulsive force at which closing turns into opening",
         json_schema_extra={"unit": "nN"},
     )
     q1_per_nm: float | None = Field(
         default=None,
-        gt=0,
+        ge=1e-6,
+        le=1e3,
         description="short-wave cut-off of the spectrum; null: the grid's Nyquist limit",
         json_schema_extra={"unit": "1/nm"},
     )
@@ -113,7 +114,7 @@ class ContactSettings(Settings):
     )
     gap_cutoff_nm: float = Field(
         default=0.165,
-        gt=0,
+        ge=0.01,
         le=30,
         description="D0 of the attraction: the distance of the walls at touch (offset), or the least gap (clamped)",
         json_schema_extra={"unit": "nm"},

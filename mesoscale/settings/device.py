@@ -89,7 +89,7 @@ class DeviceSettings(Settings):
     ends: Literal["clamped", "cantilever"] = Field(
         default="clamped", description="beam clamped at both ends, or at its first end only"
     )
-    length_um: float = Field(default=510.0, ge=0.01, le=1e5, description="length of the beam", json_schema_extra=UM)
+    length_um: float = Field(default=510.0, ge=0.01, le=1e4, description="length of the beam", json_schema_extra=UM)
     width_um: float = Field(default=123.0, ge=0.01, le=1e5, description="width of the beam", json_schema_extra=UM)
     thickness_um: float = Field(
         default=4.0, ge=0.001, le=1e3, description="thickness of the beam", json_schema_extra=UM
@@ -145,7 +145,7 @@ class DeviceSettings(Settings):
     )
     spring_N_per_m: float | None = Field(
         default=None,
-        ge=1e-9,
+        ge=1e-3,
         le=1e6,
         description="stiffness of a parallel-plate switch; null computes it from the beam",
         json_schema_extra={"unit": "N/m"},
@@ -228,8 +228,8 @@ class DeviceSettings(Settings):
     )
     hold_voltage_V: float | None = Field(
         default=None,
-        gt=0,
-        le=1e5,
+        ge=1e-3,
+        le=1e4,
         description="voltage of the closed switch; null is its own pull-in voltage",
         json_schema_extra={"unit": "V"},
     )

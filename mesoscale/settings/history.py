@@ -33,7 +33,7 @@ class HistorySettings(Settings):
         json_schema_extra={"unit": "s"},
     )
     creep_time_s: float = Field(
-        default=1.0, gt=0, le=1e12, description="t0 of the creep laws", json_schema_extra={"unit": "s"}
+        default=1.0, ge=1e-12, le=1e12, description="t0 of the creep laws", json_schema_extra={"unit": "s"}
     )
     creep_exponent: float = Field(
         default=30.0,

@@ -6,15 +6,15 @@ from pydantic import Field, model_validator
 
 from mesoscale.settings.base import Settings
 
-Positive = Annotated[float, Field(gt=0, le=1e12)]
+Positive = Annotated[float, Field(ge=1e-30, le=1e12)]
 
 
 class CounterfaceSettings(Settings):
     """A second rough surface: the flat meets the sum of both spectra, the effective roughness."""
 
-    q0: float = Field(gt=0, le=10, description="its roll-off wave vector", json_schema_extra={"unit": "1/nm"})
-    hurst: float = Field(gt=0, le=2, description="its Hurst exponent, in contact.reading.convention")
-    rms_nm: float = Field(gt=0, le=1e4, description="its RMS height", json_schema_extra={"unit": "nm"})
+    q0: float = Field(ge=1e-7, le=10, description="its roll-off wave vector", json_schema_extra={"unit": "1/nm"})
+    hurst: float = Field(ge=1e-6, le=2, description="its Hurst exponent, in contact.reading.convention")
+    rms_nm: float = Field(ge=1e-5, le=1e4, description="its RMS height", json_schema_extra={"unit": "nm"})
 
 
 class SpectrumSettings(Settings):
@@ -30,14 +30,16 @@ class SpectrumSettings(Settings):
         json_schema_extra={"unit": "nm^4"},
     )
 
-    q0: Positive | None = Field(
+    q0: float | None = Field(
         default=None,
+        ge=1e-7,
+        le=1e3,
         description="with `hurst`: eq. 9 nearest to the points; the inputs' q0 and hurst then bend the spectrum by the "
         "ratio of their eq. 9 to this one; null: they are unused",
         json_schema_extra={"unit": "1/nm"},
     )
     hurst: float | None = Field(
-        default=None, gt=0, le=2, description="its Hurst exponent, in contact.reading.convention"
+        default=None, ge=1e-6, le=2, description="its Hurst exponent, in contact.reading.convention"
     )
 
     @model_validator(mode="after")
