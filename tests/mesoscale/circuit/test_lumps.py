@@ -226,7 +226,7 @@ def test_ngspice_closes_the_switch_as_fast_and_as_deep(tmp_path, compiled_lump):
 @needs_ngspice
 def test_the_example_of_the_docs_runs_in_batch(tmp_path):
     example = re.search(r"```\n(\* a step.*?)```", Path("docs/switch.md").read_text(), re.DOTALL)[1]
-    (tmp_path / "central.sub").write_text(spice_switch(lumps_of(PLATE), EXACT, LAW, 256))
+    (tmp_path / "central.sub").write_text(spice_switch(PLATE, EXACT, LAW, 256))
     (tmp_path / "step.cir").write_text(example)
     subprocess.run(["ngspice", "-b", "step.cir"], cwd=tmp_path, check=True, capture_output=True, timeout=300)
     assert np.loadtxt(tmp_path / "step.txt")[-1, 0] == pytest.approx(250e-6)
