@@ -122,7 +122,8 @@ def test_rough_contacts_lie_within_barbers_bounds():
 
 def test_a_pressed_contact_conducts_better_and_keeps_it():
     chosen = settings(64, 200.0, "plastic").model_copy(update={"max_force_nN": 1500.0})
-    rows = list(resistance_rows(TABLE, chosen, GOLD))
+    # without Sharvin's part: few sites touch here, and their area goes in steps
+    rows = list(resistance_rows(TABLE, chosen, GOLD.model_copy(update={"mean_free_paths_nm": (0.0, 0.0)})))
     assert len(rows) == 3 * LEVELS * GOLD.runs
     ohm = np.reshape([row["resistance_Ohm"] for row in rows], (GOLD.runs, 3, LEVELS))
     closing, opening, again = np.median(ohm, axis=0)  # of a single surface, sites come and go
