@@ -81,8 +81,8 @@ def stiffness_of(branch: Branch) -> Stiffness:
 def diffusive_share(knudsen: Array) -> Array:
     """What is left of Holm's resistance of a spot of radius a where electrons fly `knudsen` = l / a, Wexler's gamma.
 
-    As Nikolic and Allen (Phys. Rev. B 60 (1999) 3963) fit it to Boltzmann's equation. Electrons followed one by one give
-    a resistance that is up to 4 % higher (tests/mesoscale/device/test_resistance.py).
+    As Nikolic and Allen (Phys. Rev. B 60 (1999) 3963) fit it to Boltzmann's equation. Electrons followed one by one
+    give a resistance that is up to 4 % higher (tests/mesoscale/device/test_resistance.py).
     """
     return (1.0 + 0.83 * knudsen) / (1.0 + 1.33 * knudsen)
 
