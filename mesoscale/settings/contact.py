@@ -78,7 +78,7 @@ class ContactSettings(Settings):
         "and most of the RMS height (docs/topography.md, Cells), and max_force_nN grows with its area",
         "[1, 1e6] nm",
     )
-    max_force_nN: float = key(7000.0, "repulsive force at which closing turns into opening", "[0.001, 1e12] nN")
+    max_force_nN: float = key(7000.0, "repulsive force at which closing turns into opening", "[1e-6, 1e12] nN")
     q1_per_nm: float | None = key(
         None, "short-wave cut-off of the spectrum; null: the grid's Nyquist limit", "[1e-6, 1000] 1/nm"
     )
