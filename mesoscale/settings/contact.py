@@ -91,7 +91,7 @@ class ContactSettings(Settings):
     gap_cutoff_nm: float = key(
         0.165,
         "D0 of the attraction: the distance of the walls at touch (offset), or the least gap (clamped)",
-        "[0.01, 30] nm",
+        "[1e-6, 30] nm",
     )
     retardation_nm: float | None = key(
         None,
