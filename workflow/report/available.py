@@ -83,3 +83,16 @@ class Results:
     def origin_of(self, stage: str) -> str:
         """Badge of a stage: computed, and whether this scene uses it."""
         return COMPUTED if self.uses(stage) else f"{COMPUTED}, not used: inputs are {LITERATURE}"
+
+
+def results_in(folder: Path) -> Results:
+    """All result files of a folder, for a command that no run schedules; links, pipes and devices are left out."""
+    paths = [
+        path
+        for path in sorted(folder.rglob("*"))
+        if path.suffix in {".csv", ".json", ".h5"}
+        and path.relative_to(folder).parts[0] not in {"logs", "work"}
+        and path.is_file()
+        and not path.is_symlink()
+    ]
+    return Results(folder, paths, folder.name)

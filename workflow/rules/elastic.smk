@@ -165,7 +165,7 @@ rule combine_e_star:
         attempts=[f"{RESULTS}/elastic/quenched/{name}.csv" for name in GLASSES],
         counter_body=COUNTER_BODY,
     output:
-        e_star=report(f"{RESULTS}/elastic/e_star.json", caption="../captions/e_star.rst", category="Inputs"),
+        e_star=f"{RESULTS}/elastic/e_star.json",
         samples=f"{RESULTS}/elastic/e_star.h5",
         structures=f"{RESULTS}/elastic/structures.csv",
     log:

@@ -214,7 +214,7 @@ rule fit_hardness:
             for body in ("", *(["_counter"] if COUNTER_GLASS else []))
         ],
     output:
-        fit=report(f"{RESULTS}/hardness/fit.json", caption="../captions/hardness.rst", category="Inputs"),
+        fit=f"{RESULTS}/hardness/fit.json",
     log:
         f"{RESULTS}/logs/fit_hardness.log",
     params:

@@ -86,7 +86,7 @@ rule render_report:
         report_inputs(),
         style=page_parts(),
     output:
-        report(f"{RESULTS}/report.html", caption="../captions/report.rst", category="Report"),
+        f"{RESULTS}/report.html",
     log:
         f"{RESULTS}/logs/render_report.log",
     params:

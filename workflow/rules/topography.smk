@@ -77,9 +77,7 @@ rule pool_spectra:
         truth=[] if TOPOGRAPHY.scans else f"{RESULTS}/topography/truth.json",
     output:
         spectra=f"{RESULTS}/topography/spectra.h5",
-        parameters=report(
-            f"{RESULTS}/topography/parameters.json", caption="../captions/topography.rst", category="Inputs"
-        ),
+        parameters=f"{RESULTS}/topography/parameters.json",
     log:
         f"{RESULTS}/logs/pool_spectra.log",
     params:
