@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.device.by_key import release_by_key
 from mesoscale.device.electrode import release_or_nan_V
 from mesoscale.device.points import PadModel, Solved
 from mesoscale.device.statistics import describe, probability
@@ -175,6 +176,7 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         "spring_pressure_kPa": switch.spring_N_per_m * switch.gap_nm * NM / switch.area_m2 * 1e-3,
         "central": {**central.states, "error_V": central.error_V} if central.states else None,
         "by_attraction": [{"times": times, "release_V": _release_V(central, times)} for times in WORKS],
+        "by_key": release_by_key(settings, central.pad.law) if central.states and central.pad else [],
         "gate": {"passed": not (reasons := _reasons(central)), "reasons": reasons},
         "answer": said,
         "answer_status": status,

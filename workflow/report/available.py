@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from workflow.report.page import COMPUTED, LITERATURE
 from workflow.results import load_csv, load_h5, load_json
 
+COMPUTED, LITERATURE, SYNTHETIC = "computed", "literature", "synthetic"
+FEEDING = ("hardness", "elastic", "topography")
+"""Stages that a scene may compute without using them."""
 Row = dict[str, str]
 
 
@@ -81,8 +83,11 @@ class Results:
         return any(row["origin"] == stage for row in rows)
 
     def origin_of(self, stage: str) -> str:
-        """Badge of a stage: computed, and whether this scene uses it."""
-        return COMPUTED if self.uses(stage) else f"{COMPUTED}, not used: inputs are {LITERATURE}"
+        """Badge of a stage: computed or synthetic, and whether this scene uses it."""
+        if stage == "topography" and self.json("topography/parameters.json").get("synthetic"):
+            return SYNTHETIC
+        unused = stage in FEEDING and not self.uses(stage)
+        return f"{COMPUTED}, not used: inputs are {LITERATURE}" if unused else COMPUTED
 
 
 def results_in(folder: Path) -> Results:

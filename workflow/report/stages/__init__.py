@@ -8,6 +8,7 @@ from workflow.report.stages import (
     calibration,
     circuit,
     contact,
+    device,
     elastic,
     failure,
     hardness,
@@ -22,7 +23,7 @@ from workflow.report.stages import (
 )
 
 PARTS = (
-    ("switch", "The switch", (pad, circuit, failure, resistance, adhesion, history)),
+    ("switch", "The switch", (device, pad, circuit, failure, resistance, adhesion, history)),
     ("contact", "The contact", (contact, uncertainty, sensitivity, model_form)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

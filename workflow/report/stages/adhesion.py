@@ -1,46 +1,48 @@
 """Energy and pull-off of pads against roughness, load and attraction."""
 
+from collections.abc import Callable, Iterator
+
 from workflow.report.available import Results, Row
 from workflow.report.drawing import SERIES, SOFT, draw
-from workflow.report.numbers import column, number, show
-from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.numbers import cell, column, number, show, spread
+from workflow.report.page import Block, Figure, stage, table
 
 STYLES = {"asperity": "o--", "coupled": "s-"}
 
 
-def describe(results: Results) -> Section | None:
+@stage("Adhesion of pads", "adhesion/summary.csv")
+def describe(results: Results) -> Iterator[Block]:
     """Energy per area, pull-off, and a sphere on the same film."""
-    if not results.has("adhesion/summary.csv"):
-        return None
     rows = results.csv("adhesion/summary.csv")
-    first = rows[0]
-    section = Section(
-        "adhesion",
-        "Adhesion of pads",
-        f"{first['pads']} pads of {first['cells']} cells each, closed to several loads and opened. The energy is the "
-        "work of opening from zero net force outwards. Of each number the mean over pads, the lowest and the highest.",
-        COMPUTED,
+    yield (
+        f"{rows[0]['pads']} pads of {rows[0]['cells']} cells each, closed to several loads and opened. The energy is "
+        "the work of opening from zero net force outwards. Of each number the mean over pads, the lowest and the "
+        "highest."
     )
-    section.add(
+    yield Figure(
         adhesion_figure(rows),
         "Left: energy per area after each load; the grey line is that of flats at the separation of zero force of the "
         "lowest load. Right: pull-off of the central case. Bars span the pads.",
         wide=True,
     )
-    header = ("mechanics", "differs", "load (MPa)", "energy (µJ/m²)", "flats (µJ/m²)", "pull-off (kPa)")
-    keys = ("energy_uJ_m2", "flats_uJ_m2", "pull_off_kPa", "sphere_work_mJ_m2")
-    films = [
-        (row["mechanics"], _difference(row), show(number(row["load_MPa"])), *(_spread(row, key) for key in keys))
-        for row in rows
-    ]
-    header += ("work on a sphere (mJ/m²)",)
-    section.blocks.append(Table("Mean over pads [lowest, highest]", header, films, heads=3))
-    section.notes.append(
+    yield table(
+        "Mean over pads [lowest, highest]",
+        rows,
+        {
+            "mechanics": "mechanics",
+            "differs": _difference,
+            "load (MPa)": cell("load_MPa"),
+            "energy (µJ/m²)": _over_pads("energy_uJ_m2"),
+            "flats (µJ/m²)": _over_pads("flats_uJ_m2"),
+            "pull-off (kPa)": _over_pads("pull_off_kPa"),
+            "work on a sphere (mJ/m²)": _over_pads("sphere_work_mJ_m2"),
+        },
+        heads=3,
+    )
+    yield (
         "Measured with ruby spheres of 0.5 mm on four diamond films: 0.08 to 7.15 mJ/m² (Thimons et al. 2021, "
         "doi 10.1007/s11340-021-00733-6)."
     )
-    section.files.append("adhesion/summary.csv")
-    return section
 
 
 def adhesion_figure(rows: list[Row]) -> str:
@@ -91,6 +93,5 @@ def _difference(row: Row) -> str:
     return texts[varied] if varied in texts else f"retardation {show(number(row['retardation_nm']))} nm"
 
 
-def _spread(row: Row, key: str) -> str:
-    mean, low, high = (show(number(row[key + end])) for end in ("", "_lowest", "_highest"))
-    return f"{mean} [{low}, {high}]"
+def _over_pads(name: str) -> Callable[[Row], str]:
+    return lambda row: spread(row, name, f"{name}_lowest", f"{name}_highest")

@@ -1,33 +1,31 @@
 """The switch as a circuit sees it."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, ORANGE, SOFT, draw
-from workflow.report.numbers import column, show
-from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.numbers import cell, column, show
+from workflow.report.page import Block, Figure, Table, stage, table
 from workflow.report.verdict import volts
 
+FILES = ("circuit.json", "circuit.csv", "loop.csv", "transient.csv", "failure.csv")
 
-def describe(results: Results) -> Section | None:
+
+@stage("In a circuit", *(f"device/{name}" for name in FILES))
+def describe(results: Results) -> Iterator[Block]:
     """C-V loop with its band, transient, and failure rate; pull-in and release of the corners."""
-    files = [f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "transient.csv", "failure.csv")]
-    if not results.has(*files):
-        return None
     circuit, rows = results.json("device/circuit.json"), results.csv("device/circuit.csv")
     study, said = circuit["lumps"], circuit["transient"]
     corners = [row for row in rows if float(row["deviations"]) > 0]
-    section = Section(
-        "circuit",
-        "In a circuit",
+    yield (
         "The folder device/circuit has the switch as SPICE netlists: central, four corners and "
         f"{len(rows) - len(corners)} draws. {study['lumps']} pairs of lumps stand for the electrode. Beside finite "
         f"elements pull-in differs by {study['pull_in']:.1%}, release by {study['release']:.1%}; these themselves err "
-        f"by {study['reference']:.1%}.",
-        COMPUTED,
-        files=files,
+        f"by {study['reference']:.1%}."
     )
-    section.add(
+    yield Figure(
         _figure(results),
         "Left: slow loop; the bands hold 90 % of the draws. Middle: a step of "
         f"{volts(said['drive_V'])}, then none. Right: share that fails against hold voltage.",
@@ -39,18 +37,22 @@ def describe(results: Results) -> Section | None:
         ("bounces by (nm)", _or_never(said["bounce_nm"])),
         ("opens after (µs)", _or_never(said["opening_us"])),
     ]
-    section.blocks.append(Table(f"A step of {volts(said['drive_V'])}", ("mid-span", "value"), times))
-    lines = [
-        (row["switch"], show(float(row["deviations"])), volts(float(row["pull_in_V"])), volts(float(row["release_V"])))
-        for row in corners
-    ]
-    section.blocks.append(Table("Corners", ("corner", "standard deviations out", "pull-in", "release"), lines))
+    yield Table(f"A step of {volts(said['drive_V'])}", ("mid-span", "value"), times)
+    yield table(
+        "Corners",
+        corners,
+        {
+            "corner": "switch",
+            "standard deviations out": cell("deviations"),
+            "pull-in": lambda row: volts(float(row["pull_in_V"])),
+            "release": lambda row: volts(float(row["release_V"])),
+        },
+    )
     if said["deepest_nm"] < said["table_ends_nm"]:
-        section.notes.append(
+        yield (
             f"The impact closes the pad to {show(said['deepest_nm'])} nm; its curves end at "
             f"{show(said['table_ends_nm'])} nm and go on in a line. The bounce is rough."
         )
-    return section
 
 
 def _or_never(value: float | None) -> str:

@@ -1,15 +1,15 @@
 """Contact curves at central inputs: figures 4 and 11."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, SOFT, draw
-from workflow.report.live.spots import spots_picture
 from workflow.report.numbers import number, show
-from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.page import Block, Figure, Table, stage
+from workflow.report.spots import spots_picture
 from workflow.report.stages import law
 
 MODELS = {
@@ -34,30 +34,25 @@ OF_SINGLE_ASPERITIES = {
 """Asperities that feel each other have neither a radius nor a shape of flow."""
 
 
-def describe(results: Results) -> Section | None:
+@stage("Curves of one cell at central inputs", "curves/nominal.h5", also=("law/nominal.csv",))
+def describe(results: Results) -> Iterator[Block]:
     """The picture of the contact, figures 4 and 11, and the choices in use."""
-    if not results.has("curves/nominal.h5"):
-        return None
     reading, coupled = results.contact, results.coupled
-    section = Section(
-        "curves",
-        "Curves of one cell at central inputs",
-        f"Closing and opening of one surface of {reading['length_nm']:g} nm with {reading['pixels']}² grid points.",
-        COMPUTED,
-    )
-    section.add(
+    yield f"Closing and opening of one surface of {reading['length_nm']:g} nm with {reading['pixels']}² grid points."
+    yield Figure(
         spots_picture(results),
-        "One cell seen from the flat, and where the flat has reached it; in orange what the last step added.",
+        "One cell, a square of rough surface, seen from the flat, and where the flat has reached it; in orange what "
+        "the last step added.",
         front=True,
     )
-    section.add(
+    yield Figure(
         nominal_models(results),
         f"Three models of {'coupled asperities' if coupled else 'the single asperity'}. Elastic contacts reopen along "
         "their closing line; plastic ones do not.",
         "Figure 4",
         front=True,
     )
-    section.add(
+    yield Figure(
         nominal_loads(results),
         "Closing (solid) and opening (dashed) up to several largest loads; thin lines: the fitted law.",
         "Figure 11",
@@ -68,9 +63,7 @@ def describe(results: Results) -> Section | None:
     used = [(label, _in_words(value)) for key, label in words.items() if (value := chosen.get(key)) is not None]
     if used:
         caption = "Readings of the paper in use" if results.beside_paper else "Choices of the contact model"
-        section.blocks.append(Table(caption, ("choice", "value"), used))
-    section.files += ["curves/nominal.h5", "law/nominal.csv"]
-    return section
+        yield Table(caption, ("choice", "value"), used)
 
 
 def nominal_models(results: Results) -> str | None:

@@ -1,10 +1,10 @@
 """Asperities on their own beside coupled ones: what the choice of the mechanics changes."""
 
-import numpy as np
+from collections.abc import Iterator
 
-from workflow.report.available import Results
-from workflow.report.numbers import OUTPUTS, number, show
-from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.available import Results, Row
+from workflow.report.numbers import OUTPUTS, cell, number, show, spread
+from workflow.report.page import Block, stage, table
 
 SWITCH = {
     "pull_off_nN": ("pull-off", "nN", 1.0),
@@ -12,46 +12,36 @@ SWITCH = {
 }
 
 
-def describe(results: Results) -> Section | None:
+@stage("What coupling changes", "uq/model_form.csv")
+def describe(results: Results) -> Iterator[Block]:
     """The shift of every output."""
-    if not results.has("uq/model_form.csv"):
-        return None
     rows = results.csv("uq/model_form.csv")
-    section = Section(
-        "model-form",
-        "What coupling changes",
+    yield (
         f"{max(int(row['pairs']) for row in rows)} surfaces, each with its own draw of the inputs, closed and opened "
-        "twice: every asperity on its own (eq. 3), and all on one elastic half-space with the same hardness.",
-        COMPUTED,
+        "twice: every asperity on its own (eq. 3), and all on one elastic half-space with the same hardness."
     )
-    lines = []
-    for row in rows:
-        symbol, unit, factor = {**OUTPUTS, **SWITCH}[row["quantity"]]
-        label = f"{symbol} ({unit})" if unit else symbol
-        means = [
-            f"{show(number(row[f'{name}_mean']) * factor)} ± {show(number(row[f'{name}_dev']) * factor, 2)}"
-            for name in ("asperity", "coupled")
-        ]
-        shift = _interval([number(row[f"shift{end}"]) * factor for end in ("", "_low", "_high")])
-        ratio = _interval([number(row[f"ratio{end}"]) for end in ("", "_low", "_high")])
-        lines.append((label, *means, shift, show(row["shift_over_dev"], 2), ratio))
-    section.blocks.append(
-        Table(
-            "Mean ± deviation over the inputs, and the shift with its 90 % interval",
-            ("quantity", "on their own", "coupled", "shift", "in deviations", "median ratio"),
-            lines,
-        )
+    yield table(
+        "Mean ± deviation over the inputs, and the shift with its 90 % interval",
+        rows,
+        {
+            "quantity": lambda row: " ".join(_shown(row)[:1] + tuple(f"({unit})" for unit in _shown(row)[1:2] if unit)),
+            "on their own": lambda row: _mean(row, "asperity"),
+            "coupled": lambda row: _mean(row, "coupled"),
+            "shift": lambda row: spread(row, "shift", "shift_low", "shift_high", factor=_shown(row)[2]),
+            "in deviations": cell("shift_over_dev", 2),
+            "median ratio": lambda row: spread(row, "ratio", "ratio_low", "ratio_high"),
+        },
     )
-    section.notes.append(
+    yield (
         "First contact, the default d_c, is the same by both: the surface touches before it deforms. A coupled cycle "
         f"costs {show(number(rows[0]['cost_ratio']), 2)} times as much."
     )
-    section.files.append("uq/model_form.csv")
-    return section
 
 
-def _interval(values: list[float]) -> str:
-    value, low, high = values
-    if not np.isfinite(value):
-        return "–"
-    return f"{show(value)} [{show(low)}, {show(high)}]"
+def _shown(row: Row) -> tuple[str, str, float]:
+    return {**OUTPUTS, **SWITCH}[row["quantity"]]
+
+
+def _mean(row: Row, name: str) -> str:
+    factor = _shown(row)[2]
+    return f"{show(number(row[f'{name}_mean']) * factor)} ± {show(number(row[f'{name}_dev']) * factor, 2)}"

@@ -1,43 +1,45 @@
 """Uncertainty of the law: Table 2."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from workflow.report.available import Results, Row
 from workflow.report.gates import faint_outputs
 from workflow.report.numbers import OUTPUTS, number, show
-from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.page import Block, Figure, Table, stage
 from workflow.report.stages import law
 
 
-def describe(results: Results) -> Section | None:
+@stage(
+    "The law of one cell, and its uncertainty",
+    *("uq/outputs.csv", "uq/samples.csv"),
+    also=("uq/surrogate.json", "uq/validation.csv"),
+)
+def describe(results: Results) -> Iterator[Block]:
     """The law's band, and Table 2."""
-    if not results.has("uq/outputs.csv", "uq/samples.csv"):
-        return None
     paper = results.beside_paper
-    section = Section(
-        "uncertainty",
-        "The law of one cell, and its uncertainty",
-        f"The distributions of the inputs sent through the {results.response}, which is also behind the explorer. "
-        "Grey rows are not to be trusted: see responses, below."
-        + " Beside it the paper's method, a plane through 2n + 1 runs of each surface, and its Table 2."
-        * paper,
-        COMPUTED,
+    yield (
+        f"The distributions of the inputs sent through the {results.response}. Grey rows are not to be trusted: see "
+        "responses, below." + " Beside it the paper's method, a plane through 2n + 1 runs of each surface, and its "
+        "Table 2." * paper
     )
     if results.has("uq/law.csv", "uq/surrogate.json"):
-        section.add(
+        yield Figure(
             law.band(results),
             "The law of one cell, closing and after the largest load, up to the pressure that it was fitted to: median "
             "and 5 to 95 % over the inputs.",
         )
-    section.blocks.append(_table2(results))
+    yield _table2(results)
+    yield (
+        "At the separation d_c of the mean planes the contact begins to push. C_r and ρ_r are scale and decay length "
+        "of the repulsion: a contact of large ρ_r is soft. C_a is the adhesion per nanometre of approach."
+    )
     if paper:
-        section.notes.append(
+        yield (
             "The readings of the contact model and the definition of d_c were chosen by their nearness to the paper's "
             "Tables 2 and 3 (reproduction audit), so that part of the agreement is built in."
         )
-    section.files += ["uq/outputs.csv", "uq/samples.csv", "uq/surrogate.json"]
-    section.files += ["uq/validation.csv"] if results.has("uq/validation.csv") else []
-    return section
 
 
 def _table2(results: Results) -> Table:

@@ -21,7 +21,8 @@ def spots_picture(results: Results) -> str | None:
     limit = float(np.abs(heights).max())
     image, colors = _image(heights, limit)
     side = heights.shape[0]
-    words = [_words(spots, k) for k in range(len(spots["separation_nm"]))]
+    last = len(spots["separation_nm"]) - 1
+    words = [_words(spots, k) for k in range(last + 1)]
     squares = [_squares(spots["step"] == k) for k in range(len(words))]
     layers = "".join(
         f'<path d="{path}" data-step="{k}" data-words="{text}"/>'
@@ -35,7 +36,8 @@ def spots_picture(results: Results) -> str | None:
         f'<g class="reached">{layers}</g>{_scale(side, length)}</svg>'
         f'<p class="bar"><span>{ends[0]}</span><span style="background: linear-gradient(90deg, {colors})"></span>'
         f"<span>{ends[1]}</span></p>"
-        f'<form aria-label="Load on the surface"></form><p class="told">{words[-1]}</p></div>'
+        f'<label hidden>load <input type="range" min="0" max="{last}" value="{last}" autocomplete="off"></label>'
+        f'<p class="told">{words[-1]}</p></div>'
     )
 
 
