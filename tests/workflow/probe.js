@@ -1,19 +1,10 @@
-// Appended to the report by its test: moves the slider and tells what happened in <pre id="probe">.
+// Appended to the report by its test: tells what it found in <pre id="probe">.
 document.querySelectorAll("details").forEach((part) => { part.open = true; });
 window.addEventListener("load", () => setTimeout(() => {
-  const slider = document.querySelector("#spots input");
-  const layers = () => [...document.querySelectorAll("#spots [data-step]")].filter((layer) => layer.style.display !== "none").length;
-  const state = () => [document.querySelector("#spots .told").textContent, layers()];
-  const last = state();
-  slider.value = 0;
-  slider.dispatchEvent(new Event("input", { bubbles: true }));
-  const [told, shown] = state();
   const figures = [...document.querySelectorAll("figure svg")].filter((svg) => !svg.closest(".whole, .panels") || svg.parentElement.getBoundingClientRect().height > 0);
   const text = document.createElement("pre");
   text.id = "probe";
   text.textContent = JSON.stringify({
-    told: [told, last[0]],
-    layers: [shown, last[1]],
     empty: figures.filter((svg) => !(svg.getBoundingClientRect().height > 50)).length,
     sticks_out: figures.filter((svg) => svg.getBoundingClientRect().right > innerWidth).length,
     smallest_text: Math.min(...figures.map((svg) => {

@@ -58,7 +58,7 @@ class Results:
 
     @property
     def response(self) -> str:
-        """Name of the method behind samples, explorer and switch."""
+        """Name of the method behind the samples of the law."""
         method = self.json("uq/surrogate.json")["method"] if self.has("uq/surrogate.json") else ""
         return f"response ({method}; mean over random surfaces)" if method else "response"
 

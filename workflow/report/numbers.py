@@ -7,7 +7,6 @@ import numpy as np
 
 from mesoscale.inputs.definitions import BY_NAME
 from mesoscale.law.parameters import LAW_OUTPUTS, LawParameter
-from workflow.report.available import Row
 
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 SYMBOLS = {name: row.symbol for name, row in BY_NAME.items()}
@@ -36,7 +35,7 @@ def number(text: Any) -> float:
         return float("nan")
 
 
-def column(rows: Iterable[Row], name: str) -> np.ndarray:
+def column(rows: Iterable[Mapping[str, Any]], name: str) -> np.ndarray:
     """A numeric column; NaN where there is no number."""
     return np.array([number(row.get(name)) for row in rows], dtype=float)
 
@@ -58,7 +57,7 @@ def show(value: Any, digits: int = 3) -> str:
     return f"{mantissa.replace('-', '−')}·10{superscript}"
 
 
-def cell(name: str, digits: int = 3) -> Callable[[Row], str]:
+def cell(name: str, digits: int = 3) -> Callable[[Mapping[str, Any]], str]:
     """Column of a table: the number of this name."""
     return lambda row: show(row.get(name), digits)
 

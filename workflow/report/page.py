@@ -2,8 +2,9 @@
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from workflow.report.available import COMPUTED, Results, Row
+from workflow.report.available import COMPUTED, Results
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class Doubt:
 
 Block = str | Figure | Table | Doubt
 """Text is a note, which stands below the figures and tables."""
-Column = str | Callable[[Row], str]
+Column = str | Callable[[Any], str | None]
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,7 @@ def stage(
 
 def table(
     caption: str,
-    rows: Iterable[Row],
+    rows: Iterable[Mapping[str, Any]],
     columns: Mapping[str, Column],
     heads: int = 1,
     faint: Collection[str] = (),
@@ -141,5 +142,5 @@ def table(
     return Table(caption, tuple(columns), lines, heads, faint, front)
 
 
-def _text(row: Row, column: Column) -> str:
-    return str(row.get(column, "")) if isinstance(column, str) else column(row)
+def _text(row: Mapping[str, Any], column: Column) -> str:
+    return str(row.get(column, "")) if isinstance(column, str) else column(row) or ""

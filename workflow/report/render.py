@@ -45,15 +45,14 @@ def render(results: Results) -> str:
         "provenance": guarded("provenance", partial(_provenance, results), [], broken),
         "light": trust([*gates, *broken]),
         "gates": [*gates, *broken],
-        "moves": results.has("curves/spots.h5"),
         "files": sorted(results.paths),
     }
     environment = Environment(
         loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
     environment.filters["low"] = low
-    style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("style.css", "spots.js"))
-    return environment.get_template("template.html.j2").render(page=page, style=style, script=script)
+    style = (HERE / "style.css").read_text(encoding="utf-8")
+    return environment.get_template("template.html.j2").render(page=page, style=style)
 
 
 def _name(stage: object) -> str:

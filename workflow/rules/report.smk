@@ -73,7 +73,7 @@ def studies_at_hand():
 def page_parts():
     """What the page is made of beside results."""
     room = ROOT / "workflow" / "report"
-    return [str(room / name) for name in ("template.html.j2", "style.css", "spots.js")]
+    return [str(room / name) for name in ("template.html.j2", "style.css")]
 
 
 rule report:

@@ -1,9 +1,10 @@
 """The release of the switch if one property of its device were another."""
 
 from collections.abc import Iterator
+from typing import Any
 
 from mesoscale.settings.device import unit_of
-from workflow.report.available import Results, Row
+from workflow.report.available import Results
 from workflow.report.drawing import BLUE, SOFT, draw
 from workflow.report.numbers import column, show, shown_unit
 from workflow.report.page import Block, Figure, stage, table
@@ -50,7 +51,7 @@ def describe(results: Results) -> Iterator[Block]:
     )
 
 
-def by_key(rows: list[Row]) -> str:
+def by_key(rows: list[dict[str, Any]]) -> str:
     """A panel for each property."""
     keys = list(dict.fromkeys(row["key"] for row in rows))
     top = 1.1 * max(row["release_V"] for row in rows if not row["reason"])

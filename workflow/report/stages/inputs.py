@@ -6,8 +6,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from workflow.report.available import Results, Row
-from workflow.report.numbers import SYMBOLS, number, show, shown_unit
+from workflow.report.numbers import number, show, shown_unit
 from workflow.report.page import Block, stage, table
+from workflow.report.verdict import in_words
 
 
 @stage("Inputs", "inputs.csv")
@@ -15,7 +16,7 @@ def describe(results: Results) -> Iterator[Block]:
     """Table 1 in use."""
     rows = results.csv("inputs.csv")
     columns = {
-        "input": lambda row: SYMBOLS.get(row["parameter"], row["parameter"]),
+        "input": lambda row: in_words(row["parameter"]),
         "unit": lambda row: shown_unit(row["unit"]),
         "distribution": _distribution,
         "origin": "origin",
