@@ -6,9 +6,9 @@ from typing import Any
 from mesoscale.settings.device import unit_of
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, SOFT, draw
-from workflow.report.numbers import column, show, shown_unit
+from workflow.report.numbers import cell, column, show, shown_unit
 from workflow.report.page import Block, Figure, stage, table
-from workflow.report.verdict import NAMES, volts
+from workflow.report.verdict import NAMES
 
 OTHERS = {
     "length_um": "length",
@@ -24,7 +24,8 @@ def describe(results: Results) -> Iterator[Block]:
     rows = results.json("device/pad_switch.json").get("by_key", [])
     yield (
         "Each row is solved on the pad at central inputs with one property changed; surface and materials stay as they "
-        "are. A switch without a stated hold voltage is held at its own pull-in voltage."
+        "are. A switch without a stated hold voltage is held at its own pull-in voltage. The beam has half as many "
+        "elements as for the answer, so that releases differ from it by a few percent."
     )
     if not rows:
         yield "The switch at central inputs has no answer, so there is nothing to compare with."
@@ -43,8 +44,8 @@ def describe(results: Results) -> Iterator[Block]:
         {
             "property": lambda row: _label(row["key"]),
             "value": lambda row: show(row["value"]),
-            "pull-in": lambda row: "–" if row["reason"] else volts(row["pull_in_V"]),
-            "release": lambda row: "–" if row["reason"] else volts(row["release_V"]),
+            "pull-in (V)": cell("pull_in_V"),
+            "release (V)": lambda row: "sticks" if row["release_V"] == 0 else show(row["release_V"]),
             "remark": lambda row: row["reason"] or ("curves continued" if row["continued"] else ""),
         },
         heads=2,
