@@ -1,8 +1,8 @@
-"""Compare two folders of results: `python -m workflow.compare results/before results/after`.
+"""Compare two folders of results: `asperity compare results/before results/after`, or `python -m workflow.compare`.
 
-Prints one line for each file that differs and exits 1 if any does. Provenance (versions, input hashes, git commit)
-and machine times do not count. Logs, work folders and the report page, which is drawn from the other files and shows
-their times, are left out.
+Prints what each scene says of its switch and one line for each file that differs; exits 1 if any does. Provenance
+(versions, input hashes, git commit) and machine times do not count. Logs, work folders and the report page, which is
+drawn from the other files and shows their times, are left out.
 """
 
 import argparse
@@ -16,8 +16,12 @@ from typing import Any
 import h5py
 import numpy as np
 
+from asperity.foreign_text import shown
 from asperity.foreign_yaml import load_mapping
+from workflow.checksums import is_damaged
 from workflow.job import without_machine_times
+from workflow.report.available import results_in
+from workflow.report.verdict import verdict
 
 LEFT_OUT = ("logs", "work", "report.html")  # first part of a path below the folder
 PROVENANCE = {"provenance", "schema_version", "rule", "inputs_hash", "versions", "git_commit"}
@@ -33,7 +37,8 @@ def differences(first: Path, second: Path) -> Iterator[str]:
             continue
         contents = [content(folder / name) for folder in (first, second)]
         if difference := first_difference(*contents):
-            yield f"{name}: {difference}"
+            damaged = [f"; damaged in {folder}" for folder in (first, second) if is_damaged(folder / name)]
+            yield f"{name}: {difference}{''.join(damaged)}"
 
 
 def _result_files(folder: Path) -> set[str]:
@@ -115,17 +120,27 @@ def _value_difference(first: Any, second: Any, place: str) -> str:
     return f"{place} {first!r:.60} | {second!r:.60}"
 
 
+def _said(folder: Path) -> str:
+    """What a folder says of its switch, with its name; a stranger's files may hold anything."""
+    try:
+        said = verdict(results_in(folder))
+    except Exception as error:
+        return f"{folder.name}: its switch cannot be read ({type(error).__name__})"
+    return f"{folder.name}: {said.sentence if said else 'no switch on a pad'}".replace("\u00a0", " ")
+
+
 def main() -> None:
     """The command line."""
-    parser = argparse.ArgumentParser(prog="python -m workflow.compare", description=(__doc__ or "").splitlines()[2])
+    parser = argparse.ArgumentParser(prog="asperity compare", description=(__doc__ or "").splitlines()[2])
     parser.add_argument("first", type=Path)
     parser.add_argument("second", type=Path)
     chosen = parser.parse_args()
     for folder in (chosen.first, chosen.second):
         if not folder.is_dir():
-            parser.error(f"{folder}: no such folder; give two folders of results")
+            parser.error(f"{shown(str(folder))}: no such folder; give two folders of results")
+        print(shown(_said(folder)))
     lines = list(differences(chosen.first, chosen.second))
-    print("\n".join(lines) if lines else "no difference beyond provenance and machine times")
+    print("\n".join(map(shown, lines)) if lines else "no difference beyond provenance and machine times")
     sys.exit(bool(lines))
 
 

@@ -104,3 +104,21 @@ def test_the_command_says_it_by_its_exit_code(folders, change, code, says):
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == code
     assert says in done.stdout + done.stderr
+
+
+def test_a_damaged_file_is_named(folders):
+    first, second = folders
+    change_last_digit(second)
+    (found,) = differences(first, second)
+    assert found.endswith(f"; damaged in {second}")
+
+
+def test_the_command_says_what_each_scene_says_of_its_switch(made_up, tmp_path):
+    (tmp_path / "other/device").mkdir(parents=True)
+    (tmp_path / "other/device/pad_switch.json").write_text("[]")
+    command = [sys.executable, "-m", "asperity", "compare", str(made_up[0]), str(tmp_path / "other")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    first, second, *_ = done.stdout.splitlines()
+    assert first.startswith("made_up: At central inputs the switch ")
+    assert second == "other: its switch cannot be read (AttributeError)"
+    assert done.returncode == 1
