@@ -144,7 +144,7 @@ def test_the_pad_says_what_its_answer_is_made_of(made_up):
     answer = {
         **dict.fromkeys(("release_V", "pull_in_V", "capacitance_fF"), spread),
         "quantile_error_V": {"0.05": 0.3, "0.5": 0.1, "0.95": 0.2},
-        "causes": [{"cause": "cells", "share_of_variance": 0.3}],
+        "causes": [{"cause": "cells", "share_of_variance": 0.3, "deviation_V": 0.3}],
         "sensitivity": [{"name": "rms", "share_of_variance": 0.7, "interval_shrinks_by": 0.4}],
         **{"points": 64, "refused": ["too soft"], "deepened": 0, "cells_error_V": 0.3, "fit_error_V": 0.1},
     }
@@ -158,6 +158,7 @@ def test_the_pad_says_what_its_answer_is_made_of(made_up):
 def test_the_page_shows_the_release_by_key_and_why_a_curve_ends(page):
     section = page[page.index('id="device"><summary>') :]
     section = section[: section.index("</details>")]
+    section = section.replace("\u00a0", " ")
     for label in ("thickness (µm)", "length (µm)", "gap (µm)", "stress (MPa)", "dielectric (nm)", "hold voltage (V)"):
         assert f'<th scope="row">{label}</th>' in section
     assert "never closes this switch" in section

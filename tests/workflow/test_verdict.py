@@ -114,8 +114,11 @@ def test_few_cells_are_named_before_any_measurement():
 def test_no_cause_is_named_where_the_fit_behind_it_explains_little():
     doubted = said(_pad(error=1.6))  # 1 - 1.6²/(4 - 0.4) = 0.29
     assert doubted.causes == ()
-    assert "explains 29%" in doubted.no_cause
+    assert "explains only 29%" in doubted.no_cause
     assert doubted.next_step == ""
+    nothing = said(_pad(error=2.5))  # 1 - 2.5²/(4 - 0.4) < 0
+    assert "64 computed switches are too few to tell" in nothing.no_cause
+    assert nothing.next_step == "Compute more switches next (pad.points)."
 
 
 def test_only_what_the_answer_rests_on_is_mended_first():

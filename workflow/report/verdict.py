@@ -90,7 +90,7 @@ def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | 
     if answer:
         release = tuple(answer["release_V"]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
         stuck = tuple(answer["stuck"][key] for key in ("low", "value", "high"))
-        causes, no_cause = _causes(answer)
+        causes, no_cause = causes_of(answer)
     else:
         release = (pad["central"]["release_V"],) if pad["central"] else None
         no_interval = pad["answer_status"]
@@ -133,7 +133,7 @@ def in_words(name: str) -> str:
     return label if symbol in label.split() else f"{label} {symbol}"
 
 
-def _causes(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]:
+def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]:
     """Shares of the variance by cause, and why none is named."""
     cells = next(row for row in answer["causes"] if row["cause"] == "cells")
     rows = [*((in_words(row["name"]), row["share_of_variance"]) for row in answer["sensitivity"])]
@@ -142,7 +142,10 @@ def _causes(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]
         return (), f"all {answer['points']} computed combinations of what is uncertain do the same"
     explained = explained_share(answer)
     if explained < EXPLAINED:
-        return (), f"the fit of the release explains {max(explained, 0):.0%} of the variance of switches left out"
+        many = f"the {answer['points']} computed switches"
+        if explained <= 0:
+            return (), f"{many} are too few to tell, as a fit to all but one does not predict that one"
+        return (), f"a fit to {many} explains only {explained:.0%} of the variance of those that are left out"
     return tuple(sorted(rows, key=lambda row: -row[1])), ""
 
 
@@ -177,7 +180,7 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
     if not rows or cells > rows[0]["share_of_variance"]:
         return "Compute more cells next (pad.point_cells)."
     if no_cause:
-        return ""
+        return "Compute more switches next (pad.points)." if explained_share(answer) <= 0 else ""
     name, shrinks = rows[0]["name"], f"known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}"
     if name == "rms_scatter":
         return f"Scan more places next: the roughness varies from place to place; {shrinks}."

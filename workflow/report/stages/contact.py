@@ -81,11 +81,11 @@ def spots(results: Results) -> str | None:
     def plot(axis):
         axis.imshow(shades.transpose(1, 0, 2), origin="lower", extent=(0, side, 0, side), interpolation="none")
         for k in sorted({0, load.size // 2, load.size - 1}):
-            words = f"{show(load[k])} µN: {steps['asperities'][k]} asperities, {show(100 * steps['cut_share'][k], 2)} %"
+            words = f"{show(load[k])} µN: {steps['asperities'][k]}; {show(100 * steps['cut_share'][k], 2)} %"
             axis.plot([], [], "s", color=colors[k], label=words)
         axis.set(xlabel="nm")
         axis.grid(False)
-        axis.legend(title="load, asperities in contact, area reached", loc="upper center", bbox_to_anchor=(0.5, -0.12))
+        axis.legend(title="load: asperities in contact; area reached", loc="upper center", bbox_to_anchor=(0.5, -0.12))
 
     return draw("spots", "Heights of the surface and where the flat has reached it", plot, (5.0, 5.2))
 

@@ -42,11 +42,11 @@ def describe(results: Results) -> Iterator[Block]:
         "Pull-in and release",
         rows,
         {
-            "property": lambda row: _label(row["key"]),
+            "property": lambda row: _label(row["key"]).replace(" ", "\u00a0"),
             "value": lambda row: show(row["value"]),
             "pull-in (V)": cell("pull_in_V"),
             "release (V)": lambda row: "sticks" if row["release_V"] == 0 else show(row["release_V"]),
-            "remark": lambda row: row["reason"] or ("curves continued" if row["continued"] else ""),
+            "remark": lambda row: row["reason"].partition(";")[0] or ("curves continued" if row["continued"] else ""),
         },
         heads=2,
     )

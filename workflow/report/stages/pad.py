@@ -8,8 +8,8 @@ import numpy as np
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import cell, column, show, spread
-from workflow.report.page import Block, Figure, Table, stage, table
-from workflow.report.verdict import in_words
+from workflow.report.page import Block, Doubt, Figure, Table, stage, table
+from workflow.report.verdict import causes_of, in_words
 
 CAUSES = {
     "inputs": "inputs",
@@ -52,7 +52,7 @@ def describe(results: Results) -> Iterator[Block]:
     yield "Where the scene does not state how its devices vary (device.spread), their spread is an assumption."
 
 
-def _answer(answer: dict[str, Any]) -> Iterator[Table]:
+def _answer(answer: dict[str, Any]) -> Iterator[Block]:
     """What the answer is made of, and which input to measure better."""
     errors = answer["quantile_error_V"]
     solved, refused = answer["points"], len(answer["refused"])
@@ -68,6 +68,8 @@ def _answer(answer: dict[str, Any]) -> Iterator[Table]:
         *((f"share of {CAUSES[row['cause']]}", f"{row['share_of_variance']:.1%}") for row in answer["causes"]),
     ]
     yield Table("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows)
+    if no_cause := causes_of(answer)[1]:
+        yield Doubt(f"The shares of the variance name no cause: {no_cause}.")
     yield table(
         "What to measure better for the release",
         answer["sensitivity"],
