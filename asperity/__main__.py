@@ -162,7 +162,7 @@ def _film(given: argparse.Namespace) -> int:
         return _refuse(str(error))
     for line in film.lines():
         print(wrapped(shown(line)))
-    if not (scene.is_file() and scene.read_text(encoding="utf-8") == text) and (status := _write(scene, text)):
+    if not (os.path.isfile(scene) and scene.read_text(encoding="utf-8") == text) and (status := _write(scene, text)):
         return status
     defaults = [f"--{name}" for name in ("material", "device") if not getattr(given, name)]
     assumed = f"; {' and '.join(defaults)}: the defaults, which it states" if defaults else ""
@@ -173,8 +173,8 @@ def _film(given: argparse.Namespace) -> int:
 
 
 def _plain(name: str) -> str:
-    """A name that a scene may have."""
-    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("_.-") or "film"
+    """A name that a scene may have, of 100 characters at most."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("_.-")[:100] or "film"
 
 
 def _write(file: Path, text: str) -> int:
@@ -190,7 +190,7 @@ def _write(file: Path, text: str) -> int:
 
 def _open(given: argparse.Namespace) -> int:
     report = Path("results") / Path(given.scene).stem / "report.html"
-    if not report.is_file():
+    if not os.path.isfile(report):
         return _refuse(f"{report}: no such report; asperity run {given.scene}")
     webbrowser.open(report.resolve().as_uri())
     print(report)
@@ -217,16 +217,15 @@ def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False)
         return _refuse(
             f"{', '.join(missing)}: not installed; running a scene needs pip install 'asperity-contact[run]'"
         )
-    try:
-        given.scene.encode()
-    except UnicodeEncodeError:
-        return _refuse(f"scene={given.scene}: the name is no Unicode; rename the file")
+    if not given.scene.isprintable():
+        return _refuse(f"scene={given.scene}: characters that do not print; rename the file")
     options = ["--dry-run", "--quiet", "rules"]
     if not dry:
         options = ["--resources", f"mem_mb={_memory_MB()}", "--quiet", "host", "reason"]
     _become(
-        *("-c", START, "--snakefile", str(ROOT / "Snakefile"), "--workflow-profile", "none"),
-        *("--rerun-incomplete", "--nolock", *options, "--cores", given.cores, *given.target),
+        *("-c", START, "--snakefile", str(ROOT / "Snakefile"), "--profile", "none", "--workflow-profile", "none"),
+        *("--rerun-incomplete", "--nolock", "--max-checksum-file-size", "1000000000"),  # as workflow/profiles/local
+        *(*options, "--cores", given.cores, *given.target),
         *("--config", f"scene={as_word(given.scene)}", *([f"hours={given.hours:g}"] if given.hours else [])),
         *(["show=true"] if show else []),
     )

@@ -8,6 +8,7 @@ drawn from the other files and shows their times, are left out.
 import argparse
 import csv
 import json
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,6 +23,7 @@ from workflow.checksums import is_damaged
 from workflow.job import without_machine_times
 from workflow.report.available import results_in
 from workflow.report.verdict import verdict
+from workflow.results import checked_items
 
 LEFT_OUT = ("logs", "work", "report.html")  # first part of a path below the folder
 PROVENANCE = {"provenance", "schema_version", "rule", "inputs_hash", "versions", "git_commit"}
@@ -35,8 +37,11 @@ def differences(first: Path, second: Path) -> Iterator[str]:
         if not all(name in present for present in names):
             yield f"{name}: only in {first if name in names[0] else second}"
             continue
-        contents = [content(folder / name) for folder in (first, second)]
-        if difference := first_difference(*contents):
+        try:
+            difference = first_difference(*(content(folder / name) for folder in (first, second)))
+        except Exception as error:  # a stranger's files may hold anything
+            difference = f"cannot be read ({' '.join(f'{type(error).__name__}: {error}'.split())[:200]})"
+        if difference:
             damaged = [f"; damaged in {folder}" for folder in (first, second) if is_damaged(folder / name)]
             yield f"{name}: {difference}{''.join(damaged)}"
 
@@ -65,13 +70,10 @@ def _h5_content(path: Path) -> dict[str, Any]:
     with h5py.File(path, "r") as file:
         values: dict[str, Any] = {}
         attributes = {"root": _without_provenance(_attributes(file))}
-
-        def visit(name: str, item: Any) -> None:
+        for name, item in checked_items(file).items():
             attributes[name] = _attributes(item)
             if isinstance(item, h5py.Dataset):
                 values[name] = item[()]
-
-        file.visititems(visit)
     return {"values": values, "attributes": attributes}  # values first: the first difference is the one that is named
 
 
@@ -136,8 +138,8 @@ def main() -> None:
     parser.add_argument("second", type=Path)
     chosen = parser.parse_args()
     for folder in (chosen.first, chosen.second):
-        if not folder.is_dir():
-            parser.error(f"{shown(str(folder))}: no such folder; give two folders of results")
+        if not os.path.isfile(folder / "scene.yaml"):
+            parser.error(f"{shown(str(folder))}: no results of a scene are there; give two folders such as results/ci")
         print(shown(_said(folder)))
     lines = list(differences(chosen.first, chosen.second))
     print("\n".join(map(shown, lines)) if lines else "no difference beyond provenance and machine times")

@@ -83,7 +83,7 @@ rule render_report:
     params:
         root=RESULTS,
         scene=SCENE.name,
-        studies=studies_at_hand(),
+        studies=lambda wildcards: studies_at_hand(),
     message:
         "write the report"
     script:
