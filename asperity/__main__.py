@@ -49,7 +49,7 @@ COMMANDS = {
     "scenes": "list the scenes that ship",
     "targets": "list the stages that a run can be held to",
     "new": "write a scene file to start from",
-    "compare": "put two folders of results side by side on one page",
+    "compare": "say what differs between two folders of results",
     "schema": "print the JSON Schema of a scene",
     "serve": "offer contact cycle, law and pad over UM-Bridge",
 }
@@ -71,7 +71,7 @@ def main(arguments: list[str] | None = None) -> int:
     except UnsafeFolder as error:
         return _refuse(str(error))
     if given.command == "compare":
-        _become("-m", "workflow.report.comparison", given.first, given.second, given.page)
+        _become("-m", "workflow.compare", given.first, given.second)
     if given.command == "schema":
         print(SCHEMA.read_text(encoding="utf-8"), end="")
     elif given.command == "scenes":
@@ -110,7 +110,6 @@ def _parser() -> argparse.ArgumentParser:
     comparison = added["compare"]
     comparison.add_argument("first", help="for instance results/ci")
     comparison.add_argument("second")
-    comparison.add_argument("--page", default="comparison.html", help="file to write; default: comparison.html")
     server = added["serve"]
     server.add_argument("--host", default="127.0.0.1", help="address to listen on; default: this machine alone")
     server.add_argument("--port", type=int, default=4242)

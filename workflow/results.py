@@ -239,27 +239,33 @@ def load_h5(
     """
     import h5py
 
-    datasets: dict[str, Any] = {}
     groups: dict[str, dict[str, np.ndarray]] = {}
     group_attributes: dict[str, dict[str, Any]] = {}
-
     with h5py.File(path, "r") as file:
         if not file.attrs.get("complete", False):
             raise ValueError(f"{path}: not a complete result file; delete it and run again")
-
-        def visit(name: str, item: Any) -> None:
+        for name, item in checked_items(file).items():
+            parent, _, leaf = name.rpartition("/")
             if isinstance(item, h5py.Dataset):
-                datasets[name] = item
+                groups.setdefault(parent or "/", {})[leaf] = item[()]
             elif item.attrs:
                 group_attributes[name] = dict(item.attrs)
-
-        file.visititems(visit)
-        size = sum(dataset.nbytes for dataset in datasets.values())  # of a stranger's file, before anything is read
-        if size > min(MOST_BYTES, MOST_UNPACKED * Path(path).stat().st_size):
-            raise ValueError(f"{path}: datasets of {size} bytes, more than a result has; delete it and run again")
-        if any(dataset.is_virtual or dataset.external for dataset in datasets.values()):
-            raise ValueError(f"{path}: datasets that lie in other files; delete it and run again")
-        for name, dataset in datasets.items():
-            parent, _, leaf = name.rpartition("/")
-            groups.setdefault(parent or "/", {})[leaf] = dataset[()]
         return groups, dict(file.attrs), group_attributes
+
+
+def checked_items(file: Any) -> dict[str, Any]:
+    """Groups and datasets of an open HDF5 file, which may be a stranger's, by name; nothing is read of them.
+
+    Raises
+    ------
+    ValueError : its datasets are too large or lie in other files.
+    """
+    items: dict[str, Any] = {}
+    file.visititems(items.__setitem__)
+    datasets = [item for item in items.values() if hasattr(item, "nbytes")]
+    size = sum(dataset.nbytes for dataset in datasets)
+    if size > min(MOST_BYTES, MOST_UNPACKED * Path(file.filename).stat().st_size):
+        raise ValueError(f"{file.filename}: datasets of {size} bytes, more than a result has; delete it and run again")
+    if any(dataset.is_virtual or dataset.external for dataset in datasets):
+        raise ValueError(f"{file.filename}: datasets that lie in other files; delete it and run again")
+    return items

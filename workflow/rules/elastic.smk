@@ -104,7 +104,7 @@ rule combine_e_star:
         points=f"{RESULTS}/elastic/points.csv",
         moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
         structures=f"{RESULTS}/elastic/structures.csv",
-        e_star=report(f"{RESULTS}/elastic/e_star.json", caption="../captions/e_star.rst", category="Inputs"),
+        e_star=f"{RESULTS}/elastic/e_star.json",
         samples=f"{RESULTS}/elastic/e_star.h5",
     log:
         f"{RESULTS}/logs/combine_e_star.log",

@@ -113,7 +113,7 @@ rule fit_hardness:
         glasses=[f"{RESULTS}/hardness/glass/{seed}.json" for seed in dict.fromkeys(SCENE.hardness.seeds)],
     output:
         points=f"{RESULTS}/hardness/points.csv",
-        fit=report(f"{RESULTS}/hardness/fit.json", caption="../captions/hardness.rst", category="Inputs"),
+        fit=f"{RESULTS}/hardness/fit.json",
     log:
         f"{RESULTS}/logs/fit_hardness.log",
     params:

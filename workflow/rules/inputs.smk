@@ -28,7 +28,7 @@ rule collect_inputs:
         **INPUT_STAGES,
         **SAMPLES,
     output:
-        report(f"{RESULTS}/inputs.csv", caption="../captions/inputs.rst", category="Inputs"),
+        f"{RESULTS}/inputs.csv",
     log:
         f"{RESULTS}/logs/collect_inputs.log",
     params:

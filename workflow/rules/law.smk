@@ -34,7 +34,7 @@ rule fit_law:
         inputs=f"{RESULTS}/inputs.csv",
         chunks=[f"{RESULTS}/curves/runs/chunk_{chunk}.h5" for chunk in RUN_CHUNKS],
     output:
-        parameters=report(f"{RESULTS}/law/parameters.csv", caption="../captions/law.rst", category="Law"),
+        parameters=f"{RESULTS}/law/parameters.csv",
         wells=f"{RESULTS}/law/wells.csv",
     log:
         f"{RESULTS}/logs/fit_law.log",

@@ -64,7 +64,7 @@ def studies_at_hand():
 def page_parts():
     """What the page is made of beside results."""
     room = ROOT / "workflow" / "report"
-    return [str(room / "template.html.j2"), str(room / "style.css"), *sorted(map(str, room.glob("live/*.js")))]
+    return [str(room / name) for name in ("template.html.j2", "style.css")]
 
 
 rule report:
@@ -77,7 +77,7 @@ rule render_report:
         report_inputs(),
         style=page_parts(),
     output:
-        report(f"{RESULTS}/report.html", caption="../captions/report.rst", category="Report"),
+        f"{RESULTS}/report.html",
     log:
         f"{RESULTS}/logs/render_report.log",
     params:

@@ -75,9 +75,7 @@ rule pool_spectra:
         truth=[] if TOPOGRAPHY.scans else f"{RESULTS}/topography/truth.json",
     output:
         spectra=f"{RESULTS}/topography/spectra.h5",
-        parameters=report(
-            f"{RESULTS}/topography/parameters.json", caption="../captions/topography.rst", category="Inputs"
-        ),
+        parameters=f"{RESULTS}/topography/parameters.json",
         picture=f"{RESULTS}/topography/surface.png",
     log:
         f"{RESULTS}/logs/pool_spectra.log",

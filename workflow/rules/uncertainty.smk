@@ -66,7 +66,7 @@ rule propagate_uncertainty:
         again=rules.repeat_direct_runs.output if DIRECT else [],
         table2=str(CONFIG / "paper" / "table2.csv"),
     output:
-        outputs=report(f"{RESULTS}/uq/outputs.csv", caption="../captions/outputs.rst", category="Uncertainty"),
+        outputs=f"{RESULTS}/uq/outputs.csv",
         surrogate=f"{RESULTS}/uq/surrogate.json",
         samples=f"{RESULTS}/uq/samples.csv",
         validation=f"{RESULTS}/uq/validation.csv",
@@ -93,7 +93,7 @@ rule rank_sensitivity:
         direct=DIRECT,
         table3=str(CONFIG / "paper" / "table3.csv"),
     output:
-        report(f"{RESULTS}/uq/sensitivity.csv", caption="../captions/sensitivity.rst", category="Uncertainty"),
+        f"{RESULTS}/uq/sensitivity.csv",
     log:
         f"{RESULTS}/logs/rank_sensitivity.log",
     resources:

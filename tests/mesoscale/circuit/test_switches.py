@@ -1,4 +1,4 @@
-"""The switch for circuits: its corners, its slow loop, its transient."""
+"""The switch for circuits: its corners, its slow loop."""
 
 from dataclasses import replace
 
