@@ -28,7 +28,7 @@ COMMANDS = {
     "scenes": "list the scenes that ship",
     "targets": "list the stages that a run can be held to",
     "new": "write a scene file to start from",
-    "compare": "put two folders of results side by side on one page",
+    "compare": "say what differs between two folders of results",
     "schema": "print the JSON Schema of a scene",
     "serve": "offer contact cycle, law and pad over UM-Bridge",
 }
@@ -50,7 +50,7 @@ def main(arguments: list[str] | None = None) -> int:
     except UnsafeFolder as error:
         return _refuse(str(error))
     if given.command == "compare":
-        _become("-m", "workflow.report.comparison", given.first, given.second, given.page)
+        _become("-m", "workflow.compare", given.first, given.second)
     if given.command == "schema":
         print(SCHEMA.read_text(encoding="utf-8"), end="")
     elif given.command == "scenes":
@@ -89,7 +89,6 @@ def _parser() -> argparse.ArgumentParser:
     comparison = added["compare"]
     comparison.add_argument("first", help="for instance results/ci")
     comparison.add_argument("second")
-    comparison.add_argument("--page", default="comparison.html", help="file to write; default: comparison.html")
     server = added["serve"]
     server.add_argument("--host", default="127.0.0.1", help="address to listen on; default: this machine alone")
     server.add_argument("--port", type=int, default=4242)
@@ -152,7 +151,7 @@ def _film(given: argparse.Namespace) -> int:
         return _refuse(str(error))
     for line in film.lines():
         print(wrapped(shown(line)))
-    if not (scene.is_file() and scene.read_text(encoding="utf-8") == text) and (status := _write(scene, text)):
+    if not (os.path.isfile(scene) and scene.read_text(encoding="utf-8") == text) and (status := _write(scene, text)):
         return status
     defaults = [f"--{name}" for name in ("material", "device") if not getattr(given, name)]
     assumed = f"; {' and '.join(defaults)}: the defaults, which it states" if defaults else ""
@@ -163,8 +162,8 @@ def _film(given: argparse.Namespace) -> int:
 
 
 def _plain(name: str) -> str:
-    """A name that a scene may have."""
-    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("_.-") or "film"
+    """A name that a scene may have, of 100 characters at most."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("_.-")[:100] or "film"
 
 
 def _write(file: Path, text: str) -> int:
@@ -180,7 +179,7 @@ def _write(file: Path, text: str) -> int:
 
 def _open(given: argparse.Namespace) -> int:
     report = Path("results") / Path(given.scene).stem / "report.html"
-    if not report.is_file():
+    if not os.path.isfile(report):
         return _refuse(f"{report}: no such report; asperity run {given.scene}")
     webbrowser.open(report.resolve().as_uri())
     print(report)
@@ -207,16 +206,15 @@ def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False)
         return _refuse(
             f"{', '.join(missing)}: not installed; running a scene needs pip install 'asperity-contact[run]'"
         )
-    try:
-        given.scene.encode()
-    except UnicodeEncodeError:
-        return _refuse(f"scene={given.scene}: the name is no Unicode; rename the file")
+    if not given.scene.isprintable():
+        return _refuse(f"scene={given.scene}: characters that do not print; rename the file")
     options = ["--dry-run", "--quiet", "rules"]
     if not dry:
         options = ["--resources", f"mem_mb={_memory_MB()}", "--quiet", "host", "reason"]
     _become(
-        *("-c", START, "--snakefile", str(ROOT / "Snakefile"), "--workflow-profile", "none"),
-        *("--rerun-incomplete", "--nolock", *options, "--cores", given.cores, *given.target),
+        *("-c", START, "--snakefile", str(ROOT / "Snakefile"), "--profile", "none", "--workflow-profile", "none"),
+        *("--rerun-incomplete", "--nolock", "--max-checksum-file-size", "1000000000"),  # as workflow/profiles/local
+        *(*options, "--cores", given.cores, *given.target),
         *("--config", f"scene={as_word(given.scene)}", *([f"hours={given.hours:g}"] if given.hours else [])),
         *(["show=true"] if show else []),
     )

@@ -1,9 +1,9 @@
 """From measured files to a scene: what they show, and a commented scene file that computes a switch on them."""
 
 import json
+import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from pathlib import Path
 
 from asperity.bundle import ROOT
 from asperity.film import MATERIAL, RECOMMENDED, Film, pixels_for
@@ -39,7 +39,7 @@ def readable(names: Sequence[str], say: Callable[[str], None]) -> list[str]:
     """
     files = []
     for name in names:
-        if not Path(name).is_dir():
+        if not os.path.isdir(name):
             files.append(name)
             continue
         for file in files_in(name):

@@ -4,6 +4,7 @@ Python and several packages look for modules and settings in the working folder,
 stranger. Here each is told where to look instead. What the user set himself stays.
 """
 
+import locale
 import os
 import tempfile
 from pathlib import Path
@@ -44,6 +45,10 @@ def secure() -> None:
     given = os.environ.get("PYTHONPATH", "").split(os.pathsep)
     paths = [str(ROOT), *(path for path in given if os.path.isabs(path))]
     os.environ["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(paths))
+    try:
+        locale.setlocale(locale.LC_CTYPE, "")
+    except locale.Error:  # not installed: each shell of a job would warn of it
+        os.environ["LC_ALL"] = "C.UTF-8"
     os.environ.setdefault("PYSCF_CONFIG_FILE", str(EMPTY))
     os.environ.setdefault("NUMBA_CACHE_DIR", "")  # beside the code, as without this variable
     if not _writable(Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")):

@@ -10,6 +10,7 @@ COLUMNS = 80
 
 SPREADSHEET_COMMANDS = "=+-@\t\r"
 """With these a cell begins that a spreadsheet computes: `=HYPERLINK(...)` would send out what stands in others."""
+NEW_CELL = re.compile(r"([;\t\r\n])(?=[=+@-])")  # where a spreadsheet that separates by these begins a cell
 
 
 def shown(text: str) -> str:
@@ -24,6 +25,7 @@ def wrapped(text: str) -> str:
 
 def as_cell(text: str) -> str:
     """Text that a spreadsheet shows as it stands: behind an apostrophe where it would compute it."""
+    text = NEW_CELL.sub(r"\1'", text)
     if text[:1] not in SPREADSHEET_COMMANDS or not text:
         return text
     try:

@@ -11,6 +11,7 @@ from typing import Any
 
 import yaml
 
+ODD_BREAK = re.compile(r"\r(?!\n)|[\x85\u2028\u2029]")  # a comment ends there, though no editor shows it
 MAX_BYTES = 1_000_000
 MAX_NODES = 50_000  # a second of reading; the largest scene has 400
 MAX_DEPTH = 20  # the settings need 6
@@ -99,6 +100,8 @@ def parse(text: str | bytes, tuples: bool = False) -> Any:
     ------
     MistakenYaml : no valid YAML, or more than plain data.
     """
+    if odd := ODD_BREAK.search(text if isinstance(text, str) else text.decode(errors="replace")):
+        raise MistakenYaml(f"{odd[0]!r} begins a line only for YAML 1.1, what follows it may be hidden; delete it")
     try:
         return yaml.load(text, _ContainerLoader if tuples else _Loader)
     except (yaml.YAMLError, ValueError) as error:  # also: text that is no Unicode, numbers of 5000 digits

@@ -7,11 +7,11 @@ without a checksum is none of ours, and one that differs from it was damaged aft
 
 import hashlib
 import os
-import re
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
-UNFINISHED = re.compile(r"\.[^/]+\.[a-z0-9_]{8}(\.[a-z0-9]+)?|\..+\.sha256\.[0-9]+")  # of atomic_path, of record
+UNFINISHED = ".asperity-unfinished-"  # so begin the temporary names of results and records, and no others
 CLOCK_S = 5.0  # by which clocks of machines that share a disk may differ
 
 
@@ -30,7 +30,7 @@ def record_of(path: str | Path) -> Path:
 def record(path: Path, content: Path) -> None:
     """Record the checksum of a result file that is about to get `content`."""
     target = record_of(path)
-    temporary = target.with_name(f"{target.name}.{os.getpid()}")
+    temporary = target.with_name(f"{UNFINISHED}{os.getpid()}{target.name}")
     with temporary.open("w", encoding="utf-8") as stream:
         stream.write(f"{file_checksum(content)}  {path.name}\n")
         stream.flush()
@@ -46,31 +46,21 @@ def is_damaged(path: str | Path) -> bool:
     return target.read_text(encoding="utf-8", errors="replace") != f"{file_checksum(path)}  {Path(path).name}\n"
 
 
-def redate(folder: str | Path) -> list[Path]:
-    """Date results below a folder that are dated in the future to now; returns their paths, sorted."""
-    now = time.time()
-    late = [path for path in sorted(Path(folder).rglob("*")) if path.is_file() and path.stat().st_mtime > now + CLOCK_S]
-    for path in late:
-        os.utime(path, (now, now))
-    return late
+def recorded(folder: str | Path) -> Iterator[Path]:
+    """Results below a folder that have a checksum, sorted; all others are none of ours."""
+    for target in sorted(Path(folder).rglob(".*.sha256")):
+        path = target.with_name(target.name.removeprefix(".").removesuffix(".sha256"))
+        if path.is_file():
+            yield path
+
+
+def is_late(path: Path) -> bool:
+    """Is a file dated in the future, so that what is made of it would seem older?"""
+    return path.stat().st_mtime > time.time() + CLOCK_S
 
 
 def remove_unfinished(folder: str | Path) -> None:
     """Delete what killed writers left below a folder: results and records under their temporary names."""
-    for path in Path(folder).rglob(".*"):
-        if UNFINISHED.fullmatch(path.name) and path.is_file():
+    for path in Path(folder).rglob(f"{UNFINISHED}*"):
+        if path.is_file():
             path.unlink()
-
-
-def remove_damaged(folder: str | Path) -> list[Path]:
-    """Delete every damaged result below a folder, so that it is made again; returns their paths, sorted."""
-    damaged = []
-    for target in sorted(Path(folder).rglob(".*.sha256")):
-        path = target.with_name(target.name.removeprefix(".").removesuffix(".sha256"))
-        if not path.is_file():
-            target.unlink()  # of a temporary file, or of one that somebody deleted
-        elif is_damaged(path):
-            path.unlink()
-            target.unlink()
-            damaged.append(path)
-    return damaged

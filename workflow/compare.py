@@ -1,13 +1,14 @@
-"""Compare two folders of results: `python -m workflow.compare results/before results/after`.
+"""Compare two folders of results: `asperity compare results/before results/after`, or `python -m workflow.compare`.
 
-Prints one line for each file that differs and exits 1 if any does. Provenance (versions, input hashes, git commit)
-and machine times do not count. Logs, work folders and the report page, which is drawn from the other files and shows
-their times, are left out.
+Prints what each scene says of its switch and one line for each file that differs; exits 1 if any does. Provenance
+(versions, input hashes, git commit) and machine times do not count. Logs, work folders and the report page, which is
+drawn from the other files and shows their times, are left out.
 """
 
 import argparse
 import csv
 import json
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,8 +17,13 @@ from typing import Any
 import h5py
 import numpy as np
 
+from asperity.foreign_text import shown
 from asperity.foreign_yaml import load_mapping
+from workflow.checksums import is_damaged
 from workflow.job import without_machine_times
+from workflow.report.available import results_in
+from workflow.report.verdict import verdict
+from workflow.results import checked_items
 
 LEFT_OUT = ("logs", "work", "report.html")  # first part of a path below the folder
 PROVENANCE = {"provenance", "schema_version", "rule", "inputs_hash", "versions", "git_commit"}
@@ -31,9 +37,13 @@ def differences(first: Path, second: Path) -> Iterator[str]:
         if not all(name in present for present in names):
             yield f"{name}: only in {first if name in names[0] else second}"
             continue
-        contents = [content(folder / name) for folder in (first, second)]
-        if difference := first_difference(*contents):
-            yield f"{name}: {difference}"
+        try:
+            difference = first_difference(*(content(folder / name) for folder in (first, second)))
+        except Exception as error:  # a stranger's files may hold anything
+            difference = f"cannot be read ({' '.join(f'{type(error).__name__}: {error}'.split())[:200]})"
+        if difference:
+            damaged = [f"; damaged in {folder}" for folder in (first, second) if is_damaged(folder / name)]
+            yield f"{name}: {difference}{''.join(damaged)}"
 
 
 def _result_files(folder: Path) -> set[str]:
@@ -60,13 +70,10 @@ def _h5_content(path: Path) -> dict[str, Any]:
     with h5py.File(path, "r") as file:
         values: dict[str, Any] = {}
         attributes = {"root": _without_provenance(_attributes(file))}
-
-        def visit(name: str, item: Any) -> None:
+        for name, item in checked_items(file).items():
             attributes[name] = _attributes(item)
             if isinstance(item, h5py.Dataset):
                 values[name] = item[()]
-
-        file.visititems(visit)
     return {"values": values, "attributes": attributes}  # values first: the first difference is the one that is named
 
 
@@ -115,17 +122,27 @@ def _value_difference(first: Any, second: Any, place: str) -> str:
     return f"{place} {first!r:.60} | {second!r:.60}"
 
 
+def _said(folder: Path) -> str:
+    """What a folder says of its switch, with its name; a stranger's files may hold anything."""
+    try:
+        said = verdict(results_in(folder))
+    except Exception as error:
+        return f"{folder.name}: its switch cannot be read ({type(error).__name__})"
+    return f"{folder.name}: {said.sentence if said else 'no switch on a pad'}".replace("\u00a0", " ")
+
+
 def main() -> None:
     """The command line."""
-    parser = argparse.ArgumentParser(prog="python -m workflow.compare", description=(__doc__ or "").splitlines()[2])
+    parser = argparse.ArgumentParser(prog="asperity compare", description=(__doc__ or "").splitlines()[2])
     parser.add_argument("first", type=Path)
     parser.add_argument("second", type=Path)
     chosen = parser.parse_args()
     for folder in (chosen.first, chosen.second):
-        if not folder.is_dir():
-            parser.error(f"{folder}: no such folder; give two folders of results")
+        if not os.path.isfile(folder / "scene.yaml"):
+            parser.error(f"{shown(str(folder))}: no results of a scene are there; give two folders such as results/ci")
+        print(shown(_said(folder)))
     lines = list(differences(chosen.first, chosen.second))
-    print("\n".join(lines) if lines else "no difference beyond provenance and machine times")
+    print("\n".join(map(shown, lines)) if lines else "no difference beyond provenance and machine times")
     sys.exit(bool(lines))
 
 

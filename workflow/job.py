@@ -187,7 +187,8 @@ def _refuse_damaged(paths: list[str]) -> None:
 
 def failures(logs: Path, since: float) -> list[str]:
     """The one-line errors of the jobs that failed after `since` (seconds of the system clock)."""
-    recent = sorted(path for path in logs.glob("**/*.log") if path.stat().st_mtime >= since)
+    now = time.time()
+    recent = sorted(path for path in logs.glob("**/*.log") if since <= path.stat().st_mtime <= now)
     return [line for line in map(last_line, recent) if line.startswith("ERROR ")]
 
 

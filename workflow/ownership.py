@@ -130,7 +130,7 @@ def claim(results: Path, scene: Path, shipped: Path, write: bool) -> None:
 
     Raises
     ------
-    Refused : the folder holds the results of another scene.
+    Refused : the folder holds the results of another scene, or files that no run made.
     """
     place = scene.resolve()
     owner = f"shipped scene {place.stem}" if place.parent == shipped else str(place)
@@ -139,7 +139,12 @@ def claim(results: Path, scene: Path, shipped: Path, write: bool) -> None:
     if known and known != owner:
         raise Refused(
             f"{results}: these are results of {known}, not of {owner}; give one of them another name (key `name`), or "
-            f"delete {note} if the scene has moved"
+            f"empty the file {note} if the scene has moved"
+        )
+    if not note.is_file() and (others := sorted(set(os.listdir(results)) - {".lock", ".jobs"})):
+        raise Refused(
+            f"{results}: holds {others[0]}, but no file .scene, so that no run made it; give the scene another name "
+            "(key `name`), or move the folder or its link away"
         )
     if write:
         note.write_text(owner + "\n", encoding="utf-8")

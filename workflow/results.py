@@ -18,10 +18,14 @@ from typing import Any
 import numpy as np
 
 from asperity.foreign_text import as_cell
-from workflow.checksums import record
+from workflow.checksums import UNFINISHED, record
 from workflow.schemas import UnfitTable, schema_of
 
 SCHEMA_VERSION = 1
+MOST_BYTES = 2**30
+"""That the datasets of an HDF5 result may take; the largest that ships has 18 MB."""
+MOST_UNPACKED = 1100
+"""Times its file that datasets may take: deflate packs 1032 times at most, what is not written takes nothing."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +49,7 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}.", suffix=path.suffix)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=UNFINISHED, suffix=path.suffix)
     os.close(handle)
     temporary = Path(name)
     try:
@@ -231,23 +235,37 @@ def load_h5(
 
     Raises
     ------
-    ValueError : the file is not a complete result file.
+    ValueError : the file is not a complete result file, or its datasets are too large or lie in other files.
     """
     import h5py
 
     groups: dict[str, dict[str, np.ndarray]] = {}
     group_attributes: dict[str, dict[str, Any]] = {}
-
     with h5py.File(path, "r") as file:
         if not file.attrs.get("complete", False):
             raise ValueError(f"{path}: not a complete result file; delete it and run again")
-
-        def visit(name: str, item: Any) -> None:
+        for name, item in checked_items(file).items():
+            parent, _, leaf = name.rpartition("/")
             if isinstance(item, h5py.Dataset):
-                parent, _, leaf = name.rpartition("/")
                 groups.setdefault(parent or "/", {})[leaf] = item[()]
             elif item.attrs:
                 group_attributes[name] = dict(item.attrs)
-
-        file.visititems(visit)
         return groups, dict(file.attrs), group_attributes
+
+
+def checked_items(file: Any) -> dict[str, Any]:
+    """Groups and datasets of an open HDF5 file, which may be a stranger's, by name; nothing is read of them.
+
+    Raises
+    ------
+    ValueError : its datasets are too large or lie in other files.
+    """
+    items: dict[str, Any] = {}
+    file.visititems(items.__setitem__)
+    datasets = [item for item in items.values() if hasattr(item, "nbytes")]
+    size = sum(dataset.nbytes for dataset in datasets)
+    if size > min(MOST_BYTES, MOST_UNPACKED * Path(file.filename).stat().st_size):
+        raise ValueError(f"{file.filename}: datasets of {size} bytes, more than a result has; delete it and run again")
+    if any(dataset.is_virtual or dataset.external for dataset in datasets):
+        raise ValueError(f"{file.filename}: datasets that lie in other files; delete it and run again")
+    return items

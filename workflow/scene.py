@@ -17,6 +17,7 @@ from annotated_types import Ge, Gt, Le, Lt, MaxLen, MinLen
 from pydantic import BaseModel, Field, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 
+from asperity.foreign_text import shown
 from asperity.foreign_yaml import MistakenYaml, load_mapping
 from atomistic.settings import ElasticSettings, HardnessSettings
 from mesoscale.settings import (
@@ -187,6 +188,8 @@ def load_scene(name_or_path: str) -> Scene:
 
 def _content_of(path: Path) -> dict[str, Any]:
     """The keys of a scene's own file."""
+    if not str(path).isprintable():
+        raise SceneError(f"{shown(str(path))}: characters that do not print; rename the file or its folder")
     try:
         return load_mapping(path, "scene")
     except MistakenYaml as error:
@@ -207,7 +210,7 @@ def _lineage(name_or_path: str) -> list[Path]:
             raise SceneError(f"{child}: extends = {_cut(json.dumps(parent))}: accepted is the name or path of a scene")
         beside = child.parent / parent
         try:
-            files.append(beside if Path(parent).suffix and beside.is_file() else find_scene(parent))
+            files.append(beside if Path(parent).suffix and os.path.isfile(beside) else find_scene(parent))
         except SceneError as error:
             raise SceneError(f"{child}: extends: {error}") from None
         if files[-1].resolve() in [file.resolve() for file in files[:-1]]:
@@ -236,14 +239,14 @@ def find_scene(name_or_path: str) -> Path:
     SceneError : there is none.
     """
     path = Path(name_or_path)
-    shown = _cut(name_or_path)
+    word = _cut(name_or_path)
     if path.suffix in {".yaml", ".yml"} or len(path.parts) > 1:
         if not os.path.isfile(path):  # unlike Path.is_file, False for a name that is too long
-            raise SceneError(f"scene={shown}: no such file; give the path of a YAML file or a scene's name")
+            raise SceneError(f"scene={word}: no such file; give the path of a YAML file or a scene's name")
         return path
     known = _shipped()
     if name_or_path not in known:
-        raise SceneError(f"scene={shown}: unknown scene; accepted: {', '.join(known)}, or the path of a YAML file")
+        raise SceneError(f"scene={word}: unknown scene; accepted: {', '.join(known)}, or the path of a YAML file")
     return known[name_or_path]
 
 
@@ -261,7 +264,8 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
 
     Raises
     ------
-    SceneError : a file is missing or dated in the future, or its path has braces; one line per file.
+    SceneError : a file is missing or dated in the future, or its path has braces or characters that do not print; one
+        line per file.
     """
     files, mistakes = [], []
     beside = _folders_of(scene)
@@ -270,6 +274,8 @@ def locate(scene: str, key: str, names: Iterable[str]) -> list[str]:
         path = next((place for place in places if os.path.isfile(place)), None)
         if path is None:
             mistakes.append(f"{scene}: {key} = {_cut(name)}: no such file here or beside the scene; correct the path")
+        elif not path.isprintable():
+            mistakes.append(f"{scene}: {key} = {shown(path)}: characters that do not print; rename the file")
         elif set(path) & set("{}"):
             mistakes.append(f"{scene}: {key} = {_cut(path)}: braces mean wildcards to Snakemake; rename the file")
         elif os.path.getmtime(path) > time.time() + CLOCK_S:
@@ -294,7 +300,7 @@ def files_of(scene: str, names: Iterable[str]) -> list[str]:
     files: list[str] = []
     for name in names:
         places = [Path(name), *(folder / name for folder in _folders_of(scene))]
-        folder = next((place for place in places if place.is_dir()), None)
+        folder = next((place for place in places if os.path.isdir(place)), None)
         files += [name] if folder is None else files_in(folder)
     return files
 

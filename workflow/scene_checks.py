@@ -70,9 +70,12 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
         # one site yields by 4 ln(1 + sqrt 2) / pi of its side over E*; the attraction changes by 3 s / D0 at most
         needed = hamaker / (2 * math.pi * cutoff**4) * side * 4 * math.log(1 + math.sqrt(2)) / (math.pi * least)
         if needed > scene.contact.pixels:
+            finer = (
+                f"contact.pixels >= {math.ceil(needed)}, " if needed <= 16384 else ""
+            )  # the most that the key accepts
             yield (
                 f"contact.mechanics = adhesive: D0 down to {cutoff:g} nm and A_H up to {hamaker:g} aJ fall off faster "
-                f"than the grid resolves; take contact.pixels >= {math.ceil(needed)}, a larger D0 or mechanics: coupled"
+                f"than the grid resolves; take {finer}a larger D0 or mechanics: coupled"
             )
 
 

@@ -12,7 +12,7 @@ class NitrideGlassSettings(Settings):
     """Melt and quench of a small amorphous Si3N4 cell (Tersoff potential and soft cores)."""
 
     formula_units: int = key(4, "formula units of 7 atoms per cell", "[2, 64]")
-    quench_rate_K_ps: float = key(300, "cooling rate", "(0, 5000] K/ps")
+    quench_rate_K_ps: float = key(300, "cooling rate", "[0.001, 5000] K/ps")
     max_defects: int = key(
         0,
         "atoms of a quenched cell that may lack or exceed their valence; 3 of 28 are as many as in large "

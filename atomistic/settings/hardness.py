@@ -12,9 +12,9 @@ class GlassSettings(Settings):
     """Melt and quench of a periodic glass cell."""
 
     atoms: int = key(690, "atoms of the cell, about", "[100, 2_000_000]")
-    melt_ps: float = key(8, "time in the melt", "(0, 10_000] ps")
-    quench_rate_K_ps: float = key(50, "cooling rate at zero pressure", "(0, 2000] K/ps")
-    rest_ps: float = key(4, "rest after the quench", "(0, 10_000] ps")
+    melt_ps: float = key(8, "time in the melt", "[0.001, 10_000] ps")
+    quench_rate_K_ps: float = key(50, "cooling rate at zero pressure", "[0.001, 2000] K/ps")
+    rest_ps: float = key(4, "rest after the quench", "[0.001, 10_000] ps")
 
 
 class AsperitySettings(Settings):
@@ -22,7 +22,7 @@ class AsperitySettings(Settings):
 
     name: str = key(..., "name in file names and tables", pattern=r"^[A-Za-z][A-Za-z0-9]{0,39}$")
     tiles: int = key(..., "wavelength lambda in glass cells, so that nothing is strained", "[1, 40]")
-    amplitude_nm: float = key(..., "amplitude A", "(0, 10] nm")
+    amplitude_nm: float = key(..., "amplitude A", "[0.001, 10] nm")
     film_nm: float | None = key(
         None,
         "thickness of the oxide on hardness.base; 0: the base without oxide; null: oxide throughout",
@@ -33,8 +33,8 @@ class AsperitySettings(Settings):
 class ClosingSettings(Settings):
     """Closing of an asperity against a rigid flat, frictionless and repulsive."""
 
-    speed_m_s: float = key(50, "closing speed", "(0, 1000] m/s")
-    depth_over_amplitude: float = key(2.2, "largest travel below the highest atom, in amplitudes", "(0, 4]")
+    speed_m_s: float = key(50, "closing speed", "[0.001, 1000] m/s")
+    depth_over_amplitude: float = key(2.2, "largest travel below the highest atom, in amplitudes", "[0.01, 4]")
     stop: Literal["settled", "window"] = key(
         "settled",
         "settled: a run ends once the mean stress of its plateau is known to 4 %; window: it ends where the "
@@ -43,7 +43,7 @@ class ClosingSettings(Settings):
     base_nm: float = key(
         2.6, "least thickness below the mean height; always at least the width of the largest contact", "[1, 100] nm"
     )
-    anneal_ps: float = key(5, "time of the anneal of the cut surface and again of its cooling", "(0, 10_000] ps")
+    anneal_ps: float = key(5, "time of the anneal of the cut surface and again of its cooling", "[0.001, 10_000] ps")
     processes: int = key(1, "MPI processes of one closing run, started as docs/cluster.md says", "[1, 4096]")
 
 
@@ -65,7 +65,7 @@ class HardnessSettings(Settings):
         "body below the films of asperities with a film_nm: titanium, silicon_nitride, or another file in "
         "config/materials with a film_base",
     )
-    energy_scales: tuple[Annotated[float, Field(gt=0, le=2)], ...] = key(
+    energy_scales: tuple[Annotated[float, Field(ge=1e-3, le=2)], ...] = key(
         (1.0, 0.5), "factors on all energies; 0.5 is the model-form twin", min_length=1
     )
     seeds: tuple[Annotated[int, Field(ge=0, le=1_000_000)], ...] = key((1, 2), "seeds of the glasses", min_length=1)

@@ -121,7 +121,7 @@ def _judged(kind: str, place: Path, scene: str, results: str, outside: Path) -> 
         for word, is_so in (
             ("planted code ran", (place.with_name("ran")).exists() or bool(list(place.rglob("ran")))),
             ("written outside", any(outside.iterdir())),
-            ("traceback", "Traceback" in said),
+            ("traceback", "Traceback" in said or "internal error" in said),
             ("control characters", "\x1b" in said.replace("\x1b[3", "").replace("\x1b[0m", "").replace("\x1b[1", "")),
             (f"more than {HANG_S:.0f} s", seconds > 3 * HANG_S),  # of a busy machine
             (f"neither done nor refused: {said[-300:]}", not done and not refused),

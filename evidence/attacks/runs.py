@@ -141,6 +141,6 @@ def contents(results: Path) -> dict[str, str]:
 def last_words(said: str) -> str:
     """How a run ends by what it said: its first ERROR line, else its last line; 'Traceback' where it shows one."""
     lines = said.strip().splitlines()
-    if any("Traceback" in line for line in lines):
+    if any("Traceback" in line or "internal error" in line for line in lines):
         return "Traceback"
     return next((line for line in lines if line.startswith("ERROR ")), lines[-1] if lines else "")

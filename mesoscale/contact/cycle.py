@@ -176,7 +176,7 @@ def run_cycle(
             "force_miss": abs(last.force - force) / force,
             "unconverged_steps": unconverged,
             "largest_load": closing.load,
-            "full_contact": closing.full,
+            "full_contact": closing.full or (settings.model == "elastic" and force > capacity),
             "radius_bound_events": closing.bounds,
             "repeated_steps": repeated,
             "changed_sites": changed,

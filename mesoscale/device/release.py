@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.device.by_key import release_by_key
 from mesoscale.device.electrode import release_or_nan_V
 from mesoscale.device.numerics import SWITCH
 from mesoscale.device.plate import NM, plate_from_settings
@@ -204,6 +205,7 @@ def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:
         "central": {**central.states, "error_V": central.error_V} if central.states else None,
         "by_attraction": [{"times": times, "release_V": _release_V(central, times)} for times in WORKS],
         "adhesion": [asdict(opened) for opened in adhesion_of(central.pad.law)] if central.pad else [],
+        "by_key": release_by_key(settings, central.pad.law) if central.states and central.pad else [],
         "gate": {"passed": not (reasons := _reasons(central)), "reasons": reasons},
         "answer": said,
         "answer_status": status,

@@ -8,6 +8,14 @@ for any shape and number of spots (Barber, Proc. R. Soc. A 459 (2003) 53). The a
 planes. The further approach is elastic: where asperities flow, its slope is that of the way back. Contact grows with
 the force, so that the force is convex in delta, and its slope lies between those of the chords to both sides.
 
+Spots that are narrow beside the mean free path l of electrons resist more. Of a round spot of radius a between equal
+metals (Wexler, Proc. Phys. Soc. 89 (1966) 927), with Holm's resistance first and Sharvin's last:
+
+    R = gamma(l / a) rho / (2 a) + 4 rho l / (3 pi a^2)
+
+Sharvin's part depends on the area of contact alone, also of many spots. In gamma, a is the radius of equal, distant
+spots that together have this area and this resistance of Barber's.
+
 A film's resistance is added as if each spot had one potential, which is the least that spots and film have together;
 for one spot that is a film of its own, a twelfth of the spot's own resistance is missing at most (Holm, Electric
 Contacts, 1967: 0.27 rho / a at uniform current, 0.25 at one potential).
@@ -70,12 +78,26 @@ def stiffness_of(branch: Branch) -> Stiffness:
     return Stiffness(force, area, approach, slope)
 
 
+def diffusive_share(knudsen: Array) -> Array:
+    """What is left of Holm's resistance of a spot of radius a where electrons fly `knudsen` = l / a, Wexler's gamma.
+
+    As Nikolic and Allen (Phys. Rev. B 60 (1999) 3963) fit it to Boltzmann's equation. Electrons followed one by one
+    give a resistance that is up to 4 % higher (tests/mesoscale/device/test_resistance.py).
+    """
+    return (1.0 + 0.83 * knudsen) / (1.0 + 1.33 * knudsen)
+
+
 def resistance_Ohm(slope: Array, area_nm2: Array, e_star_GPa: float, settings: ResistanceSettings) -> Array:
     """Resistance (Ohm) of a contact of stiffness `slope` (N/m) and of its film; any shape."""
-    if settings.resistivities_nOhm_m is None:
+    if settings.resistivities_nOhm_m is None or settings.mean_free_paths_nm is None:
         raise InputError("resistance.resistivities_nOhm_m = null: give the resistivities of the two bodies in nOhm m")
-    # GPa nOhm m over N/m is Ohm
-    return e_star_GPa * sum(settings.resistivities_nOhm_m) / (2.0 * slope) + settings.film_Ohm_um2 / (area_nm2 * 1e-6)
+    radius_nm = 2.0 * area_nm2 * e_star_GPa / (np.pi * slope)  # GPa nm^2 over N/m is nm
+    ohm: Array = settings.film_Ohm_um2 / (area_nm2 * 1e-6)
+    for resistivity, path_nm in zip(settings.resistivities_nOhm_m, settings.mean_free_paths_nm, strict=True):
+        # of one body; GPa nOhm m over N/m is Ohm, and so is nOhm m nm over nm^2
+        ohm = ohm + diffusive_share(path_nm / radius_nm) * e_star_GPa * resistivity / (2.0 * slope)
+        ohm = ohm + 2.0 * resistivity * path_nm / (3.0 * area_nm2)
+    return ohm
 
 
 def resistance_rows(

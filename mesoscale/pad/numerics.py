@@ -15,7 +15,9 @@ class PadNumerics:
     place_step_rms, longest_place_step_nm : step of a cell in units of the RMS height of its own place, times that over
         the median place's, where this is longer than the pad's; and the longest, since wells are a nanometre wide. With
         0.04 at all places wells are passed over, and `reduced` lets go 0.1 V too high.
-    depths : depths of closing from which a pad is opened, at loads in even ratios up to the largest.
+    depths : depths of closing from which a pad is opened, at loads in even ratios up to the largest. With 4 the
+        releases of `paper` are 0.5 V too low, since wells of single cells move with the depth; more than 8 move them by
+        0.1 V.
     grown : steps where only rough places touch, in units of their RMS height: release is that of half of it to 1e-6 V.
     far_nm, far_points : beyond, the attraction of the pad is that of two flats to 1 %: 1 + 6 (rms / separation)^2; and
         separations up to there.
@@ -41,7 +43,7 @@ class PadNumerics:
     longest_step_nm: float = 0.2
     place_step_rms: float = 0.01
     longest_place_step_nm: float = 0.8
-    depths: int = 4
+    depths: int = 8
     grown: float = 2.0
     far_nm: float = 200.0
     far_points: int = 24

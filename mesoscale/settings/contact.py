@@ -78,9 +78,9 @@ class ContactSettings(Settings):
         "and most of the RMS height (docs/topography.md, Cells), and max_force_nN grows with its area",
         "[1, 1e6] nm",
     )
-    max_force_nN: float = key(7000.0, "repulsive force at which closing turns into opening", "(0, 1e12] nN")
+    max_force_nN: float = key(7000.0, "repulsive force at which closing turns into opening", "[1e-6, 1e12] nN")
     q1_per_nm: float | None = key(
-        None, "short-wave cut-off of the spectrum; null: the grid's Nyquist limit", "(0, inf) 1/nm"
+        None, "short-wave cut-off of the spectrum; null: the grid's Nyquist limit", "[1e-6, 1000] 1/nm"
     )
     surface: SurfaceSettings = SurfaceSettings()
     attraction: AttractionLaw = key(
@@ -91,7 +91,7 @@ class ContactSettings(Settings):
     gap_cutoff_nm: float = key(
         0.165,
         "D0 of the attraction: the distance of the walls at touch (offset), or the least gap (clamped)",
-        "(0, 30] nm",
+        "[1e-6, 30] nm",
     )
     retardation_nm: float | None = key(
         None,

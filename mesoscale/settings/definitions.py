@@ -64,7 +64,7 @@ INPUTS = (
     InputDefinition("hurst", "Hurst exponent", "Hurst", "1", 1e-6, 2.0, stage="topography"),
     InputDefinition("rms", "RMS roughness", "RMS", "nm", 1e-5, 1e6, zero=True, stage="topography"),
     InputDefinition(
-        "gap_cutoff", "gap cutoff", "D₀", "nm", 1e-9, 30.0, stage="hardness", setting="gap_cutoff_nm", optional=True
+        "gap_cutoff", "gap cutoff", "D₀", "nm", 1e-6, 30.0, stage="hardness", setting="gap_cutoff_nm", optional=True
     ),
     InputDefinition(
         "q1", "short-wave cut-off", "q₁", "1/nm", 1e-6, 1e3, stage="topography", setting="q1_per_nm", optional=True

@@ -77,7 +77,7 @@ class DeviceSettings(Settings):
     """
 
     ends: Literal["clamped", "cantilever"] = key("clamped", "beam clamped at both ends, or at its first end only")
-    length_um: float = key(510.0, "length of the beam", "[0.01, 1e5] um")
+    length_um: float = key(510.0, "length of the beam", "[0.01, 1e4] um")
     width_um: float = key(123.0, "width of the beam", "[0.01, 1e5] um")
     thickness_um: float = key(4.0, "thickness of the beam", "[0.001, 1000] um")
     gap_um: float = key(3.49, "distance from the beam at rest to the mean plane of the dielectric", "(0.01, 1000] um")
@@ -103,7 +103,7 @@ class DeviceSettings(Settings):
         0.0, "by how much both anchors together give way to the axial force; 0: rigid", "[0, 1e9] um/N"
     )
     spring_N_per_m: float | None = key(
-        None, "stiffness of a parallel-plate switch; null computes it from the beam", "[1e-9, 1e6] N/m"
+        None, "stiffness of a parallel-plate switch; null computes it from the beam", "[0.001, 1e6] N/m"
     )
     electrode_um2: float | None = key(
         None, "electrode area of a parallel-plate switch; null is length times width", "[0.0001, 1e9] um^2"
@@ -145,7 +145,7 @@ class DeviceSettings(Settings):
     )
     gas_kPa: float = key(101.325, "pressure of the air around the electrode, for its motion", "[1e-6, 1e4] kPa")
     hold_voltage_V: float | None = key(
-        None, "voltage of the closed switch; null is its own pull-in voltage", "(0, 1e5] V"
+        None, "voltage of the closed switch; null is its own pull-in voltage", "[0.001, 1e4] V"
     )
 
     @model_validator(mode="after")

@@ -21,7 +21,7 @@ class HistorySettings(Settings):
         "how the hardness falls while the contact is held: not, as (1 + m t/t0)^(-1/m), or as 1/(1 + c ln(1 + t/t0))",
     )
     dwell_s: float = key(0.0, "time that every cycle holds the largest force; needs a creep law", "[0, 1e12] s")
-    creep_time_s: float = key(1.0, "t0 of the creep laws", "(0, 1e12] s")
+    creep_time_s: float = key(1.0, "t0 of the creep laws", "[1e-12, 1e12] s")
     creep_exponent: float = key(30.0, "m: an asperity's pressure p relaxes at the rate (p/H)^m", "[1, 1000]")
     creep_strength: float = key(0.02, "c: share of the hardness lost per e-fold of time", "[0, 10]")
 

@@ -7,15 +7,15 @@ from pydantic import Field, model_validator
 from asperity.keys import key
 from mesoscale.settings.base import Settings
 
-Positive = Annotated[float, Field(gt=0, le=1e12)]
+Positive = Annotated[float, Field(ge=1e-30, le=1e12)]
 
 
 class CounterfaceSettings(Settings):
     """A second rough surface: the flat meets the sum of both spectra, the effective roughness."""
 
-    q0: float = key(..., "its roll-off wave vector", "(0, 10] 1/nm")
-    hurst: float = key(..., "its Hurst exponent, in contact.reading.convention", "(0, 2]")
-    rms_nm: float = key(..., "its RMS height", "(0, 1e4] nm")
+    q0: float = key(..., "its roll-off wave vector", "[1e-7, 10] 1/nm")
+    hurst: float = key(..., "its Hurst exponent, in contact.reading.convention", "[1e-6, 2]")
+    rms_nm: float = key(..., "its RMS height", "[1e-5, 1e4] nm")
 
 
 class SpectrumSettings(Settings):
@@ -26,13 +26,13 @@ class SpectrumSettings(Settings):
         ..., "C at these, of the two-dimensional spectrum", "nm^4", min_length=2, max_length=10000
     )
 
-    q0: Positive | None = key(
+    q0: float | None = key(
         None,
         "with `hurst`: eq. 9 nearest to the points; the inputs' q0 and hurst then bend the spectrum by the ratio "
         "of their eq. 9 to this one; null: they are unused",
-        "1/nm",
+        "[1e-7, 1000] 1/nm",
     )
-    hurst: float | None = key(None, "its Hurst exponent, in contact.reading.convention", "(0, 2]")
+    hurst: float | None = key(None, "its Hurst exponent, in contact.reading.convention", "[1e-6, 2]")
 
     @model_validator(mode="after")
     def _a_function(self) -> "SpectrumSettings":

@@ -92,8 +92,8 @@ def _pressed_again(point: Point, contact: ContactSettings, cells: int, tried: Tr
     finest = compared(partial(release, step_nm=0.5 * step), steps)
     yield Knob("steps of separation, nm", "deviation, V", f"steps of {0.5 * step:.2g} nm", finest)
 
-    depths = [(count, partial(release, depths=count)) for count in (2, 3, PAD.depths, 2 * PAD.depths)]
-    yield Knob("depths", "deviation, V", "12 depths", compared(partial(release, depths=12), depths))
+    depths = [(count, partial(release, depths=count)) for count in (2, PAD.depths // 2, PAD.depths, 2 * PAD.depths)]
+    yield Knob("depths", "deviation, V", "32 depths", compared(partial(release, depths=32), depths))
 
     # the same seeds draw other surfaces on a finer grid: the difference of pads counts beside their scatter
     *coarser, finest_grid = (

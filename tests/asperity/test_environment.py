@@ -138,7 +138,6 @@ def test_the_scene_reaches_snakemake_as_it_is_called(monkeypatch):
         'it\'s "x".yaml',
         "!x",
         "- y.yaml",
-        "n\nl.yaml",
         "null",
         "12",
         "paper",
@@ -199,6 +198,9 @@ def _holds(path, mark):
         ("x: " + "[" * 5000, "nested"),
         ("x: " + "9" * 5000, "not valid"),
         ("x: 1\nx: 2", "twice"),
+        ("# comment\u2028x: 1", "hidden"),
+        ("# comment\x85x: 1", "hidden"),
+        ("# comment\rx: 1", "hidden"),
     ],
 )
 def test_yaml_of_a_stranger_is_plain_or_refused(text, words):
@@ -223,6 +225,7 @@ def test_a_file_is_read_no_further_than_its_cap(tmp_path):
 
 def test_text_of_a_stranger_is_shown_without_control_characters():
     assert shown("a\x1b[31mb\nc\u202ed é µ") == "a\\x1b[31mb\\nc\\u202ed é µ"
+    assert as_cell("a;=HYPERLINK(1);-1;b\n@x") == "a;'=HYPERLINK(1);'-1;b\n'@x"  # a spreadsheet may separate by ;
     assert [as_cell(text) for text in ("=HYPERLINK(1)", "+1+1", "@x", "-x", "-1.5", "a=b", "")] == [
         "'=HYPERLINK(1)", "'+1+1", "'@x", "'-x", "-1.5", "a=b", "",
     ]  # fmt: skip

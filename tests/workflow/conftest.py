@@ -104,6 +104,18 @@ class Workflow:
                 process.wait()
 
 
+def listing(folder: Path) -> dict[Path, tuple[float, bytes | str | None]]:
+    """Date and content of all that lies below a folder, but the locks of runs."""
+    paths = [path for path in folder.rglob("*") if path.name not in (".lock", ".jobs")]
+    return {
+        path: (
+            0.0 if path.is_dir() else path.lstat().st_mtime,
+            os.readlink(path) if path.is_symlink() else path.read_bytes() if path.is_file() else None,
+        )
+        for path in paths
+    }
+
+
 @pytest.fixture(scope="session")
 def make_workflow():
     """The class itself, for fixtures and tests that run several workflows."""

@@ -82,6 +82,16 @@ def _curves(root: Path) -> None:
             }
     contact = {"length_nm": 1000.0, "pixels": 128, "reading": {"convention": "areal", "touching_attracts": False}}
     write_h5(root / "curves/nominal.h5", groups, {"cell_area_nm2": 1e6, "contact": contact}, PROVENANCE, facts)
+    heights = np.add.outer(np.sin(np.arange(16)), np.cos(np.arange(16)))
+    spots = {
+        "towards_flat_nm": Dataset(heights, "nm", "height towards the flat", ("x", "y")),
+        "step": Dataset(np.digitize(-heights, [-1.5, -1.0, -0.5]) - 1, "1", "first step reached", ("x", "y")),
+        "separation_nm": Dataset(np.array([40.0, 30.0, 20.0]), "nm", "mean separation of the step", ("number",)),
+        "repulsive_nN": Dataset(np.array([10.0, 500.0, 7000.0]), "nN", "repulsive force", ("number",)),
+        "asperities": Dataset(np.array([1, 5, 9]), "1", "asperities in contact", ("number",)),
+        "cut_share": Dataset(np.array([0.01, 0.1, 0.3]), "1", "share of the area", ("number",)),
+    }
+    write_h5(root / "curves/spots.h5", {"spots": spots}, {"length_nm": 1000.0}, PROVENANCE)
     fits = [
         {"branch": branch, **law, "residual": 0.2, "status": "ok"}
         for branch, law in (("closing", LAW), ("opening", OPENED))

@@ -1,4 +1,4 @@
-"""A damaged result is named, removed and made again; it is never used."""
+"""A damaged result is named and made again by a run, never used; a plan changes nothing."""
 
 import os
 import subprocess
@@ -7,7 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from workflow.checksums import is_damaged, record_of, redate, remove_damaged
+from tests.workflow.conftest import listing
+from workflow.checksums import UNFINISHED, is_damaged, is_late, record_of, recorded
 from workflow.job import job
 from workflow.results import write_csv, write_text
 
@@ -32,11 +33,11 @@ def flip(content):
 
 
 @pytest.mark.parametrize("damage", [empty, halve, flip])
-def test_a_damaged_result_is_removed_and_named(tmp_path, result, damage):
-    assert remove_damaged(tmp_path) == []
+def test_a_damaged_result_is_known(tmp_path, result, damage):
+    assert list(recorded(tmp_path)) == [result]
+    assert not is_damaged(result)
     result.write_bytes(damage(result.read_bytes()))
-    assert remove_damaged(tmp_path) == [result]
-    assert list(result.parent.iterdir()) == []
+    assert is_damaged(result)
 
 
 def test_a_job_refuses_a_damaged_input_in_one_line(tmp_path, result, capsys):
@@ -55,26 +56,18 @@ def test_files_of_the_user_have_no_checksum_and_are_left_alone(tmp_path):
     scan = tmp_path / "scan.gwy"
     scan.write_bytes(b"")
     assert not is_damaged(scan)
-    assert remove_damaged(tmp_path) == []
-    assert scan.exists()
+    assert list(recorded(tmp_path)) == []
 
 
-def test_the_checksum_of_a_file_that_is_gone_goes_too(result):
-    result.unlink()
-    assert remove_damaged(result.parent) == []
-    assert list(result.parent.iterdir()) == []
-
-
-def test_a_damaged_checksum_makes_its_result_again(result):
+def test_a_damaged_checksum_is_damage(result):
     record_of(result).write_text("")
-    assert remove_damaged(result.parent) == [result]
+    assert is_damaged(result)
 
 
-def test_a_result_dated_in_the_future_is_dated_now(tmp_path, result):
+def test_a_result_dated_in_the_future_is_known(result):
+    assert not is_late(result)
     os.utime(result, (time.time() + 1e6,) * 2)
-    assert redate(tmp_path) == [result]
-    assert result.stat().st_mtime <= time.time()
-    assert redate(tmp_path) == []
+    assert is_late(result)
 
 
 def test_a_result_written_again_is_whole(result):
@@ -99,21 +92,39 @@ inputs:
 """
 
 
-def test_the_next_run_makes_a_damaged_result_again_and_sees_a_changed_file_of_samples(workflow_in):
+def test_the_next_run_makes_a_damaged_result_again_and_sees_changed_samples_not_touched_ones(workflow_in):
     folder = workflow_in.folder / "beside"
     folder.mkdir()
     scene, samples = folder / "mine.yaml", folder / "rms.csv"
     scene.write_text(SCENE)
-    samples.write_text("rms\n5\n6\n7\n")
+    samples.write_text("rms\n5\n6\n7\n" + "5.5000000\n" * 110_000)  # above the megabyte that Snakemake would read
     assert workflow_in.run(str(scene), "inputs").returncode == 0
     inputs = workflow_in.folder / "results/mine/inputs.csv"
     whole = inputs.read_bytes()
 
+    os.utime(samples)
+    assert workflow_in.planned(str(scene), "inputs") == {}
+
+    strange = inputs.with_name("\x1b]0;title\x07\u202e\nERROR forged.csv")  # of nobody's rule
+    planted = [inputs.with_name(name) for name in (".bashrc.original", "notes.csv", ".notes.csv.sha256")]
+    planted += [strange, record_of(strange)]
+    for path in planted:
+        path.write_text("x")
+    os.utime(planted[1], (time.time() + 1e6,) * 2)
     inputs.write_bytes(halve(whole))
+    before = listing(workflow_in.folder / "results")
+    assert "results/mine/inputs.csv: damaged" in workflow_in.plan(str(scene), "inputs")
+    assert listing(workflow_in.folder / "results") == before
+    unfinished = inputs.with_name(f"{UNFINISHED}12345678.csv")
+    unfinished.write_text("x")
     done = workflow_in.run(str(scene), "inputs")
     assert done.returncode == 0, done.stderr
     assert "results/mine/inputs.csv: damaged" in done.stderr
+    assert not set(done.stderr) & set("\x1b\x07\u202e")
     assert inputs.read_bytes() == whole
+    assert not unfinished.exists()
+    after = listing(workflow_in.folder / "results")
+    assert {path: after.get(path) for path in planted} == {path: before[path] for path in planted}
 
     samples.write_text("rms\n5\n6\n8\n")
     assert workflow_in.planned(str(scene), "inputs") == {"inputs": 1}

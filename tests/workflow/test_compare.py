@@ -94,7 +94,7 @@ def test_a_change_is_named(folders, change, line):
 
 @pytest.mark.parametrize(
     ("change", "code", "says"),
-    [(None, 0, "no difference"), (change_curve, 1, "curves.h5"), (shutil.rmtree, 2, "no such")],
+    [(None, 0, "no difference"), (change_curve, 1, "curves.h5"), (shutil.rmtree, 2, "no results of a scene")],
 )
 def test_the_command_says_it_by_its_exit_code(folders, change, code, says):
     first, second = folders
@@ -104,3 +104,35 @@ def test_the_command_says_it_by_its_exit_code(folders, change, code, says):
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == code
     assert says in done.stdout + done.stderr
+
+
+def test_a_damaged_file_is_named(folders):
+    first, second = folders
+    change_last_digit(second)
+    (found,) = differences(first, second)
+    assert found.endswith(f"; damaged in {second}")
+
+
+@pytest.mark.parametrize("planted", ["", "large"])
+def test_a_file_that_cannot_be_read_is_named_and_the_rest_compared(folders, planted):
+    first, second = folders
+    change_curve(second)
+    (second / "fit.json").write_text("{")
+    if planted:
+        with h5py.File(second / "curves.h5", "a") as file:
+            file.create_dataset("z", (10**9,), "f8", chunks=(10**6,))
+    curves, fit = differences(first, second)
+    assert curves.startswith("curves.h5: " + ("cannot be read (ValueError" if planted else "/values"))
+    assert fit.startswith("fit.json: cannot be read (JSONDecodeError")
+
+
+def test_the_command_says_what_each_scene_says_of_its_switch(made_up, tmp_path):
+    (tmp_path / "other/device").mkdir(parents=True)
+    (tmp_path / "other/device/pad_switch.json").write_text("[]")
+    (tmp_path / "other/scene.yaml").write_text("")
+    command = [sys.executable, "-m", "asperity", "compare", str(made_up[0]), str(tmp_path / "other")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    first, second, *_ = done.stdout.splitlines()
+    assert first.startswith("made_up: At central inputs the switch ")
+    assert second == "other: its switch cannot be read (AttributeError)"
+    assert done.returncode == 1

@@ -3,18 +3,24 @@
 import os
 import shutil
 import subprocess
+import sys
+import time
+from pathlib import Path
 
+import h5py
+import numpy as np
 import pytest
 
+from tests.workflow.conftest import ROOT, listing
 from workflow import ownership
-from workflow.checksums import record, remove_unfinished
-from workflow.job import own_commit
+from workflow.checksums import UNFINISHED, remove_unfinished
+from workflow.job import failures, own_commit
 from workflow.report import render as rendering
 from workflow.report.available import Results
-from workflow.report.comparison import main as compare
-from workflow.results import load_csv, write_csv
+from workflow.results import Dataset, load_csv, load_h5, write_csv, write_h5
 
 FAILED = rendering.failed
+ASPERITY = str(Path(sys.executable).with_name("asperity"))
 
 
 @pytest.fixture
@@ -54,14 +60,79 @@ def test_what_leads_elsewhere_or_waits_is_refused_in_one_line(results, plant, wo
 
 
 def test_what_killed_writers_left_is_removed(results):
-    names = (".inputs.a1b2c3_z.csv", ".inputs.csv.sha256.4711", "law/.table.abcdefgh.h5")
-    kept = (".inputs.csv.sha256", ".lock", ".jobs", ".scene", "inputs.csv")
+    names = (f"{UNFINISHED}a1b2c3_z.csv", f"{UNFINISHED}4711.inputs.csv.sha256", f"law/{UNFINISHED}abcdefgh.h5")
+    kept = (".inputs.csv.sha256", ".lock", ".jobs", ".scene", "inputs.csv", ".bashrc.original", ".x.csv.sha256.1")
     (results / "law").mkdir()
     for name in (*names, *kept):
         (results / name).write_text("x")
     remove_unfinished(results)
     assert not [name for name in names if (results / name).exists()]
     assert all((results / name).exists() for name in kept)
+
+
+def test_a_folder_of_somebody_else_behind_a_link_stays_as_it_is(tmp_path):
+    """Nothing is removed, dated or made there, by no command."""
+    home = tmp_path / "home"
+    (home / ".ssh").mkdir(parents=True)
+    for name in ("notes.csv", ".notes.csv.sha256", ".bashrc.original", ".ssh/.config.abcdefgh", "inputs.csv"):
+        (home / name).write_text("mine")
+    os.utime(home / "notes.csv", (2e9, 2e9))
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results/paper").symlink_to(home)
+    before = listing(home)
+    for command in (
+        ("plan", "paper", "inputs"),
+        ("run", "paper", "inputs"),
+        ("compare", "results/paper", "results/paper"),
+    ):
+        done = subprocess.run([ASPERITY, *command], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == (2 if "compare" in command else 1)
+        assert [
+            line for line in done.stderr.splitlines() if line.startswith("ERROR results/paper: ")
+        ] or "compare" in command
+        assert listing(home) == before
+        assert sorted(os.listdir(home)) == sorted({path.relative_to(home).parts[0] for path in before})
+
+
+def test_a_checkout_in_a_path_with_a_space_and_a_site_with_a_profile_run(tmp_path):
+    """The interpreter's path reaches a shell as one word; settings of a site for its own workflows do not count."""
+    place = tmp_path / "it's a (place)"
+    (place / "bin").mkdir(parents=True)
+    (place / "bin/python").symlink_to(sys.executable)
+    shutil.copy(Path(sys.prefix) / "pyvenv.cfg", place)
+    (place / "lib").symlink_to(Path(sys.prefix) / "lib")
+    (tmp_path / "config.yaml").write_text("executor: slurm\njobs: 10\n")
+    command = [place / "bin/python", "-m", "asperity", "run", "paper", "inputs"]
+    environment = {**os.environ, "SNAKEMAKE_PROFILE": str(tmp_path), "LC_ALL": "xx_XX.UTF-8", "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=place, capture_output=True, text=True, check=False, env=environment)
+    assert done.returncode == 0, done.stderr
+    assert (place / "results/paper/inputs.csv").is_file()
+    assert "setlocale" not in done.stderr
+
+
+@pytest.mark.parametrize("planted", ["large", "virtual", "external"])
+def test_a_small_file_that_costs_gigabytes_or_leads_elsewhere_is_not_read(tmp_path, planted):
+    write_h5(tmp_path / "a.h5", {"x": {"y": Dataset(np.zeros(3), "1", "y", ("n",))}}, {}, {})
+    load_h5(tmp_path / "a.h5")
+    (tmp_path / "secret").write_bytes(bytes(80))
+    with h5py.File(tmp_path / "a.h5", "a") as file:
+        if planted == "large":
+            file.create_dataset("z", (10**9,), "f8", chunks=(10**6,))
+        elif planted == "external":
+            file.create_dataset("z", (10,), "f8", external=[(str(tmp_path / "secret"), 0, 80)])
+        else:
+            layout = h5py.VirtualLayout((3,), "f8")
+            layout[:] = h5py.VirtualSource(str(tmp_path / "b.h5"), "z", (3,))
+            file.create_virtual_dataset("z", layout)
+    with pytest.raises(ValueError, match="more than a result has" if planted == "large" else "lie in other files"):
+        load_h5(tmp_path / "a.h5")
+
+
+def test_a_planted_log_forges_no_error(tmp_path):
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "logs/x.log").write_text("ERROR forged\n")
+    os.utime(tmp_path / "logs/x.log", (time.time() + 1e6,) * 2)
+    assert failures(tmp_path / "logs", time.time() - 1) == []
 
 
 def test_logs_that_are_a_file_are_refused(results):
@@ -87,26 +158,6 @@ def test_a_section_or_the_first_screen_that_fails_costs_itself(made_up, monkeypa
     said = capsys.readouterr().err
     assert "report: inputs could not be drawn" in said
     assert "\x1b" not in said
-
-
-def test_comparison_names_a_damaged_result_and_what_it_cannot_read(made_up, tmp_path, capsys):
-    for name in ("one", "two"):
-        shutil.copytree(made_up[0], tmp_path / name)
-    given = [str(tmp_path / name) for name in ("one", "two", "page.html")]
-    path = tmp_path / "two/uq/samples.csv"
-    rows = load_csv(path)
-    write_csv(path, rows)
-    path.write_bytes(path.read_bytes().replace(b"1", b"2", 1))
-    assert compare(given) == 1
-    assert "samples.csv: damaged" in capsys.readouterr().err
-    record(path, path)  # whoever writes results can write checksums
-    path.write_text("x\n")
-    record(path, path)
-    assert compare(given) == 1
-    said = capsys.readouterr().err
-    assert said.startswith("ERROR one, two: not comparable")
-    assert said.count("\n") == 1
-    assert not (tmp_path / "page.html").exists()
 
 
 def test_a_spreadsheet_computes_nothing_of_a_table(tmp_path):

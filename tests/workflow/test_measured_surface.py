@@ -2,8 +2,8 @@
 
 import pytest
 
-from workflow.report.measured_surface import place_doubts
-from workflow.report.page import Doubt, Section, Table, kind
+from workflow.report.measured_surface import doubts
+from workflow.report.page import Doubt
 from workflow.report.surface_picture import short_names
 
 DOUBTS = [
@@ -12,15 +12,10 @@ DOUBTS = [
 ]
 
 
-def test_a_doubt_stands_behind_the_numbers_that_it_touches():
-    section = Section("topography", "Surface", "")
-    section.blocks.append(Table("spectrum", ("q",), []))
-    place_doubts({"doubts": DOUBTS}, section, "spectrum")
-    section.blocks.append(Table("heights", ("RMS",), []))
-    place_doubts({"doubts": DOUBTS}, section, "rms", "heights")
-    assert [kind(block) for block in section.blocks] == ["table", "doubt", "table", "doubt"]
-    assert section.blocks[1] == Doubt("Doubt about spectrum (gap): nothing is measured there. To do: add scans.")
-    assert section.blocks[3] == Doubt("Doubt about rms (one_place): one measurement.")
+def test_a_doubt_is_said_about_the_numbers_that_it_touches():
+    spectrum, heights = (list(doubts({"doubts": DOUBTS}, *about)) for about in (("spectrum",), ("rms", "heights")))
+    assert spectrum == [Doubt("Doubt about spectrum (gap): nothing is measured there. To do: add scans.")]
+    assert heights == [Doubt("Doubt about rms (one_place): one measurement.")]
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,12 @@
 """What cannot run is refused in one line, before any job starts."""
 
 import fcntl
+import json
 
 import pytest
 import yaml
 
-from workflow.scene import Scene
+from workflow.scene import Scene, SceneError, files_of, load_scene, locate
 from workflow.scene_checks import mistakes
 
 
@@ -31,6 +32,33 @@ def test_a_mistyped_target_is_one_line_with_the_nearest_name(workflow_in, target
         f"ERROR {target}: no such target; did you mean {meant}? (asperity targets lists the stages)"
     )
     assert "Exception" not in done.stderr
+
+
+def scans_of(scene):
+    return locate(scene, "topography.scans", files_of(scene, load_scene(scene).topography.scans))
+
+
+def test_names_that_would_act_on_a_terminal_or_are_too_long(workflow_in, monkeypatch):
+    monkeypatch.chdir(workflow_in.folder)
+    forged, long = "x\x1b]0;title\x07\u202e\nERROR y", "n" * 300
+    (workflow_in.folder / f"{forged}.yaml").write_text("name: x")
+    (workflow_in.folder / f"{forged}.gwy").write_text("")
+    (workflow_in.folder / "scans").mkdir()
+    (workflow_in.folder / f"scans/{forged}.gwy").write_text("")
+    name = json.dumps(forged)[1:-1]
+    for text, words in (
+        (f'extends: "{name}.yaml"', "characters that do not print"),
+        (f'{{compute: [topography], topography: {{scans: ["{name}.gwy"]}}}}', "characters that do not print"),
+        ("{compute: [topography], topography: {scans: [scans]}}", "characters that do not print"),
+        (f"extends: {long}.yaml", "no such file"),
+        (f"{{compute: [topography], topography: {{scans: [{long}]}}}}", "no such file"),
+    ):
+        (workflow_in.folder / "mine.yaml").write_text(text)
+        with pytest.raises(SceneError, match=words) as error:
+            scans_of("mine.yaml")
+        assert str(error.value).isprintable()
+    with pytest.raises(SceneError, match="characters that do not print"):
+        load_scene(f"{forged}.yaml")
 
 
 def test_contradictions_are_told_all_at_once(workflow_in):

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from workflow.report.first import release_bar
-from workflow.report.gates import trust
+from workflow.report.gates import _attraction, trust
 from workflow.report.page import Gate
 from workflow.report.verdict import CELLS, verdict
 
@@ -61,7 +61,7 @@ def test_verdict_says_outcome_and_next_step():
         "The switch lets go at 6.60 V (5\u00a0to\u00a095\u00a0%: 3.10 V to 9.40 V); 2% stick. Measure next the bow of "
         "the electrode at rest: known exactly, it shrinks the interval by 25%."
     )
-    assert said(_pad()).causes == (("bow", 0.5), ("RMS", 0.25), ("D₀", 0.1), (CELLS, 0.1))
+    assert said(_pad()).causes == (("bow", 0.5), ("RMS roughness", 0.25), ("D₀", 0.1), (CELLS, 0.1))
 
 
 @pytest.mark.parametrize(
@@ -96,6 +96,16 @@ def test_a_coupled_switch_that_sticks_does_so_by_an_upper_bound():
     assert "stiffer" in said(_pad(1.0)).sentence
 
 
+def test_what_varies_is_named_in_words():
+    """ "Measure next s_RMS better" told nobody to scan more places."""
+    rows = [{"name": "rms_scatter", "share_of_variance": 0.5, "interval_shrinks_by": 0.3}]
+    pad = _pad()
+    assert said({**pad, "answer": {**pad["answer"], "sensitivity": rows}}).next_step.startswith("Scan more places next")
+    rows[0]["name"] = "h_macro"
+    hardness = said({**pad, "answer": {**pad["answer"], "sensitivity": rows}})
+    assert hardness.next_step.startswith("Measure next the macroscopic hardness H_macro:")
+
+
 def test_few_cells_are_named_before_any_measurement():
     assert said(_pad(cells=0.7)).causes[0] == (CELLS, 0.7)
     assert said(_pad(cells=0.7)).next_step == "Compute more cells next (pad.point_cells)."
@@ -104,8 +114,11 @@ def test_few_cells_are_named_before_any_measurement():
 def test_no_cause_is_named_where_the_fit_behind_it_explains_little():
     doubted = said(_pad(error=1.6))  # 1 - 1.6²/(4 - 0.4) = 0.29
     assert doubted.causes == ()
-    assert "explains 29%" in doubted.no_cause
+    assert "explains only 29%" in doubted.no_cause
     assert doubted.next_step == ""
+    nothing = said(_pad(error=2.5))  # 1 - 2.5²/(4 - 0.4) < 0
+    assert "64 computed switches are too few to tell" in nothing.no_cause
+    assert nothing.next_step == "Compute more switches next (pad.points)."
 
 
 def test_only_what_the_answer_rests_on_is_mended_first():
@@ -120,6 +133,13 @@ def test_both_laws_of_attraction_are_shown():
     assert said(_pad()).other_law_V == (7.4, 9.0)
     assert said(_pad(), attraction="offset").other_law_V == (7.4, 0.0)
     assert said(_pad(by_attraction=[{**row, "release_V": None} for row in BOTH_LAWS])).other_law_V is None
+
+
+def test_the_light_knows_that_the_other_law_changes_the_outcome():
+    """It was green beside "as by the other law, it sticks"."""
+    (gate,) = _attraction(_results(_pad(), attraction="offset"))
+    assert trust([gate, *SOUND])[0] == "warn"
+    assert not list(_attraction(_results(_pad())))
 
 
 def test_a_switch_that_always_sticks_is_not_said_to_depend_on_an_input():

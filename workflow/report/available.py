@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from workflow.report.page import COMPUTED, LITERATURE
 from workflow.results import load_csv, load_h5, load_json
 
+COMPUTED, LITERATURE, SYNTHETIC = "computed", "literature", "synthetic"
+FEEDING = ("hardness", "elastic", "topography")
+"""Stages that a scene may compute without using them."""
 Row = dict[str, str]
 
 
@@ -56,7 +58,7 @@ class Results:
 
     @property
     def response(self) -> str:
-        """Name of the method behind samples, explorer and switch."""
+        """Name of the method behind the samples of the law."""
         method = self.json("uq/surrogate.json")["method"] if self.has("uq/surrogate.json") else ""
         return f"response ({method}; mean over random surfaces)" if method else "response"
 
@@ -81,5 +83,21 @@ class Results:
         return any(row["origin"] == stage for row in rows)
 
     def origin_of(self, stage: str) -> str:
-        """Badge of a stage: computed, and whether this scene uses it."""
-        return COMPUTED if self.uses(stage) else f"{COMPUTED}, not used: inputs are {LITERATURE}"
+        """Badge of a stage: computed or synthetic, and whether this scene uses it."""
+        if stage == "topography" and self.json("topography/parameters.json").get("synthetic"):
+            return SYNTHETIC
+        unused = stage in FEEDING and not self.uses(stage)
+        return f"{COMPUTED}, not used: inputs are {LITERATURE}" if unused else COMPUTED
+
+
+def results_in(folder: Path) -> Results:
+    """All result files of a folder, for a command that no run schedules; links, pipes and devices are left out."""
+    paths = [
+        path
+        for path in sorted(folder.rglob("*"))
+        if path.suffix in {".csv", ".json", ".h5"}
+        and path.relative_to(folder).parts[0] not in {"logs", "work"}
+        and path.is_file()
+        and not path.is_symlink()
+    ]
+    return Results(folder, paths, folder.name)

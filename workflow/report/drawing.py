@@ -178,7 +178,7 @@ def _by_palette(encoded: str) -> str:
     return base64.b64encode(stream.getvalue()).decode()
 
 
-SUBSCRIPT = re.compile(r"(?<![A-Za-z])(δ?[A-Za-zρ])_(macro|[a-zA-Z])(?![A-Za-z_])")
+SUBSCRIPT = re.compile(r"(?<![A-Za-z])(δ?[A-Za-zρ])_(macro|film|[a-zA-Z])(?![A-Za-z_])")
 
 
 def _subscripts(text: str) -> str:

@@ -7,9 +7,10 @@ from asperity.foreign_yaml import load_mapping
 from mesoscale.settings import DeviceSettings
 from workflow.report.available import Results
 from workflow.report.numbers import show
-from workflow.report.verdict import OTHER_LAW, Verdict, does, verdict, volts
+from workflow.report.verdict import Verdict, does, verdict, volts
 
 MOST_CAUSES = 3
+OTHER_LAW = {"clamped": "a third of", "offset": "three times"}
 LEFT, RIGHT = 70.0, 410.0
 """Ends of the bar's axis in its picture."""
 
@@ -32,10 +33,11 @@ def first_screen(results: Results, gates: Any) -> First | None:
         return None
     other = ""
     if said.other_law_V:
+        by_this, by_other = map(does, said.other_law_V)
+        work = OTHER_LAW[results.contact["attraction"]]
         other = (
-            f"No statistics holds the law of attraction. At central inputs the switch {does(said.other_law_V[0])}; "
-            f"with {OTHER_LAW[results.contact['attraction']]} the work of adhesion, as by the other law, it "
-            f"{does(said.other_law_V[1])}."
+            f"The law of attraction is a choice that nothing here decides. At central inputs the switch {by_this} by "
+            f"this law; by the other one, with {work} the work of adhesion, it {by_other}."
         )
     causes = [(name, round(100 * share)) for name, share in said.causes[:MOST_CAUSES]]
     return First(said, _device(results), release_bar(said), causes, other)

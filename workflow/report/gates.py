@@ -2,13 +2,17 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
+import numpy as np
+
 from mesoscale.law.wells import MOST_MISSED, missed_wells
 from workflow.report.available import Results
-from workflow.report.numbers import OUTPUTS, column, show
+from workflow.report.numbers import OUTPUTS, column, number, show
 from workflow.report.page import Gate
 
 MOST_MISSING = 0.05
 """Share of curves without a law, or of laws without the well, beyond which the rest is no fair sample."""
+OTHER_WORK = {"clamped": 1.0 / 3.0, "offset": 3.0}
+"""Work of the other law of attraction over that of this one, at touch (docs/contact.md)."""
 
 
 def gates_of(results: Results) -> list[Gate]:
@@ -101,6 +105,23 @@ def _pad(results: Results) -> Iterator[Gate]:
         yield Gate("pad", gate["passed"], tuple(gate["reasons"]))
 
 
+def other_law_V(results: Results) -> tuple[float, float] | None:
+    """Release at central inputs by this law of attraction and by the other one; None where not computed."""
+    rows = results.json("device/pad_switch.json").get("by_attraction", [])
+    releases = {round(row["times"], 3): number(row["release_V"]) for row in rows}
+    works = (1.0, OTHER_WORK.get(results.contact.get("attraction", ""), 0.0))
+    here, other = (releases.get(round(times, 3), np.nan) for times in works)
+    return (here, other) if np.isfinite([here, other]).all() else None
+
+
+def _attraction(results: Results) -> Iterator[Gate]:
+    """Nothing here measures the law of attraction: a remark where the other law gives another outcome."""
+    both = other_law_V(results) if results.has("device/pad_switch.json") else None
+    if both and (both[0] == 0) != (both[1] == 0):
+        reason = "by one of the two laws of attraction the switch sticks, by the other it lets go"
+        yield Gate("law of attraction", True, (reason,))
+
+
 def _calibration(results: Results) -> Iterator[Gate]:
     if results.has("calibration/posterior.json"):
         posterior = results.json("calibration/posterior.json")
@@ -114,6 +135,7 @@ GATES: tuple[Callable[[Results], Iterator[Gate]], ...] = (
     _topography,
     _curves,
     _pad,
+    _attraction,
     _law,
     _responses,
     _calibration,

@@ -1,12 +1,12 @@
 """What describes the measured surface: the evidence, the doubts, the spectrum over all scales, the scans as judges."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from workflow.report.available import Results
+from workflow.report.available import Results, Row
 from workflow.report.drawing import draw
-from workflow.report.numbers import show, shown_unit
-from workflow.report.page import Doubt, Section, Table
+from workflow.report.numbers import cell, show, shown_unit
+from workflow.report.page import Block, Doubt, Figure, Table, table
 from workflow.report.surface_picture import draw_one_spectrum, short_names
 
 JUDGED = "topography/judged.csv"
@@ -19,39 +19,46 @@ QUANTITIES = {
 }
 
 
-def describe_surface(results: Results, parameters: Mapping[str, Any], section: Section) -> None:
-    """Add the description of the surface, its evidence and its judgement to the section on topography."""
+def chosen_description(parameters: Mapping[str, Any]) -> str:
+    """What random surfaces follow, as a further sentence of the lead; empty without a description."""
+    description = parameters.get("description")
+    if not description:
+        return ""
+    how = "set by the scene" if description["overridden"] else "chosen by the tests below"
+    return f" Random surfaces follow {description['meaning']} ({how})."
+
+
+def described_surface(results: Results, parameters: Mapping[str, Any]) -> Iterator[Block]:
+    """The description of the surface, its evidence and its judgement."""
     description = parameters.get("description")
     if not description:
         return
-    section.lead += f" Random surfaces follow {description['meaning']}" + (
-        " (set by the scene)." if description["overridden"] else " (chosen by the tests below)."
-    )
-    rows = [(row["test"], row["outcome"], "yes" if row["passed"] else "no") for row in description["evidence"]]
-    section.blocks.append(Table("Which description of the surface", ("question", "answer", "passed"), rows))
-    place_doubts(parameters, section, "heights")
+    columns = {"question": "test", "answer": "outcome", "passed": lambda row: "yes" if row["passed"] else "no"}
+    yield table("Which description of the surface", description["evidence"], columns)
+    yield from doubts(parameters, "heights")
     if parameters.get("synthetic"):
-        place_doubts(parameters, section, "rms", "spectrum", "contact")
+        yield from doubts(parameters, "rms", "spectrum", "contact")
         return
-    section.add(
+    yield Figure(
         _one_spectrum(results, parameters),
         "One spectrum over all scales from all measurements, with its band. Grey is what levelling, tip, noise or "
         "pixels disturb; line profiles are converted to the spectrum of an isotropic surface.",
     )
-    place_doubts(parameters, section, "spectrum")
-    _statistics(parameters, section)
-    place_doubts(parameters, section, "rms")
-    if results.has(JUDGED):
-        _judgement(results, section)
-    place_doubts(parameters, section, "contact")
+    yield from doubts(parameters, "spectrum")
+    if parameters.get("one_spectrum"):
+        yield from _statistics(parameters)
+    yield from doubts(parameters, "rms")
+    if results.has(JUDGED) and results.csv(JUDGED):
+        yield _judgement(results.csv(JUDGED))
+    yield from doubts(parameters, "contact")
 
 
-def place_doubts(parameters: Mapping[str, Any], section: Section, *about: str) -> None:
-    """Put the doubts about some quantities behind what the section has by now."""
+def doubts(parameters: Mapping[str, Any], *about: str) -> Iterator[Doubt]:
+    """The doubts about some quantities, to stand behind their numbers."""
     for doubt in parameters.get("doubts", []):
         if doubt["about"] in about:
             remedy = f" To do: {doubt['remedy']}." if doubt["remedy"] else ""
-            section.blocks.append(Doubt(f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}.{remedy}"))
+            yield Doubt(f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}.{remedy}")
 
 
 def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None:
@@ -65,63 +72,47 @@ def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None
     return draw("one_spectrum", "Spectrum over all scales", plot, (5.6, 4.4))
 
 
-def _statistics(parameters: Mapping[str, Any], section: Section) -> None:
-    one = parameters.get("one_spectrum")
-    if not one:
-        return
-    header = ("what", "unit", "value", f"{float(parameters['confidence']):.0%} interval")
+def _statistics(parameters: Mapping[str, Any]) -> Iterator[Block]:
+    one = parameters["one_spectrum"]
     names = {"rms_height": "RMS height", "rms_slope": "RMS slope", "rms_curvature": "RMS curvature"}
-    rows = [
-        (
-            text,
-            shown_unit(one[key]["unit"]) or "–",
-            show(one[key]["value"]),
-            " to ".join(show(end) for end in one[key]["interval"]),
-        )
-        for key, text in names.items()
-    ]
-    ends = f"{show(one['from_q'])} to {show(one['to_q'])} /nm"
-    section.blocks.append(Table(f"The measured surface, all waves from {ends}", header, rows))
+    yield table(
+        f"The measured surface, all waves from {show(one['from_q'])} to {show(one['to_q'])} /nm",
+        [{"what": text, **one[key]} for key, text in names.items()],
+        {
+            "what": "what",
+            "unit": lambda row: shown_unit(row["unit"]),
+            "value": cell("value"),
+            f"{float(parameters['confidence']):.0%} interval": lambda row: " to ".join(map(show, row["interval"])),
+        },
+    )
     if not one["overlaps"] and len(one["measurements"]) > 1:
-        section.notes.append("No two measurements see common waves: none can be checked by another.")
+        yield "No two measurements see common waves: none can be checked by another."
     if one["overlaps"]:
         short = short_names(one["measurements"])
-        header = ("measurements", "shared q (1/nm)", "ratio of C", "expected within", "agree")
-        rows = [
-            (
-                f"{short[pair['first']]}, {short[pair['second']]}",
-                f"{show(pair['from_q'])} to {show(pair['to_q'])}",
-                show(pair["ratio"]),
-                f"a factor of {show(pair['expected_within'])}",
-                "yes" if pair["agrees"] else "no",
-            )
-            for pair in one["overlaps"][:12]
-        ]
-        section.blocks.append(Table("Where measurements overlap", header, rows))
+        yield table(
+            "Where measurements overlap",
+            one["overlaps"][:12],
+            {
+                "measurements": lambda row: f"{short[row['first']]}, {short[row['second']]}",
+                "shared q (1/nm)": lambda row: f"{show(row['from_q'])} to {show(row['to_q'])}",
+                "ratio of C": cell("ratio"),
+                "expected within": lambda row: f"a factor of {show(row['expected_within'])}",
+                "agree": lambda row: "yes" if row["agrees"] else "no",
+            },
+        )
 
 
-def _judgement(results: Results, section: Section) -> None:
-    rows = results.csv(JUDGED)
-    if not rows:
-        return
+def _judgement(rows: Sequence[Row]) -> Table:
     short = short_names(list(dict.fromkeys(row["scan"] for row in rows)))
-    lines = [
-        (
-            short[row["scan"]],
-            QUANTITIES.get(row["quantity"], row["quantity"]),
-            show(float(row["pressed"])),
-            f"{show(float(row['low']))} to {show(float(row['high']))}",
-            "yes" if row["inside"] == "True" else "no",
-            "without it" if row["left_out"] == "True" else "from it",
-        )
-        for row in rows
-    ]
-    header = ("scan", "quantity", "pressed", "description, 90 % interval", "inside", "description made")
-    section.blocks.append(
-        Table(
-            "The scans pressed (their largest square, made periodic), beside surfaces made from their description",
-            header,
-            lines,
-        )
+    return table(
+        "The scans pressed (their largest square, made periodic), beside surfaces made from their description",
+        rows,
+        {
+            "scan": lambda row: short[row["scan"]],
+            "quantity": lambda row: QUANTITIES.get(row["quantity"], row["quantity"]),
+            "pressed": cell("pressed"),
+            "description, 90 % interval": lambda row: f"{show(row['low'])} to {show(row['high'])}",
+            "inside": lambda row: "yes" if row["inside"] == "True" else "no",
+            "description made": lambda row: "without it" if row["left_out"] == "True" else "from it",
+        },
     )
-    section.files.append(JUDGED)

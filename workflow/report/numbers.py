@@ -1,13 +1,12 @@
 """Numbers and names as a person writes them."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
 from mesoscale.law.parameters import LAW_OUTPUTS, LawParameter
 from mesoscale.settings.definitions import BY_NAME
-from workflow.report.available import Row
 
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 SYMBOLS = {name: row.symbol for name, row in BY_NAME.items()}
@@ -20,7 +19,7 @@ def _shown(row: LawParameter) -> tuple[str, str, float]:
 
 
 OUTPUTS = {row.name: _shown(row) for row in LAW_OUTPUTS}
-UNITS = {"1": "", "1e-18 J": "10⁻¹⁸ J", "GPa nm^0.5": "GPa nm½"}
+UNITS = {"1": "", "um": "µm", "um^2": "µm²", "1e-18 J": "10⁻¹⁸ J", "GPa nm^0.5": "GPa nm½"}
 
 
 def shown_unit(unit: str) -> str:
@@ -36,7 +35,7 @@ def number(text: Any) -> float:
         return float("nan")
 
 
-def column(rows: Iterable[Row], name: str) -> np.ndarray:
+def column(rows: Iterable[Mapping[str, Any]], name: str) -> np.ndarray:
     """A numeric column; NaN where there is no number."""
     return np.array([number(row.get(name)) for row in rows], dtype=float)
 
@@ -56,3 +55,14 @@ def show(value: Any, digits: int = 3) -> str:
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     superscript = str(int(exponent)).translate(SUPERSCRIPT)
     return f"{mantissa.replace('-', '−')}·10{superscript}"
+
+
+def cell(name: str, digits: int = 3) -> Callable[[Mapping[str, Any]], str]:
+    """Column of a table: the number of this name."""
+    return lambda row: show(row.get(name), digits)
+
+
+def spread(row: Mapping[str, Any], middle: str, low: str, high: str, digits: int = 3, factor: float = 1.0) -> str:
+    """A number with its interval; a dash where there is none, the number alone without an interval."""
+    value, *ends = (show(number(row.get(name)) * factor, digits) for name in (middle, low, high))
+    return f"{value} [{', '.join(ends)}]" if "–" not in (value, *ends) else value

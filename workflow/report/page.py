@@ -1,20 +1,27 @@
-"""Building blocks of the page: figures, tables, gates, sections and parts."""
+"""Building blocks of the page; a stage of it is a title, its files, and a generator of blocks."""
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-COMPUTED, LITERATURE, SYNTHETIC = "computed", "literature", "synthetic"
+from workflow.report.available import COMPUTED, Results
 
 
 @dataclass(frozen=True)
 class Figure:
-    """An SVG with its caption; `paper` names the paper's figure that it corresponds to."""
+    """An SVG with its caption; `paper` names the paper's figure that it corresponds to.
 
-    svg: str
+    Attributes
+    ----------
+    svg : the picture; without one, the figure is left out.
+    front : whether it stands on the page itself, not folded away with how the numbers came about.
+    """
+
+    svg: str | None
     caption: str
     paper: str = ""
     wide: bool = False
+    front: bool = False
 
 
 @dataclass(frozen=True)
@@ -25,6 +32,7 @@ class Table:
     ----------
     heads : columns from the left that are row headers.
     faint : first cells of the rows that are greyed, as their numbers are not to be trusted.
+    front : as of a figure.
     """
 
     caption: str
@@ -32,6 +40,7 @@ class Table:
     rows: Sequence[Sequence[str]]
     heads: int = 1
     faint: Collection[str] = ()
+    front: bool = False
 
 
 @dataclass(frozen=True)
@@ -41,7 +50,9 @@ class Doubt:
     text: str
 
 
-Block = Figure | Table | Doubt
+Block = str | Figure | Table | Doubt
+"""Text is a note, which stands below the figures and tables."""
+Column = str | Callable[[Any], str | None]
 
 
 @dataclass(frozen=True)
@@ -61,53 +72,75 @@ class Gate:
     answer: bool = True
 
 
-@dataclass
+@dataclass(frozen=True)
 class Section:
     """How the numbers of one stage came about: folded on the page, but for `front`."""
 
     anchor: str
     title: str
     lead: str
-    origin: str = ""
-    front: list[Block] = field(default_factory=list)
-    blocks: list[Block] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
-    files: list[str] = field(default_factory=list)
-
-    def add(self, svg: str | None, caption: str, paper: str = "", wide: bool = False, front: bool = False) -> None:
-        """Append a figure if there was anything to draw."""
-        if svg:
-            (self.front if front else self.blocks).append(Figure(svg, caption, paper, wide))
-
-
-def kind(block: Block) -> str:
-    """Name of a block's class, for the template."""
-    return type(block).__name__.lower()
-
-
-@dataclass(frozen=True)
-class Part:
-    """One of the parts of the page."""
-
-    anchor: str
-    title: str
-    sections: Sequence[Section]
-
-
-@dataclass(frozen=True)
-class Page:
-    """All that the template needs."""
-
-    scene: str
-    beside_paper: bool
-    first: Any
-    parts: Sequence[Part]
-    studies: Sequence[Section]
-    light: tuple[str, str]
-    gates: Sequence[Gate]
-    limits: Sequence[str]
-    provenance: Sequence[tuple[str, str]]
-    live: dict[str, dict[str, Any]]
-    moves: bool
-    terms: Sequence[tuple[str, str]]
+    origin: str
+    blocks: Sequence[Block]
     files: Sequence[str]
+
+    @property
+    def front(self) -> list[Block]:
+        """What stands on the page itself."""
+        return [block for block in self.blocks if getattr(block, "front", False)]
+
+    @property
+    def folded(self) -> list[Block]:
+        """Figures, tables and doubts, then the notes."""
+        rest = [block for block in self.blocks if not getattr(block, "front", False)]
+        return sorted(rest, key=lambda block: isinstance(block, str))
+
+
+def section(
+    anchor: str, title: str, lead: str, blocks: Iterable[Block], files: Sequence[str], origin: str = COMPUTED
+) -> Section:
+    """A section without the figures that have nothing to draw."""
+    drawn = [block for block in blocks if not isinstance(block, Figure) or block.svg]
+    return Section(anchor, title, lead, origin, drawn, files)
+
+
+def stage(
+    title: str, *needs: str, also: Sequence[str] = ()
+) -> Callable[[Callable[[Results], Iterator[Block]]], Callable[[Results], Section | None]]:
+    """Make of a generator, which yields the lead and then blocks, what the page says of the stage of its module.
+
+    Parameters
+    ----------
+    needs : result files without which the page has no such section.
+    also : files that are linked where they are there.
+    """
+
+    def declare(build: Callable[[Results], Iterator[Block]]) -> Callable[[Results], Section | None]:
+        anchor = build.__module__.rpartition(".")[2].replace("_", "-")
+
+        def describe(results: Results) -> Section | None:
+            if not results.has(*needs):
+                return None
+            lead, *blocks = build(results)
+            files = [*needs, *(name for name in also if results.has(name))]
+            return section(anchor, title, str(lead), blocks, files, results.origin_of(anchor))
+
+        return describe
+
+    return declare
+
+
+def table(
+    caption: str,
+    rows: Iterable[Mapping[str, Any]],
+    columns: Mapping[str, Column],
+    heads: int = 1,
+    faint: Collection[str] = (),
+    front: bool = False,
+) -> Table:
+    """Rows of a result file under column heads; a column is the key of its text, or a function of the row."""
+    lines = [tuple(_text(row, column) or "–" for column in columns.values()) for row in rows]
+    return Table(caption, tuple(columns), lines, heads, faint, front)
+
+
+def _text(row: Mapping[str, Any], column: Column) -> str:
+    return str(row.get(column, "")) if isinstance(column, str) else column(row) or ""

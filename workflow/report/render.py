@@ -1,6 +1,5 @@
 """The page from the result files of a scene."""
 
-import re
 import sys
 from collections.abc import Callable
 from functools import partial
@@ -16,18 +15,12 @@ from workflow.report.available import Results
 from workflow.report.drawing import SUBSCRIPT
 from workflow.report.first import first_screen
 from workflow.report.gates import GATES, trust
-from workflow.report.glossary import TERMS, Explainer, anchor
 from workflow.report.limits import limits
-from workflow.report.live.device import switch_data
-from workflow.report.live.explorer import explorer, script_json
-from workflow.report.page import Gate, Page, Part, Section, kind
+from workflow.report.page import Gate
 from workflow.report.stages import PARTS
 from workflow.report.studies import studies
 
 HERE = Path(__file__).parent
-SCRIPTS = ("controls", "spots", "explorer", "pad", "beam", "device")
-"""In the order in which they build on each other."""
-
 
 Built = TypeVar("Built")
 
@@ -36,50 +29,34 @@ def render(results: Results) -> str:
     """HTML of the report; sections appear only for results that exist, and one that fails costs itself alone."""
     broken: list[Gate] = []
     parts = []
-    for key, title, stages in PARTS:
-        sections: list[Section] = []
-        for stage in stages:
-            name = stage.__name__.rpartition(".")[2].replace("_", " ")
-            section = guarded(name, partial(stage.describe, results), None, broken)
-            sections += [section] if section else []
-        parts += [Part(key, title, sections)] if sections else []
-    live = {
-        "surrogate": guarded("explorer", partial(explorer, results), None, broken),
-        "switch_data": guarded("live switch", partial(switch_data, results), None, broken),
-    }
-    gates = [
-        gate for build in GATES for gate in guarded("gates", partial(lambda one: [*one(results)], build), [], broken)
-    ]
+    for anchor, title, stages in PARTS:
+        built = [guarded(_name(stage), partial(stage.describe, results), None, broken) for stage in stages]
+        if sections := [section for section in built if section]:
+            parts.append({"anchor": anchor, "title": title, "sections": sections})
+    gates = [gate for build in GATES for gate in guarded("gates", lambda one=build: [*one(results)], [], broken)]
     first = guarded("first screen", partial(first_screen, results, gates), None, broken)
-    page = Page(
-        scene=results.scene,
-        beside_paper=results.beside_paper,
-        first=first,
-        parts=parts,
-        studies=guarded("studies", partial(studies, results), [], broken),
-        limits=guarded("limits", partial(limits, results), [], broken),
-        provenance=guarded("provenance", partial(_provenance, results), [], broken),
-        light=trust([*gates, *broken]),
-        gates=[*gates, *broken],
-        moves=results.has("curves/spots.h5"),
-        terms=list(TERMS.items()),
-        files=sorted(results.paths),
-        live={name: data for name, data in live.items() if data is not None},
-    )
+    page = {
+        "scene": results.scene,
+        "beside_paper": results.beside_paper,
+        "first": first,
+        "parts": parts,
+        "studies": guarded("studies", partial(studies, results), [], broken),
+        "limits": guarded("limits", partial(limits, results), [], broken),
+        "provenance": guarded("provenance", partial(_provenance, results), [], broken),
+        "light": trust([*gates, *broken]),
+        "gates": [*gates, *broken],
+        "files": sorted(results.paths),
+    }
     environment = Environment(
         loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
-    explainer = Explainer()
     environment.filters["low"] = low
-    environment.filters["explain"] = lambda text, place: _lowered(explainer(text, place))
-    environment.filters["anchor"] = anchor
-    environment.filters["script_json"] = script_json
-    return environment.get_template("template.html.j2").render(
-        page=page,
-        kind=kind,
-        style=(HERE / "style.css").read_text(encoding="utf-8"),
-        script="".join((HERE / "live" / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS),
-    )
+    style = (HERE / "style.css").read_text(encoding="utf-8")
+    return environment.get_template("template.html.j2").render(page=page, style=style)
+
+
+def _name(stage: object) -> str:
+    return str(getattr(stage, "__name__", "")).rpartition(".")[2].replace("_", " ")
 
 
 def guarded(name: str, build: Callable[[], Built], instead: Built, broken: list[Gate]) -> Built:
@@ -100,13 +77,7 @@ def failed(name: str, error: Exception) -> Gate:
 
 def low(text: str) -> Markup:
     """Escaped text in which names such as d_c have their index set low."""
-    return _lowered(escape(text))
-
-
-def _lowered(text: Markup) -> Markup:
-    """The same between the tags of escaped text."""
-    parts = re.split(r"(<[^>]*>)", str(text))
-    return Markup("".join(part if part.startswith("<") else SUBSCRIPT.sub(r"\1<sub>\2</sub>", part) for part in parts))
+    return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))))
 
 
 def _provenance(results: Results) -> list[tuple[str, str]]:

@@ -1,10 +1,12 @@
 """Error against run time and stability of all stages, with the settings that they recommend."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from workflow.report.available import Results, Row
 from workflow.report.numbers import column, number, show
-from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.page import Block, Section, Table, section
 
 GOOD_ENOUGH = 0.01  # an error below this is not worth more time
 NEAR_BEST = 2.0  # nor is one within this factor of the best
@@ -18,46 +20,29 @@ def studies(results: Results) -> list[Section]:
         names = [name for name in results.matching(f"{folder}/", ".csv") if key in (results.csv(name) or [{}])[0]]
         if names:
             tables = {name.removeprefix(f"{folder}/").removesuffix(".csv"): results.csv(name) for name in names}
-            sections.append(build(tables))
-            sections[-1].files += names
+            title, lead, *blocks = build(tables)
+            sections.append(section(folder, str(title), str(lead), blocks, names))
     return sections
 
 
-def _accuracy(tables: dict[str, list[Row]]) -> Section:
-    section = Section(
-        "accuracy",
-        "Error against run time",
+def _accuracy(tables: dict[str, list[Row]]) -> Iterator[Block]:
+    yield "Error against run time"
+    yield (
         "What each numerical choice costs and buys. Recommended is the cheapest value whose largest error over all "
-        f"outputs is below {GOOD_ENOUGH:.0%} or within a factor {NEAR_BEST:g} of the best one tried.",
-        COMPUTED,
+        f"outputs is below {GOOD_ENOUGH:.0%} or within a factor {NEAR_BEST:g} of the best one tried."
     )
+    names = ("stage", "setting", "recommended", "its largest error", "its time (s)", "best error tried")
     lines = [line for stage, rows in tables.items() for line in recommended(stage, rows)]
-    header = (
-        "stage",
-        "setting",
-        "recommended",
-        "its largest error",
-        "its time (s)",
-        "best error tried",
-        "at (s)",
-        "against",
-    )
-    section.blocks.append(Table("Recommended settings", header, lines, heads=2))
-    return section
+    yield Table("Recommended settings", (*names, "at (s)", "against"), lines, heads=2)
 
 
-def _stability(tables: dict[str, list[Row]]) -> Section:
+def _stability(tables: dict[str, list[Row]]) -> Iterator[Block]:
     failed = [f"{stage}: {row['case']}" for stage, rows in tables.items() for row in rows if not _passed(row)]
     total = sum(map(len, tables.values()))
-    section = Section(
-        "stability",
-        "Stability",
-        f"Unusual inputs and what the code does with them: {total - len(failed)} of {total} cases passed.",
-        COMPUTED,
-    )
+    yield "Stability"
+    yield f"Unusual inputs and what the code does with them: {total - len(failed)} of {total} cases passed."
     if failed:
-        section.notes.append("Not passed: " + "; ".join(failed) + ".")
-    return section
+        yield "Not passed: " + "; ".join(failed) + "."
 
 
 def curves(rows: list[Row]) -> dict[tuple[str, str], list[tuple[str, float, float]]]:

@@ -8,14 +8,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
+from mesoscale.settings.definitions import BY_NAME
 from workflow.report.available import Results
-from workflow.report.gates import gates_of
-from workflow.report.numbers import SYMBOLS, number, show
+from workflow.report.gates import gates_of, other_law_V
+from workflow.report.numbers import show
 from workflow.report.page import Gate
 
 NAMES = {
+    "rms_scatter": ("roughness from place to place", ""),
     "gap_cutoff_nm": ("D₀", "the pull-off of the contact, which tells D₀"),
     "thickness_um": ("thickness", "the thickness of the electrode"),
     "gap_um": ("gap", "the gap at rest"),
@@ -32,9 +32,6 @@ DECIDED = 0.95
 """Probability from which on a switch is said to stick, or to let go."""
 EXPLAINED = 0.5
 """Share of the variance that the fit behind the causes must explain of switches left out, or no cause is named."""
-WORKS = {"clamped": 1.0 / 3.0, "offset": 3.0}
-"""Work of the other law of attraction over that of this one, at touch (docs/contact.md)."""
-OTHER_LAW = {"clamped": "a third of", "offset": "three times"}
 
 
 @dataclass(frozen=True)
@@ -93,7 +90,7 @@ def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | 
     if answer:
         release = tuple(answer["release_V"]["quantiles"][q] for q in ("0.05", "0.5", "0.95"))
         stuck = tuple(answer["stuck"][key] for key in ("low", "value", "high"))
-        causes, no_cause = _causes(answer)
+        causes, no_cause = causes_of(answer)
     else:
         release = (pad["central"]["release_V"],) if pad["central"] else None
         no_interval = pad["answer_status"]
@@ -111,7 +108,7 @@ def verdict(results: Results, gates: Sequence[Gate] | None = None) -> Verdict | 
         no_interval,
         causes,
         no_cause,
-        _other_law(pad, results),
+        other_law_V(results),
         _next(pad, failed, no_cause, results.coupled),
     )
 
@@ -126,21 +123,29 @@ def does(release_V: float) -> str:
     return "sticks" if release_V == 0 else f"lets go at {show(release_V)} V"
 
 
-def symbol(name: str) -> str:
-    """How the page calls what varies."""
-    return NAMES[name][0] if name in NAMES else SYMBOLS.get(name, name)
+def in_words(name: str) -> str:
+    """How the page calls what varies: in words, with its symbol."""
+    if name in NAMES:
+        return NAMES[name][0]
+    if name not in BY_NAME:
+        return name
+    label, symbol = BY_NAME[name].label, BY_NAME[name].symbol
+    return label if symbol in label.split() else f"{label} {symbol}"
 
 
-def _causes(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]:
+def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], str]:
     """Shares of the variance by cause, and why none is named."""
     cells = next(row for row in answer["causes"] if row["cause"] == "cells")
-    rows = [*((symbol(row["name"]), row["share_of_variance"]) for row in answer["sensitivity"])]
+    rows = [*((in_words(row["name"]), row["share_of_variance"]) for row in answer["sensitivity"])]
     rows = [(name, share) for name, share in [*rows, (CELLS, cells["share_of_variance"])] if share > 0]
     if not rows:
         return (), f"all {answer['points']} computed combinations of what is uncertain do the same"
     explained = explained_share(answer)
     if explained < EXPLAINED:
-        return (), f"the fit of the release explains {max(explained, 0):.0%} of the variance of switches left out"
+        many = f"the {answer['points']} computed switches"
+        if explained <= 0:
+            return (), f"{many} are too few to tell, as a fit to all but one does not predict that one"
+        return (), f"a fit to {many} explains only {explained:.0%} of the variance of those that are left out"
     return tuple(sorted(rows, key=lambda row: -row[1])), ""
 
 
@@ -156,14 +161,6 @@ def explained_share(answer: dict[str, Any]) -> float:
     )
     variance -= answer["cells_error_V"] ** 2
     return 1.0 - answer["fit_error_V"] ** 2 / variance if variance > 0 else float("-inf")
-
-
-def _other_law(pad: dict[str, Any], results: Results) -> tuple[float, float] | None:
-    releases = {round(row["times"], 3): number(row["release_V"]) for row in pad.get("by_attraction", [])}
-    here, other = (
-        releases.get(round(times, 3), np.nan) for times in (1.0, WORKS.get(results.contact.get("attraction", ""), 0))
-    )
-    return (here, other) if np.isfinite([here, other]).all() else None
 
 
 def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: bool) -> str:
@@ -183,6 +180,8 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
     if not rows or cells > rows[0]["share_of_variance"]:
         return "Compute more cells next (pad.point_cells)."
     if no_cause:
-        return ""
-    what = NAMES[rows[0]["name"]][1] if rows[0]["name"] in NAMES else f"{symbol(rows[0]['name'])} better"
-    return f"Measure next {what}: known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}."
+        return "Compute more switches next (pad.points)." if explained_share(answer) <= 0 else ""
+    name, shrinks = rows[0]["name"], f"known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}"
+    if name == "rms_scatter":
+        return f"Scan more places next: the roughness varies from place to place; {shrinks}."
+    return f"Measure next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}: {shrinks}."

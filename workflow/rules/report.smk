@@ -16,7 +16,7 @@ def studies_at_hand():
 def page_parts():
     """What the page is made of beside results."""
     room = ROOT / "workflow" / "report"
-    return [str(room / "template.html.j2"), str(room / "style.css"), *sorted(map(str, room.glob("live/*.js")))]
+    return [str(room / name) for name in ("template.html.j2", "style.css")]
 
 
 rule report:
@@ -32,7 +32,7 @@ rule report:
     params:
         root=RESULTS,
         scene=RESOLVED,
-        studies=studies_at_hand(),
+        studies=lambda wildcards: studies_at_hand(),
     message:
         "write the report"
     script:

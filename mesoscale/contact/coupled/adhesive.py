@@ -84,10 +84,10 @@ class AdhesiveContact(CoupledContact):
         steepest = 3.0 * self.strongest / self.adhesion.cutoff
         if steepest > self.stiffness:
             pixels = int(np.ceil(self.n * steepest / self.stiffness))
+            finer = f"contact.pixels >= {pixels}, " if pixels <= 16384 else ""  # the most that the key accepts
             raise InputError(
                 f"contact.mechanics = adhesive: the attraction changes by {steepest:.3g} GPa per nm, the grid resolves "
-                f"{self.stiffness:.3g} GPa per nm; take contact.pixels >= {pixels}, a larger contact.gap_cutoff_nm, or "
-                "mechanics: coupled"
+                f"{self.stiffness:.3g} GPa per nm; take {finer}a larger contact.gap_cutoff_nm, or mechanics: coupled"
             )
 
     def _forget(self) -> None:

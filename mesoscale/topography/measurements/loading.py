@@ -4,6 +4,7 @@ Files come from strangers: each is read in a process with limits (`guarded`). Th
 takes by PyYAML's full loader, must hold plain values and tuples alone.
 """
 
+import os
 import re
 import warnings
 import zipfile
@@ -65,7 +66,7 @@ def load_measurements(
         unit; a container of several surfaces.
     """
     path, settings = Path(path), settings or TopographySettings()
-    if not path.is_file():
+    if not os.path.isfile(path):  # unlike Path.is_file, False for a name that is too long
         raise InputError(f"{path}: no such scan; correct topography.scans in the scene")
     with needs("scans"):  # imported here, so that the process that reads, a fork of this one, has the readers
         import SurfaceTopography.Container.IO
@@ -215,13 +216,13 @@ def _height_channel(path: Path, channels: list[Any], wanted: str | None) -> tupl
     # some readers call a phase a height, but then its unit is no length
     heights = [c for c in channels if c.is_height_channel and (c.unit is None or isinstance(c.unit, str))]
     names = list(dict.fromkeys(str(c.name) for c in heights))
+    listed = ", ".join(names)[:300] or "none"  # a file may have hundreds
     if wanted is not None:
         heights = [c for c in heights if str(c.name) == wanted]
         if not heights:
-            listed = ", ".join(names) or "none"
             raise InputError(f"{path}: no height channel {wanted!r} (topography.channel); the file has: {listed}")
     elif len(names) > 1:
-        raise InputError(f"{path}: several height channels: {', '.join(names)}; name one in topography.channel")
+        raise InputError(f"{path}: several height channels: {listed}; name one in topography.channel")
     if not heights:
         raise InputError(
             f"{path}: no channel of heights in a unit of length (m, um, nm, Å); save the topography too, or calibrate "

@@ -1,6 +1,9 @@
 """The switch in motion: ngspice at exact limits, ngspice and the compiled Verilog-A beside the equations in Python."""
 
+import re
+import subprocess
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -218,3 +221,12 @@ def test_ngspice_closes_the_switch_as_fast_and_as_deep(tmp_path, compiled_lump):
     assert middle.max() == pytest.approx(wanted.max(), abs=1.0)
     far = np.interp(20.0, time, charge)
     assert far == pytest.approx(82e15 * np.interp(20.0, moved_us, capacitance_F(lumps, separation_nm.T)), rel=5e-3)
+
+
+@needs_ngspice
+def test_the_example_of_the_docs_runs_in_batch(tmp_path):
+    example = re.search(r"```\n(\* a step.*?)```", Path("docs/switch.md").read_text(), re.DOTALL)[1]
+    (tmp_path / "central.sub").write_text(spice_switch(PLATE, EXACT, LAW, 256))
+    (tmp_path / "step.cir").write_text(example)
+    subprocess.run(["ngspice", "-b", "step.cir"], cwd=tmp_path, check=True, capture_output=True, timeout=300)
+    assert np.loadtxt(tmp_path / "step.txt")[-1, 0] == pytest.approx(250e-6)

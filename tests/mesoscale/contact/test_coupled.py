@@ -307,6 +307,7 @@ def test_attraction_is_that_of_the_deformed_gap():
 def test_closing_ends_at_full_contact_and_says_so():
     settings = coupled(32, 40.0, model="elastic", max_force_nN=1e9)
     cycle = run_cycle(INPUTS, settings, 1)
+    assert cycle.flags["full_contact"]
     assert not cycle.flags["force_reached"]
     assert not cycle.converged
     assert cycle.flags["unconverged_steps"] == 0

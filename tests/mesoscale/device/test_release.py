@@ -11,6 +11,7 @@ from evidence.pad.rare_failures import known_pad
 from mesoscale.device import points
 from mesoscale.device.beam_kernels import BANDS, solve_bands
 from mesoscale.device.beam_switch import press_GPa
+from mesoscale.device.by_key import release_by_key
 from mesoscale.device.electrode import presser, solve_deepened
 from mesoscale.device.numerics import SWITCH
 from mesoscale.device.points import Pad, PadModel, central_point, plan_points, solve_point, solve_points
@@ -260,3 +261,29 @@ def test_banded_systems_with_a_border_are_solved_with_row_exchanges():
         bordered = np.column_stack([sides, full[:n, n]])
         solve_bands(bands, full[n, :n].copy(), full[n, n], bordered)
         np.testing.assert_allclose(bordered[:, :2], wanted, rtol=1e-7)
+
+
+@pytest.mark.parametrize("settings", [PLATE, DeviceSettings()])
+def test_release_by_key_is_that_of_the_changed_device_and_ends_with_a_reason(settings):
+    law = MIDDLE.pressed(2.0 * pressure_to_compute(settings)(SEPARATION), SEPARATION)
+    rows = release_by_key(settings, law)
+    keys = list(dict.fromkeys(row["key"] for row in rows))
+    assert len(keys) == (6 if settings.bends else 5)
+    for key in keys:
+        of_key = [row for row in rows if row["key"] == key]
+        assert [row["value"] for row in of_key] == sorted(row["value"] for row in of_key)
+        assert sum(row["own"] for row in of_key) == 1
+        assert not any(row["reason"] for row in of_key[1:-1]), "nothing is solved beyond an end"
+        for row in (row for row in (of_key[0], of_key[-1]) if not row["reason"]):
+            state = solve_deepened(settings.model_copy(update={key: row["value"]}), law, SWITCH.coarse_elements)
+            assert (row["pull_in_V"], row["release_V"]) == (state["pull_in_V"], state["release_V"])
+    (low,) = [row for row in rows if row["key"] == "hold_voltage_V" and row["reason"]]
+    assert "never closes" in low["reason"]
+    assert low["release_V"] is None
+    stiffer = [row["release_V"] for row in rows if row["key"] == ("gap_um" if settings.bends else "spring_N_per_m")]
+    assert stiffer == sorted(stiffer)
+
+
+def test_release_by_key_has_no_row_where_the_device_has_no_answer():
+    smooth = replace(MIDDLE, beta=0.0, hamaker=1e-9)
+    assert release_by_key(DeviceSettings(), smooth.pressed(np.full(SEPARATION.size, 0.001), SEPARATION)) == []

@@ -15,7 +15,7 @@ from mesoscale.inputs.distributions import Distribution, InputTable, UncertainIn
 from mesoscale.settings import ContactSettings, ResistanceSettings
 from mesoscale.uncertainty.designs import random_runs
 
-GOLD = ResistanceSettings(resistivities_nOhm_m=(22.0, 22.0), runs=8)
+GOLD = ResistanceSettings(resistivities_nOhm_m=(22.0, 22.0), mean_free_paths_nm=(37.7, 37.7), runs=8)
 VALUES = {"hamaker": 0.0, "e_star": 91.0, "h_macro": 1.95, "h_prime": 8.375, "q0": 0.06, "hurst": 0.75, "rms": 3.0}
 INPUTS = ContactInputs(**VALUES)
 DISTRIBUTIONS = {name: Distribution("fixed", value) for name, value in VALUES.items()} | {
@@ -52,8 +52,8 @@ def conducted(touching, length_nm):
     return float(np.linalg.solve(potential, np.ones(x.size)).sum()) * (length_nm / n) ** 2
 
 
-def of_two(resistivities, film=0.0):
-    return ResistanceSettings(resistivities_nOhm_m=resistivities, film_Ohm_um2=film)
+def of_two(resistivities, film=0.0, paths=(0.0, 0.0)):
+    return ResistanceSettings(resistivities_nOhm_m=resistivities, mean_free_paths_nm=paths, film_Ohm_um2=film)
 
 
 @pytest.mark.parametrize("resistivities", [(22.0, 22.0), (1e-3, 1e9)])
@@ -124,12 +124,17 @@ def test_a_pressed_contact_conducts_better_and_keeps_it():
     chosen = settings(64, 200.0, "plastic").model_copy(update={"max_force_nN": 1500.0})
     rows = list(resistance_rows(TABLE, chosen, GOLD))
     assert len(rows) == 3 * LEVELS * GOLD.runs
-    ohm = np.reshape([row["resistance_Ohm"] for row in rows], (GOLD.runs, 3, LEVELS))
-    closing, opening, again = np.median(ohm, axis=0)  # of a single surface, sites come and go
+    # medians: of a single surface, sites come and go
+    ohm, stiffness = (
+        np.median(np.reshape([row[name] for row in rows], (GOLD.runs, 3, LEVELS)), axis=0)
+        for name in ("resistance_Ohm", "stiffness_N_per_m")
+    )
+    closing, opening, _ = ohm
     assert (np.diff(closing) < 1e-6).all()
     assert (opening <= closing * 1.001).all()
     assert opening[-1] == pytest.approx(closing[-1])
-    assert again == pytest.approx(opening, rel=0.1)
+    # the way back by its stiffness: one of few sites more makes a step of Sharvin's part
+    assert stiffness[2] == pytest.approx(stiffness[1], rel=0.1)
     assert closing[-3] / opening[-3] > 1.1
 
 
@@ -148,6 +153,76 @@ def test_a_film_comes_on_top():
     )
     assert bare[0] == pytest.approx(91e9 * 44e-9 / 2e4)
     assert covered[0] - bare[0] == pytest.approx(1.0 / 2e-3)
+
+
+def spots(radius_nm, number=1, e_star=91.0):
+    """Stiffness (N/m) and area (nm2) of equal, distant round spots."""
+    return np.array([2.0 * number * radius_nm * e_star]), np.array([number * np.pi * radius_nm**2])
+
+
+def test_narrow_spots_end_at_sharvins_resistance_and_wide_ones_at_holms():
+    slope, area = spots(0.01)
+    sharvin = 4.0 * 22.0 * 37.7 / (3.0 * np.pi * 0.01**2)
+    assert resistance_Ohm(slope, area, 91.0, GOLD)[0] == pytest.approx(sharvin, rel=1e-3)
+    slope, area = spots(1e5)
+    assert resistance_Ohm(slope, area, 91.0, GOLD)[0] == pytest.approx(22.0 / 2e5, rel=1e-3)
+    one, ten = (resistance_Ohm(*spots(20.0, number), 91.0, GOLD)[0] for number in (1, 10))
+    assert one == pytest.approx(10.0 * ten)
+    bodies = [resistance_Ohm(*spots(20.0), 91.0, of_two(rho, 0.0, (37.7, 5.0)))[0] for rho in ((22, 1e-3), (1e-3, 60))]
+    both = resistance_Ohm(*spots(20.0), 91.0, of_two((22.0, 60.0), 0.0, (37.7, 5.0)))[0]
+    assert both == pytest.approx(sum(bodies), rel=1e-3)
+
+
+def returned(place, heading, free_path, through, rng):
+    """Which side electrons end on (-1, 1) that leave a hole of radius 1 in a wall at z = 0; 0: in the hole again.
+
+    They fly straight between collisions that turn them anywhere, and are mirrored by the wall. Beyond `far`, those who
+    come back are counted by the current that the hole takes up, Holm's and Sharvin's resistance of one side in a row.
+
+    Parameters
+    ----------
+    through : follow those that cross the hole again; else these end there.
+    """
+    far = 20.0 + 10.0 * free_path
+    position, heading, left = place.copy(), heading.copy(), rng.exponential(free_path, len(place))
+    side, end = np.sign(heading[:, 2]), np.full(len(place), np.nan)
+    while (flying := np.flatnonzero(np.isnan(end))).size:
+        x, v = position[flying], heading[flying]
+        wall = np.where(v[:, 2] * side[flying] < 0, np.abs(x[:, 2]) / np.maximum(np.abs(v[:, 2]), 1e-300), np.inf)
+        hits = wall < left[flying]
+        flown = np.where(hits, wall, left[flying])
+        x += v * flown[:, None]
+        x[hits, 2] = 0.0
+        crosses = hits & (np.hypot(x[:, 0], x[:, 1]) < 1.0)
+        v[hits & ~crosses, 2] *= -1.0
+        turned = rng.normal(size=(np.sum(~hits), 3))
+        v[~hits] = turned / np.linalg.norm(turned, axis=1)[:, None]
+        left[flying] = np.where(hits, left[flying] - flown, rng.exponential(free_path, flying.size))
+        position[flying], heading[flying] = x, v
+        side[flying[crosses]] *= -1.0
+        away = np.linalg.norm(x, axis=1)
+        back = rng.random(flying.size) < 2.0 / np.pi / away / (1.0 + 16.0 / (3.0 * np.pi) * free_path)
+        end[flying[away > far]] = np.where(back, 0.0 if not through else -side[flying], side[flying])[away > far]
+        if not through:
+            end[flying[crosses]] = 0.0
+    return end
+
+
+@pytest.mark.parametrize("free_path", [1.0, 3.0])
+def test_the_resistance_between_holm_and_sharvin_is_that_of_flying_electrons(free_path):
+    """In balance all cross the hole alike. Those conduct that never crossed it before and end on the other side."""
+    rng, number = np.random.default_rng(1), 40_000
+    angle, cosine = rng.uniform(0.0, 2.0 * np.pi, number), np.sqrt(rng.random(number))
+    heading = np.stack([np.sqrt(1 - cosine**2) * np.cos(angle), np.sqrt(1 - cosine**2) * np.sin(angle), cosine], axis=1)
+    place = np.sqrt(rng.random((number, 1))) * [[1.0, 0.0, 0.0]]
+    conducts = (returned(place, -heading, free_path, False, rng) != 0) & (
+        returned(place, heading, free_path, True, rng) == 1
+    )
+    slope, area = spots(1.0)
+    ohm = resistance_Ohm(slope, area, 91.0, of_two((22.0, 22.0), 0.0, (free_path, free_path)))[0]
+    sharvin = 4.0 * 22.0 * free_path / (3.0 * np.pi)
+    # the published factor gives up to 4 % less; 0.7 % by chance
+    assert 0.95 * sharvin / conducts.mean() < ohm < 1.005 * sharvin / conducts.mean()
 
 
 def test_what_is_refused():

@@ -7,6 +7,7 @@ from workflow.report.stages import (
     calibration,
     circuit,
     contact,
+    device,
     elastic,
     failure,
     hardness,
@@ -20,7 +21,7 @@ from workflow.report.stages import (
 )
 
 PARTS = (
-    ("switch", "The switch", (pad, circuit, failure, resistance, history)),
+    ("switch", "The switch", (device, pad, circuit, failure, resistance, history)),
     ("contact", "The contact", (contact, uncertainty, sensitivity)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

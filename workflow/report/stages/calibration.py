@@ -1,67 +1,64 @@
 """What measurements say about the inputs: before and after, whether they agree, what comes next."""
 
-from workflow.report.available import Results
-from workflow.report.numbers import SYMBOLS, show
-from workflow.report.page import COMPUTED, Section, Table
+from collections.abc import Callable, Iterator
+
+from workflow.report.available import Results, Row
+from workflow.report.numbers import SYMBOLS, cell, show, spread
+from workflow.report.page import Block, stage, table
 
 
-def describe(results: Results) -> Section | None:
+@stage(
+    "Calibration with measurements",
+    *(f"calibration/{name}" for name in ("posterior.json", "summary.csv", "predictive.csv")),
+    also=("calibration/samples.csv",),
+)
+def describe(results: Results) -> Iterator[Block]:
     """Measurements in, posterior out."""
-    files = [f"calibration/{name}" for name in ("posterior.json", "summary.csv", "predictive.csv")]
-    if not results.has(*files):
-        return None
-    posterior = results.json(files[0])
-    section = Section(
-        "calibration",
-        "Calibration with measurements",
+    posterior = results.json("calibration/posterior.json")
+    yield (
         "What the tables of measurements say about the inputs, by Bayes' rule: the scatter of single surfaces is that "
-        "of the model, and its responses count with their own error.",
-        COMPUTED,
+        "of the model, and its responses count with their own error."
     )
-    section.files += [*files, "calibration/samples.csv"]
     if not posterior["gate"]["passed"]:
-        section.notes.append("The chain has not converged, so there is no posterior.")
-        return section
-    header = ("before, median and 5 to 95 %", "after")
-    inputs = [
-        (f"{SYMBOLS.get(row['parameter'], row['parameter'])} ({row['unit']})", *_intervals(row))
-        for row in results.csv(files[1])
-    ]
-    section.blocks.append(Table("Inputs before and after the measurements", ("input", *header), inputs))
-    tables = [
-        (kind.replace("_", " "), row["rows"], show(row["probability"], 2), row["verdict"], row["source"])
-        for kind, row in posterior["tables"].items()
-    ]
-    columns = ("measurement", "rows", "probability", "verdict", "source")
-    section.blocks.append(Table("Each table beside what the others predict", columns, tables))
-    predicted = [
-        (
-            row["quantity"].replace("_", " ")
-            + (f" at {show(row['force_nN'])} nN" if row["force_nN"] else "")
-            + f" ({row['unit']})",
-            *_intervals(row),
-        )
-        for row in results.csv(files[2])
-    ]
-    section.blocks.append(Table("What the next surface and the next switch show", ("quantity", *header), predicted))
+        yield "The chain has not converged, so there is no posterior."
+        return
+    states = {"before, median and 5 to 95 %": _state("prior"), "after": _state("posterior")}
+    yield table(
+        "Inputs before and after the measurements",
+        results.csv("calibration/summary.csv"),
+        {"input": lambda row: f"{SYMBOLS.get(row['parameter'], row['parameter'])} ({row['unit']})", **states},
+    )
+    yield table(
+        "Each table beside what the others predict",
+        [{"kind": kind.replace("_", " "), **row} for kind, row in posterior["tables"].items()],
+        {
+            "measurement": "kind",
+            "rows": "rows",
+            "probability": cell("probability", 2),
+            "verdict": "verdict",
+            "source": "source",
+        },
+    )
+    yield table(
+        "What the next surface and the next switch show",
+        results.csv("calibration/predictive.csv"),
+        {"quantity": _quantity, **states},
+    )
     chain = posterior["chain"]
-    section.notes.append(
+    yield (
         f"Chain ({chain['sampler']}): R-hat {chain['r_hat']:.4f}, {chain['independent_draws']:.0f} independent draws. "
         f"Behind the responses are {posterior['cycles']} contact cycles; their error, which is part of the posterior's "
-        f"width, is at most {show(posterior['response_error_share'], 2)} of it. The answer is that of the "
-        "inputs after the measurements."
+        f"width, is at most {show(posterior['response_error_share'], 2)} of it. The answer is that of the inputs after "
+        "the measurements."
     )
-    if posterior["points_left_out"]:
-        section.notes.append(
-            f"{posterior['points_left_out']} points of curves lie outside the forces of the responses and are left out."
-        )
-    return section
+    if left_out := posterior["points_left_out"]:
+        yield f"{left_out} points of curves lie outside the forces of the responses and are left out."
 
 
-def _intervals(row: dict[str, str]) -> tuple[str, str]:
-    """Median and 90 % interval before and after."""
-    before, after = (
-        f"{show(row[f'{state}_q50'])} [{show(row[f'{state}_q05'])}, {show(row[f'{state}_q95'])}]"
-        for state in ("prior", "posterior")
-    )
-    return before, after
+def _quantity(row: Row) -> str:
+    force = f" at {show(row['force_nN'])} nN" if row["force_nN"] else ""
+    return f"{row['quantity'].replace('_', ' ')}{force} ({row['unit']})"
+
+
+def _state(name: str) -> Callable[[Row], str]:
+    return lambda row: spread(row, f"{name}_q50", f"{name}_q05", f"{name}_q95")

@@ -1,43 +1,43 @@
 """The switch as a circuit sees it."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, ORANGE, draw
-from workflow.report.numbers import column, show
-from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.numbers import cell, column
+from workflow.report.page import Block, Figure, stage, table
 from workflow.report.verdict import volts
 
 
-def describe(results: Results) -> Section | None:
+@stage("In a circuit", *(f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "failure.csv")))
+def describe(results: Results) -> Iterator[Block]:
     """C-V loop with its band, and failure rate; pull-in and release of the corners."""
-    files = [f"device/{name}" for name in ("circuit.json", "circuit.csv", "loop.csv", "failure.csv")]
-    if not results.has(*files):
-        return None
     circuit, rows = results.json("device/circuit.json"), results.csv("device/circuit.csv")
     errors = circuit["lumps"]
     corners = [row for row in rows if float(row["deviations"]) > 0]
-    section = Section(
-        "circuit",
-        "In a circuit",
+    yield (
         "The folder device/circuit has the switch as SPICE netlists: central, four corners and "
         f"{len(rows) - len(corners)} draws. {errors['lumps']} pairs of lumps stand for the electrode. Beside finite "
-        f"elements pull-in differs by {errors['pull_in']:.1%}, release by {errors['release']:.1%}; these err by "
-        f"{errors['reference']:.1%}.",
-        COMPUTED,
-        files=files,
+        f"elements pull-in differs by {errors['pull_in']:.1%}, release by {errors['release']:.1%}; these themselves "
+        f"err by {errors['reference']:.1%}."
     )
-    section.add(
+    yield Figure(
         _figure(results),
         "Left: slow loop; the bands hold 90 % of the draws. Right: share that fails against hold voltage.",
         wide=True,
     )
-    lines = [
-        (row["switch"], show(float(row["deviations"])), volts(float(row["pull_in_V"])), volts(float(row["release_V"])))
-        for row in corners
-    ]
-    section.blocks.append(Table("Corners", ("corner", "standard deviations out", "pull-in", "release"), lines))
-    return section
+    yield table(
+        "Corners",
+        corners,
+        {
+            "corner": "switch",
+            "standard deviations out": cell("deviations"),
+            "pull-in": lambda row: volts(float(row["pull_in_V"])),
+            "release": lambda row: volts(float(row["release_V"])),
+        },
+    )
 
 
 def _figure(results: Results) -> str:

@@ -1,16 +1,17 @@
 """Contact curves at central inputs: figures 4 and 11."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+import matplotlib
 import numpy as np
 
-from workflow.report.available import Results
+from mesoscale.law.compact import Law, pressure
+from mesoscale.law.parameters import PARAMETERS
+from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, SOFT, draw
-from workflow.report.live.spots import spots_picture
 from workflow.report.numbers import number, show
-from workflow.report.page import COMPUTED, Section, Table
-from workflow.report.stages import law
+from workflow.report.page import Block, Figure, Table, stage
 
 MODELS = {
     "elastic": ("elastic", ":"),
@@ -34,30 +35,25 @@ OF_SINGLE_ASPERITIES = {
 """Asperities that feel each other have neither a radius nor a shape of flow."""
 
 
-def describe(results: Results) -> Section | None:
+@stage("Curves of one cell at central inputs", "curves/nominal.h5", also=("law/nominal.csv",))
+def describe(results: Results) -> Iterator[Block]:
     """The picture of the contact, figures 4 and 11, and the choices in use."""
-    if not results.has("curves/nominal.h5"):
-        return None
     reading, coupled = results.contact, results.coupled
-    section = Section(
-        "curves",
-        "Curves of one cell at central inputs",
-        f"Closing and opening of one surface of {reading['length_nm']:g} nm with {reading['pixels']}² grid points.",
-        COMPUTED,
-    )
-    section.add(
-        spots_picture(results),
-        "One cell seen from the flat, and where the flat has reached it; in orange what the last step added.",
+    yield f"Closing and opening of one surface of {reading['length_nm']:g} nm with {reading['pixels']}² grid points."
+    yield Figure(
+        spots(results),
+        "One cell, a square of rough surface, seen from the flat: high is light. Coloured is where the flat has "
+        "reached it, by the load at which it did.",
         front=True,
     )
-    section.add(
+    yield Figure(
         nominal_models(results),
         f"Three models of {'coupled asperities' if coupled else 'the single asperity'}. Elastic contacts reopen along "
         "their closing line; plastic ones do not.",
         "Figure 4",
         front=True,
     )
-    section.add(
+    yield Figure(
         nominal_loads(results),
         "Closing (solid) and opening (dashed) up to several largest loads; thin lines: the fitted law.",
         "Figure 11",
@@ -68,9 +64,30 @@ def describe(results: Results) -> Section | None:
     used = [(label, _in_words(value)) for key, label in words.items() if (value := chosen.get(key)) is not None]
     if used:
         caption = "Readings of the paper in use" if results.beside_paper else "Choices of the contact model"
-        section.blocks.append(Table(caption, ("choice", "value"), used))
-    section.files += ["curves/nominal.h5", "law/nominal.csv"]
-    return section
+        yield Table(caption, ("choice", "value"), used)
+
+
+def spots(results: Results) -> str | None:
+    """Heights of the surface, and where the flat touches it under rising load."""
+    if not results.has("curves/spots.h5"):
+        return None
+    groups, attributes, _ = results.h5("curves/spots.h5")
+    steps, side = groups["spots"], float(attributes["length_nm"])
+    heights, step, load = steps["towards_flat_nm"], steps["step"], steps["repulsive_nN"] / 1e3
+    shades = matplotlib.colormaps["gray"]((heights - heights.min()) / (np.ptp(heights) or 1.0))
+    colors = matplotlib.colormaps["autumn_r"](np.linspace(0.0, 1.0, load.size))
+    shades[step >= 0] = colors[step[step >= 0]]
+
+    def plot(axis):
+        axis.imshow(shades.transpose(1, 0, 2), origin="lower", extent=(0, side, 0, side), interpolation="none")
+        for k in sorted({0, load.size // 2, load.size - 1}):
+            words = f"{show(load[k])} µN: {steps['asperities'][k]}; {show(100 * steps['cut_share'][k], 2)} %"
+            axis.plot([], [], "s", color=colors[k], label=words)
+        axis.set(xlabel="nm")
+        axis.grid(False)
+        axis.legend(title="load: asperities in contact; area reached", loc="upper center", bbox_to_anchor=(0.5, -0.12))
+
+    return draw("spots", "Heights of the surface and where the flat has reached it", plot, (5.0, 5.2))
 
 
 def nominal_models(results: Results) -> str | None:
@@ -109,7 +126,7 @@ def nominal_loads(results: Results) -> str | None:
         return None
     area = float(attributes["cell_area_nm2"])
     fits = results.csv("law/nominal.csv") if results.has("law/nominal.csv") else []
-    constants = law.constants(results)
+    constants = _constants(results)
 
     def plot(axis, zoom):
         for panel in (axis, zoom):
@@ -119,11 +136,11 @@ def nominal_loads(results: Results) -> str | None:
                     separation, force = _total(groups[f"{load}/{branch}"])
                     label = f"{_load(load) / 1e3:g} µN" if branch == "closing" else None
                     panel.plot(separation, force, style, color=color, label=label, linewidth=1.6)
-                    row = law.fit_of(fits, load, branch)
+                    row = _fit_of(fits, load, branch)
                     if row is not None:
                         h = np.linspace(separation.min(), separation.max(), 300)
                         hamaker = number(curve_attributes[load]["hamaker"])
-                        fitted = area * law.pressure(h, row, hamaker, *constants) / 1e3
+                        fitted = area * _pressure(h, row, hamaker, *constants) / 1e3
                         panel.plot(h, fitted, "-", color=INK, linewidth=0.6)
             panel.axhline(0, color=SOFT, linewidth=0.8)
             panel.set(xlabel="mean separation (nm)", ylabel=_force_on(attributes))
@@ -157,3 +174,23 @@ def _total(curve: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
 
 def _load(name: str) -> float:
     return float(name.removeprefix("load_"))
+
+
+def _pressure(h: np.ndarray, row: Row, hamaker: float, rho_a: float, shield: float) -> np.ndarray:
+    """Total pressure of a fitted row (GPa), eqs 10 to 13."""
+    parameters = {name: number(row[name]) for name in PARAMETERS}
+    attractive, repulsive = pressure(h, Law(**parameters, hamaker=hamaker, rho_a_nm=rho_a, shield_nm=shield))
+    return attractive + repulsive
+
+
+def _fit_of(rows: list[Row], curve: str, branch: str) -> Row | None:
+    """The fit of a curve; None where it gave no law."""
+    return next((row for row in rows if row["curve"] == curve and row["branch"] == branch and row["C_r_GPa"]), None)
+
+
+def _constants(results: Results) -> tuple[float, float]:
+    """rho_a and the shield of eq. 12 as this scene's fits used them."""
+    if results.has("uq/surrogate.json"):
+        law = results.json("uq/surrogate.json")["law"]
+        return float(law["rho_a_nm"]), float(law["alpha_nm"])
+    return 2.0, 2.0

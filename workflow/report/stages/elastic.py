@@ -1,14 +1,14 @@
 """Effective elastic modulus: figure 5."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, ORANGE, SERIES, draw
-from workflow.report.numbers import column, number, show
-from workflow.report.page import Section, Table
+from workflow.report.numbers import cell, column, number, show
+from workflow.report.page import Block, Figure, Table, stage, table
 
 SHARES = {
     "structure": "structure of the glass",
@@ -19,44 +19,41 @@ SHARES = {
 }
 
 
-def describe(results: Results) -> Section | None:
+@stage(
+    "Effective elastic modulus",
+    *("elastic/bulk_moduli.csv", "elastic/e_star.json"),
+    also=("elastic/points.csv",),
+)
+def describe(results: Results) -> Iterator[Block]:
     """Figure 5, and every structure."""
-    if not results.has("elastic/bulk_moduli.csv", "elastic/e_star.json"):
-        return None
     summary = results.json("elastic/e_star.json")
-    section = Section(
-        "elastic",
-        "Effective elastic modulus",
+    yield (
         "Density functional theory on an ensemble of Si₃N₄ structures: E* = "
         f"{show(summary.get('mean_GPa'))} ± {show(summary.get('std_GPa'))} GPa"
-        + (" (the paper: 91 ± 3.8 GPa)." if results.beside_paper else "."),
-        results.origin_of("elastic"),
+        + (" (the paper: 91 ± 3.8 GPa)." if results.beside_paper else ".")
     )
-    section.add(
+    yield Figure(
         elastic_distribution(results),
         "Left: bulk moduli of the glasses by E(V); dashed: a crystal. Right: the modulus E* of the contact, "
         "variability and model-form error included.",
         "Figure 5",
         wide=True,
     )
-    lines = [
-        (
-            row["structure"],
-            row["xc"],
-            show(row.get("B_GPa"), 4),
-            show(row.get("B_prime")),
-            show(row.get("V0_A3"), 4),
-            row.get("flags") or "–",
-        )
-        for row in results.csv("elastic/bulk_moduli.csv")
-    ]
-    header = ("structure", "functional", "B (GPa)", "B′", "V₀ (Å³)", "flags")
-    section.blocks.append(Table("Equation of state of every structure, ions clamped", header, lines))
+    yield table(
+        "Equation of state of every structure, ions clamped",
+        results.csv("elastic/bulk_moduli.csv"),
+        {
+            "structure": "structure",
+            "functional": "xc",
+            "B (GPa)": cell("B_GPa", 4),
+            "B′": cell("B_prime"),
+            "V₀ (Å³)": cell("V0_A3", 4),
+            "flags": "flags",
+        },
+    )
     if summary.get("shares"):
-        section.blocks.append(shares_table(summary))
-    section.notes += summary.get("notes", [])
-    section.files += ["elastic/points.csv", "elastic/bulk_moduli.csv", "elastic/e_star.json"]
-    return section
+        yield shares_table(summary)
+    yield from summary.get("notes", [])
 
 
 def shares_table(summary: Mapping[str, Any]) -> Table:

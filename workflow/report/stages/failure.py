@@ -1,60 +1,51 @@
 """How often the switch fails."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import INK, SERIES, draw
-from workflow.report.numbers import column, show
-from workflow.report.page import COMPUTED, Section, Table
-from workflow.report.verdict import symbol, volts
+from workflow.report.numbers import cell, column, show, spread
+from workflow.report.page import Block, Figure, stage, table
+from workflow.report.verdict import in_words, volts
 
 
-def describe(results: Results) -> Section | None:
+@stage("How often it fails", "device/failure.json", "device/failure.csv")
+def describe(results: Results) -> Iterator[Block]:
     """Failure rate against hold voltage, and the largest voltage that is allowed."""
-    if not results.has("device/failure.json", "device/failure.csv"):
-        return None
     rate = results.json("device/failure.json")
     event = f"is still closed at {volts(rate['release_V'])}" if rate["release_V"] else "sticks"
-    section = Section(
-        "failure",
-        "How often it fails",
+    yield (
         f"A switch fails where it {event}. {show(rate['allowed'])} of all may. Statistics does not know the law of "
-        "attraction, so each row has its own. Inputs, geometry and pads are drawn together.",
-        COMPUTED,
-        files=["device/failure.json", "device/failure.csv"],
+        "attraction, so each row has its own. Inputs, geometry and pads are drawn together."
     )
-    section.add(_curve(results), "Share that fails against hold voltage, by the response.")
-    header = (
-        "attraction",
-        f"failing at {volts(rate['hold_V'])} [95 %]",
-        "largest hold voltage",
-        "least RMS height",
-        "least thickness of the beam" if rate["spring"] == "thickness_um" else "least spring",
+    yield Figure(_curve(results), "Share that fails against hold voltage, by the response.")
+    spring, unit = ("thickness of the beam", "µm") if rate["spring"] == "thickness_um" else ("spring", "N/m")
+    yield table(
+        "Failures; hold voltage, roughness and spring that are allowed",
+        rate["laws"],
+        {
+            "attraction": lambda law: f"{show(law['attraction'], 2)} times",
+            f"failing at {volts(rate['hold_V'])} [95 %]": lambda law: spread(
+                law["failing"], "probability", "low", "high", 2
+            ),
+            "largest hold voltage": lambda law: _or_none(law["largest_hold_V"], "V"),
+            "least RMS height": lambda law: _or_none(law["least_rms_nm"], "nm", 2),
+            f"least {spring}": lambda law: _or_none(law["least_spring"], unit),
+        },
     )
-    unit = "µm" if rate["spring"] == "thickness_um" else "N/m"
-    rows = [
-        (
-            f"{show(law['attraction'], 2)} times",
-            f"{show(law['failing']['probability'], 2)} [{_interval(law['failing'])}]",
-            "none" if law["largest_hold_V"] is None else volts(law["largest_hold_V"]),
-            "none" if law["least_rms_nm"] is None else f"{show(law['least_rms_nm'], 2)} nm",
-            "none" if law["least_spring"] is None else f"{show(law['least_spring'])} {unit}",
-        )
-        for law in rate["laws"]
-    ]
-    section.blocks.append(Table("Failures; hold voltage, roughness and spring that are allowed", header, rows))
     if rate["control"]:
-        known = [(symbol(row["name"]), show(row["failing_if_known"], 2)) for row in rate["control"][:5]]
-        header = (
-            "if this input is at its median",
-            f"fails with {show(rate['control_attraction'], 2)} times the attraction",
-        )
-        section.blocks.append(Table("What to control", header, known))
-    return section
+        fails = f"fails with {show(rate['control_attraction'], 2)} times the attraction"
+        columns = {
+            "if this input is at its median": lambda row: in_words(row["name"]),
+            fails: cell("failing_if_known", 2),
+        }
+        yield table("What to control", rate["control"][:5], columns)
 
 
-def _interval(failing: dict[str, float]) -> str:
-    return f"{show(failing['low'], 2)}, {show(failing['high'], 2)}"
+def _or_none(value: float | None, unit: str, digits: int = 3) -> str:
+    return "none" if value is None else f"{show(value, digits)} {unit}"
 
 
 def _curve(results: Results) -> str:

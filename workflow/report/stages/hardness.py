@@ -1,38 +1,35 @@
 """Hardness of single asperities: figures 7 and 8."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SOFT, draw
-from workflow.report.numbers import column, number, show
-from workflow.report.page import Section, Table
+from workflow.report.numbers import cell, column, number, show, spread
+from workflow.report.page import Block, Column, Figure, stage, table
 
 SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE, "s")}
 PAPER_HARDNESS = ((3.0, 10.0), (15.0, 2.0))  # nm, GPa: "~10 GPa at 3 nm, ~2 GPa at 15 nm" in the paper's text
 
 
-def describe(results: Results) -> Section | None:
+@stage("Hardness of single asperities", "hardness/points.csv", also=("hardness/fit.json",))
+def describe(results: Results) -> Iterator[Block]:
     """Figures 7 and 8, and every run."""
-    if not results.has("hardness/points.csv"):
-        return None
     points = results.csv("hardness/points.csv")
     fit = results.json("hardness/fit.json") if results.has("hardness/fit.json") else {}
-    section = Section(
-        "hardness",
-        "Hardness of single asperities",
+    yield (
         "Molecular dynamics of one asperity pressed against a flat, with full and with halved energies; "
-        "hardness is the contact stress beyond the onset of plastic flow.",
-        results.origin_of("hardness"),
+        "hardness is the contact stress beyond the onset of plastic flow."
     )
-    section.add(
+    yield Figure(
         contact_stress(results),
         "Contact stress against contact length of every closing run. Circles: where plastic flow was first witnessed "
         "by exchanged bonds; diamonds: the hardness of runs that yielded.",
         "Figure 7",
     )
-    section.add(
+    yield Figure(
         hardness_size(results),
         "Hardness against contact length."
         + (
@@ -49,35 +46,28 @@ def describe(results: Results) -> Section | None:
         "Figure 8",
     )
     if film := fit.get("film"):
-        section.add(
+        yield Figure(
             film_share(film),
             "What a film keeps of the difference between its own hardness and that of the body below, against contact "
             "length over thickness: the law in use, with its 68 % interval. Grey: where the runs lie.",
         )
-    lines = [
-        (
-            row["run"],
-            show(row.get("energy_scale")),
-            show(row.get("film_nm")) if row.get("film_nm") else "–",
-            show(row.get("wavelength_nm")),
-            show(row.get("contact_length_nm")),
-            _range(row, "hardness"),
-            " → ".join(show(row.get(key)) for key in ("exchanges_before", "exchanges_at_onset", "exchanges_after")),
-            show(row.get("onset_p_value")),
-            row.get("status", ""),
-        )
-        for row in points
-    ]
-    header = (
-        "run", "energy scale", "film (nm)", "λ (nm)", "contact length (nm)", "hardness (GPa)",
-        "bond exchanges per 0.1 nm: before → onset → after", "p of the onset", "status",
-    )  # fmt: skip
-    if len({line[2] for line in lines}) == 1:  # no film: the column says nothing
-        header, *lines = ((*line[:2], *line[3:]) for line in (header, *lines))
-    section.blocks.append(Table("Every run and what became of it", header, lines))
-    section.notes += _fit_notes(fit)
-    section.files += ["hardness/points.csv", "hardness/fit.json"]
-    return section
+    columns: dict[str, Column] = {
+        "run": "run",
+        "energy scale": cell("energy_scale"),
+        "film (nm)": cell("film_nm"),
+        "λ (nm)": cell("wavelength_nm"),
+        "contact length (nm)": cell("contact_length_nm"),
+        "hardness (GPa)": lambda row: spread(row, "hardness_GPa", "hardness_lo", "hardness_hi"),
+        "bond exchanges per 0.1 nm: before → onset → after": lambda row: " → ".join(
+            show(row.get(f"exchanges_{when}")) for when in ("before", "at_onset", "after")
+        ),
+        "p of the onset": cell("onset_p_value"),
+        "status": "status",
+    }
+    if len({row.get("film_nm") for row in points}) == 1:  # no film, or one thickness: the column says nothing
+        del columns["film (nm)"]
+    yield table("Every run and what became of it", points, columns)
+    yield from _fit_notes(fit)
 
 
 def _use_of_eq_4(results: Results) -> str:
@@ -198,14 +188,6 @@ def _scale(point: Row) -> tuple[str, str, str]:
 def _key(point: Row) -> str:
     value = number(point.get("energy_scale", "1"))
     return f"{value:.1f}" if np.isfinite(value) else "1.0"
-
-
-def _range(row: Row, name: str) -> str:
-    value = number(row.get(f"{name}_GPa"))
-    if not np.isfinite(value):
-        return "–"
-    low, high = number(row.get(f"{name}_lo")), number(row.get(f"{name}_hi"))
-    return f"{show(value)} [{show(low)}, {show(high)}]" if np.isfinite(low) else show(value)
 
 
 def _fit_notes(fit: dict[str, Any]) -> list[str]:

@@ -1,58 +1,53 @@
 """Closed again and again: shakedown and creep."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from workflow.report.available import Results, Row
 from workflow.report.drawing import SERIES, draw
-from workflow.report.numbers import column, number, show
-from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.numbers import cell, column, number, show
+from workflow.report.page import Block, Figure, stage, table
 
 
-def describe(results: Results) -> Section | None:
+@stage("Closed again and again", *(f"history/{name}" for name in ("cycles.csv", "dwell.csv", "curves.h5")))
+def describe(results: Results) -> Iterator[Block]:
     """Shakedown and creep."""
-    if not results.has("history/cycles.csv", "history/dwell.csv", "history/curves.h5"):
-        return None
     rows = results.csv("history/cycles.csv")
     last = max(int(row["cycle"]) for row in rows)
     held = max(number(row["held_s"]) for row in rows)
-    section = Section(
-        "history",
-        "Closed again and again",
+    yield (
         f"{last} cycles of the same surfaces, each from what the last one left"
         + (
             f", {show(held)} s under load in all: the hardness falls with time by the creep law of the scene. "
             if held
             else ". "
         )
-        + _shakedown(rows),
-        COMPUTED,
+        + _shakedown(rows)
     )
-    section.add(
+    yield Figure(
         history_drift(results),
         "Left: energy lost by each cycle, one line per surface. Right: how far the closed contact sinks.",
         wide=True,
     )
-    shown = [row for row in rows if int(row["cycle"]) in (1, 2, 10, 100, last)]
-    lines = [
-        (
-            row["seed"],
-            row["cycle"],
-            show(row["held_s"]) if held else "–",
-            show(row["closed_nm"], 4),
-            show(row["contact_area_nm2"]),
-            show(row["dissipated_nN_nm"]),
-            show(row["pull_off_nN"]),
-        )
-        for row in shown
-    ]
-    header = ("surface", "cycle", "time under load (s)", "closed (nm)", "area (nm²)", "energy lost (nN nm)")
-    section.blocks.append(Table("Cycles", (*header, "pull-off (nN)"), lines, heads=2))
+    yield table(
+        "Cycles",
+        [row for row in rows if int(row["cycle"]) in (1, 2, 10, 100, last)],
+        {
+            "surface": "seed",
+            "cycle": "cycle",
+            **({"time under load (s)": cell("held_s")} if held else {}),
+            "closed (nm)": cell("closed_nm", 4),
+            "area (nm²)": cell("contact_area_nm2"),
+            "energy lost (nN nm)": cell("dissipated_nN_nm"),
+            "pull-off (nN)": cell("pull_off_nN"),
+        },
+        heads=2,
+    )
     if not all(row["converged"] == "True" for row in rows):
-        section.notes.append("Some cycles did not converge or missed their force: see column converged.")
+        yield "Some cycles did not converge or missed their force: see column converged."
     if held:
-        section.notes.append("The constants of the creep law are the scene's, not results of this work.")
-    section.files += ["history/cycles.csv", "history/dwell.csv", "history/curves.h5"]
-    return section
+        yield "The constants of the creep law are the scene's, not results of this work."
 
 
 def history_drift(results: Results) -> str:
@@ -81,15 +76,12 @@ def history_drift(results: Results) -> str:
 
 def _shakedown(rows: list[Row]) -> str:
     """How much less energy the last cycle loses than the first."""
+    numbers = [int(row["cycle"]) for row in rows]
     by_cycle = {
-        n: column([row for row in rows if int(row["cycle"]) == n], "dissipated_nN_nm").mean() for n in _ends(rows)
+        n: column([row for row in rows if int(row["cycle"]) == n], "dissipated_nN_nm").mean()
+        for n in {min(numbers), max(numbers)}
     }
     first, last = by_cycle[min(by_cycle)], by_cycle[max(by_cycle)]
     if len(by_cycle) < 2 or not np.isfinite(first) or first <= 0:
         return ""
     return f"The last cycle loses {show(100 * max(last, 0.0) / first, 2)} % of the energy that the first one lost."
-
-
-def _ends(rows: list[Row]) -> set[int]:
-    numbers = [int(row["cycle"]) for row in rows]
-    return {min(numbers), max(numbers)}

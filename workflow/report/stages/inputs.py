@@ -1,40 +1,33 @@
 """Inputs in use, as the paper's Table 1."""
 
 import json
+from collections.abc import Iterator
 
 import numpy as np
 
 from workflow.report.available import Results, Row
-from workflow.report.numbers import SYMBOLS, number, show, shown_unit
-from workflow.report.page import Section, Table
+from workflow.report.numbers import number, show, shown_unit
+from workflow.report.page import Block, stage, table
+from workflow.report.verdict import in_words
 
 
-def describe(results: Results) -> Section | None:
+@stage("Inputs", "inputs.csv")
+def describe(results: Results) -> Iterator[Block]:
     """Table 1 in use."""
-    if not results.has("inputs.csv"):
-        return None
     rows = results.csv("inputs.csv")
-    section = Section("inputs", "Inputs", "", files=["inputs.csv"])
+    columns = {
+        "input": lambda row: in_words(row["parameter"]),
+        "unit": lambda row: shown_unit(row["unit"]),
+        "distribution": _distribution,
+        "origin": "origin",
+        "source": "file",
+    }
+    yield ""
     title = "Inputs in use (the paper's Table 1)" if results.beside_paper else "Inputs in use"
-    section.front.append(_table(title, rows))
+    yield table(title, rows, columns, front=True)
     of_pad = results.csv("pad/inputs.csv") if results.has("pad/inputs.csv") else []
     if other := [row for row in of_pad if row not in rows]:
-        section.front.append(_table("Of a pad, which holds all places of the film", other))
-    return section
-
-
-def _table(title: str, rows: list[Row]) -> Table:
-    lines = [
-        (
-            SYMBOLS.get(row["parameter"], row["parameter"]),
-            shown_unit(row["unit"]) or "–",
-            _distribution(row),
-            row["origin"],
-            row.get("file", ""),
-        )
-        for row in rows
-    ]
-    return Table(title, ("input", "unit", "distribution", "origin", "source"), lines)
+        yield table("Of a pad, which holds all places of the film", other, columns, front=True)
 
 
 def _distribution(row: Row) -> str:

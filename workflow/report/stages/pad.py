@@ -1,14 +1,15 @@
 """Many cells under one plane: what a pad is, beside one cell."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, SERIES, SOFT, draw
-from workflow.report.numbers import column, show
-from workflow.report.page import COMPUTED, Section, Table
-from workflow.report.verdict import symbol
+from workflow.report.numbers import cell, column, show, spread
+from workflow.report.page import Block, Doubt, Figure, Table, stage, table
+from workflow.report.verdict import causes_of, in_words
 
 CAUSES = {
     "inputs": "inputs",
@@ -19,77 +20,65 @@ CAUSES = {
 }
 
 
-def describe(results: Results) -> Section | None:
+@stage("From a cell to a pad", "pad/curves.csv", "device/pad_switch.json", also=("pad/model.h5",))
+def describe(results: Results) -> Iterator[Block]:
     """The pad's curves, and what the answer is made of."""
-    if not results.has("pad/curves.csv", "device/pad_switch.json"):
-        return None
     switch = results.json("device/pad_switch.json")
-    section = Section(
-        "pad",
-        "From a cell to a pad",
-        f"{switch['cells_computed']} cells with surfaces of their own stand for the {show(switch['cells_of_pad'])} of "
-        "the electrode. They are brought to one separation and opened together.",
-        COMPUTED,
+    yield (
+        f"{switch['cells_computed']} cells, squares of rough surface of their own, stand for the "
+        f"{show(switch['cells_of_pad'])} of the pad, the whole area that lands. They are brought to one separation and "
+        "opened together."
     )
-    section.add(
+    yield Figure(
         pad_curves(results),
-        "Pressure of the pad at central inputs. Left: closing, and opening from several depths. Right: net pressure "
-        "near the last contact; the band is one standard error of the mean of the cells.",
+        "Pressure of the pad, all that lands, at central inputs. Left: closing, and opening from several depths. "
+        "Right: net pressure near the last contact; the band is one standard error of the mean of the cells.",
         wide=True,
         front=True,
     )
     if answer := switch.get("answer"):
-        section.blocks += _answer(answer)
+        yield from _answer(answer)
     if opened := switch.get("adhesion"):
-        section.blocks.append(_adhesion(opened))
-    section.notes.append(
-        "Where the scene does not state how its devices vary (device.spread), their spread is an assumption."
-    )
-    section.files += ["pad/curves.csv", "pad/model.h5", "device/pad_switch.json"]
-    return section
+        yield table(
+            "Adhesion of the pad at central inputs, opened from each load",
+            opened,
+            {
+                "load (MPa)": cell("load_MPa"),
+                "energy (µJ/m²)": cell("energy_uJ_m2"),
+                "flats so far apart (µJ/m²)": cell("flats_uJ_m2"),
+                "pull-off (kPa)": cell("pull_off_kPa"),
+            },
+        )
+    yield "Where the scene does not state how its devices vary (device.spread), their spread is an assumption."
 
 
-def _answer(answer: dict[str, Any]) -> list[Table]:
+def _answer(answer: dict[str, Any]) -> Iterator[Block]:
     """What the answer is made of, and which input to measure better."""
-
-    def spread(key: str) -> str:
-        quantiles = answer[key]["quantiles"]
-        return f"{show(quantiles['0.5'])} [{show(quantiles['0.05'])}, {show(quantiles['0.95'])}]" if quantiles else "–"
-
     errors = answer["quantile_error_V"]
     solved, refused = answer["points"], len(answer["refused"])
     rows = [
-        ("pull-in (V)", spread("pull_in_V")),
-        ("capacitance closed (fF)", spread("capacitance_fF")),
+        ("pull-in (V)", spread(answer["pull_in_V"]["quantiles"], "0.5", "0.05", "0.95")),
+        ("capacitance closed (fF)", spread(answer["capacitance_fF"]["quantiles"], "0.5", "0.05", "0.95")),
         ("switches computed; of them without an answer", f"{solved + refused}; {refused}"),
         (
             "standard error of the median and of 5 and 95 %, by their number (V)",
-            " ".join((show(errors["0.5"], 2), f"[{show(errors['0.05'], 2)}, {show(errors['0.95'], 2)}]")),
+            spread(errors, "0.5", "0.05", "0.95", digits=2),
         ),
         ("error of one of them by the number of its cells (V)", show(answer["cells_error_V"], 2)),
         *((f"share of {CAUSES[row['cause']]}", f"{row['share_of_variance']:.1%}") for row in answer["causes"]),
     ]
-    measured = [
-        (symbol(row["name"]), f"{row['share_of_variance']:.1%}", f"{row['interval_shrinks_by']:.1%}")
-        for row in answer["sensitivity"]
-    ]
-    columns = ("uncertain", "share of the variance", "known exactly, the interval shrinks by")
-    return [
-        Table("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows),
-        Table("What to measure better for the release", columns, measured),
-    ]
-
-
-def _adhesion(opened: list[dict[str, float]]) -> Table:
-    """What opening the pad costs after each load."""
-    columns = {
-        "load_MPa": "load (MPa)",
-        "energy_uJ_m2": "energy (µJ/m²)",
-        "flats_uJ_m2": "flats so far apart (µJ/m²)",
-        "pull_off_kPa": "pull-off (kPa)",
-    }
-    rows = [tuple(show(row[key]) for key in columns) for row in opened]
-    return Table("Adhesion of the pad at central inputs, opened from each load", tuple(columns.values()), rows)
+    yield Table("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows)
+    if no_cause := causes_of(answer)[1]:
+        yield Doubt(f"The shares of the variance name no cause: {no_cause}.")
+    yield table(
+        "What to measure better for the release",
+        answer["sensitivity"],
+        {
+            "uncertain": lambda row: in_words(row["name"]),
+            "share of the variance": lambda row: f"{row['share_of_variance']:.1%}",
+            "known exactly, the interval shrinks by": lambda row: f"{row['interval_shrinks_by']:.1%}",
+        },
+    )
 
 
 def pad_curves(results: Results) -> str:

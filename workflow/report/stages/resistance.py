@@ -1,28 +1,25 @@
 """Resistance of an ohmic contact against force."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, ORANGE, draw
 from workflow.report.numbers import column, show
-from workflow.report.page import COMPUTED, Section, Table
+from workflow.report.page import Block, Figure, Table, stage
 
 COLORS = {"closing": BLUE, "opening": ORANGE, "closing again": GREEN}
 
 
-def describe(results: Results) -> Section | None:
+@stage("Ohmic contact", "device/resistance.csv")
+def describe(results: Results) -> Iterator[Block]:
     """Resistance of a cell while it closes, opens and closes again."""
-    if not results.has("device/resistance.csv"):
-        return None
     rows = results.csv("device/resistance.csv")
     runs = len({row["run"] for row in rows})
-    section = Section(
-        "resistance",
-        "Ohmic contact",
+    yield (
         f"Electrical resistance of one cell, by its stiffness. {runs} surfaces, each with its own inputs; "
-        "intervals hold 90 % of them.",
-        COMPUTED,
-        files=["device/resistance.csv"],
+        "intervals hold 90 % of them."
     )
     quantiles = {}
     for way in COLORS:
@@ -38,7 +35,7 @@ def describe(results: Results) -> Section | None:
         axes.set(xscale="log", yscale="log", xlabel="force on the cell (nN)", ylabel="resistance (Ω)")
         axes.legend()
 
-    section.add(
+    yield Figure(
         draw("resistance", "Resistance against force", plot),
         "A contact that has been pressed keeps its area: it conducts better when it opens and closes again.",
     )
@@ -50,5 +47,4 @@ def describe(results: Results) -> Section | None:
         for force in [quantiles["closing"][0]]
         for k in range(len(force))
     ]
-    section.blocks.append(Table("Resistance (Ω)", ("force (nN)", *quantiles), lines))
-    return section
+    yield Table("Resistance (Ω)", ("force (nN)", *quantiles), lines)

@@ -1,70 +1,68 @@
 """Surface topography: figures 9 and 10, and the parameters."""
 
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SKY, SOFT, draw
-from workflow.report.measured_surface import describe_surface, place_doubts
-from workflow.report.numbers import SYMBOLS, show, shown_unit
-from workflow.report.page import SYNTHETIC, Section, Table
+from workflow.report.measured_surface import chosen_description, described_surface, doubts
+from workflow.report.numbers import SYMBOLS, cell, show, shown_unit
+from workflow.report.page import Block, Figure, Table, stage, table
 from workflow.report.surface_picture import short_names
 
 
-def describe(results: Results) -> Section | None:
+@stage(
+    "Surface topography",
+    *("topography/spectra.h5", "topography/parameters.json"),
+    also=("topography/judged.csv",),
+)
+def describe(results: Results) -> Iterator[Block]:
     """Figures 9 and 10, and the roughness parameters."""
-    if not results.has("topography/spectra.h5", "topography/parameters.json"):
-        return None
     parameters = results.json("topography/parameters.json")
-    synthetic = bool(parameters.get("synthetic"))
-    section = Section(
-        "topography",
-        "Surface topography",
+    yield (
         (
             "The scans are synthetic: made by the workflow with known parameters, passed through a simulated "
             "microscope and read back from a real file format. They check the method; they are no "
             "measurement. "
-            if synthetic
+            if parameters.get("synthetic")
             else "Spectra of the measured scans. "
         )
-        + f"The Hurst exponent follows the {parameters['convention']} convention.",
-        SYNTHETIC if synthetic else results.origin_of("topography"),
+        + f"The Hurst exponent follows the {parameters['convention']} convention."
+        + chosen_description(parameters)
     )
     caption = "Height maps and line profiles after levelling, in nm about their mean."
-    section.add(maps(results), caption, "Figure 9", wide=True)
-    section.add(
+    yield Figure(maps(results), caption, "Figure 9", wide=True)
+    yield Figure(
         spectra(results),
         "Power spectra of all scans, pooled, with the fits behind q₀, Hurst exponent and RMS. The fits use the trusted "
         "part; grey is what levelling, tip, noise or pixels disturb.",
         "Figure 10",
     )
+    if parameters.get("estimates"):
+        yield _estimates(parameters, results.beside_paper)
+    yield from doubts(parameters, "q0", "slope")
+    yield from described_surface(results, parameters)
+
+
+def _estimates(parameters: Mapping[str, Any], beside_paper: bool) -> Table:
     paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20) by 2H + 1", "rms": "1.82 to 14.17", "slope": "2.84"}
     truth = parameters.get("truth") or {}
-    lines = []
-    for name, estimate in parameters.get("estimates", {}).items():
-        true = truth.get(name, truth.get(f"{name}_nm"))
-        lines.append(
-            (
-                SYMBOLS.get(name, name),
-                shown_unit(str(estimate.get("unit", ""))) or "–",
-                show(estimate.get("value")),
-                _pair(estimate.get("interval")),
-                _pair(estimate.get("scatter")),
-                *([show(true) if true is not None else "–"] if truth else []),
-                *([paper.get(name, "–")] if results.beside_paper else []),
-            )
-        )
-    if lines:
-        header = ("parameter", "unit", "estimate", "interval", "scatter of scans")
-        header += (("truth",) if truth else ()) + (("paper",) if results.beside_paper else ())
-        used = parameters.get("description", {}).get("name", "power_law") == "power_law"
-        caption = "Roughness parameters" if used else "Eq. 9 fitted for comparison; random surfaces do not follow it"
-        section.blocks.append(Table(caption, header, lines))
-    place_doubts(parameters, section, "q0", "slope")
-    section.files += ["topography/spectra.h5", "topography/parameters.json"]
-    describe_surface(results, parameters, section)
-    return section
+    used = parameters.get("description", {}).get("name", "power_law") == "power_law"
+    return table(
+        "Roughness parameters" if used else "Eq. 9 fitted for comparison; random surfaces do not follow it",
+        [{"name": name, **estimate} for name, estimate in parameters["estimates"].items()],
+        {
+            "parameter": lambda row: SYMBOLS.get(row["name"], row["name"]),
+            "unit": lambda row: shown_unit(str(row.get("unit", ""))),
+            "estimate": cell("value"),
+            "interval": lambda row: _pair(row.get("interval")),
+            "scatter of scans": lambda row: _pair(row.get("scatter")),
+            **({"truth": lambda row: show(truth.get(row["name"], truth.get(f"{row['name']}_nm")))} if truth else {}),
+            **({"paper": lambda row: paper.get(row["name"], "")} if beside_paper else {}),
+        },
+    )
 
 
 def maps(results: Results) -> str | None:

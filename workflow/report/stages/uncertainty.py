@@ -1,43 +1,74 @@
 """Uncertainty of the law: Table 2."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from workflow.report.available import Results, Row
+from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
 from workflow.report.gates import faint_outputs
-from workflow.report.numbers import OUTPUTS, number, show
-from workflow.report.page import COMPUTED, Section, Table
-from workflow.report.stages import law
+from workflow.report.numbers import OUTPUTS, column, number, show
+from workflow.report.page import Block, Figure, Table, stage
+
+COLORS = {"closing": BLUE, "opening": ORANGE}
 
 
-def describe(results: Results) -> Section | None:
+@stage(
+    "The law of one cell, and its uncertainty",
+    *("uq/outputs.csv", "uq/samples.csv"),
+    also=("uq/surrogate.json", "uq/validation.csv"),
+)
+def describe(results: Results) -> Iterator[Block]:
     """The law's band, and Table 2."""
-    if not results.has("uq/outputs.csv", "uq/samples.csv"):
-        return None
     paper = results.beside_paper
-    section = Section(
-        "uncertainty",
-        "The law of one cell, and its uncertainty",
-        f"The distributions of the inputs sent through the {results.response}, which is also behind the explorer. "
-        "Grey rows are not to be trusted: see responses, below."
-        + " Beside it the paper's method, a plane through 2n + 1 runs of each surface, and its Table 2."
-        * paper,
-        COMPUTED,
+    yield (
+        f"The distributions of the inputs sent through the {results.response}. Grey rows are not to be trusted: see "
+        "responses, below." + " Beside it the paper's method, a plane through 2n + 1 runs of each surface, and its "
+        "Table 2." * paper
     )
     if results.has("uq/law.csv", "uq/surrogate.json"):
-        section.add(
-            law.band(results),
+        yield Figure(
+            band(results),
             "The law of one cell, closing and after the largest load, up to the pressure that it was fitted to: median "
             "and 5 to 95 % over the inputs.",
         )
-    section.blocks.append(_table2(results))
+    yield _table2(results)
+    yield (
+        "At the separation d_c of the mean planes the contact begins to push. C_r and ρ_r are scale and decay length "
+        "of the repulsion: a contact of large ρ_r is soft. C_a is the adhesion per nanometre of approach."
+    )
     if paper:
-        section.notes.append(
+        yield (
             "The readings of the contact model and the definition of d_c were chosen by their nearness to the paper's "
             "Tables 2 and 3 (reproduction audit), so that part of the agreement is built in."
         )
-    section.files += ["uq/outputs.csv", "uq/samples.csv", "uq/surrogate.json"]
-    section.files += ["uq/validation.csv"] if results.has("uq/validation.csv") else []
-    return section
+
+
+def band(results: Results) -> str:
+    """Median and spread of the law over the samples of the inputs, up to the pressure that it was fitted to."""
+    rows = results.csv("uq/law.csv")
+    highest = results.fitted_MPa
+    spread = {}
+    for name in COLORS:
+        part = [row for row in rows if row["branch"] == name]
+        spread[name] = column(part, "gap_nm"), *(column(part, f"pressure_q{q}_GPa") * 1e3 for q in ("05", "50", "95"))
+    # separations between the largest pressure and the last contact
+    reach = max(float(gap[high > 0].max(initial=0)) for gap, _, _, high in spread.values())
+    near = min(float(gap[middle < highest].min()) for gap, _, middle, _ in spread.values())
+
+    def plot(axis):
+        for name, color in COLORS.items():
+            x, low, middle, high = spread[name]
+            inside = middle <= highest
+            axis.fill_between(x, low, np.minimum(high, highest), color=color, alpha=0.16, linewidth=0)
+            axis.plot(x[inside], middle[inside], color=color, label=f"{name}, median")
+        axis.axhline(0, color=SOFT, linewidth=0.8)
+        axis.set(xlim=(max(0.0, 2 * near - reach), 1.05 * reach), ylim=(-0.05 * highest, highest))
+        axis.set(xlabel="mean separation (nm)", ylabel="contact pressure (MPa)")
+        axis.fill_between([], [], [], color=SOFT, alpha=0.3, label="5 to 95 %")
+        axis.legend()
+
+    return draw("law", "Contact pressure against separation with the spread over uncertain inputs", plot)
 
 
 def _table2(results: Results) -> Table:
