@@ -19,27 +19,6 @@ SCHEMA = ROOT / "config" / "scene.schema.json"
 # Ctrl-C while Snakemake is still imported ends it without a traceback
 START = "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); import snakemake.cli; snakemake.cli.main()"
 
-TARGETS = {
-    "hardness": "hardness from molecular dynamics",
-    "elastic": "effective modulus from density functional theory",
-    "topography": "what the measurements show, and the surface behind them",
-    "inputs": "table of the uncertain inputs",
-    "curves": "force against separation at central inputs",
-    "law": "compact law of one cell",
-    "pad": "many cells under one plane, at points of all that is uncertain",
-    "uq": "what the uncertain inputs do to the law",
-    "sensitivity": "which input causes the spread",
-    "device": "the switch on these pads: release and sticking, with their causes",
-    "failure": "how often the switch fails, down to one in a million",
-    "circuit": "the switch for simulators: corners, draws, C-V loop",
-    "resistance": "electrical resistance of metal on metal against force",
-    "calibrate": "inputs narrowed by your measurements of contacts",
-    "history": "cycle after cycle, with creep",
-    "accuracy": "error against run time of the scene's stages",
-    "stability": "stiff and extreme cases",
-    "report": "the page, and all that it needs",
-}
-"""Stages that a run can be held to, by rules of the workflow."""
 COMMANDS = {
     "run": "run a scene; results go to ./results/<scene>",
     "plan": "say which jobs would run and how long they take",
@@ -78,7 +57,7 @@ def main(arguments: list[str] | None = None) -> int:
         for path in sorted((ROOT / "config" / "scenes").glob("*.yaml")):
             print(f"{path.stem:<10}  {path.read_text(encoding='utf-8').splitlines()[1].lstrip('# ')}")
     elif given.command == "targets":
-        print("\n".join(f"{name:<11}  {words}" for name, words in TARGETS.items()))
+        print("\n".join(f"{name:<11}  {words}" for name, words in targets().items()))
     else:
         return CARRIED_OUT_BY[given.command](given)
     return 0
@@ -115,6 +94,16 @@ def _parser() -> argparse.ArgumentParser:
     server.add_argument("--port", type=int, default=4242)
     server.add_argument("--workers", type=int, default=1, help="processes that evaluate; default: 1")
     return parser
+
+
+def targets() -> dict[str, str]:
+    """Stages that a run can be held to: rules of the workflow that say in one line what they give."""
+    workflow = ROOT / "workflow"
+    files = re.findall(
+        r'^include: "(rules/\w+\.smk)"', (workflow / "Snakefile").read_text(encoding="utf-8"), re.MULTILINE
+    )
+    rules = "".join((workflow / file).read_text(encoding="utf-8") for file in files)
+    return dict(re.findall(r'^rule (\w+):\n    """(.+)"""$', rules, re.MULTILINE))
 
 
 def _serve(given: argparse.Namespace) -> int:

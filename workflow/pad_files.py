@@ -16,14 +16,14 @@ from mesoscale.device.points import (
     plan_points,
 )
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.inputs.table import from_rows
+from mesoscale.inputs.table import film_table, from_rows
 from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import Flats
 from mesoscale.settings import ContactSettings, DeviceSettings, PadSettings
 from workflow.contact_settings import contact_settings
 from workflow.job import settings_from_job
-from workflow.results import Dataset, load_csv, load_h5, write_h5
+from workflow.results import Dataset, load_csv, load_h5, load_json, write_h5
 
 STATES = ("pull_in_V", "release_V", "capacitance_fF", "landed_share", "deepened")
 CURVES = {
@@ -105,11 +105,14 @@ def points_of(inputs: str, contact: ContactSettings, device: DeviceSettings, cou
 
 
 def points_of_job(snakemake: Any) -> tuple[Points, PadSettings]:
-    """The points of a job that has the inputs of the pad, and sections `contact`, `device` and `pad` of its scene."""
+    """The points of a job that has the inputs of a cell, and sections `contact`, `device` and `pad` of its scene."""
     contact = contact_settings(snakemake.params.contact, snakemake)
     device = settings_from_job(DeviceSettings, snakemake.params.device)
     pad = settings_from_job(PadSettings, snakemake.params.pad)
-    return points_of(snakemake.input.inputs, contact, device, pad.points), pad
+    path = snakemake.input.get("topography")
+    film = load_json(path)["film"] if path else {}
+    table = film_table(from_rows(load_csv(snakemake.input.inputs)), film, pad.rms_scatter)
+    return Points(table, contact, device, pad.points), pad
 
 
 def load_model(paths: Sequence[str], points: Points) -> PadModel:

@@ -15,12 +15,9 @@ from mesoscale.settings import DeviceSettings
 from mesoscale.settings.contact import base_modulus
 from mesoscale.settings.definitions import BY_NAME
 from workflow.scene import ROOT, Scene
-from workflow.terminal.cost import history_s
 from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
 
 MATERIALS = ROOT / "config" / "materials"
-LONGEST_JOB_D = 30.0  # of a job that starts again from nothing when it is interrupted
-DAY_S = 86400.0
 
 
 def mistakes(scene: Scene, samples: Mapping[str, str]) -> list[str]:
@@ -176,9 +173,4 @@ def _machine(scene: Scene) -> Iterator[str]:
         yield (
             f"history.cycles = {cycles}: with {scene.history.seeds} surfaces their tables need {needed / 1000:.0f} GB "
             f"of memory, this machine has {present / 1000:.1f}; take fewer of both"
-        )
-    elif (days := history_s(scene.history, scene.contact) / DAY_S) > LONGEST_JOB_D:
-        yield (
-            f"history.cycles = {cycles}: with {scene.history.seeds} surfaces this is one job of {days:.0f} days, which "
-            f"starts again when it is interrupted; accepted are {LONGEST_JOB_D:g}: take fewer cycles or surfaces"
         )

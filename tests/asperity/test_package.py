@@ -86,5 +86,5 @@ def test_a_new_scene_is_valid_and_never_overwritten(tmp_path, monkeypatch, capsy
 def test_plan_runs_nothing_outside_the_checkout(tmp_path):
     command = [sys.executable, "-m", "asperity", "plan", "paper"]
     shown = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert "render_report" in shown.stdout + shown.stderr
+    assert "report" in shown.stdout + shown.stderr
     assert not list(tmp_path.glob("results/*"))

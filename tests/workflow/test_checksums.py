@@ -127,4 +127,4 @@ def test_the_next_run_makes_a_damaged_result_again_and_sees_changed_samples_not_
     assert {path: after.get(path) for path in planted} == {path: before[path] for path in planted}
 
     samples.write_text("rms\n5\n6\n8\n")
-    assert workflow_in.planned(str(scene), "inputs") == {"collect_inputs": 1}
+    assert workflow_in.planned(str(scene), "inputs") == {"inputs": 1}

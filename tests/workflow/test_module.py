@@ -53,7 +53,7 @@ def host(tmp_path):
 @pytest.mark.parametrize("scene", ["ci", "paper"])
 def test_a_host_workflow_plans_the_rules_of_the_module(host, scene):
     planned = host(scene, f"results/{scene}/report.html", "--dry-run", "--quiet", "rules")
-    for rule in ("asperity_collect_inputs", "asperity_fit_law", "asperity_render_report", "all"):
+    for rule in ("asperity_inputs", "asperity_law", "asperity_report", "all"):
         assert rule in planned
 
 

@@ -135,13 +135,13 @@ def test_an_attraction_that_the_grid_does_not_resolve():
 def test_a_run_of_weeks_is_planned_with_its_time_and_refused(workflow_in):
     scene = workflow_in.folder / "mine.yaml"
     scene.write_text("{contact: {mechanics: coupled, pixels: 2048}, uncertainty: {direct_runs: 100000}}")
-    said = workflow_in.plan(str(scene), "sensitivity")
-    assert "a run is refused: uncertainty.direct_runs = 100000: takes " in said
-    assert said.splitlines()[-1].split(" jobs, about ")[1].split()[1] == "h"
-    done = workflow_in.run(str(scene), "sensitivity")
+    said = workflow_in.plan(str(scene), "uq")
+    assert "a run is refused: jobs compute_direct_runs take " in said
+    assert said.split(" jobs, about ")[1].split()[1] == "h"
+    done = workflow_in.run(str(scene), "uq")
     assert done.returncode != 0
     (line,) = errors(done)
-    assert line.startswith(f"ERROR {scene}: uncertainty.direct_runs = 100000: takes ")
+    assert line.startswith(f"ERROR {scene}: jobs compute_direct_runs take ")
     assert not (workflow_in.folder / "results").exists()
 
 

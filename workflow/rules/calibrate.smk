@@ -9,7 +9,7 @@ MEASUREMENT_CHUNKS = chunk_bounds(SCENE.measurements.runs)
 PRIOR_PADS = {}
 if {"release", "pull_in", "sticking"} & set(MEASUREMENT_FILES):
     PRIOR_PADS = {
-        "inputs": f"{RESULTS}/calibration/pad_inputs.csv",
+        "inputs": f"{RESULTS}/calibration/priors.csv",
         "pads": [f"{RESULTS}/calibration/pads/chunk_{chunk}.h5" for chunk in POINT_CHUNKS],
     }
 PRIORS = SCENE.inputs.priors()
@@ -23,11 +23,6 @@ if workflow.is_main_process and MEASUREMENT_FILES:  # a table that cannot be use
             check_points(load_measurements(table, MEASUREMENT_FILES[table.kind]), SCENE.contact.max_force_nN)
     except BadTable as error:
         refuse(error)
-
-
-rule calibrate:
-    input:
-        f"{RESULTS}/calibration/posterior.json",
 
 
 rule collect_priors:
@@ -55,7 +50,6 @@ rule observe_cycles:
         f"{RESULTS}/calibration/cycles/chunk_{{chunk}}.csv",
     log:
         f"{RESULTS}/logs/observe_cycles_{{chunk}}.log",
-    threads: 1
     resources:
         mem_mb=CONTACT_MB,
     params:
@@ -68,20 +62,10 @@ rule observe_cycles:
 
 
 # voltages of switches are compared with switches on pads that are pressed over the prior
-use rule collect_pad_inputs as collect_prior_pad_inputs with:
-    input:
-        **SURFACE,
-        inputs=f"{RESULTS}/calibration/priors.csv",
-    output:
-        f"{RESULTS}/calibration/pad_inputs.csv",
-    log:
-        f"{RESULTS}/logs/collect_prior_pad_inputs.log",
-
-
 use rule press_pads as press_prior_pads with:
     input:
         **SURFACE,
-        inputs=f"{RESULTS}/calibration/pad_inputs.csv",
+        inputs=f"{RESULTS}/calibration/priors.csv",
     output:
         f"{RESULTS}/calibration/pads/chunk_{{chunk}}.h5",
     log:
@@ -90,7 +74,8 @@ use rule press_pads as press_prior_pads with:
         f"press pads over the prior, chunk {{wildcards.chunk}} of {len(POINT_CHUNKS) - 1} and central"
 
 
-rule sample_posterior:
+rule calibrate:
+    """inputs narrowed by your measurements of contacts"""
     input:
         **MEASUREMENT_FILES,
         **SURFACE,
@@ -103,8 +88,7 @@ rule sample_posterior:
         predictive=f"{RESULTS}/calibration/predictive.csv",
         posterior=f"{RESULTS}/calibration/posterior.json",
     log:
-        f"{RESULTS}/logs/sample_posterior.log",
-    threads: 1
+        f"{RESULTS}/logs/calibrate.log",
     resources:
         mem_mb=CONTACT_MB,
     params:
@@ -116,3 +100,8 @@ rule sample_posterior:
         "sample the posterior of the inputs"
     script:
         "../scripts/sample_posterior.py"
+
+
+if SCENE.measurements.tables:
+    SHOWN += rules.calibrate.output
+    KEPT += rules.calibrate.input.cycles

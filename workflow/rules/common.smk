@@ -50,6 +50,8 @@ try:
 except InputError as error:
     refuse(error)
 OXIDES = oxide_glasses(MATERIALS.values())  # by formula
+SHOWN = []  # files of the stages that the scene uses, of which the page is made
+KEPT = []  # what jobs of these stages leave besides; a lost one is made again
 ACCURACY = []  # result files of the error-against-run-time studies, filled by the stages' rules
 STABILITY = []  # result files of the stability studies
 
@@ -72,14 +74,10 @@ def material_path(material):
     return str(CONFIG / "materials" / f"{material.name}.yaml")
 
 
-def in_tail(tail, *files):
-    """The files where the scene has the tail; else what refuses a target that needs them."""
-    return files if tail in SCENE.tails else lambda wildcards: refuse(f"{SCENE_GIVEN}: {left_out(tail)}")
-
-
-def left_out(tail):
-    """One line on a tail that a target needs and the scene has not."""
-    return f"tails: {', '.join(SCENE.tails)}: the target needs the tail {tail}; add it to tails"
+def in_tail(tail):
+    """No input where the scene has the tail; else what refuses a target that needs it."""
+    line = f"{SCENE_GIVEN}: tails: {', '.join(SCENE.tails)}: the target needs the tail {tail}; add it to tails"
+    return [] if tail in SCENE.tails else lambda wildcards: refuse(line)
 
 
 def needed(stage):

@@ -21,11 +21,6 @@ wildcard_constraints:
     crystal="|".join(CRYSTALS),
 
 
-rule elastic:
-    input:
-        f"{RESULTS}/elastic/e_star.json",
-
-
 def quenched_before(wildcards):
     """Cells that a quench must not make once more: one after the other, which costs nothing beside their DFT."""
     return [f"{RESULTS}/elastic/quenched/a{k:02d}.xyz" for k in range(1, int(wildcards.amorphous[1:]))]
@@ -94,7 +89,8 @@ rule scan_crystal:
         "../scripts/scan_crystal.py"
 
 
-rule combine_e_star:
+rule elastic:
+    """effective modulus from density functional theory"""
     input:
         scans=[f"{RESULTS}/elastic/scans/{name}.csv" for name in (*ELASTIC["crystals"], *GLASSES)],
         structures=[f"{RESULTS}/elastic/structures/{name}.json" for name in GLASSES],
@@ -107,13 +103,19 @@ rule combine_e_star:
         e_star=f"{RESULTS}/elastic/e_star.json",
         samples=f"{RESULTS}/elastic/e_star.h5",
     log:
-        f"{RESULTS}/logs/combine_e_star.log",
+        f"{RESULTS}/logs/elastic.log",
     params:
         settings=ELASTIC,
     message:
         "fit equations of state, and combine E* with Poisson's ratio and the counter body"
     script:
         "../scripts/combine_e_star.py"
+
+
+if needed("elastic"):
+    SHOWN += rules.elastic.output
+    KEPT += rules.elastic.input.scans
+    KEPT += expand([*rules.make_amorphous.output, *rules.scan_glass.output], amorphous=GLASSES)
 
 
 rule measure_elastic_accuracy:

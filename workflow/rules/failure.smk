@@ -2,21 +2,14 @@
 
 
 rule failure:
+    """how often the switch fails, down to one in a million"""
     input:
-        in_tail("pad", f"{RESULTS}/device/failure.json"),
-
-
-rule find_failure_rate:
-    input:
-        **SURFACE,
-        inputs=f"{RESULTS}/pad/inputs.csv",
-        model=f"{RESULTS}/pad/model.h5",
+        **PRESSED,
     output:
         rate=f"{RESULTS}/device/failure.json",
         table=f"{RESULTS}/device/failure.csv",
     log:
-        f"{RESULTS}/logs/find_failure_rate.log",
-    threads: 1
+        f"{RESULTS}/logs/failure.log",
     params:
         contact=settings("contact"),
         device=settings("device"),
@@ -28,45 +21,17 @@ rule find_failure_rate:
         "../scripts/find_failure_rate.py"
 
 
-if SCENE.failure.probability is not None and "pad" in SCENE.tails:
-    ACCURACY.append(f"{RESULTS}/accuracy/failure.csv")
-
-
-rule measure_failure_accuracy:
-    input:
-        **rules.find_failure_rate.input,
-    output:
-        f"{RESULTS}/accuracy/failure.csv",
-    log:
-        f"{RESULTS}/logs/measure_failure_accuracy.log",
-    threads: 1
-    params:
-        contact=settings("contact"),
-        device=settings("device"),
-        pad=settings("pad"),
-        failure=settings("failure"),
-    message:
-        "study the error of the failure rate against run time"
-    script:
-        "../scripts/measure_failure_accuracy.py"
-
-
 rule circuit:
+    """the switch for simulators: corners, draws, C-V loop"""
     input:
-        in_tail("pad", f"{RESULTS}/device/circuit.json"),
-
-
-rule make_circuit:
-    input:
-        **rules.find_failure_rate.input,
+        **PRESSED,
     output:
         models=directory(f"{RESULTS}/device/circuit"),
         summary=f"{RESULTS}/device/circuit.json",
         table=f"{RESULTS}/device/circuit.csv",
         loop=f"{RESULTS}/device/loop.csv",
     log:
-        f"{RESULTS}/logs/make_circuit.log",
-    threads: 1
+        f"{RESULTS}/logs/circuit.log",
     params:
         contact=settings("contact"),
         device=settings("device"),
@@ -75,3 +40,7 @@ rule make_circuit:
         "make the switch for circuit simulators"
     script:
         "../scripts/make_circuit.py"
+
+
+if SCENE.failure.probability is not None and "pad" in SCENE.tails:
+    SHOWN += [*rules.failure.output, *rules.circuit.output[1:]]

@@ -3,10 +3,11 @@ from atomistic.hardness.studies import VARIATIONS, variations, varied
 from workflow.hardness_files import check_bodies, hardness_files
 
 HARDNESS = settings("hardness")
+CLOSING_S = {}  # seconds of each closing run
 try:
     BODIES = hardness_files(SCENE.hardness, MATERIALS, CONFIG, lambda path: named_files("hardness.potential", path)[0])
     if needed("hardness") and workflow.is_main_process:
-        check_bodies(SCENE.hardness, BODIES, MATERIALS)
+        CLOSING_S = check_bodies(SCENE.hardness, BODIES, MATERIALS)
 except InputError as error:
     refuse(f"{SCENE_GIVEN}: {error}")
 CLOSINGS, SMALLEST, BASE = BODIES.closings, BODIES.smallest, BODIES.base
@@ -32,11 +33,6 @@ wildcard_constraints:
     variation="|".join(VARIATIONS),
     glass="\\d+",
     tiles="\\d+",
-
-
-rule hardness:
-    input:
-        f"{RESULTS}/hardness/fit.json",
 
 
 rule make_glass:
@@ -103,7 +99,8 @@ rule run_closing:
         "../scripts/run_closing.py"
 
 
-rule fit_hardness:
+rule hardness:
+    """hardness from molecular dynamics"""
     input:
         curves=of_run("closing/{run}.csv"),
         witnesses=of_run("witness/{run}.csv"),
@@ -115,7 +112,7 @@ rule fit_hardness:
         points=f"{RESULTS}/hardness/points.csv",
         fit=f"{RESULTS}/hardness/fit.json",
     log:
-        f"{RESULTS}/logs/fit_hardness.log",
+        f"{RESULTS}/logs/hardness.log",
     params:
         potential=HARDNESS["potential"],
         fit=HARDNESS["fit"],
@@ -124,6 +121,11 @@ rule fit_hardness:
         "find the hardness of each closing run and fit it"
     script:
         "../scripts/fit_hardness.py"
+
+
+if needed("hardness"):
+    SHOWN += [*rules.hardness.output, *rules.hardness.input.curves, *rules.hardness.input.witnesses]
+    KEPT += [*rules.hardness.input.summaries, *expand(rules.make_glass.output, glass=SCENE.hardness.seeds)]
 
 
 # The same run with one choice changed, and hard cases with the scene's own potentials and glasses

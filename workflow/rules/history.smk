@@ -4,11 +4,7 @@ from workflow.terminal.memory import history_MB
 
 
 rule history:
-    input:
-        f"{RESULTS}/history/cycles.csv",
-
-
-rule follow_history:
+    """cycle after cycle, with creep"""
     input:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
@@ -17,8 +13,7 @@ rule follow_history:
         dwell=f"{RESULTS}/history/dwell.csv",
         curves=f"{RESULTS}/history/curves.h5",
     log:
-        f"{RESULTS}/logs/follow_history.log",
-    threads: 1
+        f"{RESULTS}/logs/history.log",
     resources:
         mem_mb=history_MB(SCENE.history, SCENE.contact),
     params:
@@ -28,3 +23,7 @@ rule follow_history:
         "close and open again and again"
     script:
         "../scripts/follow_history.py"
+
+
+if SCENE.history.cycles > 0:
+    SHOWN += rules.history.output

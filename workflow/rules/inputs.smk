@@ -19,18 +19,14 @@ if workflow.is_main_process:
 
 
 rule inputs:
-    input:
-        f"{RESULTS}/inputs.csv",
-
-
-rule collect_inputs:
+    """table of the uncertain inputs"""
     input:
         **INPUT_STAGES,
         **SAMPLES,
     output:
         f"{RESULTS}/inputs.csv",
     log:
-        f"{RESULTS}/logs/collect_inputs.log",
+        f"{RESULTS}/logs/inputs.log",
     params:
         settings=settings("inputs"),
         contact=settings("contact"),
@@ -38,3 +34,6 @@ rule collect_inputs:
         "collect the uncertain inputs"
     script:
         "../scripts/collect_inputs.py"
+
+
+SHOWN += rules.inputs.output

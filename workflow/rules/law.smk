@@ -3,11 +3,6 @@ from mesoscale.uncertainty.chunks import chunk_bounds, collocation_run_count
 RUN_CHUNKS = chunk_bounds(collocation_run_count(len(SCENE.inputs.rows()), SCENE.uncertainty))
 
 
-rule law:
-    input:
-        in_tail("law", f"{RESULTS}/law/parameters.csv", f"{RESULTS}/law/wells.csv", f"{RESULTS}/law/nominal.csv"),
-
-
 rule compute_runs:
     input:
         **SURFACE,
@@ -17,7 +12,6 @@ rule compute_runs:
     log:
         f"{RESULTS}/logs/compute_runs_{{chunk}}.log",
     priority: 1  # a chain of jobs waits for them
-    threads: 1
     resources:
         mem_mb=CONTACT_MB,
     params:
@@ -29,30 +23,25 @@ rule compute_runs:
         "../scripts/compute_runs.py"
 
 
-rule fit_law:
+rule law:
+    """compact law of one cell"""
     input:
+        in_tail("law"),
         inputs=f"{RESULTS}/inputs.csv",
         chunks=[f"{RESULTS}/curves/runs/chunk_{chunk}.h5" for chunk in RUN_CHUNKS],
+        nominal=f"{RESULTS}/curves/nominal.h5",
     output:
         parameters=f"{RESULTS}/law/parameters.csv",
         wells=f"{RESULTS}/law/wells.csv",
+        nominal=f"{RESULTS}/law/nominal.csv",
     log:
-        f"{RESULTS}/logs/fit_law.log",
-    threads: 1
+        f"{RESULTS}/logs/law.log",
     message:
         "fit the force-separation law"
     script:
         "../scripts/fit_law.py"
 
 
-rule fit_nominal_law:
-    input:
-        nominal=f"{RESULTS}/curves/nominal.h5",
-    output:
-        f"{RESULTS}/law/nominal.csv",
-    log:
-        f"{RESULTS}/logs/fit_nominal_law.log",
-    message:
-        "fit the law to the nominal curves"
-    script:
-        "../scripts/fit_nominal_law.py"
+if "law" in SCENE.tails:
+    SHOWN += rules.law.output
+    KEPT += rules.law.input.chunks

@@ -8,43 +8,19 @@ POINT_CHUNKS = {"central": (0, 1)} | {
 }
 
 
-rule pad:
-    input:
-        in_tail("pad", f"{RESULTS}/pad/model.h5"),
-
-
-rule device:
-    input:
-        in_tail("pad", f"{RESULTS}/device/pad_switch.json"),
-
-
-rule collect_pad_inputs:
-    input:
-        **SURFACE,
-        inputs=f"{RESULTS}/inputs.csv",
-    output:
-        f"{RESULTS}/pad/inputs.csv",
-    log:
-        f"{RESULTS}/logs/collect_pad_inputs.log",
-    priority: 2
-    params:
-        rms_scatter=settings("pad")["rms_scatter"],
-    message:
-        "collect the uncertain inputs of the pad, which holds all places of the film"
-    script:
-        "../scripts/collect_pad_inputs.py"
+# what jobs that use the pad read
+PRESSED = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv", "model": f"{RESULTS}/pad/model.h5"}
 
 
 rule press_pads:
     input:
         **SURFACE,
-        inputs=f"{RESULTS}/pad/inputs.csv",
+        inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/pad/points/chunk_{{chunk}}.h5",
     log:
         f"{RESULTS}/logs/press_pads_{{chunk}}.log",
     priority: 2  # first of all: the rest then fills the other cores while the pad is assembled
-    threads: 1
     resources:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
     params:
@@ -58,21 +34,23 @@ rule press_pads:
         "../scripts/press_pads.py"
 
 
-rule assemble_pad:
+rule device:
+    """pads at points of all that is uncertain, and the switch on them"""
     input:
+        in_tail("pad"),
         **SURFACE,
-        inputs=f"{RESULTS}/pad/inputs.csv",
+        inputs=f"{RESULTS}/inputs.csv",
         chunks=[f"{RESULTS}/pad/points/chunk_{chunk}.h5" for chunk in POINT_CHUNKS],
     output:
         model=f"{RESULTS}/pad/model.h5",
+        inputs=f"{RESULTS}/pad/inputs.csv",
         table=f"{RESULTS}/pad/curves.csv",
         switch=f"{RESULTS}/device/pad_switch.json",
         verilog=f"{RESULTS}/device/rough_pad.va",
         spice=f"{RESULTS}/device/rough_pad.sub",
     log:
-        f"{RESULTS}/logs/assemble_pad.log",
+        f"{RESULTS}/logs/device.log",
     priority: 2
-    threads: 1
     params:
         contact=settings("contact"),
         device=settings("device"),
@@ -83,27 +61,6 @@ rule assemble_pad:
         "../scripts/assemble_pad.py"
 
 
-rule measure_pad_accuracy:
-    input:
-        **SURFACE,
-        inputs=f"{RESULTS}/pad/inputs.csv",
-        model=f"{RESULTS}/pad/model.h5",
-    output:
-        f"{RESULTS}/accuracy/pad.csv",
-    log:
-        f"{RESULTS}/logs/measure_pad_accuracy.log",
-    threads: 1
-    resources:
-        mem_mb=contact_MB(SCENE.contact, PILOTS),
-    params:
-        contact=settings("contact"),
-        device=settings("device"),
-        pad=settings("pad"),
-    message:
-        "study the error of the release on the pad against run time"
-    script:
-        "../scripts/measure_pad_accuracy.py"
-
-
 if "pad" in SCENE.tails:
-    ACCURACY.append(f"{RESULTS}/accuracy/pad.csv")
+    SHOWN += rules.device.output
+    KEPT += rules.device.input.chunks

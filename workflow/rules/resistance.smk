@@ -2,19 +2,14 @@
 
 
 rule resistance:
-    input:
-        f"{RESULTS}/device/resistance.csv",
-
-
-rule measure_resistance:
+    """electrical resistance of metal on metal against force"""
     input:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
     output:
         f"{RESULTS}/device/resistance.csv",
     log:
-        f"{RESULTS}/logs/measure_resistance.log",
-    threads: 1
+        f"{RESULTS}/logs/resistance.log",
     resources:
         mem_mb=CONTACT_MB,
     params:
@@ -24,3 +19,7 @@ rule measure_resistance:
         "measure the resistance of closing and opening contacts"
     script:
         "../scripts/measure_resistance.py"
+
+
+if SCENE.resistance.resistivities_nOhm_m is not None:
+    SHOWN += rules.resistance.output

@@ -26,14 +26,6 @@ SURFACE = {"topography": f"{RESULTS}/topography/parameters.json"} if "topography
 JUDGED = [f"{RESULTS}/topography/judged.csv"] if TOPOGRAPHY.scans and SURFACE else []
 
 
-rule topography:
-    input:
-        JUDGED,
-        f"{RESULTS}/topography/spectra.h5",
-        f"{RESULTS}/topography/parameters.json",
-        f"{RESULTS}/topography/surface.png",
-
-
 if not TOPOGRAPHY.scans:
 
     rule write_synthetic_scans:
@@ -91,6 +83,13 @@ rule pool_spectra:
         "../scripts/pool_spectra.py"
 
 
+rule topography:
+    """what the measurements show, and the surface behind them"""
+    input:
+        JUDGED,
+        rules.pool_spectra.output,
+
+
 rule judge_scans:
     input:
         chunks=rules.pool_spectra.input.chunks,
@@ -111,17 +110,6 @@ rule judge_scans:
 
 
 if needed("topography"):
-    ACCURACY.append(f"{RESULTS}/accuracy/topography.csv")
-
-
-rule measure_topography_accuracy:
-    output:
-        f"{RESULTS}/accuracy/topography.csv",
-    log:
-        f"{RESULTS}/logs/measure_topography_accuracy.log",
-    params:
-        settings=settings("topography"),
-    message:
-        "measure error against run time of the scan analysis"
-    script:
-        "../scripts/measure_topography_accuracy.py"
+    SHOWN += [*JUDGED, *rules.pool_spectra.output]
+    KEPT += rules.pool_spectra.input.chunks
+    KEPT += [] if TOPOGRAPHY.scans else rules.write_synthetic_scans.output

@@ -22,7 +22,7 @@ _CURVE_STATUS = text("curve_status", "ok, unconverged, or failed: why", empty=Tr
 
 TABLES = (
     Table(
-        ("inputs.csv", "pad/inputs.csv", "calibration/priors.csv", "calibration/pad_inputs.csv"),
+        ("inputs.csv", "pad/inputs.csv", "calibration/priors.csv"),
         "An uncertain input in use (the paper's Table 1).",
         (
             text("parameter", "name of the input"),

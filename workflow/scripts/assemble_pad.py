@@ -1,12 +1,14 @@
 """Assemble the pad from its points, and say what the switch does over all of them.
 
-In: pad/inputs.csv, pad/points/*.h5 (GPa against nm; V).
-Out: pad/model.h5, pad/curves.csv (MPa against nm), device/pad_switch.json, device/rough_pad.va, device/rough_pad.sub.
+In: inputs.csv, pad/points/*.h5 (GPa against nm; V).
+Out: pad/model.h5, pad/inputs.csv (with the film's typical place, and how much places differ), pad/curves.csv (MPa
+against nm), device/pad_switch.json, device/rough_pad.va, device/rough_pad.sub.
 """
 
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.verilog import verilog_pad
 from mesoscale.device.release import switch_on_pad
+from mesoscale.inputs.table import to_rows
 from mesoscale.pad.curves import curve_rows
 from workflow.job import job
 from workflow.pad_files import load_model, points_of_job, write_solved
@@ -16,6 +18,7 @@ with job(snakemake) as run:
     points, _ = points_of_job(snakemake)
     model = load_model(snakemake.input.chunks, points)
     pad = model.central.pressed
+    write_csv(snakemake.output.inputs, to_rows(points.table))
     write_solved(snakemake.output.model, dict(enumerate((model.central, *model.points))), run.provenance, points.design)
     write_csv(snakemake.output.table, curve_rows(pad.cells))
     write_text(snakemake.output.verilog, verilog_pad(pad.law, pad.cells.count))

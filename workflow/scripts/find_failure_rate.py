@@ -1,6 +1,6 @@
 """Find how often the switch fails, down to one in a million, and what is allowed of hold voltage, film and spring.
 
-In: pad/inputs.csv, pad/model.h5.  Out: device/failure.json, device/failure.csv (V).
+In: inputs.csv, pad/model.h5.  Out: device/failure.json, device/failure.csv (V).
 """
 
 from mesoscale.failure.rate import failure_rate

@@ -1,7 +1,8 @@
-"""Fit the force-separation law to both branches of every curve of the runs.
+"""Fit the force-separation law to both branches of every curve, of the runs and of the nominal cycles.
 
-In: inputs.csv, curves/runs/chunk_NNN.h5 (nm, nN).  Out: law/parameters.csv and law/wells.csv, one row
-per run and branch.
+In: inputs.csv, curves/runs/chunk_NNN.h5, curves/nominal.h5 (nm, nN).
+Out: law/parameters.csv and law/wells.csv, one row per run and branch; law/nominal.csv, one row per nominal curve and
+branch.
 """
 
 from mesoscale.inputs.table import from_rows
@@ -25,3 +26,11 @@ with job(snakemake) as run:
     for table, path in ((rows, snakemake.output.parameters), (wells, snakemake.output.wells)):
         table.sort(key=lambda row: row["run"])
         write_csv(path, table)
+
+    nominal = []
+    curves, root, attributes = load_h5(snakemake.input.nominal)
+    for name in sorted({key.rpartition("/")[0] for key in curves if "/" in key}):
+        about_curve = {**root, **attributes.get(name, {})}
+        area = float(about_curve["cell_area_nm2"])
+        nominal += [{"curve": name, **stored.row} for stored in fit_stored(curves, name, about_curve, area)]
+    write_csv(snakemake.output.nominal, nominal)

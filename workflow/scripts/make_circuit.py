@@ -1,6 +1,6 @@
 """Make the switch for circuit simulators: central, corners and draws, and its slow C-V loop.
 
-In: pad/inputs.csv, pad/model.h5.
+In: inputs.csv, pad/model.h5.
 Out: device/circuit/*.sub and *.va, device/circuit.json, device/circuit.csv, device/loop.csv (fF, V).
 """
 

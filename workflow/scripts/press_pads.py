@@ -1,6 +1,6 @@
 """Press the pads of some points, and solve the switch on each.
 
-In: pad/inputs.csv.  Out: pad/points/chunk_NNN.h5 (GPa against nm; V). Number 0 is the point at central inputs.
+In: inputs.csv.  Out: pad/points/chunk_NNN.h5 (GPa against nm; V). Number 0 is the point at central inputs.
 """
 
 from mesoscale.device.points import solve_point, solve_points, surfaces_of

@@ -1,7 +1,7 @@
-"""Propagate the inputs' uncertainty through the responses and validate these.
+"""Propagate the inputs' uncertainty through the responses, validate these, and rank the inputs.
 
-In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, uq/again.csv, the paper's Table 2.
-Out: uq/outputs.csv (Table 2), uq/surrogate.json, uq/samples.csv, uq/validation.csv,
+In: inputs.csv, law/parameters.csv, uq/direct/chunk_NNN.csv, uq/direct/chunk_again.csv, the paper's Tables 2 and 3.
+Out: uq/outputs.csv (Table 2), uq/sensitivity.csv (Table 3), uq/surrogate.json, uq/samples.csv, uq/validation.csv,
 uq/law.csv (nm, GPa/nm, GPa).
 """
 
@@ -12,8 +12,9 @@ from mesoscale.law.compact import Law
 from mesoscale.law.parameters import FITTED
 from mesoscale.law.samples import band_rows
 from mesoscale.settings import UncertaintySettings
-from mesoscale.uncertainty.paper_tables import table2
+from mesoscale.uncertainty.paper_tables import table2, table3
 from mesoscale.uncertainty.propagation import nodes_of_rows, output_rows, propagate, surrogate_json
+from mesoscale.uncertainty.sensitivity import sensitivity_rows
 from mesoscale.uncertainty.validation import direct_runs_of_rows, validation_rows
 from workflow.job import job, settings_from_job
 from workflow.results import load_csv, write_csv, write_json
@@ -30,7 +31,8 @@ with job(snakemake) as run:
     )
 
     result = propagate(nodes, table, settings, direct)
-    write_csv(snakemake.output.outputs, output_rows(nodes, result, paper, table2(paper_rows, exchanged=True)))
+    outputs = output_rows(nodes, result, paper, table2(paper_rows, exchanged=True))
+    write_csv(snakemake.output.outputs, outputs)
     most_GPa = snakemake.params.max_force_nN / snakemake.params.length_nm**2  # 1 GPa nm^2 = 1 nN
     constants = {"rho_a_nm": Law.rho_a_nm, "alpha_nm": Law.shield_nm, "most_GPa": most_GPa}
     write_json(
@@ -46,3 +48,9 @@ with job(snakemake) as run:
     repeated = (row for path in snakemake.input.again for row in load_csv(path))
     again = direct_runs_of_rows(repeated, table.names, settings.direct_runs)[1]
     write_csv(snakemake.output.validation, validation_rows(direct, nodes, table, result, settings, again, most_GPa))
+
+    run.progress(0.5, "validated; ranks the inputs")
+    seeds_shares = np.array([row["seed_share"] for row in outputs], dtype=float)  # None is not a number
+    effects = load_csv(snakemake.input.table3)
+    printed = table3(effects), table3(effects, as_printed=True)
+    write_csv(snakemake.output.sensitivity, sensitivity_rows(nodes, table, settings, seeds_shares, *printed, direct))

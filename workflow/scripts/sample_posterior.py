@@ -1,7 +1,7 @@
 """Sample the posterior of the inputs, given the scene's measurements.
 
 In: the tables of measurements, calibration/priors.csv, calibration/cycles/chunk_NNN.csv; with voltages of switches
-calibration/pad_inputs.csv and calibration/pads/chunk_NNN.h5 (GPa against nm; V).
+calibration/pads/chunk_NNN.h5 (GPa against nm; V).
 Out: calibration/posterior.json, samples.csv, summary.csv (prior and posterior of the inputs), predictive.csv (what the
 next surface and switch show).
 """

@@ -1,7 +1,6 @@
 """What a run says in the terminal: its plan, and a line for each finished job with the clock and the time left."""
 
 import difflib
-import json
 import logging
 import re
 import sys
@@ -9,7 +8,6 @@ import textwrap
 import time
 from collections import Counter, defaultdict
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from shutil import disk_usage
 from typing import Any
@@ -18,22 +16,12 @@ from snakemake.exceptions import WorkflowError
 
 from asperity.foreign_text import COLUMNS, shown, wrapped
 from workflow.job import last_line
-from workflow.terminal.cost import Costs, wall_seconds
+from workflow.terminal.cost import Costs, refusal, wall_seconds
 
 FULL_DISK = 100_000  # bytes left: less than a job and its log need
 LAST_PART = 0.1  # of the time of a job at work that takes longer than planned, still to come
 
 NO_SUCH_TARGET = re.compile(r"MissingRuleException:\nNo rule to produce (.*) \(if you use input functions")
-
-
-@dataclass(frozen=True)
-class Waiting:
-    """A job that has not finished; `needs` are the numbers of others."""
-
-    rule: str
-    wildcards: dict[str, str]
-    needs: list[int]
-    priority: int
 
 
 class Terminal(logging.Handler):
@@ -45,21 +33,19 @@ class Terminal(logging.Handler):
     costs : of the scene.
     nothing_to_do : what to say when every result is there.
     hours : the longest run on one machine.
-    plan : file to write with the times of the plan; empty: none.
 
     Attributes
     ----------
     refusal : why the planned run is longer than that; empty where it is not, or a cluster takes its jobs.
     """
 
-    def __init__(self, workflow: Any, costs: Costs, nothing_to_do: str, hours: float, plan: str = "") -> None:
+    def __init__(self, workflow: Any, costs: Costs, nothing_to_do: str, hours: float) -> None:
         super().__init__()
-        self._plan_file = plan
         self._workflow, self._costs, self._nothing_to_do, self._hours = workflow, costs, nothing_to_do, hours
         self.refusal = ""
         self._planned = False
         self._jobs = self._done = 0
-        self._left: dict[int, Waiting] = {}  # jobs that have not finished, by number
+        self._left: dict[int, Any] = {}  # Snakemake's jobs that have not finished, by number
         self._running: dict[int, tuple[str, float]] = {}  # message and start by number of the job
 
     def emit(self, record: logging.LogRecord) -> None:
@@ -88,39 +74,27 @@ class Terminal(logging.Handler):
         _say(f"ERROR {shown(target)}: no such target{hint} (asperity targets lists the stages)")
 
     def _plan(self) -> None:
-        jobs = [job for job in self._workflow.dag.needrun_jobs() if not job.rule.norun]
-        needed = self._workflow.dag.job_dependencies
-        self._left = {
-            job.jobid: Waiting(
-                job.rule.name, dict(job.wildcards_dict), [other.jobid for other in needed(job)], job.priority
-            )
-            for job in jobs
-        }
-        self._jobs = len(jobs)
-        costs = {number: self._seconds(job) for number, job in self._left.items()}
-        unknown = sorted({job.rule for number, job in self._left.items() if costs[number] is None})
-        by_rule: defaultdict[str, float] = defaultdict(float)
-        for number, job in self._left.items():
-            by_rule[job.rule] += costs[number] or 0.0
+        self._left = {job.jobid: job for job in self._workflow.dag.needrun_jobs() if not job.rule.norun}
+        self._jobs = len(self._left)
+        seconds: defaultdict[str, float] = defaultdict(float)
+        for job in self._left.values():
+            seconds[job.rule.name] += self._seconds(job)
         wall_s = self._wall_s()
         if self._workflow.local_exec:
-            self.refusal = self._costs.refusal(by_rule, wall_s, self._cores, self._hours)
-        if self._plan_file:
-            plan = {"seconds": by_rule, "wall_s": wall_s, "cores": self._cores}
-            Path(self._plan_file).write_text(json.dumps(plan), encoding="utf-8")
-        wall = duration(wall_s) if jobs else "no time"
-        besides = f", and {', '.join(unknown)}, whose time nobody has measured" if unknown else ""
+            self.refusal = refusal(seconds, wall_s, self._cores, self._hours)
         if self._workflow.dryrun:
-            counts = Counter(job.rule for job in self._left.values())
+            counts = Counter(job.rule.name for job in self._left.values())
             rows = [
                 ("job", "count", "one core"),
-                *((rule, str(counts[rule]), duration(cost) if cost else "?") for rule, cost in by_rule.items()),
+                *((rule, str(counts[rule]), duration(seconds[rule])) for rule in seconds),
             ]
             width = max(len(row[0]) for row in rows)
             _say("\n".join(f"{rule:<{width}}  {count:>5}  {cost:>9}" for rule, count, cost in rows) + "\n")
         if self._workflow.dryrun and self.refusal:
             _say(wrapped(f"a run is refused: {self.refusal}"))
-        _say(wrapped(f"{self._jobs} jobs, about {wall} on {self._cores} cores{besides}"))
+        wall = f"about {duration(wall_s)}" if self._left else "no time"
+        guessed = "" if self._costs.known(seconds) else ", by typical times where none is known of this scene"
+        _say(wrapped(f"{self._jobs} jobs, {wall} on {self._cores} cores{guessed}"))
 
     @property
     def _cores(self) -> int:
@@ -129,21 +103,19 @@ class Terminal(logging.Handler):
         except WorkflowError:  # a cluster's jobs have no common number
             return self._workflow.nodes
 
-    def _seconds(self, job: "Waiting") -> float | None:
-        return self._costs.seconds(job.rule, job.wildcards)
+    def _seconds(self, job: Any) -> float:
+        return self._costs.seconds(job.rule.name, dict(job.wildcards_dict))
 
     def _wall_s(self) -> float:
         """Time to the end, side by side, by what the jobs took so far; jobs at work have their last part left."""
-        numbers = {number: place for place, number in enumerate(self._left)}
-        seconds = [self._seconds(job) or 0.0 for job in self._left.values()]
+        seconds = {number: self._seconds(job) for number, job in self._left.items()}
         for number, (_, started) in self._running.items():
-            if number in numbers:
-                planned, spent = seconds[numbers[number]], time.monotonic() - started
-                seconds[numbers[number]] = max(planned - spent, LAST_PART * spent)
-        needs = [[numbers[other] for other in job.needs if other in numbers] for job in self._left.values()]
-        # jobs at work have a core already
-        priorities = [10 * (number in self._running) + job.priority for number, job in self._left.items()]
-        return wall_seconds(seconds, needs, self._cores, priorities)
+            if number in seconds:
+                spent = time.monotonic() - started
+                seconds[number] = max(seconds[number] - spent, LAST_PART * spent)
+        needed = self._workflow.dag.job_dependencies
+        needs = {number: [other.jobid for other in needed(job)] for number, job in self._left.items()}
+        return wall_seconds(seconds, needs, self._cores)
 
     def _finish(self, number: int) -> None:
         message, started = self._running.pop(number, ("", 0.0))
@@ -152,8 +124,8 @@ class Terminal(logging.Handler):
         job = self._left.pop(number)
         self._done += 1
         took = time.monotonic() - started
-        if self._workflow.local_exec and self._seconds(job) is not None:  # on a cluster jobs wait
-            self._costs.learn(job.rule, job.wildcards, took)
+        if self._workflow.local_exec:  # on a cluster jobs wait
+            self._costs.learn(job.rule.name, dict(job.wildcards_dict), took)
         rest = f", {duration(self._wall_s())} left" if self._left else ""
         start = f"{time.strftime('%H:%M')}  {self._done:>{len(str(self._jobs))}} of {self._jobs}  "
         end = f" ({duration(took)}){rest}"
@@ -186,7 +158,7 @@ def duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 90 * 60 else f"{seconds / 3600:.1f} h"
 
 
-def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: str, hours: float, plan: str) -> Terminal:
+def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: str, hours: float) -> Terminal:
     """Let `Terminal` tell what goes on instead of Snakemake, whose warnings and errors stay."""
 
     def is_needed(record: logging.LogRecord) -> bool:
@@ -196,10 +168,12 @@ def speak(workflow: Any, logger: logging.Logger, costs: Costs, nothing_to_do: st
 
     for handler in logger.handlers:
         handler.addFilter(is_needed)
-    terminal = Terminal(workflow, costs, nothing_to_do, hours, plan)
+    terminal = Terminal(workflow, costs, nothing_to_do, hours)
     logger.addHandler(terminal)
     return terminal
 
 
 def _say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
+    # in one piece: a reader that leaves after the first line must not end the run within the text
+    sys.stderr.write(f"{text}\n")
+    sys.stderr.flush()

@@ -1,4 +1,4 @@
-"""The switch for circuits: its corners, its slow loop."""
+"""The switch for circuits: its corners and its slow loop."""
 
 from dataclasses import replace
 
