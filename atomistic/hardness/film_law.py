@@ -13,7 +13,17 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from atomistic.hardness.plateau import RULES
-from atomistic.hardness.size_effect import FIT_RULES, SYSTEMATIC, Run, spearman, summary
+from atomistic.hardness.size_effect import (
+    FIT_RULES,
+    SLOPES,
+    SYSTEMATIC,
+    Run,
+    energy_range,
+    samples_of,
+    spearman,
+    steepness,
+    summary,
+)
 
 
 @dataclass(frozen=True)
@@ -28,6 +38,7 @@ class FilmFit:
     bin_nm : of contact length: a run has one mean stress in each.
     least_points, least_thicknesses : mean stresses of films, and their thicknesses.
     trials, draws : values drawn from the prior, and how many of them are kept by their likelihood.
+    negligible : likelihood over the largest that need not be drawn again.
     prior : ranges of H_film, H_base, k, m.
     """
 
@@ -35,8 +46,9 @@ class FilmFit:
     bin_nm: float = 0.5
     least_points: int = 3
     least_thicknesses: int = 2
-    trials: int = 400_000
+    trials: int = 200_000
     draws: int = 2000
+    negligible: float = 1e-4
     prior: tuple[tuple[float, float], ...] = ((2, 20), (0.5, 100), (1e-3, 10), (0.5, 4))
 
 
@@ -186,18 +198,31 @@ def error_left_out(
 def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
     """H_film, H_base, k and m by their likelihood, shape (draws, 4); the prior is flat in the logarithms and in m.
 
-    The misfits of a run are one error, so that N runs of unknown scatter have the likelihood S^(-N/2), S the sum of
-    squares (the scatter's own prior is Jeffreys's): seeds are too few for a bootstrap.
+    The mean misfit of a run is one error, so that N runs of unknown scatter have the likelihood S^(-N/2), S the sum of
+    squares (the scatter's own prior is Jeffreys's): seeds are too few for a bootstrap. With the bins of a run counted
+    each, 90 % intervals hold k and m of made-up films in 98 to 100 % of cases, with one mean a run in 88 to 91 %
+    (study `hardness.film_coverage`).
+    A second round draws where the first found a likelihood that counts.
     """
     low, high = np.array(FILM_FIT.prior).T
-    values = rng.uniform([*np.log(low[:3]), low[3]], [*np.log(high[:3]), high[3]], (FILM_FIT.trials, 4))
-    values[:, :3] = np.exp(values[:, :3])
-    squares = np.zeros(FILM_FIT.trials)
-    for _, thickness, length, stress in zip(*points, strict=True):
-        squares += np.log(film(values.T, length, thickness) / stress) ** 2
-    runs = len(set(zip(points.seed, points.thickness_nm, strict=True)))
-    weights = (squares / squares.min()) ** (-runs / 2)
-    return values[rng.choice(FILM_FIT.trials, FILM_FIT.draws, p=weights / weights.sum())]
+    low, high = np.array([*np.log(low[:3]), low[3]]), np.array([*np.log(high[:3]), high[3]])
+    drawn, weights = _weighed(points, rng.uniform(low, high, (FILM_FIT.trials, 4)))
+    counts = drawn[weights > FILM_FIT.negligible]
+    drawn, weights = _weighed(points, rng.uniform(counts.min(axis=0), counts.max(axis=0), drawn.shape))
+    kept = drawn[rng.choice(FILM_FIT.trials, FILM_FIT.draws, p=weights / weights.sum())]
+    return np.column_stack([np.exp(kept[:, :3]), kept[:, 3]])
+
+
+def _weighed(points: FilmPoints, drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Draws of ln H_film, ln H_base, ln k and m, shape (n, 4), with their likelihoods over the largest."""
+    _, run = np.unique(np.column_stack([points.seed, points.thickness_nm]), axis=0, return_inverse=True)
+    per_run = np.bincount(run.ravel())
+    values = np.vstack([np.exp(drawn[:, :3].T), drawn[:, 3]])
+    misfits = np.zeros((per_run.size, len(drawn)))
+    for of, _, thickness, length, stress in zip(run.ravel(), *points, strict=True):
+        misfits[of] += np.log(film(values, length, thickness) / stress) / per_run[of]
+    squares = (misfits**2).sum(axis=0)
+    return drawn, (squares / squares.min()) ** (-per_run.size / 2)
 
 
 def fit_films(
@@ -205,6 +230,7 @@ def fit_films(
     curves: Mapping[str, Sequence[Mapping[str, float]]],
     glasses: Sequence[Mapping[str, Any]],
     area_error: float,
+    indentation_GPa: tuple[float, float] | None = None,
 ) -> dict[str, Any]:
     """Fit the law to the runs of a scene with films, and judge whether it may be used.
 
@@ -213,6 +239,7 @@ def fit_films(
     points, curves : of `points_of`.
     glasses : properties of the glasses, each with its gate.
     area_error : largest error of the contact area by the calibrations in use, as a fraction.
+    indentation_GPa : lowest and highest measured hardness of the oxide; None: not known.
 
     Returns
     -------
@@ -228,6 +255,10 @@ def fit_films(
     of = points_of(points, curves)
     if few := too_few(of):
         reasons.append(few)
+    throughout = [point for point in points if point["sound"] == "True" and not point["film_nm"]]
+    slopes = steepness(throughout) if throughout else {}
+    if throughout and not slopes:
+        reasons.append(f"asperities flatter or steeper than RMS slopes of {min(SLOPES):.2g} to {max(SLOPES):.2g}")
     counts = {"points_used": sound, "points_total": len(points), "points_rejected": unsound}
     result = {"method": "film", **counts, "inputs": {}, "gate": {"passed": not reasons, "reasons": reasons}}
     if few:
@@ -240,10 +271,13 @@ def fit_films(
     ]
     draws *= np.exp([shared[0], shared[0], shared[1], 0 * shared[1]]).T
     h_film, base, k, m = draws.T
+    low, high = energy_range(float(np.median(h_film)), slopes, indentation_GPa)
+    result["energies"] = [low, high]
+    h_film *= rng.uniform(low, high, len(h_film))
     result["inputs"] = {
-        "h_film": _samples(h_film, "GPa"),
-        "k_film": _samples(k, "1") | {"correlation": {"h_film": spearman(h_film, k)}},
-        "m_film": _samples(m, "1") | {"correlation": {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}},
+        "h_film": {**samples_of(h_film, "GPa"), "steepness": slopes},
+        "k_film": samples_of(k, "1") | {"correlation": {"h_film": spearman(h_film, k)}},
+        "m_film": samples_of(m, "1") | {"correlation": {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}},
     }
     result["film"] = {
         "base_GPa": summary(base),
@@ -254,9 +288,3 @@ def fit_films(
         ],
     }
     return result
-
-
-def _samples(values: np.ndarray, unit: str) -> dict[str, Any]:
-    """An input's distribution: its quantiles, each as likely as the others."""
-    shares = (np.arange(200) + 0.5) / 200
-    return {"distribution": "samples", "values": np.quantile(values, shares).tolist(), "unit": unit}

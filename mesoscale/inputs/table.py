@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,8 @@ def collect(
     InputError : a stage's gate failed, a stage lacks an input, or a range crosses a physical bound.
     """
     rows, pairs = [], {(pair.first, pair.second): pair.rank for pair in settings.correlations}
+    for names, rank in joint_samples(settings.rows(law)).items():
+        pairs.setdefault(names, rank)
     for name, row in settings.rows(law).items():
         if row.origin == "literature":
             given, source, where = stated_distribution(name, row), row.source or "scene", f"inputs.{name}"
@@ -46,7 +49,7 @@ def collect(
             source = files[row.origin]
             entry = _from_stage(name, row.origin, stages[row.origin], source)
             where = f"{source}: inputs.{name}"
-            given = _distribution(entry, where)
+            given = distribution_of(entry, where)
             for other, rank in entry.get("correlation", {}).items():
                 partner = settings.rows(law).get(other)
                 if row.origin == "calibration":  # a posterior has its own correlations, among its own inputs
@@ -75,7 +78,7 @@ def film_table(table: InputTable, film: Mapping[str, Any], scatter: Sequence[flo
     InputError : a range crosses a physical bound.
     """
     rows = [
-        replace(row, distribution=_distribution(film[row.name], f"{row.source}: film.{row.name}"))
+        replace(row, distribution=distribution_of(film[row.name], f"{row.source}: film.{row.name}"))
         if row.origin == "topography" and row.name in film
         else row
         for row in table.rows
@@ -85,7 +88,7 @@ def film_table(table: InputTable, film: Mapping[str, Any], scatter: Sequence[flo
         stated = Distribution("uniform", a=scatter[0], b=scatter[1])
         rows.append(UncertainInput(name, "1", stated, "literature", "pad.rms_scatter"))
     elif rms.origin == "topography":
-        given = _distribution(film[name], f"{rms.source}: film.{name}")
+        given = distribution_of(film[name], f"{rms.source}: film.{name}")
         rows.append(UncertainInput(name, "1", given, rms.origin, rms.source))
     for row in rows:
         _check_range(row.name, row.distribution, f"{row.source}: film.{row.name}")
@@ -109,7 +112,8 @@ def check_literature(settings: InputsSettings) -> dict[str, tuple[float, float]]
     for name, row in rows.items():
         if row.origin == "literature":
             spans[name] = _check_range(name, stated_distribution(name, row), f"inputs.{name}")
-    correlation_matrix(list(rows), {(pair.first, pair.second): pair.rank for pair in settings.correlations})
+    stated = {(pair.first, pair.second): pair.rank for pair in settings.correlations}
+    correlation_matrix(list(rows), joint_samples(rows) | stated)
     return spans
 
 
@@ -170,10 +174,39 @@ def stated_distribution(name: str, row: DistributionRow, section: str = "inputs"
     """
     if isinstance(row.values, tuple):
         return Distribution(row.distribution, **dict(zip(NUMBERS, row.values, strict=False)))
-    return Distribution("samples", values=_read_samples(name, row.values or "", f"{section}.{name}"))
+    return Distribution("samples", values=np.sort(_read_samples(name, row.values or "", f"{section}.{name}")))
 
 
-def _distribution(entry: Mapping[str, Any], where: str) -> Distribution:
+def joint_samples(rows: Mapping[str, DistributionRow]) -> dict[tuple[str, str], float]:
+    """Rank correlations of inputs whose samples stand in the same file, a row of it one joint sample.
+
+    Raises
+    ------
+    InputError : a file has samples of an input in use that takes its own from elsewhere.
+    """
+    files, pairs = dict.fromkeys(row.values for row in rows.values() if isinstance(row.values, str)), {}
+    for file in files:
+        names = [name for name, row in rows.items() if row.values == file]
+        key = f"inputs.{names[0]}.values = {file}"
+        if partners := sorted((set(foreign_table(file, key)[0]) & set(rows)) - set(names)):
+            raise InputError(f"{key}: holds samples of {partners[0]} beside; give inputs.{partners[0]} the same file")
+        from scipy.stats import spearmanr  # slow to import
+
+        columns = {name: _read_samples(name, file, f"inputs.{name}") for name in names}
+        for first, second in combinations(names, 2):
+            if np.ptp(columns[first]) and np.ptp(columns[second]):
+                rank: Any = spearmanr(columns[first], columns[second])
+                pairs[first, second] = float(rank.statistic)
+    return pairs
+
+
+def distribution_of(entry: Mapping[str, Any], where: str) -> Distribution:
+    """The distribution of an input as the result file `where` of a stage has it.
+
+    Raises
+    ------
+    InputError : it is none.
+    """
     if entry.get("distribution") == "samples":  # of the calibration
         return Distribution("samples", values=np.sort(np.asarray(entry["values"], float)))
     numbers: dict[str, Any] = {key: float(entry[key]) for key in NUMBERS if entry.get(key) is not None}
@@ -207,7 +240,7 @@ def _read_samples(name: str, file: str, key: str) -> np.ndarray:
         raise InputError(f"{key}.values = {file}: needs a column {name} with one number a row") from None
     if values.size < 2 or not np.isfinite(values).all():
         raise InputError(f"{key}.values = {file}: {values.size} samples; at least 2, all finite, are needed")
-    return np.sort(values)
+    return values
 
 
 def _check_range(name: str, given: Distribution, where: str) -> tuple[float, float]:
