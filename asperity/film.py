@@ -31,7 +31,7 @@ from mesoscale.settings import (
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.settings.definitions import definition
 from mesoscale.topography.measurements import files_in
-from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.measurements.loading import Measurement, load_measurements, with_limits
 from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import in_order, record
@@ -57,7 +57,7 @@ MATERIAL = {
 """The material where none is given: the paper's films, and D0 of silica."""
 
 
-class _Shown(ABC):
+class Shown(ABC):
     """What says itself in lines of text: the first alone in a terminal, all of them in a notebook."""
 
     @abstractmethod
@@ -71,7 +71,7 @@ class _Shown(ABC):
         return f"<pre>{html.escape(chr(10).join(self.lines()))}</pre>"
 
 
-class Film(_Shown):
+class Film(Shown):
     """What scans, line profiles and containers say together of one surface.
 
     Parameters
@@ -111,9 +111,13 @@ class Film(_Shown):
         records = in_order(arrays, attributes)
         pooled = pool(records, attributes, self.settings, cell_nm=None, cut_off=True, pixels=GROWN_PIXELS)
         self._spectra = pooled.spectra
-        self._levelled = {name: data["heights"] for name, data in arrays.items() if "heights" in data}
         rows = scan_rows(pooled, attributes, None)
         self.description = parameters(pooled, rows, self.settings, None)
+
+    @property
+    def maps(self) -> list[Scan]:
+        """The maps among the measurements, levelled; `asperity.press` presses one as it is."""
+        return [clean(item.data, self.settings) for item in self.measurements if isinstance(item.data, Scan)]
 
     @property
     def doubts(self) -> list[str]:
@@ -136,12 +140,12 @@ class Film(_Shown):
         with needs("run"):
             import matplotlib.pyplot as plt
         figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
-        maps = (item.data for item in self.measurements if isinstance(item.data, Scan))
-        if (first := next(maps, None)) is not None:
+        maps = self.maps
+        for first in maps[:1]:
             x_um, y_um = (length / 1000 for length in first.lengths_nm)
-            image = left.imshow(self._levelled[first.name].T, extent=(0, x_um, 0, y_um), origin="lower", cmap="Greys_r")
+            image = left.imshow(first.heights_nm.T, extent=(0, x_um, 0, y_um), origin="lower", cmap="Greys_r")
             figure.colorbar(image, ax=left, label="height (nm)")
-        left.set(xlabel="x (µm)", ylabel="y (µm)", title=first.name if first else "no map")
+        left.set(xlabel="x (µm)", ylabel="y (µm)", title=maps[0].name if maps else "no map")
         for number, item in enumerate(self._spectra):
             q, psd = item.spectrum.q, item.spectrum.psd
             trusted = (q >= item.low) & (q <= item.high)
@@ -201,7 +205,7 @@ class Film(_Shown):
 
 
 @dataclass(frozen=True, repr=False)
-class Contact(_Shown):
+class Contact(Shown):
     """A film pressed onto a flat.
 
     Attributes
@@ -277,7 +281,7 @@ class Contact(_Shown):
 
 
 @dataclass(frozen=True, repr=False)
-class Switch(_Shown):
+class Switch(Shown):
     """A switch on a pad.
 
     Attributes
