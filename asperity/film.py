@@ -40,8 +40,6 @@ from mesoscale.topography.summary import doubt_lines, measurement_lines, paramet
 Material = Mapping[str, float | InputRow | Any]
 """Numbers, or distributions as `InputRow`, by the names of a scene's inputs: e_star, h_macro, h_prime, hamaker, …"""
 
-RECOMMENDED = {"mechanics": "coupled", "attraction": "offset"}
-"""Of a contact: all asperities on one elastic half-space, and walls that are D0 apart at touch (docs/contact.md)."""
 PIXELS = {128: 4.0, 256: 4.0, 512: 1.0, 1024: 1.0, 2048: 1.0}
 """Grids, and how far beyond a film's cut-off they must resolve: small ones are for films of long waves."""
 GROWN_PIXELS = 512
@@ -190,7 +188,7 @@ class Film(Shown):
         table = self.inputs(material)
         described, side = self.description, self.description["cell_nm"]
         pixels = pixels or pixels_for(described["inputs"]["q1"], side)
-        settings = ContactSettings(**RECOMMENDED, pixels=pixels, surface=described["surface"]).on_cell(side)
+        settings = ContactSettings(pixels=pixels, surface=described["surface"]).on_cell(side)
         check_resolved(table, settings.nyquist_per_nm)
         on_grid, (inputs, settings) = settings, contact_of(table.medians(), settings)
         fields: list[tuple[np.ndarray, np.ndarray]] = []

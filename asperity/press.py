@@ -125,7 +125,7 @@ def press(
         raise InputError("loads_nN: accepted are rising loads in nN")
     hardness = {"h_macro": 0.0 if h_macro is None else h_macro, "h_prime": h_prime}
     inputs = ContactInputs(hamaker=0.0, e_star=e_star, **hardness, q0=1.0, hurst=0.5, rms=0.0)
-    settings = ContactSettings(model="elastic" if h_macro is None else "plastic", mechanics="coupled").model_copy(
+    settings = ContactSettings(model="elastic" if h_macro is None else "plastic").model_copy(
         update={"pixels": len(surface), "length_nm": spacing * len(surface)}
     )
     offset, lowest = float(surface.mean()), float(surface.min())
@@ -172,7 +172,7 @@ def _pull(attraction: Law, gap: np.ndarray, contact: CoupledContact) -> float:
     sites = np.arange(contact.heights.size, dtype=np.int32)
     weight = attracting(sites, contact.place, contact.pressure, contact.n, False)
     weight = weight.reshape(contact.n, contact.n)[: gap.shape[0], : gap.shape[1]]
-    stress = np.where(weight > 0.0, checked_array("attraction(gap)", attraction(gap), "GPa", missing=True), 0.0)
-    if stress.shape != gap.shape or not np.isfinite(stress).all():
+    stress = checked_array("attraction(gap)", attraction(gap), "GPa", missing=True)
+    if stress.shape != gap.shape or not np.isfinite(stress[weight > 0.0]).all():
         raise InputError("attraction: accepted is a function of an array of gaps (nm) with finite pressures (GPa)")
-    return -float((weight * stress).sum()) * contact.site_area
+    return -float(weight[weight > 0.0] @ stress[weight > 0.0]) * contact.site_area

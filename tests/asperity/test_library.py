@@ -14,12 +14,12 @@ from mesoscale.topography.measurements.loading import write_gwy
 
 TABLE_1 = Path(__file__).parents[2] / "config" / "paper" / "table1.csv"
 INPUTS = asp.ContactInputs(0.215, 91.0, 1.95, 8.375, q0=0.025, hurst=0.7, rms=5.0)
-SMALL = asp.ContactSettings(pixels=64, length_nm=250.0, max_force_nN=500.0)
+SMALL = asp.ContactSettings(mechanics="asperity", pixels=64, length_nm=250.0, max_force_nN=500.0)
 
 
 @pytest.fixture(scope="module")
 def film(tmp_path_factory):
-    settings = asp.ContactSettings(pixels=512, length_nm=5000.0)
+    settings = asp.ContactSettings(mechanics="asperity", pixels=512, length_nm=5000.0)
     path = tmp_path_factory.mktemp("film") / "film.gwy"
     write_gwy(path, asp.Scan(asp.random_surface(INPUTS, settings, 1), (5000.0, 5000.0), "film"))
     return path
@@ -51,7 +51,7 @@ def test_a_film_of_known_roughness_is_measured_and_pressed(film):
 
 
 def test_heights_of_your_own_have_their_peaks_where_an_instrument_has_them():
-    settings = asp.ContactSettings(pixels=256, length_nm=2500.0)
+    settings = asp.ContactSettings(mechanics="asperity", pixels=256, length_nm=2500.0)
     flat_peaks = -np.exp(asp.random_surface(INPUTS, settings, 1) / 4)  # deep pits
     up, down = (
         asp.Film(asp.Scan(z, (2500.0, 2500.0), "own"), line_alignment="none") for z in (flat_peaks, -flat_peaks)
@@ -62,7 +62,7 @@ def test_heights_of_your_own_have_their_peaks_where_an_instrument_has_them():
 
 def test_unlike_films_raise_a_doubt_before_anything_is_computed():
     """Maps of 1 and 5 um of equal height: other spectra where both see the surface."""
-    settings = [asp.ContactSettings(pixels=256, length_nm=side) for side in (1000.0, 5000.0)]
+    settings = [asp.ContactSettings(mechanics="asperity", pixels=256, length_nm=side) for side in (1000.0, 5000.0)]
     inputs = [replace(INPUTS, hurst=0.3), replace(INPUTS, hurst=0.95, q0=0.02)]
     scans = [
         asp.Scan(asp.random_surface(i, s, 1), (s.length_nm, s.length_nm), f"{s.length_nm:g}")
@@ -126,7 +126,7 @@ class Absent:
 sys.meta_path.insert(0, Absent())
 import asperity as asp
 cycle = asp.run_cycle(asp.ContactInputs(0.215, 91.0, 1.95, 8.375, 0.025, 0.75, 8.5),
-                      asp.ContactSettings(pixels=64, length_nm=250.0), seed=1, max_force_nN=500.0)
+                      asp.ContactSettings(mechanics="asperity", pixels=64, length_nm=250.0), seed=1, max_force_nN=500.0)
 print(cycle.converged)
 try:
     asp.Film(sys.argv[1])

@@ -102,7 +102,7 @@ def test_a_pressed_map_is_drawn_and_says_what_it_is():
         ({"e_star": -1.0}, "e_star"),
         ({"counterface": SPHERE[1:, 1:]}, "one shape"),
         ({"contact_at": "top"}, "highest"),
-        ({"attraction": lambda gap: 1.0}, "function of an array"),
+        ({"attraction": lambda gap: 1.0}, "a function of an array"),
         ({"attraction": lambda gap: gap / 0}, "finite"),
     ],
 )

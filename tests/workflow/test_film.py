@@ -23,7 +23,7 @@ def scans(tmp_path_factory):
     """Two places of a film whose heights are skewed, and a file that is no scan."""
     folder = tmp_path_factory.mktemp("film") / "scans"
     folder.mkdir()
-    settings = asp.ContactSettings(pixels=256, length_nm=2500.0)
+    settings = asp.ContactSettings(mechanics="asperity", pixels=256, length_nm=2500.0)
     inputs = asp.ContactInputs(0.215, 91.0, 1.95, 8.375, q0=0.025, hurst=0.7, rms=5.0)
     for seed in (1, 2):
         heights = 5.0 * np.exp(asp.random_surface(inputs, settings, seed) / 10.0)

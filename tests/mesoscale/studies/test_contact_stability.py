@@ -65,7 +65,10 @@ def test_extreme_cases_keep_all_invariants(mechanics, case):
 
 
 def test_a_scene_is_tried_at_its_own_inputs_and_settings():
-    inputs, settings = replace(MIDDLE, e_star=300.0), ContactSettings(pixels=64, length_nm=62.5, retardation_nm=100.0)
+    inputs, settings = (
+        replace(MIDDLE, e_star=300.0),
+        ContactSettings(mechanics="asperity", pixels=64, length_nm=62.5, retardation_nm=100.0),
+    )
     cases = {case.name: case for case in extreme_cases(inputs, settings)}
     assert cases["A_H = 0"].inputs == replace(inputs, hamaker=0.0)
     assert cases["E* x 1000"].inputs.e_star == 3e5
@@ -91,7 +94,7 @@ def test_draws_are_from_table_1():
 
 def test_a_gain_of_energy_over_few_points_is_judged_on_a_finer_path():
     """In this draw two asperities merge; 40 steps see the jump at another place on opening than on closing."""
-    inputs, settings = draw_inputs(1160), ContactSettings(pixels=128)
+    inputs, settings = draw_inputs(1160), ContactSettings(mechanics="asperity", pixels=128)
     heights = random_surface(inputs, settings, 3)
     cycle = run_cycle(inputs, settings, 3, heights=heights, contact_at="lowest", keep_surface=True)
     (words,) = violations(cycle, inputs, settings)
