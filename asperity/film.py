@@ -92,6 +92,11 @@ class Film(Shown):
         self, files: str | Path | Scan | Iterable[str | Path | Scan], tip_nm: float | None = None, **settings: Any
     ) -> None:
         given = [files] if isinstance(files, (str, Path, Scan)) else list(files)
+        if not all(isinstance(item, (str, Path, Scan)) for item in given):
+            raise InputError(
+                "Film: heights alone have no side; give Scan(heights_nm, (length_x_nm, length_y_nm), name), or press "
+                "them by asp.press(heights, side_nm, loads_nN, e_star)"
+            )
         sources = [part for item in given for part in ([item] if isinstance(item, Scan) else files_in(item))]
         if not sources:
             raise InputError(f"{', '.join(map(str, given)) or 'files'}: nothing to read; give scans of a surface")
@@ -301,11 +306,12 @@ class Switch(Shown):
 
     def lines(self) -> Iterator[str]:
         """Pull-in, release, and why not to trust them."""
-        cells, states = self.content["cells_computed"], self.states
+        cells, states, reasons = self.content["cells_computed"], self.states, self.content["gate"]["reasons"]
         opens = f"opens at {self.release_V:.3g} V" if self.release_V > 0 else "sticks"
-        does = f"closes at {states['pull_in_V']:.3g} V, {opens}" if states else "not known"
+        does = f"closes at {states['pull_in_V']:.3g} V, {opens}" if states else ": ".join(["not known", *reasons])
         yield f"Switch on a pad of {cells} cells: {does}"
-        yield from (f"DOUBT: {reason}" for reason in self.content["gate"]["reasons"])
+        if states:
+            yield from (f"DOUBT: {reason}" for reason in reasons)
 
 
 def pixels_for(cutoff: Mapping[str, float] | None, side_nm: float) -> int:

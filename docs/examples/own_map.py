@@ -17,15 +17,15 @@ instruments = (
 container = ROOT / "config/measurements/uncd_diamond.zip"
 film = asp.Film(container, tip_nm=21.5, instruments=instruments, line_alignment="none")
 afm = min(film.maps, key=lambda scan: scan.length_nm)
-pressed = asp.press(afm.heights_nm, afm.lengths_nm, [100.0, 1000.0], e_star=295.0, h_macro=16.5, periodic=False)
+pressed = asp.press(afm.heights_nm, afm.lengths_nm, [1e4, 4e4], e_star=295.0, h_macro=16.5, periodic=False)
 print("\n".join(pressed.lines()))
 pressed.plot().savefig("own_map.png", dpi=120)
 
 # %% [markdown]
 # `pressed.pressure_GPa` and `pressed.gap_nm` have one map a load. With `periodic=False` the map stands alone on the
 # half-space and may be a rectangle. `periodic=True`, the default, repeats it; a map whose edges differ then has steps
-# there. `counterface=` takes the map of the other surface, `attraction=` a law of your own. Roughness that the tip
-# of the instrument does not resolve is missing, so real pressures are higher.
+# there. Without `h_macro=` nothing yields. `counterface=` takes the map of the other surface, `attraction=` a law of
+# your own. The map is pressed with the noise of its instrument, and without the roughness that the tip misses.
 #
 # A sphere and a flat punch are maps, too. Hertz's contact radius, approach and largest pressure:
 

@@ -98,6 +98,9 @@ def test_more_samples_extend_fewer():
         (lambda: asp.monte_carlo(asp.input_table(), SMALL, samples=2.5), "samples = 2.5"),
         (lambda: asp.monte_carlo(asp.input_table(), SMALL, 2, seed=0.5), "seed = 0.5"),
         (lambda: asp.Film([]), "nothing to read"),
+        (lambda: asp.Film(np.zeros((9, 9))), "heights alone have no side"),
+        (lambda: asp.ContactSettings(pixls=64), "did you mean pixels"),
+        (lambda: asp.ContactInputs(0.2, 75000.0, 2.0, 8.0, 0.02, 0.7, 5.0), "e_star = 75000: accepted is"),
         (lambda: asp.Film("nowhere.gwy"), "no such scan"),
         (lambda: asp.input_table(roughness=asp.InputRow(values=(1, 2))), "roughness"),
         (lambda: asp.input_table(hurst=asp.InputRow(values=(0.5, 50))), "hurst: spans"),
@@ -144,3 +147,18 @@ def test_the_reference_lists_every_name():
     page = (Path(__file__).parents[2] / "docs/api.md").read_text(encoding="utf-8")
     listed = page.partition(".. autosummary::")[2].partition("```")[0].split()
     assert listed == asp.__all__
+
+
+def test_dir_shows_the_public_names_alone():
+    assert dir(asp) == asp.__all__
+
+
+def test_a_cycle_is_printed_in_a_line():
+    cycle = asp.run_cycle(INPUTS, SMALL, 1)
+    assert "\n" not in f"{cycle}{cycle.closing}"
+    assert str(cycle).startswith("Cycle up to 500 nN: first touches at ")
+    assert str(cycle.closing).startswith("Branch of ")
+
+
+def test_nothing_stated_is_one_elastic_half_space():
+    assert asp.ContactSettings().mechanics == "coupled"

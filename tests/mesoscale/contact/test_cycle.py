@@ -248,6 +248,7 @@ def test_an_impossible_force_is_refused(force):
         {"hurst": 50},
         {"rms": 8.5e-9},  # metres
         {"e_star": 91e9},  # pascals
+        {"e_star": 75000.0},  # megapascals
         {"hamaker": 2.1e-19},  # joules
         {"q0": 0.025e9},  # 1/m
         {"h_macro": "hard"},
