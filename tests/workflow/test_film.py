@@ -82,6 +82,18 @@ def test_bad_input_of_the_door_is_one_line(scans, arguments, words, started, tmp
     assert not started
 
 
+def test_interrupting_the_reading_of_files_is_one_line(scans, started, tmp_path, monkeypatch, capsys):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("asperity.film.load_measurements", interrupt)
+    assert main([str(scans / "place_1.gwy")]) == 130
+    assert capsys.readouterr().err.split() == "interrupted; nothing was computed".split()
+    assert not started
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.skipif(not AFM.is_dir(), reason="real scans are not shipped")
 def test_two_real_films_are_doubted_and_not_run(started, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
