@@ -89,7 +89,7 @@ def test_interrupting_the_reading_of_files_is_one_line(scans, started, tmp_path,
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("asperity.film.load_measurements", interrupt)
     assert main([str(scans / "place_1.gwy")]) == 130
-    assert capsys.readouterr().err.split() == "interrupted; nothing was computed".split()
+    assert capsys.readouterr().err.strip() == "interrupted; nothing was computed"
     assert not started
     assert not list(tmp_path.iterdir())
 
