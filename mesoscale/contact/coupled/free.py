@@ -22,7 +22,8 @@ class FreeContact(CoupledContact):
 
     def __init__(self, surface: np.ndarray, inputs: ContactInputs, settings: ContactSettings):
         spacing = settings.length_nm / settings.pixels
-        pixels = 2 * fft.next_fast_len(max(surface.shape), real=True)
+        side: int = fft.next_fast_len(max(surface.shape), real=True)  # pyright: ignore[reportAssignmentType]
+        pixels = 2 * side
         alone = np.full((pixels, pixels), float(surface.max()) + 10.0 * pixels * spacing)
         alone[: surface.shape[0], : surface.shape[1]] = surface
         super().__init__(alone, inputs, settings.model_copy(update={"pixels": pixels, "length_nm": pixels * spacing}))
@@ -45,7 +46,7 @@ class FreeContact(CoupledContact):
 
     def _whole(self) -> grid.Grid:
         whole = super()._whole()  # its stiffness of periodic cells still preconditions
-        whole.compliance = self.scale * np.asarray(fft.rfft2(_everywhere(self.table, self.n))).real
+        whole.compliance = self.scale * np.real(np.asarray(fft.rfft2(_everywhere(self.table, self.n))))
         whole.single_compliance = whole.compliance.astype(np.float32)
         return whole
 
