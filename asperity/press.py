@@ -133,16 +133,16 @@ def press(
     if loads[-1] > contact.capacity:
         what = "full contact" if h_macro is None else "the hardness"
         raise InputError(f"loads_nN: {loads[-1]:.4g} nN; {what} ends contacts of this map at {contact.capacity:.4g} nN")
-    row, converged, found = None, True, []
+    row, converged, at_loads = None, True, []
     for load in loads:
         path = trace(contact, NUMERICS.force_steps if h_macro else 1, h_macro is not None, load, start=row)
         row = path.rows[-1]
         converged &= path.reached and path.unconverged == 0 and abs(row.force / load - 1.0) <= MAX_FORCE_MISS
         pressure, gap = contact.fields()
         pull = 0.0 if attraction is None else _pull(attraction, gap, contact)
-        found.append((row.force, row.separation + offset, -lowest - row.separation, pull, pressure, gap))
+        at_loads.append((row.force, row.separation + offset, -lowest - row.separation, pull, pressure, gap))
     sides = (spacing * surface.shape[0], spacing * surface.shape[1])
-    columns = (np.array(column) for column in zip(*found, strict=True))
+    columns = (np.array(column) for column in zip(*at_loads, strict=True))
     return PressedMap(*columns, lengths_nm=sides, converged=bool(converged))
 
 
@@ -151,7 +151,7 @@ def _surface(
 ) -> tuple[np.ndarray, float]:
     """Heights of both surfaces together, contact at the lowest, and the spacing of the sites (nm)."""
     length = side_nm if isinstance(side_nm, (int, float)) else max(side_nm)
-    maps = [checked_heights(each, length, square=False) for each in (heights, counterface) if each is not None]
+    maps = [checked_heights(values, length, square=False) for values in (heights, counterface) if values is not None]
     shape = maps[0].shape
     if maps[-1].shape != shape:
         raise InputError(f"counterface: {maps[-1].shape} sites on {shape}; accepted are maps of one shape")

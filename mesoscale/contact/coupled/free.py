@@ -24,9 +24,9 @@ class FreeContact(CoupledContact):
         spacing = settings.length_nm / settings.pixels
         side: int = fft.next_fast_len(max(surface.shape), real=True)  # pyright: ignore[reportAssignmentType]
         pixels = 2 * side
-        alone = np.full((pixels, pixels), float(surface.max()) + 10.0 * pixels * spacing)
-        alone[: surface.shape[0], : surface.shape[1]] = surface
-        super().__init__(alone, inputs, settings.model_copy(update={"pixels": pixels, "length_nm": pixels * spacing}))
+        padded = np.full((pixels, pixels), float(surface.max()) + 10.0 * pixels * spacing)
+        padded[: surface.shape[0], : surface.shape[1]] = surface
+        super().__init__(padded, inputs, settings.model_copy(update={"pixels": pixels, "length_nm": pixels * spacing}))
         self.map_shape, self.rms = surface.shape, float(surface.std())
         self.table = free_influence(pixels)
         self.stiffness = 1.0 / (self.scale * float(self.table[0, 0]))
