@@ -1,4 +1,5 @@
 from asperity.film import Contact, Film, Switch
+from asperity.press import PressedMap, press
 from mesoscale.contact import Branch, ContactInputs, Cycle, run_cycle
 from mesoscale.contact.energy import dissipated_energy, work
 from mesoscale.contact.surface import random_surface
@@ -28,6 +29,7 @@ __all__ = [
     "MissingExtra",
     "MonteCarlo",
     "PadSettings",
+    "PressedMap",
     "Scan",
     "Switch",
     "TopographySettings",
@@ -38,6 +40,7 @@ __all__ = [
     "input_table",
     "laws_of",
     "monte_carlo",
+    "press",
     "pressure",
     "random_surface",
     "run_cycle",

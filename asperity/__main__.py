@@ -59,7 +59,11 @@ def main(arguments: list[str] | None = None) -> int:
     elif given.command == "targets":
         print("\n".join(f"{name:<11}  {words}" for name, words in targets().items()))
     else:
-        return CARRIED_OUT_BY[given.command](given)
+        try:
+            return CARRIED_OUT_BY[given.command](given)
+        except KeyboardInterrupt:  # before Snakemake has taken over
+            print("\ninterrupted; nothing was computed", file=sys.stderr)
+            return 130
     return 0
 
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from asperity.bundle import ROOT
-from asperity.film import MATERIAL, RECOMMENDED, Film, pixels_for
+from asperity.film import MATERIAL, Film, pixels_for
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import PAPER_ROWS
 from mesoscale.settings import DeviceSettings, InputRow
@@ -116,8 +116,7 @@ def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Map
         if "q1" not in rows:
             yield "  q1: {origin: topography}  # no roughness beyond what the measurements show"
         grid = f"pixels: {pixels_for(film.description['inputs'].get('q1'), film.description['cell_nm'])}"
-    mechanics = ", ".join(f"{key}: {value}" for key, value in RECOMMENDED.items())
-    yield f"contact: {{{mechanics}, {grid}}}  # asperities share one elastic half-space"
+    yield f"contact: {{mechanics: coupled, attraction: offset, {grid}}}  # asperities share one elastic half-space"
     yield "device:  # a published beam, where you gave nothing else"
     defaults = {key: getattr(DeviceSettings(), key) for key in SHOWN_OF_DEVICE}
     for name, value in (defaults | dict(device)).items():

@@ -31,7 +31,7 @@ from mesoscale.settings import (
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.settings.definitions import definition
 from mesoscale.topography.measurements import files_in
-from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.cleaning import Scan, clean
 from mesoscale.topography.measurements.loading import Measurement, load_measurements, with_limits
 from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import in_order, record
@@ -40,8 +40,6 @@ from mesoscale.topography.summary import doubt_lines, measurement_lines, paramet
 Material = Mapping[str, float | InputRow | Any]
 """Numbers, or distributions as `InputRow`, by the names of a scene's inputs: e_star, h_macro, h_prime, hamaker, …"""
 
-RECOMMENDED = {"mechanics": "coupled", "attraction": "offset"}
-"""Of a contact: all asperities on one elastic half-space, and walls that are D0 apart at touch (docs/contact.md)."""
 PIXELS = {128: 4.0, 256: 4.0, 512: 1.0, 1024: 1.0, 2048: 1.0}
 """Grids, and how far beyond a film's cut-off they must resolve: small ones are for films of long waves."""
 GROWN_PIXELS = 512
@@ -57,7 +55,7 @@ MATERIAL = {
 """The material where none is given: the paper's films, and D0 of silica."""
 
 
-class _Shown(ABC):
+class Shown(ABC):
     """What says itself in lines of text: the first alone in a terminal, all of them in a notebook."""
 
     @abstractmethod
@@ -71,7 +69,7 @@ class _Shown(ABC):
         return f"<pre>{html.escape(chr(10).join(self.lines()))}</pre>"
 
 
-class Film(_Shown):
+class Film(Shown):
     """What scans, line profiles and containers say together of one surface.
 
     Parameters
@@ -94,6 +92,11 @@ class Film(_Shown):
         self, files: str | Path | Scan | Iterable[str | Path | Scan], tip_nm: float | None = None, **settings: Any
     ) -> None:
         given = [files] if isinstance(files, (str, Path, Scan)) else list(files)
+        if not all(isinstance(item, (str, Path, Scan)) for item in given):
+            raise InputError(
+                "Film: heights alone have no side; give Scan(heights_nm, (length_x_nm, length_y_nm), name), or press "
+                "them by asp.press(heights, side_nm, loads_nN, e_star)"
+            )
         sources = [part for item in given for part in ([item] if isinstance(item, Scan) else files_in(item))]
         if not sources:
             raise InputError(f"{', '.join(map(str, given)) or 'files'}: nothing to read; give scans of a surface")
@@ -111,9 +114,13 @@ class Film(_Shown):
         records = in_order(arrays, attributes)
         pooled = pool(records, attributes, self.settings, cell_nm=None, cut_off=True, pixels=GROWN_PIXELS)
         self._spectra = pooled.spectra
-        self._levelled = {name: data["heights"] for name, data in arrays.items() if "heights" in data}
         rows = scan_rows(pooled, attributes, None)
         self.description = parameters(pooled, rows, self.settings, None)
+
+    @property
+    def maps(self) -> list[Scan]:
+        """The maps among the measurements, levelled; `asperity.press` presses one as it is."""
+        return [clean(item.data, self.settings) for item in self.measurements if isinstance(item.data, Scan)]
 
     @property
     def doubts(self) -> list[str]:
@@ -136,12 +143,12 @@ class Film(_Shown):
         with needs("run"):
             import matplotlib.pyplot as plt
         figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
-        maps = (item.data for item in self.measurements if isinstance(item.data, Scan))
-        if (first := next(maps, None)) is not None:
+        maps = self.maps
+        for first in maps[:1]:
             x_um, y_um = (length / 1000 for length in first.lengths_nm)
-            image = left.imshow(self._levelled[first.name].T, extent=(0, x_um, 0, y_um), origin="lower", cmap="Greys_r")
+            image = left.imshow(first.heights_nm.T, extent=(0, x_um, 0, y_um), origin="lower", cmap="Greys_r")
             figure.colorbar(image, ax=left, label="height (nm)")
-        left.set(xlabel="x (µm)", ylabel="y (µm)", title=first.name if first else "no map")
+        left.set(xlabel="x (µm)", ylabel="y (µm)", title=maps[0].name if maps else "no map")
         for number, item in enumerate(self._spectra):
             q, psd = item.spectrum.q, item.spectrum.psd
             trusted = (q >= item.low) & (q <= item.high)
@@ -186,7 +193,7 @@ class Film(_Shown):
         table = self.inputs(material)
         described, side = self.description, self.description["cell_nm"]
         pixels = pixels or pixels_for(described["inputs"]["q1"], side)
-        settings = ContactSettings(**RECOMMENDED, pixels=pixels, surface=described["surface"]).on_cell(side)
+        settings = ContactSettings(pixels=pixels, surface=described["surface"]).on_cell(side)
         check_resolved(table, settings.nyquist_per_nm)
         on_grid, (inputs, settings) = settings, contact_of(table.medians(), settings)
         fields: list[tuple[np.ndarray, np.ndarray]] = []
@@ -201,7 +208,7 @@ class Film(_Shown):
 
 
 @dataclass(frozen=True, repr=False)
-class Contact(_Shown):
+class Contact(Shown):
     """A film pressed onto a flat.
 
     Attributes
@@ -277,7 +284,7 @@ class Contact(_Shown):
 
 
 @dataclass(frozen=True, repr=False)
-class Switch(_Shown):
+class Switch(Shown):
     """A switch on a pad.
 
     Attributes
@@ -299,11 +306,12 @@ class Switch(_Shown):
 
     def lines(self) -> Iterator[str]:
         """Pull-in, release, and why not to trust them."""
-        cells, states = self.content["cells_computed"], self.states
+        cells, states, reasons = self.content["cells_computed"], self.states, self.content["gate"]["reasons"]
         opens = f"opens at {self.release_V:.3g} V" if self.release_V > 0 else "sticks"
-        does = f"closes at {states['pull_in_V']:.3g} V, {opens}" if states else "not known"
+        does = f"closes at {states['pull_in_V']:.3g} V, {opens}" if states else ": ".join(["not known", *reasons])
         yield f"Switch on a pad of {cells} cells: {does}"
-        yield from (f"DOUBT: {reason}" for reason in self.content["gate"]["reasons"])
+        if states:
+            yield from (f"DOUBT: {reason}" for reason in reasons)
 
 
 def pixels_for(cutoff: Mapping[str, float] | None, side_nm: float) -> int:

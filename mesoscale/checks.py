@@ -64,8 +64,8 @@ def checked_array(name: str, values: Any, unit: str, missing: bool = False) -> n
     return array
 
 
-def checked_heights(heights: Any, length_nm: float) -> np.ndarray:
-    """Heights (N, N) in nm of a square of the side `length_nm`, N >= 3.
+def checked_heights(heights: Any, length_nm: float, square: bool = True) -> np.ndarray:
+    """Heights (N, N) in nm of a square of the side `length_nm`, N >= 3; or of any rectangle.
 
     Raises
     ------
@@ -73,8 +73,9 @@ def checked_heights(heights: Any, length_nm: float) -> np.ndarray:
     """
     check_number("length_nm", length_nm, MIN_LENGTH_NM, MAX_LENGTH_NM, "nm")
     array = checked_array("heights", heights, "nm")
-    if array.ndim != 2 or array.shape[0] != array.shape[1] or array.shape[0] < 3:
-        raise InputError(f"heights: accepted is a square array of at least 3 x 3 sites, not {array.shape}")
+    if array.ndim != 2 or min(array.shape) < 3 or (square and array.shape[0] != array.shape[1]):
+        what = "a square array" if square else "a map"
+        raise InputError(f"heights: accepted is {what} of at least 3 x 3 sites, not {array.shape}")
     rms = float(np.std(array))
     flat = rms <= 1e-12 * float(np.abs(array).max())  # to rounding
     if not flat and not MIN_ROUGHNESS <= rms / length_nm <= MAX_ROUGHNESS:

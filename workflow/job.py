@@ -75,10 +75,14 @@ class Job:
         now = time.monotonic()
         if now - self._last_progress >= SECONDS_BETWEEN_PROGRESS_LINES:
             self._last_progress = now
-            line = f"  {self.label}: {fraction:4.0%} {text}".rstrip()
-            print(line, file=sys.stderr, flush=True)
-            with suppress(OSError):  # the disk is full; the job may still end well
-                print(line, file=self.log, flush=True)
+            self.say(f"{fraction:4.0%} {text}".rstrip())
+
+    def say(self, text: str) -> None:
+        """Tell something at once, in the terminal and the log."""
+        line = f"  {self.label}: {text}"
+        print(line, file=sys.stderr, flush=True)
+        with suppress(OSError):  # the disk is full; the job may still end well
+            print(line, file=self.log, flush=True)
 
 
 Settings = TypeVar("Settings", bound=BaseModel)

@@ -45,7 +45,7 @@ FIRST_SET_SEED = 1_900_000_000
 FORCE_POINTS = 20
 RUNS = 3200
 """Cycles behind the responses: their error is shared by all sets and would shift all ranks together."""
-CONTACT = ContactSettings(pixels=128, attraction="clamped")
+CONTACT = ContactSettings(mechanics="asperity", pixels=128, attraction="clamped")
 SIGNIFICANCE = 0.05
 """Chance that any of the tests of uniform ranks fails although all are uniform."""
 D0_SPREAD = 0.15

@@ -22,7 +22,7 @@ EXAMPLE_SEED = 77_000_000
 SEPARATION_ERROR_NM, PULL_OFF_ERROR, HARDNESS_ERROR, MODULUS_ERROR_GPA = 0.2, 0.1, 0.05, 3.0  # two of them as shares
 POINTS = 25  # of a curve
 INDENTS_NM2 = (40.0, 100.0, 400.0, 1000.0, 4000.0)
-CONTACT = ContactSettings(pixels=256, attraction="clamped")
+CONTACT = ContactSettings(mechanics="asperity", pixels=256, attraction="clamped")
 
 
 def arguments(parser: ArgumentParser) -> None:

@@ -13,7 +13,7 @@ from mesoscale.settings import ContactSettings
 from mesoscale.studies.contact_accuracy import accuracy_points
 
 SETTINGS = {
-    "asperity": ContactSettings(attraction="clamped"),
+    "asperity": ContactSettings(mechanics="asperity", attraction="clamped"),
     "coupled": ContactSettings(mechanics="coupled", attraction="clamped", pixels=512, q1_per_nm=0.29),
 }
 

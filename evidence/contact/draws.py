@@ -111,7 +111,7 @@ def _judged(number: int, case: str, pixels: int) -> tuple[str, int, float, float
     inputs = draw_inputs(number)
     if case == "coupled, constant hardness":
         inputs = replace(inputs, h_prime=0.0)
-    settings = ContactSettings(**{"pixels": pixels, **CASES[case]})
+    settings = ContactSettings(**{"mechanics": "asperity", "pixels": pixels, **CASES[case]})
     if settings.mechanics == "adhesive":
         settings = settings.model_copy(update={"gap_cutoff_nm": draw_cutoff(number)})
     heights = random_surface(inputs, settings, number)

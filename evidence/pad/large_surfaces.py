@@ -37,7 +37,7 @@ def arguments(parser: ArgumentParser) -> None:
 
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """Closing pressure and deepest net pressure on opening of both, for each load."""
-    contact = ContactSettings(pixels=PIXELS)
+    contact = ContactSettings(mechanics="asperity", pixels=PIXELS)
     wide = contact.model_copy(update={"pixels": SIDE * PIXELS, "length_nm": SIDE * contact.length_nm})
     grid = opened_grid(INPUTS, contact)
     small = closed(INPUTS, contact, grid, random_cells(given.cells, PAD.first_seed))

@@ -60,7 +60,7 @@ def judged(measured: Measurement, scans: Sequence[Scan], settings: TopographySet
     except InputError:
         return
     spectra = [trusted_record(key, data, attributes[key]) for key, data in arrays.items()]
-    for row in judge(scans, spectra, name, INPUTS, settings, ContactSettings()):
+    for row in judge(scans, spectra, name, INPUTS, settings, ContactSettings(mechanics="asperity")):
         yield {
             key: row[key] for key in ("scan", "description", "quantity", "pressed", "median", "low", "high", "inside")
         }

@@ -76,7 +76,11 @@ def described(path: Path) -> dict[str, Any]:
         "length_nm": max(float(values["length_x_nm"]) for values in attributes.values()),
     }
     maps = [item.data for item in measured if isinstance(item.data, Scan) and has_square_pixels(item.data)]
-    judged = list(judge(maps, images, pooled.choice.name, INPUTS, settings, ContactSettings(), most_contact=1.0))
+    judged = list(
+        judge(
+            maps, images, pooled.choice.name, INPUTS, settings, ContactSettings(mechanics="asperity"), most_contact=1.0
+        )
+    )
     for first in [item for item in judged if item["quantity"] == "first_contact"][:1]:
         found |= {name: first[key] for key, name in FIRST_CONTACT.items()} | {"inside": first["inside"]}
         asked = [item["inside"] for item in judged if item["in_contact"] <= MOST_CONTACT]

@@ -118,7 +118,9 @@ def outputs_of(reading: str, seed: int, pixels: int) -> dict[str, Array]:
     nodes = 2 * len(table.rows) + 1
     runs = collocation_runs(table, seed * nodes, (seed + 1) * nodes)
     found = {name: np.full((nodes, len(OUTPUTS)), np.nan) for name in LAW_READINGS}
-    for run, cycle in compute_all(runs, with_reading(reading, ContactSettings(pixels=pixels, attraction="clamped"))):
+    for run, cycle in compute_all(
+        runs, with_reading(reading, ContactSettings(mechanics="asperity", pixels=pixels, attraction="clamped"))
+    ):
         for name, share in LAW_READINGS.items():
             if not isinstance(cycle, str):
                 found[name][run.node] = _outputs(cycle, share)

@@ -70,7 +70,9 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
     again = random_runs(table, 0, given.replicates, first_surface=FIRST_REPLICATE_SEED)
     at_nodes = collocation_runs(table, 0, (2 * len(table.rows) + 1) * given.seeds)
     every = [*runs, *again, *at_nodes]
-    law = partial(laws_of_runs, contact=ContactSettings(pixels=given.pixels, attraction="clamped"))
+    law = partial(
+        laws_of_runs, contact=ContactSettings(mechanics="asperity", pixels=given.pixels, attraction="clamped")
+    )
     with ProcessPoolExecutor() as pool:
         y = np.concatenate(list(pool.map(law, [every[k : k + 100] for k in range(0, len(every), 100)])))
     direct = (np.array([list(run.values.values()) for run in runs]), y[: len(runs)])

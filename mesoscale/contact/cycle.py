@@ -16,7 +16,7 @@ from mesoscale.settings import ContactSettings
 SMALLEST_FORCE_NN, LARGEST_FORCE_NN = 1e-9, 1e12
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Branch:
     """One branch of a force-separation curve; arrays of one length, in the order they were traversed.
 
@@ -35,6 +35,10 @@ class Branch:
     asperities: np.ndarray
     sweeps: np.ndarray
 
+    def __repr__(self) -> str:
+        first, last = self.separation_nm[[0, -1]]
+        return f"Branch of {len(self.separation_nm)} separations, from {first:.4g} to {last:.4g} nm"
+
     @property
     def net_nN(self) -> np.ndarray:
         """Repulsion and attraction together, nN; negative where the contact pulls."""
@@ -52,7 +56,7 @@ BRANCH_COLUMNS = {
 """Unit and long name of each array of a `Branch`, as result files state them."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Cycle:
     """Closing and opening of one surface.
 
@@ -74,6 +78,12 @@ class Cycle:
     inputs: ContactInputs
     length_nm: float
     heights: np.ndarray | None = None
+
+    def __repr__(self) -> str:
+        return (
+            f"Cycle up to {self.closing.repulsive_nN[-1]:.4g} nN: first touches at {self.first_contact_nm:.4g} nm, "
+            f"last at {self.last_contact_nm:.4g} nm{'' if self.converged else '; NOT CONVERGED'}"
+        )
 
     @property
     def cell_area_nm2(self) -> float:

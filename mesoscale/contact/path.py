@@ -35,8 +35,9 @@ def trace(
     with_flow: bool,
     stop_force: float = np.inf,
     stop_separation: float = -np.inf,
+    start: Row | None = None,
 ) -> Path:
-    """Bring the flat down from first contact, in steps that follow the force.
+    """Bring the flat down from first contact, or from the row `start`, in steps that follow the force.
 
     Steps aim at force increments of a ``steps``-th of the final force, and at 30 % of the force
     reached so far in the foot of the curve; a step that misses by more than a factor of two is
@@ -46,9 +47,8 @@ def trace(
     """
     path = Path()
     final = stop_force
-    separation = contact.touching_separation
-    path.rows += contact.way(separation)
-    force = path.rows[-1].force
+    path.rows += contact.way(contact.touching_separation) if start is None else [start]
+    separation, force = path.rows[-1].separation, path.rows[-1].force
     scale = max(contact.rms, 1e-3 * contact.spacing)
     smallest = contact.SMALLEST_STEP * scale
     step = scale / 300.0

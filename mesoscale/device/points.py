@@ -186,6 +186,15 @@ class Solved:
         return self.pad
 
     @property
+    def outcome(self) -> str:
+        """What the switch does, in words."""
+        if self.refused:
+            return f"no switch: {self.refused}"
+        release = self.states["release_V"]
+        opens = f"lets go at {release:.3g} V" if release > 0.0 else "sticks"
+        return f"the switch closes at {self.states['pull_in_V']:.3g} V and {opens}"
+
+    @property
     def error_V(self) -> float:
         """Estimated standard error of the release by the number of cells."""
         return 0.5 * abs(self.halves_V[0] - self.halves_V[1])

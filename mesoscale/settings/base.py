@@ -1,5 +1,6 @@
 """Base of all settings of the mesoscale stages."""
 
+import difflib
 from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -17,10 +18,19 @@ class _OneLine(type(BaseModel)):
                 return super().__call__(*arguments, **values)
             except ValidationError as error:
                 mistakes = [
-                    f"{'.'.join(map(str, item['loc'])) or 'settings'} = {_shown(item['input'])}: {item['msg']}"
+                    f"{'.'.join(map(str, item['loc'])) or 'settings'} = {_shown(item['input'])}: "
+                    f"{_suggestion(cls, item) or item['msg']}"
                     for item in error.errors()
                 ]
                 raise InputError(f"{cls.__name__}: {'; '.join(mistakes)}") from None
+
+
+def _suggestion(kind: type[BaseModel], error: Any) -> str:
+    """What an unknown key of the settings themselves may have meant; empty for other mistakes."""
+    if error["type"] != "extra_forbidden" or len(error["loc"]) > 1:
+        return ""
+    close = difflib.get_close_matches(str(error["loc"][0]), kind.model_fields, n=1)
+    return f"unknown key{f'; did you mean {close[0]}?' if close else ''} (accepted: {', '.join(kind.model_fields)})"
 
 
 def _shown(value: Any) -> str:

@@ -103,9 +103,9 @@ class ContactSettings(Settings):
     """Mesoscale contact model (docs/contact.md)."""
 
     mechanics: Literal["asperity", "coupled", "adhesive"] = key(
-        "asperity",
-        "how asperities carry load: each on its own by eq. 3, all on one elastic half-space, or on one that the "
-        "attraction deforms, too",
+        "coupled",
+        "how asperities carry load: each on its own by eq. 3 (the paper's), all on one elastic half-space, or on one "
+        "that the attraction deforms, too",
     )
     model: Literal["elastic", "nonlinear", "plastic"] = key(
         "plastic", "asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the surface"

@@ -56,7 +56,7 @@ class InputDefinition:
 
 INPUTS = (
     InputDefinition("hamaker", "Hamaker constant", "A_H", "1e-18 J", 1e-6, 1e4, zero=True, literature=(0.18, 0.25)),
-    InputDefinition("e_star", "effective modulus", "E*", "GPa", 1e-6, 1e6, stage="elastic"),
+    InputDefinition("e_star", "effective modulus", "E*", "GPa", 1e-6, 2e3, stage="elastic"),
     InputDefinition("h_macro", "macroscopic hardness", "H_macro", "GPa", 1e-9, 1e6, zero=True, literature=(0.7, 3.2)),
     InputDefinition(
         "h_prime", "size effect of hardness", "H′", "GPa nm^0.5", 1e-9, 1e6, True, stage="hardness", hardness="paper"
@@ -104,7 +104,8 @@ INPUTS = (
 )
 """The inputs of the paper's Table 1 in its order, then the optional ones.
 
-Their bounds are wide, from the softest gels to beyond diamond, yet narrow enough to refuse metres, pascals and joules.
+Their bounds are wide, from the softest gels to diamond (E* of 1150 GPa on a rigid flat), yet narrow enough to refuse
+metres, megapascals of stiff solids and joules.
 """
 
 RMS_SCATTER = InputDefinition(

@@ -14,6 +14,7 @@ from mesoscale.contact.surface import random_surface
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import NOMINAL_SEED
+from mesoscale.settings.definitions import definition
 
 FINER = 16  # force steps of the path that judges a gain of energy, over those of the cycle
 
@@ -109,7 +110,7 @@ def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case
     reading = settings.reading.model_copy
     cases = [
         Case("central inputs", "medians of the scene's inputs", inputs),
-        Case("E* x 1000", "stiff: yields at once", with_(e_star=min(1e3 * inputs.e_star, 1e6))),
+        Case("stiffest", "E* = 2000 GPa: yields at once", with_(e_star=definition("e_star").high)),
         Case("E* / 1000", "soft: never yields", with_(e_star=1e-3 * inputs.e_star)),
         Case("hard", "H = 1e6 GPa: elastic", with_(h_macro=1e6, t_film=0.0)),
         Case("H' = 0", "constant hardness", with_(h_prime=0.0, t_film=0.0)),

@@ -14,12 +14,12 @@ from mesoscale.topography.measurements.loading import write_gwy
 
 TABLE_1 = Path(__file__).parents[2] / "config" / "paper" / "table1.csv"
 INPUTS = asp.ContactInputs(0.215, 91.0, 1.95, 8.375, q0=0.025, hurst=0.7, rms=5.0)
-SMALL = asp.ContactSettings(pixels=64, length_nm=250.0, max_force_nN=500.0)
+SMALL = asp.ContactSettings(mechanics="asperity", pixels=64, length_nm=250.0, max_force_nN=500.0)
 
 
 @pytest.fixture(scope="module")
 def film(tmp_path_factory):
-    settings = asp.ContactSettings(pixels=512, length_nm=5000.0)
+    settings = asp.ContactSettings(mechanics="asperity", pixels=512, length_nm=5000.0)
     path = tmp_path_factory.mktemp("film") / "film.gwy"
     write_gwy(path, asp.Scan(asp.random_surface(INPUTS, settings, 1), (5000.0, 5000.0), "film"))
     return path
@@ -51,7 +51,7 @@ def test_a_film_of_known_roughness_is_measured_and_pressed(film):
 
 
 def test_heights_of_your_own_have_their_peaks_where_an_instrument_has_them():
-    settings = asp.ContactSettings(pixels=256, length_nm=2500.0)
+    settings = asp.ContactSettings(mechanics="asperity", pixels=256, length_nm=2500.0)
     flat_peaks = -np.exp(asp.random_surface(INPUTS, settings, 1) / 4)  # deep pits
     up, down = (
         asp.Film(asp.Scan(z, (2500.0, 2500.0), "own"), line_alignment="none") for z in (flat_peaks, -flat_peaks)
@@ -62,7 +62,7 @@ def test_heights_of_your_own_have_their_peaks_where_an_instrument_has_them():
 
 def test_unlike_films_raise_a_doubt_before_anything_is_computed():
     """Maps of 1 and 5 um of equal height: other spectra where both see the surface."""
-    settings = [asp.ContactSettings(pixels=256, length_nm=side) for side in (1000.0, 5000.0)]
+    settings = [asp.ContactSettings(mechanics="asperity", pixels=256, length_nm=side) for side in (1000.0, 5000.0)]
     inputs = [replace(INPUTS, hurst=0.3), replace(INPUTS, hurst=0.95, q0=0.02)]
     scans = [
         asp.Scan(asp.random_surface(i, s, 1), (s.length_nm, s.length_nm), f"{s.length_nm:g}")
@@ -98,6 +98,9 @@ def test_more_samples_extend_fewer():
         (lambda: asp.monte_carlo(asp.input_table(), SMALL, samples=2.5), "samples = 2.5"),
         (lambda: asp.monte_carlo(asp.input_table(), SMALL, 2, seed=0.5), "seed = 0.5"),
         (lambda: asp.Film([]), "nothing to read"),
+        (lambda: asp.Film(np.zeros((9, 9))), "heights alone have no side"),
+        (lambda: asp.ContactSettings(pixls=64), "did you mean pixels"),
+        (lambda: asp.ContactInputs(0.2, 75000.0, 2.0, 8.0, 0.02, 0.7, 5.0), "e_star = 75000: accepted is"),
         (lambda: asp.Film("nowhere.gwy"), "no such scan"),
         (lambda: asp.input_table(roughness=asp.InputRow(values=(1, 2))), "roughness"),
         (lambda: asp.input_table(hurst=asp.InputRow(values=(0.5, 50))), "hurst: spans"),
@@ -126,7 +129,7 @@ class Absent:
 sys.meta_path.insert(0, Absent())
 import asperity as asp
 cycle = asp.run_cycle(asp.ContactInputs(0.215, 91.0, 1.95, 8.375, 0.025, 0.75, 8.5),
-                      asp.ContactSettings(pixels=64, length_nm=250.0), seed=1, max_force_nN=500.0)
+                      asp.ContactSettings(mechanics="asperity", pixels=64, length_nm=250.0), seed=1, max_force_nN=500.0)
 print(cycle.converged)
 try:
     asp.Film(sys.argv[1])
@@ -144,3 +147,18 @@ def test_the_reference_lists_every_name():
     page = (Path(__file__).parents[2] / "docs/api.md").read_text(encoding="utf-8")
     listed = page.partition(".. autosummary::")[2].partition("```")[0].split()
     assert listed == asp.__all__
+
+
+def test_dir_shows_the_public_names_alone():
+    assert dir(asp) == asp.__all__
+
+
+def test_a_cycle_is_printed_in_a_line():
+    cycle = asp.run_cycle(INPUTS, SMALL, 1)
+    assert "\n" not in f"{cycle}{cycle.closing}"
+    assert str(cycle).startswith("Cycle up to 500 nN: first touches at ")
+    assert str(cycle.closing).startswith("Branch of ")
+
+
+def test_nothing_stated_is_one_elastic_half_space():
+    assert asp.ContactSettings().mechanics == "coupled"

@@ -45,7 +45,7 @@ def peak_of():
         runs = random_runs(table, 0, count)
         tracemalloc.start()
         try:
-            for _ in compute_rows(runs, ContactSettings(pixels=64)):
+            for _ in compute_rows(runs, ContactSettings(mechanics="asperity", pixels=64)):
                 pass
             return tracemalloc.get_traced_memory()[1]
         finally:

@@ -2,14 +2,24 @@
 
 import json
 import re
+import shlex
+import subprocess
+import tomllib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+import asperity as asp
+from asperity.__main__ import COMMANDS as DOORS
+from asperity.__main__ import _parser as parser
+from asperity.__main__ import targets
+from asperity.door import device_of, material_of
 from mesoscale.inputs.table import collect
 from mesoscale.law.parameters import FITTED
 from mesoscale.settings import UncertaintySettings
+from mesoscale.topography.measurements.loading import write_gwy
 from mesoscale.uncertainty.propagation import NodeOutputs, propagate, surrogate_json
 from workflow.results import write_json
 from workflow.scene import load_scene
@@ -30,6 +40,59 @@ def test_a_scene_of_a_page_is_accepted(block, tmp_path):
     path = tmp_path / "of_a_page.yaml"
     path.write_text(block.replace("...", "a source"), encoding="utf-8")
     assert load_scene(str(path)).name == "of_a_page"
+
+
+COMMANDS = [
+    pytest.param(page, line.partition(" #")[0].strip(), id=line.strip())
+    for page in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md")))
+    for block in re.findall(r"^```sh\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    for line in block.splitlines()
+    if re.match(r"make |asperity |\.venv/bin/asperity ", line)
+]
+
+
+@pytest.mark.parametrize(("page", "command"), COMMANDS)
+def test_a_command_of_a_page_is_understood(page, command):
+    """Make has its target, the command its options, materials and keys; a scene ships or the page writes it."""
+    if command.startswith("make"):
+        done = subprocess.run(["make", "-n", *shlex.split(command)[1:]], cwd=ROOT, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        command = next((line for line in done.stdout.splitlines() if " asperity " in line), "")
+        if not command:  # of developers
+            return
+    words = shlex.split(command)
+    words = words[[word.endswith("asperity") for word in words].index(True) + 1 :]
+    given = parser().parse_args(words if words[0] in DOORS else ["film", *words])
+    if given.command == "film":
+        material_of(given.material)
+        device_of(given.device)
+    elif scene := getattr(given, "scene", ""):
+        written = f"`{scene}`", f"--scene {scene}", f"asperity {Path(scene).stem}/"
+        assert (ROOT / "config/scenes" / f"{scene}.yaml").is_file() or any(
+            words in page.read_text(encoding="utf-8") for words in written
+        )
+    for target in getattr(given, "target", []):
+        assert target in targets()
+
+
+def test_extras_are_named_one_way():
+    known = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
+        text = page.read_text(encoding="utf-8")
+        assert set(re.findall(r"asperity-contact\[(\w+)\]", text)) <= set(known)
+        assert not re.search(r"\.whl\[|REPOSITORY", text), page
+
+
+def test_the_python_of_the_readme_runs(tmp_path, monkeypatch):
+    (tmp_path / "scans").mkdir()
+    inputs = asp.ContactInputs(0.215, 91.0, 1.95, 8.375, q0=0.025, hurst=0.7, rms=5.0)
+    heights = asp.random_surface(inputs, asp.ContactSettings(pixels=128, length_nm=2000.0), 1)
+    write_gwy(tmp_path / "scans" / "place.gwy", asp.Scan(heights, (2000.0, 2000.0), "place"))
+    monkeypatch.chdir(tmp_path)
+    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    names: dict[str, Any] = {}
+    exec(code, names)
+    assert names["switch"].release_V >= 0.0
 
 
 def test_ten_lines_read_the_exported_responses(tmp_path, monkeypatch):

@@ -23,7 +23,7 @@ def scans(tmp_path_factory):
     """Two places of a film whose heights are skewed, and a file that is no scan."""
     folder = tmp_path_factory.mktemp("film") / "scans"
     folder.mkdir()
-    settings = asp.ContactSettings(pixels=256, length_nm=2500.0)
+    settings = asp.ContactSettings(mechanics="asperity", pixels=256, length_nm=2500.0)
     inputs = asp.ContactInputs(0.215, 91.0, 1.95, 8.375, q0=0.025, hurst=0.7, rms=5.0)
     for seed in (1, 2):
         heights = 5.0 * np.exp(asp.random_surface(inputs, settings, seed) / 10.0)
@@ -80,6 +80,18 @@ def test_bad_input_of_the_door_is_one_line(scans, arguments, words, started, tmp
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"ERROR {words}")
     assert not started
+
+
+def test_interrupting_the_reading_of_files_is_one_line(scans, started, tmp_path, monkeypatch, capsys):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("asperity.film.load_measurements", interrupt)
+    assert main([str(scans / "place_1.gwy")]) == 130
+    assert capsys.readouterr().err.strip() == "interrupted; nothing was computed"
+    assert not started
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.skipif(not AFM.is_dir(), reason="real scans are not shipped")

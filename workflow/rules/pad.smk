@@ -20,7 +20,8 @@ rule press_pads:
         f"{RESULTS}/pad/points/chunk_{{chunk}}.h5",
     log:
         f"{RESULTS}/logs/press_pads_{{chunk}}.log",
-    priority: 2  # first of all: the rest then fills the other cores while the pad is assembled
+    # first of all: the rest then fills the other cores while the pad is assembled; the central point has the first answer
+    priority: lambda wildcards: 3 if wildcards.chunk == "central" else 2
     resources:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
     params:

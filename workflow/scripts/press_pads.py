@@ -12,6 +12,7 @@ with job(snakemake) as run:
     numbers, solved = range(*snakemake.params.bounds), {}
     if 0 in numbers:
         solved[0] = solve_point(points.by_number[0], points.on_grid, pad.cells, surfaces_of(0), run.progress)
+        run.say(f"at central inputs {solved[0].outcome}{'; its interval follows' if pad.points else ''}")
     else:
         asked = [(number, points.by_number[number]) for number in numbers]
         for number, one in zip(numbers, solve_points(asked, points.on_grid, pad.point_cells), strict=True):

@@ -1,4 +1,4 @@
-"""What a run with measurements says at its very end: what was read, what describes it, and what to doubt."""
+"""What a run with measurements says before its answer: what was read, what describes it, and what to doubt."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -36,7 +36,7 @@ from mesoscale.uncertainty.surrogate import Surrogate
 
 Array = NDArray[np.float64]
 
-CONTACT = ContactSettings(pixels=128)
+CONTACT = ContactSettings(mechanics="asperity", pixels=128)
 TRUTH = {"hamaker": 0.21, "e_star": 91.0, "h_macro": 1.5, "h_prime": 8.0, "q0": 0.022, "hurst": 0.8, "rms": 6.0}
 RUNS, SURFACES = 400, 12
 FIRST_SURFACE = 2_100_000_000

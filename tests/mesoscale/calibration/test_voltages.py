@@ -20,7 +20,7 @@ EACH_V, SHARED_V = 0.5, 1.0
 def pads(prior, count=200, middle_V=20.0):
     """Releases that fall by 2 V a nanometre of RMS, with scatter by the first property of each device and by D0."""
     settings = DeviceSettings()
-    design = plan_points(prior, ContactSettings(), settings, count)
+    design = plan_points(prior, ContactSettings(mechanics="asperity"), settings, count)
     each = design.causes.index("device_each")
     d0 = design.causes.index("gap_cutoff")
     scaled = np.sqrt(12) * (design.probability - 0.5)

@@ -305,7 +305,7 @@ EXTREMES = {
         replace(SOFT, e_star=0.275, hamaker=0.1),
         {"bodies": (((250.0, 0.2, 2.0), (0.25, 0.3, None)),), "gap_cutoff_nm": 1.0, "max_force_nN": 20.0},
     ),
-    "stiff": (replace(ROUGH, e_star=1e5), {}),
+    "stiff": (replace(ROUGH, e_star=2e3), {}),
     "clamped, retarded": (ROUGH, {"attraction": "clamped", "retardation_nm": 100.0}),
     "clamped, strong": (replace(ROUGH, hamaker=1.0), {"attraction": "clamped", "gap_cutoff_nm": 0.4}),
     "two films": (ROUGH, {"bodies": (((70.0, 0.2, 2.5), (250.0, 0.25, 10.0), (110.0, 0.3, None)),)}),

@@ -36,7 +36,9 @@ def test_forces_and_surface_agree_with_the_plain_model(case, model):
     changes, reading, choices = CASES[case]
     numerics = Numerics(**choices)
     inputs = FILM if case == "film" else INPUTS
-    settings = ContactSettings(pixels=pixels, length_nm=0.977 * pixels, model=model, reading=reading, **changes)
+    settings = ContactSettings(
+        mechanics="asperity", pixels=pixels, length_nm=0.977 * pixels, model=model, reading=reading, **changes
+    )
     heights = synthesize(pixels, settings.length_nm, 0.06, 0.75, 3.0, 3, settings.reading.convention)
     lowest = np.unravel_index(np.argmin(heights), heights.shape)
     heights = np.roll(heights, (-lowest[0], -lowest[1]), (0, 1))  # the first asperity straddles the corner

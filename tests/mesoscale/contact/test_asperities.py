@@ -15,7 +15,9 @@ def sphere_tip(pixels: int, spacing: float, radius: float) -> np.ndarray:
 
 
 def settings_for(pixels: int, spacing: float, **changes) -> ContactSettings:
-    return ContactSettings(**{"pixels": pixels, "length_nm": pixels * spacing, "model": "elastic", **changes})
+    return ContactSettings(
+        **{"mechanics": "asperity", "pixels": pixels, "length_nm": pixels * spacing, "model": "elastic", **changes}
+    )
 
 
 @pytest.mark.parametrize(("prefactor", "force"), [("hertz", 1213.3), ("paper", 606.7)])

@@ -28,7 +28,7 @@ def walls(gap: np.ndarray, law: str, cutoff: float = 0.165) -> np.ndarray:
 
 def test_plates_follow_hamaker():
     """A_H = 0.215e-18 J, gap 10 nm, 1 um^2: 11.41 nN."""
-    settings = ContactSettings(pixels=32, model="elastic", attraction="clamped")
+    settings = ContactSettings(mechanics="asperity", pixels=32, model="elastic", attraction="clamped")
     contact = AsperityContact(np.zeros((32, 32)), INPUTS, settings)
     assert contact.attraction(10.0) == pytest.approx(-11.4061, rel=1e-5)
     assert contact.attraction(0.05) == contact.attraction(0.1)  # both below the cut-off gap
@@ -40,7 +40,7 @@ def test_plates_follow_hamaker():
 def test_gaussian_heights_far_away_follow_the_asymptotic_series():
     """<(d - h)^-3> = d^-3 (1 + 6 s + 45 s^2 + ...), s = (sigma/d)^2; a realisation's skewness allowed for."""
     heights = synthesize(256, 1000.0, 0.2, 0.75, 1.0, 5)
-    settings = ContactSettings(pixels=256, model="elastic")
+    settings = ContactSettings(mechanics="asperity", pixels=256, model="elastic")
     contact = AsperityContact(heights, INPUTS, settings)
     separation = 20.0  # of the walls
     s = (1.0 / separation) ** 2
@@ -54,7 +54,9 @@ def test_gaussian_heights_far_away_follow_the_asymptotic_series():
 @pytest.mark.parametrize("law", LAWS)
 def test_the_histogram_agrees_with_the_sum_over_all_sites(bins, touching, law):
     heights = synthesize(128, 1000.0, 0.05, 0.75, 8.5, 5)
-    settings = ContactSettings(pixels=128, model="elastic", attraction=law, reading={"touching_attracts": touching})
+    settings = ContactSettings(
+        mechanics="asperity", pixels=128, model="elastic", attraction=law, reading={"touching_attracts": touching}
+    )
     contact = AsperityContact(heights, INPUTS, settings, Numerics(gap_bins=bins))
     for separation in (60.0, 35.0, 20.0, 0.0):
         gap = heights + separation

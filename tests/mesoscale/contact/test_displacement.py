@@ -10,7 +10,7 @@ from mesoscale.errors import InputError
 from mesoscale.settings import ContactSettings
 
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
-SMALL = ContactSettings(pixels=128)
+SMALL = ContactSettings(mechanics="asperity", pixels=128)
 SEPARATIONS = np.arange(45.0, 24.0, -0.1)
 DEEPEST = np.array([SEPARATIONS.size - 1])
 

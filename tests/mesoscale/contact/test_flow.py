@@ -13,7 +13,7 @@ INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, 
 
 
 def settings_for(**changes) -> ContactSettings:
-    return ContactSettings(**{"pixels": 128, "length_nm": 125.0, **changes})
+    return ContactSettings(**{"mechanics": "asperity", "pixels": 128, "length_nm": 125.0, **changes})
 
 
 def surface(seed: int = 3) -> np.ndarray:
@@ -82,7 +82,7 @@ def test_a_width_below_the_grid_stalls_and_says_so(floor, settles, flow):
     """
     heights = np.zeros((64, 64))
     heights[20, 20] = -8.0
-    settings = ContactSettings(pixels=64, length_nm=64.0, reading={"flow_pair": "paper"})
+    settings = ContactSettings(mechanics="asperity", pixels=64, length_nm=64.0, reading={"flow_pair": "paper"})
     numerics = Numerics(flow=flow, flow_floor_pixels=floor, max_sweeps=300)
     settled = AsperityContact(heights, INPUTS, settings, numerics).move_to(7.0, True).settled
     assert settled == (settles or flow == "return")
@@ -107,7 +107,9 @@ def test_a_plateau_comes_down_in_a_few_sweeps():
     x = np.arange(64) - 32.0
     heights = np.maximum(x[:, None] ** 2 + x[None, :] ** 2, 80.0) / 40.0
     soft = ContactInputs(**{**vars(INPUTS), "h_macro": 1.0, "h_prime": 2.0})
-    contact = AsperityContact(heights, soft, ContactSettings(pixels=64, length_nm=64.0), Numerics(max_sweeps=5000))
+    contact = AsperityContact(
+        heights, soft, ContactSettings(mechanics="asperity", pixels=64, length_nm=64.0), Numerics(max_sweeps=5000)
+    )
     moved = contact.move_to(-2.6, True)
     assert moved.settled
     assert moved.sites > 100

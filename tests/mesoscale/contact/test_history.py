@@ -12,7 +12,7 @@ from mesoscale.settings import ContactSettings, HistorySettings
 from mesoscale.studies.contact_stability import violations
 
 # smoother surfaces have fewer asperities, and the force jumps where they merge
-CONTACT = ContactSettings(pixels=128, reading={"convention": "profile"})
+CONTACT = ContactSettings(mechanics="asperity", pixels=128, reading={"convention": "profile"})
 CREEP = HistorySettings(cycles=3, creep="power", dwell_s=1e4, creep_exponent=20)
 
 
@@ -91,4 +91,4 @@ def test_a_dwell_and_a_creep_law_need_each_other(changes, word):
 )
 def test_no_history_is_refused(cycles, model, word):
     with pytest.raises(InputError, match=word):
-        next(follow(MIDDLE, ContactSettings(model=model), HistorySettings(cycles=cycles), seed=1))
+        next(follow(MIDDLE, ContactSettings(mechanics="asperity", model=model), HistorySettings(cycles=cycles), seed=1))

@@ -13,7 +13,7 @@ INPUTS = ContactInputs(hamaker=0.2, e_star=91.0, h_macro=2.0, h_prime=8.0, q0=0.
 
 
 def _spots(pixels, model):
-    settings = ContactSettings(pixels=pixels, model=model)
+    settings = ContactSettings(mechanics="asperity", pixels=pixels, model=model)
     cycle = run_cycle(INPUTS, settings, NOMINAL_SEED, 1e4)
     return spots_under(INPUTS, settings, cycle), cycle
 

@@ -23,6 +23,7 @@ from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.curves import PadCells
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
 
+CONTACT = ContactSettings(mechanics="asperity")
 PLATE = DeviceSettings(spring_N_per_m=170.0)
 RMS = 9.0
 SEPARATION = np.linspace(0.05, 12.0, 1200) * RMS
@@ -71,28 +72,28 @@ def known(monkeypatch):
 
 
 def model_of(settings, count, cells=2):
-    design = plan_points(TABLE, ContactSettings(), settings, count)
+    design = plan_points(TABLE, CONTACT, settings, count)
     numbered = list(enumerate(design.points, 1))
-    central = solve_point(central_point(TABLE, ContactSettings(), settings), ContactSettings(), cells, 0)
-    return PadModel(central, design, tuple(solve_points(numbered, ContactSettings(), cells)))
+    central = solve_point(central_point(TABLE, CONTACT, settings), CONTACT, cells, 0)
+    return PadModel(central, design, tuple(solve_points(numbered, CONTACT, cells)))
 
 
 def test_points_fill_what_varies_and_nothing_else():
-    design = plan_points(table(), ContactSettings(), DeviceSettings(), 40)
+    design = plan_points(table(), CONTACT, DeviceSettings(), 40)
     varying = {design.names[k] for k in design.varying}
     assert {"hamaker", "rms", "gap_cutoff_nm", "bow_nm"} < varying
     assert not {"q0", "hurst"} & varying
     for k in design.varying:  # a Latin hypercube: one in each of 40 equal classes
         assert set(np.floor(40 * design.probability[:, k])) == set(range(40))
-    plates = plan_points(table(), ContactSettings(), PLATE, 4)
+    plates = plan_points(table(), CONTACT, PLATE, 4)
     assert not {"bow_nm", "thickness_um"} & set(plates.names)
 
 
 def test_a_D0_that_is_an_input_is_not_drawn_twice():
-    drawn = {point.gap_cutoff_nm for point in plan_points(table(), ContactSettings(), PLATE, 6).points}
+    drawn = {point.gap_cutoff_nm for point in plan_points(table(), CONTACT, PLATE, 6).points}
     assert len(drawn) == 6
     stated = table(gap_cutoff=InputRow(distribution="fixed", values=(3.7,)))
-    design = plan_points(stated, ContactSettings(), PLATE, 6)
+    design = plan_points(stated, CONTACT, PLATE, 6)
     assert {point.gap_cutoff_nm for point in design.points} == {3.7}
     assert "gap_cutoff" not in {design.causes[k] for k in design.varying}
 
@@ -100,7 +101,7 @@ def test_a_D0_that_is_an_input_is_not_drawn_twice():
 @pytest.mark.parametrize(("reaches", "pixels"), [(0.2, 64), (0.4, 128), (0.41, 256)])
 def test_pads_have_the_coarsest_grid_that_holds_all_waves(reaches, pixels):
     row = InputRow(distribution="uniform", values=(0.1, reaches))
-    contact = ContactSettings(pixels=256)
+    contact = ContactSettings(mechanics="asperity", pixels=256)
     assert points.on_pad_grid(contact, table(q1=row)).pixels == pixels
     assert points.on_pad_grid(contact, table()).pixels == 256  # the grid is the cut-off
 
@@ -114,12 +115,12 @@ def test_an_undecided_point_has_more_cells_and_a_decided_one_has_not(known, monk
         return press(point, contact, cells, first_seed, **options)
 
     monkeypatch.setattr(points, "press_pad", counted)
-    point = central_point(TABLE, ContactSettings(), PLATE)
-    (decided,) = solve_points([(1, point)], ContactSettings(), 2)
+    point = central_point(TABLE, CONTACT, PLATE)
+    (decided,) = solve_points([(1, point)], CONTACT, 2)
     assert asked == [2]
     assert decided.error_V == pytest.approx(0.5 * abs(decided.halves_V[0] - decided.halves_V[1]))
     monkeypatch.setattr(points, "SWITCH", replace(SWITCH, undecided=1e-6, of_release=1e-6))
-    list(solve_points([(1, point)], ContactSettings(), 2))
+    list(solve_points([(1, point)], CONTACT, 2))
     assert asked[1:] == [2, 2 * SWITCH.more_cells]
 
 
@@ -128,11 +129,11 @@ def test_a_point_that_cannot_be_pressed_leaves_its_reason(monkeypatch):
         raise InputError("4 cells closed by 90 nm carry 1 of the 5 MPa")
 
     monkeypatch.setattr(points, "press_pad", refused)
-    (solved,) = solve_points([(1, central_point(TABLE, ContactSettings(), PLATE))], ContactSettings(), 4)
+    (solved,) = solve_points([(1, central_point(TABLE, CONTACT, PLATE))], CONTACT, 4)
     assert solved.pad is None
     assert not solved.states
     assert "carry 1 of the 5 MPa" in solved.refused
-    model = PadModel(solved, plan_points(TABLE, ContactSettings(), PLATE, 1), (solved,))
+    model = PadModel(solved, plan_points(TABLE, CONTACT, PLATE, 1), (solved,))
     content = switch_on_pad(model, 1e6)
     assert content["central"] is None
     assert content["gate"]["reasons"] == [solved.refused]
@@ -164,9 +165,9 @@ def test_the_gate_fails_where_halves_of_the_cells_disagree_on_sticking(known):
     """Pads that pull with 0.1 and 1.9 times their pressures: one half sticks."""
     central = model_of(PLATE, 1).central
     assert central.pad is not None
-    assert switch_on_pad(PadModel(central, plan_points(TABLE, ContactSettings(), PLATE, 0), ()), 1e6)["gate"]["passed"]
+    assert switch_on_pad(PadModel(central, plan_points(TABLE, CONTACT, PLATE, 0), ()), 1e6)["gate"]["passed"]
     apart = replace(central, halves_V=(0.0, 7.0))
-    gate = switch_on_pad(PadModel(apart, plan_points(TABLE, ContactSettings(), PLATE, 0), ()), 1e6)["gate"]
+    gate = switch_on_pad(PadModel(apart, plan_points(TABLE, CONTACT, PLATE, 0), ()), 1e6)["gate"]
     assert not gate["passed"]
     assert "do not decide whether the switch sticks" in gate["reasons"][0]
 

@@ -227,7 +227,10 @@ def test_settings_called_from_python_give_one_line_for_all_mistakes():
         ContactSettings(pixels="many", lenght_nm=3, max_force_nN=-1.5)
     message = str(refusal.value)
     assert "\n" not in message
-    assert all(word in message for word in ("pixels = 'many'", "lenght_nm = 3", "max_force_nN = -1.5"))
+    assert all(
+        word in message
+        for word in ("pixels = 'many'", "lenght_nm = 3: unknown key; did you mean length_nm?", "max_force_nN = -1.5")
+    )
 
 
 def test_help_on_settings_shows_keys_with_default_and_unit():

@@ -11,7 +11,7 @@ from mesoscale.pad.memory import Flats, PadLaw, flats_of, law_of
 from mesoscale.settings import ContactSettings
 
 INPUTS = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=4.4)
-SMALL = ContactSettings(pixels=128, q1_per_nm=0.2)
+SMALL = ContactSettings(mechanics="asperity", pixels=128, q1_per_nm=0.2)
 
 
 def adhesion(mechanics: str = "asperity", cells: int = 2, **changes: float):

@@ -28,7 +28,7 @@ from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings
 
 MIDDLE = ContactInputs(hamaker=0.215, e_star=91.0, h_macro=1.95, h_prime=8.375, q0=0.025, hurst=0.75, rms=8.5)
-CONTACT = ContactSettings(pixels=128)
+CONTACT = ContactSettings(mechanics="asperity", pixels=128)
 CELLS, STEP_NM = 16, 0.2
 WANTED_MPa = 5.0
 
@@ -89,7 +89,7 @@ def test_a_pad_that_one_tall_grain_carries_is_opened_from_light_loads(monkeypatc
 
 
 def test_a_pressure_out_of_reach_is_refused():
-    rigid = ContactSettings(pixels=32, length_nm=1000.0)
+    rigid = ContactSettings(mechanics="asperity", pixels=32, length_nm=1000.0)
     soft = ContactInputs(**{**vars(MIDDLE), "e_star": 1e-6, "hamaker": 0.0})
     with pytest.raises(InputError, match=r"of the 5 MPa that the switch presses with; lower hold_voltage_V"):
         plan_grid(soft, rigid, sample_cells(soft, 4), wanted_GPa)
@@ -148,8 +148,8 @@ def test_far_away_a_pad_is_two_flats(pad):
 
 def test_cells_are_pieces_of_a_film():
     """Mean planes and RMS heights scatter as those of square pieces cut out of films of four times the side."""
-    small = ContactSettings(pixels=64)
-    large = ContactSettings(pixels=256, length_nm=4000.0)
+    small = ContactSettings(mechanics="asperity", pixels=64)
+    large = ContactSettings(mechanics="asperity", pixels=256, length_nm=4000.0)
     pieces = FilmPieces(MIDDLE, small)
     planes = np.random.default_rng(0).normal(size=300)
     ours = np.array([pieces.surface(Cell(seed, 0.0, plane, 1.0)) for seed, plane in enumerate(planes)])

@@ -30,7 +30,7 @@ def grainy(count):
 
 def judged(scans, name):
     spectra = [trusted_scan(scan, SETTINGS) for scan in scans]
-    return list(judge(scans, spectra, name, INPUTS, SETTINGS, ContactSettings()))
+    return list(judge(scans, spectra, name, INPUTS, SETTINGS, ContactSettings(mechanics="asperity")))
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def test_a_scan_that_the_others_say_nothing_of_is_passed_over():
     first, second = grainy(2)
     blind = trusted_scan(second, SETTINGS)
     spectra = [trusted_scan(first, SETTINGS), replace(blind, high=blind.low, reach=blind.low)]
-    rows = judge([first, second], spectra, "power_law", INPUTS, SETTINGS, ContactSettings())
+    rows = judge([first, second], spectra, "power_law", INPUTS, SETTINGS, ContactSettings(mechanics="asperity"))
     assert {row["scan"] for row in rows} == {"g1"}
 
 

@@ -43,10 +43,12 @@ def further_cases(mechanics: str) -> list[Case]:
         ]
     full = {"model": "elastic", "max_force_nN": 1e12}
     cases.append(Case("full elastic contact", "closing ends where all sites touch", MIDDLE, full, too_much=True))
-    for exponent in range(-3, 7):
+    for exponent in range(-3, 4):
         inputs = replace(MIDDLE, e_star=10.0**exponent, h_macro=1.0, h_prime=0.0)
         # softest: the load is beyond full contact
-        cases.append(Case(f"E*/H 1e{exponent}", "from never yielding to rigid", inputs, too_much=exponent == -3))
+        cases.append(
+            Case(f"E*/H 1e{exponent}", "from never yielding to yielding at once", inputs, too_much=exponent == -3)
+        )
     return cases
 
 
@@ -65,11 +67,14 @@ def test_extreme_cases_keep_all_invariants(mechanics, case):
 
 
 def test_a_scene_is_tried_at_its_own_inputs_and_settings():
-    inputs, settings = replace(MIDDLE, e_star=300.0), ContactSettings(pixels=64, length_nm=62.5, retardation_nm=100.0)
+    inputs, settings = (
+        replace(MIDDLE, e_star=300.0),
+        ContactSettings(mechanics="asperity", pixels=64, length_nm=62.5, retardation_nm=100.0),
+    )
     cases = {case.name: case for case in extreme_cases(inputs, settings)}
     assert cases["A_H = 0"].inputs == replace(inputs, hamaker=0.0)
-    assert cases["E* x 1000"].inputs.e_star == 3e5
-    assert judge(cases["E* x 1000"], settings)[0] == []
+    assert cases["E* / 1000"].inputs.e_star == 0.3
+    assert judge(cases["stiffest"], settings)[0] == []
 
 
 def test_a_check_says_what_broke(monkeypatch):
@@ -91,7 +96,7 @@ def test_draws_are_from_table_1():
 
 def test_a_gain_of_energy_over_few_points_is_judged_on_a_finer_path():
     """In this draw two asperities merge; 40 steps see the jump at another place on opening than on closing."""
-    inputs, settings = draw_inputs(1160), ContactSettings(pixels=128)
+    inputs, settings = draw_inputs(1160), ContactSettings(mechanics="asperity", pixels=128)
     heights = random_surface(inputs, settings, 3)
     cycle = run_cycle(inputs, settings, 3, heights=heights, contact_at="lowest", keep_surface=True)
     (words,) = violations(cycle, inputs, settings)

@@ -17,7 +17,7 @@ TABLE = InputTable(
     tuple(UncertainInput(name, "", distribution, "literature", "") for name, distribution in DISTRIBUTIONS.items()),
     np.eye(len(DISTRIBUTIONS)),
 )
-CONTACT = ContactSettings(pixels=64)
+CONTACT = ContactSettings(mechanics="asperity", pixels=64)
 DEVICE = DeviceSettings()
 
 

@@ -72,6 +72,6 @@ def test_what_is_no_map_of_heights_is_refused(heights):
 def test_contact_is_at_the_tall_grains():
     """The contact's surface is turned upside down: its minima are the summits."""
     inputs = ContactInputs(hamaker=0.2, e_star=91, h_macro=2, h_prime=8, q0=0.05, hurst=0.5, rms=5)
-    settings = ContactSettings(pixels=128, surface={"heights": SKEWED})
+    settings = ContactSettings(mechanics="asperity", pixels=128, surface={"heights": SKEWED})
     heights = random_surface(inputs, settings, 1)
     assert np.mean((heights / heights.std()) ** 3) < -0.8

@@ -14,7 +14,7 @@ from mesoscale.uncertainty.validation import direct_runs_of_rows
 from tests.mesoscale import paper
 
 PAPER = paper.INPUTS
-CONTACT = ContactSettings(pixels=64)
+CONTACT = ContactSettings(mechanics="asperity", pixels=64)
 
 
 def law_of(runs, names):

@@ -156,7 +156,7 @@ def _failing_runs(share: float) -> list[str]:
 
 def _failing_engine() -> list[str]:
     runs = [Run(k, -1, k, {**MIDDLE, "e_star": -1.0 if k == 1 else 91.0}) for k in range(3)]
-    rows = list(compute_rows(runs, ContactSettings(pixels=128)))
+    rows = list(compute_rows(runs, ContactSettings(mechanics="asperity", pixels=128)))
     text = [{key: str(value) for key, value in row.items()} for row in rows]
     _, y = direct_runs_of_rows(text, list(MIDDLE), 3)
     return _unless(
@@ -226,7 +226,7 @@ def _contradiction() -> list[str]:
 
 def _eighth_input() -> list[str]:
     runs = [Run(k, -1, 0, {**MIDDLE, "gap_cutoff": cutoff}) for k, cutoff in enumerate((0.165, 0.3))]
-    near, far = compute_rows(runs, ContactSettings(pixels=128))
+    near, far = compute_rows(runs, ContactSettings(mechanics="asperity", pixels=128))
     return _unless(
         attraction_falls=float(near["closing_C_a_GPa_nm"]) > 1.5 * float(far["closing_C_a_GPa_nm"]),
         repulsion_stays=near["closing_d_c_nm"] == far["closing_d_c_nm"],

@@ -14,7 +14,7 @@ from mesoscale.uncertainty.runs import compute, compute_all, compute_rows
 from tests.mesoscale import paper
 
 PAPER = collect(paper.INPUTS, {}, {})
-CONTACT = ContactSettings(pixels=64)
+CONTACT = ContactSettings(mechanics="asperity", pixels=64)
 CENTRE = collocation_runs(PAPER, 0, 1)[0].values
 
 

@@ -151,7 +151,7 @@ def test_random_surfaces_follow_what_was_measured():
     _, content = described(scans)
     middle = {name: (row["a"] + row["b"]) / 2 for name, row in content["inputs"].items() if name != "q1"}
     inputs = ContactInputs(hamaker=0.2, e_star=91, h_macro=2, h_prime=8, **middle)
-    settings = ContactSettings(pixels=256, length_nm=1000.0, surface=content["surface"])
+    settings = ContactSettings(mechanics="asperity", pixels=256, length_nm=1000.0, surface=content["surface"])
     highest = [-random_surface(inputs, settings, seed).min() for seed in range(6)]
     measured = [(scan.heights_nm - scan.heights_nm.mean()).max() for scan in scans]
     assert np.mean(highest) == pytest.approx(np.mean(measured), rel=0.15)
@@ -159,7 +159,7 @@ def test_random_surfaces_follow_what_was_measured():
 
 def test_the_inputs_bend_the_measured_spectrum():
     _, content = described(patches(8.0, 0.05))
-    settings = ContactSettings(pixels=128, surface=content["surface"])
+    settings = ContactSettings(mechanics="asperity", pixels=128, surface=content["surface"])
     pivot = content["surface"]["spectrum"]
     base = {"hamaker": 0.2, "e_star": 91.0, "h_macro": 2.0, "h_prime": 8.0, "rms": 4.0, "q0": pivot["q0"]}
     flat, steep = (

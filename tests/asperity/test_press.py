@@ -1,0 +1,114 @@
+"""A given map under a flat: Hertz, Boussinesq's punch, the cycle of a scene, and what must hold for any map."""
+
+import numpy as np
+import pytest
+
+import asperity as asp
+
+PIXELS, SIDE, RADIUS, E_STAR = 128, 200.0, 1000.0, 100.0
+X = (np.arange(PIXELS) + 0.5) * SIDE / PIXELS - SIDE / 2
+R = np.hypot(X[:, None], X)
+SPHERE = -(R**2) / (2 * RADIUS)
+INPUTS = asp.ContactInputs(0.215, 91.0, 1.95, 8.375, q0=0.06, hurst=0.75, rms=3.0)
+GRID = asp.ContactSettings(mechanics="coupled", pixels=64, length_nm=250.0, q1_per_nm=0.3)
+
+
+def test_a_sphere_alone_is_hertzs():
+    """To the width of a site over the contact radius, which has 12 to 21 sites."""
+    loads = np.array([1000.0, 5000.0])
+    pressed = asp.press(SPHERE, SIDE, loads, E_STAR, periodic=False)
+    radius = (0.75 * loads * RADIUS / E_STAR) ** (1 / 3)
+    assert pressed.converged
+    np.testing.assert_allclose(pressed.loads_nN, loads, rtol=1e-5)
+    np.testing.assert_allclose(pressed.pressure_GPa.sum((1, 2)) * (SIDE / PIXELS) ** 2, loads, rtol=1e-5)
+    np.testing.assert_allclose(SIDE * np.sqrt(pressed.area_share / np.pi), radius, rtol=0.02)
+    np.testing.assert_allclose(pressed.approach_nm, radius**2 / RADIUS, rtol=0.003)
+    np.testing.assert_allclose(pressed.pressure_GPa.max((1, 2)), 1.5 * loads / (np.pi * radius**2), rtol=0.003)
+    # the gap beside the contact (Johnson 1985, eq. 3.42a)
+    beside = 1.2 * radius[1] < R
+    a, r = radius[1], R[beside]
+    lowered = radius[1] / (np.pi * RADIUS) * ((2 - (r / a) ** 2) * np.arcsin(a / r) + np.sqrt((r / a) ** 2 - 1)) * a
+    wanted = r**2 / (2 * RADIUS) - a**2 / RADIUS + lowered
+    np.testing.assert_allclose(pressed.gap_nm[1][beside], wanted, atol=0.002 * wanted.max())
+
+
+def test_a_flat_punch_alone_is_boussinesqs():
+    """Stiffness 2 E* a, pressure F / (2 pi a^2) in the middle; its radius has 32 sites."""
+    radius, load = 50.0, 1e4
+    pressed = asp.press(np.where(radius > R, 0.0, -500.0), SIDE, load, E_STAR, periodic=False)
+    assert pressed.area_share[0] == np.mean(radius > R)
+    assert load / pressed.approach_nm[0] == pytest.approx(2 * E_STAR * radius, rel=0.005)
+    middle = pressed.pressure_GPa[0, PIXELS // 2, PIXELS // 2]
+    assert middle == pytest.approx(load / (2 * np.pi * radius**2), rel=0.005)
+
+
+def test_a_rectangle_is_the_part_of_a_square_that_touches():
+    part = asp.press(SPHERE[:, 32:96], (SIDE, SIDE / 2), 1000.0, E_STAR, periodic=False)
+    whole = asp.press(SPHERE, SIDE, 1000.0, E_STAR, periodic=False)
+    np.testing.assert_allclose(part.pressure_GPa, whole.pressure_GPa[:, :, 32:96], atol=1e-6)
+    assert part.lengths_nm == (SIDE, SIDE / 2)
+
+
+@pytest.mark.parametrize("model", ["elastic", "plastic"])
+def test_a_periodic_map_is_pressed_as_in_a_cycle(model):
+    settings = GRID.model_copy(update={"model": model, "max_force_nN": 2000.0})
+    surface = asp.random_surface(INPUTS, settings, 3)
+    cycle = asp.run_cycle(INPUTS, settings, 3)
+    yields = {"h_macro": 1.95, "h_prime": 8.375} if model == "plastic" else {}
+
+    def law(gap):
+        return INPUTS.hamaker / (6 * np.pi * (gap + settings.gap_cutoff_nm) ** 3)
+
+    pressed = asp.press(surface, 250.0, [500.0, 2000.0], 91.0, contact_at="lowest", attraction=law, **yields)
+    assert pressed.separation_nm[-1] == pytest.approx(cycle.closing.separation_nm[-1], abs=2e-3)
+    assert pressed.attraction_nN[-1] == pytest.approx(cycle.closing.attractive_nN[-1], rel=0.01)
+    np.testing.assert_array_equal(pressed.gap_nm[pressed.pressure_GPa > 0], 0)
+
+
+def test_of_two_maps_only_the_sum_counts():
+    first, second = (asp.random_surface(INPUTS, GRID, seed) for seed in (1, 2))
+    both = asp.press(first, 250.0, 500.0, 91.0, counterface=second)
+    one = asp.press(first + second[::-1], 250.0, 500.0, 91.0)
+    np.testing.assert_array_equal(both.pressure_GPa, one.pressure_GPa)
+
+
+def test_neighbours_lower_a_periodic_sphere():
+    """By 3.900 F / (pi E* L), a lattice of point forces less its mean, on a cell 20 times as wide as the contact."""
+    free, repeated = (asp.press(SPHERE, SIDE, 100.0, E_STAR, periodic=each) for each in (False, True))
+    lowered = free.approach_nm[0] - repeated.approach_nm[0]
+    assert lowered == pytest.approx(3.90026 * 100.0 / (np.pi * E_STAR * SIDE), rel=0.03)
+    assert free.pressure_GPa.max() == pytest.approx(repeated.pressure_GPa.max(), rel=0.003)
+
+
+def test_a_pressed_map_is_drawn_and_says_what_it_is():
+    pressed = asp.press(SPHERE, SIDE, [100.0, 1000.0], E_STAR)
+    assert [axes.get_xlabel() for axes in pressed.plot().axes[:2]] == ["x (µm)"] * 2
+    assert repr(pressed) == "Map of 128 x 128 sites at 2 loads"
+    assert list(pressed.lines())[2].startswith("1000 nN: ")
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"heights": SPHERE[:, :64]}, "periodic=False"),
+        ({"heights": SPHERE[0]}, "a map of at least 3 x 3"),
+        ({"heights": np.where(R < 5, np.nan, SPHERE)}, "not finite"),
+        ({"heights": 1e-9 * SPHERE}, "give both in nm"),
+        ({"side_nm": (200.0, 100.0)}, "must be squares"),
+        ({"loads_nN": [10.0, 5.0]}, "rising loads"),
+        ({"loads_nN": []}, "rising loads"),
+        ({"loads_nN": 1e9}, "full contact"),
+        ({"loads_nN": 1e9, "h_macro": 2.0}, "hardness"),
+        ({"e_star": -1.0}, "e_star"),
+        ({"counterface": SPHERE[1:, 1:]}, "one shape"),
+        ({"contact_at": "top"}, "highest"),
+        ({"attraction": lambda gap: 1.0}, "a function of an array"),
+        ({"attraction": lambda gap: gap / 0}, "finite"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:divide by zero", "ignore:invalid value")
+def test_what_is_no_map_is_refused_in_one_line(changes, words):
+    call = {"heights": SPHERE, "side_nm": SIDE, "loads_nN": 100.0, "e_star": E_STAR} | changes
+    with pytest.raises(asp.InputError, match=words) as refusal:
+        asp.press(**call)
+    assert "\n" not in str(refusal.value)
