@@ -1,4 +1,4 @@
-"""Van der Waals attraction of a rough surface and a plane (section 2.1, eq. 1).
+"""Van der Waals attraction of a rough surface and a plane (section 2.1, eq. 1), and that of liquid in the gap.
 
 Sum over the sites of 1/s^3. The distance s of the walls is g + D0 (offset) or max(g, D0) (clamped, the paper's),
 with the gap g = h + separation. Sites far from contact are summed through a histogram of their heights that keeps the
@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 
 from mesoscale.contact.changes import Changes
+from mesoscale.contact.menisci import menisci_of
 from mesoscale.contact.numerics import Numerics
 from mesoscale.settings import ContactSettings
 
@@ -44,6 +45,8 @@ class Attraction:
     cutoff : D0, nm.
     offset, least : the walls are max(gap, least) + offset apart, nm.
     touching : whether sites in contact attract.
+    menisci : liquid in the gaps, where humid air condenses.
+    volume : of that liquid where an opening keeps it, over the area of a site, nm.
     near_nm : gap below which sites of an undeformed surface are summed one by one, nm.
     """
 
@@ -56,6 +59,8 @@ class Attraction:
         self.least = self.cutoff - self.offset
         self.touching = settings.reading.touching_attracts
         self.rate = retardation_rate(settings.retardation_nm)
+        self.menisci, self.volume = menisci_of(settings.air), None
+        self.site_area = site_area
         self.strength = hamaker * site_area / (6.0 * np.pi)
         self.lowest = float(heights.min())
         self.bin_width = max(float(heights.max()) - self.lowest, 1e-6 * self.cutoff) / numerics.gap_bins
@@ -75,6 +80,11 @@ class Attraction:
             take_out(changes.original, self.taken_out, count, self.lowest, self.bin_width, self.moments)
             self.taken_out = count
 
+    @property
+    def reach_nm(self) -> float:
+        """Gap below which there is liquid in equilibrium, nm."""
+        return self.menisci.reach_nm if self.menisci else 0.0
+
     def adopt(self, changes: Changes, heights: np.ndarray) -> None:
         """Have the histogram hold the changed sites, too, at their present heights (nm)."""
         self.take_out(changes)
@@ -93,7 +103,20 @@ class Attraction:
             total += far_inverse_cubes(
                 separation + self.offset, far, self.lowest, self.bin_width, self.moments, self.rate
             )
-        return -self.strength * total
+        return -self.strength * total + self.liquid(gap, weight)
+
+    def liquid(self, gap: np.ndarray, weight: np.ndarray) -> float:
+        """What liquid adds to the force (nN) on sites with given gaps (nm) and weights; all sites that it may fill."""
+        menisci = self.menisci
+        if menisci is None:
+            return 0.0
+        reach = menisci.reach_nm
+        if self.volume is not None:
+            reach = math.inf
+            menisci, weight = menisci.holding(gap, weight, self.volume)
+        sites, cubes = filled_sites(gap, weight, reach, self.least, self.offset, self.rate)
+        less = (1.0 - menisci.dispersion) * self.strength * cubes
+        return less - menisci.pull_GPa * self.site_area * sites
 
     def around(
         self,
@@ -106,9 +129,14 @@ class Attraction:
     ) -> float:
         """Force (nN, negative) on all sites with their displacements (nm), (N^2,), around those under pressure."""
         walls, touching = (self.least, self.offset, self.rate), self.touching
-        return -self.strength * inverse_cubes_around(
+        force = -self.strength * inverse_cubes_around(
             heights, separation, displacement, sites, place, pressure, touching, *walls
         )
+        if self.menisci is None:
+            return force
+        every, pixels = np.arange(heights.size), math.isqrt(heights.size)
+        weight = attracting(every, place, pressure, pixels, touching)
+        return force + self.liquid(heights + separation + displacement, weight)
 
     def undeformed(
         self,
@@ -250,6 +278,17 @@ def inverse_cubes_of(gap, weight, least, offset, rate):
         if weight[k] > 0.0:
             total += weight[k] * inverse_cube(max(gap[k], least) + offset, rate)
     return total
+
+
+@njit(cache=True)
+def filled_sites(gap, weight, reach, least, offset, rate):
+    """Sum of the weights of sites with gaps below `reach`, and that of their 1/s^3."""
+    sites = cubes = 0.0
+    for k in range(gap.size):
+        if weight[k] > 0.0 and gap[k] < reach:
+            sites += weight[k]
+            cubes += weight[k] * inverse_cube(max(gap[k], least) + offset, rate)
+    return sites, cubes
 
 
 @njit(cache=True)

@@ -150,6 +150,8 @@ def run_cycle(
         closing.rows += hold(contact, closing.rows[-1])
     last = closing.rows[-1]
     changed, remarks = contact.changed_sites, contact.remarks()
+    if contact.adhesion and contact.adhesion.menisci:
+        remarks["filled_share"] = contact.liquid(last.separation)[0]
     repeated, unconverged = closing.repeated, closing.unconverged
     if not contact.REVERSIBLE:
         path = reopen(contact, numerics.force_steps, last)
@@ -157,7 +159,8 @@ def run_cycle(
         departure = [row for gap in _gaps(contact) for row in contact.way(path.rows[-1].separation + gap)]
         unconverged += contact.unsettled
         remarks["jump_loss_aJ"] = float(contact.lost)
-    elif changed > 0 and last.force > 0:
+    elif (changed > 0 or contact.keeps_liquid) and last.force > 0:
+        contact.hold_liquid(last.separation)
         contact.adopt_changes()
         departure = [contact.away(contact.touching_separation + gap) for gap in _gaps(contact)]
         path = trace(contact, numerics.force_steps, False, last.force, stop_separation=last.separation)
@@ -215,7 +218,8 @@ def _largest_drop(forces: list[float]) -> float:
 
 def _gaps(contact: Contact) -> np.ndarray:
     """Distances from contact (nm), rising, at which the attraction of what does not touch is computed."""
-    return np.geomspace(max(4.0 * contact.rms, 10.0), max(0.01 * contact.rms, 0.01), 20)[::-1]
+    reach = contact.adhesion.reach_nm if contact.adhesion else 0.0
+    return np.geomspace(max(4.0 * contact.rms, 10.0, 1.5 * reach), max(0.01 * contact.rms, 0.01), 20)[::-1]
 
 
 def _branch(contact: Contact, rows: list[Row]) -> Branch:

@@ -86,6 +86,7 @@ class Closing:
         """The same on the way back from here to the first separation, in the order of closing, shape (2, n)."""
         forces = self.closing
         self._has_flowed |= self._contact.changed_sites > 0 or not self._contact.REVERSIBLE
+        self._has_flowed |= self._contact.keeps_liquid
         if self._has_flowed:  # else the way back is the way there
             forces[:, :-1] = self._contact.opened(np.array(self._flats))[:, :-1]
             self.settled &= self._contact.unsettled == 0

@@ -12,6 +12,7 @@ import numpy as np
 
 from mesoscale.contact.attraction import Attraction
 from mesoscale.contact.changes import no_changes
+from mesoscale.contact.menisci import menisci_of
 from mesoscale.contact.numerics import Numerics
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
@@ -101,7 +102,9 @@ class Contact(ABC):
         self.sorted_to = -np.inf
         self.unsettled = 0
         self.adhesion = (
-            Attraction(self.heights, self.site_area, inputs.hamaker, settings, numerics) if inputs.hamaker > 0 else None
+            Attraction(self.heights, self.site_area, inputs.hamaker, settings, numerics)
+            if inputs.hamaker > 0 or menisci_of(settings.air)
+            else None
         )
 
     @abstractmethod
@@ -119,6 +122,26 @@ class Contact(ABC):
     @abstractmethod
     def attraction(self, separation: float) -> float:
         """Attractive force in nN, negative (eq. 1); 0 without a pass over anything if A_H = 0."""
+
+    @abstractmethod
+    def gaps(self, separation: float) -> tuple[np.ndarray, np.ndarray]:
+        """Gaps of all sites (nm), and how many sites' areas attract with each; shapes (N^2,)."""
+
+    @property
+    def keeps_liquid(self) -> bool:
+        """Whether an opening keeps the volume of the liquid."""
+        return bool(self.adhesion and self.adhesion.menisci and self.adhesion.menisci.keeps_volume)
+
+    def liquid(self, separation: float) -> tuple[float, float]:
+        """Liquid in equilibrium at the current separation: share of the cell that it fills, and mean depth, nm."""
+        gap, weight = self.gaps(separation)
+        filled = np.where(gap < self.adhesion.reach_nm, weight, 0.0) if self.adhesion else np.zeros_like(gap)
+        return float(filled.mean()), float((filled * np.maximum(gap, 0.0)).mean())
+
+    def hold_liquid(self, separation: float | None) -> None:
+        """Keep the liquid of the current separation from now on, where an opening does; None: no longer."""
+        if self.adhesion and self.keeps_liquid:
+            self.adhesion.volume = None if separation is None else self.liquid(separation)[1] * self.heights.size
 
     @property
     def lost(self) -> float:
@@ -138,6 +161,7 @@ class Contact(ABC):
 
         The last separation is the present one, at which the contact is afterwards, too. Shape (2, n).
         """
+        self.hold_liquid(separations[-1])
         self.adopt_changes()
         touching = self.touching_separation
         forces = np.zeros((2, separations.size))
@@ -145,6 +169,7 @@ class Contact(ABC):
             if separation < touching:
                 forces[0, place] = self.move_to(separation, False).force
             forces[1, place] = self.attraction(separation)
+        self.hold_liquid(None)
         return forces
 
     @property

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
 from mesoscale.checks import check_number
 from mesoscale.errors import InputError
@@ -74,7 +75,13 @@ def contact_of(values: Mapping[str, float], settings: ContactSettings) -> tuple[
     ------
     InputError : a value that the input or the setting does not accept.
     """
-    replaced = {row.setting: value for name, value in values.items() if (row := definition(name)).setting}
+    replaced: dict[str, Any] = {}
+    for name, value in values.items():
+        section, _, field = definition(name).setting.rpartition(".")
+        if section:
+            replaced[section] = {**dict(getattr(settings, section) or {}), field: value}
+        elif field:
+            replaced[field] = value
     kind = FilmInputs if RMS_SCATTER.name in values else ContactInputs
     given = {name: value for name, value in values.items() if not definition(name).setting}
     inputs = kind(**{"h_prime": 0.0, **given})  # laws without it: `inputs.hardness`

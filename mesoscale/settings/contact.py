@@ -15,6 +15,8 @@ WORK_FACTOR: dict[AttractionLaw, float] = {"clamped": 4.0, "offset": 12.0}
 """Work that separates two flats from touch: w = A_H / (this pi D0^2)."""
 RANGE_IN_D0: dict[AttractionLaw, float] = {"clamped": 1.5, "offset": 0.5}
 """That work over the largest attraction A_H / (6 pi D0^3), in units of D0."""
+WATER_CM3 = 18.07
+"""Molar volume of water at 25 C, 18.015 g/mol over 0.99705 g/cm^3."""
 NOMINAL_SEED = 1
 """Seed of the surface of the nominal curves (figures 4 and 11)."""
 NOMINAL_FORCE_NN = 1e4
@@ -60,6 +62,43 @@ def base_modulus(bodies: Sequence[Body]) -> float:
     return 1.0 / sum((1.0 - body[-1].poisson ** 2) / body[-1].young_GPa for body in bodies)
 
 
+class AirSettings(Settings):
+    """Humid air around the contact, whose vapour condenses in narrow gaps (docs/humid_air.md)."""
+
+    humidity: float = key(0.0, "relative humidity of the liquid's vapour; 0: dry", "[0, 1)")
+    temperature_C: float = key(20.0, "temperature of air and liquid", "[-100, 2000] C")
+    liquid: str = key("water", "its name; others than water need surface tension and molar volume", max_length=60)
+    surface_tension_mN_m: float | None = key(
+        None, "surface tension of the liquid; null: water's at the temperature", "[0.001, 1e5] mN/m"
+    )
+    molar_volume_cm3: float | None = key(
+        None, f"molar volume of the liquid; null: water's, {WATER_CM3:g}", "[0.1, 1e5] cm^3"
+    )
+    contact_angles_deg: tuple[float, float] = key((0.0, 0.0), "contact angles of the liquid on both walls, 0 to 180")
+    film_nm: float = key(0.0, "thickness of the adsorbed film on each wall", "[0, 1000] nm")
+    hamaker_share: float = key(
+        0.3,
+        "Hamaker constant across the liquid over that across air; for silicon nitride and titanium oxide in water it "
+        "falls several times (assumption, to be replaced by a computed value)",
+        "[0, 1]",
+    )
+    opening: Literal["balance", "volume"] = key(
+        "balance",
+        "how menisci open: in balance with the vapour, or so fast that their volume stays (not mechanics: adhesive)",
+    )
+
+    @model_validator(mode="after")
+    def _liquid_is_known(self) -> "AirSettings":
+        for angle in self.contact_angles_deg:
+            if not 0.0 <= angle <= 180.0:
+                raise ValueError(f"contact_angles_deg: {angle:g} is no contact angle; accepted are 0 to 180 degrees")
+        if self.liquid != "water" and None in (self.surface_tension_mN_m, self.molar_volume_cm3):
+            raise ValueError(
+                f"liquid = {self.liquid}: only water is known; give its surface_tension_mN_m and molar_volume_cm3"
+            )
+        return self
+
+
 class ContactSettings(Settings):
     """Mesoscale contact model (docs/contact.md)."""
 
@@ -98,6 +137,7 @@ class ContactSettings(Settings):
         "wavelength of Gregory's retardation of the attraction, about 100 nm for most solids; null: none",
         "[1, 1e6] nm",
     )
+    air: AirSettings | None = key(None, "humid air around the contact; null: dry")
     bodies: tuple[Body, ...] = key(
         (),
         "elastic layers of the two bodies, each from its surface down to its base; e_star is then that of the "
@@ -107,7 +147,7 @@ class ContactSettings(Settings):
     reading: ReadingSettings = ReadingSettings()
 
     @model_validator(mode="after")
-    def _bodies_have_one_base_each(self) -> "ContactSettings":
+    def _bodies_and_air_suit(self) -> "ContactSettings":
         if any(material.thickness_nm == 0.0 for body in self.bodies for material in body):
             raise ValueError("bodies: a layer with thickness_nm = 0 is none; leave it out")
         for body in self.bodies:
@@ -115,6 +155,8 @@ class ContactSettings(Settings):
                 raise ValueError(
                     "bodies: each is a list of layers with thickness_nm, and at its end a base without one"
                 )
+        if self.air and self.air.opening == "volume" and self.mechanics == "adhesive":
+            raise ValueError("air.opening = volume: an adhesive contact opens in balance; take mechanics: coupled")
         if self.bodies and self.mechanics == "asperity":
             raise ValueError("bodies: single asperities know one modulus; accepted with mechanics: coupled or adhesive")
         return self

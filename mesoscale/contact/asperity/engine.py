@@ -104,6 +104,13 @@ class AsperityContact(Contact):
             return 0.0
         self.adhesion.take_out(self.changes)
         self._sort_to(min(self.adhesion.near_nm - separation + 2.0 * self.adhesion.bin_width, self.highest))
-        return self.adhesion.undeformed(
+        force = self.adhesion.undeformed(
             self.heights, separation, self.order, self.order_heights, self.changes, self.changed
         )
+        return force if self.adhesion.menisci is None else force + self.adhesion.liquid(*self.gaps(separation))
+
+    def gaps(self, separation: float) -> tuple[np.ndarray, np.ndarray]:
+        """Gaps of all sites (nm), and how many sites' areas attract with each; shapes (N^2,)."""
+        gap = self.heights + separation
+        touching = self.adhesion is not None and self.adhesion.touching
+        return gap, np.ones_like(gap) if touching else (gap >= 0.0).astype(float)

@@ -81,7 +81,10 @@ class AdhesiveContact(CoupledContact):
         """Refuse an attraction that falls off so fast that single sites jump (InputError)."""
         if self.adhesion is None:
             return
-        steepest = 3.0 * self.strongest / self.adhesion.cutoff
+        law = self.adhesion
+        steepest = 3.0 * self.dispersion / law.cutoff
+        if law.menisci is not None:  # a site that fills must fall by less than the depth of the liquid
+            steepest = max(steepest, law.menisci.pull_GPa / law.reach_nm)
         if steepest > self.stiffness:
             pixels = int(np.ceil(self.n * steepest / self.stiffness))
             finer = f"contact.pixels >= {pixels}, " if pixels <= 16384 else ""  # the most that the key accepts
@@ -97,10 +100,22 @@ class AdhesiveContact(CoupledContact):
         self.saved = (self.now, self.last)
 
     @property
-    def strongest(self) -> float:
-        """Attraction of touching sites, GPa."""
+    def dispersion(self) -> float:
+        """Attraction of touching sites across air, GPa."""
         law = self.adhesion
         return self.hamaker / (6.0 * np.pi) * float(inverse_cube(law.cutoff, law.rate)) if law else 0.0
+
+    @property
+    def strongest(self) -> float:
+        """Attraction of touching sites, GPa."""
+        share, laplace = self.liquid_law
+        return share * self.dispersion + laplace
+
+    @property
+    def liquid_law(self) -> tuple[float, float]:
+        """Share of the dispersion that is left across the liquid, and Laplace's pressure in it, GPa; (1, 0): dry."""
+        menisci = self.adhesion.menisci if self.adhesion else None
+        return (menisci.dispersion, menisci.pull_GPa) if menisci else (1.0, 0.0)
 
     def back(self) -> None:
         """Undo the last move, its flow and its stresses."""
@@ -202,6 +217,11 @@ class AdhesiveContact(CoupledContact):
         gap = np.maximum(self.heights + self.separation + self.now.moved, 0.0)
         return (self._spread() - self.now.pull).reshape(shape), gap.reshape(shape)
 
+    def gaps(self, separation: float) -> tuple[np.ndarray, np.ndarray]:
+        """Gaps of all sites (nm), and how many sites' areas attract with each; shapes (N^2,)."""
+        gap = np.maximum(self.heights + separation + self.now.moved, 0.0)
+        return gap, np.ones_like(gap)
+
     def _spread(self) -> np.ndarray:
         """Pressures of all sites, shape (N^2,)."""
         pressure = np.zeros(self.heights.size)
@@ -245,6 +265,8 @@ class AdhesiveContact(CoupledContact):
                     law.least,
                     law.offset,
                     law.rate,
+                    law.reach_nm,
+                    self.liquid_law,
                     reached,
                 )
             yielding = self.pressure >= self._bounds()
@@ -284,22 +306,30 @@ def mix(steps: deque[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
 
 
 @njit(cache=True)
-def attract(heights, separation, moved, pressure, pull, hamaker, least, offset, rate, reached):
+def attract(heights, separation, moved, pressure, pull, hamaker, least, offset, rate, reach, liquid, reached):
     """Attraction (GPa) of the sites of a deformed surface, into `reached`.
 
     The energy of flats s apart is -A_H / (12 pi s^2 (1 + c s)); within the least distance the attraction is constant.
+    Gaps below `reach` hold liquid: a share of that attraction, and a pressure (`liquid`).
 
     Returns
     -------
     Elastic and adhesive energy, nN/nm, and the largest change of the attraction from `pull`, GPa.
     """
     strength = hamaker / (6.0 * np.pi)
+    (share, laplace), outer = liquid, max(reach, least) + offset
+    edge = 0.5 * strength / (outer * outer * (1.0 + rate * outer))
+    edge += strength * inverse_cube(outer, rate) * max(least - reach, 0.0)
     energy = change = 0.0
     for k in range(moved.size):
         gap = heights[k] + separation + moved[k]
         walls = max(gap, least) + offset
         reached[k] = strength * inverse_cube(walls, rate)
         energy += 0.5 * (pressure[k] - pull[k]) * moved[k]
-        energy -= 0.5 * strength / (walls * walls * (1.0 + rate * walls)) + reached[k] * max(least - gap, 0.0)
+        parting = 0.5 * strength / (walls * walls * (1.0 + rate * walls)) + reached[k] * max(least - gap, 0.0)
+        if gap < reach:
+            reached[k] = share * reached[k] + laplace
+            parting = share * parting + (1.0 - share) * edge + laplace * (reach - gap)
+        energy -= parting
         change = max(change, abs(reached[k] - pull[k]))
     return energy, change

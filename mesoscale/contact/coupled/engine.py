@@ -7,7 +7,7 @@ nowhere by more than F times the depth of the Green's function, so all sites hig
 """
 
 import math
-from functools import partial
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -45,6 +45,8 @@ class CoupledContact(Contact):
     # nm: sites this near count with their displacement in the attraction, the others without: errs by at most 0.2 %
     # (512^2 and 1024^2, elastic and plastic, 90 nN to 25 uN)
     NEAR_GAP = 2.0
+    # pairs of sites over those of the cell: a transform of the whole grid takes as long
+    PAIRS_PER_TRANSFORM = 25
     AIMS_AT_END = True
     ROUNDS = 40
     FALLING_ROUNDS = 10  # from here on hardness may only fall, so that the rounds come to an end
@@ -352,13 +354,16 @@ class CoupledContact(Contact):
         law = self.adhesion
         if law is None:
             return 0.0
-        if self.grid is not None:
-            return law.around(self.heights, separation, self.grid.field, self.sites, self.place, self.pressure)
+        if self.grid is not None or law.volume is not None:
+            return law.around(self.heights, separation, self._field(), self.sites, self.place, self.pressure)
         known = self.sites.size
-        near = max(self.NEAR_GAP, 2.0 * law.cutoff, self.rise * self.force + 2.0 * law.bin_width)
+        near = max(self.NEAR_GAP, 2.0 * law.cutoff, law.reach_nm + self.rise * self.force + 2.0 * law.bin_width)
         far, edge = law.far_edge(near, separation)
         self._sort_to(min(edge + law.bin_width, self.highest))
         count = int(np.searchsorted(self.order_heights, edge)) if far < len(law.moments) else self.heights.size
+        touching = int(np.count_nonzero(self.pressure))
+        if law.menisci and (count - known) * touching > self.PAIRS_PER_TRANSFORM * self.heights.size:
+            return law.around(self.heights, separation, self._field(), self.sites, self.place, self.pressure)
         sites = self.order[: max(count, known)]
         displacement = np.zeros(sites.size)
         if self.force > 0.0:
@@ -368,6 +373,23 @@ class CoupledContact(Contact):
             )
         gap = self.heights[sites[:count]] + separation + displacement[:count]
         return law.deformed(gap, self._weight(sites[:count]), separation, far)
+
+    def gaps(self, separation: float) -> tuple[np.ndarray, np.ndarray]:
+        """Gaps of all sites (nm), and how many sites' areas attract with each; shapes (N^2,)."""
+        gap = self.heights + separation + self._field()
+        return gap, self._weight(np.arange(gap.size))
+
+    def _field(self) -> np.ndarray:
+        """Displacement of all sites (nm) by the pressures."""
+        if self.grid is not None:
+            return self.grid.field
+        pressure = np.zeros(self.heights.size)
+        pressure[self.sites] = self.pressure
+        return self._space.displacement(pressure) if self.force > 0.0 else pressure
+
+    @cached_property
+    def _space(self) -> grid.Grid:
+        return self._whole()
 
     def _weight(self, sites: np.ndarray) -> np.ndarray:
         touching = self.adhesion is not None and self.adhesion.touching

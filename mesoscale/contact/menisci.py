@@ -1,0 +1,101 @@
+"""Liquid that condenses from humid air between two walls, and how it pulls (docs/humid_air.md).
+
+In equilibrium with the vapour a meniscus has Kelvin's radius r_K = gamma V_m / (R T |ln RH|). Liquid fills every gap
+below d_c = r_K (cos theta1 + cos theta2) + 2 t_w, where each wall has an adsorbed film t_w, and Laplace's pressure
+p_c = gamma / r_K pulls the walls together there (Israelachvili, Intermolecular and Surface Forces, 2011, ch. 17).
+Where the walls part faster than the liquid evaporates, its volume stays, d_c grows and p_c falls.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from mesoscale.settings.contact import WATER_CM3, AirSettings
+
+ZERO_C_K = 273.15
+GAS_J_MOL_K = 8.314462618  # CODATA 2018
+WATER_CRITICAL_K, WATER_CRITICAL_KPA = 647.096, 22064.0  # IAPWS
+
+
+class Menisci(NamedTuple):
+    """Liquid in the gaps of a contact.
+
+    Attributes
+    ----------
+    pull_GPa : p_c; attraction of the walls where there is liquid.
+    reach_nm : d_c; gap below which there is liquid.
+    films_nm : adsorbed films of both walls together.
+    tension : gamma (cos theta1 + cos theta2), nN/nm.
+    dispersion : Hamaker constant across the liquid over that across air.
+    keeps_volume : whether an opening keeps the volume of the liquid; else it stays in equilibrium with the vapour.
+    """
+
+    pull_GPa: float
+    reach_nm: float
+    films_nm: float
+    tension: float
+    dispersion: float
+    keeps_volume: bool
+
+    def holding(self, gap: np.ndarray, weight: np.ndarray, volume: float) -> tuple["Menisci", np.ndarray]:
+        """The menisci that hold a volume, and how much of each site they fill.
+
+        Walls that come closer press liquid out: p_c is at most that in equilibrium.
+
+        Parameters
+        ----------
+        gap, weight : of all sites (nm, and how many sites' areas each counts for), shape (n,).
+        volume : over the area of a site, nm.
+        """
+        rank = np.argsort(gap)
+        held = np.cumsum(weight[rank] * np.maximum(gap[rank], 0.0))
+        last = int(np.searchsorted(held, volume, side="right"))
+        filled = np.zeros_like(weight)
+        filled[rank[:last]] = weight[rank[:last]]
+        if last == len(rank):  # every gap is full
+            return self, filled
+        before = held[last - 1] if last else 0.0
+        filled[rank[last]] = weight[rank[last]] * (volume - before) / (held[last] - before)
+        radius = max(float(gap[rank[last]]) - self.films_nm, self.tension / self.pull_GPa)  # times the cosines
+        return self._replace(pull_GPa=self.tension / radius), filled
+
+
+def menisci_of(air: AirSettings | None) -> Menisci | None:
+    """The menisci in air; None where nothing condenses."""
+    if air is None or air.humidity == 0.0:
+        return None
+    tension = 1e-3 * surface_tension_mN_m(air)
+    wetting = sum(math.cos(math.radians(angle)) for angle in air.contact_angles_deg)
+    if tension <= 0.0 or wetting <= 1e-12:  # 90 and 90 degrees, but for rounding
+        return None
+    kelvin = air.temperature_C + ZERO_C_K
+    pull = 1e-3 * GAS_J_MOL_K * kelvin * abs(math.log(air.humidity)) / (air.molar_volume_cm3 or WATER_CM3)  # 1 J/cm^3 = 1e-3 GPa
+    films = 2.0 * air.film_nm
+    reach = wetting * tension / pull + films
+    return Menisci(pull, reach, films, wetting * tension, air.hamaker_share, air.opening == "volume")
+
+
+def reach_nm(air: AirSettings | None) -> float:
+    """Gap (nm) below which liquid condenses; 0 without any."""
+    menisci = menisci_of(air)
+    return menisci.reach_nm if menisci else 0.0
+
+
+def surface_tension_mN_m(air: AirSettings) -> float:
+    """Surface tension of the liquid; water's by IAPWS R1-76(2014), 0 beyond its critical temperature."""
+    if air.surface_tension_mN_m is not None:
+        return air.surface_tension_mN_m
+    tau = max(1.0 - (air.temperature_C + ZERO_C_K) / WATER_CRITICAL_K, 0.0)
+    return 235.8 * tau**1.256 * (1.0 - 0.625 * tau)
+
+
+def water_vapour_kPa(temperature_C: float) -> float:
+    """Pressure of saturated water vapour (Wagner and Pruss 2002, doi:10.1063/1.1461829, eq. 2.5)."""
+    kelvin = min(temperature_C + ZERO_C_K, WATER_CRITICAL_K)
+    tau = 1.0 - kelvin / WATER_CRITICAL_K
+    factors = (-7.85951783, 1.84408259, -11.7866497, 22.6807411, -15.9618719, 1.80122502)
+    powers = (1.0, 1.5, 3.0, 3.5, 4.0, 7.5)
+    series = sum(factor * tau**power for factor, power in zip(factors, powers, strict=True))
+    return WATER_CRITICAL_KPA * math.exp(WATER_CRITICAL_K / kelvin * series)
+
