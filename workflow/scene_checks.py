@@ -10,9 +10,10 @@ from collections.abc import Iterator, Mapping
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
 from mesoscale.errors import InputError
+from mesoscale.contact.menisci import water_vapour_kPa
 from mesoscale.inputs.table import check_literature
 from mesoscale.settings import DeviceSettings
-from mesoscale.settings.contact import base_modulus
+from mesoscale.settings.contact import AirSettings, base_modulus
 from mesoscale.settings.definitions import BY_NAME
 from workflow.scene import ROOT, Scene
 from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
@@ -33,7 +34,9 @@ def mistakes(scene: Scene, samples: Mapping[str, str]) -> list[str]:
 def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
     rows = scene.inputs.rows(scene.contact.attraction)
     for name in rows:
-        if BY_NAME[name].setting in scene.contact.model_fields_set:
+        section, _, field = BY_NAME[name].setting.rpartition(".")
+        stated = getattr(scene.contact, section) if section else scene.contact
+        if stated and field in stated.model_fields_set:
             yield f"contact.{BY_NAME[name].setting} and inputs.{name} give the same number; leave one out"
     located = {name: rows[name].model_copy(update={"values": path}) for name, path in samples.items()}
     try:
@@ -93,6 +96,8 @@ def _stages(scene: Scene) -> Iterator[str]:
         )
     device, side_um = scene.device, scene.contact.length_nm / 1000
     yield from _too_few_points(scene)
+    if line := _no_such_air(scene):
+        yield line
     if device.area_um2 < side_um**2 and not scene.cell_follows_film:
         yield (
             f"device: an electrode of {device.area_um2:g} um^2 (electrode_um2, or length_um times width_um) is smaller "
@@ -120,6 +125,18 @@ def _too_few_points(scene: Scene) -> Iterator[str]:
             f"pad.points = {scene.pad.points}: {needed // 2 - 1} inputs and properties of the device vary, whose parts "
             f"in the spread so few points cannot tell apart; accepted are 0 (no interval) or at least {needed}"
         )
+
+
+def _no_such_air(scene: Scene) -> str:
+    """One line on vapour of more pressure than the gas around the switch has; empty where it has less."""
+    row, air, gas = scene.inputs.humidity, scene.contact.air or AirSettings(), scene.device.gas_kPa
+    humidity = (row.reaches or 0.0) if row else air.humidity
+    if air.liquid != "water" or (vapour := humidity * water_vapour_kPa(air.temperature_C)) <= gas:
+        return ""
+    return (
+        f"device.gas_kPa = {gas:g}: air of {humidity:.0%} humidity has {vapour:.3g} kPa of vapour alone at "
+        f"{air.temperature_C:g} C; a vacuum is dry: raise gas_kPa or lower the humidity"
+    )
 
 
 def _no_switch(device: DeviceSettings) -> str:

@@ -59,7 +59,8 @@ class Attraction:
         self.least = self.cutoff - self.offset
         self.touching = settings.reading.touching_attracts
         self.rate = retardation_rate(settings.retardation_nm)
-        self.menisci, self.volume = menisci_of(settings.air), None
+        self.menisci = menisci_of(settings.air)
+        self.volume: float | None = None
         self.site_area = site_area
         self.strength = hamaker * site_area / (6.0 * np.pi)
         self.lowest = float(heights.min())

@@ -70,7 +70,9 @@ def menisci_of(air: AirSettings | None) -> Menisci | None:
     if tension <= 0.0 or wetting <= 1e-12:  # 90 and 90 degrees, but for rounding
         return None
     kelvin = air.temperature_C + ZERO_C_K
-    pull = 1e-3 * GAS_J_MOL_K * kelvin * abs(math.log(air.humidity)) / (air.molar_volume_cm3 or WATER_CM3)  # 1 J/cm^3 = 1e-3 GPa
+    pull = (
+        1e-3 * GAS_J_MOL_K * kelvin * abs(math.log(air.humidity)) / (air.molar_volume_cm3 or WATER_CM3)
+    )  # 1 J/cm^3 = 1e-3 GPa
     films = 2.0 * air.film_nm
     reach = wetting * tension / pull + films
     return Menisci(pull, reach, films, wetting * tension, air.hamaker_share, air.opening == "volume")
@@ -98,4 +100,3 @@ def water_vapour_kPa(temperature_C: float) -> float:
     powers = (1.0, 1.5, 3.0, 3.5, 4.0, 7.5)
     series = sum(factor * tau**power for factor, power in zip(factors, powers, strict=True))
     return WATER_CRITICAL_KPA * math.exp(WATER_CRITICAL_K / kelvin * series)
-

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact.displacement import Closing, Displacement, close_by_separation
+from mesoscale.contact.menisci import reach_nm
 from mesoscale.contact.surface import random_surface, shortest_wave, surface_spectrum
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, FilmInputs
@@ -231,6 +232,8 @@ def plan_grid(
         ratio = top / close[-1]
         growth = np.geomspace(close[-1], top, int(np.ceil(np.log(ratio) * close[-1] / (PAD.grown * step_nm))) + 1)
         near = np.concatenate([close, growth[1:]])
+    if reach := reach_nm(contact.air):  # liquid bridges the highest sites before they touch
+        near = np.append(near, float(near[-1]) + reach * np.arange(1, PAD.bridged + 1) / PAD.bridged)
     separation = np.concatenate([near, far_nm(float(near[-1]))])[::-1]
     levels = np.geomspace(PAD.light * load[-1], load[-1], depths)
     opened = np.searchsorted(-separation, -np.interp(levels, load, way)).clip(max=separation.size - 1)

@@ -21,6 +21,7 @@ class PadNumerics:
     grown : steps where only rough places touch, in units of their RMS height: release is that of half of it to 1e-6 V.
     far_nm, far_points : beyond, the attraction of the pad is that of two flats to 1 %: 1 + 6 (rms / separation)^2; and
         separations up to there.
+    bridged : separations at which liquid bridges sites that do not touch.
     light : part of the largest load from which the pad is opened at least; a flat electrode presses with 0.3 to 0.4 of
         it.
     most_pilot_steps : of the cells that find the range of separations.
@@ -47,6 +48,7 @@ class PadNumerics:
     grown: float = 2.0
     far_nm: float = 200.0
     far_points: int = 24
+    bridged: int = 20
     light: float = 0.02
     most_pilot_steps: int = 4000
     margin: float = 1.25

@@ -59,7 +59,7 @@ def violations(
         broken.append("repulsion negative")
     if max(closing.attractive_nN.max(), opening.attractive_nN.max()) > 0:
         broken.append("attraction positive")
-    if inputs.hamaker == 0 and closing.attractive_nN.any():
+    if inputs.hamaker == 0 and not settings.air and closing.attractive_nN.any():
         broken.append("attraction without A_H")
     if (
         closing.repulsive_nN[-1] != opening.repulsive_nN[0]
