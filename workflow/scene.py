@@ -104,6 +104,11 @@ class Scene(Settings):
         return bool(self.topography.scans) and "length_nm" not in self.contact.model_fields_set
 
     @property
+    def humid(self) -> bool:
+        """Can liquid condense: is there a humidity as an input, or in the air?"""
+        return self.inputs.humidity is not None or bool(self.contact.air and self.contact.air.humidity)
+
+    @property
     def unequal_places(self) -> bool:
         """Do the places of the film have RMS heights of their own, by topography or by `pad.rms_scatter`?"""
         return self.pad.rms_scatter is not None or self.inputs.prior_origins().get("rms") == "topography"

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping
 
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
-from mesoscale.errors import InputError
 from mesoscale.contact.menisci import water_vapour_kPa
+from mesoscale.errors import InputError
 from mesoscale.inputs.table import check_literature
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.contact import AirSettings, base_modulus

@@ -12,6 +12,7 @@ from workflow.report.stages import (
     failure,
     hardness,
     history,
+    humidity,
     inputs,
     pad,
     resistance,
@@ -21,7 +22,7 @@ from workflow.report.stages import (
 )
 
 PARTS = (
-    ("switch", "The switch", (device, pad, circuit, failure, resistance, history)),
+    ("switch", "The switch", (device, pad, humidity, circuit, failure, resistance, history)),
     ("contact", "The contact", (contact, uncertainty, sensitivity)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),
 )

@@ -1,0 +1,85 @@
+"""The switch against humidity: at central inputs by both limits of opening, and over all that is uncertain.
+
+Two limits hold what menisci do while the switch opens: in balance with the vapour, or with a volume that stays
+(docs/humid_air.md).
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesoscale.device.points import PadModel, solve_point, surfaces_of
+from mesoscale.device.release import probability
+from mesoscale.inputs.distributions import InputTable
+from mesoscale.pad.adhesion import adhesion_of
+from mesoscale.settings import ContactSettings
+from mesoscale.settings.contact import AirSettings
+
+Array = NDArray[np.float64]
+Opening = Literal["balance", "volume"]
+LEVELS = 7  # evenly in the root: a few per cent of humidity change most
+CELLS = 2  # times those of a point
+
+
+def levels(table: InputTable, contact: ContactSettings) -> Array:
+    """Humidities over the range of the input, rising; without this input that of the air alone."""
+    if "humidity" not in table.names:
+        return np.array([contact.air.humidity if contact.air else 0.0])
+    low, high = table.rows[table.names.index("humidity")].distribution.span()
+    return low + (high - low) * np.linspace(0.0, 1.0, LEVELS) ** 2
+
+
+def humidity_rows(
+    model: PadModel,
+    table: InputTable,
+    contact: ContactSettings,
+    point_cells: int,
+    progress: Callable[[float, str], None] | None = None,
+) -> list[dict[str, Any]]:
+    """Rows of device/humidity.csv: one for each humidity and limit of opening.
+
+    Parameters
+    ----------
+    contact : on the grid of the pads.
+    """
+    openings = ("balance",) if contact.mechanics == "adhesive" else get_args(Opening)
+    rows, humidities = [], levels(table, contact)
+    shares = _shares(model, humidities)
+    for humidity, share in zip(humidities.tolist(), shares, strict=True):
+        point = replace(model.central.point, values={**model.central.point.values, "humidity": humidity})
+        for opening in openings:
+            air = (contact.air or AirSettings()).model_copy(update={"opening": opening})
+            chosen = contact.model_copy(update={"air": air})
+            solved = solve_point(point, chosen, CELLS * point_cells, surfaces_of(0))
+            opened = adhesion_of(solved.pad.law)[0] if solved.pad else None
+            rows.append(
+                {
+                    "humidity": humidity,
+                    "opening": opening,
+                    "release_V": solved.states.get("release_V"),
+                    "error_V": solved.error_V if solved.states else None,
+                    "energy_mJ_m2": opened.energy_uJ_m2 * 1e-3 if opened else None,
+                    "pull_off_kPa": opened.pull_off_kPa if opened else None,
+                    **(share if opening == (contact.air or AirSettings()).opening else {}),
+                }
+            )
+            if progress:
+                progress(len(rows) / (len(humidities) * len(openings)), f"{humidity:.0%} humidity, {opening}")
+    return rows
+
+
+def _shares(model: PadModel, humidities: Array) -> list[dict[str, float]]:
+    """Share of the points nearest to each humidity whose switch sticks, with its 95 % interval."""
+    stuck = model.states("release_V") == 0.0
+    at = np.array([model.points[k].point.values.get("humidity", humidities[0]) for k in model.solved])
+    nearest = np.abs(at[:, None] - humidities).argmin(axis=1) if at.size else at.astype(int)
+    shares = []
+    for number in range(len(humidities)):
+        here = stuck[nearest == number]
+        said = probability(int(here.sum()), here.size) if here.size else {}
+        names = {"value": "stuck", "low": "stuck_low", "high": "stuck_high"}
+        shares.append({name: said[key] for key, name in names.items() if said} | {"points": here.size})
+    return shares

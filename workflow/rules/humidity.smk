@@ -1,0 +1,32 @@
+# The switch against humidity; only in scenes with inputs.humidity or contact.air
+
+
+def in_humid_air():
+    """No input where the scene has humid air; else what refuses the target."""
+    line = f"{SCENE_GIVEN}: the air is dry; give inputs.humidity or contact.air"
+    return [] if SCENE.humid else lambda wildcards: refuse(line)
+
+
+rule humidity:
+    """the switch from dry to humid air"""
+    input:
+        in_humid_air(),
+        **PRESSED,
+    output:
+        f"{RESULTS}/device/humidity.csv",
+    log:
+        f"{RESULTS}/logs/humidity.log",
+    resources:
+        mem_mb=contact_MB(SCENE.contact, PILOTS),
+    params:
+        contact=settings("contact"),
+        device=settings("device"),
+        pad=settings("pad"),
+    message:
+        "press pads and solve the switch from dry to humid air"
+    script:
+        "../scripts/sweep_humidity.py"
+
+
+if SCENE.humid and "pad" in SCENE.tails:
+    SHOWN += rules.humidity.output

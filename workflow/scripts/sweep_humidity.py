@@ -1,0 +1,15 @@
+"""The switch against humidity, at central inputs and over the points of the pad.
+
+In: pad/inputs.csv, pad/model.h5.  Out: device/humidity.csv (V, mJ/m^2, kPa).
+"""
+
+from mesoscale.device.humidity import humidity_rows
+from workflow.job import job
+from workflow.pad_files import load_model, points_of_job
+from workflow.results import write_csv
+
+with job(snakemake) as run:
+    points, pad = points_of_job(snakemake)
+    model = load_model([snakemake.input.model], points)
+    rows = humidity_rows(model, points.table, points.on_grid, pad.point_cells, run.progress)
+    write_csv(snakemake.output[0], rows)
