@@ -141,7 +141,7 @@ def test_a_small_sphere_is_pulled_less_as_the_exact_meniscus_is(radius):
 
 
 def test_a_sphere_in_balance_takes_half_of_the_surface_energy():
-    """De Boer and de Boer 2007 (doi:10.1016/j.jcis.2007.02.023): pi R (2 gamma cos)^2 / p_c of twice as much."""
+    """De Boer and de Boer, J. Colloid Interface Sci. 311 (2007) 171."""
     radius, menisci = 100.0, menisci_of(HALF)
     sphere = contact(bowl(256, 64.0, radius), HALF)
     gaps = np.linspace(0.0, 1.1 * menisci.reach_nm, 2001)
