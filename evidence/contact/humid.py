@@ -77,6 +77,7 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
         work = {float(row["humidity"]): float(row["work_mJ_m2"]) for row in part}
         wet = [humidity for humidity, value in work.items() if value > 1e2 * WET_J_M2]
         name = f"{rms:g}".replace(".", "_")
-        said |= {f"{key}_{name}": f"{work[at]:.2g}" for key, at in (("dry", 0.0), ("half", 0.5), ("damp", 0.95))}
+        for key, humidity in (("dry", 0.0), ("half", 0.5), ("damp", 0.95)):
+            said[f"{key}_{name}"] = f"{work[humidity]:.{2 if work[humidity] < 100 else 3}g}"
         said[f"jump_{name}"] = f"{min(wet):.0%}" if wet else "above 95%"
     return said

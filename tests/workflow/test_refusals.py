@@ -118,6 +118,23 @@ def test_bodies_whose_bases_have_another_modulus():
     assert "E* = 266.7 GPa, inputs.e_star reaches from 90 to 92" in line
 
 
+@pytest.mark.parametrize(
+    "humid", [{"inputs": {"humidity": {"values": [0, 0.8]}}}, {"contact": {"air": {"humidity": 0.8}}}]
+)
+def test_humid_air_in_a_vacuum(humid):
+    scene = Scene.model_validate({**humid, "device": {"gas_kPa": 0.001}})
+    (line,) = [line for line in mistakes(scene, {}) if line.startswith("device.gas_kPa")]
+    assert "air of 80% humidity has 1.87 kPa of vapour alone at 20 C; a vacuum is dry" in line
+    assert not [line for line in mistakes(Scene.model_validate(humid), {}) if "gas_kPa" in line]
+
+
+def test_a_humidity_that_is_given_twice():
+    scene = Scene.model_validate(
+        {"inputs": {"humidity": {"values": [0, 0.8]}}, "contact": {"air": {"humidity": 0.5, "film_nm": 0.3}}}
+    )
+    assert "contact.air.humidity and inputs.humidity give the same number; leave one out" in mistakes(scene, {})
+
+
 def test_an_attraction_that_the_grid_does_not_resolve():
     scene = Scene.model_validate(
         {

@@ -1,0 +1,62 @@
+"""The switch from dry to humid air."""
+
+import numpy as np
+import pytest
+
+from mesoscale.contact.menisci import menisci_of
+from mesoscale.device.humidity import humidity_rows, levels
+from mesoscale.device.points import PadModel, central_point, plan_points, solve_point, solve_points
+from mesoscale.inputs.table import input_table
+from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
+from mesoscale.settings.contact import AirSettings
+
+CONTACT = ContactSettings(mechanics="coupled", pixels=64, q1_per_nm=0.15, attraction="offset", gap_cutoff_nm=0.3)
+SWITCH = DeviceSettings(spring_N_per_m=1000.0)
+
+
+def fixed(value: float) -> InputRow:
+    return InputRow(distribution="fixed", values=(value,))
+
+
+HARD = {"h_macro": fixed(9.0), "h_prime": fixed(0.0), "rms": fixed(4.0), "gap_cutoff": fixed(0.3)}
+
+
+def test_the_humidities_span_the_input_or_are_that_of_the_air():
+    table = input_table(**HARD, humidity=InputRow(values=(0.1, 0.8)))
+    found = levels(table, CONTACT)
+    assert found[0] == pytest.approx(0.1)
+    assert found[-1] == pytest.approx(0.8)
+    assert (np.diff(found) > 0).all()
+    stated = CONTACT.model_copy(update={"air": AirSettings(humidity=0.4)})
+    assert levels(input_table(**HARD), stated).tolist() == [0.4]
+
+
+def test_humid_air_sticks_what_lets_go_in_dry_air():
+    table = input_table(**HARD, humidity=InputRow(values=(0.0, 0.8)))
+    central = solve_point(central_point(table, CONTACT, SWITCH), CONTACT, 4, 1000)
+    design = plan_points(table, CONTACT, SWITCH, 6)
+    model = PadModel(central, design, tuple(solve_points(list(enumerate(design.points, 1)), CONTACT, 2)))
+    rows = humidity_rows(model, table, CONTACT, 2)
+    balance, volume = ([row for row in rows if row["opening"] == name] for name in ("balance", "volume"))
+    assert balance[0]["release_V"] == volume[0]["release_V"] > 1.0  # dry: the limits are one
+    assert balance[-1]["release_V"] == volume[-1]["release_V"] == 0.0
+    assert balance[-1]["energy_mJ_m2"] > 3.0 * balance[0]["energy_mJ_m2"]
+    assert volume[-1]["energy_mJ_m2"] > balance[-1]["energy_mJ_m2"]
+    assert sum(row["points"] for row in balance) == 6
+    assert "stuck" not in volume[0]
+
+
+def test_a_pad_is_computed_as_far_as_liquid_reaches():
+    table = input_table(**HARD)
+    air = AirSettings(humidity=0.9)
+    pads = [
+        solve_point(central_point(table, contact, SWITCH), contact, 4, 1000).pressed
+        for contact in (CONTACT, CONTACT.model_copy(update={"air": air}))
+    ]
+    dry, humid = (pad.law for pad in pads)
+    touching = pads[1].cells.first_contact_nm.max()
+    beyond = humid.separation_nm > touching + menisci_of(air).reach_nm
+    assert beyond.sum() > 20
+    wanted = np.interp(humid.separation_nm[beyond], dry.separation_nm, dry.closing[1])
+    assert humid.closing[1][beyond] == pytest.approx(wanted, rel=0.05)  # both are interpolated
+    assert humid.closing[1].min() < 2.0 * dry.closing[1].min()
