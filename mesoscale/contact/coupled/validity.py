@@ -15,6 +15,7 @@ import numpy as np
 from scipy import fft
 
 from mesoscale.contact.coupled import half_space
+from mesoscale.contact.menisci import menisci_of
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import RANGE_IN_D0, WORK_FACTOR, Body
 
@@ -55,15 +56,22 @@ def adhesion_numbers(hamaker: float, settings: ContactSettings, e_star: float, s
 
     The law of attraction gives the pressure at contact s = A_H / (6 pi D0^3), the work of adhesion w, which is
     A_H / (12 pi D0^2) offset and A_H / (4 pi D0^2) clamped, and the range w / s; the radius of a summit is 2 / h''.
+    Liquid has the work p_c d_c and the range d_c: Tabor's parameter is that of the stronger, rims attract with both.
     """
-    law, cutoff = settings.attraction, settings.gap_cutoff_nm
+    law, cutoff, menisci = settings.attraction, settings.gap_cutoff_nm, menisci_of(settings.air)
     work, reach = hamaker / (WORK_FACTOR[law] * math.pi * cutoff**2), RANGE_IN_D0[law] * cutoff
+    parts = [(work, reach)]
+    if menisci:
+        parts = [(menisci.dispersion * work, reach), (menisci.pull_GPa * menisci.reach_nm, menisci.reach_nm)]
     if surface.curvature == 0.0:
-        return {"tabor": math.inf, "stickiness": math.inf} if hamaker else {"tabor": 0.0, "stickiness": 0.0}
-    tabor = (2.0 / surface.curvature * work**2 / (e_star**2 * reach**3)) ** (1.0 / 3.0)
+        return {"tabor": math.inf, "stickiness": math.inf} if hamaker or menisci else {"tabor": 0.0, "stickiness": 0.0}
     # Attraction w / reach over the rim of the contacts beside the repulsion E* h' / KAPPA in them, where contacts are
     # d = 4 h'/h'' wide and pi A / d is the length of their rims. The rim reaches as far as the gap is below `reach`:
     # at a distance x from Hertz's line contact of the slope h', gap^2 = 16/9 h'^2 x^3 / d.
-    rough = surface.slope**2 / (surface.curvature * reach)
-    needed = surface.slope * reach * e_star / KAPPA * rough ** (2.0 / 3.0)
-    return {"tabor": tabor, "stickiness": math.pi * (3.0 / 16.0) ** (2.0 / 3.0) * work / needed}
+    tabor, sticky = 0.0, 0.0
+    for work, reach in parts:
+        tabor = max(tabor, (2.0 / surface.curvature * work**2 / (e_star**2 * reach**3)) ** (1.0 / 3.0))
+        rough = surface.slope**2 / (surface.curvature * reach)
+        needed = surface.slope * reach * e_star / KAPPA * rough ** (2.0 / 3.0)
+        sticky += math.pi * (3.0 / 16.0) ** (2.0 / 3.0) * work / needed
+    return {"tabor": tabor, "stickiness": sticky}

@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import fsolve
 
+from mesoscale.contact.coupled import validity
 from mesoscale.contact.cycle import contact_on, run_cycle
 from mesoscale.contact.displacement import close_by_separation
 from mesoscale.contact.energy import pull_off
@@ -288,6 +289,21 @@ def test_extreme_cases_of_adhesive_contacts_settle(name):
     flagged = [f"{cycle.flags['unconverged_steps']} steps did not settle"] if name == "angles nearly 90" else []
     assert violations(cycle, inputs, settings) == flagged
     assert cycle.converged == (not flagged)
+
+
+def test_liquid_counts_in_tabors_parameter_and_the_stickiness():
+    inputs, settings = rough(air=HALF, model="elastic")
+    surface = validity.Roughness(0.2, 0.05, 0.01)
+    wet, dry, bare = (
+        validity.adhesion_numbers(hamaker, chosen, 91.0, surface)
+        for hamaker, chosen in ((0.2, settings), (0.2, settings.model_copy(update={"air": None})), (0.0, settings))
+    )
+    reach = menisci_of(HALF).reach_nm
+    assert bare["tabor"] == pytest.approx(np.cbrt(2 / 0.05 * (2 * GAMMA) ** 2 / (91.0**2 * reach**3)), rel=1e-4)
+    assert wet["stickiness"] == pytest.approx(0.3 * dry["stickiness"] + bare["stickiness"], rel=1e-12)
+    cycle = run_cycle(inputs, settings, 1)
+    assert 0.0 < cycle.flags["filled_share"] < 0.2
+    assert "filled_share" not in run_cycle(inputs, settings.model_copy(update={"air": None}), 1).flags
 
 
 def test_humidity_is_an_uncertain_input():
