@@ -106,7 +106,7 @@ class Scene(Settings):
     @property
     def humid(self) -> bool:
         """Can liquid condense: is there a humidity as an input, or in the air?"""
-        return self.inputs.humidity is not None or bool(self.contact.air and self.contact.air.humidity)
+        return "humidity" in self.inputs.rows() or bool(self.contact.air and self.contact.air.humidity)
 
     @property
     def unequal_places(self) -> bool:

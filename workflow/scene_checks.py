@@ -129,7 +129,7 @@ def _too_few_points(scene: Scene) -> Iterator[str]:
 
 def _no_such_air(scene: Scene) -> str:
     """One line on vapour of more pressure than the gas around the switch has; empty where it has less."""
-    row, air, gas = scene.inputs.humidity, scene.contact.air or AirSettings(), scene.device.gas_kPa
+    row, air, gas = scene.inputs.rows().get("humidity"), scene.contact.air or AirSettings(), scene.device.gas_kPa
     humidity = (row.reaches or 0.0) if row else air.humidity
     if air.liquid != "water" or (vapour := humidity * water_vapour_kPa(air.temperature_C)) <= gas:
         return ""

@@ -70,8 +70,8 @@ def test_the_resistance_is_measured_where_a_scene_has_metals(plan):
 
 
 def test_humidity_is_swept_where_a_scene_has_humid_air(plan, make_workflow, tmp_path):
-    assert "sweep_humidity" not in plan("paper") | plan("ci") | plan("reduced")
-    assert "sweep_humidity" in plan("humid") & plan("humid", "humidity")
+    assert "humidity" not in plan("paper") | plan("ci") | plan("reduced")
+    assert "humidity" in plan("humid") & plan("humid", "humidity")
     refused = make_workflow(tmp_path).run("paper", "humidity", options=("--dry-run",))
     assert refused.stderr.splitlines()[-1] == "ERROR paper: the air is dry; give inputs.humidity or contact.air"
 

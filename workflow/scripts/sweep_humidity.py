@@ -1,6 +1,6 @@
 """The switch against humidity, at central inputs and over the points of the pad.
 
-In: pad/inputs.csv, pad/model.h5.  Out: device/humidity.csv (V, mJ/m^2, kPa).
+In: inputs.csv, pad/model.h5.  Out: device/humidity.csv (V, mJ/m^2, kPa).
 """
 
 from mesoscale.device.humidity import humidity_rows

@@ -42,7 +42,7 @@ CYCLES = {  # contacts that a job closes and opens, to the largest force of the 
     "press_pads": 250,
     "press_prior_pads": 250,
     "study": 500,
-    "humidity": 100,
+    "humidity": 1000,
     "resistance": 100,
     "history": 100,
 }
