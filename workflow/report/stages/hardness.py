@@ -213,8 +213,9 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
         )
     if cutoff := fit.get("inputs", {}).get("gap_cutoff"):
         notes.append(
-            f"The tops of {len(fit['tops'])} runs attract a smooth body like a flat with the cut-off D₀ of "
-            f"{show(cutoff['a'])} nm (by work) to {show(cutoff['b'])} nm (by force)."
+            f"The tops of {len(fit['tops'])} runs attract a smooth body with the work of a flat of cut-off D₀, "
+            f"{show(cutoff['a'])} nm (atoms follow) to {show(cutoff['b'])} nm (rigid). Their largest force is that of "
+            f"{show(float(np.mean(column(fit['tops'], 'by_force_nm'))))} nm, which no contact of several tops feels."
         )
     for scale, change in fit.get("size_effect_at_one_shape", {}).items():
         words, _, _ = _scale({"energy_scale": scale.removeprefix("scale_")})
