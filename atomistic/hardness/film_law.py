@@ -28,6 +28,7 @@ class FilmFit:
     bin_nm : of contact length: a run has one mean stress in each.
     least_points, least_thicknesses : mean stresses of films, and their thicknesses.
     trials, draws : values drawn from the prior, and how many of them are kept by their likelihood.
+    negligible : likelihood over the largest that need not be drawn again.
     prior : ranges of H_film, H_base, k, m.
     """
 
@@ -35,8 +36,9 @@ class FilmFit:
     bin_nm: float = 0.5
     least_points: int = 3
     least_thicknesses: int = 2
-    trials: int = 400_000
+    trials: int = 200_000
     draws: int = 2000
+    negligible: float = 1e-4
     prior: tuple[tuple[float, float], ...] = ((2, 20), (0.5, 100), (1e-3, 10), (0.5, 4))
 
 
@@ -186,17 +188,25 @@ def error_left_out(
 def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
     """H_film, H_base, k and m by their likelihood, shape (draws, 4); the prior is flat in the logarithms and in m.
 
-    The misfits of a run are one error, so that N runs of unknown scatter have the likelihood S^(-N/2), S the sum of
-    squares (the scatter's own prior is Jeffreys's): seeds are too few for a bootstrap.
+    The mean misfit of a run is one error, so that N runs of unknown scatter have the likelihood S^(-N/2), S the sum of
+    squares (the scatter's own prior is Jeffreys's): seeds are too few for a bootstrap. With the bins of a run counted
+    each, made-up films lie in 90 % intervals in 98 to 100 % of cases; so they do in 90 % (study `hardness.films`).
+    A second round draws where the first found a likelihood that counts.
     """
     low, high = np.array(FILM_FIT.prior).T
-    values = rng.uniform([*np.log(low[:3]), low[3]], [*np.log(high[:3]), high[3]], (FILM_FIT.trials, 4))
-    values[:, :3] = np.exp(values[:, :3])
-    squares = np.zeros(FILM_FIT.trials)
-    for _, thickness, length, stress in zip(*points, strict=True):
-        squares += np.log(film(values.T, length, thickness) / stress) ** 2
-    runs = len(set(zip(points.seed, points.thickness_nm, strict=True)))
-    weights = (squares / squares.min()) ** (-runs / 2)
+    low, high = np.array([*np.log(low[:3]), low[3]]), np.array([*np.log(high[:3]), high[3]])
+    _, run = np.unique(np.column_stack([points.seed, points.thickness_nm]), axis=0, return_inverse=True)
+    per_run = np.bincount(run.ravel())
+    for _ in range(2):
+        drawn = rng.uniform(low, high, (FILM_FIT.trials, 4))
+        values = np.column_stack([np.exp(drawn[:, :3]), drawn[:, 3]])
+        misfits = np.zeros((per_run.size, FILM_FIT.trials))
+        for of, _, thickness, length, stress in zip(run.ravel(), *points, strict=True):
+            misfits[of] += np.log(film(values.T, length, thickness) / stress) / per_run[of]
+        squares = (misfits**2).sum(axis=0)
+        weights = (squares / squares.min()) ** (-per_run.size / 2)
+        counts = drawn[weights > FILM_FIT.negligible]
+        low, high = counts.min(axis=0), counts.max(axis=0)
     return values[rng.choice(FILM_FIT.trials, FILM_FIT.draws, p=weights / weights.sum())]
 
 

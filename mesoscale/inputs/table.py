@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,8 @@ def collect(
     InputError : a stage's gate failed, a stage lacks an input, or a range crosses a physical bound.
     """
     rows, pairs = [], {(pair.first, pair.second): pair.rank for pair in settings.correlations}
+    for names, rank in joint_samples(settings.rows(law)).items():
+        pairs.setdefault(names, rank)
     for name, row in settings.rows(law).items():
         if row.origin == "literature":
             given, source, where = stated_distribution(name, row), row.source or "scene", f"inputs.{name}"
@@ -109,7 +112,8 @@ def check_literature(settings: InputsSettings) -> dict[str, tuple[float, float]]
     for name, row in rows.items():
         if row.origin == "literature":
             spans[name] = _check_range(name, stated_distribution(name, row), f"inputs.{name}")
-    correlation_matrix(list(rows), {(pair.first, pair.second): pair.rank for pair in settings.correlations})
+    stated = {(pair.first, pair.second): pair.rank for pair in settings.correlations}
+    correlation_matrix(list(rows), joint_samples(rows) | stated)
     return spans
 
 
@@ -170,7 +174,29 @@ def stated_distribution(name: str, row: DistributionRow, section: str = "inputs"
     """
     if isinstance(row.values, tuple):
         return Distribution(row.distribution, **dict(zip(NUMBERS, row.values, strict=False)))
-    return Distribution("samples", values=_read_samples(name, row.values or "", f"{section}.{name}"))
+    return Distribution("samples", values=np.sort(_read_samples(name, row.values or "", f"{section}.{name}")))
+
+
+def joint_samples(rows: Mapping[str, DistributionRow]) -> dict[tuple[str, str], float]:
+    """Rank correlations of inputs whose samples stand in the same file, a row of it one joint sample.
+
+    Raises
+    ------
+    InputError : a file has samples of an input in use that takes its own from elsewhere.
+    """
+    from scipy.stats import spearmanr  # slow to import
+
+    files, pairs = dict.fromkeys(row.values for row in rows.values() if isinstance(row.values, str)), {}
+    for file in files:
+        names = [name for name, row in rows.items() if row.values == file]
+        key = f"inputs.{names[0]}.values = {file}"
+        if alone := sorted((set(foreign_table(file, key)[0]) & set(rows)) - set(names)):
+            raise InputError(f"{key}: holds samples of {alone[0]} beside; give inputs.{alone[0]} the same file")
+        columns = {name: _read_samples(name, file, f"inputs.{name}") for name in names}
+        for first, second in combinations(names, 2):
+            if np.ptp(columns[first]) and np.ptp(columns[second]):
+                pairs[first, second] = float(spearmanr(columns[first], columns[second]).statistic)
+    return pairs
 
 
 def _distribution(entry: Mapping[str, Any], where: str) -> Distribution:
@@ -207,7 +233,7 @@ def _read_samples(name: str, file: str, key: str) -> np.ndarray:
         raise InputError(f"{key}.values = {file}: needs a column {name} with one number a row") from None
     if values.size < 2 or not np.isfinite(values).all():
         raise InputError(f"{key}.values = {file}: {values.size} samples; at least 2, all finite, are needed")
-    return np.sort(values)
+    return values
 
 
 def _check_range(name: str, given: Distribution, where: str) -> tuple[float, float]:
