@@ -1,7 +1,7 @@
 """How often do the 90 % intervals of the law of films hold made-up films of known k and m?
 
-Each set has the runs of scene `films`, with the lengths that they reached. Its k is drawn between 0.02 and 0.4, its m
-between 1 and 3.2; oxide and metal have 9 and 4.9 GPa. Each run errs as a run of scene `films` does, drawn from all of
+Each set has the runs of scene `films`, with the lengths that they reached. Its k is drawn between 0.01 and 1, its m
+over all that the fit accepts, 0.5 to 4; oxide and metal have 9 and 4.9 GPa. Each run errs as a run of scene `films` does, drawn from all of
 them: by all its differences from the mean of its thickness, so that slopes within runs are those of real ones. `share`
 is what a film keeps of the difference between both hardnesses at L/t = 3.6, a contact of 18 nm on 5 nm of oxide.
 """
@@ -11,12 +11,12 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from atomistic.hardness.film_law import FilmPoints, film, likely
+from atomistic.hardness.film_law import FILM_FIT, FilmPoints, film, likely
 from evidence.hardness.films import points_of
 from evidence.record import load
 
 H_FILM, H_BASE = 9.0, 4.9
-K, M = (0.02, 0.4), (1.0, 3.2)
+K, M = (0.01, 1.0), FILM_FIT.prior[3]
 SHARE_AT = 3.6
 
 
