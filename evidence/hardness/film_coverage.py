@@ -1,9 +1,10 @@
 """How often do the 90 % intervals of the law of films hold made-up films of known k and m?
 
 Each set has the runs of scene `films`, with the lengths that they reached. Its k is drawn between 0.01 and 1, its m
-over all that the fit accepts, 0.5 to 4; oxide and metal have 9 and 4.9 GPa. Each run errs as a run of scene `films` does, drawn from all of
-them: by all its differences from the mean of its thickness, so that slopes within runs are those of real ones. `share`
-is what a film keeps of the difference between both hardnesses at L/t = 3.6, a contact of 18 nm on 5 nm of oxide.
+over all that the fit accepts, 0.5 to 4; oxide and metal have 9 and 4.9 GPa. Each run errs as a run of scene `films`
+does, drawn from all of them: by all its differences from the mean of its thickness, so that slopes within runs are
+those of real ones. `share` is what a film keeps of the difference between both hardnesses at L/t = 3.6, a contact of
+18 nm on 5 nm of oxide.
 """
 
 from argparse import ArgumentParser, Namespace

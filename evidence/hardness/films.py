@@ -25,9 +25,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from scipy.optimize import least_squares
-from scipy.stats import truncnorm
 
 from atomistic.hardness.film_law import (
+    FILM_FIT,
     LAWS,
     FilmPoints,
     error_left_out,
@@ -44,7 +44,8 @@ from evidence.record import ROOT, load
 from mesoscale.tables import load_table
 
 PREDICTION = (0.24, 1.2)  # k and m of a prototype with other films, written down before
-K_RANGE, K_ERROR, M_ERROR = (0.05, 0.8), 0.13, 0.2  # as scene reduced has them; 0.13 holds the assumed bonds, too
+SAMPLES = ROOT / "config" / "materials" / "silica_on_titanium.csv"  # k and m of scene reduced
+KEPT = 400  # of the draws
 MAIN, OTHER = "films", "nitride"  # scenes: the electrode, the dielectric
 LENGTHS_NM = (3.0, 5.0, 10.0, 15.0, 30.0, 100.0)
 OXIDE_NM = 5.0  # of TiO2 on the titanium of Kim et al. (2013)
@@ -123,15 +124,13 @@ def prediction(others: FilmPoints, at: FilmPoints) -> np.ndarray:
 
 @cache
 def laws() -> dict[str, Any]:
-    """Fit of the law `film`, its draws, and hardness over 5 nm in three cases, with k and m of the prototype."""
+    """Fit of the law `film`, its draws, and hardness over 5 nm in three cases."""
     points, rng = points_of(load("hardness.films")), np.random.default_rng(43)
     draws, area = likely(points, rng), titanium().below_films.area_error
     shared = np.exp(rng.normal(0, np.linalg.norm([area / np.sqrt(3), *SYSTEMATIC.values()]), len(draws)))
     soft, size = rng.uniform(*SOFT_GPA, len(draws)), rng.uniform(*SIZE_EFFECT, len(draws))
     h_film, h_base, *_ = draws.T
-    k_ends = (np.array(K_RANGE) - PREDICTION[0]) / K_ERROR
-    k = truncnorm.rvs(*k_ends, PREDICTION[0], K_ERROR, len(draws), random_state=rng)
-    m = rng.normal(PREDICTION[1], M_ERROR, len(draws))
+    k, m = joint(draws, rng).T
     hardness = {}
     for length in LENGTHS_NM:
         at = (np.array(length), np.array(OXIDE_NM))
@@ -141,6 +140,24 @@ def laws() -> dict[str, Any]:
             "eq_4": paper(np.array([soft, size]), *at),
         }
     return {"points": points, "draws": draws, "best": fit("film", points), "hardness": hardness}
+
+
+def joint(draws: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Samples of k and m, the assumed bonds of film and metal counted, shape (draws, 2)."""
+    return draws[:, 2:] * np.exp([[FILM_FIT.bond, 0.0]] * rng.normal(size=(len(draws), 1)))
+
+
+def samples() -> str:
+    """Content of `SAMPLES`: joint samples of k and m by the runs of scene `films`."""
+    rng = np.random.default_rng(60)
+    kept = joint(likely(points_of(load("hardness.films")), rng), rng)[:KEPT]
+    lines = [
+        "# Joint samples of the law of films (docs/films.md): silica on titanium, 20 runs of scene films",
+        "# (python -m evidence hardness.films), with the error of the assumed bonds of film and metal",
+        "k_film,m_film",
+        *(f"{k:.4g},{m:.4g}" for k, m in kept),
+    ]
+    return "\n".join(lines) + "\n"
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:

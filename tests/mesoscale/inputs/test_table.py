@@ -8,7 +8,15 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import FilmInputs, contact_of
-from mesoscale.inputs.table import check_resolved, collect, film_table, from_rows, input_table, to_rows
+from mesoscale.inputs.table import (
+    check_literature,
+    check_resolved,
+    collect,
+    film_table,
+    from_rows,
+    input_table,
+    to_rows,
+)
 from mesoscale.settings import ContactSettings, Correlation, InputRow, InputsSettings, PadSettings
 from mesoscale.settings.definitions import BY_NAME
 from tests.mesoscale import paper
@@ -149,6 +157,29 @@ def test_samples_from_a_file(tmp_path):
     file.unlink()
     with pytest.raises(InputError, match="cannot be read"):
         collect(settings, {}, {})
+
+
+def test_samples_of_one_file_are_joint(tmp_path):
+    file, rng = tmp_path / "film.csv", np.random.default_rng(3)
+    hurst = rng.uniform(0.5, 0.9, 400)
+    rms = 3 + 2 * (1 - hurst) + 0.1 * rng.standard_normal(400)
+    np.savetxt(file, np.column_stack([hurst, rms, hurst]), delimiter=",", header="hurst,rms,place", comments="")
+    row = InputRow(distribution="samples", values=str(file))
+    table = collect(PAPER.model_copy(update={"hurst": row, "rms": row}), {}, {})
+    drawn = dict(zip(table.names, table.sample(20_000, 1).T, strict=True))
+    assert np.corrcoef(drawn["hurst"], drawn["rms"])[0, 1] == pytest.approx(np.corrcoef(hurst, rms)[0, 1], abs=0.02)
+    assert np.std(drawn["rms"] - 3 - 2 * (1 - drawn["hurst"])) == pytest.approx(0.1, rel=0.1)
+
+
+def test_samples_without_their_partners_are_refused(tmp_path):
+    file = tmp_path / "film.csv"
+    file.write_text("hurst,rms\n0.5,3\n0.7,4\n")
+    settings = PAPER.model_copy(update={"rms": InputRow(distribution="samples", values=str(file))})
+    for check in (lambda: collect(settings, {}, {}), lambda: check_literature(settings)):
+        with pytest.raises(
+            InputError, match=r"inputs.rms.values = .*: holds samples of hurst beside; give inputs.hurst"
+        ):
+            check()
 
 
 def test_a_measured_cutoff_beyond_the_grid_is_refused_with_what_to_do():
