@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from atomistic.hardness.plateau import RULES
-from atomistic.hardness.size_effect import FIT_RULES, SYSTEMATIC, Run, spearman, summary
+from atomistic.hardness.size_effect import FIT_RULES, SLOPES, SYSTEMATIC, Run, spearman, steepness, summary
 
 
 @dataclass(frozen=True)
@@ -239,6 +239,10 @@ def fit_films(
     of = points_of(points, curves)
     if few := too_few(of):
         reasons.append(few)
+    throughout = [point for point in points if point["sound"] == "True" and not point["film_nm"]]
+    slopes = steepness(throughout) if throughout else {}
+    if throughout and not slopes:
+        reasons.append(f"asperities flatter or steeper than RMS slopes of {min(SLOPES):.2g} to {max(SLOPES):.2g}")
     counts = {"points_used": sound, "points_total": len(points), "points_rejected": unsound}
     result = {"method": "film", **counts, "inputs": {}, "gate": {"passed": not reasons, "reasons": reasons}}
     if few:
@@ -252,7 +256,7 @@ def fit_films(
     draws *= np.exp([shared[0], shared[0], shared[1], 0 * shared[1]]).T
     h_film, base, k, m = draws.T
     result["inputs"] = {
-        "h_film": _samples(h_film, "GPa"),
+        "h_film": {**_samples(h_film, "GPa"), "steepness": slopes},
         "k_film": _samples(k, "1") | {"correlation": {"h_film": spearman(h_film, k)}},
         "m_film": _samples(m, "1") | {"correlation": {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}},
     }

@@ -47,6 +47,11 @@ class Distribution:
         below, above = ndtr((self.low - self.a) / self.b), ndtr((self.high - self.a) / self.b)
         return np.clip(self.a + self.b * ndtri(below + p * (above - below)), self.low, self.high)
 
+    def scaled(self, factor: float) -> "Distribution":
+        """The distribution of `factor` times the value."""
+        numbers = {name: factor * getattr(self, name) for name in ("a", "b", "low", "high", "values")}
+        return Distribution(self.kind, **numbers)
+
     def span(self, central_share: float = 0.999) -> tuple[float, float]:
         """Ends of the range that responses cover.
 

@@ -7,6 +7,7 @@ Out: inputs.csv.
 
 import copy
 
+from mesoscale.contact.steepness import at_slope
 from mesoscale.inputs.table import check_resolved, collect, to_rows
 from mesoscale.settings import InputsSettings
 from workflow.contact_settings import contact_settings
@@ -21,6 +22,8 @@ with job(snakemake) as run:
     settings = settings_from_job(InputsSettings, given)
     stages = {stage: load_json(path) for stage, path in results.items()}
     files = {stage: "/".join(path.split("/")[-2:]) for stage, path in results.items()}
-    table = collect(settings, stages, files, snakemake.params.contact["attraction"])
-    check_resolved(table, contact_settings(snakemake.params.contact, snakemake).nyquist_per_nm)
+    contact = contact_settings(snakemake.params.contact, snakemake)
+    table = collect(settings, stages, files, contact.attraction)
+    check_resolved(table, contact.nyquist_per_nm)
+    table = at_slope(table, stages.get("hardness", {}).get("inputs", {}), contact)
     write_csv(snakemake.output[0], to_rows(table))

@@ -4,8 +4,11 @@ import pytest
 from atomistic.hardness.size_effect import (
     fit_size_effect,
     literature_samples,
+    relative_hardness,
+    rms_slope,
     same_shape_exponents,
     scatter_of_h_prime,
+    steepness,
 )
 from atomistic.settings import FitSettings
 
@@ -114,3 +117,31 @@ def test_the_interval_of_the_exponent_at_one_shape_holds_the_truth():
         found = same_shape_exponents(points)["scale_1"]
         held += found["low"] < -0.1 < found["high"]
     assert held / 300 == pytest.approx(0.68, abs=0.08)
+
+
+def test_the_slope_of_an_asperity_is_that_of_its_surface():
+    x = 2 * np.pi * np.arange(600) / 600
+    heights = 0.6 * np.minimum(*np.meshgrid(np.sin(x), np.sin(x)))
+    along, across = ((heights - np.roll(heights, 1, axis)) / (6 / 600) for axis in (0, 1))
+    assert rms_slope(point(10, 3)) == pytest.approx(np.sqrt(np.mean(along**2 + across**2)), rel=0.01)
+
+
+def test_hardness_at_a_slope_is_straight_between_the_runs_and_unknown_beyond():
+    assert [relative_hardness(slope) for slope in (0.222, 0.444, 0.889)] == [0.55, 1.0, 1.31]
+    assert relative_hardness(np.sqrt(0.222 * 0.444)) == pytest.approx(0.775)
+    assert np.isnan(relative_hardness(0.2))
+    assert np.isnan(relative_hardness(1.0))
+
+
+def test_factors_are_those_beside_the_runs_own_slope():
+    as_steep = {**point(10, 3), "amplitude_nm": "1.2"}  # 0.889
+    assert steepness([as_steep])["factor"] == pytest.approx([0.55 / 1.31, 1 / 1.31, 1.0], rel=1e-3)
+    inputs = fit_size_effect(series(2, 8), GLASS, FitSettings(), BOTH, 0.05)["inputs"]
+    assert inputs["h_film"]["steepness"]["factor"] == pytest.approx([0.55, 1.0, 1.31], rel=2e-3)
+    assert inputs["h_prime"]["steepness"]["factor"][0] < 0.55  # H_macro stays
+
+
+def test_asperities_of_slopes_that_were_never_pressed_are_refused():
+    result = fit_size_effect([{**row, "amplitude_nm": "1.4"} for row in series(2, 8)], GLASS, FitSettings(), BOTH, 0.05)
+    assert result["inputs"] == {}
+    assert result["gate"]["reasons"] == ["asperities flatter or steeper than RMS slopes of 0.22 to 0.89"]
