@@ -99,6 +99,7 @@ class OxideGlass(_Section):
     coordination_range: Range
     cutoff_A: Distance = Field(description="first minimum of that g(r)")
     quenched: Quenched
+    indentation_GPa: Range | None = Field(None, description="hardness by a Berkovich tip, lowest and highest found")
     sources: tuple[str, ...] = Field(min_length=1)
 
     @model_validator(mode="after")

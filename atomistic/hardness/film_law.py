@@ -13,7 +13,17 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from atomistic.hardness.plateau import RULES
-from atomistic.hardness.size_effect import FIT_RULES, SLOPES, SYSTEMATIC, Run, spearman, steepness, summary
+from atomistic.hardness.size_effect import (
+    FIT_RULES,
+    SLOPES,
+    SYSTEMATIC,
+    Run,
+    energy_range,
+    samples_of,
+    spearman,
+    steepness,
+    summary,
+)
 
 
 @dataclass(frozen=True)
@@ -216,6 +226,7 @@ def fit_films(
     curves: Mapping[str, Sequence[Mapping[str, float]]],
     glasses: Sequence[Mapping[str, Any]],
     area_error: float,
+    indentation_GPa: tuple[float, float] | None = None,
 ) -> dict[str, Any]:
     """Fit the law to the runs of a scene with films, and judge whether it may be used.
 
@@ -224,6 +235,7 @@ def fit_films(
     points, curves : of `points_of`.
     glasses : properties of the glasses, each with its gate.
     area_error : largest error of the contact area by the calibrations in use, as a fraction.
+    indentation_GPa : lowest and highest measured hardness of the oxide; None: not known.
 
     Returns
     -------
@@ -255,10 +267,12 @@ def fit_films(
     ]
     draws *= np.exp([shared[0], shared[0], shared[1], 0 * shared[1]]).T
     h_film, base, k, m = draws.T
+    result["energies"] = list(energy_range(float(np.median(h_film)), slopes, indentation_GPa))
+    h_film *= rng.uniform(*result["energies"], len(h_film))
     result["inputs"] = {
-        "h_film": {**_samples(h_film, "GPa"), "steepness": slopes},
-        "k_film": _samples(k, "1") | {"correlation": {"h_film": spearman(h_film, k)}},
-        "m_film": _samples(m, "1") | {"correlation": {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}},
+        "h_film": {**samples_of(h_film, "GPa"), "steepness": slopes},
+        "k_film": samples_of(k, "1") | {"correlation": {"h_film": spearman(h_film, k)}},
+        "m_film": samples_of(m, "1") | {"correlation": {"h_film": spearman(h_film, m), "k_film": spearman(k, m)}},
     }
     result["film"] = {
         "base_GPa": summary(base),
@@ -269,9 +283,3 @@ def fit_films(
         ],
     }
     return result
-
-
-def _samples(values: np.ndarray, unit: str) -> dict[str, Any]:
-    """An input's distribution: its quantiles, each as likely as the others."""
-    shares = (np.arange(200) + 0.5) / 200
-    return {"distribution": "samples", "values": np.quantile(values, shares).tolist(), "unit": unit}

@@ -6,6 +6,7 @@ H' = (H - H_macro) A^0.25 from every run.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.special import stdtrit
@@ -22,6 +23,8 @@ SYSTEMATIC = {
 """What moves every run of a scene alike, as standard deviations relative to the hardness (study `hardness.choices`)."""
 SLOPES = {0.222: 0.55, 0.444: 1.0, 0.889: 1.31}
 """Hardness of asperities by their RMS slope, over that of the second (study `hardness.choices`, two glasses)."""
+BERKOVICH = 0.358
+"""Slope of a Berkovich tip: of the cone with the same area at each depth, whose half angle is 70.3 degrees."""
 Run = Mapping[str, str]
 """A row of points.csv."""
 
@@ -55,6 +58,7 @@ def fit_size_effect(
     energy_scales: Sequence[float],
     area_error: float,
     others: Mapping[str, float] = SYSTEMATIC,
+    indentation_GPa: tuple[float, float] | None = None,
 ) -> dict:
     """H' and the hardness of the runs with 68 % intervals, judged whether they may be used.
 
@@ -64,6 +68,7 @@ def fit_size_effect(
     glasses : properties of the glasses, each with its gate.
     area_error : largest error of the contact area by its calibration, as a fraction.
     others : errors that all runs share, as standard deviations relative to the hardness.
+    indentation_GPa : lowest and highest measured hardness of the glass; None: not known.
 
     Returns
     -------
@@ -95,9 +100,12 @@ def fit_size_effect(
     result["size_effect_at_one_shape"] = same_shape_exponents(points)
     # the error of the area lies anywhere within that of its calibration: a uniform distribution
     systematic = {"area": area_error / np.sqrt(3), **others}
-    h_macro, h_prime, h_film = literature_samples(used, fit.h_macro_GPa, systematic)
-    low, high = fit.h_macro_GPa
     slopes = steepness(used)
+    hardness, _, _, scales = _columns(used)
+    energies = energy_range(float(np.mean(hardness / scales)), slopes, indentation_GPa, scales)
+    h_macro, h_prime, h_film = literature_samples(used, fit.h_macro_GPa, systematic, energies)
+    low, high = fit.h_macro_GPa
+    result["energies"] = list(energies)
     if not slopes:
         reasons.append(f"asperities flatter or steeper than RMS slopes of {min(SLOPES):.2g} to {max(SLOPES):.2g}")
         result["gate"]["reasons"] = reasons
@@ -111,7 +119,7 @@ def fit_size_effect(
             "correlation": {"h_macro": spearman(h_macro, h_prime)},
             "steepness": {**slopes, "factor": of_h_prime},
         },
-        "h_film": {**_uniform(h_film, "GPa"), "steepness": slopes},
+        "h_film": {**samples_of(h_film, "GPa"), "steepness": slopes},
     }
     result["H_macro_GPa"] = summary(h_macro)
     result["H_prime_GPa_nm0.5"] = summary(h_prime)
@@ -122,21 +130,46 @@ def fit_size_effect(
     return result
 
 
+def energy_range(
+    hardness_GPa: float,
+    slopes: Mapping[str, Sequence[float]],
+    indentation_GPa: tuple[float, float] | None,
+    scales: Sequence[float] | np.ndarray = (1.0,),
+) -> tuple[float, float]:
+    """Factors on the energies of a potential that bound the measured hardness of its glass, and 1 between them.
+
+    Hardness is proportional to the energies: twins with halved ones have 0.48 to 0.52 of it.
+
+    Parameters
+    ----------
+    hardness_GPa : of the runs at full energies. slopes : of `steepness`.
+    indentation_GPa : lowest and highest measured hardness; None: the range is that of the scene's energy scales.
+    """
+    if indentation_GPa is None or not slopes:
+        return float(np.min(scales)), float(np.max(scales))
+    factor = np.interp(np.log(BERKOVICH), np.log(slopes["rms_slope"]), slopes["factor"])
+    low, high = np.array(indentation_GPa) / (factor * hardness_GPa)
+    return min(float(low), 1.0), max(float(high), 1.0)
+
+
 def literature_samples(
     points: Sequence[Run],
     h_macro_GPa: tuple[float, float],
     systematic: Mapping[str, float],
+    energies: tuple[float, float],
     count: int = FIT_RULES.samples,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Joint samples of H_macro (uniform in its range), H' and the hardness (from the points, energy scales alike)."""
+    """Joint samples of H_macro (uniform in its range), H' and the hardness (from the points, energies in their range).
+
+    A run with scaled energies counts as one of its hardness over their scale.
+    """
     rng = _rng(11)
     hardness, spread, length, scale = _columns(points)
-    scales = np.unique(scale)
-    weight = np.array([1 / np.sum(scale == one) for one in scale]) / len(scales)
-    chosen = rng.choice(len(points), size=count, p=weight)
+    chosen = rng.choice(len(points), size=count)
     h_macro = rng.uniform(*h_macro_GPa, count)
     # factors on the hardness of all runs alike
     shared = 1 + np.array(list(systematic.values())) @ _rng(15).normal(size=(len(systematic), count))
+    shared *= rng.uniform(*energies, count) / scale[chosen]
     drawn = (hardness[chosen] + spread[chosen] * rng.normal(size=count)) * shared
     return h_macro, (drawn - h_macro) * np.sqrt(length[chosen]), drawn
 
@@ -262,6 +295,12 @@ def summary(samples: np.ndarray) -> dict[str, float]:
 def spearman(first: np.ndarray, second: np.ndarray) -> float:
     """Rank correlation."""
     return float(np.corrcoef(rankdata(first), rankdata(second))[0, 1])
+
+
+def samples_of(values: np.ndarray, unit: str) -> dict[str, Any]:
+    """An input's distribution: its quantiles, each as likely as the others."""
+    shares = (np.arange(200) + 0.5) / 200
+    return {"distribution": "samples", "values": np.quantile(values, shares).tolist(), "unit": unit}
 
 
 def _uniform(samples: np.ndarray, unit: str) -> dict:

@@ -69,7 +69,7 @@ def film_inputs(pressed: bool) -> dict[str, Any]:
     """Inputs of an oxide film as scene `reduced` has them; `pressed`: on titanium as scene `films` presses it."""
     _, area_error = calibrated(silica_and("pmmcs")[1])
     runs = [row for row in load("hardness.sizes") if row["scene"] == "reduced"]
-    _, _, hardness = literature_samples(runs, SOFT_GPA, {"area": area_error / 3**0.5, **SYSTEMATIC})
+    _, _, hardness = literature_samples(runs, SOFT_GPA, {"area": area_error / 3**0.5, **SYSTEMATIC}, (1, 1))
     film, base, _, _ = laws()["draws"].T
     by = {"origin": "literature", "source": "python -m evidence hardness.films, hardness.sizes"}
 

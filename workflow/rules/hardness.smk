@@ -105,6 +105,7 @@ rule hardness:
         curves=of_run("closing/{run}.csv"),
         witnesses=of_run("witness/{run}.csv"),
         summaries=of_run("runs/{run}.json"),
+        material=BODIES.material,
         base_material=BASE or [],
         potential=BODIES.potential,
         glasses=[f"{RESULTS}/hardness/glass/{seed}.json" for seed in dict.fromkeys(SCENE.hardness.seeds)],

@@ -1,7 +1,7 @@
 """Hardness of each closing run, or the reason why there is none; the fit to all of them.
 
-In:  curves, witnesses (GPa, nm) and summaries of the runs, glass/*.json, potential (YAML), base_material (YAML): below
-     films.
+In:  curves, witnesses (GPa, nm) and summaries of the runs, glass/*.json, potential (YAML), material and, below films,
+     base_material (YAML).
 Out: points.csv (GPa, nm), fit.json (H_macro in GPa, H' in GPa nm^0.5, law of films, cut-off D0 of the attraction in nm,
      gate).
 """
@@ -27,12 +27,13 @@ with job(snakemake) as run:
     write_csv(snakemake.output.points, rows)
     points, glasses = load_csv(snakemake.output.points), [load_json(path) for path in given.glasses]
     area_error = calibrated(load_potential(given.potential))
+    measured = load_material(given.material).part("oxide_glass").indentation_GPa
     if given.base_material:
         area_error = max(area_error, load_material(given.base_material).part("film_base").area_error)
-        fit = fit_films(points, curves, glasses, area_error)
+        fit = fit_films(points, curves, glasses, area_error, measured)
     else:
         settings = settings_from_job(FitSettings, params.fit)
-        fit = fit_size_effect(points, glasses, settings, params.energy_scales, area_error)
+        fit = fit_size_effect(points, glasses, settings, params.energy_scales, area_error, indentation_GPa=measured)
     used = {p["run"]: int(p["seed"]) for p in points if p["status"] == "yield" and not p["film_nm"]}
     if cutoff := gap_cutoff({name: witnesses[name] for name in used}, used):
         fit["tops"] = cutoff.pop("runs")

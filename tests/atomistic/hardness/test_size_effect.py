@@ -2,6 +2,8 @@ import numpy as np
 import pytest
 
 from atomistic.hardness.size_effect import (
+    BERKOVICH,
+    energy_range,
     fit_size_effect,
     literature_samples,
     relative_hardness,
@@ -62,16 +64,28 @@ def test_scatter_that_more_runs_average_is_that_of_seeds_and_of_runs():
 def test_literature_h_macro_gives_the_hand_calculation():
     """10.6 and 5.3 GPa at 3 nm with H_macro 1.95 GPa: H' = 15.0 and 5.8 GPa nm^0.5."""
     for hardness, expected in ((10.6, 15.0), (5.3, 5.8)):
-        h_macro, h_prime, h_film = literature_samples([point(hardness, 3.0, spread=0.0)], (1.9499, 1.9501), {})
+        h_macro, h_prime, h_film = literature_samples([point(hardness, 3.0, spread=0.0)], (1.9499, 1.9501), {}, (1, 1))
         assert np.ptp(h_macro) < 1e-3
         assert np.mean(h_prime) == pytest.approx(expected, abs=0.05)
         np.testing.assert_allclose(h_film, hardness)
 
 
-def test_both_energy_scales_weigh_the_same():
-    points = [point(10, 4, 1.0)] * 9 + [point(5, 4, 0.5)]
-    _, h_prime, _ = literature_samples(points, (0.7, 0.7001), {}, 4000)
-    assert np.mean(h_prime > 12) == pytest.approx(0.5, abs=0.03)
+def test_runs_of_scaled_energies_count_as_those_of_full_ones():
+    """Twins at half of the energies have half of the hardness; the range of energies spreads both alike."""
+    points = [point(10, 4, 1.0, spread=0.0)] * 9 + [point(5, 4, 0.5, spread=0.0)]
+    _, _, h_film = literature_samples(points, (0.7, 0.7001), {}, (0.8, 1.2), 4000)
+    assert (h_film.min(), h_film.max()) == pytest.approx((8, 12), rel=1e-3)
+    assert np.mean(h_film < 9) == pytest.approx(0.25, abs=0.02)
+
+
+def test_energies_bound_the_measured_hardness_at_the_slope_of_the_tip():
+    slopes = steepness(series(2, 8))
+    low, high = energy_range(10.0, slopes, (6.0, 12.0))
+    # at the tip's slope the runs are softer than at their own
+    for energies, measured in ((low, 6.0), (high, 12.0)):
+        assert 10.0 * energies * relative_hardness(BERKOVICH) == pytest.approx(measured, rel=2e-3)
+    assert energy_range(10.0, slopes, (9.9, 12.0))[0] == 1.0  # the potential as published is never left out
+    assert energy_range(10.0, slopes, None, (0.5, 1.0)) == (0.5, 1.0)
 
 
 def test_gate_counts_defended_points_and_names_the_reason():
