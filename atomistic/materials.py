@@ -171,6 +171,17 @@ class NetworkGlass(_Section):
     tersoff: Tersoff
     cores: dict[ElementPair, Core]
     masses_u: dict[Element, Positive]
+    ions_follow: tuple[Positive, float] | None = Field(
+        None, description="bulk modulus with ions that follow a strain, over that of clamped ions: mean, deviation"
+    )
+
+
+class FilmKind(_Section):
+    """Measured elasticity of films by the way in which they are made."""
+
+    young_GPa: Range
+    poisson_ratio: tuple[Ratio, Ratio]
+    source: list[str] = Field(min_length=1)
 
 
 class Polycrystal(_Section):
@@ -241,6 +252,7 @@ class Material(_Section):
     crystals: dict[Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")], Crystal] = Field(default={})
     oxide_glass: OxideGlass | None = None
     network_glass: NetworkGlass | None = None
+    films: dict[str, FilmKind] = Field(default={})
     polycrystal: Polycrystal | None = None
     eam: Eam | None = None
     film_base: FilmBase | None = None

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from atomistic.materials import Material, Polycrystal
+from atomistic.materials import Material, NetworkGlass, Polycrystal
 from atomistic.settings import ElasticSettings
 
 SAMPLE_COLUMNS = {
@@ -63,12 +63,13 @@ def variance_shares(
     nu: tuple[float, float],
     other_E: tuple[float, float],
     other_nu: float,
+    ions: tuple[float, float] = (1.0, 0.0),
 ) -> dict[str, Any]:
     """Mean, standard deviation and first-order and total shares of the variance of E*, without sampling error.
 
-    The five inputs are independent: structure (the ensemble, equal weights), the error of its fit (normal), functional
-    (GGA or GGA + shift, equal weights), ν (uniform), E of the other body (normal).  Gauss quadrature makes a weighted
-    grid on which the analysis of variance is exact.
+    The inputs are independent: structure (the ensemble, equal weights), the error of its fit (normal), functional
+    (GGA or GGA + shift, equal weights), ions that follow the strain (a normal factor on B), ν (uniform), E of the other
+    body (normal).  Gauss quadrature makes a weighted grid on which the analysis of variance is exact.
     """
     B, B_error = np.asarray(B_GPa, float), np.asarray(B_error_GPa, float)
     normal, normal_weights = np.polynomial.hermite_e.hermegauss(5)
@@ -78,13 +79,16 @@ def variance_shares(
         "structure": (np.arange(len(B)), np.full(len(B), 1 / len(B))),
         "fit": (normal, normal_weights / normal_weights.sum()),
         "functional": (np.array([0.0, shift_GPa]), np.full(2, 0.5)),
+        "ions": (ions[0] + ions[1] * normal, normal_weights / normal_weights.sum()),
         "poisson_ratio": (0.5 * (nu[0] + nu[1]) + 0.5 * (nu[1] - nu[0]) * nodes_nu, weights_nu / 2),
         "counter_body": (other_E[0] + other_E[1] * nodes_E, weights_E / weights_E.sum()),
     }
     values, weights = zip(*axes.values(), strict=True)
-    structure, error, functional, ratio, E = (axis.ravel() for axis in np.meshgrid(*values, indexing="ij"))
+    structure, error, functional, follow, ratio, E = (axis.ravel() for axis in np.meshgrid(*values, indexing="ij"))
     of_structure = B[structure.astype(int)] + error * B_error[structure.astype(int)]
-    grid = plane_strain_modulus(of_structure + functional, ratio, E, other_nu).reshape([len(v) for v in values])
+    grid = plane_strain_modulus((of_structure + functional) * follow, ratio, E, other_nu).reshape(
+        [len(v) for v in values]
+    )
 
     def average(array: np.ndarray, over: Sequence[int]) -> np.ndarray:
         for axis in sorted(over, reverse=True):
@@ -106,13 +110,16 @@ def variance_shares(
 
 
 def effective_modulus(
-    moduli: Sequence[Modulus], counter_body: Material, settings: ElasticSettings
+    moduli: Sequence[Modulus], material: Material, counter_body: Material, settings: ElasticSettings
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """E* as a distribution: mixture of GGA and GGA shifted by LDA − GGA, ν uniform, counter body from experiment.
+
+    Scans clamp the ions. Where the material states how much those that follow soften it, B is corrected.
 
     Parameters
     ----------
     moduli : of the glasses (crystals do not belong here)
+    material : the computed body, with its `network_glass`
     counter_body : the other body, with its `polycrystal`
 
     Returns
@@ -124,8 +131,19 @@ def effective_modulus(
     shift = functional_shift(moduli)
     other: Polycrystal = counter_body.part("polycrystal")
     low, high = settings.poisson_ratio
+    glass: NetworkGlass = material.part("network_glass")
+    films = {
+        name: plane_strain_modulus(
+            np.array(film.young_GPa) / (3 - 6 * np.array(film.poisson_ratio)),
+            film.poisson_ratio,
+            other.young_GPa,
+            other.poisson_ratio,
+        ).tolist()
+        for name, film in material.films.items()
+    }
     summary: dict[str, Any] = {
-        "ions": "clamped",
+        "ions": "follow, by a stated factor" if glass.ions_follow else "clamped",
+        "films_GPa": films,
         "structures_used": [m.structure for m in used],
         "kept_out": [asdict(m) for m in moduli if not m.trusted],
         "B_GGA_GPa": {
@@ -142,7 +160,7 @@ def effective_modulus(
             "nu": other.poisson_ratio,
         },
         "paper": {"mean_GPa": 91.0, "std_GPa": 3.8, "source": "Kim et al. (2013), Table 1"},
-        "notes": _notes(settings.glass.max_defects),
+        "notes": _notes(settings.glass.max_defects, glass.ions_follow, films),
         "mean_GPa": float("nan"),
         "std_GPa": float("nan"),
         "inputs": {},
@@ -151,7 +169,10 @@ def effective_modulus(
     if not used:
         return summary, {}
     delta = shift["mean_GPa"] if shift["structures"] else 0.0
+    follow = glass.ions_follow or (1.0, 0.0)
     others = (settings.poisson_ratio, (other.young_GPa, other.young_std_GPa), other.poisson_ratio)
+    summary["clamped_GPa"] = variance_shares(B, B_error, delta, *others)["mean_GPa"]
+    others = (*others, follow)
     summary |= variance_shares(B, B_error, delta, *others)
     jackknife = float("nan")
     if len(B) > 1:
@@ -166,6 +187,7 @@ def effective_modulus(
     nu = rng.uniform(low, high, n)
     E = rng.normal(other.young_GPa, other.young_std_GPa, n)
     B_samples = B_samples + B_error[drawn] * rng.standard_normal(n)
+    B_samples *= follow[0] + follow[1] * rng.standard_normal(n)
     e_star = plane_strain_modulus(B_samples, nu, E, other.poisson_ratio)
     quantiles = (0.025, 0.16, 0.5, 0.84, 0.975)
     summary |= {
@@ -176,16 +198,25 @@ def effective_modulus(
     return summary, {"e_star_GPa": e_star, "B_GPa": B_samples, "nu": nu, "counter_E_GPa": E, "xc": lda}
 
 
-def _notes(max_defects: int) -> list[str]:
+def _notes(max_defects: int, follow: tuple[float, float] | None, films: Mapping[str, Sequence[float]]) -> list[str]:
     """What the numbers leave out, for the page."""
-    networks = (
+    notes = [
         f"Up to {max_defects} atoms of a quenched cell may lack or exceed their valence. Cells without a gap are left "
         "out, so of the broken bonds only those without levels in the gap are represented."
         if max_defects
         else "The glasses are quenched as ideal networks: every Si has four N and every N three Si. Films hold a few "
-        "per cent of broken bonds, which may soften them: take B and E* for upper estimates."
-    )
-    return [networks, "Ions clamped to fractional coordinates stiffen the glass: take E* for an upper estimate."]
+        "per cent of broken bonds, which may soften them: take B and E* for upper estimates.",
+        f"Scans clamp the ions; those that follow a strain have {follow[0]:g} ± {follow[1]:g} of that bulk modulus."
+        if follow
+        else "Ions clamped to fractional coordinates stiffen the glass: take E* for an upper estimate.",
+    ]
+    if films:
+        measured = "; ".join(f"{name} {low:.0f} to {high:.0f}" for name, (low, high) in films.items())
+        notes.append(
+            "The glass has no hydrogen, no pores and no excess of silicon. By measured moduli, E* of films is in GPa: "
+            f"{measured}. For such a film state it as inputs.e_star."
+        )
+    return notes
 
 
 def _gate(structures: int, shift: Mapping[str, Any]) -> dict[str, Any]:

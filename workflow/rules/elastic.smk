@@ -95,6 +95,7 @@ rule elastic:
         scans=[f"{RESULTS}/elastic/scans/{name}.csv" for name in (*ELASTIC["crystals"], *GLASSES)],
         structures=[f"{RESULTS}/elastic/structures/{name}.json" for name in GLASSES],
         attempts=[f"{RESULTS}/elastic/quenched/{name}.csv" for name in GLASSES],
+        material=MATERIAL,
         counter_body=COUNTER_BODY,
     output:
         points=f"{RESULTS}/elastic/points.csv",

@@ -1,6 +1,6 @@
 """Fit equations of state and combine E*.
 
-In:  elastic/scans/*.csv (Å3, eV), structures, quenches, counter body.
+In:  elastic/scans/*.csv (Å3, eV), structures, quenches, material, counter body.
 Out: elastic/points.csv (Å3, eV), bulk_moduli.csv (GPa), structures.csv, e_star.json, e_star.h5.
 """
 
@@ -20,8 +20,8 @@ with job(snakemake) as run:
     fits = [fit_scan(list(scan)) for _, scan in groupby(points, lambda row: (row["structure"], row["xc"]))]
     reports = [load_json(path) for path in snakemake.input.structures]
     quenches = [len(load_csv(path)) for path in snakemake.input.attempts]
-    counter_body = load_material(snakemake.input.counter_body)
-    summary, samples = effective_modulus(trusted_moduli(fits, reports), counter_body, settings)
+    bodies = (load_material(snakemake.input[name]) for name in ("material", "counter_body"))
+    summary, samples = effective_modulus(trusted_moduli(fits, reports), *bodies, settings)
     write_csv(snakemake.output.points, points)
     write_csv(snakemake.output.moduli, fits)
     write_csv(snakemake.output.structures, structure_rows(reports, quenches))

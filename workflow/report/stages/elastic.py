@@ -14,6 +14,7 @@ SHARES = {
     "structure": "structure of the glass",
     "fit": "misfit of E(V)",
     "functional": "functional (GGA or LDA)",
+    "ions": "ions that follow the strain",
     "poisson_ratio": "Poisson's ratio",
     "counter_body": "counter body",
 }
