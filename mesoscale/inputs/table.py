@@ -49,7 +49,7 @@ def collect(
             source = files[row.origin]
             entry = _from_stage(name, row.origin, stages[row.origin], source)
             where = f"{source}: inputs.{name}"
-            given = _distribution(entry, where)
+            given = distribution_of(entry, where)
             for other, rank in entry.get("correlation", {}).items():
                 partner = settings.rows(law).get(other)
                 if row.origin == "calibration":  # a posterior has its own correlations, among its own inputs
@@ -78,7 +78,7 @@ def film_table(table: InputTable, film: Mapping[str, Any], scatter: Sequence[flo
     InputError : a range crosses a physical bound.
     """
     rows = [
-        replace(row, distribution=_distribution(film[row.name], f"{row.source}: film.{row.name}"))
+        replace(row, distribution=distribution_of(film[row.name], f"{row.source}: film.{row.name}"))
         if row.origin == "topography" and row.name in film
         else row
         for row in table.rows
@@ -88,7 +88,7 @@ def film_table(table: InputTable, film: Mapping[str, Any], scatter: Sequence[flo
         stated = Distribution("uniform", a=scatter[0], b=scatter[1])
         rows.append(UncertainInput(name, "1", stated, "literature", "pad.rms_scatter"))
     elif rms.origin == "topography":
-        given = _distribution(film[name], f"{rms.source}: film.{name}")
+        given = distribution_of(film[name], f"{rms.source}: film.{name}")
         rows.append(UncertainInput(name, "1", given, rms.origin, rms.source))
     for row in rows:
         _check_range(row.name, row.distribution, f"{row.source}: film.{row.name}")
@@ -199,7 +199,13 @@ def joint_samples(rows: Mapping[str, DistributionRow]) -> dict[tuple[str, str], 
     return pairs
 
 
-def _distribution(entry: Mapping[str, Any], where: str) -> Distribution:
+def distribution_of(entry: Mapping[str, Any], where: str) -> Distribution:
+    """The distribution of an input as the result file `where` of a stage has it.
+
+    Raises
+    ------
+    InputError : it is none.
+    """
     if entry.get("distribution") == "samples":  # of the calibration
         return Distribution("samples", values=np.sort(np.asarray(entry["values"], float)))
     numbers: dict[str, Any] = {key: float(entry[key]) for key in NUMBERS if entry.get(key) is not None}

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from mesoscale.inputs.table import from_rows
 from tests.workflow.browser import probed
 from workflow.report.available import Results
 from workflow.report.drawing import draw
@@ -20,7 +21,7 @@ from workflow.report.gates import gates_of, trust
 from workflow.report.numbers import show
 from workflow.report.render import render
 from workflow.report.stages import pad
-from workflow.report.stages.inputs import _distribution
+from workflow.report.stages.inputs import _distribution, stated_beside_computed
 from workflow.report.studies import recommended
 
 SECTIONS = ("hardness", "elastic", "topography", "contact", "uncertainty", "sensitivity", "pad", "device")
@@ -135,6 +136,25 @@ def test_a_stage_that_no_input_comes_from_shows_no_red_gate(made_up):
     assert not gate.passed
     assert not gate.used
     assert trust(gates)[0] == "pass"
+
+
+def test_a_stated_input_stands_beside_the_computed_one_with_its_effect(made_up):
+    root, paths = made_up
+    results = Results(root, [path for path in paths if path.name in ("inputs.csv", "e_star.json", "fit.json")], "x")
+    results.paths |= {"device/pad_switch.json"}
+    rows = [{**row, "origin": "literature"} for row in results.csv("inputs.csv") if row["parameter"] == "e_star"]
+    stated = from_rows(rows).rows[0].distribution
+    shifted = {"distribution": "normal", "a": float(stated.quantile(0.5)) + 10, "b": 2.0}
+    deviation = float(np.diff(stated.quantile([0.16, 0.84]))[0]) / 2
+    answer = {"sensitivity": [{"name": "e_star", "share_of_variance": 0.25}], "release_V": {"std": 0.6}}
+    files = {"elastic/e_star.json": {"inputs": {"e_star": shifted}}, "device/pad_switch.json": {"answer": answer}}
+    results.csv = lambda _: rows
+    results.json = lambda name: files.get(name, {})
+    ((_, _, computed, effect),) = stated_beside_computed(results)
+    assert computed.startswith(show(shifted["a"]))
+    assert effect == f"by about {show(10 / deviation * 0.5 * 0.6)} V"
+    rows[0]["origin"] = "elastic"
+    assert list(stated_beside_computed(results)) == []
 
 
 def test_the_pad_says_what_its_answer_is_made_of(made_up):

@@ -5,10 +5,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from mesoscale.inputs.distributions import Distribution
+from mesoscale.inputs.table import distribution_of, from_rows
+from mesoscale.settings.definitions import BY_NAME
 from workflow.report.available import Results, Row
 from workflow.report.numbers import number, show, shown_unit
-from workflow.report.page import Block, stage, table
+from workflow.report.page import Block, Table, stage, table
 from workflow.report.verdict import in_words
+
+STAGE_FILES = ("hardness/fit.json", "elastic/e_star.json", "topography/parameters.json")
 
 
 @stage("Inputs", "inputs.csv")
@@ -25,9 +30,45 @@ def describe(results: Results) -> Iterator[Block]:
     yield ""
     title = "Inputs in use (the paper's Table 1)" if results.beside_paper else "Inputs in use"
     yield table(title, rows, columns, front=True)
+    if beside := list(stated_beside_computed(results)):
+        header = (
+            "input",
+            "stated: median, 5 to 95 %",
+            "computed: median, 5 to 95 %",
+            "the other median moves the release",
+        )
+        yield Table("Stated, although a stage computes it", header, beside, front=True)
     of_pad = results.csv("pad/inputs.csv") if results.has("pad/inputs.csv") else []
     if other := [row for row in of_pad if row not in rows]:
         yield table("Of a pad, which holds all places of the film", other, columns, front=True)
+
+
+def stated_beside_computed(results: Results) -> Iterator[tuple[str, str, str, str]]:
+    """Inputs that the scene states and one of its stages computes, with what the choice does to the answer."""
+    for row, given in zip(results.csv("inputs.csv"), from_rows(results.csv("inputs.csv")).rows, strict=True):
+        for file in STAGE_FILES:
+            entry = results.json(file).get("inputs", {}).get(given.name) if results.has(file) else None
+            if given.origin == "literature" and BY_NAME[given.name].stage != "literature" and entry:
+                computed = distribution_of(entry, file)
+                effect = _effect_V(results, given.name, given.distribution, computed)
+                yield in_words(row["parameter"]), _span(given.distribution), _span(computed), effect
+
+
+def _span(given: Distribution) -> str:
+    low, median, high = given.quantile([0.05, 0.5, 0.95])
+    return f"{show(float(median))} [{show(float(low))}, {show(float(high))}]"
+
+
+def _effect_V(results: Results, name: str, stated: Distribution, computed: Distribution) -> str:
+    """By how much the release moves, to first order, from the part of its variance that the stated spread makes."""
+    switch = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
+    answer = switch.get("answer") or {"sensitivity": []}
+    share = next((row["share_of_variance"] for row in answer["sensitivity"] if row["name"] == name), None)
+    low, median, high = stated.quantile([0.16, 0.5, 0.84])
+    if share is None or low == high:
+        return "not known: the scene has no spread of it"
+    shift = abs(float(computed.quantile(0.5)) - median) / (0.5 * (high - low))
+    return f"by about {show(shift * share**0.5 * answer['release_V']['std'])} V"
 
 
 def _distribution(row: Row) -> str:
