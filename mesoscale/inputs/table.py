@@ -190,12 +190,13 @@ def joint_samples(rows: Mapping[str, DistributionRow]) -> dict[tuple[str, str], 
     for file in files:
         names = [name for name, row in rows.items() if row.values == file]
         key = f"inputs.{names[0]}.values = {file}"
-        if alone := sorted((set(foreign_table(file, key)[0]) & set(rows)) - set(names)):
-            raise InputError(f"{key}: holds samples of {alone[0]} beside; give inputs.{alone[0]} the same file")
+        if partners := sorted((set(foreign_table(file, key)[0]) & set(rows)) - set(names)):
+            raise InputError(f"{key}: holds samples of {partners[0]} beside; give inputs.{partners[0]} the same file")
         columns = {name: _read_samples(name, file, f"inputs.{name}") for name in names}
         for first, second in combinations(names, 2):
             if np.ptp(columns[first]) and np.ptp(columns[second]):
-                pairs[first, second] = float(spearmanr(columns[first], columns[second]).statistic)
+                rank: Any = spearmanr(columns[first], columns[second])
+                pairs[first, second] = float(rank.statistic)
     return pairs
 
 

@@ -20,8 +20,8 @@ with job(snakemake) as run:
     fits = [fit_scan(list(scan)) for _, scan in groupby(points, lambda row: (row["structure"], row["xc"]))]
     reports = [load_json(path) for path in snakemake.input.structures]
     quenches = [len(load_csv(path)) for path in snakemake.input.attempts]
-    bodies = (load_material(snakemake.input[name]) for name in ("material", "counter_body"))
-    summary, samples = effective_modulus(trusted_moduli(fits, reports), *bodies, settings)
+    material, counter_body = load_material(snakemake.input.material), load_material(snakemake.input.counter_body)
+    summary, samples = effective_modulus(trusted_moduli(fits, reports), material, counter_body, settings)
     write_csv(snakemake.output.points, points)
     write_csv(snakemake.output.moduli, fits)
     write_csv(snakemake.output.structures, structure_rows(reports, quenches))

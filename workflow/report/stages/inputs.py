@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -62,7 +63,7 @@ def _span(given: Distribution) -> str:
 def _effect_V(results: Results, name: str, stated: Distribution, computed: Distribution) -> str:
     """By how much the release moves, to first order, from the part of its variance that the stated spread makes."""
     switch = results.json("device/pad_switch.json") if results.has("device/pad_switch.json") else {}
-    answer = switch.get("answer") or {"sensitivity": []}
+    answer: dict[str, Any] = switch.get("answer") or {"sensitivity": []}
     share = next((row["share_of_variance"] for row in answer["sensitivity"] if row["name"] == name), None)
     low, median, high = stated.quantile([0.16, 0.5, 0.84])
     if share is None or low == high:
