@@ -184,14 +184,14 @@ def joint_samples(rows: Mapping[str, DistributionRow]) -> dict[tuple[str, str], 
     ------
     InputError : a file has samples of an input in use that takes its own from elsewhere.
     """
-    from scipy.stats import spearmanr  # slow to import
-
     files, pairs = dict.fromkeys(row.values for row in rows.values() if isinstance(row.values, str)), {}
     for file in files:
         names = [name for name, row in rows.items() if row.values == file]
         key = f"inputs.{names[0]}.values = {file}"
         if partners := sorted((set(foreign_table(file, key)[0]) & set(rows)) - set(names)):
             raise InputError(f"{key}: holds samples of {partners[0]} beside; give inputs.{partners[0]} the same file")
+        from scipy.stats import spearmanr  # slow to import
+
         columns = {name: _read_samples(name, file, f"inputs.{name}") for name in names}
         for first, second in combinations(names, 2):
             if np.ptp(columns[first]) and np.ptp(columns[second]):
