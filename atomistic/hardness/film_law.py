@@ -206,19 +206,23 @@ def likely(points: FilmPoints, rng: np.random.Generator) -> np.ndarray:
     """
     low, high = np.array(FILM_FIT.prior).T
     low, high = np.array([*np.log(low[:3]), low[3]]), np.array([*np.log(high[:3]), high[3]])
+    drawn, weights = _weighed(points, rng.uniform(low, high, (FILM_FIT.trials, 4)))
+    counts = drawn[weights > FILM_FIT.negligible]
+    drawn, weights = _weighed(points, rng.uniform(counts.min(axis=0), counts.max(axis=0), drawn.shape))
+    kept = drawn[rng.choice(FILM_FIT.trials, FILM_FIT.draws, p=weights / weights.sum())]
+    return np.column_stack([np.exp(kept[:, :3]), kept[:, 3]])
+
+
+def _weighed(points: FilmPoints, drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Draws of ln H_film, ln H_base, ln k and m, shape (n, 4), with their likelihoods over the largest."""
     _, run = np.unique(np.column_stack([points.seed, points.thickness_nm]), axis=0, return_inverse=True)
     per_run = np.bincount(run.ravel())
-    for _ in range(2):
-        drawn = rng.uniform(low, high, (FILM_FIT.trials, 4))
-        values = np.column_stack([np.exp(drawn[:, :3]), drawn[:, 3]])
-        misfits = np.zeros((per_run.size, FILM_FIT.trials))
-        for of, _, thickness, length, stress in zip(run.ravel(), *points, strict=True):
-            misfits[of] += np.log(film(values.T, length, thickness) / stress) / per_run[of]
-        squares = (misfits**2).sum(axis=0)
-        weights = (squares / squares.min()) ** (-per_run.size / 2)
-        counts = drawn[weights > FILM_FIT.negligible]
-        low, high = counts.min(axis=0), counts.max(axis=0)
-    return values[rng.choice(FILM_FIT.trials, FILM_FIT.draws, p=weights / weights.sum())]
+    values = np.vstack([np.exp(drawn[:, :3].T), drawn[:, 3]])
+    misfits = np.zeros((per_run.size, len(drawn)))
+    for of, _, thickness, length, stress in zip(run.ravel(), *points, strict=True):
+        misfits[of] += np.log(film(values, length, thickness) / stress) / per_run[of]
+    squares = (misfits**2).sum(axis=0)
+    return drawn, (squares / squares.min()) ** (-per_run.size / 2)
 
 
 def fit_films(
@@ -267,8 +271,9 @@ def fit_films(
     ]
     draws *= np.exp([shared[0], shared[0], shared[1], 0 * shared[1]]).T
     h_film, base, k, m = draws.T
-    result["energies"] = list(energy_range(float(np.median(h_film)), slopes, indentation_GPa))
-    h_film *= rng.uniform(*result["energies"], len(h_film))
+    low, high = energy_range(float(np.median(h_film)), slopes, indentation_GPa)
+    result["energies"] = [low, high]
+    h_film *= rng.uniform(low, high, len(h_film))
     result["inputs"] = {
         "h_film": {**samples_of(h_film, "GPa"), "steepness": slopes},
         "k_film": samples_of(k, "1") | {"correlation": {"h_film": spearman(h_film, k)}},
