@@ -57,8 +57,10 @@ class TopographySettings(Settings):
         "vectors that is trusted; 0: no bound",
         "[0, 1000] nm",
     )
-    detrend: Literal["none", "plane", "quadratic"] = key(
-        "plane", "what is subtracted from each scan as tilt and scanner bow"
+    detrend: Literal["auto", "none", "plane", "quadratic"] = key(
+        "auto",
+        "what is subtracted from each scan as tilt and form; auto: a plane, or a quadratic where form or a scanner's bow "
+        "is clearly more than roughness",
     )
     line_alignment: Literal["none", "median"] = key("median", "what is subtracted from each scan line")
     max_missing: float = key(

@@ -1,5 +1,6 @@
 """What the analysis of one measurement leaves for the pooling of all: arrays with their units, and attributes."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -47,6 +48,7 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
         limits, length_x, pixels = trusted_profile(cleaned, measured), data.length_nm, data.heights_nm.shape
         arrays["profile_q"], arrays["profile_psd"] = line_spectrum(cleaned)
         arrays["line"] = _thinned(cleaned.heights_nm, 2000)
+    attributes["parabola"] = any("quadratic" in step or "parabola" in step for step in cleaned.steps)
     spectrum = limits.spectrum
     arrays |= {"q": spectrum.q, "psd": spectrum.psd, "modes": spectrum.modes}
     return arrays, attributes | {
@@ -99,6 +101,7 @@ def trusted_record(name: str, arrays: Mapping[str, np.ndarray], attributes: Mapp
         float(attributes[key]) for key in ("trusted_low", "trusted_high", "tip_radius_nm", "rms_nm", "reach")
     )
     result = TrustedSpectrum(name, spectrum, low, high, str(attributes["limit"]), radius, rms, reach)
+    result = replace(result, parabola=bool(attributes["parabola"]))
     if line:
         return replace(result, line=binned_line(arrays["profile_q"], arrays["profile_psd"], low, high))
     side = float(np.sqrt(attributes["length_x_nm"] * attributes["length_y_nm"]))
@@ -108,3 +111,8 @@ def trusted_record(name: str, arrays: Mapping[str, np.ndarray], attributes: Mapp
 def is_profile(attributes: Mapping[str, Any]) -> bool:
     """Is this a record of a line profile?"""
     return "length_y_nm" not in attributes
+
+
+def longest_nm(attributes: Mapping[str, Mapping[str, Any]]) -> float:
+    """Side of the largest map, or length of a longer line."""
+    return max(min(values["length_x_nm"], values.get("length_y_nm", math.inf)) for values in attributes.values())

@@ -12,6 +12,7 @@ from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.heights import HeightTest, not_gaussian
 from mesoscale.topography.description.one_spectrum import OneSpectrum
 from mesoscale.topography.description.parameters import Topography
+from mesoscale.topography.measurements.cleaning import FORM_TAKEN
 
 DESCRIPTIONS = {
     "power_law": "plateau and power law of eq. 9, normal heights",
@@ -122,6 +123,10 @@ def _doubts_of_record(name: str, values: Mapping[str, Any]) -> Iterator[Doubt]:
         )
         remedy = "if the lines have no offsets, set topography.line_alignment to none"
         yield Doubt("alignment_took_roughness", text, remedy, "rms")
+    if FORM_TAKEN in values["steps"]:
+        (step,) = (step for step in values["steps"].split("; ") if step.startswith(FORM_TAKEN))
+        remedy = "if this is roughness, set topography.detrend to plane, and measure a larger area"
+        yield Doubt("form", f"{name}: {step}", remedy, "rms")
     if not values["radius_stated"]:
         text = f"{name}: neither scene nor file states the tip radius; taken is {values['tip_radius_nm']:g} nm"
         yield Doubt("tip_not_stated", text, "state it in topography.instruments", "spectrum")

@@ -88,6 +88,7 @@ class TrustedSpectrum:
     reach : where the range would end without the tip, 1/nm; between `high` and here the tip's correction is large.
     side_nm : side of a square of a measured map's area; 0 for a line profile.
     form : ln of what a parabola would take of the mean square height, besides the levelling.
+    parabola : the levelling took one.
     line : of a line profile, C1(k) in nm^3 on bins inside its trusted range; None for a scan.
     """
 
@@ -101,6 +102,7 @@ class TrustedSpectrum:
     reach: float = 0.0
     side_nm: float = 0.0
     form: float = 0.0
+    parabola: bool = False
     line: Spectrum | None = None
 
     @property

@@ -7,6 +7,7 @@ import numpy as np
 from mesoscale.checks import MAX_LENGTH_NM, MIN_LENGTH_NM, check_number, checked_array
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
+from mesoscale.topography.measurements.cleaning import form_step
 
 MIN_POINTS = 64
 MAX_POINTS = 4_000_000
@@ -95,8 +96,14 @@ def clean_profile(profile: Profile, settings: TopographySettings) -> Profile:
         raise InputError(f"{profile.name}: all heights are equal; this is no measurement of a surface")
     heights, steps = profile.heights_nm - profile.heights_nm.mean(), profile.steps
     if settings.detrend != "none":
-        order = 2 if profile.bow or settings.detrend == "quadratic" else 1
         x = np.linspace(-1, 1, len(heights))
-        heights = heights - np.polynomial.Polynomial.fit(x, heights, order)(x)
-        steps = (*steps, f"subtracted a {'line' if order == 1 else 'parabola'}")
+        line, parabola = (heights - np.polynomial.Polynomial.fit(x, heights, order)(x) for order in (1, 2))
+        form = float(np.log(max(np.var(line), 1e-300) / max(np.var(parabola), 1e-300)))
+        if profile.bow or settings.detrend == "quadratic":
+            heights, note = parabola, "subtracted a parabola"
+        elif settings.detrend == "auto" and form > 3.5:  # 400 lines across C ~ q^-4 without a plateau reach 3.3
+            heights, note, profile = parabola, form_step(form), replace(profile, bow=True)
+        else:
+            heights, note = line, "subtracted a line"
+        steps = (*steps, note)
     return replace(profile, heights_nm=heights, steps=steps)
