@@ -9,7 +9,13 @@ import numpy as np
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.heights import height_quantiles
-from mesoscale.topography.description.trusted_range import TrustedSpectrum, trusted_map, trusted_profile
+from mesoscale.topography.description.trusted_range import (
+    TRUST,
+    TrustedSpectrum,
+    curvature,
+    trusted_map,
+    trusted_profile,
+)
 from mesoscale.topography.measurements.cleaning import Scan, alignment_effect, clean
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import clean_profile
@@ -36,7 +42,11 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
     data, arrays, attributes = measured.data, {}, {}
     if isinstance(data, Scan):
         cleaned = clean(data, settings)
-        limits, (length_x, length_y), pixels = trusted_map(cleaned, measured), data.lengths_nm, data.heights_nm.shape
+        limits, (length_x, length_y), pixels = (
+            trusted_map(cleaned, measured),
+            cleaned.lengths_nm,
+            cleaned.heights_nm.shape,
+        )
         share, skewness = alignment_effect(data, settings)
         attributes = {"length_y_nm": length_y, "pixels_y": pixels[1], "form": limits.form}
         attributes |= {"alignment_share": share, "alignment_skewness": skewness}
@@ -63,9 +73,16 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
         "limit": limits.limit,
         "reach": limits.reach,
         "tip_radius_nm": measured.tip_radius_nm,
-        "radius_stated": measured.radius_stated,
+        "radius_stated": measured.radius_stated or not _tip_matters(limits),
         "steps": "; ".join(cleaned.steps),
     }
+
+
+def _tip_matters(limits: TrustedSpectrum) -> bool:
+    """Would a tip as blunt as many are, four times the radius taken, end what a map shows?"""
+    q, psd = limits.spectrum.q, limits.spectrum.psd
+    seen = (q >= limits.low) & (q <= limits.high)
+    return bool((curvature(4 * limits.tip_radius_nm, q[seen], psd[seen]) > TRUST.curved).any())
 
 
 def _thinned(heights: np.ndarray, most: int) -> np.ndarray:

@@ -13,6 +13,11 @@ FORM_TAKEN = "subtracted a quadratic fit, the form"
 """How the step begins that takes off a form by itself."""
 
 
+LINES_CUT = "cut off the end of an aborted scan"
+MARKED = "a mask marks"
+"""How other steps begin of which the user should hear."""
+
+
 @dataclass(frozen=True)
 class Scan:
     """Heights measured on a regular grid.
@@ -55,6 +60,29 @@ class Scan:
         return float(np.nanstd(self.heights_nm))
 
 
+def measured_part(scan: Scan) -> Scan:
+    """A scan without lines that nobody measured: at one value, or the line before once more, as an aborted scan has.
+
+    At the ends such lines are cut off, between others they are missing. A scan of nothing else stays as it is.
+    """
+    heights = scan.heights_nm
+    same = np.append(False, (heights[:, 1:] == heights[:, :-1]).all(axis=0))
+    measured = np.flatnonzero(~same & (np.ptp(heights, axis=0) != 0))
+    lines = heights.shape[1]
+    if len(measured) < 2 or len(measured) == lines:
+        return scan
+    first, last = measured[0], measured[-1] + 1
+    kept, steps = np.array(heights[:, first:last], dtype=float), scan.steps
+    if last - first < lines:
+        steps = (*steps, f"{LINES_CUT}: {lines - last + first} of {lines} scan lines, without measurement")
+    lost = np.setdiff1d(np.arange(first, last), measured) - first
+    if len(lost):
+        kept[:, lost] = np.nan
+        steps = (*steps, f"took {len(lost)} scan lines without measurement for missing")
+    lengths_nm = scan.lengths_nm[0], scan.lengths_nm[1] * (last - first) / lines
+    return replace(scan, heights_nm=kept, lengths_nm=lengths_nm, steps=steps)
+
+
 def clean(scan: Scan, settings: TopographySettings) -> Scan:
     """Level a scan, align its lines, remove spikes and fill missing pixels; every step is recorded.
 
@@ -62,6 +90,7 @@ def clean(scan: Scan, settings: TopographySettings) -> Scan:
     ------
     InputError : more pixels are missing than `settings.max_missing` allows, or the heights are cut off.
     """
+    scan = measured_part(scan)
     heights = np.array(scan.heights_nm, dtype=float)
     steps = list(scan.steps)
     missing = ~np.isfinite(heights)
@@ -102,6 +131,7 @@ def alignment_effect(scan: Scan, settings: TopographySettings) -> tuple[float, f
     """
     if settings.line_alignment == "none":
         return 0.0, 0.0
+    scan = measured_part(scan)
     heights = np.where(np.isfinite(scan.heights_nm), scan.heights_nm, np.nan)
     heights, _ = levelled(heights, settings)
     aligned = heights - _line_medians(heights)
