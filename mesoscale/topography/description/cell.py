@@ -185,8 +185,8 @@ def unlike_measured(
     ----------
     measured : levelled heights and lengths (nm) of the measurements, by name.
     """
-    found = {name: rms_in_cells(*part, cell_nm) for name, part in measured.items()}
-    known = {name: ends for name, ends in found.items() if ends}
+    in_cells = {name: rms_in_cells(*part, cell_nm) for name, part in measured.items()}
+    known = {name: ends for name, ends in in_cells.items() if ends}
     if not known:
         return []
     low, high = min(ends[0] for ends in known.values()), max(ends[1] for ends in known.values())
