@@ -81,6 +81,10 @@ def _parser() -> argparse.ArgumentParser:
     film = added["film"]
     film.add_argument("files", nargs="+", help="scans, line profiles, containers, or folders of them: of one surface")
     film.add_argument("--tip-nm", type=float, help="radius of the AFM tip where no file states it; default: 5")
+    film.add_argument("--channel", help="name of the height channel, of files that have several")
+    film.add_argument("--unit", help="length unit of a file that states none: um, or um,nm of positions and heights")
+    film.add_argument("--size", help="size of a map that states none, in --unit: 10 or 10x5")
+    film.add_argument("--detrend", choices=("plane", "quadratic", "none"), help="tilt and form to take off")
     words = "e_star=75, h_macro=1:1.6, e_star=75+-4 (GPa), hamaker=0.2 (1e-18 J); default: the paper's films"
     film.add_argument("--material", nargs="+", default=[], metavar="NAME=VALUE", help=words)
     words = "gap_um=2, length_um=300, …; default: a published beam"
@@ -141,14 +145,16 @@ def _film(given: argparse.Namespace) -> int:
         close = difflib.get_close_matches(missing[0], COMMANDS, n=1)
         hint = f"; did you mean {close[0]}?" if close else ""
         return _refuse(f"{missing[0]}: neither a file nor a command{hint} (asperity --help)")
-    from asperity.door import device_of, material_of, readable, scene_lines
+    from asperity.door import device_of, material_of, readable, scene_lines, topography_of
     from asperity.film import Film
     from mesoscale.errors import InputError
     from mesoscale.extras import MissingExtra
 
     try:
         material, device = material_of(given.material), device_of(given.device)
-        film = Film(readable(given.files, lambda text: print(wrapped(shown(text)))), given.tip_nm)
+        topography = topography_of(given)
+        files = readable(given.files, lambda text: print(wrapped(shown(text))), topography)
+        film = Film(files, given.tip_nm, **topography)
         scene = Path(given.scene or f"{_plain(Path(given.files[0]).resolve().stem)}.yaml")
         text = "\n".join(scene_lines(film, material, device)) + "\n"
     except (InputError, MissingExtra) as error:

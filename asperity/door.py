@@ -3,14 +3,17 @@
 import json
 import os
 import re
+from argparse import Namespace
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, get_args
 
 from asperity.bundle import ROOT
 from asperity.film import MATERIAL, Film, pixels_for
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import PAPER_ROWS
-from mesoscale.settings import DeviceSettings, InputRow
+from mesoscale.settings import DeviceSettings, InputRow, InstrumentSettings, TopographySettings
 from mesoscale.settings.definitions import definition
+from mesoscale.settings.topography import LengthUnit
 from mesoscale.topography.measurements import files_in
 from mesoscale.topography.measurements.loading import load_measurements
 
@@ -28,10 +31,39 @@ NUMBERS_OF_DEVICE = [
 ]
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 GIVEN = "command line"
+UNITS = get_args(LengthUnit)
 
 
-def readable(names: Sequence[str], say: Callable[[str], None]) -> list[str]:
+def topography_of(given: Namespace) -> dict[str, Any]:
+    """Keys of the section `topography` from the options --channel, --unit, --size and --detrend.
+
+    Raises
+    ------
+    InputError : no unit of length, no size, or a size for several files.
+    """
+    keys = {name: getattr(given, name) for name in ("channel", "detrend") if getattr(given, name)}
+    added: dict[str, Any] = {}
+    if given.unit:
+        units = given.unit.replace("\u00b5", "u").split(",")
+        if len(units) > 2 or not set(units) <= set(UNITS):
+            raise InputError(f"--unit {given.unit}: accepted are {', '.join(UNITS)}, or two of them such as um,nm")
+        added |= dict(zip(("unit", "height_unit"), units, strict=False))
+    if given.size:
+        sides = re.fullmatch(rf"({NUMBER})(?:x({NUMBER}))?", given.size)
+        if sides is None or not given.unit:
+            raise InputError(f"--size {given.size}: accepted is a number or two (10 or 10x5), with their --unit")
+        if len(given.files) > 1 or os.path.isdir(given.files[0]):
+            raise InputError("--size: accepted for one file; for several, state topography.instruments in a scene")
+        added["size"] = float(sides[1]), float(sides[2] or sides[1])
+    return keys | ({"instruments": (InstrumentSettings(files="*", **added),)} if added else {})
+
+
+def readable(names: Sequence[str], say: Callable[[str], None], topography: Mapping[str, Any]) -> list[str]:
     """Files by name, folders replaced by those of their files that can be read; `say` is told of the others.
+
+    Parameters
+    ----------
+    topography : keys of that section.
 
     Raises
     ------
@@ -44,7 +76,7 @@ def readable(names: Sequence[str], say: Callable[[str], None]) -> list[str]:
             continue
         for file in files_in(name):
             try:
-                load_measurements(file)
+                load_measurements(file, settings=TopographySettings(**topography))
                 files.append(file)
             except InputError as error:
                 say(f"left out: {error}")
@@ -99,7 +131,13 @@ def scene_lines(film: Film | None, material: Mapping[str, InputRow], device: Map
     if film is not None:
         yield "topography:"
         yield f"  scans: {json.dumps(list(film.settings.scans), ensure_ascii=False)}"
-        yield f"  tip_radius_nm: {film.settings.tip_radius_nm:g}  # of the AFM tip, where no file states it"
+        tip = film.settings.tip_radius_nm
+        note = "# of the AFM tip, where no file states it" + ("" if tip is not None else "; 5 is taken, state yours")
+        yield f"  tip_radius_nm: {'null' if tip is None else f'{tip:g}'}  {note}"
+        stated = film.settings.model_dump(mode="json", include={"channel", "detrend", "instruments"}, exclude_none=True)
+        plain = TopographySettings().model_dump(mode="json")
+        for name in (name for name, value in stated.items() if value != plain[name]):
+            yield f"  {name}: {json.dumps(stated[name], ensure_ascii=False)}"
     yield "inputs:  # uniform [low, high], normal [mean, deviation], fixed [value]"
     yield "  # without its row, e_star is computed by DFT and h_prime by molecular dynamics"
     rows = {**MATERIAL, **material}

@@ -16,7 +16,7 @@ class Distribution:
 
     Attributes
     ----------
-    kind : uniform, normal, truncated_normal, samples or fixed.
+    kind : uniform, log_uniform (uniform in the logarithm), normal, truncated_normal, samples or fixed.
     a : lower end, mean or fixed value.
     b : upper end or standard deviation.
     low : lower truncation.
@@ -38,6 +38,8 @@ class Distribution:
             return np.full_like(p, self.a)
         if self.kind == "uniform":
             return self.a + p * (self.b - self.a)
+        if self.kind == "log_uniform":
+            return self.a * (self.b / self.a) ** p
         if self.kind == "samples":
             return np.quantile(self.values, p)
         from scipy.special import ndtr, ndtri  # light, unlike scipy.stats

@@ -210,10 +210,13 @@ def distribution_of(entry: Mapping[str, Any], where: str) -> Distribution:
     if entry.get("distribution") == "samples":  # of the calibration
         return Distribution("samples", values=np.sort(np.asarray(entry["values"], float)))
     numbers: dict[str, Any] = {key: float(entry[key]) for key in NUMBERS if entry.get(key) is not None}
-    if entry.get("distribution") not in ("uniform", "normal", "truncated_normal", "fixed") or "a" not in numbers:
+    if (
+        entry.get("distribution") not in ("uniform", "log_uniform", "normal", "truncated_normal", "fixed")
+        or "a" not in numbers
+    ):
         raise InputError(
             f"{where}: distribution {entry.get('distribution')} with {numbers} is not usable; "
-            "accepted: uniform, normal (a, b), truncated_normal (a, b, low, high), fixed (a)"
+            "accepted: uniform, log_uniform, normal (a, b), truncated_normal (a, b, low, high), fixed (a)"
         )
     return Distribution(str(entry["distribution"]), **numbers)
 

@@ -10,18 +10,18 @@ from mesoscale.settings.base import Settings
 from mesoscale.settings.contact import RANGE_IN_D0, WORK_FACTOR, AttractionLaw
 from mesoscale.settings.definitions import BY_NAME, INPUTS, InputDefinition
 
-NUMBERS = {"uniform": 2, "normal": 2, "truncated_normal": 4, "fixed": 1}
+NUMBERS = {"uniform": 2, "log_uniform": 2, "normal": 2, "truncated_normal": 4, "fixed": 1}
 """How many numbers state a distribution; `samples` has a file instead."""
 FORMS = (
-    "uniform [low, high], normal [mean, deviation], truncated_normal [mean, deviation, low, high], fixed [value], "
-    "samples file.csv"
+    "uniform [low, high], log_uniform [low, high], normal [mean, deviation], "
+    "truncated_normal [mean, deviation, low, high], fixed [value], samples file.csv"
 )
 
 
 class DistributionRow(Settings):
     """A distribution as a scene states it."""
 
-    distribution: Literal["uniform", "normal", "truncated_normal", "samples", "fixed"] = key(
+    distribution: Literal["uniform", "log_uniform", "normal", "truncated_normal", "samples", "fixed"] = key(
         "uniform", "form of the distribution that `values` state"
     )
     values: tuple[float, ...] | str | None = Field(
@@ -53,8 +53,10 @@ class DistributionRow(Settings):
             return
         if kind == "samples" or isinstance(values, str) or len(values) != NUMBERS[kind]:
             raise ValueError(f"values = {values!r:.60} are none of distribution {kind}; accepted are {FORMS}")
-        if kind == "uniform" and not values[0] <= values[1]:
-            raise ValueError(f"uniform values [{values[0]:g}, {values[1]:g}]: the first must not exceed the second")
+        if kind == "log_uniform" and not values[0] > 0:
+            raise ValueError(f"log_uniform values [{values[0]:g}, {values[1]:g}]: both must be > 0")
+        if "uniform" in kind and not values[0] <= values[1]:
+            raise ValueError(f"{kind} values [{values[0]:g}, {values[1]:g}]: the first must not exceed the second")
         if "normal" in kind and not values[1] >= 0:
             raise ValueError(f"{kind} with deviation {values[1]:g}: it must be >= 0")
         if kind == "truncated_normal" and not values[2] < values[3]:
@@ -63,7 +65,7 @@ class DistributionRow(Settings):
     @property
     def reaches(self) -> float | None:
         """The largest number that it states as an end, or its mean; None of samples and of a stage's distribution."""
-        place = {"uniform": 1, "truncated_normal": 3}.get(self.distribution, 0)
+        place = {"uniform": 1, "log_uniform": 1, "truncated_normal": 3}.get(self.distribution, 0)
         return self.values[place] if isinstance(self.values, tuple) else None
 
 

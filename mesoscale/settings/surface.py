@@ -8,6 +8,8 @@ from asperity.keys import key
 from mesoscale.settings.base import Settings
 
 Positive = Annotated[float, Field(ge=1e-30, le=1e12)]
+Power = Annotated[float, Field(ge=1e-60, le=1e60)]
+"""As far apart as logarithms of single precision are: of a spectrum by points only the shape counts."""
 
 
 class CounterfaceSettings(Settings):
@@ -22,7 +24,7 @@ class SpectrumSettings(Settings):
     """A spectrum by points instead of the form of eq. 9; only its shape counts, the RMS is that of Table 1."""
 
     q: tuple[Positive, ...] = key(..., "wave vectors in rising order", "1/nm", min_length=2, max_length=10000)
-    psd: tuple[Positive, ...] = key(
+    psd: tuple[Power, ...] = key(
         ..., "C at these, of the two-dimensional spectrum", "nm^4", min_length=2, max_length=10000
     )
 

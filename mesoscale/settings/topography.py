@@ -5,6 +5,8 @@ from typing import Literal
 from asperity.keys import key
 from mesoscale.settings.base import Settings
 
+LengthUnit = Literal["m", "mm", "um", "nm", "Å", "pm"]
+
 
 class SyntheticScanSettings(Settings):
     """Synthetic AFM scans with known truth, used when no scans are given (docs/topography.md)."""
@@ -30,8 +32,10 @@ class InstrumentSettings(Settings):
     shortest_wave_nm: float | None = key(None, "shortest wavelength that it passes (filter, resolution)", "(0, 1e6] nm")
     noise_nm: float | None = key(None, "RMS noise of a height", "[0, 1e4] nm")
     channel: str | None = key(None, "name of its height channel; null: topography.channel")
-    unit: Literal["m", "mm", "um", "nm", "pm"] | None = key(
-        None, "length unit of positions and heights, for text that states none"
+    unit: LengthUnit | None = key(None, "length unit of positions and heights, for files that state none")
+    height_unit: LengthUnit | None = key(None, "length unit of heights, where it differs from that of positions")
+    size: tuple[float, float] | None = key(
+        None, "physical size of a map along x and y in `unit`, for files that state none", "> 0"
     )
 
 
@@ -51,14 +55,16 @@ class TopographySettings(Settings):
     channel: str | None = key(
         None, "name of the height channel; null takes the only one (or the first of trace and retrace)"
     )
-    tip_radius_nm: float = key(
-        5.0,
-        "radius of the AFM tip where neither `instruments` nor the file states one, bounds the range of wave "
-        "vectors that is trusted; 0: no bound",
-        "[0, 1000] nm",
+    tip_radius_nm: float | None = key(
+        None,
+        "radius of the tip where neither `instruments` nor the file states one, bounds the range of wave vectors that "
+        "is trusted; 0: no bound; null: 5 nm, with a doubt where it matters",
+        "[0, 1e5] nm",
     )
-    detrend: Literal["none", "plane", "quadratic"] = key(
-        "plane", "what is subtracted from each scan as tilt and scanner bow"
+    detrend: Literal["auto", "none", "plane", "quadratic"] = key(
+        "auto",
+        "what is subtracted from each scan as tilt and form; auto: a plane, or a quadratic where form or a scanner's "
+        "bow is clearly more than roughness",
     )
     line_alignment: Literal["none", "median"] = key("median", "what is subtracted from each scan line")
     max_missing: float = key(
@@ -85,3 +91,8 @@ class TopographySettings(Settings):
         "and use them",
     )
     synthetic: SyntheticScanSettings = SyntheticScanSettings()
+
+    @property
+    def tip_nm(self) -> float:
+        """Radius of the tip, nm, where nothing else states it."""
+        return 5.0 if self.tip_radius_nm is None else self.tip_radius_nm

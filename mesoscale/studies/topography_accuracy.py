@@ -70,7 +70,7 @@ def _estimates(scans: list[Scan], settings: TopographySettings, knob: str, value
     """Estimates of one set; a knob of the spectrum or of the likelihood takes its value."""
     changes = {"sections": {"sections": value}, "flat share of window": {"flat": value}}.get(knob, {})
     cleaned = [clean(scan, settings) for scan in scans]
-    radius = settings.tip_radius_nm
+    radius = settings.tip_nm
     spectra = [trusted_range(item.name, hann_spectrum(item, **changes), radius, item.rms_nm) for item in cleaned]
     result = analyse(spectra, settings)
     if knob == "bins per decade" and result.likelihood is not None:

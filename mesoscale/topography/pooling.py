@@ -14,11 +14,13 @@ from mesoscale.topography.description.cell import (
     refuse_coarse_measurements,
     share_on_cells,
     suited_cell,
+    unlike_measured,
+    unseen_doubt,
 )
 from mesoscale.topography.description.choice import Choice, choose, description_doubts
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.heights import HeightTest, compare_heights, not_gaussian
-from mesoscale.topography.description.inputs import cutoff_row, rms_before, rms_scatter_row, rows_of, surface_of
+from mesoscale.topography.description.inputs import cutoff_row, middle, rms_before, rms_scatter_row, rows_of, surface_of
 from mesoscale.topography.description.one_spectrum import (
     OneSpectrum,
     Overlap,
@@ -36,7 +38,7 @@ from mesoscale.topography.description.tip import (
     without_lift,
 )
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
-from mesoscale.topography.records import copies, is_profile, trusted_record
+from mesoscale.topography.records import copies, is_profile, longest_nm, trusted_record
 from mesoscale.topography.roughness_spectrum import SpectrumTable
 
 
@@ -126,7 +128,7 @@ def pool(
             return share_on_cells(topography, used, side_nm)[0]
 
         shortest_nm = 2.0 * np.pi / max(cutoff["a"], cutoff.get("b", 0.0))
-        cell_nm = grown_cell(cell_nm, held, shortest_nm, pixels, electrode_nm)
+        cell_nm = grown_cell(cell_nm, held, shortest_nm, pixels, min(electrode_nm, longest_nm(attributes)))
     charts = list(quantiles.values()) if choice.name == "measured_heights" else []
     surface = surface_of(topography, used, charts, settings, cell_nm)
     typical = settings.model_copy(update={"ranges": "interval"})
@@ -146,11 +148,23 @@ def pool(
         doubts += disagreements(pairs, one)
         if one is not None:
             doubts += finer_waves_doubt(SpectrumTable(*one.carried_on(one.psd)).psd, spectra, cell_nm)
+    if settings.scans and rows:
+        heights = {name: _levelled(arrays[name], values) for name, values in attributes.items()}
+        doubts += unlike_measured(middle(rows["rms"]), heights, cell_nm)
+        if used is not None:
+            doubts += unseen_doubt(rows["rms"], longest_nm(attributes), cell_nm)
     doubts += lift_doubt(images, spectra, lifted)
     if alike:
         text = f"{', '.join(f'{name} is a copy of {other}' for name, other in alike.items())}: it counts once"
         doubts.append(Doubt("copies", text, "measure other places of the surface", "rms"))
     return Pooled(spectra, topography, one, tests, pairs, choice, surface, rows, film, doubts, cell_nm)
+
+
+def _levelled(arrays: Mapping[str, np.ndarray], attributes: Mapping[str, Any]) -> tuple[np.ndarray, tuple[float, ...]]:
+    """Levelled heights (nm), thinned, with their lengths (nm)."""
+    if is_profile(attributes):
+        return arrays["line"], (float(attributes["length_x_nm"]),)
+    return arrays["heights"], (float(attributes["length_x_nm"]), float(attributes["length_y_nm"]))
 
 
 def parameters_of(

@@ -57,8 +57,10 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     heights, covariance = _solve(nodes, measured)
     keep = (nodes >= np.log(low) - 1e-9) & (nodes <= np.log(high) + 1e-9)
     variance = np.diag(covariance)[keep]
-    worth = 1 / variance
-    worth *= min(1.0, modes.sum() / worth.sum())
+    # neighbouring nodes, which the smoothing ties, have together no more than the wave numbers that they lie among
+    near = np.abs(nodes[keep][:, None] - np.log(bins)) < 0.2 * np.log(10)
+    nodes_near = np.abs(nodes[keep][:, None] - nodes[keep]) < 0.2 * np.log(10)
+    worth = np.minimum(1 / variance, near @ modes / nodes_near.sum(axis=1))
     # error of ln C that no averaging removes: its mean about the knee, on slopes 2.3 to 3.6 (60 lines each)
     worth /= 1 + worth * 0.25**2
     nyquist = np.pi / profile.step_nm

@@ -1,5 +1,6 @@
 """What the analysis of one measurement leaves for the pooling of all: arrays with their units, and attributes."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -8,7 +9,13 @@ import numpy as np
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.heights import height_quantiles
-from mesoscale.topography.description.trusted_range import TrustedSpectrum, trusted_map, trusted_profile
+from mesoscale.topography.description.trusted_range import (
+    TRUST,
+    TrustedSpectrum,
+    curvature,
+    trusted_map,
+    trusted_profile,
+)
 from mesoscale.topography.measurements.cleaning import Scan, alignment_effect, clean
 from mesoscale.topography.measurements.loading import Measurement
 from mesoscale.topography.measurements.profiles import clean_profile
@@ -35,7 +42,11 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
     data, arrays, attributes = measured.data, {}, {}
     if isinstance(data, Scan):
         cleaned = clean(data, settings)
-        limits, (length_x, length_y), pixels = trusted_map(cleaned, measured), data.lengths_nm, data.heights_nm.shape
+        limits, (length_x, length_y), pixels = (
+            trusted_map(cleaned, measured),
+            cleaned.lengths_nm,
+            cleaned.heights_nm.shape,
+        )
         share, skewness = alignment_effect(data, settings)
         attributes = {"length_y_nm": length_y, "pixels_y": pixels[1], "form": limits.form}
         attributes |= {"alignment_share": share, "alignment_skewness": skewness}
@@ -47,6 +58,7 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
         limits, length_x, pixels = trusted_profile(cleaned, measured), data.length_nm, data.heights_nm.shape
         arrays["profile_q"], arrays["profile_psd"] = line_spectrum(cleaned)
         arrays["line"] = _thinned(cleaned.heights_nm, 2000)
+    attributes["parabola"] = any("quadratic" in step or "parabola" in step for step in cleaned.steps)
     spectrum = limits.spectrum
     arrays |= {"q": spectrum.q, "psd": spectrum.psd, "modes": spectrum.modes}
     return arrays, attributes | {
@@ -61,9 +73,16 @@ def record(measured: Measurement, settings: TopographySettings) -> tuple[Arrays,
         "limit": limits.limit,
         "reach": limits.reach,
         "tip_radius_nm": measured.tip_radius_nm,
-        "radius_stated": measured.radius_stated,
+        "radius_stated": measured.radius_stated or not _tip_matters(limits),
         "steps": "; ".join(cleaned.steps),
     }
+
+
+def _tip_matters(limits: TrustedSpectrum) -> bool:
+    """Would a tip as blunt as many are, four times the radius taken, end what a map shows?"""
+    q, psd = limits.spectrum.q, limits.spectrum.psd
+    seen = (q >= limits.low) & (q <= limits.high)
+    return bool((curvature(4 * limits.tip_radius_nm, q[seen], psd[seen]) > TRUST.curved).any())
 
 
 def _thinned(heights: np.ndarray, most: int) -> np.ndarray:
@@ -99,6 +118,7 @@ def trusted_record(name: str, arrays: Mapping[str, np.ndarray], attributes: Mapp
         float(attributes[key]) for key in ("trusted_low", "trusted_high", "tip_radius_nm", "rms_nm", "reach")
     )
     result = TrustedSpectrum(name, spectrum, low, high, str(attributes["limit"]), radius, rms, reach)
+    result = replace(result, parabola=bool(attributes["parabola"]))
     if line:
         return replace(result, line=binned_line(arrays["profile_q"], arrays["profile_psd"], low, high))
     side = float(np.sqrt(attributes["length_x_nm"] * attributes["length_y_nm"]))
@@ -108,3 +128,8 @@ def trusted_record(name: str, arrays: Mapping[str, np.ndarray], attributes: Mapp
 def is_profile(attributes: Mapping[str, Any]) -> bool:
     """Is this a record of a line profile?"""
     return "length_y_nm" not in attributes
+
+
+def longest_nm(attributes: Mapping[str, Mapping[str, Any]]) -> float:
+    """Side of the largest map, or length of a longer line."""
+    return max(min(values["length_x_nm"], values.get("length_y_nm", math.inf)) for values in attributes.values())

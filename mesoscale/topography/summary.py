@@ -89,7 +89,7 @@ def parameters(
         "method": "likelihood",
         "ranges": settings.ranges,
         "confidence": CONFIDENCE,
-        "tip_radius_nm": settings.tip_radius_nm,
+        "tip_radius_nm": settings.tip_nm,
         "estimates": {
             name: {**estimate.plain(), "unit": units[name]} for name, estimate in topography.estimates.items()
         },

@@ -27,7 +27,10 @@ TABLES = (
         (
             text("parameter", "name of the input"),
             text("unit", "its unit"),
-            text("distribution", "uniform, normal, truncated_normal, fixed, or samples with the values as JSON"),
+            text(
+                "distribution",
+                "uniform, log_uniform, normal, truncated_normal, fixed, or samples with the values as JSON",
+            ),
             number("a", "`unit`", "lower bound (uniform), mean (normal) or value (fixed)", empty=True),
             number("b", "`unit`", "upper bound (uniform) or standard deviation (normal)", empty=True),
             number("low", "`unit`", "lower end of the truncation", empty=True),

@@ -6,7 +6,7 @@ than the measured ones are an assumption, and its effect is stated.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -89,14 +89,14 @@ def mean_square_of_cells(one: OneSpectrum, psd: np.ndarray, cell_nm: float) -> n
 
 
 def share_on_cells(topography: Topography, one: OneSpectrum | None, cell_nm: float) -> tuple[float, float]:
-    """Share of the mean square height (nm^2) that cells have, and all of it.
+    """Share that cells have of the mean square height (nm^2) of all measured waves, and that mean square.
 
     Parameters
     ----------
     one : the measured spectrum, where it is used; None: eq. 9, flat beyond the longest wave of a cell.
     """
     if one is not None:
-        whole = float(one.moment(0, psd=one.psd) + one.tail(one.psd))
+        whole = float(one.moment(0, low=one.seen, psd=one.psd) + one.tail(one.psd))
         return float(mean_square_of_cells(one, one.psd, cell_nm)) / whole, whole
     fitted = topography.likelihood
     if fitted is None:
@@ -155,6 +155,60 @@ def finer_waves_doubt(
     )
     remedy = "the answer is that of the scales measured; measure finer ones, or end the surfaces there (inputs.q1)"
     return [Doubt("finer_waves", text, remedy, "contact")]
+
+
+def rms_in_cells(heights: np.ndarray, lengths_nm: Sequence[float], cell_nm: float) -> tuple[float, float] | None:
+    """RMS height (nm) of levelled heights, a map or a line, within cells of a side, without and with their noise.
+
+    Noise is at most what neighbouring points differ by. None where a cell has next to no points. A measurement smaller
+    than the cell is taken as a whole.
+    """
+    sides = [round(n * cell_nm / length) for n, length in zip(heights.shape, lengths_nm, strict=True)]
+    if min(sides) < 4:
+        return None
+    for axis, side in enumerate(sides):
+        count = max(heights.shape[axis] // side, 1)
+        heights = np.stack(np.split(np.take(heights, range(min(count * side, heights.shape[axis])), axis), count, axis))
+        heights = np.moveaxis(heights, 0, -1)  # cells behind, so that the axes of a cell keep their places
+    inside = tuple(range(len(sides)))
+    square = float(np.mean(np.var(heights, axis=inside)))
+    noise = 0.5 * float(np.mean(np.diff(heights, axis=0) ** 2))
+    return float(np.sqrt(max(square - noise, 0.0))), float(np.sqrt(square))
+
+
+def unlike_measured(
+    rms_nm: float, measured: Mapping[str, tuple[np.ndarray, Sequence[float]]], cell_nm: float
+) -> list[Doubt]:
+    """A doubt that stops, where cells get less than half or more than twice the RMS height that measurements have.
+
+    Parameters
+    ----------
+    measured : levelled heights and lengths (nm) of the measurements, by name.
+    """
+    in_cells = {name: rms_in_cells(*part, cell_nm) for name, part in measured.items()}
+    known = {name: ends for name, ends in in_cells.items() if ends}
+    if not known:
+        return []
+    low, high = min(ends[0] for ends in known.values()), max(ends[1] for ends in known.values())
+    if 0.5 * low <= rms_nm <= 2.0 * high:
+        return []
+    text = (
+        f"cells of {cell_nm:g} nm would get an RMS height of {rms_nm:.3g} nm; on that length the measurements have "
+        f"{low:.3g} to {high:.3g} nm"
+    )
+    remedy = "measure an area that is larger than a cell, or set contact.length_nm to at most the size of the largest"
+    return [Doubt("rms_unlike_measured", text, remedy, "rms", fatal=True)]
+
+
+def unseen_doubt(rms: Mapping[str, float], longest: float, cell_nm: float) -> list[Doubt]:
+    """A doubt where a cell is longer than all that was measured."""
+    if cell_nm <= 1.05 * longest:
+        return []
+    text = (
+        f"cells of {cell_nm:g} nm are computed, and the largest measurement has {longest:.4g} nm; longer waves are a "
+        f"guess, which makes the RMS height of a cell {rms['a']:.3g} to {rms.get('b', rms['a']):.3g} nm"
+    )
+    return [Doubt("unseen_waves", text, "measure a larger area", "rms")]
 
 
 def _shortest_wave(spectra: Sequence[TrustedSpectrum]) -> tuple[str, float]:

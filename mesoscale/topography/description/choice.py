@@ -12,12 +12,24 @@ from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.heights import HeightTest, not_gaussian
 from mesoscale.topography.description.one_spectrum import OneSpectrum
 from mesoscale.topography.description.parameters import Topography
+from mesoscale.topography.measurements.cleaning import FORM_TAKEN, LINES_CUT, MARKED
+from mesoscale.topography.measurements.profiles import OVERHANG, THERE_AND_BACK
 
 DESCRIPTIONS = {
     "power_law": "plateau and power law of eq. 9, normal heights",
     "measured_spectrum": "the measured spectrum with its band, normal heights",
     "measured_heights": "the measured spectrum with its band, and the measured distribution of heights",
 }
+
+
+STEPS_TO_TELL = {
+    FORM_TAKEN: ("form", "if this is roughness, set topography.detrend to plane, and measure a larger area"),
+    LINES_CUT: ("aborted_scan", "measure the whole area again"),
+    THERE_AND_BACK: ("there_and_back", "give one of both directions a file"),
+    OVERHANG: ("overhang", "the contact is on top: nothing to do where the heights are seen from above"),
+    MARKED: ("marked_pixels", "if these pixels are wrong, replace them by data of their surroundings, and save again"),
+}
+"""Steps of a measurement that a user should hear of: code of the doubt and remedy."""
 
 
 @dataclass(frozen=True)
@@ -109,8 +121,12 @@ def description_doubts(
             text = "one measurement: how much places differ is unknown, the ranges hold its own error only"
             yield Doubt("one_place", text, "measure other places of the surface", "rms")
     if name != "power_law" and topography.doubts:
-        text = f"eq. 9 does not describe this surface ({topography.doubts[0].text}); used: {DESCRIPTIONS[name]}"
-        yield Doubt("no_power_law", text, "", "q0")
+        first = topography.doubts[0]
+        text = f"{first.text}; used instead: {DESCRIPTIONS[name]}"
+        remedy = first.remedy if first.code in ("no_plateau", "short_range") else "nothing to do"
+        if first.code not in ("no_plateau", "short_range"):
+            text = f"eq. 9 does not describe this surface: {text}"
+        yield Doubt("no_power_law", text, remedy, "q0")
 
 
 def _doubts_of_record(name: str, values: Mapping[str, Any]) -> Iterator[Doubt]:
@@ -122,6 +138,10 @@ def _doubts_of_record(name: str, values: Mapping[str, Any]) -> Iterator[Doubt]:
         )
         remedy = "if the lines have no offsets, set topography.line_alignment to none"
         yield Doubt("alignment_took_roughness", text, remedy, "rms")
+    for step in values["steps"].split("; "):
+        for begins, (code, remedy) in STEPS_TO_TELL.items():
+            if step.startswith(begins):
+                yield Doubt(code, f"{name}: {step}", remedy, "rms")
     if not values["radius_stated"]:
         text = f"{name}: neither scene nor file states the tip radius; taken is {values['tip_radius_nm']:g} nm"
         yield Doubt("tip_not_stated", text, "state it in topography.instruments", "spectrum")

@@ -38,16 +38,31 @@ class HeightTest:
 
 def compare_heights(name: str, heights: np.ndarray, lengths_nm: tuple[float, float]) -> HeightTest:
     """Set the central square of a scan's levelled heights (nx, ny; nm) beside Gaussian surfaces."""
+    heights, pixel_nm = square_pixels(heights, lengths_nm)
     n = min(heights.shape)
     i, j = ((side - n) // 2 for side in heights.shape)
     square = np.asarray(heights[i : i + n, j : j + n], dtype=float)
-    side = min(lengths_nm)
+    side = n * pixel_nm
     spectrum = radial_spectrum(square, (side, side), 9, 0.75, flat=0.0)
     psd = SpectrumTable(spectrum.q, spectrum.psd).psd
     gaussian = np.array([moments(synthesize_spectrum(n, side, psd, 1.0, seed)) for seed in range(39)])
     skewness, kurtosis, highest = moments(square)
     expected, spread = gaussian.mean(axis=0), gaussian.std(axis=0, ddof=1)
     return HeightTest(name, skewness, kurtosis, highest, expected, spread, slope_ratio(square))
+
+
+def square_pixels(heights: np.ndarray, lengths_nm: tuple[float, float]) -> tuple[np.ndarray, float]:
+    """Heights (nx, ny) read at the steps of their coarser axis along both, and that step, nm."""
+    steps = [length / n for length, n in zip(lengths_nm, heights.shape, strict=True)]
+    step = max(steps)
+    for axis, fine in enumerate(steps):
+        if fine < 0.99 * step:
+            count = heights.shape[axis]
+            place = np.arange(0.0, count - 1, step / fine)
+            left = place.astype(int)
+            share = np.expand_dims(place - left, 1 - axis)
+            heights = (1 - share) * np.take(heights, left, axis) + share * np.take(heights, left + 1, axis)
+    return heights, step
 
 
 def slope_ratio(heights: np.ndarray) -> float:

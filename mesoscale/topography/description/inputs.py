@@ -55,7 +55,10 @@ def surface_of(
 def rows_of(
     topography: Topography, one: OneSpectrum | None, settings: TopographySettings, cell_nm: float
 ) -> dict[str, Row]:
-    """Distributions of q0, hurst and rms, uniform over the ranges that the settings ask for.
+    """Distributions of q0, hurst and rms over the ranges that the settings ask for.
+
+    Those of eq. 9 are uniform, as the paper's. Those of a measured spectrum have the median of what it allows as their
+    own: q0 and rms are uniform in the logarithm.
 
     The RMS height is that of the waves of a cell of side `cell_nm`, and of a film whose spectrum is flat beyond, as the
     pad makes it (`pad.cells`). With a measured spectrum q0 and hurst are coordinates that bend the spectrum about
@@ -68,6 +71,7 @@ def rows_of(
         }
         if "rms" in ranges:
             ranges["rms"] = np.multiply(ranges["rms"], np.sqrt(share_on_cells(topography, None, cell_nm)[0]))
+        kinds = {}
     else:
         drawn = one.draws(places=settings.ranges == "scatter")
         pivot_q0, pivot_hurst = _nearest(topography, one, settings)
@@ -76,13 +80,26 @@ def rows_of(
             "q0": (pivot_q0 * np.exp(-bend_q0), pivot_q0 * np.exp(bend_q0)),
             # a coordinate, the spectrum itself is the measured one
             "hurst": np.clip([pivot_hurst - bend_hurst, pivot_hurst + bend_hurst], 0.05, 1.95),
-            "rms": np.quantile(np.sqrt(mean_square_of_cells(one, drawn, cell_nm)), QUANTILES),
+            "rms": _about_median(np.sqrt(mean_square_of_cells(one, drawn, cell_nm))),
         }
-    return {name: _uniform(*ends) for name, ends in ranges.items()}
+        kinds = dict.fromkeys(("q0", "rms"), "log_uniform")
+    return {name: _over(*ends, kinds.get(name, "uniform")) for name, ends in ranges.items()}
 
 
-def _uniform(low: float, high: float) -> Row:
-    return {"distribution": "uniform", "a": float(low), "b": float(high)}
+def middle(row: Mapping[str, Any]) -> float:
+    """The median of a row."""
+    low, high = row["a"], row.get("b", row["a"])
+    return float(np.sqrt(low * high) if row["distribution"] == "log_uniform" else 0.5 * (low + high))
+
+
+def _about_median(drawn: np.ndarray) -> np.ndarray:
+    """Ends of a range as wide as that of the draws, whose middle by the logarithm is their median."""
+    low, high = np.quantile(drawn, QUANTILES)
+    return np.median(drawn) * (high / low) ** np.array([-0.5, 0.5])
+
+
+def _over(low: float, high: float, kind: str = "uniform") -> Row:
+    return {"distribution": kind, "a": float(low), "b": float(high)}
 
 
 def _nearest(topography: Topography, one: OneSpectrum, settings: TopographySettings) -> tuple[float, float]:
@@ -138,7 +155,7 @@ def cutoff_row(topography: Topography, spectra: Sequence[TrustedSpectrum]) -> Ro
     if topography.line_fit is not None and not topography.q1_limited:
         return {"distribution": "fixed", "a": topography.q1}
     low, high = trusted_end(spectra)["interval"]
-    return _uniform(low, high) if low < high else {"distribution": "fixed", "a": high}
+    return _over(low, high) if low < high else {"distribution": "fixed", "a": high}
 
 
 def rms_before(
@@ -148,11 +165,11 @@ def rms_before(
 
     Parameters
     ----------
-    q1, rms : distributions, uniform or fixed; the RMS height is that up to the finest Nyquist wave vector, or, with a
-        measured spectrum, that of all of it.
+    q1, rms : distributions, over a range or fixed; the RMS height is that up to the finest Nyquist wave vector, or,
+        with a measured spectrum, that of all of it.
     surface : entries of `contact.surface`; empty: eq. 9 as fitted.
     """
-    cut = 0.5 * (q1["a"] + q1.get("b", q1["a"]))
+    cut = middle(q1)
     if surface:
         table = SpectrumTable(surface["spectrum"]["q"], surface["spectrum"]["psd"])
         share = table.mean_square(cut) / table.mean_square(np.inf)
@@ -183,4 +200,4 @@ def rms_scatter_row(topography: Topography, one: OneSpectrum | None) -> Row:
     from scipy.special import gammaincinv
 
     chi_squared = 2 * gammaincinv((count - 1) / 2, QUANTILES[::-1])
-    return _uniform(*np.minimum(between * np.sqrt((count - 1) / chi_squared), MOST_APART) / 2)
+    return _over(*np.minimum(between * np.sqrt((count - 1) / chi_squared), MOST_APART) / 2)

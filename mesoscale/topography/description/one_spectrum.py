@@ -6,12 +6,13 @@ mixed linear model (Henderson 1975, doi:10.2307/2529430) joins ranges that merel
 begins or ends; the variance is found by expectation maximisation. Changes of the logarithmic slope from band to band
 are held small, which carries f over a gap between instruments with an uncertainty that grows into it.
 
-Waves about as long as the longest map are changed by levelling and hardly measured one by one, but their sum is: the
-levelled heights of that map have the mean square that the spectrum must give from about 0.7 waves a side on.
+Waves about as long as the longest measurement are changed by levelling and hardly measured one by one, but their sum
+is: its levelled heights have the mean square that the spectrum must give from about 0.7 waves a side on. Where nothing
+is measured, the spectrum of a rough surface is flat or falls as steeply as a self-affine one, and nothing else.
 """
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -76,6 +77,7 @@ class OneSpectrum:
     place_sd : standard deviation of ln C between places and instruments, common to all bands; 0 for one measurement.
     count : (m,) measurements behind each band; 0 in a gap between instruments and before the first.
     names : measurements that take part.
+    longest : smallest wave vector that a mean square height tells of (1/nm); None where only bands tell.
     logs : (draws, m) values of ln C that the measurements allow, where they are not normally distributed; else None.
     """
 
@@ -85,7 +87,13 @@ class OneSpectrum:
     place_sd: float
     count: np.ndarray
     names: tuple[str, ...]
+    longest: float | None = None
     logs: np.ndarray | None = None
+
+    @property
+    def seen(self) -> float:
+        """Smallest wave vector that the measurements tell of, one by one or in a sum, 1/nm."""
+        return min(self.first, self.longest or np.inf)
 
     @property
     def psd(self) -> np.ndarray:
@@ -115,22 +123,31 @@ class OneSpectrum:
             logs = logs + self.place_sd * few_places(len(self.names)) * rng.standard_normal((count, 1))
         return np.exp(logs)
 
-    def with_mean_square(self, mean_square: float, low: float, error: float) -> "OneSpectrum":
-        """The spectrum given besides that waves beyond `low` (1/nm) have a mean square height (nm^2).
+    def with_mean_square(self, mean_square: float, seen: "Seen", count: int, common_error: float) -> "OneSpectrum":
+        """The spectrum given besides the mean square height (nm^2) of the longest measurements, levelled.
 
-        Of spectra that the bands allow, those are drawn that the mean square allows (importance resampling), known to
-        `error` in its logarithm.
+        Of spectra that the bands allow, those are drawn that the mean square allows (importance resampling).
+
+        Parameters
+        ----------
+        count : measurements that it is the mean of.
+        common_error : of its logarithm, the same in all of them.
         """
         rng = np.random.default_rng(3)
         candidates = 10_000
         logs = self._normal_draws(rng, candidates)
-        away = np.log(self.moment(0, low=low, psd=np.exp(logs)) / mean_square) / error
-        weight = np.exp(-0.5 * (away**2 - np.min(away**2)))
+        scatter = seen.scatter(self.q, logs)
+        error = np.hypot(np.hypot(scatter, self.place_sd) / np.sqrt(count), np.hypot(common_error, 0.1))
+        drawn = np.exp(logs)
+        away = np.log((self.moment(0, low=seen.first, psd=drawn, counted=seen.share) + self.tail(drawn)) / mean_square)
+        away = (away - 0.5 * scatter**2 / count) / error  # the logarithm of a sum of few waves is on average too small
+        chance = -0.5 * away**2 - np.log(error)
+        weight = np.exp(chance - chance.max())
         weight /= weight.sum()
         centre = weight @ logs
         covariance = (weight[:, None] * (logs - centre)).T @ (logs - centre)
         drawn = logs[rng.choice(candidates, size=DRAWS, p=weight)]
-        return replace(self, log_psd=centre, covariance=covariance, logs=drawn)
+        return replace(self, log_psd=centre, covariance=covariance, logs=drawn, longest=seen.first)
 
     def with_error(self, error: np.ndarray) -> "OneSpectrum":
         """The same with a further error of ln C: `error` (m,) times one normal variable for all bands."""
@@ -144,10 +161,18 @@ class OneSpectrum:
         factor = vectors * np.sqrt(np.maximum(values, 0.0))
         return self.log_psd + rng.standard_normal((count, len(self.q))) @ factor.T
 
-    def moment(self, power: int, low: float = 0.0, high: float = np.inf, psd: np.ndarray | None = None) -> np.ndarray:
+    def moment(
+        self,
+        power: int,
+        low: float = 0.0,
+        high: float = np.inf,
+        psd: np.ndarray | None = None,
+        counted: Callable[[np.ndarray], np.ndarray] = np.ones_like,
+    ) -> np.ndarray:
         """Integral of 2 pi q C q^power over low .. high (1/nm) for spectra (..., m); C is flat below the first band.
 
-        Power 0 is the mean square height (nm^2), 2 the mean square slope, 4 that of the Laplacian (1/nm^2).
+        Power 0 is the mean square height (nm^2), 2 the mean square slope, 4 that of the Laplacian (1/nm^2). Of the
+        waves at q (1/nm) the share `counted` enters.
         """
         psd = self.psd if psd is None else psd
         edges = np.concatenate([[max(low, 0.0)], [v for v in self.q if low < v < high], [min(high, self.q[-1])]])
@@ -162,7 +187,8 @@ class OneSpectrum:
         logs = np.log(psd)
         values = np.exp(logs[..., left] * (1 - share) + logs[..., left + 1] * share)
         below = 2 * np.pi * psd[..., 0] * fine[0] ** (power + 2) / (power + 2) if low == 0 else 0.0
-        return np.asarray(np.trapezoid(2 * np.pi * fine ** (power + 1) * values, fine, axis=-1) + below)
+        values *= 2 * np.pi * fine ** (power + 1) * counted(fine)
+        return np.asarray(np.trapezoid(values, fine, axis=-1) + below)
 
     def carried_on(self, psd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points (1/nm, nm^4) of a spectrum (m,) on the bands, with its last slope carried on for a decade."""
@@ -209,6 +235,45 @@ class OneSpectrum:
         return result
 
 
+@dataclass(frozen=True)
+class Seen:
+    """Which waves a levelled measurement has in its mean square height.
+
+    Surfaces of C ~ q^-1 to q^-4 without a plateau hold, levelled by a plane, the waves from 0.63 to 0.81 a side on; so
+    do lines (Brownian ones from 0.76 on). A parabola takes waves 1.3 times as short with it.
+
+    Attributes
+    ----------
+    length_nm : side of a map, or length of a line.
+    parabola : it was levelled by one.
+    line : of a line only the waves along it count, from which those across it are seen as longer ones.
+    """
+
+    length_nm: float
+    parabola: bool
+    line: bool
+
+    @property
+    def first(self) -> float:
+        """Wave vector of the longest, 1/nm."""
+        return (0.94 if self.parabola else 0.72) * 2 * np.pi / self.length_nm
+
+    def share(self, q: np.ndarray) -> np.ndarray:
+        """Part of the isotropic waves at q (m,) in 1/nm, all at least the first."""
+        return 2 / np.pi * np.arccos(np.minimum(self.first / q, 1.0)) if self.line else np.ones_like(q)
+
+    def scatter(self, q: np.ndarray, logs: np.ndarray) -> np.ndarray:
+        """Standard deviation of ln of the mean square by spectra ln C (..., m) on q, from the number of their waves."""
+        inside = q > self.first
+        # of a power law C1 is C q times a number; an integral over ln q
+        density = np.exp(logs[..., inside]) * q[inside] ** (1 if self.line else 0)
+        area = q[inside] * (2.0 if self.line else 2 * np.pi * q[inside])
+        wave = (2 * np.pi / self.length_nm) ** (1 if self.line else 2)
+        return np.sqrt(2 * wave * (density**2 @ area) * np.log(10) / BANDS_PER_DECADE) / (
+            (density @ area) * np.log(10) / BANDS_PER_DECADE
+        )
+
+
 def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneSpectrum | None:
     """The spectrum behind all measurements; None where none has two bands to offer.
 
@@ -237,6 +302,12 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     # standard deviation of the change of slope times the band's width, from band to band
     bends = np.diff(np.eye(m), 2, axis=0) / 0.35
     normal[:m, :m] += bends.T @ bends
+    unseen, width = int(np.searchsorted(bands, seen.min())), np.log(10) / BANDS_PER_DECADE
+    first = min(measured, key=lambda entry: entry[1][0])
+    slope, error = unseen_slope(first[1] * width, first[2])
+    rise = np.diff(np.eye(m), axis=0)[:unseen] / width
+    normal[:m, :m] += rise.T @ rise / error**2
+    right[:m] += rise.sum(axis=0) * slope / error**2
     shared = np.bincount(index, minlength=m) > 1
     variance = 0.1 if shared.any() else 0.0
     covariance, solution = normal, right
@@ -261,17 +332,36 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
         np.sum([(bands >= entry[1][0]) & (bands <= entry[1][-1]) for entry in measured], axis=0),
         tuple(entry[0] for entry in measured),
     )
-    largest = max(spectra, key=lambda item: item.side_nm)
-    if largest.side_nm == 0 or largest.rms_nm == 0 or largest.name not in names:
+    rough = [(item, seen_by(item)) for item in spectra if item.name in names and item.rms_nm > 0]
+    longest = max((part.length_nm for _, part in rough if part), default=0.0)
+    if longest == 0 or result.first < 2 * np.pi / longest:  # of a line that has measured these waves
         return result
-    first_wave = 2 * np.pi / largest.side_nm
-    if result.first < first_wave:  # a longer line has measured these waves
-        return result
-    # surfaces of C ~ q^-1 to q^-4 without a plateau, levelled by a plane, hold the waves from 0.63 to 0.81 a side on;
-    # ln of their mean square scatters by 0.03 to 0.6 (the steepest). What is form and what is roughness is unknown to
-    # what a parabola would take.
-    error = float(np.sqrt(0.6**2 + largest.form**2 + common_error**2))
-    return result.with_mean_square(largest.rms_nm**2, 0.72 * first_wave, error)
+    alike = [(item, part) for item, part in rough if part and part.length_nm > 0.8 * longest]
+    kind = next(part for _, part in alike if part.length_nm == longest)
+    alike = [item for item, part in alike if part.line == kind.line]
+    mean_square = np.mean([item.rms_nm**2 for item in alike])
+    # what is form and what is roughness is unknown to what a parabola would take
+    error = np.hypot(np.mean([item.form for item in alike]), common_error)
+    return result.with_mean_square(float(mean_square), kind, len(alike), float(error))
+
+
+def seen_by(item: TrustedSpectrum) -> Seen | None:
+    """Which waves the levelled heights of a measurement have; None where its size is not known."""
+    line = item.line is not None
+    length_nm = 2 * np.pi / item.spectrum.spacing if line else item.side_nm
+    return Seen(length_nm, item.parabola, line) if length_nm > 0 else None
+
+
+def unseen_slope(log_q: np.ndarray, log_psd: np.ndarray) -> tuple[float, float]:
+    """Logarithmic slope of waves that are longer than all measured ones, and the deviation of each band from it.
+
+    Self-affine surfaces have slopes of -2 to -4 (H of 0 to 1), and go on or roll off. What is shallower rolls off to a
+    plateau, of slope 0. Five bands share a slope.
+    """
+    end = slice(None, BANDS_PER_DECADE // 2)
+    measured = float(np.clip(np.polyfit(log_q[end], log_psd[end], 1)[0], -4.0, 0.0))
+    going_on = float(np.interp(-measured, (1.5, 3.0), (0.0, 0.85)))
+    return going_on * measured, float(np.sqrt(5) * (0.4 + 0.25 * abs(measured)))
 
 
 def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

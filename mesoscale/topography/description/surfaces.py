@@ -161,8 +161,12 @@ def several_surfaces(
 
 def disagreements(pairs: Sequence[Overlap], one: OneSpectrum | None) -> Iterator[Doubt]:
     """A doubt for each of the worst three pairs of measurements that differ by more than places do."""
+    from scipy.special import ndtri
+
     between = REACH * np.sqrt(2) * one.place_sd if one else 0.0
-    worst = [pair for pair in pairs if abs(np.log(pair.ratio)) > np.hypot(np.log(pair.expected), between)]
+    # of many pairs some differ by more than one pair does
+    further = ndtri(1 - FALSE_ALARMS / max(len(pairs), 1)) / REACH
+    worst = [pair for pair in pairs if abs(np.log(pair.ratio)) > further * np.hypot(np.log(pair.expected), between)]
     for pair in sorted(worst, key=lambda pair: -abs(np.log(pair.ratio)))[:3]:
         text = (
             f"{pair.first} and {pair.second} differ by a factor of {max(pair.ratio, 1 / pair.ratio):.2g} in C from "

@@ -88,6 +88,7 @@ class TrustedSpectrum:
     reach : where the range would end without the tip, 1/nm; between `high` and here the tip's correction is large.
     side_nm : side of a square of a measured map's area; 0 for a line profile.
     form : ln of what a parabola would take of the mean square height, besides the levelling.
+    parabola : the levelling took one.
     line : of a line profile, C1(k) in nm^3 on bins inside its trusted range; None for a scan.
     """
 
@@ -101,6 +102,7 @@ class TrustedSpectrum:
     reach: float = 0.0
     side_nm: float = 0.0
     form: float = 0.0
+    parabola: bool = False
     line: Spectrum | None = None
 
     @property
@@ -194,7 +196,11 @@ def trusted_range(
     limits = {"pixels": TRUST.pixels * spectrum.nyquist}
     if shortest_wave_nm:
         limits["filter"] = 2 * np.pi / shortest_wave_nm
-    limits |= _first("noise", q, (q > low) & (smooth < TRUST.noise * max(tail, noise_psd)))
+    end = q > 0.7 * spectrum.nyquist
+    falls = end.sum() > 8 and np.polyfit(np.log(q[end]), np.log(smooth[end]), 1)[0] < -1.0 and noise_psd < tail
+    # noise is flat at the end; what still falls there are short waves that the pixels fold back
+    ends = _first("pixels" if falls else "noise", q, (q > low) & (smooth < TRUST.noise * max(tail, noise_psd)))
+    limits |= {name: min(value, limits.get(name, np.inf)) for name, value in ends.items()}
     reach = min(limits.values())
     limits |= _first("tip", q, (q > low) & (curvature(tip_radius_nm, q, smooth) > TRUST.curved))
     limit = min(limits, key=lambda key: limits[key])

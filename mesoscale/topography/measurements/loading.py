@@ -6,6 +6,7 @@ takes by PyYAML's full loader, must hold plain values and tuples alone.
 
 import os
 import re
+import tempfile
 import warnings
 import zipfile
 from collections.abc import Callable, Iterator
@@ -20,13 +21,17 @@ from asperity.foreign_yaml import MistakenYaml, parse
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.settings import InstrumentSettings, TopographySettings
-from mesoscale.topography.measurements.cleaning import Scan
+from mesoscale.topography.measurements.cleaning import MARKED, Scan
 from mesoscale.topography.measurements.guarded import guarded
 from mesoscale.topography.measurements.profiles import Profile, profile_of
 
 MIN_SIDE = 32
 FILE_NM = (10.0, 1e8)  # plausible sizes: the largest real map at hand has 12 mm; beyond, a reader mistakes the unit
 HEAD_BYTES = 8192  # of a text file, in which the heads of its columns stand
+NO_HEIGHT = re.compile(r"deflection|amplitude|error|phase|friction|lateral|thumb|preview|current|potential", re.I)
+DIRECTION = re.compile(r"\W*\b(forward|backward|fwd|bwd|trace|retrace|left|right)\b\W*", re.I)
+BACKWARD = re.compile(r"\b(backward|bwd|retrace|left)\b", re.I)
+"""Names of channels: what is no height, and the directions of one height."""
 NO_LIMITS = InstrumentSettings(files="*")
 
 
@@ -99,9 +104,14 @@ def with_limits(
 ) -> Measurement:
     """A scan or line profile with the limits of its instrument; what it leaves open is the file's or the settings'."""
     radius = file_radius_nm if instrument.tip_radius_nm is None else instrument.tip_radius_nm
-    stated = radius is not None or isinstance(data, Scan)  # topography.tip_radius_nm is a scanning probe's
-    used = settings.tip_radius_nm if radius is None else radius
-    return Measurement(data, used, stated, instrument.shortest_wave_nm, instrument.noise_nm)
+    used = settings.tip_nm if radius is None else radius
+    return Measurement(
+        data,
+        used,
+        radius is not None or settings.tip_radius_nm is not None,
+        instrument.shortest_wave_nm,
+        instrument.noise_nm,
+    )
 
 
 def _instrument(name: str, settings: TopographySettings) -> InstrumentSettings:
@@ -119,12 +129,72 @@ def _alone(path: Path, name: str, settings: TopographySettings) -> Measurement:
             head = stream.read(HEAD_BYTES)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); make the file readable") from None
-    channels = _tried(str(path), lambda: list(open_topography(str(path)).channels), head)
+    read = plain_text(path, head)
+    head = head if read == path else read.read_bytes()[:HEAD_BYTES]
+    reader = _tried(str(path), lambda: open_topography(str(read)), head)
+    channels = _tried(str(path), lambda: list(reader.channels))
     channel, note = _height_channel(path, channels, instrument.channel or settings.channel)
-    _check_sized(str(path), channel, channel.unit or instrument.unit)
-    topography = _tried(str(path), channel.topography)
-    steps = (f"read channel {channel.name}", *note)
+    given = _given(str(path), channel, instrument)
+    _check_sized(str(path), channel, channel.unit or instrument.unit, instrument.size)
+    topography = _tried(str(path), lambda: channel.topography(**given))
+    marked = None
+    if masks := getattr(reader, "_masks", None):  # Gwyddion's mask is over what is missing, and over grains
+        lost = np.ma.getmaskarray(_tried(str(path), topography.heights))
+        masks.clear()
+        whole = _tried(str(path), lambda: channel.topography(**given))
+        below = np.asarray(_tried(str(path), whole.heights))[lost]
+        if len(np.unique(below[np.isfinite(below)])) > 1:  # what is missing has one value
+            topography, marked = whole, f"{MARKED} {lost.mean():.1%} of the pixels, which have heights: kept them"
+    steps = (f"read channel {channel.name}", *note, *([marked] if marked else []))
     return _measurement(str(path), name, topography, head, steps, settings, instrument)
+
+
+def plain_text(path: Path, head: bytes) -> Path:
+    """The file, or a copy with decimal points, tabs and UTF-8, of text as programs of many countries export it.
+
+    Text is what begins without signs that do not print, and has no byte 0.
+    """
+    if not head or any(byte < 9 or 13 < byte < 32 for byte in head) or b"\0" in (raw := path.read_bytes()):
+        return path
+    try:
+        text = raw.decode("utf-8")
+        encoded = False
+    except UnicodeDecodeError:
+        text, encoded = raw.decode("latin-1"), True
+    start = text[:HEAD_BYTES]
+    commas = re.search(r"(?<![\d.,])-?\d+,\d+(?:[eE][-+]?\d+)?[\t; ]+-?\d", start)
+    commas = commas and not re.search(r"\d\.\d", start)
+    if commas:
+        text = re.sub(r"(?<=\d),(?=\d)", ".", text)
+    if ";" in start:
+        text = text.replace(";", "\t")
+    if not (commas or encoded or ";" in start):
+        return path
+    copy = Path(tempfile.mkdtemp()) / path.name
+    copy.write_text(text, encoding="utf-8")
+    return copy
+
+
+def _given(where: str, channel: Any, instrument: InstrumentSettings) -> dict[str, Any]:
+    """What the user adds of size and unit to a channel that lacks them, as its reader takes them.
+
+    Raises
+    ------
+    InputError : the file states it itself.
+    """
+    given: dict[str, Any] = {}
+    sized = channel.dim == 1 or channel.physical_sizes is not None
+    for name, stated, added in (
+        ("a unit", channel.unit, instrument.unit),
+        ("a size", channel.physical_sizes if channel.dim == 2 else True, instrument.size),
+    ):
+        if stated and added:
+            raise InputError(
+                f"{where}: states {name} itself; leave out that of topography.instruments (--unit, --size)"
+            )
+    if not sized and instrument.size:
+        given["physical_sizes"] = instrument.size
+    return given
 
 
 def _contained(path: Path, name: str, settings: TopographySettings) -> Iterator[Measurement]:
@@ -168,15 +238,17 @@ def _measurement(
     if factors is None:
         raise InputError(
             f"{where}: a {'profile' if topography.dim == 1 else 'map'} without length unit; state it in "
-            f"topography.instruments (files: {Path(where).name!r}, unit: um; tip_radius_nm, too) or in the heads of "
-            "its columns"
+            f"topography.instruments (files: {Path(where).name!r}, unit: um, height_unit: nm; --unit um,nm) or in the "
+            "heads of its columns"
         )
+    if instrument.height_unit and not topography.unit:
+        factors = factors[0], _nm(where, instrument.height_unit)
     if topography.dim == 1:
         x, z = _tried(where, lambda: _points(*topography.positions_and_heights()))
         data: Scan | Profile = _profile(where, name, x * factors[0], z * factors[1])
         data = replace(data, bow=topography.info.get("detrend_mode") == "curvature")
     else:
-        _check_sized(where, topography, unit)
+        _check_sized(where, topography, unit, instrument.size)
         heights = factors[1] * _tried(where, lambda: _filled(topography.heights()))
         if min(heights.shape) < MIN_SIDE:
             raise InputError(f"{where}: {heights.shape[0]} x {heights.shape[1]} pixels; at least {MIN_SIDE} a side")
@@ -214,22 +286,28 @@ def _no_reader(where: str, head: bytes, tried: str) -> str:
 def _height_channel(path: Path, channels: list[Any], wanted: str | None) -> tuple[Any, tuple[str, ...]]:
     """The height channel, and a note when there was a choice."""
     # some readers call a phase a height, but then its unit is no length
-    heights = [c for c in channels if c.is_height_channel and (c.unit is None or isinstance(c.unit, str))]
+    lengths = [c for c in channels if c.is_height_channel and (c.unit is None or isinstance(c.unit, str))]
+    pixels = {id(c): int(np.prod(getattr(c, "nb_grid_pts", None) or 1)) for c in lengths}
+    most = max(pixels.values(), default=0) / 16  # of a thumbnail
+    heights = [c for c in lengths if not NO_HEIGHT.search(str(c.name)) and pixels[id(c)] > most]
     names = list(dict.fromkeys(str(c.name) for c in heights))
     listed = ", ".join(names)[:300] or "none"  # a file may have hundreds
     if wanted is not None:
         heights = [c for c in heights if str(c.name) == wanted]
+        if not heights and wanted in (str(c.name) for c in channels):
+            raise InputError(f"{path}: channel {wanted!r} holds no heights; those that do (--channel): {listed}")
         if not heights:
-            raise InputError(f"{path}: no height channel {wanted!r} (topography.channel); the file has: {listed}")
-    elif len(names) > 1:
-        raise InputError(f"{path}: several height channels: {listed}; name one in topography.channel")
+            raise InputError(f"{path}: no height channel {wanted!r} (--channel, topography.channel); it has: {listed}")
+    elif len({DIRECTION.sub("", name).strip() for name in names}) > 1:
+        raise InputError(f"{path}: several height channels: {listed}; name one in topography.channel (--channel)")
     if not heights:
         raise InputError(
             f"{path}: no channel of heights in a unit of length (m, um, nm, Å); save the topography too, or calibrate "
             "heights that are in V"
         )
-    more = len(heights) > 1
-    return heights[0], (f"took the first of {len(heights)} channels named {heights[0].name}",) if more else ()
+    forward = next((c for c in heights if not BACKWARD.search(str(c.name))), heights[0])
+    others = len(heights) - 1
+    return forward, (f"took {forward.name}, one of {others + 1} channels of heights",) if others else ()
 
 
 def _nm(where: str, unit: str) -> float:
@@ -271,11 +349,14 @@ def _filled(values: Any) -> np.ndarray:
     return np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
 
 
-def _check_sized(where: str, item: Any, unit: str | None) -> None:
-    sizes = item.physical_sizes
+def _check_sized(where: str, item: Any, unit: str | None, size: tuple[float, float] | None) -> None:
+    sizes = item.physical_sizes or size
     if item.dim == 2 and (sizes is None or not all(np.isfinite(size) and size > 0 for size in sizes)):
         lacks = "physical size" if unit else "physical size and no length unit"
-        raise InputError(f"{where}: has no {lacks}; save it in a format that carries size and unit (.gwy)")
+        raise InputError(
+            f"{where}: has no {lacks}; state them in topography.instruments "
+            f"(files: {Path(where).name!r}, size: [1, 1], unit: um; --size 1x1 --unit um), or save it with both (.gwy)"
+        )
 
 
 def _check_plausible(where: str, heights_nm: np.ndarray, *lengths_nm: float) -> None:

@@ -1,5 +1,6 @@
 """Heights along a line, as a stylus or a side view in an electron microscope gives them, made ready for a spectrum."""
 
+import itertools
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -7,8 +8,12 @@ import numpy as np
 from mesoscale.checks import MAX_LENGTH_NM, MIN_LENGTH_NM, check_number, checked_array
 from mesoscale.errors import InputError
 from mesoscale.settings import TopographySettings
+from mesoscale.topography.measurements.cleaning import form_step
 
 MIN_POINTS = 64
+THERE_AND_BACK = "measured there and back"
+OVERHANG = "the line overhangs"
+"""How steps begin of which the user should hear."""
 MAX_POINTS = 4_000_000
 
 
@@ -51,9 +56,10 @@ class Profile:
 
 
 def profile_of(positions_nm: np.ndarray, heights_nm: np.ndarray, name: str) -> Profile:
-    """A profile at even steps from points (n,) in any order.
+    """A profile at even steps from points (n,).
 
-    Uneven points are joined by straight lines and read at their mean distance.
+    Uneven points are joined by straight lines and read at their mean distance. Of a line that was measured there and
+    back, the way there counts; of one that overhangs, what is seen from above. Points without order are sorted.
 
     Raises
     ------
@@ -63,8 +69,7 @@ def profile_of(positions_nm: np.ndarray, heights_nm: np.ndarray, name: str) -> P
     if not MIN_POINTS <= count <= MAX_POINTS:
         raise InputError(f"{name}: a line of {count} points; accepted are {MIN_POINTS} .. {MAX_POINTS}")
     known = np.isfinite(positions_nm) & np.isfinite(heights_nm)
-    order = np.argsort(positions_nm[known], kind="stable")
-    x, z = positions_nm[known][order], heights_nm[known][order]
+    x, z, notes = _from_above(positions_nm[known], heights_nm[known])
     if len(x) < MIN_POINTS or x[-1] <= x[0]:
         raise InputError(f"{name}: {len(x)} points with a position and a height; at least {MIN_POINTS} are needed")
     gaps = np.diff(x)
@@ -78,10 +83,37 @@ def profile_of(positions_nm: np.ndarray, heights_nm: np.ndarray, name: str) -> P
     even = np.abs(gaps - step).max() < 0.01 * step + 1e-4 * (x[-1] - x[0]) / len(x)
     rounded = np.abs(x - (x[0] + step * np.arange(len(x)))).max() < 0.05 * step
     if even or rounded:
-        return Profile(z, len(x) * step, name)
+        return Profile(z, len(x) * step, name, steps=notes)
     heights = np.interp(x[0] + step * np.arange(len(x)), x, z)
     note = f"read at even steps of {step:.3g} nm between {len(x)} uneven points"
-    return Profile(heights, len(x) * step, name, resampled=True, steps=(note,))
+    return Profile(heights, len(x) * step, name, resampled=True, steps=(*notes, note))
+
+
+def _from_above(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
+    """Points in rising order of x, one height at each place, and in words what was done to get them."""
+    order = np.argsort(x, kind="stable")
+    steps = np.diff(x)
+    forth = steps if steps.sum() >= 0 else -steps
+    if len(x) < MIN_POINTS or (forth >= 0).all():
+        return x[order], z[order], ()
+    turn = int(np.argmax(np.abs(x - x[0])))  # the far end of the way there
+    there = steps[:turn] * np.sign(x[turn] - x[0])
+    if abs(x[turn] - x[0]) > 0.9 * np.ptp(x) and (there >= 0).all() and turn < 0.8 * len(x):
+        x, z = x[: turn + 1], z[: turn + 1]
+        order = np.argsort(x, kind="stable")
+        return x[order], z[order], (f"{THERE_AND_BACK}: took the {len(x)} points of the way there",)
+    back = int(np.count_nonzero(forth < 0))
+    if back > 0.25 * len(steps):
+        return x[order], z[order], ("sorted points that were in no order",)
+    # upper envelope of all pieces of the line, on as many points
+    even = np.linspace(x.min(), x.max(), len(x))
+    seen = np.full(len(x), -np.inf)
+    for (x1, x2), (z1, z2) in zip(itertools.pairwise(x), itertools.pairwise(z), strict=True):
+        first, last = np.searchsorted(even, [min(x1, x2) - 1e-12, max(x1, x2) + 1e-12])
+        place = even[first:last]
+        heights = np.interp(place, (x1, x2), (z1, z2)) if x2 >= x1 else np.interp(place, (x2, x1), (z2, z1))
+        seen[first:last] = np.maximum(seen[first:last], heights)
+    return even, seen, (f"{OVERHANG}: {back} of {len(steps)} steps go back, took what is seen from above",)
 
 
 def clean_profile(profile: Profile, settings: TopographySettings) -> Profile:
@@ -95,8 +127,14 @@ def clean_profile(profile: Profile, settings: TopographySettings) -> Profile:
         raise InputError(f"{profile.name}: all heights are equal; this is no measurement of a surface")
     heights, steps = profile.heights_nm - profile.heights_nm.mean(), profile.steps
     if settings.detrend != "none":
-        order = 2 if profile.bow or settings.detrend == "quadratic" else 1
         x = np.linspace(-1, 1, len(heights))
-        heights = heights - np.polynomial.Polynomial.fit(x, heights, order)(x)
-        steps = (*steps, f"subtracted a {'line' if order == 1 else 'parabola'}")
+        line, parabola = (heights - np.polynomial.Polynomial.fit(x, heights, order)(x) for order in (1, 2))
+        form = float(np.log(max(np.var(line), 1e-300) / max(np.var(parabola), 1e-300)))
+        if profile.bow or settings.detrend == "quadratic":
+            heights, note = parabola, "subtracted a parabola"
+        elif settings.detrend == "auto" and form > 3.5:  # 400 lines across C ~ q^-4 without a plateau reach 3.3
+            heights, note, profile = parabola, form_step(form), replace(profile, bow=True)
+        else:
+            heights, note = line, "subtracted a line"
+        steps = (*steps, note)
     return replace(profile, heights_nm=heights, steps=steps)

@@ -82,8 +82,8 @@ def _distribution(row: Row) -> str:
     a, b = f"{number(row['a']):.4g}", f"{number(row['b']):.4g}"
     if kind == "fixed":
         return f"fixed at {a}"
-    if row["distribution"] == "uniform":
-        return f"uniform from {a} to {b}"
+    if "uniform" in kind:
+        return f"{kind.replace('log_uniform', 'uniform in the logarithm')} from {a} to {b}"
     text = f"normal, {a} ± {b}"
     if row["distribution"] == "truncated_normal":
         text += f" within {show(row.get('low'))} to {show(row.get('high'))}"
