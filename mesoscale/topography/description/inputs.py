@@ -82,7 +82,10 @@ def rows_of(
             "rms": _about_median(np.sqrt(mean_square_of_cells(one, drawn, cell_nm))),
         }
     by_logarithm = () if one is None else ("q0", "rms")
-    return {name: _over(*ends, "log_uniform" if name in by_logarithm else "uniform") for name, ends in ranges.items()}
+    return {
+        name: _over(ends[0], ends[1], "log_uniform" if name in by_logarithm else "uniform")
+        for name, ends in ranges.items()
+    }
 
 
 def middle(row: Mapping[str, Any]) -> float:
