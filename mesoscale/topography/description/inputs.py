@@ -71,7 +71,6 @@ def rows_of(
         }
         if "rms" in ranges:
             ranges["rms"] = np.multiply(ranges["rms"], np.sqrt(share_on_cells(topography, None, cell_nm)[0]))
-        kinds = {}
     else:
         drawn = one.draws(places=settings.ranges == "scatter")
         pivot_q0, pivot_hurst = _nearest(topography, one, settings)
@@ -82,8 +81,11 @@ def rows_of(
             "hurst": np.clip([pivot_hurst - bend_hurst, pivot_hurst + bend_hurst], 0.05, 1.95),
             "rms": _about_median(np.sqrt(mean_square_of_cells(one, drawn, cell_nm))),
         }
-        kinds = dict.fromkeys(("q0", "rms"), "log_uniform")
-    return {name: _over(*ends, kinds.get(name, "uniform")) for name, ends in ranges.items()}
+    by_logarithm = () if one is None else ("q0", "rms")
+    return {
+        name: _over(ends[0], ends[1], "log_uniform" if name in by_logarithm else "uniform")
+        for name, ends in ranges.items()
+    }
 
 
 def middle(row: Mapping[str, Any]) -> float:
