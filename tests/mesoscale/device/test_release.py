@@ -94,7 +94,7 @@ def test_a_D0_that_is_an_input_is_not_drawn_twice():
     stated = table(gap_cutoff=InputRow(distribution="fixed", values=(3.7,)))
     design = plan_points(stated, ContactSettings(), PLATE, 6)
     assert {point.gap_cutoff_nm for point in design.points} == {3.7}
-    assert "gap_cutoff" not in {design.causes[k] for k in design.varying}
+    assert "gap_cutoff_nm" not in {design.names[k] for k in design.varying}
 
 
 @pytest.mark.parametrize(("reaches", "pixels"), [(0.2, 64), (0.4, 128), (0.41, 256)])
