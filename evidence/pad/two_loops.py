@@ -23,7 +23,7 @@ from mesoscale.device.plate import plate_from_settings, solve_on_pad
 from mesoscale.device.points import point_of, values_at
 from mesoscale.failure.rate import Attracted, Population, learn
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.uncertainty.rare_events import quantiles_of, rates_given
+from mesoscale.uncertainty.rare_events import quantiles_of
 
 EACH = ("hamaker", "rms")
 VARIED = InputTable(
@@ -75,8 +75,8 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
             yield from _rows(kind, "stated", seed, ends, started)
         response = learn(plates(), lambda *_: None, seed)
         for name, times in ATTRACTIONS.items():
-            started, hold_V = process_time(), response.population.hold_V
-            rates = rates_given(lambda z: response.moments(z, hold_V), plates().common, float(np.log(times)), seed)
+            started = process_time()
+            rates = response.rates(times, plates().hold_V, seed=seed)
             yield from _rows(f"rate_{name}", "stated", seed, quantiles_of(rates), started)
 
 

@@ -39,11 +39,20 @@ class Additive:
     explained: float
     values: Array
 
+    @property
+    def variance(self) -> float:
+        """Of the sum over independent numbers, and of what it misses."""
+        return float((self.coefficients[1:] ** 2).sum() + self.missed**2) or 1.0
+
+    @property
+    def noise(self) -> float:
+        """Share of the variance that a number seems to explain by chance."""
+        return self.degree * self.missed**2 / self.values.size / self.variance
+
     def shares(self) -> Array:
         """Share of the variance by each number; what noise alone would seem to explain is taken off."""
-        noise = self.missed**2 / self.values.size
-        of_number = (self.coefficients[1:] ** 2).reshape(self.degree, -1)
-        return np.maximum(of_number.sum(axis=0) - self.degree * noise, 0.0) / (self.values.var() or 1.0)
+        of_number = (self.coefficients[1:] ** 2).reshape(self.degree, -1).sum(axis=0)
+        return np.maximum(of_number / self.variance - self.noise, 0.0)
 
     def deviation(self, release_V: Array, errors_V: Array) -> float:
         """Root mean square error of fitted values by errors of the releases."""

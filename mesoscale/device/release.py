@@ -61,6 +61,7 @@ class Answer:
     cells : of all pads together.
     cells_error_V : root mean square error of a point by its number of cells.
     explained : share of the variance that the fit behind the causes predicts of switches left out one at a time.
+    noise : share that a number seems to explain by chance, taken off those of `sensitivity`.
     known : bands of what is not known and of what differs between devices; see `mesoscale.device.known.known`.
     """
 
@@ -78,6 +79,7 @@ class Answer:
     cells: int
     cells_error_V: float
     explained: float
+    noise: float
     known: dict[str, Any]
 
 
@@ -99,7 +101,7 @@ def answer(model: PadModel) -> Answer:
     cells = fit.deviation(release, np.where(np.isfinite(errors), errors, error_V))
     rows = [(names[k], varies[k], share) for k, share in zip(varying, fit.shares().tolist(), strict=True)]
     by_cause = {kind: float(sum(share for _, of, share in rows if of == kind)) for kind in ("common", "each")}
-    by_cause["cells"] = cells**2 / (float(fit.values.var()) or 1.0)
+    by_cause["cells"] = cells**2 / fit.variance
     return Answer(
         describe(release),
         _quantile_errors(release),
@@ -120,6 +122,7 @@ def answer(model: PadModel) -> Answer:
         sum(point.pad.cells.count for point in solved if point.pad),
         error_V,
         fit.explained,
+        fit.noise,
         known(fit, np.array([varies[k] == "common" for k in varying], bool), cells),
     )
 

@@ -274,10 +274,10 @@ class ReserveResponse:
             repeats,
         )
 
-    def rates(self, times: float, hold_V: float, known: Known | None = None) -> Array:
+    def rates(self, times: float, hold_V: float, known: Known | None = None, seed: int = 0) -> Array:
         """Shares of the devices that fail with `times` the attraction, by draws of what is common to all of them."""
         return rates_given(
-            lambda z: self.moments(_with(z, known), hold_V), self.population.common, float(np.log(times)), 0
+            lambda z: self.moments(_with(z, known), hold_V), self.population.common, float(np.log(times)), seed
         )
 
 

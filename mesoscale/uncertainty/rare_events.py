@@ -180,7 +180,7 @@ def rates_given(
 
     The error of the response is one unknown for all devices too: each draw has its own, mean + deviation x (a standard
     normal number). The numbers of each device are drawn about the likeliest event, which planes through their reserves
-    find, and count with their likelihood (importance sampling).
+    find, and count with their likelihood (importance sampling; Rackwitz and Fiessler, Comput. Struct. 9 (1978) 489).
 
     Parameters
     ----------

@@ -168,6 +168,8 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
     if no_cause:
         return "Compute more switches next (pad.points)." if answer["explained"] <= 0 else ""
     name, shrinks = rows[0]["name"], f"known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}"
+    if rows[0]["varies"] == "each":
+        return f"Control next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}: {shrinks}."
     if name == "rms_scatter":
         return f"Scan more places next: the roughness varies from place to place; {shrinks}."
     return f"Measure next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}: {shrinks}."
