@@ -15,8 +15,8 @@ FIRST_SURFACES = 100_000
 """Beyond those of the points of an answer."""
 
 
-def load_population(snakemake: Any) -> tuple[Population, float]:
-    """All switches of a job that has the pad, and the share that may fail.
+def load_population(snakemake: Any) -> tuple[Population, float, float]:
+    """All switches of a job that has the pad, the share that may fail, and the confidence that no more do.
 
     Raises
     ------
@@ -34,6 +34,5 @@ def load_population(snakemake: Any) -> tuple[Population, float]:
     solved = [(units, one.pad) for units, one in zip(points.design.probability, model.points, strict=True) if one.pad]
     known = points.design.probability[:0] if not solved else np.array([units for units, _ in solved])
     pads = [of for _, of in solved]
-    return Population(
-        points.table, points.device, points.cutoffs_nm, asked.release_V, press, (known, pads)
-    ), asked.probability
+    population = Population(points.table, points.device, points.cutoffs_nm, asked.release_V, press, (known, pads))
+    return population, asked.probability, asked.confidence

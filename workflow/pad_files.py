@@ -66,7 +66,7 @@ def write_solved(
     if design is not None:
         drawn = Dataset(design.probability, "1", "probability of what is drawn, by `drawn`", ("point", "drawn"))
         groups["design"] = {"probability": drawn}
-        attributes["design"] = {"drawn": list(design.names), "causes": list(design.causes)}
+        attributes["design"] = {"drawn": list(design.names), "varies": list(design.varies)}
     write_h5(path, groups, {}, provenance, attributes)
 
 

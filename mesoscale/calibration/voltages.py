@@ -50,7 +50,7 @@ def fit_voltages(model: PadModel, prior: InputTable) -> dict[str, Voltage]:
     """
     design, solved = model.design, [model.points[k] for k in model.solved]
     others = [k for k in design.varying if design.names[k] not in prior.names]
-    of_device = np.array([design.causes[k] == "device_each" for k in others], bool)
+    of_device = np.array([design.varies[k] == "each" for k in others], bool)
     inputs = np.array([[point.point.values[name] for name in prior.names] for point in solved])
     drawn = np.hstack([inputs.reshape(len(solved), -1), design.probability[model.solved][:, others]])
     ranges = np.vstack([prior.ranges(), np.tile([0.0, 1.0], (len(others), 1))])

@@ -29,7 +29,7 @@ def release_by_key(device: DeviceSettings, law: PadLaw) -> list[dict[str, Any]]:
         return []
     rows = []
     for key in OF_A_BEAM if device.bends else OF_A_PLATE:
-        value = _value(device, key, here["pull_in_V"])
+        value = value_of(device, key, here["pull_in_V"])
         steps = STRESSES_MPA if key == "residual_stress_MPa" else tuple(value * (factor - 1.0) for factor in FACTORS)
         below, above = [step for step in steps[::-1] if step < 0], [step for step in steps if step > 0]
         outwards = [*_outwards(device, law, key, [value + step for step in below])][::-1]
@@ -58,7 +58,7 @@ def _voltages(device: DeviceSettings, law: PadLaw) -> dict[str, Any]:
     }
 
 
-def _value(device: DeviceSettings, key: str, pull_in_V: float) -> float:
+def value_of(device: DeviceSettings, key: str, pull_in_V: float) -> float:
     """The device's own value; of what it leaves open, what follows from the rest."""
     follows = {"hold_voltage_V": pull_in_V, "electrode_um2": device.area_um2}
     value = getattr(device, key)

@@ -60,13 +60,14 @@ class Design:
 
     Attributes
     ----------
-    names, causes : of what is drawn, k of them; a cause is inputs, gap_cutoff, device_common or device_each.
+    names : of what is drawn, k of them.
+    varies : of each of these, whether it is common to all devices, or of each.
     probability : of each at each point, shape (points, k).
     varying : positions of those that do vary.
     """
 
     names: tuple[str, ...]
-    causes: tuple[str, ...]
+    varies: tuple[str, ...]
     probability: Array
     varying: NDArray[np.int_]
     points: tuple[Point, ...]
@@ -89,13 +90,18 @@ def plan_points(table: InputTable, contact: ContactSettings, settings: DeviceSet
 
     device, cutoffs = settings.varied, cutoff_range(table, contact)
     names = [*table.names, "gap_cutoff_nm", *device]
-    causes = ["inputs"] * len(table.names) + ["gap_cutoff"]
-    causes += [f"device_{getattr(settings.spread, name).varies}" for name in device]
+    varies = kinds(table, settings)
     units = qmc.LatinHypercube(len(names), rng=0).random(count)
     values = values_at(units, table, settings, cutoffs)
     points = [point_of(row, table.names, settings) for row in values]
     varying = np.flatnonzero(np.ptp(values, axis=0) > 0) if count else np.arange(0)
-    return Design(tuple(names), tuple(causes), units, varying, tuple(points))
+    return Design(tuple(names), varies, units, varying, tuple(points))
+
+
+def kinds(table: InputTable, settings: DeviceSettings) -> tuple[str, ...]:
+    """Of inputs, D0 and the `varied` properties of the device: common to all devices, or of each."""
+    of_device = [getattr(settings.spread, name).varies for name in settings.varied]
+    return (*(row.varies for row in table.rows), "common", *of_device)
 
 
 def values_at(units: Array, table: InputTable, settings: DeviceSettings, cutoffs_nm: tuple[float, float]) -> Array:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from mesoscale.device.by_key import release_by_key
 from mesoscale.device.electrode import release_or_nan_V
+from mesoscale.device.known import ENDS, fit_additive, known
 from mesoscale.device.numerics import SWITCH
 from mesoscale.device.plate import NM, plate_from_settings
 from mesoscale.device.points import PadModel, Solved
@@ -21,16 +22,14 @@ from mesoscale.pad.memory import attracting
 
 Array = NDArray[np.float64]
 
-ENDS = (0.05, 0.5, 0.95)
 QUANTILES = (0.05, 0.16, 0.25, 0.5, 0.75, 0.84, 0.95)
 WORKS = (1.0 / 3.0, 1.0, 3.0)
 """Both laws of attraction differ by a factor of 3 in their work at touch (docs/contact.md); no statistics decides."""
-CAUSES = ("inputs", "gap_cutoff", "device_common", "device_each")
 
 
 @dataclass(frozen=True)
 class Cause:
-    """A part of the variance of the release."""
+    """A part of the variance of the release: what is common to all devices, what is of each, or the number of cells."""
 
     cause: str
     share_of_variance: float
@@ -42,7 +41,7 @@ class Sensitivity:
     """What one uncertain number does to the release."""
 
     name: str
-    cause: str
+    varies: str
     share_of_variance: float
     interval_shrinks_by: float
 
@@ -61,7 +60,9 @@ class Answer:
     deepened : of the solved, those that press harder than their pads were computed.
     cells : of all pads together.
     cells_error_V : root mean square error of a point by its number of cells.
-    fit_error_V : leave-one-out error of the expansion behind `sensitivity`.
+    explained : share of the variance that the fit behind the causes predicts of switches left out one at a time.
+    noise : share that a number seems to explain by chance, taken off those of `sensitivity`.
+    known : bands of what is not known and of what differs between devices; see `mesoscale.device.known.known`.
     """
 
     release_V: dict[str, Any]
@@ -77,7 +78,9 @@ class Answer:
     deepened: int
     cells: int
     cells_error_V: float
-    fit_error_V: float
+    explained: float
+    noise: float
+    known: dict[str, Any]
 
 
 def answer(model: PadModel) -> Answer:
@@ -93,12 +96,12 @@ def answer(model: PadModel) -> Answer:
     release, stuck = model.states("release_V"), model.states("release_V") == 0.0
     errors = np.array([point.error_V for point in solved])
     error_V = float(np.sqrt(np.mean(errors[np.isfinite(errors)] ** 2))) if np.isfinite(errors).any() else 0.0
-    names, causes, varying = model.design.names, model.design.causes, model.design.varying
-    shares, fit_error_V = first_order(model.design.probability[model.solved][:, varying], release)
-    variance = float(release.var()) or 1.0
-    rows = [(names[k], causes[k], share) for k, share in zip(varying, shares.tolist(), strict=True)]
-    by_cause = {cause: float(sum(share for _, of, share in rows if of == cause)) for cause in CAUSES}
-    by_cause["cells"] = error_V**2 / variance
+    names, varies, varying = model.design.names, model.design.varies, model.design.varying
+    fit = fit_additive(model.design.probability[model.solved][:, varying], release)
+    cells = fit.deviation(release, np.where(np.isfinite(errors), errors, error_V))
+    rows = [(names[k], varies[k], share) for k, share in zip(varying, fit.shares().tolist(), strict=True)]
+    by_cause = {kind: float(sum(share for _, of, share in rows if of == kind)) for kind in ("common", "each")}
+    by_cause["cells"] = cells**2 / fit.variance
     return Answer(
         describe(release),
         _quantile_errors(release),
@@ -106,7 +109,7 @@ def answer(model: PadModel) -> Answer:
         describe(model.states("pull_in_V")),
         describe(model.states("capacitance_fF")),
         describe(model.states("landed_share")),
-        tuple(Cause(cause, share, float(np.sqrt(share * variance))) for cause, share in by_cause.items()),
+        tuple(Cause(cause, share, float(np.sqrt(share) * release.std())) for cause, share in by_cause.items()),
         tuple(
             sorted(
                 (Sensitivity(*row, 1.0 - float(np.sqrt(max(1.0 - row[2], 0.0)))) for row in rows),
@@ -118,7 +121,9 @@ def answer(model: PadModel) -> Answer:
         int(model.states("deepened").sum()),
         sum(point.pad.cells.count for point in solved if point.pad),
         error_V,
-        fit_error_V,
+        fit.explained,
+        fit.noise,
+        known(fit, np.array([varies[k] == "common" for k in varying], bool), cells),
     )
 
 
@@ -164,25 +169,6 @@ def _probability(stuck: int, solved: int, refused: int) -> dict[str, float | int
     total = solved + refused
     least, most = probability(stuck, total), probability(stuck + refused, total)
     return {**probability(stuck, solved), "low": least["low"], "high": most["high"]}
-
-
-def first_order(units: Array, values: Array) -> tuple[Array, float]:
-    """First-order shares of the variance of `values` by an expansion of second degree, and its leave-one-out error.
-
-    Legendre's polynomials of the probabilities `units` (points, k), without products (Sudret, Reliab. Eng. Syst. Saf.
-    93 (2008) 964). What noise alone would seem to explain is taken off.
-    """
-    x = 2.0 * units - 1.0
-    columns = np.hstack([np.ones((len(x), 1)), np.sqrt(3.0) * x, np.sqrt(5.0) * (1.5 * x**2 - 0.5)])
-    coefficients = np.linalg.lstsq(columns, values, rcond=None)[0]
-    left = values - columns @ coefficients
-    hat = np.einsum("pi,ip->p", columns, np.linalg.pinv(columns))
-    error = float(np.sqrt(np.mean((left / (1.0 - hat)) ** 2)))
-    linear, square = coefficients[1 : units.shape[1] + 1], coefficients[units.shape[1] + 1 :]
-    explained = linear**2 + square**2
-    total = float(explained.sum() + np.mean(left**2))
-    noise = float((left**2).sum()) / max(len(x) - columns.shape[1], 1) / len(x)
-    return np.maximum(explained - 2.0 * noise, 0.0) / (total or 1.0), error
 
 
 def switch_on_pad(model: PadModel, cell_area_nm2: float) -> dict[str, Any]:

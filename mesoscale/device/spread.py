@@ -26,7 +26,7 @@ def departures(settings: DeviceSettings) -> InputTable:
         row = getattr(settings.spread, name)
         given = stated_distribution(name, row, "device.spread")
         unit = "1" if row.relative else unit_of(name)
-        rows.append(UncertainInput(name, unit, given, row.varies, row.source))
+        rows.append(UncertainInput(name, unit, given, "literature", row.source, row.varies))
     return InputTable(tuple(rows), np.eye(len(rows)))
 
 

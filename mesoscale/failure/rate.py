@@ -20,9 +20,9 @@ from scipy.special import ndtr, ndtri
 from mesoscale.device.beam_switch import closed_beam
 from mesoscale.device.numerics import SWITCH
 from mesoscale.device.plate import plate_from_settings, solve_on_pad
-from mesoscale.device.points import Point, point_of, values_at
+from mesoscale.device.points import Point, kinds, point_of, values_at
 from mesoscale.device.pressing import held_V, pull_in_V
-from mesoscale.device.release import WORKS
+from mesoscale.device.release import WORKS, probability
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.memory import PadLaw, attracting, deepened
@@ -35,6 +35,8 @@ from mesoscale.uncertainty.rare_events import (
     Process,
     Sampled,
     correct,
+    quantiles_of,
+    rates_given,
     sample_event,
 )
 
@@ -179,6 +181,11 @@ class Population:
         return [*self.table.names, "gap_cutoff_nm", *self.settings.varied]
 
     @property
+    def common(self) -> NDArray[np.bool_]:
+        """Which of the numbers are one unknown value for all devices."""
+        return np.array([kind == "common" for kind in kinds(self.table, self.settings)], bool)
+
+    @property
     def spring(self) -> str:
         """The setting of the device that is its spring."""
         return "thickness_um" if self.settings.bends else "spring_N_per_m"
@@ -267,6 +274,12 @@ class ReserveResponse:
             repeats,
         )
 
+    def rates(self, times: float, hold_V: float, known: Known | None = None, seed: int = 0) -> Array:
+        """Shares of the devices that fail with `times` the attraction, by draws of what is common to all of them."""
+        return rates_given(
+            lambda z: self.moments(_with(z, known), hold_V), self.population.common, float(np.log(times)), seed
+        )
+
 
 def voltages(population: Population) -> Array:
     """Hold voltages of the curve: from pull-in, or that of the scene, to `FAILURE.span` times that of the scene."""
@@ -348,8 +361,10 @@ def furthest_allowed(values: Array, probability: Array, allowed: float) -> float
     return float(values[beyond - 1] + share * (values[beyond] - values[beyond - 1]))
 
 
-def least_rms_nm(response: ReserveResponse, times: float, hold_V: float, allowed: float) -> float | None:
-    """Least RMS height (nm), all else varying, with which no more switches fail than allowed.
+def least_rms_nm(
+    response: ReserveResponse, times: float, hold_V: float, allowed: float, confidence: float
+) -> float | None:
+    """Least RMS height (nm), all else varying, with which no more switches fail than allowed, by this confidence.
 
     None where even the largest of `FAILURE.rough` is too little, or where roughness is no input.
     """
@@ -361,7 +376,7 @@ def least_rms_nm(response: ReserveResponse, times: float, hold_V: float, allowed
     middle = np.zeros((rough.size, population.dimension))
     middle[:, place] = rough
     rms_nm = values_at(ndtr(middle), population.table, population.settings, population.cutoffs_nm)[:, place]
-    failing = [response.sample(times, hold_V, 0, (place, z)).probability for z in rough.tolist()]
+    failing = [np.quantile(response.rates(times, hold_V, (place, z)), confidence) for z in rough.tolist()]
     return furthest_allowed(rms_nm, np.array(failing), allowed)
 
 
@@ -410,37 +425,50 @@ def least_spring(
 
 
 def failure_rate(
-    population: Population, allowed: float, tell: Callable[[float, str], None]
+    population: Population, allowed: float, confidence: float, tell: Callable[[float, str], None]
 ) -> tuple[dict[str, Any], list[dict[str, float]]]:
     """Content of device/failure.json and rows of device/failure.csv.
 
     Parameters
     ----------
     allowed : share of the switches that may fail.
+    confidence : with which no more fail, by what is common to all devices and not known.
 
     Raises
     ------
     InputError : no switch of the population can be solved, or none lets go above the asked voltage.
     """
     hold, response = population.hold_V, learn(population, tell)
+    given = {(volts, times): response.rates(times, volts) for volts in voltages(population).tolist() for times in WORKS}
     rows = [
-        {"hold_V": volts, "attraction": times, "failing": response.sample(times, volts, 0).probability}
-        for volts in voltages(population).tolist()
-        for times in WORKS
+        {
+            "hold_V": volts,
+            "attraction": times,
+            "failing": response.sample(times, volts, 0).probability,
+            **{
+                f"failing_{name}": float(np.quantile(rates, q))
+                for name, q in (("q05", 0.05), ("q50", 0.5), ("q95", 0.95))
+            },
+            "failing_sure": float(np.quantile(rates, confidence)),
+        }
+        for (volts, times), rates in given.items()
     ]
     laws = []
     likely = response.sample(just_allowed(response, hold, allowed), hold, 0)
     for number, times in enumerate(WORKS):
         tell(0.6 + 0.4 * number / len(WORKS), f"{times:.2g} times the attraction")
         curve = [row for row in rows if row["attraction"] == times]
-        volts, share = (np.array([row[key] for row in curve]) for key in ("hold_V", "failing"))
+        volts, share = (np.array([row[key] for row in curve]) for key in ("hold_V", "failing_sure"))
+        rates = response.rates(times, hold)
         allowed_V = furthest_allowed(volts, share, allowed)
         laws.append(
             {
                 "attraction": times,
                 "failing": asdict(corrected(response, times, hold)),
+                "given_common": quantiles_of(rates),
+                "few_enough": probability(int((rates < allowed).sum()), rates.size),
                 "largest_hold_V": allowed_V,
-                "least_rms_nm": least_rms_nm(response, times, hold, allowed),
+                "least_rms_nm": least_rms_nm(response, times, hold, allowed, confidence),
                 "least_spring": least_spring(response, likely, times, hold, allowed),
                 "there": None if allowed_V is None else asdict(corrected(response, times, allowed_V)),
             }
@@ -450,6 +478,7 @@ def failure_rate(
     return {
         "release_V": population.release_V,
         "allowed": allowed,
+        "confidence": confidence,
         "hold_V": hold,
         "spring": population.spring,
         "laws": laws,

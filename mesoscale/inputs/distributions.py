@@ -72,6 +72,7 @@ class UncertainInput:
     ----------
     origin : literature, hardness, elastic or topography.
     source : reference or result file.
+    varies : common (one unknown value for all devices) or each (another for each of them).
     """
 
     name: str
@@ -79,6 +80,7 @@ class UncertainInput:
     distribution: Distribution
     origin: str
     source: str
+    varies: str = "common"
 
 
 @dataclass(frozen=True)

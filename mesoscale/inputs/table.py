@@ -56,10 +56,10 @@ def collect(
                     if partner is not None and partner.origin == "calibration":
                         pairs.pop((other, name), None)
                         pairs[name, other] = float(rank)
-                elif partner is not None:
+                elif partner is not None and partner.varies == row.varies:
                     pairs.setdefault((name, other), float(rank))
         _check_range(name, given, where)
-        rows.append(UncertainInput(name, BY_NAME[name].unit, given, row.origin, source))
+        rows.append(UncertainInput(name, BY_NAME[name].unit, given, row.origin, source, row.varies))
     names = [row.name for row in rows]
     return InputTable(tuple(rows), correlation_matrix(names, pairs))
 
@@ -274,6 +274,7 @@ def to_rows(table: InputTable) -> list[dict[str, Any]]:
                 **finite,
                 "correlation": json.dumps(partners) if partners else "",
                 "origin": row.origin,
+                "varies": row.varies,
                 "file": row.source,
             }
         )
@@ -294,6 +295,7 @@ def from_rows(rows: Iterable[Mapping[str, str]]) -> InputTable:
                 Distribution(kind, **numbers, values=values),
                 row["origin"],
                 row["file"],
+                row["varies"],
             )
         )
         for other, rank in json.loads(row.get("correlation") or "{}").items():

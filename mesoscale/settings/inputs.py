@@ -29,6 +29,9 @@ class DistributionRow(Settings):
         description=f"its numbers, in the input's unit: {FORMS} (one sample a row, in a column named like the input)",
     )
     source: str = key("", "where the values come from, shown in the report", max_length=500)
+    varies: Literal["common", "each"] = key(
+        "common", "one unknown value for all devices (common), or another for each of them"
+    )
 
     @field_validator("values", mode="before")
     @classmethod
@@ -61,6 +64,9 @@ class DistributionRow(Settings):
             raise ValueError(f"{kind} with deviation {values[1]:g}: it must be >= 0")
         if kind == "truncated_normal" and not values[2] < values[3]:
             raise ValueError(f"truncation {values[2]:g} .. {values[3]:g}: low must lie below high")
+        flat = kind == "fixed" or (kind == "uniform" and values[0] == values[1]) or ("normal" in kind and not values[1])
+        if flat and self.varies == "each" and "varies" in self.model_fields_set:
+            raise ValueError("varies: each, but its values have no spread; give a distribution, or leave varies out")
 
     @property
     def reaches(self) -> float | None:
@@ -82,10 +88,15 @@ class InputRow(DistributionRow):
     @model_validator(mode="after")
     def _complete(self) -> Self:
         if self.values is None and self.origin != "literature":
-            return self
+            return self._check_calibrated()
         if self.origin not in ("literature", "calibration"):
             raise ValueError(f"origin {self.origin} takes no values; that stage gives them")
         self._check_values()
+        return self._check_calibrated()
+
+    def _check_calibrated(self) -> Self:
+        if self.origin == "calibration" and self.varies == "each":
+            raise ValueError("origin calibration narrows one unknown value; varies: each needs another origin")
         return self
 
 
@@ -177,6 +188,10 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
                     raise ValueError(f"correlations: unknown input {name}; accepted: {', '.join(names)}")
             if pair.first == pair.second:
                 raise ValueError(f"correlations: {pair.first} with itself; name two inputs")
+            if len({self.rows()[name].varies for name in (pair.first, pair.second)}) > 1:
+                raise ValueError(
+                    f"correlations: of {pair.first} and {pair.second} one is common and one varies with each device"
+                )
         for name, row in self.rows().items():
             stage = BY_NAME[name].stage
             accepted = dict.fromkeys(("literature", stage, "calibration"))

@@ -13,7 +13,7 @@ the scatter between them counts. Runs of the model at points from h give the sec
 good.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,6 +30,8 @@ SAMPLES, REPEATS = 2000, 8
 CONFIDENCE = 0.95
 LEAST = 1e-10
 """Smallest probability that is looked for."""
+FURTHEST = 6.5
+"""Standard deviations of the likeliest event, beyond which it is rarer than `LEAST`."""
 
 
 class Process:
@@ -169,6 +171,58 @@ def _simulate(moments: Moments, dimension: int, threshold: float, seed: int, sam
     last = subset.getStepsNumber() - 1
     points = np.array(subset.getInputSample(last, ot.SubsetSampling.EVENT1)).reshape(-1, dimension + 1)[:, :-1]
     return float(subset.getResult().getProbabilityEstimate()), points
+
+
+def rates_given(
+    moments: Moments, common: NDArray[np.bool_], threshold: float, seed: int, draws: int = 400, inner: int = 100
+) -> Array:
+    """Probability of the event by what is common to all devices, for so many draws of it, shape (draws,).
+
+    The error of the response is one unknown for all devices too: each draw has its own, mean + deviation x (a standard
+    normal number). The numbers of each device are drawn about the likeliest event, which planes through their reserves
+    find, and count with their likelihood (importance sampling; Rackwitz and Fiessler, Comput. Struct. 9 (1978) 489).
+
+    Parameters
+    ----------
+    common : which of the numbers z are, shape (n,); if all are, rates are 0 or 1.
+    inner : draws of what differs between devices.
+    """
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 0x2100]))
+    shared, error = rng.normal(size=(draws, 1, common.size)), rng.normal(size=(draws, 1))
+
+    def reserve(x: Array) -> Array:
+        z = np.tile(shared, (1, x.shape[1], 1))
+        z[..., ~common] = x
+        mean, deviation = (part.reshape(x.shape[:2]) for part in moments(z.reshape(-1, common.size)))
+        return mean + deviation * error - threshold
+
+    if common.all():
+        return (reserve(np.empty((draws, 1, 0)))[:, 0] <= 0.0).astype(float)
+    likeliest = np.zeros((draws, 1, int((~common).sum())))
+    for _ in range(3):
+        x = rng.normal(size=(draws, inner, likeliest.shape[2]))
+        plane = np.linalg.pinv(np.concatenate([np.ones((draws, inner, 1)), x], axis=2))
+        level, *slope = np.moveaxis((plane @ reserve(likeliest + x)[..., None])[..., 0], 1, 0)
+        slope = np.stack(slope, axis=-1)[:, None]
+        steepness = np.maximum(np.linalg.norm(slope, axis=-1), 1e-9)
+        distance = (level[:, None] - (slope * likeliest).sum(axis=-1)) / steepness  # of the plane from the middle
+        likeliest = -(np.clip(distance, 0.0, FURTHEST) / steepness)[..., None] * slope
+    x = likeliest + rng.normal(size=(draws, 4 * inner, likeliest.shape[2]))
+    weight = np.exp(0.5 * (likeliest**2).sum(axis=-1) - (x * likeliest).sum(axis=-1))
+    return np.minimum((weight * (reserve(x) <= 0.0)).mean(axis=1), 1.0)
+
+
+def quantiles_of(rates: Array, probabilities: Sequence[float] = (0.05, 0.5, 0.95)) -> dict[str, dict[str, float]]:
+    """Quantiles of rates, each between the order statistics that hold it with 95 %."""
+    spread = 1.96 * np.sqrt([q * (1.0 - q) / rates.size for q in probabilities])
+    return {
+        f"{q:g}": dict(
+            zip(
+                ("value", "low", "high"), np.quantile(rates, np.clip([q, q - e, q + e], 0.0, 1.0)).tolist(), strict=True
+            )
+        )
+        for q, e in zip(probabilities, spread.tolist(), strict=True)
+    }
 
 
 @dataclass(frozen=True)

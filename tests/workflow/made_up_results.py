@@ -60,7 +60,15 @@ def _inputs(root: Path) -> None:
     _write(
         root / "inputs.csv",
         [
-            {"parameter": name, "unit": unit, "distribution": kind, "a": a, "b": b, "origin": origin}
+            {
+                "parameter": name,
+                "unit": unit,
+                "distribution": kind,
+                "a": a,
+                "b": b,
+                "origin": origin,
+                "varies": "common",
+            }
             for name, (unit, kind, a, b, origin) in INPUTS.items()
         ],
     )
@@ -214,7 +222,9 @@ def _law_band(root: Path) -> None:
 
 
 def _pad(root: Path) -> None:
+    from asperity.foreign_yaml import load_mapping
     from evidence.pad.closed_form import ClosedForm
+    from mesoscale.device.budget import budget, effects_of
     from mesoscale.device.electrode import solve_deepened
     from mesoscale.device.points import Design, Pad, PadModel, Point, Solved
     from mesoscale.device.release import switch_on_pad
@@ -222,6 +232,7 @@ def _pad(root: Path) -> None:
     from mesoscale.pad.curves import PadCells, curve_rows
     from mesoscale.pad.memory import Flats
     from mesoscale.settings import DeviceSettings
+    from workflow.scene import ROOT
 
     area, flats = 1e6, Flats(0.215, 0.165)
     separation = np.concatenate([np.geomspace(200, 50, 8)[:-1], np.arange(50, 19.9, -0.25)])
@@ -240,7 +251,10 @@ def _pad(root: Path) -> None:
     states = solve_deepened(DeviceSettings(), pad.law)
     central = Solved(Point({}, 0.165, DeviceSettings()), pad, states, (states["release_V"], states["release_V"]))
     model = PadModel(central, Design((), (), np.empty((0, 0)), np.arange(0), ()), ())
-    write_json(root / "device/pad_switch.json", switch_on_pad(model, area), PROVENANCE)
+    switch = switch_on_pad(model, area)
+    write_json(root / "device/pad_switch.json", switch, PROVENANCE)
+    shipped = load_mapping(ROOT / "config" / "effects.yaml", "table of effects")
+    _write(root / "device/budget.csv", budget(effects_of(shipped), switch, central))
 
 
 def _hardness(root: Path) -> None:
@@ -434,7 +448,7 @@ def _studies(root: Path) -> None:
 def _failure(root: Path) -> None:
     failing = {"probability": 3e-5, "low": 2e-5, "high": 5e-5, "variation": 0.2, "by_response": 4e-5, "runs": 128}
     rows = [
-        {"hold_V": volts, "attraction": times, "failing": 1e-6 * times * volts}
+        {"hold_V": volts, "attraction": times, "failing": 1e-6 * times * volts, "failing_q05": 0.0, "failing_q95": 1e-3}
         for volts in (60.0, 80.0, 100.0)
         for times in (1 / 3, 1.0, 3.0)
     ]
@@ -442,6 +456,8 @@ def _failure(root: Path) -> None:
         {
             "attraction": times,
             "failing": failing,
+            "few_enough": {"value": 0.7, "low": 0.6, "high": 0.8},
+            "given_common": {q: {"value": v} for q, v in (("0.05", 0.0), ("0.5", 1e-8), ("0.95", 3e-4))},
             "largest_hold_V": largest,
             "least_rms_nm": 7.0,
             "least_spring": None if largest is None else 3.9,
@@ -449,7 +465,7 @@ def _failure(root: Path) -> None:
         }
         for times, largest in ((1 / 3, 100.0), (1.0, 71.0), (3.0, None))
     ]
-    rate = {"release_V": 0.0, "allowed": 1e-6, "hold_V": 70.0, "laws": laws, "switches": 160}
+    rate = {"release_V": 0.0, "allowed": 1e-6, "confidence": 0.9, "hold_V": 70.0, "laws": laws, "switches": 160}
     rate |= {"spring": "thickness_um"}
     control = [{"name": "rms", "failing_if_known": 1e-7}, {"name": "hurst", "failing_if_known": 3e-5}]
     write_json(root / "device/failure.json", rate | {"control_attraction": 1.0, "control": control}, PROVENANCE)

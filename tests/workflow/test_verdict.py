@@ -21,10 +21,10 @@ def _probability(value):
     return {"value": value, "low": max(value - 0.05, 0), "high": min(value + 0.05, 1), "samples": 96}
 
 
-def _pad(stuck=0.02, cells=0.1, error=0.5, **more):
+def _pad(stuck=0.02, cells=0.1, explained=0.9, **more):
     """As device/pad_switch.json with an answer for the inputs, D0 and geometry; the release's variance is 4 V²."""
-    causes = {"inputs": 0.3, "gap_cutoff": 0.1, "geometry": 0.5, "cells": cells}
-    rows = [("bow_nm", 0.5), ("rms", 0.25), ("gap_cutoff_nm", 0.1)]
+    causes = {"common": 0.4, "each": 0.5, "cells": cells}
+    rows = [("bow_nm", "each", 0.5), ("rms", "common", 0.25), ("gap_cutoff_nm", "common", 0.1)]
     return {
         "electrode": "bending",
         "central": {"release_V": 7.4},
@@ -37,9 +37,10 @@ def _pad(stuck=0.02, cells=0.1, error=0.5, **more):
                 for cause, share in causes.items()
             ],
             "sensitivity": [
-                {"name": name, "share_of_variance": share, "interval_shrinks_by": share / 2} for name, share in rows
+                {"name": name, "varies": varies, "share_of_variance": share, "interval_shrinks_by": share / 2}
+                for name, varies, share in rows
             ],
-            **{"points": 64, "fit_error_V": error, "cells_error_V": 2.0 * cells**0.5},
+            **{"points": 64, "explained": explained, "cells_error_V": 2.0 * cells**0.5},
         },
         "answer_status": "ok",
         **more,
@@ -58,7 +59,7 @@ def said(pad, gates=SOUND, **about):
 
 def test_verdict_says_outcome_and_next_step():
     assert said(_pad()).sentence == (
-        "The switch lets go at 6.60 V (5\u00a0to\u00a095\u00a0%: 3.10 V to 9.40 V); 2% stick. Measure next the bow of "
+        "The switch lets go at 6.60 V (5\u00a0to\u00a095\u00a0%: 3.10 V to 9.40 V); 2% stick. Control next the bow of "
         "the electrode at rest: known exactly, it shrinks the interval by 25%."
     )
     assert said(_pad()).causes == (("bow", 0.5), ("RMS roughness", 0.25), ("D₀", 0.1), (CELLS, 0.1))
@@ -98,7 +99,7 @@ def test_a_coupled_switch_that_sticks_does_so_by_an_upper_bound():
 
 def test_what_varies_is_named_in_words():
     """ "Measure next s_RMS better" told nobody to scan more places."""
-    rows = [{"name": "rms_scatter", "share_of_variance": 0.5, "interval_shrinks_by": 0.3}]
+    rows = [{"name": "rms_scatter", "varies": "common", "share_of_variance": 0.5, "interval_shrinks_by": 0.3}]
     pad = _pad()
     assert said({**pad, "answer": {**pad["answer"], "sensitivity": rows}}).next_step.startswith("Scan more places next")
     rows[0]["name"] = "h_macro"
@@ -112,11 +113,11 @@ def test_few_cells_are_named_before_any_measurement():
 
 
 def test_no_cause_is_named_where_the_fit_behind_it_explains_little():
-    doubted = said(_pad(error=1.6))  # 1 - 1.6²/(4 - 0.4) = 0.29
+    doubted = said(_pad(explained=0.29))
     assert doubted.causes == ()
     assert "explains only 29%" in doubted.no_cause
     assert doubted.next_step == ""
-    nothing = said(_pad(error=2.5))  # 1 - 2.5²/(4 - 0.4) < 0
+    nothing = said(_pad(explained=-0.7))
     assert "64 computed switches are too few to tell" in nothing.no_cause
     assert nothing.next_step == "Compute more switches next (pad.points)."
 

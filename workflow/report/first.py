@@ -7,9 +7,11 @@ from asperity.foreign_yaml import load_mapping
 from mesoscale.settings import DeviceSettings
 from workflow.report.available import Results
 from workflow.report.numbers import show
-from workflow.report.verdict import Verdict, does, verdict, volts
+from workflow.report.verdict import Verdict, does, in_words, verdict, volts
 
 MOST_CAUSES = 3
+KINDS = {"common": "To measure: one unknown value", "each": "To control: differs from device to device"}
+BANDS = {"unknown": "not known: the typical device", "between": "from device to device"}
 OTHER_LAW = {"clamped": "a third of", "offset": "three times"}
 LEFT, RIGHT = 70.0, 410.0
 """Ends of the bar's axis in its picture."""
@@ -22,7 +24,8 @@ class First:
     said: Verdict
     device: str
     bar: str
-    causes: list[tuple[str, int]]
+    causes: list[tuple[str, list[tuple[str, int]]]]
+    known: str
     other_law: str
 
 
@@ -39,12 +42,45 @@ def first_screen(results: Results, gates: Any) -> First | None:
             f"The law of attraction is a choice that nothing here decides. At central inputs the switch {by_this} by "
             f"this law; by the other one, with {work} the work of adhesion, it {by_other}."
         )
-    causes = [(name, round(100 * share)) for name, share in said.causes[:MOST_CAUSES]]
-    return First(said, _device(results), release_bar(said), causes, other)
+    answer = results.json("device/pad_switch.json").get("answer") or {}
+    told = bool(said.causes)
+    causes = [(head, _largest(answer, kind)) for kind, head in KINDS.items()] if told else []
+    bands = {kind: answer["known"][f"{kind}_V"] for kind in BANDS} if told else {}
+    return First(said, _device(results), release_bar(said, bands), causes, _known(answer) if told else "", other)
 
 
-def release_bar(said: Verdict) -> str:
-    """The release on an axis of volts: 5 to 95 % as a bar, the zone of sticking at its left end."""
+def _largest(answer: dict[str, Any], kind: str) -> list[tuple[str, int]]:
+    """What makes the most of the variance, of one kind; shares in percent."""
+    rows = [row for row in answer["sensitivity"] if row["varies"] == kind and row["share_of_variance"] > 0]
+    return [(in_words(row["name"]), round(100 * row["share_of_variance"])) for row in rows[:MOST_CAUSES]]
+
+
+def _known(answer: dict[str, Any]) -> str:
+    """What is not known, and what differs between devices, in words."""
+    known = answer["known"]
+    typical, device = ([show(known[f"{kind}_V"][q]["value"], 2) for q in ("0.05", "0.95")] for kind in BANDS)
+    low, high = (known["stuck_share"][q] for q in ("0.05", "0.95"))
+    return (
+        f"Not known: where the typical device lets go, {typical[0]} to {typical[1]} V. From device to device: "
+        f"{device[0]} to {device[1]} V, all else known. Of the devices of one batch {_rate(low['value'], answer)} to "
+        f"{_rate(high['value'], answer)} stick, with 90 % of the belief; the upper end is known to "
+        f"{_rate(high['low'], answer)} to {_rate(high['high'], answer)}."
+    )
+
+
+def _rate(share: float, answer: dict[str, Any]) -> str:
+    """A share of devices; so many switches know none below one in their number."""
+    least = 1.0 / answer["points"]
+    return f"less than {least:.1%}" if share <= 1.001 * least else f"{share:.0%}" if share > 0.095 else f"{share:.1%}"
+
+
+def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
+    """The release on an axis of volts: 5 to 95 % as a bar, the zone of sticking at its left end.
+
+    Parameters
+    ----------
+    bands : 5 to 95 % of what is not known, and of what differs between devices.
+    """
     if said.release_V is None:
         return ""
     others = said.other_law_V or ()
@@ -58,12 +94,17 @@ def release_bar(said: Verdict) -> str:
     ticks = [k * step for k in range(int(top / step) + 1)]
     share = "" if said.stuck is None else f" {said.stuck[1]:.0%}"
     parts = [
-        f'<rect class="zone" x="0" y="8" width="{LEFT - 8:g}" height="54" rx="4"/>',
+        f'<rect class="zone" x="0" y="8" width="{LEFT - 8:g}" height="70" rx="4"/>',
         f'<text x="{LEFT / 2 - 4:g}" y="32" class="mid">sticks</text>',
         f'<text x="{LEFT / 2 - 4:g}" y="50" class="mid strong">{share}</text>',
-        f'<path class="axis" d="M{LEFT:g} 62H{RIGHT:g}"/>',
-        *(f'<path class="axis" d="M{x(v)} 62v5"/><text x="{x(v)}" y="82" class="mid">{v:g}</text>' for v in ticks),
-        f'<text x="{(LEFT + RIGHT) / 2:g}" y="98" class="mid">release voltage (V)</text>',
+        f'<path class="axis" d="M{LEFT:g} 78H{RIGHT:g}"/>',
+        *(f'<path class="axis" d="M{x(v)} 78v5"/><text x="{x(v)}" y="98" class="mid">{v:g}</text>' for v in ticks),
+        f'<text x="{(LEFT + RIGHT) / 2:g}" y="114" class="mid">release voltage (V)</text>',
+        *(
+            f'<path class="{kind}" d="M{x(band["0.05"]["value"])} {y}H{x(band["0.95"]["value"])}">'
+            f"<title>{BANDS[kind]}</title></path>"
+            for y, (kind, band) in zip((54, 66), (bands or {}).items(), strict=False)
+        ),
     ]
     if len(said.release_V) == 3 and said.release_V[2] > 0:
         low, high = x(said.release_V[0]), x(said.release_V[2])
@@ -76,7 +117,7 @@ def release_bar(said: Verdict) -> str:
     if others and others[1] > 0:
         parts.append(f'<circle class="other" cx="{x(others[1])}" cy="36" r="5"><title>other law</title></circle>')
     label = f"Release voltage: {', '.join(volts(value) for value in said.release_V)}"
-    return f'<svg class="bar" viewBox="0 0 420 102" role="img" aria-label="{label}">{"".join(parts)}</svg>'
+    return f'<svg class="bar" viewBox="0 0 420 118" role="img" aria-label="{label}">{"".join(parts)}</svg>'
 
 
 def _device(results: Results) -> str:

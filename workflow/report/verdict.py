@@ -140,27 +140,13 @@ def causes_of(answer: dict[str, Any]) -> tuple[tuple[tuple[str, float], ...], st
     rows = [(name, share) for name, share in [*rows, (CELLS, cells["share_of_variance"])] if share > 0]
     if not rows:
         return (), f"all {answer['points']} computed combinations of what is uncertain do the same"
-    explained = explained_share(answer)
+    explained = answer["explained"]
     if explained < EXPLAINED:
         many = f"the {answer['points']} computed switches"
         if explained <= 0:
             return (), f"{many} are too few to tell, as a fit to all but one does not predict that one"
         return (), f"a fit to {many} explains only {explained:.0%} of the variance of those that are left out"
     return tuple(sorted(rows, key=lambda row: -row[1])), ""
-
-
-def explained_share(answer: dict[str, Any]) -> float:
-    """Share of the release's variance over the design, less that of the cells, which the fit explains."""
-    variance = next(
-        (
-            row["deviation_V"] ** 2 / row["share_of_variance"]
-            for row in answer["causes"]
-            if row["share_of_variance"] > 0
-        ),
-        0.0,
-    )
-    variance -= answer["cells_error_V"] ** 2
-    return 1.0 - answer["fit_error_V"] ** 2 / variance if variance > 0 else float("-inf")
 
 
 def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: bool) -> str:
@@ -180,8 +166,10 @@ def _next(pad: dict[str, Any], failed: Sequence[Gate], no_cause: str, coupled: b
     if not rows or cells > rows[0]["share_of_variance"]:
         return "Compute more cells next (pad.point_cells)."
     if no_cause:
-        return "Compute more switches next (pad.points)." if explained_share(answer) <= 0 else ""
+        return "Compute more switches next (pad.points)." if answer["explained"] <= 0 else ""
     name, shrinks = rows[0]["name"], f"known exactly, it shrinks the interval by {rows[0]['interval_shrinks_by']:.0%}"
+    if rows[0]["varies"] == "each":
+        return f"Control next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}: {shrinks}."
     if name == "rms_scatter":
         return f"Scan more places next: the roughness varies from place to place; {shrinks}."
     return f"Measure next {NAMES[name][1] if name in NAMES else f'the {in_words(name)}'}: {shrinks}."

@@ -42,11 +42,13 @@ rule device:
         **SURFACE,
         inputs=f"{RESULTS}/inputs.csv",
         chunks=[f"{RESULTS}/pad/points/chunk_{chunk}.h5" for chunk in POINT_CHUNKS],
+        effects=str(CONFIG / "effects.yaml"),
     output:
         model=f"{RESULTS}/pad/model.h5",
         inputs=f"{RESULTS}/pad/inputs.csv",
         table=f"{RESULTS}/pad/curves.csv",
         switch=f"{RESULTS}/device/pad_switch.json",
+        budget=f"{RESULTS}/device/budget.csv",
         verilog=f"{RESULTS}/device/rough_pad.va",
         spice=f"{RESULTS}/device/rough_pad.sub",
     log:

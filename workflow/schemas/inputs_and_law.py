@@ -37,6 +37,7 @@ TABLES = (
             number("high", "`unit`", "upper end of the truncation", empty=True),
             text("correlation", "rank correlation with inputs above, as JSON", empty=True),
             text("origin", "literature, or the stage that computed it"),
+            text("varies", "common: one unknown value for all devices; each: another for each of them"),
             text("file", "result file or publication that it comes from"),
         ),
     ),

@@ -2,7 +2,7 @@
 
 from mesoscale.settings.device import SPREAD, unit_of
 from workflow.schemas.inputs_and_law import BRANCH, INPUT_VALUES
-from workflow.schemas.table import Table, integer, number, text
+from workflow.schemas.table import Table, boolean, integer, number, text
 
 TABLES = (
     Table(
@@ -19,12 +19,30 @@ TABLES = (
         ),
     ),
     Table(
+        ("device/budget.csv",),
+        "One effect on the release of the switch at central inputs.",
+        (
+            text("effect", "its name"),
+            number("volts", "V", "by how much it moves the release; empty: not known", empty=True),
+            text("about", "what the volts stand for"),
+            text("how", "computed here, by literature, a condition of the answer, or unknown"),
+            boolean("held", "whether the interval of the release holds it"),
+            text("settle", "what would settle it"),
+            text("source", "where the volts come from"),
+        ),
+    ),
+    Table(
         ("device/failure.csv",),
         "One hold voltage with one law of attraction.",
         (
             number("hold_V", "V", "hold voltage"),
             number("attraction", "1", "factor on the attraction"),
             number("failing", "1", "probability of a failure by the response"),
+            *(
+                number(f"failing_q{q}", "1", f"share that fails, given what is common: {int(q)} % of the belief")
+                for q in ("05", "50", "95")
+            ),
+            number("failing_sure", "1", "the same at failure.confidence"),
         ),
     ),
     Table(

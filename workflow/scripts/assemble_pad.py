@@ -1,12 +1,16 @@
 """Assemble the pad from its points, and say what the switch does over all of them.
 
-In: inputs.csv, pad/points/*.h5 (GPa against nm; V).
+In: inputs.csv, pad/points/*.h5 (GPa against nm; V), config/effects.yaml.
 Out: pad/model.h5, pad/inputs.csv (with the film's typical place, and how much places differ), pad/curves.csv (MPa
-against nm), device/pad_switch.json, device/rough_pad.va, device/rough_pad.sub.
+against nm), device/pad_switch.json, device/budget.csv (V), device/rough_pad.va, device/rough_pad.sub.
 """
 
+from pathlib import Path
+
+from asperity.foreign_yaml import load_mapping
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.verilog import verilog_pad
+from mesoscale.device.budget import budget, effects_of
 from mesoscale.device.release import switch_on_pad
 from mesoscale.inputs.table import to_rows
 from mesoscale.pad.curves import curve_rows
@@ -23,4 +27,7 @@ with job(snakemake) as run:
     write_csv(snakemake.output.table, curve_rows(pad.cells))
     write_text(snakemake.output.verilog, verilog_pad(pad.law, pad.cells.count))
     write_text(snakemake.output.spice, spice_pad(pad.law, pad.cells.count))
-    write_json(snakemake.output.switch, switch_on_pad(model, points.contact.length_nm**2), run.provenance)
+    switch = switch_on_pad(model, points.contact.length_nm**2)
+    write_json(snakemake.output.switch, switch, run.provenance)
+    effects = effects_of(load_mapping(Path(snakemake.input.effects), "table of effects"))
+    write_csv(snakemake.output.budget, budget(effects, switch, model.central))

@@ -40,7 +40,7 @@ def points_of(stage, progress):
         contact = contact_settings(snakemake.params.contact, snakemake)
         return law_accuracy.accuracy_points(direct, table, contact, settings)
     if stage == "failure":
-        return failure_accuracy.accuracy_points(*load_population(snakemake), progress)
+        return failure_accuracy.accuracy_points(*load_population(snakemake)[:2], progress)
     points, pad = points_of_job(snakemake)
     model = load_model([snakemake.input.model], points)
     return pad_accuracy.accuracy_points(model, points.table, points.contact, pad.point_cells, progress)

@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from mesoscale.uncertainty.rare_events import LEAST, Corrected, Process, correct, sample_event
+from mesoscale.uncertainty.rare_events import (
+    LEAST,
+    Corrected,
+    Process,
+    correct,
+    quantiles_of,
+    rates_given,
+    sample_event,
+)
 
 SURE = 1e-9
 DIMENSION = 6
@@ -78,3 +86,53 @@ def test_a_process_foretells_a_smooth_function_and_leaves_out_what_does_not_vary
     assert np.sqrt((error**2).mean()) < 0.01
     assert (np.abs(error) < 4 * deviation).all()
     assert (deviation < 0.05).all()
+
+
+SLOPES = np.array([0.6, -0.3, 0.5, 0.55])
+
+
+def _plane(distance, deviation=1e-9):
+    return lambda z: (distance + z @ SLOPES, np.full(len(z), deviation))
+
+
+def test_the_rate_by_what_is_common_is_that_of_a_plane():
+    """Given the first two numbers, the reserve is normal: brute force is a formula, over five decades."""
+    common = np.array([True, True, False, False])
+    rates = rates_given(_plane(2.0), common, 0.0, 3)
+    z = np.random.default_rng(1).normal(size=(200_000, 2))
+    truth = ndtr(-(2.0 + z @ SLOPES[:2]) / np.linalg.norm(SLOPES[2:]))
+    held = [
+        row["low"] * 0.9 <= np.quantile(truth, float(q)) <= row["high"] * 1.1 for q, row in quantiles_of(rates).items()
+    ]
+    assert all(held)
+    assert rates.mean() == pytest.approx(truth.mean(), rel=0.3)
+    for allowed in (1e-6, 1e-4, 1e-2):
+        assert (rates < allowed).mean() == pytest.approx((truth < allowed).mean(), abs=2.5 * 0.5 / np.sqrt(400))
+
+
+def test_quantiles_of_the_rate_hold_the_truth_in_18_of_20():
+    common = np.array([True, True, False, False])
+    z = np.random.default_rng(1).normal(size=(200_000, 2))
+    truth = np.quantile(ndtr(-(2.0 + z @ SLOPES[:2]) / np.linalg.norm(SLOPES[2:])), [0.05, 0.5, 0.95])
+    held = np.zeros(3, int)
+    for seed in range(20):
+        rows = quantiles_of(rates_given(_plane(2.0), common, 0.0, seed)).values()
+        held += [row["low"] <= value <= row["high"] for row, value in zip(rows, truth, strict=True)]
+    assert held.min() >= 18
+
+
+def test_all_common_fails_or_not_and_all_of_each_has_one_rate():
+    wholly = rates_given(_plane(1.0), np.ones(4, bool), 0.0, 0)
+    assert set(wholly) == {0.0, 1.0}
+    share = float(ndtr(-1.0 / np.linalg.norm(SLOPES)))
+    assert wholly.mean() == pytest.approx(share, abs=3.0 * np.sqrt(share / 400))
+    single = rates_given(_plane(1.0), np.zeros(4, bool), 0.0, 0)
+    np.testing.assert_allclose(single, share, rtol=0.4)  # 400 draws each
+    assert single.mean() == pytest.approx(share, rel=0.02)
+
+
+def test_the_error_of_the_response_is_common_too():
+    """A reserve of 1 +- 1 by an unknown that all devices share."""
+    rates = rates_given(_plane(1.0, 1.0), np.zeros(4, bool), 0.0, 0)
+    for q, shift in ((0.5, 0.0), (0.95, 1.645)):
+        assert np.quantile(rates, q) == pytest.approx(ndtr((shift - 1.0) / np.linalg.norm(SLOPES)), rel=0.15)

@@ -4,6 +4,7 @@ Every module offers `describe(results) -> Section | None`; None where the scene 
 """
 
 from workflow.report.stages import (
+    budget,
     calibration,
     circuit,
     contact,
@@ -22,6 +23,7 @@ from workflow.report.stages import (
 )
 
 PARTS = (
+    ("budget", "What it costs in volts", (budget,)),
     ("switch", "The switch", (device, pad, humidity, circuit, failure, resistance, history)),
     ("contact", "The contact", (contact, uncertainty, sensitivity)),
     ("from", "What goes in", (inputs, calibration, hardness, elastic, topography)),

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from mesoscale.uncertainty.rare_events import LEAST
 from workflow.report.available import Results
 from workflow.report.drawing import INK, SERIES, draw
 from workflow.report.numbers import cell, column, show, spread
@@ -20,10 +21,29 @@ def describe(results: Results) -> Iterator[Block]:
         f"A switch fails where it {event}. {show(rate['allowed'])} of all may. Statistics does not know the law of "
         "attraction, so each row has its own. Inputs, geometry and pads are drawn together."
     )
-    yield Figure(_curve(results), "Share that fails against hold voltage, by the response.")
+    yield Figure(
+        _curve(results),
+        "Share that fails against hold voltage, by the response: over all that varies, and from 5 to 95 % by what is "
+        "common to all devices and not known.",
+    )
+    yield table(
+        f"Share of the devices that fail at {volts(rate['hold_V'])}, by what is common to all of them and not known",
+        rate["laws"],
+        {
+            "attraction": lambda law: f"{show(law['attraction'], 2)} times",
+            f"P(share < {show(rate['allowed'])}) [95 %]": lambda law: spread(
+                law["few_enough"], "value", "low", "high", 2
+            ),
+            "90 % of the belief lies between": lambda law: (
+                f"{_share(law['given_common']['0.05'])} and {_share(law['given_common']['0.95'])}"
+            ),
+            "median": lambda law: _share(law["given_common"]["0.5"]),
+        },
+        front=True,
+    )
     spring, unit = ("thickness of the beam", "µm") if rate["spring"] == "thickness_um" else ("spring", "N/m")
     yield table(
-        "Failures; hold voltage, roughness and spring that are allowed",
+        f"Failures; hold voltage and roughness that are allowed with a confidence of {rate['confidence']:.0%}; spring",
         rate["laws"],
         {
             "attraction": lambda law: f"{show(law['attraction'], 2)} times",
@@ -44,6 +64,10 @@ def describe(results: Results) -> Iterator[Block]:
         yield table("What to control", rate["control"][:5], columns)
 
 
+def _share(quantile: dict[str, float]) -> str:
+    return "less than 10⁻¹⁰" if quantile["value"] < LEAST else show(quantile["value"], 2)
+
+
 def _or_none(value: float | None, unit: str, digits: int = 3) -> str:
     return "none" if value is None else f"{show(value, digits)} {unit}"
 
@@ -57,6 +81,8 @@ def _curve(results: Results) -> str:
             curve = [row for row in rows if row["attraction"] == times]
             seen = np.where(column(curve, "failing") > 0, column(curve, "failing"), np.nan)
             axis.plot(column(curve, "hold_V"), seen, "o-", color=color, label=f"{show(times, 2)} times the attraction")
+            low, high = (np.maximum(column(curve, f"failing_{q}"), LEAST) for q in ("q05", "q95"))
+            axis.fill_between(column(curve, "hold_V"), low, high, color=color, alpha=0.12, linewidth=0)
         axis.axhline(results.json("device/failure.json")["allowed"], linewidth=0.8, color=INK, label="allowed")
         axis.set(yscale="log", xlabel="hold voltage (V)", ylabel="share that fails")
         axis.legend(frameon=False)

@@ -25,6 +25,7 @@ def describe(results: Results) -> Iterator[Block]:
         "input": lambda row: in_words(row["parameter"]),
         "unit": lambda row: shown_unit(row["unit"]),
         "distribution": _distribution,
+        "varies": lambda row: {"common": "one unknown value", "each": "device to device"}[row["varies"]],
         "origin": "origin",
         "source": "file",
     }

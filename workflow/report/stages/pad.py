@@ -12,11 +12,13 @@ from workflow.report.page import Block, Doubt, Figure, Table, stage, table
 from workflow.report.verdict import causes_of, in_words
 
 CAUSES = {
-    "inputs": "inputs",
-    "gap_cutoff": "D₀",
-    "device_common": "properties that all devices share",
-    "device_each": "properties that differ from device to device",
+    "common": "what all devices have in common and is not known",
+    "each": "what differs from device to device",
     "cells": "the finite number of cells",
+}
+KINDS = {
+    "common": "What to measure better: one unknown value for all devices",
+    "each": "What to control better: it differs from device to device",
 }
 
 
@@ -70,15 +72,16 @@ def _answer(answer: dict[str, Any]) -> Iterator[Block]:
     yield Table("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows)
     if no_cause := causes_of(answer)[1]:
         yield Doubt(f"The shares of the variance name no cause: {no_cause}.")
-    yield table(
-        "What to measure better for the release",
-        answer["sensitivity"],
-        {
-            "uncertain": lambda row: in_words(row["name"]),
-            "share of the variance": lambda row: f"{row['share_of_variance']:.1%}",
-            "known exactly, the interval shrinks by": lambda row: f"{row['interval_shrinks_by']:.1%}",
-        },
-    )
+    for kind, caption in KINDS.items():
+        yield table(
+            caption,
+            [row for row in answer["sensitivity"] if row["varies"] == kind],
+            {
+                "uncertain": lambda row: in_words(row["name"]),
+                "share of the variance": lambda row: f"{row['share_of_variance']:.1%}",
+                "known exactly, the interval shrinks by": lambda row: f"{row['interval_shrinks_by']:.1%}",
+            },
+        )
 
 
 def pad_curves(results: Results) -> str:

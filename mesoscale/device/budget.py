@@ -1,0 +1,180 @@
+"""What an expert would name, and by how many volts each moves the release: the budget."""
+
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import model_validator
+from scipy.constants import elementary_charge
+
+from asperity.keys import key
+from mesoscale.device.by_key import OF_A_PLATE, value_of
+from mesoscale.device.electrode import solve_deepened
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.plate import NM, VACUUM_PERMITTIVITY
+from mesoscale.device.points import Solved
+from mesoscale.device.spread import departed
+from mesoscale.errors import InputError
+from mesoscale.settings import DeviceSettings
+from mesoscale.settings.base import Settings
+
+HERE = "this scene's points"
+SETTLE = {"common": "measure it", "each": "control it from device to device"}
+
+
+class Effect(Settings):
+    """An effect that the answer leaves out, or that is a condition of it (config/effects.yaml)."""
+
+    how: Literal["computed", "literature", "condition", "unknown"] = key(..., "how its volts are known")
+    about: str = key(..., "what the volts stand for")
+    held: bool = key(..., "whether the answer's interval holds it")
+    settle: str = key(..., "what would settle it")
+    source: str = key(..., "publication, or page of the documentation")
+    volts: float | None = key(None, "a bound from the source", "V")
+    share: float | None = key(None, "a bound from the source, as a share of the release", "[0, 1]")
+    squared_V2: float | None = key(None, "what is taken off the square of the voltage", "V^2")
+    charge_e_cm2: float | None = key(None, "charge at the surface of the dielectric", "1/cm^2")
+    changes: str = key("", "property of the device that it changes")
+    factor: float = key(1.0, "times its value")
+    step: float = key(0.0, "and so much more")
+    to: str = key("", "another choice in place of its value")
+
+    @model_validator(mode="after")
+    def _has_a_source(self) -> "Effect":
+        if not self.source.strip():
+            raise ValueError("a row without source; name the publication or page that its volts come from")
+        if self.changes and self.changes not in DeviceSettings.model_fields:
+            raise ValueError(f"changes = {self.changes}: no property of the device")
+        ways = [self.volts, self.share, self.squared_V2, self.charge_e_cm2, self.changes or None]
+        if sum(way is not None for way in ways) != (self.how != "unknown"):
+            raise ValueError("state one of volts, share, squared_V2, charge_e_cm2 and changes; none of what is unknown")
+        return self
+
+
+def effects_of(rows: Mapping[str, Any]) -> dict[str, Effect]:
+    """The effects of a data file by name.
+
+    Raises
+    ------
+    InputError : a row without source, or with none or several statements of its volts.
+    """
+    effects = {}
+    for name, row in rows.items():
+        try:
+            effects[name] = Effect(**row)
+        except (InputError, TypeError) as error:
+            raise InputError(f"effects: {name}: {error}") from None
+    return effects
+
+
+def budget(effects: Mapping[str, Effect], switch: Mapping[str, Any], central: Solved) -> list[dict[str, Any]]:
+    """Rows of device/budget.csv, the most volts first; without a release there is nothing to move, and no row.
+
+    Parameters
+    ----------
+    switch : content of device/pad_switch.json.
+    """
+    if central.pad is None or not central.states or central.states["release_V"] == 0.0:
+        return []
+    of_device = [*_of_device(central)]
+    rows = [*of_device, *_computed(switch, {row["effect"] for row in of_device})]
+    for name, effect in effects.items():
+        if effect.changes and not central.point.device.bends and effect.changes not in OF_A_PLATE:
+            continue  # a plate on a spring has no such property
+        volts, remark = _moved_V(effect, central)
+        stated = effect.model_dump(include={"how", "held", "settle", "source"})
+        rows.append({"effect": name, "volts": volts, "about": f"{effect.about}{remark}", **stated})
+    return sorted(rows, key=lambda row: -1.0 if row["volts"] is None else -row["volts"] - 1e3)
+
+
+def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator[dict[str, Any]]:
+    """What the answer varies beside properties of the device, and what its own points tell of its errors."""
+    here = {"how": "computed", "source": HERE}
+    by_law = [row["release_V"] for row in switch["by_attraction"] if row["release_V"] is not None]
+    if by_law:
+        yield {
+            "effect": "law of attraction",
+            "volts": max(by_law) - min(by_law),
+            "about": "a third of the work to three times" + "; it may stick" * (min(by_law) == 0.0),
+            "held": False,
+            "settle": "pull-off of the contact (target calibrate)",
+            **here,
+        }
+    if answer := switch["answer"]:
+        wide = 2.0 * 1.645 * answer["release_V"]["std"]
+        for row in answer["sensitivity"]:
+            if row["name"] in of_device:
+                continue
+            seen = row["share_of_variance"] > answer["noise"]
+            share = row["share_of_variance"] + answer["noise"] * (not seen)
+            yield {
+                "effect": row["name"],
+                "volts": wide * float(np.sqrt(share)),
+                "about": "5 to 95 %" if seen else "5 to 95 %; less, as so few switches do not show it",
+                "held": True,
+                "settle": SETTLE[row["varies"]],
+                **here,
+            }
+        yield {
+            "effect": "number of cells",
+            "volts": 2.0 * 1.645 * answer["cells_error_V"],
+            "about": "5 to 95 %, of a point",
+            "held": True,
+            "settle": "pad.point_cells",
+            **here,
+        }
+        yield {
+            "effect": "number of switches",
+            "volts": answer["quantile_error_V"]["0.5"],
+            "about": "standard error of the median",
+            "held": False,
+            "settle": "pad.points",
+            **here,
+        }
+
+
+def _of_device(central: Solved) -> Iterator[dict[str, Any]]:
+    """The properties of the device that vary, each from 5 to 95 % with all else at its median."""
+    for name, low, high in departed(central.point.device, 0.95):
+        volts, remark = _reach_V(central, low, high)
+        settle = SETTLE[getattr(central.point.device.spread, name).varies]
+        about = f"5 to 95 %, at central inputs{remark}"
+        yield {
+            **{"effect": name, "volts": volts, "about": about, "how": "computed"},
+            **{"held": True, "settle": settle, "source": f"device.spread.{name}; solved again"},
+        }
+
+
+def _moved_V(effect: Effect, central: Solved) -> tuple[float | None, str]:
+    """By how much an effect moves the release of the central switch, and a remark."""
+    device, release = central.point.device, central.states["release_V"]
+    if effect.changes:
+        return _reach_V(central, _changed(effect, central))
+    if effect.charge_e_cm2 is not None:
+        density = effect.charge_e_cm2 * elementary_charge * 1e4
+        return density * device.dielectric_nm * NM / (VACUUM_PERMITTIVITY * device.permittivity), ""
+    if effect.squared_V2 is not None:
+        left = release**2 - effect.squared_V2
+        return release - float(np.sqrt(max(left, 0.0))), "; it may stick" * (left <= 0.0)
+    return effect.volts if effect.share is None else effect.share * release, ""
+
+
+def _changed(effect: Effect, central: Solved) -> DeviceSettings:
+    device = central.point.device
+    if effect.to:
+        return device.model_copy(update={effect.changes: effect.to})
+    value = value_of(device, effect.changes, central.states["pull_in_V"]) * effect.factor + effect.step
+    return device.model_copy(update={effect.changes: value})
+
+
+def _reach_V(central: Solved, *devices: DeviceSettings) -> tuple[float | None, str]:
+    """From the least to the largest release of devices and the stated one on the central pad, and a remark."""
+    law = central.pressed.law
+    try:
+        releases = [
+            solve_deepened(device, law, SWITCH.coarse_elements)["release_V"]
+            for device in (central.point.device, *devices)
+        ]
+    except InputError as error:
+        return None, f"; no answer: {str(error).partition(';')[0]}"
+    return max(releases) - min(releases), "; it may stick" * (min(releases) == 0.0)

@@ -1,0 +1,86 @@
+"""The budget: what the central switch says where one property is another, formulas, and rows that are refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from asperity.foreign_yaml import load_mapping
+from mesoscale.device.budget import budget, effects_of
+from mesoscale.device.electrode import solve_deepened
+from mesoscale.device.numerics import SWITCH
+from mesoscale.device.points import Point, Solved
+from mesoscale.errors import InputError
+from mesoscale.settings import DeviceSettings
+from tests.mesoscale.device.test_beam import made_up_law
+
+SHIPPED = load_mapping(Path(__file__).parents[3] / "config" / "effects.yaml", "table of effects")
+ROW = {"how": "condition", "about": "10 °C more", "held": False, "settle": "heat it", "source": "a paper", "volts": 1.0}
+SWITCH_CONTENT = {"by_attraction": [{"times": 1.0, "release_V": 7.0}, {"times": 3.0, "release_V": 0.0}], "answer": None}
+
+
+class KnownPad:
+    law = made_up_law(40.0)
+
+
+def central(device):
+    states = solve_deepened(device, KnownPad.law, SWITCH.coarse_elements)
+    return Solved(Point({}, 0.2, device), KnownPad, states, (0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("change", "line"),
+    [
+        ({"source": " "}, "humid air: .*a row without source"),
+        ({"volts": None}, "humid air: .*state one of volts"),
+        ({"share": 0.5}, "humid air: .*state one of volts"),
+        ({"changes": "colour", "volts": None}, "humid air: .*no property of the device"),
+        ({"how": "guessed"}, "humid air: .*how = 'guessed'"),
+    ],
+)
+def test_rows_without_source_or_with_no_or_two_statements_are_one_line(change, line):
+    with pytest.raises(InputError, match=line) as refused:
+        effects_of({"humid air": ROW | change})
+    assert "\n" not in str(refused.value)
+
+
+def test_what_an_expert_names_stands_in_the_shipped_table():
+    names = " ".join(effects_of(SHIPPED))
+    for word in (
+        "charge", "humid", "temperature", "stress", "hold voltage", "power", "ramps", "anchors", "side", "creep",
+        "wear", "contamination", "particles", "curl", "roughness of the electrode", "hardness", "grid", "deforms",
+    ):  # fmt: skip
+        assert word in names
+
+
+def test_every_number_is_that_of_its_own_calculation():
+    device = DeviceSettings(hold_voltage_V=80.0)
+    switch = central(device)
+    rows = {row["effect"]: row for row in budget(effects_of(SHIPPED), SWITCH_CONTENT, switch)}
+    release = switch.states["release_V"]
+    hot = central(device.model_copy(update={"temperature_C": 30.0})).states["release_V"]
+    assert rows["temperature"]["volts"] == pytest.approx(abs(hot - release))
+    assert rows["charge in the dielectric, even"]["volts"] == pytest.approx(0.458, abs=0.001)  # 10¹¹ e/cm², 200 nm, 7.9
+    power = rows["power of the signal"]["volts"]
+    assert (release - power) ** 2 == pytest.approx(release**2 - 5.0)
+    assert rows["law of attraction"]["volts"] == 7.0
+    assert "may stick" in rows["law of attraction"]["about"]
+    tilt = rows["tilt_nm"]  # alike to both sides, and still not nothing
+    assert tilt["volts"] > 0.0
+    assert tilt["held"]
+    volts = [row["volts"] for row in rows.values()]
+    known = [value for value in volts if value is not None]
+    assert known == sorted(known, reverse=True)
+    assert volts[len(known) :] == [None] * (len(volts) - len(known))
+    assert np.isfinite(known).all()
+
+
+def test_a_plate_has_no_stress_and_a_switch_that_sticks_has_no_budget():
+    plate = DeviceSettings(spring_N_per_m=1e3, hold_voltage_V=160.0)
+    names = {row["effect"] for row in budget(effects_of(SHIPPED), SWITCH_CONTENT, central(plate))}
+    assert "hold voltage" in names
+    assert not {"temperature", "stress by the package", "curl of the beam"} & names
+    stuck = central(plate)
+    assert (
+        budget({}, SWITCH_CONTENT, Solved(stuck.point, KnownPad, stuck.states | {"release_V": 0.0}, (0.0, 0.0))) == []
+    )
