@@ -127,11 +127,11 @@ def known(
     unknown = coefficients[:, of_common] @ columns[:, of_common].T
     between = coefficients[:, ~of_common] @ columns[:, ~of_common].T
     rest, noise = np.sqrt(max(fit.missed**2 - cells**2, 0.0)), rng.normal(size=draws)
-    each = between.std(axis=1)[:, None]
+    devices = between.std(axis=1)[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):  # where no device differs, all stick or none
         by_rest = [
-            ndtr(np.nan_to_num(-unknown / np.hypot(each, rest), nan=-np.inf)),
-            ndtr(np.nan_to_num(-(unknown + rest * noise) / each, nan=-np.inf)),
+            ndtr(np.nan_to_num(-unknown / np.hypot(devices, rest), nan=-np.inf)),
+            ndtr(np.nan_to_num(-(unknown + rest * noise) / devices, nan=-np.inf)),
         ]
     least = 1.0 / fit.values.size  # so many switches know no tail
     ends = [np.quantile(np.maximum(rates, least), ENDS, axis=1) for rates in by_rest]

@@ -43,10 +43,10 @@ def first_screen(results: Results, gates: Any) -> First | None:
             f"this law; by the other one, with {work} the work of adhesion, it {by_other}."
         )
     answer = results.json("device/pad_switch.json").get("answer") or {}
-    told = bool(said.causes)
-    causes = [(head, _largest(answer, kind)) for kind, head in KINDS.items()] if told else []
-    bands = {kind: answer["known"][f"{kind}_V"] for kind in BANDS} if told else {}
-    return First(said, _device(results), release_bar(said, bands), causes, _known(answer) if told else "", other)
+    named = bool(said.causes)
+    causes = [(head, _largest(answer, kind)) for kind, head in KINDS.items()] if named else []
+    bands = {kind: answer["known"][f"{kind}_V"] for kind in BANDS} if named else {}
+    return First(said, _device(results), release_bar(said, bands), causes, _known(answer) if named else "", other)
 
 
 def _largest(answer: dict[str, Any], kind: str) -> list[tuple[str, int]]:
