@@ -22,7 +22,7 @@ from mesoscale.device.numerics import SWITCH
 from mesoscale.device.plate import plate_from_settings, solve_on_pad
 from mesoscale.device.points import Point, kinds, point_of, values_at
 from mesoscale.device.pressing import held_V, pull_in_V
-from mesoscale.device.release import WORKS, probability
+from mesoscale.device.release import WORKS
 from mesoscale.errors import InputError, NotComputed
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.memory import PadLaw, attracting, deepened
@@ -445,10 +445,7 @@ def failure_rate(
             "hold_V": volts,
             "attraction": times,
             "failing": response.sample(times, volts, 0).probability,
-            **{
-                f"failing_{name}": float(np.quantile(rates, q))
-                for name, q in (("q05", 0.05), ("q50", 0.5), ("q95", 0.95))
-            },
+            "failing_q95": float(np.quantile(rates, 0.95)),
             "failing_sure": float(np.quantile(rates, confidence)),
         }
         for (volts, times), rates in given.items()
@@ -465,8 +462,8 @@ def failure_rate(
             {
                 "attraction": times,
                 "failing": asdict(corrected(response, times, hold)),
-                "given_common": quantiles_of(rates),
-                "few_enough": probability(int((rates < allowed).sum()), rates.size),
+                # lower quantiles miss brute force (evidence pad.two_loops), since the response is extrapolated there
+                "given_common": quantiles_of(rates, (0.95,)),
                 "largest_hold_V": allowed_V,
                 "least_rms_nm": least_rms_nm(response, times, hold, allowed, confidence),
                 "least_spring": least_spring(response, likely, times, hold, allowed),

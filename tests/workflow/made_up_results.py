@@ -448,7 +448,7 @@ def _studies(root: Path) -> None:
 def _failure(root: Path) -> None:
     failing = {"probability": 3e-5, "low": 2e-5, "high": 5e-5, "variation": 0.2, "by_response": 4e-5, "runs": 128}
     rows = [
-        {"hold_V": volts, "attraction": times, "failing": 1e-6 * times * volts, "failing_q05": 0.0, "failing_q95": 1e-3}
+        {"hold_V": volts, "attraction": times, "failing": 1e-6 * times * volts, "failing_q95": 1e-3}
         for volts in (60.0, 80.0, 100.0)
         for times in (1 / 3, 1.0, 3.0)
     ]
@@ -456,8 +456,7 @@ def _failure(root: Path) -> None:
         {
             "attraction": times,
             "failing": failing,
-            "few_enough": {"value": 0.7, "low": 0.6, "high": 0.8},
-            "given_common": {q: {"value": v} for q, v in (("0.05", 0.0), ("0.5", 1e-8), ("0.95", 3e-4))},
+            "given_common": {"0.95": {"value": 3e-4}},
             "largest_hold_V": largest,
             "least_rms_nm": 7.0,
             "least_spring": None if largest is None else 3.9,

@@ -38,10 +38,7 @@ TABLES = (
             number("hold_V", "V", "hold voltage"),
             number("attraction", "1", "factor on the attraction"),
             number("failing", "1", "probability of a failure by the response"),
-            *(
-                number(f"failing_q{q}", "1", f"share that fails, given what is common: {int(q)} % of the belief")
-                for q in ("05", "50", "95")
-            ),
+            number("failing_q95", "1", "share that fails of one batch, at most, with 95 % confidence"),
             number("failing_sure", "1", "the same at failure.confidence"),
         ),
     ),
