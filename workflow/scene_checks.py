@@ -19,6 +19,7 @@ from workflow.scene import ROOT, Scene
 from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
 
 MATERIALS = ROOT / "config" / "materials"
+MOST_CYCLES = 1_000_000  # of a job of histories; one of a coupled contact takes a second
 
 
 def mistakes(scene: Scene, samples: Mapping[str, str]) -> list[str]:
@@ -190,4 +191,10 @@ def _machine(scene: Scene) -> Iterator[str]:
         yield (
             f"history.cycles = {cycles}: with {scene.history.seeds} surfaces their tables need {needed / 1000:.0f} GB "
             f"of memory, this machine has {present / 1000:.1f}; take fewer of both"
+        )
+    elif cycles * scene.history.seeds > MOST_CYCLES:
+        yield (
+            f"history.cycles = {cycles}: with {scene.history.seeds} surfaces this is one job of "
+            f"{cycles * scene.history.seeds:,} cycles, which starts again when it is interrupted; accepted are "
+            f"{MOST_CYCLES:,}: take fewer cycles or surfaces"
         )

@@ -10,7 +10,7 @@ from workflow.schemas import STAGES, UnfitTable, schema_of
 from workflow.schemas.__main__ import PAGE, page
 
 RULES = Path(__file__).parents[2] / "workflow" / "rules"
-ROW = {"hold_V": 80.0, "attraction": 0.5, "failing": 0.6}
+ROW = {"hold_V": 80.0, "attraction": 0.5, "failing": 0.6, "failing_q95": 0.7, "failing_sure": 0.8}
 TABLE = "results/mine/device/failure.csv"
 
 
@@ -66,7 +66,7 @@ def test_the_schema_orders_the_columns(tmp_path):
 def test_a_table_without_rows_has_its_columns(tmp_path):
     write_csv(tmp_path / TABLE, [])
     assert load_csv(tmp_path / TABLE) == []
-    assert (tmp_path / TABLE).read_text() == "hold_V,attraction,failing\n"
+    assert (tmp_path / TABLE).read_text() == "hold_V,attraction,failing,failing_q95,failing_sure\n"
 
 
 def test_a_column_that_may_be_empty_needs_no_value(tmp_path):
@@ -85,9 +85,9 @@ def test_what_was_written_is_read(tmp_path):
     ("change", "words"),
     [
         (lambda text: text.replace("failing", "top"), "column failing is missing"),
-        (lambda text: text[:-5], "row 1 ends before column failing"),
+        (lambda text: text[:-5], "row 1 ends before column failing_sure"),
         (lambda text: text.replace("0.5", "0.\x005"), r"row 1, column attraction: '0\.\\x005' is no number"),
-        (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, failing"),
+        (lambda text: text.replace("0.6", "0.6,0.6"), "row 1 goes beyond the last column, failing_sure"),
         (lambda text: "", "column hold_V is missing"),
     ],
 )

@@ -55,7 +55,7 @@ def test_a_table_outside_the_grid_is_refused():
 
 @pytest.mark.parametrize(
     ("q", "psd", "word"),
-    [([1, 2, 3], [1, 1], "one length"), ([2, 1], [1, 1], "rising"), ([0, 1], [1, 1], "greater than 0")],
+    [([1, 2, 3], [1, 1], "one length"), ([2, 1], [1, 1], "rising"), ([0, 1], [1, 1], "greater than or equal to")],
 )
 def test_a_table_that_is_no_function_is_refused(q, psd, word):
     with pytest.raises(ValidationError, match=word):

@@ -27,7 +27,7 @@ def describe(results: Results) -> Iterator[Block]:
         "batch with 95 % confidence, as what is common to its devices is not known.",
     )
     yield table(
-        f"Share of the devices of one batch that fail at {volts(rate['hold_V'])}",
+        "Share of the devices of one batch that fail",
         rate["laws"],
         {
             "attraction": lambda law: f"{show(law['attraction'], 2)} times",
