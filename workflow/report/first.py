@@ -59,12 +59,11 @@ def _known(answer: dict[str, Any]) -> str:
     """What is not known, and what differs between devices, in words."""
     known = answer["known"]
     typical, device = ([show(known[f"{kind}_V"][q]["value"], 2) for q in ("0.05", "0.95")] for kind in BANDS)
-    low, high = (known["stuck_share"][q] for q in ("0.05", "0.95"))
+    most = known["stuck_share"]["0.95"]
     return (
         f"Not known: where the typical device lets go, {typical[0]} to {typical[1]} V. From device to device: "
-        f"{device[0]} to {device[1]} V, all else known. Of the devices of one batch {_rate(low['value'], answer)} to "
-        f"{_rate(high['value'], answer)} stick, with 90 % of the belief; the upper end is known to "
-        f"{_rate(high['low'], answer)} to {_rate(high['high'], answer)}."
+        f"{device[0]} to {device[1]} V, all else known. With 95 % confidence, no more than {_rate(most['value'], answer)} "
+        f"of one batch stick. That limit itself may be {_rate(most['high'], answer)}."
     )
 
 
