@@ -62,8 +62,8 @@ def _known(answer: dict[str, Any]) -> str:
     most = known["stuck_share"]["0.95"]
     return (
         f"Not known: where the typical device lets go, {typical[0]} to {typical[1]} V. From device to device: "
-        f"{device[0]} to {device[1]} V, all else known. With 95 % confidence, no more than {_rate(most['value'], answer)} "
-        f"of one batch stick. That limit itself may be {_rate(most['high'], answer)}."
+        f"{device[0]} to {device[1]} V, all else known. With 95 % confidence, no more than "
+        f"{_rate(most['value'], answer)} of one batch stick. That limit itself may be {_rate(most['high'], answer)}."
     )
 
 
