@@ -1,6 +1,6 @@
 """Liquid that condenses from humid air between two walls, and how it pulls (docs/humid_air.md).
 
-In equilibrium with the vapour a meniscus has Kelvin's radius r_K = gamma V_m / (R T |ln RH|). Liquid fills every gap
+In equilibrium with the vapour a meniscus has Kelvin's radius r_K = -gamma V_m / (R T ln RH). Liquid fills every gap
 below d_c = r_K (cos theta1 + cos theta2) + 2 t_w, where each wall has an adsorbed film t_w, and Laplace's pressure
 p_c = gamma / r_K pulls the walls together there (Israelachvili, Intermolecular and Surface Forces, 2011, ch. 17).
 Where the walls part faster than the liquid evaporates, its volume stays, d_c grows and p_c falls.
