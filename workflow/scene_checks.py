@@ -13,7 +13,7 @@ from mesoscale.contact.menisci import water_vapour_kPa
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import check_literature
 from mesoscale.settings import DeviceSettings
-from mesoscale.settings.contact import AirSettings, base_modulus
+from mesoscale.settings.contact import AirSettings, advised_grid, base_modulus
 from mesoscale.settings.definitions import BY_NAME
 from workflow.scene import ROOT, Scene
 from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
@@ -74,12 +74,9 @@ def _inputs(scene: Scene, samples: Mapping[str, str]) -> Iterator[str]:
         # one site yields by 4 ln(1 + sqrt 2) / pi of its side over E*; the attraction changes by 3 s / D0 at most
         needed = hamaker / (2 * math.pi * cutoff**4) * side * 4 * math.log(1 + math.sqrt(2)) / (math.pi * least)
         if needed > scene.contact.pixels:
-            finer = (
-                f"contact.pixels >= {math.ceil(needed)}, " if needed <= 16384 else ""
-            )  # the most that the key accepts
             yield (
                 f"contact.mechanics = adhesive: D0 down to {cutoff:g} nm and A_H up to {hamaker:g} aJ fall off faster "
-                f"than the grid resolves; take {finer}a larger D0 or mechanics: coupled"
+                f"than the grid resolves; take {advised_grid(math.ceil(needed))}a larger D0 or mechanics: coupled"
             )
 
 

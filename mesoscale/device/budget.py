@@ -1,6 +1,8 @@
 """What an expert would name, and by how many volts each moves the release: the budget."""
 
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -76,12 +78,13 @@ def budget(effects: Mapping[str, Effect], switch: Mapping[str, Any], central: So
     """
     if central.pad is None or not central.states or central.states["release_V"] == 0.0:
         return []
-    of_device = [*_of_device(central)]
+    pressed = _Pressed(central)
+    of_device = [*_of_device(pressed)]
     rows = [*of_device, *_computed(switch, {row["effect"] for row in of_device})]
     for name, effect in effects.items():
         if effect.changes and not central.point.device.bends and effect.changes not in OF_A_PLATE:
             continue  # a plate on a spring has no such property
-        volts, remark = _moved_V(effect, central)
+        volts, remark = _moved_V(effect, pressed)
         stated = effect.model_dump(include={"how", "held", "settle", "source"})
         rows.append({"effect": name, "volts": volts, "about": f"{effect.about}{remark}", **stated})
     return sorted(rows, key=lambda row: -1.0 if row["volts"] is None else -row["volts"] - 1e3)
@@ -133,23 +136,55 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
         }
 
 
-def _of_device(central: Solved) -> Iterator[dict[str, Any]]:
+@dataclass(frozen=True)
+class _Pressed:
+    """The central pad, under the stated device and others."""
+
+    central: Solved
+
+    @property
+    def device(self) -> DeviceSettings:
+        """The stated one."""
+        return self.central.point.device
+
+    @cached_property
+    def stated_V(self) -> float:
+        """Release of the stated device, solved as coarsely as the others that it is compared with."""
+        return self.release_V(self.device)
+
+    def release_V(self, device: DeviceSettings) -> float:
+        """Release of a device."""
+        return solve_deepened(device, self.central.pressed.law, SWITCH.coarse_elements)["release_V"]
+
+    def reach_V(self, *devices: DeviceSettings) -> tuple[float | None, str]:
+        """From the least to the largest release of devices and the stated one, and a remark."""
+        try:
+            releases = [self.stated_V, *map(self.release_V, devices)]
+        except InputError as error:
+            return None, f"; no answer: {str(error).partition(';')[0]}"
+        return max(releases) - min(releases), "; it may stick" * (min(releases) == 0.0)
+
+
+def _of_device(pressed: _Pressed) -> Iterator[dict[str, Any]]:
     """The properties of the device that vary, each from 5 to 95 % with all else at its median."""
-    for name, low, high in departed(central.point.device, 0.95):
-        volts, remark = _reach_V(central, low, high)
-        settle = SETTLE[getattr(central.point.device.spread, name).varies]
-        about = f"5 to 95 %, at central inputs{remark}"
+    for name, low, high in departed(pressed.device, 0.95):
+        volts, remark = pressed.reach_V(low, high)
         yield {
-            **{"effect": name, "volts": volts, "about": about, "how": "computed"},
-            **{"held": True, "settle": settle, "source": f"device.spread.{name}; solved again"},
+            "effect": name,
+            "volts": volts,
+            "about": f"5 to 95 %, at central inputs{remark}",
+            "how": "computed",
+            "held": True,
+            "settle": SETTLE[getattr(pressed.device.spread, name).varies],
+            "source": f"device.spread.{name}; solved again",
         }
 
 
-def _moved_V(effect: Effect, central: Solved) -> tuple[float | None, str]:
+def _moved_V(effect: Effect, pressed: _Pressed) -> tuple[float | None, str]:
     """By how much an effect moves the release of the central switch, and a remark."""
-    device, release = central.point.device, central.states["release_V"]
+    device, release = pressed.device, pressed.central.states["release_V"]
     if effect.changes:
-        return _reach_V(central, _changed(effect, central))
+        return pressed.reach_V(_changed(effect, pressed.central))
     if effect.charge_e_cm2 is not None:
         density = effect.charge_e_cm2 * elementary_charge * 1e4
         return density * device.dielectric_nm * NM / (VACUUM_PERMITTIVITY * device.permittivity), ""
@@ -165,16 +200,3 @@ def _changed(effect: Effect, central: Solved) -> DeviceSettings:
         return device.model_copy(update={effect.changes: effect.to})
     value = value_of(device, effect.changes, central.states["pull_in_V"]) * effect.factor + effect.step
     return device.model_copy(update={effect.changes: value})
-
-
-def _reach_V(central: Solved, *devices: DeviceSettings) -> tuple[float | None, str]:
-    """From the least to the largest release of devices and the stated one on the central pad, and a remark."""
-    law = central.pressed.law
-    try:
-        releases = [
-            solve_deepened(device, law, SWITCH.coarse_elements)["release_V"]
-            for device in (central.point.device, *devices)
-        ]
-    except InputError as error:
-        return None, f"; no answer: {str(error).partition(';')[0]}"
-    return max(releases) - min(releases), "; it may stick" * (min(releases) == 0.0)

@@ -6,7 +6,7 @@ Two limits hold what menisci do while the switch opens: in balance with the vapo
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Literal, get_args
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +16,9 @@ from mesoscale.device.release import probability
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.adhesion import adhesion_of
 from mesoscale.settings import ContactSettings
-from mesoscale.settings.contact import AirSettings
+from mesoscale.settings.contact import AirSettings, Opening
 
 Array = NDArray[np.float64]
-Opening = Literal["balance", "volume"]
 LEVELS = 7  # evenly in the root: a few per cent of humidity change most
 CELLS = 2  # times those of a point
 

@@ -190,6 +190,8 @@ def joint_samples(rows: Mapping[str, DistributionRow]) -> dict[tuple[str, str], 
         key = f"inputs.{names[0]}.values = {file}"
         if partners := sorted((set(foreign_table(file, key)[0]) & set(rows)) - set(names)):
             raise InputError(f"{key}: holds samples of {partners[0]} beside; give inputs.{partners[0]} the same file")
+        if len(names) < 2:
+            continue
         from scipy.stats import spearmanr  # slow to import
 
         columns = {name: _read_samples(name, file, f"inputs.{name}") for name in names}

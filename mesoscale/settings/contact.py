@@ -11,18 +11,26 @@ from mesoscale.settings.base import Settings
 from mesoscale.settings.surface import SurfaceSettings
 
 AttractionLaw = Literal["clamped", "offset"]
+Opening = Literal["balance", "volume"]
 WORK_FACTOR: dict[AttractionLaw, float] = {"clamped": 4.0, "offset": 12.0}
 """Work that separates two flats from touch: w = A_H / (this pi D0^2)."""
 RANGE_IN_D0: dict[AttractionLaw, float] = {"clamped": 1.5, "offset": 0.5}
 """That work over the largest attraction A_H / (6 pi D0^3), in units of D0."""
 WATER_CM3 = 18.07
 """Molar volume of water at 25 C, 18.015 g/mol over 0.99705 g/cm^3."""
+MOST_PIXELS = 16_384
+"""Sites a side that a grid may have."""
 NOMINAL_SEED = 1
 """Seed of the surface of the nominal curves (figures 4 and 11)."""
 NOMINAL_FORCE_NN = 1e4
 """Largest force of the comparison of models, nN (figure 4)."""
 NOMINAL_LOADS_NN = (1e3, 3e3, 7e3, 1e4, 2e4, 5e4)
 """Largest forces of the series of loads, nN (figure 11)."""
+
+
+def advised_grid(pixels: int) -> str:
+    """Advice for a message to take so many sites a side, up to its comma; empty where no grid may have them."""
+    return f"contact.pixels >= {pixels}, " if pixels <= MOST_PIXELS else ""
 
 
 class ReadingSettings(Settings):
@@ -82,7 +90,7 @@ class AirSettings(Settings):
         "falls several times (assumption, to be replaced by a computed value)",
         "[0, 1]",
     )
-    opening: Literal["balance", "volume"] = key(
+    opening: Opening = key(
         "balance",
         "how menisci open: in balance with the vapour, or so fast that their volume stays (not mechanics: adhesive)",
     )
@@ -110,7 +118,7 @@ class ContactSettings(Settings):
     model: Literal["elastic", "nonlinear", "plastic"] = key(
         "plastic", "asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the surface"
     )
-    pixels: int = key(1024, "grid points per side", "[32, 16_384]")
+    pixels: int = key(1024, "grid points per side", f"[32, {MOST_PIXELS}]")
     length_nm: float = key(
         1000.0,
         "side of the square, periodic cell; with measured scans left out: it holds the shortest measured waves "

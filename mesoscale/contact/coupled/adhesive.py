@@ -27,6 +27,7 @@ from mesoscale.contact.pressed import Row, State
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
+from mesoscale.settings.contact import advised_grid
 
 
 class Pulled(NamedTuple):
@@ -87,10 +88,10 @@ class AdhesiveContact(CoupledContact):
             steepest = max(steepest, law.menisci.pull_GPa / law.reach_nm)
         if steepest > self.stiffness:
             pixels = int(np.ceil(self.n * steepest / self.stiffness))
-            finer = f"contact.pixels >= {pixels}, " if pixels <= 16384 else ""  # the most that the key accepts
             raise InputError(
                 f"contact.mechanics = adhesive: the attraction changes by {steepest:.3g} GPa per nm, the grid resolves "
-                f"{self.stiffness:.3g} GPa per nm; take {finer}a larger contact.gap_cutoff_nm, or mechanics: coupled"
+                f"{self.stiffness:.3g} GPa per nm; take {advised_grid(pixels)}a larger contact.gap_cutoff_nm, or "
+                "mechanics: coupled"
             )
 
     def _forget(self) -> None:

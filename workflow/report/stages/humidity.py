@@ -32,7 +32,7 @@ def describe(results: Results) -> Iterator[Block]:
         {
             "humidity": lambda row: f"{float(row['humidity']):.1%}",
             "menisci": lambda row: OPENINGS[row["opening"]][1],
-            "release (V)": lambda row: _release(row),
+            "release (V)": _release,
             "work of opening (mJ/m²)": cell("energy_mJ_m2"),
             "pull-off (kPa)": cell("pull_off_kPa"),
             "sticks": lambda row: f"{float(row['stuck']):.0%}" if row["stuck"] else "–",
