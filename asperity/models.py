@@ -16,8 +16,9 @@ from mesoscale.contact import ContactInputs, Cycle, run_cycle
 from mesoscale.errors import InputError
 from mesoscale.law.branches import laws_of
 from mesoscale.law.parameters import PARAMETERS
-from mesoscale.pad.cells import PadGrid, close_cells, sample_cells
-from mesoscale.pad.curves import assemble
+from mesoscale.pad.cells import PadGrid, sample_cells
+from mesoscale.pad.curves import press_cells
+from mesoscale.pad.memory import flats_of, law_of
 from mesoscale.settings import ContactSettings, Settings
 
 Config = Mapping[str, Any]
@@ -138,8 +139,8 @@ def _pad(inputs: ContactInputs, config: Config) -> Sequence[Any]:
         raise InputError(f"config.cells = {count!r}: accepted is a whole number, 1 .. {most}")
     contact, separations = _contact(config, count), np.array(_separations(config))
     grid, cells = PadGrid(separations, np.array([separations.size - 1])), sample_cells(inputs, count, first)
-    pad = assemble(grid, cells, list(close_cells(inputs, contact, grid, cells)), contact.length_nm**2)
-    return [1e3 * pad.mean(branch).sum(axis=0) for branch in (pad.closing, pad.opening[:, 0])]
+    law = law_of(press_cells(inputs, contact, grid, cells), flats_of(inputs, contact))
+    return [1e3 * branch.sum(axis=0)[::-1] for branch in (law.closing, law.opening[0])]
 
 
 MODELS = {

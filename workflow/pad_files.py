@@ -30,6 +30,7 @@ CURVES = {
     "separation_nm": ("nm", "separation, falling", ("separation",)),
     "depth": ("1", "position in separation_nm from which the pad is opened", ("depth",)),
     "weight": ("1", "share of each cell in the pad", ("cell",)),
+    "rms_ratio": ("1", "RMS height of each cell's place over the median place's", ("cell",)),
     "first_contact_nm": ("nm", "first contact", ("cell",)),
     "settled": ("1", "whether flow came to rest", ("cell",)),
     "closing_GPa": ("GPa", "repulsive and attractive pressure while closing", ("cell", "force", "separation")),
@@ -75,6 +76,7 @@ def _curves(cells: PadCells) -> dict[str, Dataset]:
         "separation_nm": cells.grid.separation_nm,
         "depth": cells.grid.depths,
         "weight": cells.weight,
+        "rms_ratio": cells.rms_ratio,
         "first_contact_nm": cells.first_contact_nm,
         "settled": cells.settled.astype(int),
         "closing_GPa": cells.closing,
@@ -133,6 +135,7 @@ def _of_file(path: str, points: Mapping[int, Point]) -> Iterator[tuple[int, Solv
             cells = PadCells(
                 PadGrid(curves["separation_nm"], curves["depth"]),
                 curves["weight"],
+                curves["rms_ratio"],
                 curves["first_contact_nm"],
                 curves["closing_GPa"],
                 curves["opening_GPa"],

@@ -3,7 +3,8 @@
 `answer`: points of a finished scene as its answer has them. `other`: the same points on pads of 64 cells of other
 surfaces. `many`: the points that differ most, on pads of 1,024 independent places (drawn one by one, as a device has
 them), each with a cell of its own. `fresh`: further points of the joint distribution on pads of 64 cells, whose
-quantiles and share that sticks are set beside those of the answer.
+quantiles and share that sticks are set beside those of the answer. The cells of these pads stand for themselves alone:
+their curves are not shifted as those of the answer are.
 """
 
 from argparse import ArgumentParser, Namespace
@@ -18,12 +19,13 @@ from scipy.stats import qmc
 
 from evidence.pad.large_surfaces import random_cells
 from mesoscale.device.electrode import presser, solve_deepened
-from mesoscale.device.points import Point, point_of, solve_point, surfaces_of, values_at
+from mesoscale.device.points import Point, point_of, surfaces_of, values_at
 from mesoscale.device.pressing import pressing, pressure_to_compute
 from mesoscale.errors import InputError
-from mesoscale.pad.cells import close_cells, plan_grid
-from mesoscale.pad.curves import assemble
-from mesoscale.pad.memory import flats_of, law_of
+from mesoscale.inputs.contact import ContactInputs
+from mesoscale.pad.cells import Cell, plan_grid, sample_cells
+from mesoscale.pad.curves import press_cells
+from mesoscale.pad.memory import PadLaw, flats_of
 from mesoscale.settings import ContactSettings
 from workflow.contact_settings import contact_settings
 from workflow.pad_files import load_model, points_of
@@ -59,38 +61,48 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
             release = one.states.get("release_V", np.nan)
             yield _row(folder.name, "answer", k, one.pad.cells.count if one.pad else 0, release, one.error_V, 0.0)
             if k < given.points:
-                started = process_time()
-                other = solve_point(one.point, coarse, OTHER_CELLS, surfaces_of(OTHERS + k))
-                there, took = other.states.get("release_V", np.nan), process_time() - started
-                yield _row(folder.name, "other", k, OTHER_CELLS, there, other.error_V, took)
-                apart[k] = abs(there - release)
+                other = _pressed(folder.name, "other", k, one.point, coarse, OTHERS + k)
+                apart[k] = abs(other["release_V"] - release)
+                yield other
         for k in sorted(apart, key=lambda k: -np.nan_to_num(apart[k], nan=np.inf))[: given.worst]:
-            started = process_time()
-            release = brute_force_V(model.points[k].point, coarse, given.cells)
-            yield _row(folder.name, "many", k, given.cells, release, np.nan, process_time() - started)
+            cells = random_cells(given.cells, surfaces_of(3 * OTHERS))
+            yield _pressed(folder.name, "many", k, model.points[k].point, coarse, cells)
         units = qmc.LatinHypercube(len(points.design.names), rng=1).random(given.fresh)
         values = values_at(units, points.table, device, points.cutoffs_nm)
         for k, row in enumerate(values):
-            started = process_time()
             point = point_of(row, points.table.names, device)
-            solved = solve_point(point, coarse, OTHER_CELLS, surfaces_of(2 * OTHERS + k))
-            release, took = solved.states.get("release_V", np.nan), process_time() - started
-            yield _row(folder.name, "fresh", k, OTHER_CELLS, release, solved.error_V, took)
+            yield _pressed(folder.name, "fresh", k, point, coarse, 2 * OTHERS + k)
 
 
-def brute_force_V(point: Point, contact: ContactSettings, count: int) -> float:
-    """Release on a pad of independent places; NaN where they cannot carry the switch."""
+def _pressed(
+    scene: str, kind: str, number: int, point: Point, contact: ContactSettings, cells: Sequence[Cell] | int
+) -> dict[str, Any]:
+    """The row of a point on cells, or on 64 of the surfaces of a number."""
+    started = process_time()
     inputs, settings = point.contact_of(contact)
-    device, cells = pressing(point.device), random_cells(count, surfaces_of(3 * OTHERS))
+    if isinstance(cells, int):
+        pad_cells = point.device.pad_um2 * 1e6 / settings.length_nm**2
+        cells = sample_cells(inputs, OTHER_CELLS, surfaces_of(cells), pad_cells)
+    release = release_V(point, inputs, settings, cells)
+    return _row(scene, kind, number, len(cells), release, np.nan, process_time() - started)
+
+
+def release_V(point: Point, inputs: ContactInputs, settings: ContactSettings, cells: Sequence[Cell]) -> float:
+    """Release on the mean curves of cells; NaN where they cannot carry the switch."""
+    device = pressing(point.device)
     try:
         grid = plan_grid(inputs, settings, cells, pressure_to_compute(device), presser(device))
-        pad = assemble(grid, cells, list(close_cells(inputs, settings, grid, cells)), settings.length_nm**2)
-        return solve_deepened(point.device, law_of(pad, flats_of(inputs, settings)))["release_V"]
+        pad, flats = press_cells(inputs, settings, grid, cells), flats_of(inputs, settings)
+        closing, opening = pad.mean(pad.closing)[:, ::-1], pad.mean(pad.opening)[::-1, :, ::-1]
+        law = PadLaw(grid.separation_nm[::-1], closing, grid.depth_nm[::-1], opening, flats)
+        return solve_deepened(point.device, law)["release_V"]
     except InputError:
         return np.nan
 
 
-def _row(scene: str, kind: str, point: int, cells: int, release_V: float, error_V: float, cpu_s: float):
+def _row(
+    scene: str, kind: str, point: int, cells: int, release_V: float, error_V: float, cpu_s: float
+) -> dict[str, Any]:
     row = {"scene": scene, "kind": kind, "point": point, "cells": cells, "release_V": release_V}
     return row | {"error_V": error_V, "cpu_s": cpu_s}
 

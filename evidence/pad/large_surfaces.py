@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesoscale.contact import ContactInputs
-from mesoscale.pad.cells import Cell, PadGrid, close_cells, plan_grid
-from mesoscale.pad.curves import PadCells, assemble
+from mesoscale.pad.cells import Cell, PadGrid, plan_grid
+from mesoscale.pad.curves import PadCells, press_cells
 from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings
 
@@ -52,7 +52,7 @@ def random_cells(count: int, first_seed: int) -> list[Cell]:
 
 def closed(inputs: ContactInputs, contact: ContactSettings, grid: PadGrid, cells: Sequence[Cell]) -> PadCells:
     """A pad of cells."""
-    return assemble(grid, cells, list(close_cells(inputs, contact, grid, cells)), contact.length_nm**2)
+    return press_cells(inputs, contact, grid, cells)
 
 
 def opened_grid(inputs: ContactInputs, contact: ContactSettings) -> PadGrid:

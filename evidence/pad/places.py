@@ -69,8 +69,8 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
             (small,) = random_cells(1, FIRST_LARGE_SEED + SIDE**2 * seed + k)
             assembled += close_cells(at_rms(factor), contact, grid, [small])
     alone = [Cell(0, 0.0, 0.0, 1.0 / len(large))]
-    pads["direct"] = assemble(grid, alone * len(large), large, wide.length_nm**2)
-    pads["assembled"] = assemble(grid, alone * len(assembled), assembled, contact.length_nm**2)
+    pads["direct"] = assemble(MEDIAN, wide, grid, alone * len(large), large)
+    pads["assembled"] = assemble(MEDIAN, contact, grid, alone * len(assembled), assembled)
     for k, place in enumerate(grid.depths.tolist()):
         about = {"mechanics": given.mechanics, "from_nm": float(grid.separation_nm[place])}
         closing = {name: pad.closing[:, 0, place] * 1e3 for name, pad in pads.items()}

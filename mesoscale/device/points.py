@@ -19,8 +19,8 @@ from mesoscale.device.spread import properties_at, with_properties
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs, contact_of
 from mesoscale.inputs.distributions import InputTable
-from mesoscale.pad.cells import close_cells, plan_grid, sample_cells
-from mesoscale.pad.curves import PadCells, assemble
+from mesoscale.pad.cells import plan_grid, sample_cells
+from mesoscale.pad.curves import PadCells, press_cells
 from mesoscale.pad.memory import Flats, PadLaw, flats_of, law_of
 from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings, DeviceSettings
@@ -152,12 +152,12 @@ class Pad:
 
     @property
     def law(self) -> PadLaw:
-        """Its mean curves."""
+        """Its curves."""
         return law_of(self.cells, self.flats)
 
     @property
     def halves(self) -> tuple[PadLaw, PadLaw]:
-        """The mean curves of half of its cells, and of the others."""
+        """The curves of half of its cells, and of the others."""
         return law_of(self.cells.half(), self.flats), law_of(self.cells.half(other=True), self.flats)
 
 
@@ -239,8 +239,7 @@ def press_pad(
     device, area = pressing(point.device), settings.length_nm**2
     sampled = sample_cells(inputs, cells, first_seed, point.device.pad_um2 * 1e6 / area)
     grid = plan_grid(inputs, settings, sampled, pressure_to_compute(device), presser(device), step_nm, depths)
-    closed = list(close_cells(inputs, settings, grid, sampled, progress))
-    return Pad(assemble(grid, sampled, closed, area), flats_of(inputs, settings))
+    return Pad(press_cells(inputs, settings, grid, sampled, progress), flats_of(inputs, settings))
 
 
 def solve_point(

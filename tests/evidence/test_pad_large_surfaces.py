@@ -18,6 +18,7 @@ def made_up(count, well_kPa, press_GPa):
     return PadCells(
         PadGrid(SEPARATION, np.array([70, 80])),
         np.full(count, 1 / count),
+        np.ones(count),
         np.full(count, 40.0),
         forces,
         opening,

@@ -229,8 +229,8 @@ def _pad(root: Path) -> None:
     from mesoscale.device.points import Design, Pad, PadModel, Point, Solved
     from mesoscale.device.release import switch_on_pad
     from mesoscale.pad.cells import PadGrid
-    from mesoscale.pad.curves import PadCells, curve_rows
-    from mesoscale.pad.memory import Flats
+    from mesoscale.pad.curves import PadCells
+    from mesoscale.pad.memory import Flats, curve_rows
     from mesoscale.settings import DeviceSettings
     from workflow.scene import ROOT
 
@@ -245,9 +245,9 @@ def _pad(root: Path) -> None:
     )
     for number, depth in enumerate(grid.depth_nm):
         opening[:, number, :, separation < depth] = np.nan
-    cells = PadCells(grid, np.full(24, 1 / 24), 40 - shifts, closing, opening, np.ones(24, bool))
-    _write(root / "pad/curves.csv", curve_rows(cells))
+    cells = PadCells(grid, np.full(24, 1 / 24), np.ones(24), 40 - shifts, closing, opening, np.ones(24, bool))
     pad = Pad(cells, flats)
+    _write(root / "pad/curves.csv", curve_rows(cells, pad.law))
     states = solve_deepened(DeviceSettings(), pad.law)
     central = Solved(Point({}, 0.165, DeviceSettings()), pad, states, (states["release_V"], states["release_V"]))
     model = PadModel(central, Design((), (), np.empty((0, 0)), np.arange(0), ()), ())

@@ -13,7 +13,7 @@ from mesoscale.circuit.verilog import verilog_pad
 from mesoscale.device.budget import budget, effects_of
 from mesoscale.device.release import switch_on_pad
 from mesoscale.inputs.table import to_rows
-from mesoscale.pad.curves import curve_rows
+from mesoscale.pad.memory import curve_rows
 from workflow.job import job
 from workflow.pad_files import load_model, points_of_job, write_solved
 from workflow.results import write_csv, write_json, write_text
@@ -24,7 +24,7 @@ with job(snakemake) as run:
     pad = model.central.pressed
     write_csv(snakemake.output.inputs, to_rows(points.table))
     write_solved(snakemake.output.model, dict(enumerate((model.central, *model.points))), run.provenance, points.design)
-    write_csv(snakemake.output.table, curve_rows(pad.cells))
+    write_csv(snakemake.output.table, curve_rows(pad.cells, pad.law))
     write_text(snakemake.output.verilog, verilog_pad(pad.law, pad.cells.count))
     write_text(snakemake.output.spice, spice_pad(pad.law, pad.cells.count))
     switch = switch_on_pad(model, points.contact.length_nm**2)

@@ -54,7 +54,7 @@ def test_a_pad_is_computed_as_far_as_liquid_reaches():
         for contact in (CONTACT, CONTACT.model_copy(update={"air": air}))
     ]
     dry, humid = (pad.law for pad in pads)
-    touching = pads[1].cells.first_contact_nm.max()
+    touching = pads[1].cells.first_contact_nm.max() + 5.0  # cells stand for some that touch first farther out
     beyond = humid.separation_nm > touching + menisci_of(air).reach_nm
     assert beyond.sum() > 20
     wanted = np.interp(humid.separation_nm[beyond], dry.separation_nm, dry.closing[1])

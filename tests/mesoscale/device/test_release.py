@@ -52,6 +52,7 @@ def cells_of(law, scale):
     return PadCells(
         grid,
         np.array([0.5, 0.5]),
+        np.ones(2),
         np.full(2, 30.0),
         both[:, None, None] * closing,
         both[:, None, None, None] * opening,

@@ -5,8 +5,8 @@ import pytest
 
 from mesoscale.contact import ContactInputs
 from mesoscale.pad.adhesion import adhesion_of
-from mesoscale.pad.cells import close_cells, plan_grid, sample_cells
-from mesoscale.pad.curves import assemble
+from mesoscale.pad.cells import plan_grid, sample_cells
+from mesoscale.pad.curves import press_cells
 from mesoscale.pad.memory import Flats, PadLaw, flats_of, law_of
 from mesoscale.settings import ContactSettings
 
@@ -19,8 +19,7 @@ def adhesion(mechanics: str = "asperity", cells: int = 2, **changes: float):
     contact = SMALL.model_copy(update={"mechanics": mechanics, **changes})
     sampled = sample_cells(INPUTS, cells)
     grid = plan_grid(INPUTS, contact, sampled, lambda separation: 0.005 + 0.0 * separation)
-    pad = assemble(grid, sampled, list(close_cells(INPUTS, contact, grid, sampled)), contact.length_nm**2)
-    return adhesion_of(law_of(pad, flats_of(INPUTS, contact)))
+    return adhesion_of(law_of(press_cells(INPUTS, contact, grid, sampled), flats_of(INPUTS, contact)))
 
 
 def test_flats_that_touch_nowhere_have_hamakers_energy():

@@ -7,7 +7,7 @@ import pytest
 
 from mesoscale.contact import ContactInputs
 from mesoscale.pad.cells import Cell, PadGrid, close_cells
-from mesoscale.pad.curves import assemble
+from mesoscale.pad.curves import press_cells
 from mesoscale.pad.memory import flats_of, law_of
 from mesoscale.settings import ContactSettings
 
@@ -48,8 +48,7 @@ def test_cells_of_extreme_attraction_join_the_flats_beyond_their_curves(mechanic
     inputs = replace(MIDDLE, hamaker=hamaker)
     given = {"mechanics": mechanics, "pixels": 64, "gap_cutoff_nm": gap_cutoff_nm}
     contact = ContactSettings.model_validate(given)
-    law = law_of(assemble(GRID, CELLS, list(close_cells(inputs, contact, GRID, CELLS)), contact.length_nm**2),
-                 flats_of(inputs, contact))  # fmt: skip
+    law = law_of(press_cells(inputs, contact, GRID, CELLS), flats_of(inputs, contact))
     ends = float(law.separation_nm[-1])
     inside, beyond = law.closing_GPa(np.array([ends, ends * (1 + 1e-9)]))
     # 1 + 6 (rms / separation)^2 is 4e-4
