@@ -11,9 +11,9 @@ import webbrowser
 from pathlib import Path
 from typing import NoReturn
 
-from asperity.bundle import ROOT
-from asperity.environment import UnsafeFolder, secure
-from asperity.foreign_text import as_word, shown, wrapped
+from asperity.guards.bundle import ROOT
+from asperity.guards.environment import UnsafeFolder, secure
+from asperity.guards.foreign_text import as_word, shown, wrapped
 
 SCHEMA = ROOT / "config" / "scene.schema.json"
 # Ctrl-C while Snakemake is still imported ends it without a traceback

@@ -7,8 +7,8 @@ from argparse import Namespace
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, get_args
 
-from asperity.bundle import ROOT
 from asperity.film import MATERIAL, Film, pixels_for
+from asperity.guards.bundle import ROOT
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import PAPER_ROWS
 from mesoscale.settings import DeviceSettings, InputRow, InstrumentSettings, TopographySettings

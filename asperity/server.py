@@ -17,7 +17,7 @@ from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from asperity.foreign_text import shown
+from asperity.guards.foreign_text import shown
 from asperity.models import INPUTS, MODELS
 from mesoscale.errors import InputError
 from mesoscale.extras import needs

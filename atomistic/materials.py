@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
-from asperity.foreign_yaml import MistakenYaml, load_mapping
+from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
 from atomistic.errors import InputError
 from atomistic.settings import Settings
 

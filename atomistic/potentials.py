@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import Field, ValidationError
 from scipy.special import erfc
 
-from asperity.foreign_yaml import MistakenYaml, load_mapping
+from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
 from atomistic.constants import COULOMB_EV_A
 from atomistic.errors import InputError
 from atomistic.settings import Settings

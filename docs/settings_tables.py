@@ -6,7 +6,9 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
-from workflow.scene import Scene, accepted_values, value_in_json
+from workflow.scene import Scene
+from workflow.scene.accepted import accepted_values
+from workflow.scene.documented import value_in_json
 
 
 def write_tables(path: Path) -> None:

@@ -17,13 +17,13 @@ from typing import Any
 import h5py
 import numpy as np
 
-from asperity.foreign_text import shown
-from asperity.foreign_yaml import load_mapping
-from workflow.checksums import is_damaged
-from workflow.job import without_machine_times
+from asperity.guards.foreign_text import shown
+from asperity.guards.foreign_yaml import load_mapping
+from workflow.files.checksums import is_damaged
+from workflow.files.results import checked_items
 from workflow.report.available import results_in
 from workflow.report.verdict import verdict
-from workflow.results import checked_items
+from workflow.run.job import without_machine_times
 
 LEFT_OUT = ("logs", "work", "report.html")  # first part of a path below the folder
 PROVENANCE = {"provenance", "schema_version", "rule", "inputs_hash", "versions", "git_commit"}

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, field_validator
 
-from asperity.keys import key
+from asperity.guards.keys import key
 from atomistic.settings.base import Settings
 
 

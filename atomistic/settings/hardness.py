@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from asperity.keys import key
+from asperity.guards.keys import key
 from atomistic.settings.base import Settings
 
 

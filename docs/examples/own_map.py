@@ -8,7 +8,7 @@
 import numpy as np
 
 import asperity as asp
-from asperity.bundle import ROOT
+from asperity.guards.bundle import ROOT
 
 instruments = (
     {"files": "80_Scale*", "tip_radius_nm": 0, "noise_nm": 0.29},

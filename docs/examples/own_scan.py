@@ -6,7 +6,7 @@
 
 # %%
 import asperity as asp
-from asperity.bundle import ROOT
+from asperity.guards.bundle import ROOT
 
 side_view = {"files": "80_Scale*", "tip_radius_nm": 0, "noise_nm": 0.29}  # TEM has no tip
 stylus = {"files": "*stylus*", "tip_radius_nm": 5000}

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from asperity.bundle import ROOT
+from asperity.guards.bundle import ROOT
 from evidence.attacks.nonsense import scene
-from workflow.job import result_checksum
+from workflow.run.job import result_checksum
 
 HANG_S = 60.0
 

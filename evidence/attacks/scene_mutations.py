@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from asperity.foreign_yaml import load_mapping
+from asperity.guards.foreign_yaml import load_mapping
 from workflow.scene import SCENES, Scene
 
 VALUES: tuple[Any, ...] = (

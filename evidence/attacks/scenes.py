@@ -18,12 +18,12 @@ from typing import Any
 import jsonschema
 import yaml
 
-from asperity.foreign_yaml import load_mapping
+from asperity.guards.foreign_yaml import load_mapping
 from evidence.attacks.runs import Attack, campaign_table, figures
 from evidence.attacks.scene_mutations import mutated
 from workflow.scene import Scene, SceneError, files_of, load_scene, locate
-from workflow.scene_checks import mistakes
-from workflow.scene_schema import SCHEMA
+from workflow.scene.checks import mistakes
+from workflow.scene.documented import SCHEMA
 
 __all__ = ["campaign", "figures", "judge", "rows"]
 LONGEST_LINE = 1500  # an unknown key lists the known ones

@@ -15,7 +15,7 @@ from mesoscale.calibration.observables import force_levels_nN, separations_at
 from mesoscale.contact import run_cycle
 from mesoscale.inputs.contact import contact_of
 from mesoscale.settings import ContactSettings
-from workflow.results import load_csv
+from workflow.files.results import load_csv
 
 TRUTH = {"hamaker": 0.21, "e_star": 93.0, "h_macro": 1.5, "h_prime": 8.0, "q0": 0.022, "hurst": 0.8, "rms": 5.0}
 EXAMPLE_SEED = 77_000_000

@@ -35,7 +35,7 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import ContactSettings
 from mesoscale.tables import load_table
-from workflow.contact_settings import contact_settings
+from workflow.run.contact_settings import contact_settings
 from workflow.scene import load_scene
 
 Array = NDArray[np.float64]

@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 
 from evidence.record import ROOT
-from workflow.results import load_csv, load_json
+from workflow.files.results import load_csv, load_json
 
 COMMIT = "884b5d7"  # the last release whose elastic stage computes elastic constants
 FILMS_GPA = (266.6, 216.0)  # E: the stiffest, doi 10.1109/JMEMS.2004.836815 (30 K), and the softest, Vlassak (1992)

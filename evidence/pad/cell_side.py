@@ -18,7 +18,7 @@ from mesoscale.settings import ContactSettings
 from mesoscale.tables import load_table
 from mesoscale.topography.pooling import Pooled, pool
 from mesoscale.topography.records import in_order
-from workflow.results import load_h5
+from workflow.files.results import load_h5
 from workflow.scene import Scene, load_scene
 
 APART = 10_000_000

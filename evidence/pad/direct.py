@@ -27,8 +27,8 @@ from mesoscale.pad.cells import Cell, plan_grid, sample_cells
 from mesoscale.pad.curves import press_cells
 from mesoscale.pad.memory import PadLaw, flats_of
 from mesoscale.settings import ContactSettings
-from workflow.contact_settings import contact_settings
-from workflow.pad_files import load_model, points_of
+from workflow.run.contact_settings import contact_settings
+from workflow.run.pads import load_model, points_of
 from workflow.scene import load_scene
 
 OTHER_CELLS = 64

@@ -28,8 +28,8 @@ from mesoscale.device.beam_switch import BeamStates, solve_beam, solve_bent
 from mesoscale.device.electrode import with_pad
 from mesoscale.pad.memory import PadLaw, attracting
 from mesoscale.settings import DeviceSettings
-from workflow.contact_settings import contact_settings
-from workflow.pad_files import load_model, points_of
+from workflow.run.contact_settings import contact_settings
+from workflow.run.pads import load_model, points_of
 
 PAIRS = (4, 8, 12, 16, 20, 24, 28, 32, 48, 64)
 ELEMENTS = 1024

@@ -17,7 +17,7 @@ from mesoscale.inputs.table import from_rows
 from mesoscale.pad.adhesion import adhesion_of
 from mesoscale.settings.inputs import WorkAndRangeSettings
 from mesoscale.tables import load_table
-from workflow.contact_settings import contact_settings
+from workflow.run.contact_settings import contact_settings
 from workflow.scene import load_scene
 
 FITTED = WorkAndRangeSettings(work_mJ_m2=46.3, range_nm=5.6)

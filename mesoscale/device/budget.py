@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import model_validator
 from scipy.constants import elementary_charge
 
-from asperity.keys import key
+from asperity.guards.keys import key
 from mesoscale.device.by_key import OF_A_PLATE, value_of
 from mesoscale.device.electrode import solve_deepened
 from mesoscale.device.numerics import SWITCH

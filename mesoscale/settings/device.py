@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import model_validator
 
-from asperity.keys import key
+from asperity.guards.keys import key
 from mesoscale.settings.base import Settings
 from mesoscale.settings.inputs import DistributionRow
 

@@ -1,6 +1,6 @@
 """Settings of the failure rate."""
 
-from asperity.keys import key
+from asperity.guards.keys import key
 from mesoscale.settings.base import Settings
 
 

@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from asperity.keys import key
+from asperity.guards.keys import key
 from mesoscale.settings.base import Settings
 
 DWELL_STEPS = 12

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, field_validator
 
-from asperity.keys import key
+from asperity.guards.keys import key
 from mesoscale.settings.base import Settings
 
 Scatter = Annotated[float, Field(ge=0, le=2)]

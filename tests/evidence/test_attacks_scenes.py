@@ -11,7 +11,7 @@ from workflow.scene import load_scene
 @pytest.fixture(autouse=True)
 def machine(monkeypatch):
     """A machine of 16 GB, wherever the tests run."""
-    monkeypatch.setattr("workflow.scene_checks.machine_MB", lambda: 16_000)
+    monkeypatch.setattr("workflow.scene.checks.machine_MB", lambda: 16_000)
 
 
 @pytest.mark.parametrize("name", NONSENSE)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from workflow.results import Dataset, write_csv, write_h5, write_json, write_text
+from workflow.files.results import Dataset, write_csv, write_h5, write_json, write_text
 from workflow.schemas import schema_of
 
 INPUTS = {  # name: unit, distribution, a, b, origin
@@ -214,7 +214,7 @@ def _response(branch: str, name: str, value: float) -> dict[str, Any]:
 
 def _law_band(root: Path) -> None:
     from mesoscale.law.samples import band_rows
-    from workflow.results import load_numbers
+    from workflow.files.results import load_numbers
 
     rows = load_numbers(root / "uq/samples.csv")
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
@@ -222,7 +222,8 @@ def _law_band(root: Path) -> None:
 
 
 def _pad(root: Path) -> None:
-    from asperity.foreign_yaml import load_mapping
+    from asperity.guards.bundle import ROOT
+    from asperity.guards.foreign_yaml import load_mapping
     from evidence.pad.closed_form import ClosedForm
     from mesoscale.device.budget import budget, effects_of
     from mesoscale.device.electrode import solve_deepened
@@ -232,7 +233,6 @@ def _pad(root: Path) -> None:
     from mesoscale.pad.curves import PadCells
     from mesoscale.pad.memory import Flats, curve_rows
     from mesoscale.settings import DeviceSettings
-    from workflow.scene import ROOT
 
     area, flats = 1e6, Flats(0.215, 0.165)
     separation = np.concatenate([np.geomspace(200, 50, 8)[:-1], np.arange(50, 19.9, -0.25)])

@@ -7,7 +7,7 @@ import pytest
 
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import write_gwy
-from workflow import ownership
+from workflow.run import ownership
 
 PER_JOB = 6  # scans that one job analyses
 MATERIAL = """

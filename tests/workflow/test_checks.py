@@ -1,6 +1,6 @@
 """One runner and one writer of rows for the studies of all stages."""
 
-from workflow.checks import accuracy_rows, stability_rows
+from workflow.run.studies import accuracy_rows, stability_rows
 
 
 def broken():

@@ -8,9 +8,9 @@ from types import SimpleNamespace
 import pytest
 
 from tests.workflow.conftest import listing
-from workflow.checksums import UNFINISHED, is_damaged, is_late, record_of, recorded
-from workflow.job import job
-from workflow.results import write_csv, write_text
+from workflow.files.checksums import UNFINISHED, is_damaged, is_late, record_of, recorded
+from workflow.files.results import write_csv, write_text
+from workflow.run.job import job
 
 
 @pytest.fixture

@@ -1,6 +1,6 @@
 """What a run with measurements says at its end."""
 
-from workflow.terminal.closing_words import judgement
+from workflow.run.closing_words import judgement
 
 
 def row(**values):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from workflow.compare import differences
-from workflow.results import Dataset, write_csv, write_h5, write_json, write_text
+from workflow.files.results import Dataset, write_csv, write_h5, write_json, write_text
 
 PROVENANCE = {"rule": "fit_law", "inputs_hash": "0", "versions": {"numpy": "2"}}
 

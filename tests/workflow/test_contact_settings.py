@@ -4,7 +4,7 @@ import json
 from types import SimpleNamespace
 
 from mesoscale.settings import ContactSettings
-from workflow.contact_settings import contact_settings
+from workflow.run.contact_settings import contact_settings
 from workflow.scene import Scene
 
 GIVEN = ContactSettings(max_force_nN=5000.0).model_dump(mode="json")

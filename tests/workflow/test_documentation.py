@@ -21,7 +21,7 @@ from mesoscale.law.parameters import FITTED
 from mesoscale.settings import UncertaintySettings
 from mesoscale.topography.measurements.loading import write_gwy
 from mesoscale.uncertainty.propagation import NodeOutputs, propagate, surrogate_json
-from workflow.results import write_json
+from workflow.files.results import write_json
 from workflow.scene import load_scene
 
 ROOT = Path(__file__).parents[2]

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 import pytest
 
-from workflow.job import result_checksum
+from workflow.run.job import result_checksum
 
 # one job of each stage; its log is opened when it starts, so killing at its first sight interrupts that very job
 STAGES = {

@@ -132,7 +132,7 @@ from dataclasses import asdict
 import numpy as np
 
 import asperity as asp
-from workflow.results import load_h5, load_json
+from workflow.files.results import load_h5, load_json
 
 film = asp.Film([f"{sys.argv[1]}/place_{k}.gwy" for k in (1, 2)])
 stored = load_json("results/mine/topography/parameters.json")

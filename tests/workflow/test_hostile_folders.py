@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from tests.workflow.conftest import ROOT, listing
-from workflow import ownership
-from workflow.checksums import UNFINISHED, remove_unfinished
-from workflow.job import failures, own_commit
+from workflow.files.checksums import UNFINISHED, remove_unfinished
+from workflow.files.results import Dataset, load_csv, load_h5, write_csv, write_h5
 from workflow.report import render as rendering
 from workflow.report.available import Results
-from workflow.results import Dataset, load_csv, load_h5, write_csv, write_h5
+from workflow.run import ownership
+from workflow.run.job import failures, own_commit
 
 FAILED = rendering.failed
 ASPERITY = str(Path(sys.executable).with_name("asperity"))

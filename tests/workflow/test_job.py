@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from mesoscale.errors import InputError
-from workflow.job import failures, job, package_versions, result_checksum
+from workflow.run.job import failures, job, package_versions, result_checksum
 
 
 @pytest.fixture
@@ -83,7 +83,7 @@ def test_a_table_of_the_user_may_have_any_encoding(snakemake, tmp_path):
 
 def test_provenance_names_the_installed_packages_alone(monkeypatch):
     assert {"numpy", "openturns", "SurfaceTopography"} <= set(package_versions())
-    monkeypatch.setattr("workflow.job.PACKAGES", ("numpy", "no-such-package"))
+    monkeypatch.setattr("workflow.run.job.PACKAGES", ("numpy", "no-such-package"))
     assert set(package_versions()) == {"numpy"}
 
 

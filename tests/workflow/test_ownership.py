@@ -15,7 +15,7 @@ from atomistic.hardness.glass import make_glass
 from atomistic.lammps import load_data
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
-from workflow import ownership
+from workflow.run import ownership
 from workflow.scene import load_scene
 
 CONFIG = Path(__file__).parents[2] / "config"
@@ -23,7 +23,7 @@ CONFIG = Path(__file__).parents[2] / "config"
 JOB = """
 import subprocess, sys, time
 from pathlib import Path
-from workflow.ownership import join
+from workflow.run.ownership import join
 lock = join(Path(sys.argv[1]))
 child = subprocess.Popen(["sleep", "60"], close_fds=False)
 print("ready", child.pid, flush=True)

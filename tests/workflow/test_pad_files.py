@@ -6,7 +6,7 @@ from mesoscale.device.points import Pad, Solved
 from mesoscale.pad.memory import Flats
 from mesoscale.settings import ContactSettings, DeviceSettings
 from tests.mesoscale.device.test_release import MIDDLE, SEPARATION, TABLE, cells_of
-from workflow.pad_files import Points, load_model, write_solved
+from workflow.run.pads import Points, load_model, write_solved
 
 
 def test_a_model_comes_back_from_its_file_and_from_its_parts(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from workflow.scene import Scene, SceneError, files_of, load_scene, locate
-from workflow.scene_checks import mistakes
+from workflow.scene.checks import mistakes
 
 
 def errors(done):

@@ -8,7 +8,7 @@ import stat
 import numpy as np
 import pytest
 
-from workflow.results import (
+from workflow.files.results import (
     Dataset,
     atomic_path,
     load_csv,

@@ -6,7 +6,8 @@ import time
 
 import pytest
 
-from workflow.scene import DEFAULTS, SCENES, Scene, SceneError, documented_defaults, load_scene, locate
+from workflow.scene import SCENES, Scene, SceneError, load_scene, locate
+from workflow.scene.documented import DEFAULTS, documented_defaults
 
 
 def load(tmp_path, text):

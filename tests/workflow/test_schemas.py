@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from workflow.results import load_csv, write_csv
+from workflow.files.results import load_csv, write_csv
 from workflow.schemas import STAGES, UnfitTable, schema_of
 from workflow.schemas.__main__ import PAGE, page
 

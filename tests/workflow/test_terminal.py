@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from workflow.run.cost import Costs, refusal, wall_seconds
+from workflow.run.progress import Terminal, duration
 from workflow.scene import load_scene
-from workflow.terminal.cost import Costs, refusal, wall_seconds
-from workflow.terminal.progress import Terminal, duration
 
 
 class OneSecondEach:
@@ -61,7 +61,7 @@ def test_the_plan_comes_first_and_each_job_has_its_line(capsys, dry):
 def test_the_time_left_follows_what_jobs_take(capsys, monkeypatch, tmp_path):
     # a machine of a tenth of the speed: after three jobs of eight seconds the rest is known to a third
     clock, chunks = [0.0], [job("compute_direct_runs", number) for number in range(8)]
-    monkeypatch.setattr("workflow.terminal.progress.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("workflow.run.progress.time.monotonic", lambda: clock[0])
     dag = SimpleNamespace(needrun_jobs=lambda: chunks, job_dependencies=lambda job: [])
     snakemake = SimpleNamespace(dryrun=False, local_exec=True, cores=1, dag=dag)
     costs = Costs(load_scene("paper"), {}, tmp_path / "none.json")
@@ -117,7 +117,7 @@ def test_a_script_that_cannot_start_is_not_taken_for_missing_memory(capsys, tmp_
 
 
 def test_a_full_disk_is_not_taken_for_missing_memory(capsys, monkeypatch):
-    monkeypatch.setattr("workflow.terminal.progress.disk_usage", lambda folder: SimpleNamespace(free=0))
+    monkeypatch.setattr("workflow.run.progress.disk_usage", lambda folder: SimpleNamespace(free=0))
     terminal = Terminal(SimpleNamespace(dryrun=False), OneSecondEach(), "nothing to do", 12)
     send(terminal, "job_error", rule_name="compute_runs", log=[])
     assert capsys.readouterr().err.startswith("ERROR compute_runs: no space left on the disk of ")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from workflow.results import load_csv, load_h5, load_json
+from workflow.files.results import load_csv, load_h5, load_json
 
 COMPUTED, LITERATURE, SYNTHETIC = "computed", "literature", "synthetic"
 FEEDING = ("hardness", "elastic", "topography")

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from asperity.foreign_yaml import load_mapping
+from asperity.guards.foreign_yaml import load_mapping
 from mesoscale.settings import DeviceSettings
 from workflow.report.available import Results
 from workflow.report.numbers import show

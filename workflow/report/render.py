@@ -9,8 +9,8 @@ from typing import TypeVar
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from asperity.foreign_text import shown
-from asperity.foreign_yaml import load_mapping
+from asperity.guards.foreign_text import shown
+from asperity.guards.foreign_yaml import load_mapping
 from workflow.report.available import Results
 from workflow.report.drawing import SUBSCRIPT
 from workflow.report.first import first_screen

@@ -4,11 +4,12 @@ import os
 import sys
 from pathlib import Path
 
-from asperity.foreign_text import from_word, shown
+from asperity.guards.foreign_text import from_word, shown
 from atomistic.errors import InputError
 from atomistic.materials import load_materials, oxide_glasses
-from workflow.terminal.memory import contact_MB, propagation_MB
-from workflow.scene import ROOT, SceneError, files_of, load_scene, locate
+from workflow.scene.memory import contact_MB, propagation_MB
+from workflow.scene import SceneError, files_of, load_scene, locate
+from asperity.guards.bundle import ROOT
 
 # one thread per process: the jobs themselves fill the cores, and results do not depend on their number
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):

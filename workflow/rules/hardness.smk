@@ -1,6 +1,6 @@
 from atomistic.hardness.runs import PROTOCOL
 from atomistic.hardness.studies import VARIATIONS, variations, varied
-from workflow.hardness_files import check_bodies, hardness_files
+from workflow.scene.hardness_files import check_bodies, hardness_files
 
 HARDNESS = settings("hardness")
 CLOSING_S = {}  # seconds of each closing run

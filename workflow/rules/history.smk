@@ -1,6 +1,6 @@
 # Repeated closing and creep; only in scenes with history.cycles > 0
 
-from workflow.terminal.memory import history_MB
+from workflow.scene.memory import history_MB
 
 
 rule history:

@@ -11,7 +11,7 @@ SAMPLES = {
     if isinstance(row.values, str)
 }
 if workflow.is_main_process:
-    from workflow.scene_checks import mistakes  # takes half a second: not in every job
+    from workflow.scene.checks import mistakes  # takes half a second: not in every job
 
     found = {name.removeprefix("samples_"): path for name, path in SAMPLES.items()}
     if lines := mistakes(SCENE, found):

@@ -1,4 +1,4 @@
-from workflow.checksums import file_checksum
+from workflow.files.checksums import file_checksum
 
 if SCENE.report.studies:
     SHOWN += [*ACCURACY, *STABILITY]

@@ -9,9 +9,9 @@ from pathlib import Path
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.measurements.loading import load_measurements
 from mesoscale.topography.records import DATASETS, record
-from workflow.checksums import file_checksum
-from workflow.job import job, settings_from_job
-from workflow.results import Dataset, write_h5
+from workflow.files.checksums import file_checksum
+from workflow.files.results import Dataset, write_h5
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     settings = settings_from_job(TopographySettings, snakemake.params.settings)

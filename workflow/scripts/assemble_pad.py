@@ -7,16 +7,16 @@ against nm), device/pad_switch.json, device/budget.csv (V), device/rough_pad.va,
 
 from pathlib import Path
 
-from asperity.foreign_yaml import load_mapping
+from asperity.guards.foreign_yaml import load_mapping
 from mesoscale.circuit.spice import spice_pad
 from mesoscale.circuit.verilog import verilog_pad
 from mesoscale.device.budget import budget, effects_of
 from mesoscale.device.release import switch_on_pad
 from mesoscale.inputs.table import to_rows
 from mesoscale.pad.memory import curve_rows
-from workflow.job import job
-from workflow.pad_files import load_model, points_of_job, write_solved
-from workflow.results import write_csv, write_json, write_text
+from workflow.files.results import write_csv, write_json, write_text
+from workflow.run.job import job
+from workflow.run.pads import load_model, points_of_job, write_solved
 
 with job(snakemake) as run:
     points, _ = points_of_job(snakemake)

@@ -4,9 +4,9 @@ from atomistic.elastic.networks import crystal
 from atomistic.elastic.studies import stability_checks
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
-from workflow.checks import stability_rows
-from workflow.job import job, settings_from_job
-from workflow.results import write_csv
+from workflow.files.results import write_csv
+from workflow.run.job import job, settings_from_job
+from workflow.run.studies import stability_rows
 
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)

@@ -10,9 +10,9 @@ from pathlib import Path
 from atomistic.hardness.studies import glass_checks
 from atomistic.lammps import load_data
 from atomistic.potentials import load_potential
-from workflow.checks import stability_rows
-from workflow.job import job
-from workflow.results import write_csv
+from workflow.files.results import write_csv
+from workflow.run.job import job
+from workflow.run.studies import stability_rows
 
 with job(snakemake) as run:
     params, work = snakemake.params, Path(snakemake.params.work)

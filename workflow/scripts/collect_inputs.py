@@ -10,9 +10,9 @@ import copy
 from mesoscale.contact.steepness import at_slope
 from mesoscale.inputs.table import check_resolved, collect, to_rows
 from mesoscale.settings import InputsSettings
-from workflow.contact_settings import contact_settings
-from workflow.job import job, settings_from_job
-from workflow.results import load_json, write_csv
+from workflow.files.results import load_json, write_csv
+from workflow.run.contact_settings import contact_settings
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     given = copy.deepcopy(snakemake.params.settings)

@@ -11,8 +11,8 @@ from atomistic.elastic.moduli import SAMPLE_COLUMNS, effective_modulus
 from atomistic.elastic.structures import structure_rows, trusted_moduli
 from atomistic.materials import load_material
 from atomistic.settings import ElasticSettings
-from workflow.job import job, settings_from_job
-from workflow.results import Dataset, load_csv, load_json, write_csv, write_h5, write_json
+from workflow.files.results import Dataset, load_csv, load_json, write_csv, write_h5, write_json
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     settings = settings_from_job(ElasticSettings, snakemake.params.settings)

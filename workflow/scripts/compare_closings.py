@@ -7,9 +7,9 @@ from pathlib import Path
 
 from atomistic.hardness.studies import compare
 from atomistic.settings import ClosingSettings
-from workflow.checks import accuracy_rows
-from workflow.job import job, settings_from_job
-from workflow.results import load_json, load_numbers, write_csv
+from workflow.files.results import load_json, load_numbers, write_csv
+from workflow.run.job import job, settings_from_job
+from workflow.run.studies import accuracy_rows
 
 with job(snakemake) as run:
     paths = {Path(path).parent.name: Path(path) for path in snakemake.input.summaries}

@@ -7,9 +7,9 @@ parameters of both branches, statuses).
 from mesoscale.inputs.table import from_rows
 from mesoscale.uncertainty.designs import FIRST_RANDOM_SEED, FIRST_SECOND_SURFACE, random_runs
 from mesoscale.uncertainty.runs import compute_rows
-from workflow.contact_settings import contact_settings
-from workflow.job import job
-from workflow.results import load_csv, write_csv
+from workflow.files.results import load_csv, write_csv
+from workflow.run.contact_settings import contact_settings
+from workflow.run.job import job
 
 with job(snakemake) as run:
     runs = random_runs(

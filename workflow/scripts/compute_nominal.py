@@ -13,9 +13,9 @@ from mesoscale.contact.spots import spots_under
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.table import medians
 from mesoscale.settings.contact import NOMINAL_SEED
-from workflow.contact_settings import contact_settings
-from workflow.job import job
-from workflow.results import Dataset, load_csv, write_h5
+from workflow.files.results import Dataset, load_csv, write_h5
+from workflow.run.contact_settings import contact_settings
+from workflow.run.job import job
 
 with job(snakemake) as run:
     middle = medians(load_csv(snakemake.input.inputs))

@@ -9,9 +9,9 @@ from mesoscale.contact.cycle import BRANCH_COLUMNS
 from mesoscale.inputs.table import from_rows
 from mesoscale.uncertainty.designs import collocation_runs
 from mesoscale.uncertainty.runs import compute_all
-from workflow.contact_settings import contact_settings
-from workflow.job import job
-from workflow.results import Dataset, load_csv, write_h5
+from workflow.files.results import Dataset, load_csv, write_h5
+from workflow.run.contact_settings import contact_settings
+from workflow.run.job import job
 
 with job(snakemake) as run:
     contact = contact_settings(snakemake.params.contact, snakemake)

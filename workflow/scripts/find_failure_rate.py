@@ -4,9 +4,9 @@ In: inputs.csv, pad/model.h5.  Out: device/failure.json, device/failure.csv (V).
 """
 
 from mesoscale.failure.rate import failure_rate
-from workflow.failing import load_population
-from workflow.job import job
-from workflow.results import write_csv, write_json
+from workflow.files.results import write_csv, write_json
+from workflow.run.failing import load_population
+from workflow.run.job import job
 
 with job(snakemake) as run:
     rate, rows = failure_rate(*load_population(snakemake), run.progress)

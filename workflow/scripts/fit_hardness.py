@@ -14,8 +14,8 @@ from atomistic.hardness.top_attraction import gap_cutoff
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
 from atomistic.settings import FitSettings
-from workflow.job import job, settings_from_job
-from workflow.results import load_csv, load_json, load_numbers, write_csv, write_json
+from workflow.files.results import load_csv, load_json, load_numbers, write_csv, write_json
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     given, params = snakemake.input, snakemake.params

@@ -7,8 +7,8 @@ branch.
 
 from mesoscale.inputs.table import from_rows
 from mesoscale.law.branches import fit_stored
-from workflow.job import job
-from workflow.results import load_csv, load_h5, write_csv
+from workflow.files.results import load_csv, load_h5, write_csv
+from workflow.run.job import job
 
 with job(snakemake) as run:
     names = from_rows(load_csv(snakemake.input.inputs)).names

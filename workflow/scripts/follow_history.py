@@ -12,9 +12,9 @@ from mesoscale.inputs.table import medians
 from mesoscale.law.lifetime import cycle_row, dwell_rows, follow_all, shown_cycles
 from mesoscale.settings import HistorySettings
 from mesoscale.settings.contact import NOMINAL_SEED
-from workflow.contact_settings import contact_settings
-from workflow.job import job, settings_from_job
-from workflow.results import Dataset, load_csv, write_csv, write_h5
+from workflow.files.results import Dataset, load_csv, write_csv, write_h5
+from workflow.run.contact_settings import contact_settings
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     settings = settings_from_job(HistorySettings, snakemake.params.settings)

@@ -13,8 +13,8 @@ from mesoscale.scan_checks.surface import has_square_pixels
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.topography.measurements.loading import load_measurements
 from mesoscale.topography.records import copies, in_order, trusted_record
-from workflow.job import job, settings_from_job
-from workflow.results import load_csv, load_h5, load_json, write_csv
+from workflow.files.results import load_csv, load_h5, load_json, write_csv
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     settings = settings_from_job(TopographySettings, snakemake.params.settings)

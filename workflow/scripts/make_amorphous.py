@@ -7,9 +7,9 @@ import numpy as np
 from atomistic.elastic.networks import make_glass
 from atomistic.materials import load_material
 from atomistic.settings import NitrideGlassSettings
-from workflow.job import job, settings_from_job
-from workflow.results import write_csv, write_text
-from workflow.structure_files import load_structure, structure_text
+from workflow.files.results import write_csv, write_text
+from workflow.files.structures import load_structure, structure_text
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)

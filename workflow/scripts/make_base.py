@@ -9,8 +9,8 @@ from pathlib import Path
 from atomistic.hardness.stack import base_of
 from atomistic.lammps import load_data, write_data
 from atomistic.materials import load_material
-from workflow.job import job
-from workflow.results import atomic_path
+from workflow.files.results import atomic_path
+from workflow.run.job import job
 
 with job(snakemake) as run:
     base, params = base_of(load_material(snakemake.input.material)), snakemake.params

@@ -11,9 +11,9 @@ from mesoscale.circuit.lumps import lumps_of
 from mesoscale.circuit.spice import spice_switch
 from mesoscale.circuit.switches import central_switch, loops, spread_switches
 from mesoscale.circuit.verilog import verilog_lump
-from workflow.job import job
-from workflow.pad_files import load_model, points_of_job
-from workflow.results import write_csv, write_json, write_text
+from workflow.files.results import write_csv, write_json, write_text
+from workflow.run.job import job
+from workflow.run.pads import load_model, points_of_job
 
 with job(snakemake) as run:
     points, _ = points_of_job(snakemake)

@@ -12,8 +12,8 @@ from atomistic.lammps import write_data
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
 from atomistic.settings import GlassSettings
-from workflow.job import job, settings_from_job
-from workflow.results import atomic_path, write_json
+from workflow.files.results import atomic_path, write_json
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     material, seed = load_material(snakemake.input.material), int(snakemake.params.seed)

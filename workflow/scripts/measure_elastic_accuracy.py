@@ -4,9 +4,9 @@ from atomistic.elastic.networks import crystal
 from atomistic.elastic.studies import ensemble_points, volume_points
 from atomistic.materials import load_material
 from atomistic.settings import ElasticSettings
-from workflow.checks import accuracy_rows
-from workflow.job import job, settings_from_job
-from workflow.results import load_csv, write_csv
+from workflow.files.results import load_csv, write_csv
+from workflow.run.job import job, settings_from_job
+from workflow.run.studies import accuracy_rows
 
 with job(snakemake) as run:
     material = load_material(snakemake.input.material)

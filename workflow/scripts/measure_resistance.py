@@ -6,9 +6,9 @@ In: inputs.csv.  Out: device/resistance.csv (nN, N/m, nm^2, Ohm).
 from mesoscale.device.resistance import resistance_rows
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import ResistanceSettings
-from workflow.contact_settings import contact_settings
-from workflow.job import job, settings_from_job
-from workflow.results import load_csv, write_csv
+from workflow.files.results import load_csv, write_csv
+from workflow.run.contact_settings import contact_settings
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     asked = settings_from_job(ResistanceSettings, snakemake.params.resistance)

@@ -7,9 +7,9 @@ from mesoscale.calibration.observables import observe_runs
 from mesoscale.calibration.posterior import FIRST_SEED
 from mesoscale.inputs.table import from_rows
 from mesoscale.uncertainty.designs import random_runs
-from workflow.contact_settings import contact_settings
-from workflow.job import job
-from workflow.results import load_csv, write_csv
+from workflow.files.results import load_csv, write_csv
+from workflow.run.contact_settings import contact_settings
+from workflow.run.job import job
 
 with job(snakemake) as run:
     table = from_rows(load_csv(snakemake.input.inputs))

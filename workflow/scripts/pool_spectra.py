@@ -12,9 +12,9 @@ from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import DATASETS, KEPT, in_order
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.summary import parameters, scan_rows
-from workflow.job import job, settings_from_job
+from workflow.files.results import Dataset, atomic_path, load_h5, load_json, write_h5, write_json
 from workflow.report.surface_picture import surface_picture
-from workflow.results import Dataset, atomic_path, load_h5, load_json, write_h5, write_json
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     settings = settings_from_job(TopographySettings, snakemake.params.settings)

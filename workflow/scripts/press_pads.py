@@ -4,8 +4,8 @@ In: inputs.csv.  Out: pad/points/chunk_NNN.h5 (GPa against nm; V). Number 0 is t
 """
 
 from mesoscale.device.points import solve_point, solve_points, surfaces_of
-from workflow.job import job
-from workflow.pad_files import points_of_job, write_solved
+from workflow.run.job import job
+from workflow.run.pads import points_of_job, write_solved
 
 with job(snakemake) as run:
     points, pad = points_of_job(snakemake)

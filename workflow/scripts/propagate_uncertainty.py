@@ -16,8 +16,8 @@ from mesoscale.uncertainty.paper_tables import table2, table3
 from mesoscale.uncertainty.propagation import nodes_of_rows, output_rows, propagate, surrogate_json
 from mesoscale.uncertainty.sensitivity import sensitivity_rows
 from mesoscale.uncertainty.validation import direct_runs_of_rows, validation_rows
-from workflow.job import job, settings_from_job
-from workflow.results import load_csv, write_csv, write_json
+from workflow.files.results import load_csv, write_csv, write_json
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     settings = settings_from_job(UncertaintySettings, snakemake.params.settings)

@@ -6,11 +6,11 @@ Out: report.html, self-contained; scene.yaml with the resolved settings, package
 
 import yaml
 
-from workflow.job import job, own_commit, package_versions
+from asperity.guards.bundle import ROOT
+from workflow.files.results import write_text
 from workflow.report.available import Results
 from workflow.report.render import render
-from workflow.results import write_text
-from workflow.scene import ROOT
+from workflow.run.job import job, own_commit, package_versions
 
 with job(snakemake) as run:
     scene, root = snakemake.params.scene, snakemake.params.root

@@ -16,8 +16,8 @@ from atomistic.lammps import load_data
 from atomistic.materials import load_material
 from atomistic.potentials import load_potential
 from atomistic.settings import ClosingSettings
-from workflow.job import job, settings_from_job
-from workflow.results import write_csv, write_json
+from workflow.files.results import write_csv, write_json
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     closing_run = settings_from_job(ClosingRun, snakemake.params.closing_run)

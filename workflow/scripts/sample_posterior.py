@@ -13,10 +13,10 @@ from mesoscale.calibration.summary import checks, posterior_json, predictive_row
 from mesoscale.calibration.voltages import fit_voltages
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import MeasurementsSettings
-from workflow.contact_settings import contact_settings
-from workflow.job import job, settings_from_job
-from workflow.pad_files import load_model, points_of_job
-from workflow.results import load_csv, write_csv, write_json
+from workflow.files.results import load_csv, write_csv, write_json
+from workflow.run.contact_settings import contact_settings
+from workflow.run.job import job, settings_from_job
+from workflow.run.pads import load_model, points_of_job
 
 with job(snakemake) as run:
     settings = settings_from_job(MeasurementsSettings, snakemake.params.settings)

@@ -6,9 +6,9 @@ from atomistic.elastic.energy_scans import scan_rows
 from atomistic.elastic.networks import crystal
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
-from workflow.job import job, settings_from_job
-from workflow.results import write_csv
-from workflow.structure_files import ScfStore
+from workflow.files.results import write_csv
+from workflow.files.structures import ScfStore
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     dft = settings_from_job(DftSettings, snakemake.params.dft)

@@ -10,9 +10,9 @@ from atomistic.elastic.energy_scans import scan_rows
 from atomistic.elastic.structures import relaxed_structure
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
-from workflow.job import job, settings_from_job
-from workflow.results import load_csv, write_csv, write_json, write_text
-from workflow.structure_files import ScfStore, load_structure, structure_text
+from workflow.files.results import load_csv, write_csv, write_json, write_text
+from workflow.files.structures import ScfStore, load_structure, structure_text
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     material, name = load_material(snakemake.input.material), snakemake.wildcards.amorphous

@@ -11,12 +11,12 @@ from mesoscale.settings import TopographySettings, UncertaintySettings
 from mesoscale.studies import contact_accuracy, failure_accuracy, law_accuracy, pad_accuracy, topography_accuracy
 from mesoscale.studies.contact_stability import stability_checks
 from mesoscale.uncertainty.validation import direct_runs_of_rows
-from workflow.checks import accuracy_rows, stability_rows
-from workflow.contact_settings import contact_settings
-from workflow.failing import load_population
-from workflow.job import job, settings_from_job
-from workflow.pad_files import load_model, points_of_job
-from workflow.results import load_csv, write_csv
+from workflow.files.results import load_csv, write_csv
+from workflow.run.contact_settings import contact_settings
+from workflow.run.failing import load_population
+from workflow.run.job import job, settings_from_job
+from workflow.run.pads import load_model, points_of_job
+from workflow.run.studies import accuracy_rows, stability_rows
 
 
 def central_contact():

@@ -4,9 +4,9 @@ In: inputs.csv, pad/model.h5.  Out: device/humidity.csv (V, mJ/m^2, kPa).
 """
 
 from mesoscale.device.humidity import humidity_rows
-from workflow.job import job
-from workflow.pad_files import load_model, points_of_job
-from workflow.results import write_csv
+from workflow.files.results import write_csv
+from workflow.run.job import job
+from workflow.run.pads import load_model, points_of_job
 
 with job(snakemake) as run:
     points, pad = points_of_job(snakemake)

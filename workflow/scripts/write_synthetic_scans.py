@@ -8,8 +8,8 @@ from pathlib import Path
 from mesoscale.settings import SyntheticScanSettings
 from mesoscale.topography.measurements.loading import write_gwy
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
-from workflow.job import job, settings_from_job
-from workflow.results import atomic_path, write_json
+from workflow.files.results import atomic_path, write_json
+from workflow.run.job import job, settings_from_job
 
 with job(snakemake) as run:
     settings = ScanSet(**settings_from_job(SyntheticScanSettings, snakemake.params.settings).model_dump())

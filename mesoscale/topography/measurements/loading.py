@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.foreign_yaml import MistakenYaml, parse
+from asperity.guards.foreign_yaml import MistakenYaml, parse
 from mesoscale.errors import InputError
 from mesoscale.extras import needs
 from mesoscale.settings import InstrumentSettings, TopographySettings

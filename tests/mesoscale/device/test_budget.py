@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from asperity.foreign_yaml import load_mapping
+from asperity.guards.foreign_yaml import load_mapping
 from mesoscale.device.budget import budget, effects_of
 from mesoscale.device.electrode import solve_deepened
 from mesoscale.device.numerics import SWITCH

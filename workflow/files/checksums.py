@@ -1,7 +1,7 @@
 """Checksums of result files: each beside its file, in the format of `sha256sum`, hidden.
 
 `law/parameters.csv` has its checksum in `law/.parameters.csv.sha256` (check by hand: `sha256sum -c` in that folder).
-The writer of results (`workflow.results.atomic_path`) records it just before the result appears, so that a result
+The writer of results (`workflow.files.results.atomic_path`) records it just before the result appears, so that a result
 without a checksum is none of ours, and one that differs from it was damaged afterwards.
 """
 

@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from asperity.foreign_text import as_cell
-from workflow.checksums import UNFINISHED, record
+from asperity.guards.foreign_text import as_cell
+from workflow.files.checksums import UNFINISHED, record
 from workflow.schemas import UnfitTable, schema_of
 
 SCHEMA_VERSION = 1

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from ase import Atoms
 
-from workflow.results import atomic_path
+from workflow.files.results import atomic_path
 
 
 def structure_text(atoms: Atoms) -> str:

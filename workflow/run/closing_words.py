@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from mesoscale.topography.summary import doubt_lines, measurement_lines
-from workflow.results import load_csv, load_json
+from workflow.files.results import load_csv, load_json
 
 
 def closing_words(results: Path) -> Iterator[str]:

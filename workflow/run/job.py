@@ -20,11 +20,11 @@ from typing import Any, TextIO, TypeVar
 
 from pydantic import BaseModel
 
-from asperity.foreign_text import shown
+from asperity.guards.foreign_text import shown
 from atomistic.errors import InputError as AtomisticInputError
 from mesoscale.errors import InputError as MesoscaleInputError
-from workflow.checksums import file_checksum, is_damaged, record_of
-from workflow.ownership import join
+from workflow.files.checksums import file_checksum, is_damaged, record_of
+from workflow.run.ownership import join
 from workflow.schemas import UnfitTable
 
 PACKAGES = (

@@ -9,7 +9,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from asperity.bundle import ROOT
+from asperity.guards.bundle import ROOT
 
 EMPTY = Path(__file__).with_name("empty_settings")
 """In place of `.pyscf_conf.py`, which PySCF would run."""

@@ -3,8 +3,8 @@
 from typing import Any
 
 from mesoscale.settings import ContactSettings
-from workflow.job import settings_from_job
-from workflow.results import load_json
+from workflow.files.results import load_json
+from workflow.run.job import settings_from_job
 
 
 def contact_settings(given: dict[str, Any], snakemake: Any) -> ContactSettings:

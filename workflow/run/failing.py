@@ -8,8 +8,8 @@ from mesoscale.device.points import Pad, Point, press_pad, surfaces_of
 from mesoscale.errors import InputError
 from mesoscale.failure.rate import Population
 from mesoscale.settings import FailureSettings
-from workflow.job import settings_from_job
-from workflow.pad_files import load_model, points_of_job
+from workflow.run.job import settings_from_job
+from workflow.run.pads import load_model, points_of_job
 
 FIRST_SURFACES = 100_000
 """Beyond those of the points of an answer."""

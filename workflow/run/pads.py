@@ -21,9 +21,9 @@ from mesoscale.pad.cells import PadGrid
 from mesoscale.pad.curves import PadCells
 from mesoscale.pad.memory import Flats
 from mesoscale.settings import ContactSettings, DeviceSettings, PadSettings
-from workflow.contact_settings import contact_settings
-from workflow.job import settings_from_job
-from workflow.results import Dataset, load_csv, load_h5, load_json, write_h5
+from workflow.files.results import Dataset, load_csv, load_h5, load_json, write_h5
+from workflow.run.contact_settings import contact_settings
+from workflow.run.job import settings_from_job
 
 STATES = ("pull_in_V", "release_V", "capacitance_fF", "landed_share", "deepened")
 CURVES = {

@@ -14,9 +14,9 @@ from typing import Any
 
 from snakemake.exceptions import WorkflowError
 
-from asperity.foreign_text import COLUMNS, shown, wrapped
-from workflow.job import last_line
-from workflow.terminal.cost import Costs, refusal, wall_seconds
+from asperity.guards.foreign_text import COLUMNS, shown, wrapped
+from workflow.run.cost import Costs, refusal, wall_seconds
+from workflow.run.job import last_line
 
 FULL_DISK = 100_000  # bytes left: less than a job and its log need
 LAST_PART = 0.1  # of the time of a job at work that takes longer than planned, still to come

@@ -21,7 +21,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NoReturn
 
-from asperity.environment import READ
+from asperity.guards.environment import READ
 
 RUN = "ASPERITY_RUN"  # environment variable with the process id of the run that a job belongs to
 FILES = {".cir", ".csv", ".data", ".h5", ".html", ".json", ".log", ".png", ".sub", ".va", ".xyz", ".yaml"}  # results

@@ -7,6 +7,7 @@ import math
 import warnings
 from collections.abc import Iterator, Mapping
 
+from asperity.guards.bundle import ROOT
 from atomistic.materials import load_material
 from atomistic.settings import DftSettings
 from mesoscale.contact.menisci import water_vapour_kPa
@@ -15,8 +16,8 @@ from mesoscale.inputs.table import check_literature
 from mesoscale.settings import DeviceSettings
 from mesoscale.settings.contact import AirSettings, advised_grid, base_modulus
 from mesoscale.settings.definitions import BY_NAME
-from workflow.scene import ROOT, Scene
-from workflow.terminal.memory import contact_MB, history_MB, machine_MB, propagation_MB
+from workflow.scene.definition import Scene
+from workflow.scene.memory import contact_MB, history_MB, machine_MB, propagation_MB
 
 MATERIALS = ROOT / "config" / "materials"
 MOST_CYCLES = 1_000_000  # of a job of histories; one of a coupled contact takes a second

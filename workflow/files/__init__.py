@@ -1,0 +1,1 @@
+"""Result files: one writer, checksums, and the files of several tables."""

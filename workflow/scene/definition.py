@@ -1,0 +1,138 @@
+"""A scene: everything a run depends on, as the documented defaults and what a YAML file states instead."""
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from atomistic.settings import ElasticSettings, HardnessSettings
+from mesoscale.settings import (
+    ContactSettings,
+    DeviceSettings,
+    FailureSettings,
+    HistorySettings,
+    InputsSettings,
+    MeasurementsSettings,
+    PadSettings,
+    ResistanceSettings,
+    Settings,
+    TopographySettings,
+    UncertaintySettings,
+)
+
+COMPUTED = ("hardness", "elastic", "topography")
+
+
+class ReportSettings(Settings):
+    """The page report.html (docs/report.md)."""
+
+    studies: bool = Field(
+        default=False,
+        description="also run the accuracy and stability studies of all stages and show their tables",
+    )
+
+
+class Scene(Settings):
+    """Everything a run depends on."""
+
+    name: str = Field(
+        default="reduced",
+        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,99}$",
+        description="name of the scene; results go to results/<name>/ (default: the file's name)",
+    )
+    extends: str | None = Field(
+        default=None,
+        description="scene whose keys this one takes where it has none of its own, by name or by path",
+    )
+    compute: tuple[Literal["hardness", "elastic", "topography"], ...] = Field(
+        default=(),
+        description="stages to run and report although no input is taken from them",
+    )
+    tails: tuple[Literal["law", "pad"], ...] = Field(
+        default=("law", "pad"),
+        min_length=1,
+        description="what is made of the inputs: the law of one cell with its uncertainty, as in the paper; the pad of "
+        "many cells and the switch on it",
+    )
+    inputs: InputsSettings = InputsSettings()
+    hardness: HardnessSettings = HardnessSettings()
+    elastic: ElasticSettings = ElasticSettings()
+    topography: TopographySettings = TopographySettings()
+    contact: ContactSettings = ContactSettings()
+    pad: PadSettings = PadSettings()
+    uncertainty: UncertaintySettings = UncertaintySettings()
+    device: DeviceSettings = DeviceSettings()
+    failure: FailureSettings = FailureSettings()
+    resistance: ResistanceSettings = ResistanceSettings()
+    history: HistorySettings = HistorySettings()
+    measurements: MeasurementsSettings = MeasurementsSettings()
+    report: ReportSettings = ReportSettings()
+
+    def stages(self) -> set[str]:
+        """The stages among hardness, elastic and topography that this scene computes."""
+        return (set(self.inputs.origins()) & set(COMPUTED)) | set(self.compute)
+
+    @property
+    def cell_follows_film(self) -> bool:
+        """Is the side of a cell chosen with the description of measured scans: does the scene not state it?"""
+        return bool(self.topography.scans) and "length_nm" not in self.contact.model_fields_set
+
+    @property
+    def humid(self) -> bool:
+        """Can liquid condense: is there a humidity as an input, or in the air?"""
+        return "humidity" in self.inputs.rows() or bool(self.contact.air and self.contact.air.humidity)
+
+    @property
+    def unequal_places(self) -> bool:
+        """Do the places of the film have RMS heights of their own, by topography or by `pad.rms_scatter`?"""
+        return self.pad.rms_scatter is not None or self.inputs.prior_origins().get("rms") == "topography"
+
+    @model_validator(mode="after")
+    def _measurements_for_a_calibration(self) -> "Scene":
+        if "calibration" in self.inputs.origins() and not self.measurements.tables:
+            names = [name for name, row in self.inputs.rows().items() if row.origin == "calibration"]
+            raise ValueError(
+                f"inputs: {', '.join(names)} of origin calibration, but measurements.tables is empty; name the tables "
+                "of measurements, or take another origin"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _cutoff_on_the_grid(self) -> "Scene":
+        resolved = self.contact.nyquist_per_nm
+        wanted = {"contact.q1_per_nm": self.contact.q1_per_nm}
+        row = self.inputs.rows().get("q1")
+        if row is not None and row.origin == "literature":
+            wanted["inputs.q1"] = row.reaches
+        for key, q1 in wanted.items():
+            if q1 is not None and q1 > resolved * (1 + 1e-9):
+                raise ValueError(
+                    f"{key} reaches {q1:g} 1/nm: beyond what contact.pixels = {self.contact.pixels} on "
+                    f"{self.contact.length_nm:g} nm resolve, {resolved:.4g} 1/nm; raise contact.pixels or lower it"
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _metals_conduct(self) -> "Scene":
+        if self.resistance.resistivities_nOhm_m is None:
+            return self
+        if self.device.dielectric_nm > 0:
+            raise ValueError(
+                f"device.dielectric_nm = {self.device.dielectric_nm:g} with resistance.resistivities_nOhm_m: no "
+                "current passes a dielectric; set one to 0, or the other to null"
+            )
+        if self.contact.mechanics != "coupled" or self.contact.bodies:
+            raise ValueError(
+                f"contact.mechanics = {self.contact.mechanics}{', contact.bodies' if self.contact.bodies else ''} with "
+                "resistance.resistivities_nOhm_m: stiffness gives the resistance of mechanics: coupled without bodies"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _one_exponent_convention(self) -> "Scene":
+        if "topography" in self.inputs.origins() and self.topography.convention != self.contact.reading.convention:
+            raise ValueError(
+                f"topography.convention = {self.topography.convention}, contact.reading.convention = "
+                f"{self.contact.reading.convention}: a Hurst exponent measured by one convention must be used by the "
+                "same; make them equal"
+            )
+        return self
