@@ -10,4 +10,7 @@ A study is a module `evidence/<room>/<name>.py` with
 - `figures(rows)` (optional), the few numbers that pages quote, as texts by name.
 
 Its table is `evidence/data/<room>_<name>.csv`. Each row carries commit, date, processor and command.
+
+A study that nobody will run on newer code ends: `evidence/ended.yaml` keeps its question and its numbers, and the
+commit at which its code is. The command runs it there.
 """

@@ -5,12 +5,14 @@ import ast
 import importlib
 import os
 import shlex
+import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # before any library starts its threads
 
-from evidence.record import load, record, table_of
+from evidence.record import DATA, ROOT, ended, load, record, table_of
 
 
 def studies() -> dict[str, str]:
@@ -26,13 +28,18 @@ def studies() -> dict[str, str]:
 
 def main() -> None:
     """The command line."""
-    known = studies()
+    known, past = studies(), ended()
     if sys.argv[1:] in ([], ["-h"], ["--help"]):
         print("python -m evidence NAME [options]   runs a study and adds its rows to evidence/data/\n")
         for name, question in known.items():
             print(f"{name:<28} {question}\n{'':<28} {_state(name)}")
+        for name, study in past.items():
+            print(f"{name:<28} {study['question']}\n{'':<28} {_state(name)}; its code is at {study['commit']}")
         return
     name = sys.argv[1]
+    if name in past:
+        _run_at(past[name]["commit"], sys.argv[1:])
+        return
     if name not in known:
         sys.exit(f"{name}: no such study; `python -m evidence` lists them")
     study = importlib.import_module(f"evidence.{name}")
@@ -45,6 +52,21 @@ def main() -> None:
     if hasattr(study, "figures"):
         for key, value in study.figures(load(name)).items():
             print(f"{key}: {value}")
+
+
+def _run_at(commit: str, arguments: list[str]) -> None:
+    """Run a study by the code of a commit, and take its table."""
+    with tempfile.TemporaryDirectory() as folder:
+        git = ["git", "-C", str(ROOT), "worktree"]
+        subprocess.run([*git, "add", "--quiet", "--detach", folder, commit], check=True)
+        table = Path("evidence/data") / table_of(arguments[0]).name
+        try:
+            (Path(folder) / table).write_bytes((DATA / table.name).read_bytes())
+            command = [sys.executable, "-m", "evidence", *arguments]
+            subprocess.run(command, cwd=folder, env=os.environ | {"PYTHONPATH": folder}, check=True)
+            (DATA / table.name).write_bytes((Path(folder) / table).read_bytes())
+        finally:
+            subprocess.run([*git, "remove", "--force", folder], check=True)
 
 
 def _state(name: str) -> str:

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from evidence.__main__ import studies
-from evidence.record import PROVENANCE, ROOT, load, table_of
+from evidence.record import PROVENANCE, ROOT, ended, load, table_of
 
 MOST_ROWS = 40
 """Rows of a table that a page shows; the file has all."""
@@ -15,7 +15,7 @@ MOST_ROWS = 40
 def figures() -> dict[str, str]:
     """Numbers that pages quote as `{{ room_name_number }}`, each with its commit and command under the pointer."""
     quoted = {}
-    for name in studies():
+    for name in (*studies(), *ended()):
         for key, value in _figures(name).items():
             last = load(name)[-1]
             where = f"{last['command']}, commit {last['commit']}, {last['date']}"
@@ -29,7 +29,8 @@ def write_pages(folder: Path) -> None:
     for page in folder.glob("*.md"):
         page.unlink()
     listed = []
-    for name, question in studies().items():
+    questions = {name: study["question"] for name, study in ended().items()}
+    for name, question in (studies() | questions).items():
         if rows := load(name):
             page = folder / f"{name.replace('.', '_')}.md"
             page.write_text(_page(name, rows), encoding="utf-8")
@@ -54,8 +55,7 @@ def write_pages(folder: Path) -> None:
 
 def _page(name: str, rows: list[dict[str, str]]) -> str:
     """A page of one study: its question, its command, its numbers and its table."""
-    path = ROOT / "evidence" / f"{name.replace('.', '/')}.py"
-    question, _, more = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").partition("\n")
+    question, more = _asked(name)
     table = table_of(name).relative_to(ROOT)
     columns = [column for column in rows[0] if column not in PROVENANCE]
     made = sorted({(row["date"], row["commit"], row["processor"] or "not recorded") for row in rows})
@@ -82,6 +82,15 @@ def _page(name: str, rows: list[dict[str, str]]) -> str:
     )
 
 
+def _asked(name: str) -> tuple[str, str]:
+    """What a study asks, and how it answers."""
+    if study := ended().get(name):
+        return study["question"], f"{study['about']}\nThe study ended; its code is at commit {study['commit']}."
+    path = ROOT / "evidence" / f"{name.replace('.', '/')}.py"
+    question, _, more = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").partition("\n")
+    return question, more
+
+
 def _cell(text: str | None) -> str:
     return " ".join(_escaped(text or "").replace("|", r"\|").split())
 
@@ -92,6 +101,8 @@ def _escaped(text: str) -> str:
 
 
 def _figures(name: str) -> dict[str, str]:
+    if study := ended().get(name):
+        return study["figures"]
     study = importlib.import_module(f"evidence.{name}")
     rows = load(name)
     return study.figures(rows) if rows and hasattr(study, "figures") else {}

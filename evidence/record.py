@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from mesoscale.tables import grow_table, load_table
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -15,6 +17,11 @@ PROVENANCE = ("commit", "date", "processor", "command")
 """Columns that every table ends with."""
 DIGITS = 4
 """Significant digits of a number in a table."""
+
+
+def ended() -> dict[str, dict[str, Any]]:
+    """Studies that ended, by name: commit of their code, question, what was done, and the numbers that pages quote."""
+    return yaml.safe_load((ROOT / "evidence" / "ended.yaml").read_text(encoding="utf-8"))
 
 
 def table_of(study: str) -> Path:
