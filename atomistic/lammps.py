@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 
 PROTOCOLS = Path(__file__).parent / "protocols"  # the LAMMPS input scripts
 Progress = Callable[[float, str], None]

@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field, ValidationError, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
-from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
-from atomistic.errors import InputError
-from atomistic.settings import Settings
+from asperity.guards.errors import InputError
+from asperity.guards.settings import Settings, load_settings
 
 SEARCHED_A = 3.0  # neighbours are sought up to this distance, so no bond may be longer
 SHORTEST_BOND_A = 1.2  # the first peak of g(r) is sought beyond this
@@ -319,18 +318,7 @@ def load_material(path: str | Path) -> Material:
     InputError : unreadable or malformed file, unknown key, missing or non-physical value, unnamed source.
     """
     path = Path(path)
-    try:
-        content = load_mapping(path, "material")
-    except MistakenYaml as error:
-        raise InputError(f"{path}: {error}; see config/materials/silicon_dioxide.yaml") from None
-    try:
-        material = Material.model_validate(content)
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = " ".join(".".join(str(part) for part in first["loc"]).split())
-        said = first["msg"].removeprefix("Value error, ")
-        got = "" if first["type"] in ("missing", "value_error") else f" (got {first['input']!r:.80})"
-        raise InputError(f"{path}: {where + ': ' if where else ''}{said}{got}") from None
+    material = load_settings(Material, path, "material", "config/materials/silicon_dioxide.yaml")
     if material.name != path.stem:
         raise InputError(f"{path}: name: must be that of the file, {path.stem!r} (got {material.name!r})")
     return material

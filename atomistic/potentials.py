@@ -12,13 +12,12 @@ from pathlib import Path
 from typing import Annotated, Literal, Protocol
 
 import numpy as np
-from pydantic import Field, ValidationError
+from pydantic import Field
 from scipy.special import erfc
 
-from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
+from asperity.guards.errors import InputError
+from asperity.guards.settings import Settings, load_settings
 from atomistic.constants import COULOMB_EV_A
-from atomistic.errors import InputError
-from atomistic.settings import Settings
 
 TABLE_START_A = 0.4  # atoms nearer than this stop LAMMPS
 
@@ -249,16 +248,7 @@ def load_potential(path: str | Path) -> Potential:
         or a pair without a repulsive core.
     """
     path = Path(path)
-    try:
-        content = load_mapping(path, "potential")
-    except MistakenYaml as error:
-        raise InputError(f"{path}: {error}; see config/potentials/pmmcs.yaml") from None
-    try:
-        potential = Potential(**content)
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = " ".join(".".join(str(part) for part in first["loc"]).split())
-        raise InputError(f"{path}: {where}: {first['msg']} (got {first['input']!r:.80})") from None
+    potential = load_settings(Potential, path, "potential", "config/potentials/pmmcs.yaml")
     _check(path, potential)
     return potential
 

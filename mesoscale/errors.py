@@ -1,8 +1,8 @@
 """The one error type for mistakes of the user's input, and its kind for what was not computed."""
 
+from asperity.guards.errors import InputError
 
-class InputError(ValueError):
-    """Bad input: the message is one line naming file, key, value, what is accepted and what to do."""
+__all__ = ["InputError", "NotComputed"]
 
 
 class NotComputed(InputError):

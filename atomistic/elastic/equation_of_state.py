@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asperity.guards.errors import InputError
 from atomistic.constants import EV_PER_A3_IN_GPA
-from atomistic.errors import InputError
 
 MIN_POINTS = 5
 B_PRIME_RANGE = (2.0, 7.0)  # outside it, a solid this side of melting is unlikely and the fit suspect

@@ -14,9 +14,9 @@ import numpy as np
 from ase import Atoms
 from ase.data import atomic_numbers
 
+from asperity.guards.errors import InputError
 from atomistic.constants import AMU_PER_A3_IN_G_CM3
 from atomistic.covalent import QUENCH, core_commands, random_places, tersoff_table
-from atomistic.errors import InputError
 from atomistic.materials import SEARCHED_A, Material, NetworkGlass, Supercell
 from atomistic.settings import NitrideGlassSettings
 

@@ -13,12 +13,12 @@ from ase import Atoms
 from ase.build import bulk
 from ase.calculators.calculator import CalculationFailed
 
+from asperity.guards.errors import InputError
 from atomistic.elastic.dft import make_calculator
 from atomistic.elastic.energy_scans import scan_volumes
 from atomistic.elastic.equation_of_state import EquationOfState, fit_equation_of_state
 from atomistic.elastic.networks import no_insulator
 from atomistic.elastic.relaxation import last_gap_eV, strained
-from atomistic.errors import InputError
 from atomistic.materials import NetworkGlass
 from atomistic.settings import DftSettings, ElasticSettings
 

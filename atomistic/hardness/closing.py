@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.hardness.asperity import cut_asperity, formula_of
 from atomistic.hardness.contact_area import Area, calibrated, contact_map, shares_in_contact
 from atomistic.hardness.film_base import Base

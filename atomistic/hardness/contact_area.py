@@ -11,7 +11,7 @@ import numpy as np
 from scipy.ndimage import binary_fill_holes, distance_transform_edt
 from scipy.spatial import KDTree
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.potentials import Potential
 
 

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
+from asperity.guards.errors import InputError
 from atomistic.constants import AVOGADRO
 from atomistic.covalent import random_places
-from atomistic.errors import InputError
 from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
 from atomistic.materials import SEARCHED_A, SHORTEST_BOND_A, Material, OxideGlass
 from atomistic.potentials import ForceField, Potential

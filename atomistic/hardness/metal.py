@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import run_segments
 from atomistic.lammps import Atoms, Progress, Workspace

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from asperity.guards.errors import InputError
 from atomistic.constants import AVOGADRO
 from atomistic.covalent import Quench, core_commands, random_places, tersoff_table
-from atomistic.errors import InputError
 from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import NEAREST_START_A, density_g_cm3, run_segments, unlike_neighbours
 from atomistic.lammps import Atoms, Progress, Workspace

@@ -2,7 +2,8 @@
 
 import math
 
-from atomistic.settings import AsperitySettings, HardnessSettings, Settings
+from asperity.guards.settings import Settings
+from atomistic.settings import AsperitySettings, HardnessSettings
 
 
 class ClosingRun(Settings):

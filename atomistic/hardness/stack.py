@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.hardness.asperity import cut_asperity, formula_of, neutralise, profile
 from atomistic.hardness.film_base import NEIGHBOURS, Base
 from atomistic.hardness.metal import Metal

@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 
 DENSE_CUTOFF_A = 1.65
 """D of flat dense solids, Å (Israelachvili, section 13.13)."""

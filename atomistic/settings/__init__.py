@@ -1,6 +1,5 @@
 """Settings of the atomistic stages, a module each: every key with its default, unit and accepted range."""
 
-from atomistic.settings.base import Settings
 from atomistic.settings.elastic import DftSettings, ElasticSettings, NitrideGlassSettings
 from atomistic.settings.hardness import (
     AsperitySettings,
@@ -19,5 +18,4 @@ __all__ = [
     "GlassSettings",
     "HardnessSettings",
     "NitrideGlassSettings",
-    "Settings",
 ]

@@ -4,8 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, field_validator
 
-from asperity.guards.keys import key
-from atomistic.settings.base import Settings
+from asperity.guards.settings import Settings, key
 
 
 class NitrideGlassSettings(Settings):

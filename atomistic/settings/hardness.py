@@ -4,8 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from asperity.guards.keys import key
-from atomistic.settings.base import Settings
+from asperity.guards.settings import Settings, key
 
 
 class GlassSettings(Settings):

@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from atomistic.errors import InputError as AtomisticInputError
 from atomistic.potentials import load_potential
 from evidence.attacks.runs import HANG_S, Attack, campaign_table, figures
 from mesoscale.errors import InputError
@@ -189,7 +188,7 @@ def _judge(path: Path) -> tuple[str, str]:
             foreign_table(path, str(path))
         else:
             load_measurements(path)
-    except (InputError, AtomisticInputError, SceneError) as error:
+    except (InputError, SceneError) as error:
         line = str(error).replace(f"{path.parent}/", "")
         return ("refused", line) if "\n" not in line and len(line) < 1500 else ("fault", f"long refusal: {line}")
     except Exception as error:

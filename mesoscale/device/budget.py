@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import model_validator
 from scipy.constants import elementary_charge
 
-from asperity.guards.keys import key
+from asperity.guards.settings import Settings, key
 from mesoscale.device.by_key import OF_A_PLATE, value_of
 from mesoscale.device.electrode import solve_deepened
 from mesoscale.device.numerics import SWITCH
@@ -18,7 +18,6 @@ from mesoscale.device.points import Solved
 from mesoscale.device.spread import departed
 from mesoscale.errors import InputError
 from mesoscale.settings import DeviceSettings
-from mesoscale.settings.base import Settings
 
 HERE = "this scene's points"
 SETTLE = {"common": "measure it", "each": "control it from device to device"}

@@ -1,6 +1,6 @@
 """Settings of the mesoscale stages, a module each: every key with its default, unit and accepted range."""
 
-from mesoscale.settings.base import Settings
+from asperity.guards.settings import Settings
 from mesoscale.settings.contact import ContactSettings, ReadingSettings
 from mesoscale.settings.device import DeviceSettings
 from mesoscale.settings.failure import FailureSettings

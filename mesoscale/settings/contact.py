@@ -6,8 +6,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from asperity.guards.keys import key
-from mesoscale.settings.base import Settings
+from asperity.guards.settings import Settings, key
 from mesoscale.settings.surface import SurfaceSettings
 
 AttractionLaw = Literal["clamped", "offset"]

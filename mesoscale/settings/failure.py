@@ -1,7 +1,6 @@
 """Settings of the failure rate."""
 
-from asperity.guards.keys import key
-from mesoscale.settings.base import Settings
+from asperity.guards.settings import Settings, key
 
 
 class FailureSettings(Settings):

@@ -4,8 +4,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from asperity.guards.keys import key
-from mesoscale.settings.base import Settings
+from asperity.guards.settings import Settings, key
 
 DWELL_STEPS = 12
 """Times within a dwell at which the contact is solved, evenly in ln(1 + t/t0)."""

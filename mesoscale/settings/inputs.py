@@ -5,8 +5,7 @@ from typing import Any, Literal, Self, cast
 
 from pydantic import Field, create_model, field_validator, model_validator
 
-from asperity.guards.keys import key
-from mesoscale.settings.base import Settings
+from asperity.guards.settings import Settings, key
 from mesoscale.settings.contact import RANGE_IN_D0, WORK_FACTOR, AttractionLaw
 from mesoscale.settings.definitions import BY_NAME, INPUTS, InputDefinition
 

@@ -4,8 +4,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from asperity.guards.keys import key
-from mesoscale.settings.base import Settings
+from asperity.guards.settings import Settings, key
 
 
 class MeasurementTable(Settings):

@@ -4,8 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from asperity.guards.keys import key
-from mesoscale.settings.base import Settings
+from asperity.guards.settings import Settings, key
 
 Resistivity = Annotated[float, Field(ge=1e-3, le=1e18)]
 Path = Annotated[float, Field(ge=0, le=1e6)]

@@ -4,8 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from asperity.guards.keys import key
-from mesoscale.settings.base import Settings
+from asperity.guards.settings import Settings, key
 
 Positive = Annotated[float, Field(ge=1e-30, le=1e12)]
 Power = Annotated[float, Field(ge=1e-60, le=1e60)]

@@ -2,8 +2,7 @@
 
 from typing import Literal
 
-from asperity.guards.keys import key
-from mesoscale.settings.base import Settings
+from asperity.guards.settings import Settings, key
 
 LengthUnit = Literal["m", "mm", "um", "nm", "Å", "pm"]
 

@@ -2,8 +2,7 @@
 
 from typing import Literal
 
-from asperity.guards.keys import key
-from mesoscale.settings.base import Settings
+from asperity.guards.settings import Settings, key
 
 RESAMPLES = 200
 """Resamplings for the intervals of what direct runs say."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.materials import load_material, load_materials, oxide_glasses
 from atomistic.settings import ElasticSettings, HardnessSettings
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 import yaml
 
+from asperity.guards.errors import InputError
 from atomistic.constants import COULOMB_EV_A
-from atomistic.errors import InputError
 from atomistic.potentials import TABLE_START_A, load_potential
 
 POTENTIALS = Path(__file__).parents[2] / "config" / "potentials"

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from asperity.guards.foreign_text import from_word, shown
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.materials import load_materials, oxide_glasses
 from workflow.scene.memory import contact_MB, propagation_MB
 from workflow.scene import SceneError, files_of, load_scene, locate

@@ -20,9 +20,8 @@ from typing import Any, TextIO, TypeVar
 
 from pydantic import BaseModel
 
+from asperity.guards.errors import InputError
 from asperity.guards.foreign_text import shown
-from atomistic.errors import InputError as AtomisticInputError
-from mesoscale.errors import InputError as MesoscaleInputError
 from workflow.files.checksums import file_checksum, is_damaged, record_of
 from workflow.run.ownership import join
 from workflow.schemas import UnfitTable
@@ -203,7 +202,7 @@ def last_line(log: Path) -> str:
 
 def _one_line(error: Exception, log_path: Path) -> str:
     message = " ".join(str(error).split())
-    if isinstance(error, (AtomisticInputError, MesoscaleInputError, DamagedResult, UnfitTable)):
+    if isinstance(error, (InputError, DamagedResult, UnfitTable)):
         return message
     if isinstance(error, OSError):  # no permission, disk full, file missing: the system's words name the file
         return f"{message}; finished results are kept, run again when this is solved"

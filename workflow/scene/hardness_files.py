@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.hardness.runs import ClosingRun, planned_runs, smallest_run
 from atomistic.materials import Material, oxide_glasses
 from atomistic.settings import HardnessSettings

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from asperity.guards.errors import InputError
 from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.elastic.equation_of_state import fit_equation_of_state, vinet
-from atomistic.errors import InputError
 
 VOLUMES = np.linspace(270, 330, 7)
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from asperity.guards.errors import InputError
 from atomistic.covalent import Quench, core_commands, tersoff_table
 from atomistic.elastic import networks
 from atomistic.elastic.networks import (
@@ -17,7 +18,6 @@ from atomistic.elastic.networks import (
     same_network,
     symmetry_operations,
 )
-from atomistic.errors import InputError
 from atomistic.materials import load_material
 from atomistic.settings import NitrideGlassSettings
 from tests.atomistic.cheap_potential import tersoff_calculator

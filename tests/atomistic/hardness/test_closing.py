@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.glass import glass_properties, make_glass
 from atomistic.hardness.runs import PROTOCOL, planned_runs

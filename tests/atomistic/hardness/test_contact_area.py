@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.hardness.contact_area import Area, calibrated, contact_area, contact_map
 
 AREA = Area()

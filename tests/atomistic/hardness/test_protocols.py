@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from asperity.guards.errors import InputError
 from atomistic.constants import COULOMB_EV_A
-from atomistic.errors import InputError
 from atomistic.hardness.asperity import cut_asperity
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.cost import ATOM_STEPS_PER_CORE_SECOND, closing_seconds

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.hardness.readout import Sample, energy_drift
 from atomistic.lammps import load_dump
 

@@ -8,7 +8,7 @@ import pytest
 from pydantic import ValidationError
 from scipy.spatial import KDTree
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.hardness.closing import cut_body, oxide_bond, run_closing
 from atomistic.hardness.cost import closing_seconds
 from atomistic.hardness.glass import make_glass

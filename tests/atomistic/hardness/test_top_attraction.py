@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from atomistic.errors import InputError
+from asperity.guards.errors import InputError
 from atomistic.hardness.top_attraction import (
     attract_top,
     bulk_density_per_A3,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from asperity.guards.keys import key
+from asperity.guards.settings import key
 from mesoscale.studies.driver import Knob, compared, rows_of
 
 

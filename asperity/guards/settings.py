@@ -1,0 +1,114 @@
+"""Settings: keys with default, meaning, accepted range and unit in one line each, and the base of their classes."""
+
+import difflib
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from asperity.guards.errors import InputError
+from asperity.guards.foreign_yaml import MistakenYaml, load_mapping
+
+_INTERVAL = re.compile(r"([\[(])(\S+), (\S+)([\])])(?: (.+))?")
+
+
+def key(default: Any, meaning: str, accepted: str = "", **others: Any) -> Any:
+    """A field of a class of settings.
+
+    Parameters
+    ----------
+    default : its default; ``...``: it must be given.
+    meaning : one thought, as the documentation shows it.
+    accepted : interval and unit of a quantity, such as ``"(0, 30] nm"`` or ``"[1, inf)"``; a unit alone, ``"MPa"``,
+        for a list whose entries have an interval of their own; empty: what the type says.
+    others : further keywords of `pydantic.Field`, such as `min_length`.
+    """
+    unit: str | None = accepted
+    if match := _INTERVAL.fullmatch(accepted):
+        left, low, high, right, unit = match.groups()
+        ends = {"ge" if left == "[" else "gt": low, "le" if right == "]" else "lt": high}
+        others |= {bound: _number(end) for bound, end in ends.items() if not end.endswith("inf")}
+    return Field(default, description=meaning, json_schema_extra={"unit": unit} if unit else None, **others)
+
+
+def _number(text: str) -> int | float:
+    return int(text) if re.fullmatch(r"-?[0-9_]+", text) else float(text)
+
+
+class _OneLine(type(BaseModel)):
+    """Calling a class of settings from Python gives one line for all its mistakes; scenes are explained elsewhere."""
+
+    if not TYPE_CHECKING:  # type checkers read the arguments off the fields
+
+        def __call__(cls, /, *arguments, **values):
+            try:
+                return super().__call__(*arguments, **values)
+            except ValidationError as error:
+                mistakes = [
+                    f"{'.'.join(map(str, item['loc'])) or 'settings'} = {_shown(item['input'])}: "
+                    f"{_suggestion(cls, item) or item['msg']}"
+                    for item in error.errors()
+                ]
+                raise InputError(f"{cls.__name__}: {'; '.join(mistakes)}") from None
+
+
+def _suggestion(kind: type[BaseModel], error: Any) -> str:
+    """What an unknown key of the settings themselves may have meant; empty for other mistakes."""
+    if error["type"] != "extra_forbidden" or len(error["loc"]) > 1:
+        return ""
+    close = difflib.get_close_matches(str(error["loc"][0]), kind.model_fields, n=1)
+    return f"unknown key{f'; did you mean {close[0]}?' if close else ''} (accepted: {', '.join(kind.model_fields)})"
+
+
+def _shown(value: Any) -> str:
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+class Settings(BaseModel, metaclass=_OneLine):
+    """Base of all settings: unknown keys, infinities and NaN are refused; instances are frozen."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        """Add the keys with unit and default to the docstring, where `help()` shows them."""
+        super().__pydantic_init_subclass__(**kwargs)
+        lines = []
+        for name, field in cls.model_fields.items():
+            extra = field.json_schema_extra
+            unit = extra.get("unit") if isinstance(extra, dict) else None
+            value = field.get_default(call_default_factory=True)
+            default = type(value).__name__ if isinstance(value, BaseModel) else _shown(value)
+            head = f"{name} : {'required' if field.is_required() else f'default {default}'}"
+            lines += [head if unit is None else f"{head}, {unit}", f"    {field.description or ''}".rstrip()]
+        if lines:
+            cls.__doc__ = "\n".join([(cls.__doc__ or "").strip(), "", "Parameters", "----------", *lines])
+
+
+Content = TypeVar("Content", bound=Settings)
+
+
+def load_settings(kind: type[Content], path: Path, what: str, example: str) -> Content:
+    """A data file as settings.
+
+    Parameters
+    ----------
+    what : what the file is, for messages: material, potential.
+    example : a file to look at.
+
+    Raises
+    ------
+    InputError : unreadable or malformed file, unknown key, missing or non-physical value.
+    """
+    try:
+        return kind.model_validate(load_mapping(path, what))
+    except MistakenYaml as error:
+        raise InputError(f"{path}: {error}; see {example}") from None
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = " ".join(".".join(map(str, first["loc"])).split())
+        said = first["msg"].removeprefix("Value error, ")
+        got = "" if first["type"] in ("missing", "value_error") else f" (got {first['input']!r:.80})"
+        raise InputError(f"{path}: {where + ': ' if where else ''}{said}{got}") from None
