@@ -37,7 +37,7 @@ from mesoscale.topography.pooling import pool
 from mesoscale.topography.records import in_order, record
 from mesoscale.topography.summary import doubt_lines, measurement_lines, parameters, scan_rows
 
-Material = Mapping[str, float | InputRow | Any]
+MaterialInputs = Mapping[str, float | InputRow | Any]
 """Numbers, or distributions as `InputRow`, by the names of a scene's inputs: e_star, h_macro, h_prime, hamaker, …"""
 
 PIXELS = {128: 4.0, 256: 4.0, 512: 1.0, 1024: 1.0, 2048: 1.0}
@@ -158,7 +158,7 @@ class Film(Shown):
         figure.legend(fontsize="small", loc="outside lower center", ncols=2)
         return figure
 
-    def inputs(self, material: Material | None = None) -> InputTable:
+    def inputs(self, material: MaterialInputs | None = None) -> InputTable:
         """The uncertain inputs: roughness of the film, and the material (default: `MATERIAL`).
 
         Raises
@@ -173,7 +173,7 @@ class Film(Shown):
         return input_table(self.description, **rows)
 
     def press(
-        self, material: Material | None = None, load_nN: float | None = None, pixels: int | None = None
+        self, material: MaterialInputs | None = None, load_nN: float | None = None, pixels: int | None = None
     ) -> "Contact":
         """Close a cell of the film onto a flat up to a load, and open it: at central inputs, coupled asperities.
 

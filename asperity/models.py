@@ -30,7 +30,7 @@ INPUTS = tuple(field.name for field in fields(ContactInputs) if field.default is
 
 
 @dataclass(frozen=True)
-class Model:
+class ServedModel:
     """One model of the server.
 
     Attributes
@@ -146,9 +146,9 @@ def _pad(inputs: ContactInputs, config: Config) -> Sequence[Any]:
 MODELS = {
     model.name: model
     for model in (
-        Model("contact_cycle", ("seed", "contact"), _contact_cycle, lambda config: [3, LEVELS, LEVELS]),
-        Model("law", ("seed", "contact"), _law, lambda config: [len(PARAMETERS)] * 2),
-        Model(
+        ServedModel("contact_cycle", ("seed", "contact"), _contact_cycle, lambda config: [3, LEVELS, LEVELS]),
+        ServedModel("law", ("seed", "contact"), _law, lambda config: [len(PARAMETERS)] * 2),
+        ServedModel(
             "pad",
             ("seed", "cells", "separations_nm", "contact"),
             _pad,

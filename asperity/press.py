@@ -20,7 +20,7 @@ from mesoscale.extras import needs
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 
-Law = Callable[[np.ndarray], Any]
+PressureOfGaps = Callable[[np.ndarray], Any]
 
 
 @dataclass(frozen=True, repr=False)
@@ -92,7 +92,7 @@ def press(
     counterface: Any = None,
     periodic: bool = True,
     contact_at: ContactAt = "highest",
-    attraction: Law | None = None,
+    attraction: PressureOfGaps | None = None,
 ) -> PressedMap:
     """Press a map onto a flat, or onto a second map, and return pressure and gap at each load.
 
@@ -167,7 +167,7 @@ def _surface(
     return (-together if contact_at == "highest" else together.copy()), spacing
 
 
-def _pull(attraction: Law, gap: np.ndarray, contact: CoupledContact) -> float:
+def _pull(attraction: PressureOfGaps, gap: np.ndarray, contact: CoupledContact) -> float:
     """Force (nN, negative) of a law on all sites that do not touch, with their gaps."""
     sites = np.arange(contact.heights.size, dtype=np.int32)
     weight = attracting(sites, contact.place, contact.pressure, contact.n, False)

@@ -78,7 +78,7 @@ class Workers:
 
         Raises
         ------
-        InputError : see `asperity.models.Model`; or the evaluation takes too long.
+        InputError : see `asperity.models.ServedModel`; or the evaluation takes too long.
         RuntimeError : a fault of the model, or its worker died at every try.
         """
         worker = await self.free.get()

@@ -17,7 +17,7 @@ from atomistic.hardness.size_effect import (
     FIT_RULES,
     SLOPES,
     SYSTEMATIC,
-    Run,
+    PointRow,
     energy_range,
     samples_of,
     spearman,
@@ -53,7 +53,7 @@ class FilmFit:
 
 
 FILM_FIT = FilmFit()
-Law = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+LawOfHardness = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 class FilmPoints(NamedTuple):
@@ -89,7 +89,7 @@ class FilmPoints(NamedTuple):
         return (self.length_nm / np.where(self.film, self.thickness_nm, np.inf))[self.film]
 
 
-def points_of(points: Sequence[Run], curves: Mapping[str, Sequence[Mapping[str, float]]]) -> FilmPoints:
+def points_of(points: Sequence[PointRow], curves: Mapping[str, Sequence[Mapping[str, float]]]) -> FilmPoints:
     """The mean stresses of sound runs with the highest energies.
 
     Parameters
@@ -146,7 +146,7 @@ def film(values: np.ndarray, length: np.ndarray, thickness: np.ndarray) -> np.nd
     return h_base + (h_film - h_base) / (1 + k * (length / np.maximum(thickness, 1e-9)) ** m)
 
 
-LAWS: dict[str, tuple[Law, tuple[float, ...]]] = {
+LAWS: dict[str, tuple[LawOfHardness, tuple[float, ...]]] = {
     "constant": (constant, (6.0,)),
     "paper": (paper, (3.0, 5.0)),
     "film": (film, (9.0, 5.0, 0.3, 1.2)),
@@ -225,7 +225,7 @@ def _weighed(points: FilmPoints, drawn: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 def fit_films(
-    points: Sequence[Run],
+    points: Sequence[PointRow],
     curves: Mapping[str, Sequence[Mapping[str, float]]],
     glasses: Sequence[Mapping[str, Any]],
     area_error: float,

@@ -25,7 +25,7 @@ SLOPES = {0.222: 0.55, 0.444: 1.0, 0.889: 1.31}
 """Hardness of asperities by their RMS slope, over that of the second (study `hardness.choices`, two glasses)."""
 BERKOVICH = 0.358
 """Slope of a Berkovich tip: of the cone with the same area at each depth, whose half angle is 70.3 degrees."""
-Run = Mapping[str, str]
+PointRow = Mapping[str, str]
 """A row of points.csv."""
 
 
@@ -52,7 +52,7 @@ FIT_RULES = FitRules()
 
 
 def fit_size_effect(
-    points: Sequence[Run],
+    points: Sequence[PointRow],
     glasses: Sequence[Mapping],
     fit: FitSettings,
     energy_scales: Sequence[float],
@@ -153,7 +153,7 @@ def energy_range(
 
 
 def literature_samples(
-    points: Sequence[Run],
+    points: Sequence[PointRow],
     h_macro_GPa: tuple[float, float],
     systematic: Mapping[str, float],
     energies: tuple[float, float],
@@ -182,12 +182,12 @@ def relative_hardness(slope: float) -> float:
     return float(np.interp(np.log(slope), np.log(list(SLOPES)), list(SLOPES.values()), np.nan, np.nan))
 
 
-def rms_slope(point: Run) -> float:
+def rms_slope(point: PointRow) -> float:
     """RMS slope of eq. 6: one of two sine waves, wherever it is the lower one."""
     return float(np.sqrt(2) * np.pi * float(point["amplitude_nm"]) / float(point["wavelength_nm"]))
 
 
-def steepness(points: Sequence[Run]) -> dict[str, list[float]]:
+def steepness(points: Sequence[PointRow]) -> dict[str, list[float]]:
     """Factors by which the hardness of the runs is that at other slopes.
 
     Returns
@@ -201,7 +201,7 @@ def steepness(points: Sequence[Run]) -> dict[str, list[float]]:
     return {"rms_slope": list(SLOPES), "factor": [factor / of_runs for factor in SLOPES.values()]}
 
 
-def scatter_of_h_prime(points: Sequence[Run], h_macro_GPa: tuple[float, float]) -> float:
+def scatter_of_h_prime(points: Sequence[PointRow], h_macro_GPa: tuple[float, float]) -> float:
     """Standard deviation of H' that more runs would average, GPa nm^0.5: between the seeds of an asperity, within runs.
 
     The law of total variance splits the runs: between energy scales, asperities and seeds, and within a run.
@@ -221,7 +221,7 @@ def scatter_of_h_prime(points: Sequence[Run], h_macro_GPa: tuple[float, float]) 
     return float(np.sqrt(seed + run))
 
 
-def same_shape_exponents(points: Sequence[Run]) -> dict:
+def same_shape_exponents(points: Sequence[PointRow]) -> dict:
     """n in H ~ L^-n between runs whose contact takes up the same share of the wavelength, with its 68 % interval.
 
     There the runs of one shape differ by nothing but their size.  All that reached that share count, also those that
@@ -309,7 +309,7 @@ def _uniform(samples: np.ndarray, unit: str) -> dict:
     return {"distribution": "uniform", "a": low, "b": high, "unit": unit}
 
 
-def _columns(points: Sequence[Run]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _columns(points: Sequence[PointRow]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Hardness, half its interval, contact length, energy scale."""
 
     def column(name: str) -> np.ndarray:

@@ -11,7 +11,7 @@ from mesoscale.settings.inputs import DistributionRow
 
 REFERENCE_C = 20.0
 """Temperature at which stress and shape at rest are stated."""
-Part = tuple[float, float]
+PartOfBeam = tuple[float, float]
 
 
 class SpreadRow(DistributionRow):
@@ -107,10 +107,10 @@ class DeviceSettings(Settings):
     electrode_um2: float | None = key(
         None, "electrode area of a parallel-plate switch; null is length times width", "[0.0001, 1e9] um^2"
     )
-    electrode: Part = key(
+    electrode: PartOfBeam = key(
         (0.0, 1.0), "part of the beam over the electrode that pulls it, from and to", "share of the length"
     )
-    contact: Part = key(
+    contact: PartOfBeam = key(
         (0.0, 1.0),
         "part of the beam over the rough pad, from and to; elsewhere it lands on stoppers",
         "share of the length",

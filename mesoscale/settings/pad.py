@@ -6,7 +6,7 @@ from pydantic import Field, field_validator
 
 from asperity.guards.settings import Settings, key
 
-Scatter = Annotated[float, Field(ge=0, le=2)]
+RmsScatter = Annotated[float, Field(ge=0, le=2)]
 
 PILOTS = 16
 """Most cells of a pad that are closed side by side, to find the range of separations."""
@@ -27,7 +27,7 @@ class PadSettings(Settings):
     point_cells: int = key(
         12, "cells of each of these pads; a point that they leave undecided has four times as many", "[2, 10_000]"
     )
-    rms_scatter: tuple[Scatter, Scatter] | None = key(
+    rms_scatter: tuple[RmsScatter, RmsScatter] | None = key(
         None,
         "range of the standard deviation of ln RMS between places of a film, of which a pad holds all; "
         "`inputs.rms` is then that of the median place. null: by topography where RMS comes from there, else "

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from asperity.guards.settings import Settings, key
 
 Resistivity = Annotated[float, Field(ge=1e-3, le=1e18)]
-Path = Annotated[float, Field(ge=0, le=1e6)]
+FreePath = Annotated[float, Field(ge=0, le=1e6)]
 
 
 class ResistanceSettings(Settings):
@@ -16,7 +16,7 @@ class ResistanceSettings(Settings):
     resistivities_nOhm_m: tuple[Resistivity, Resistivity] | None = key(
         None, "resistivities of the two bodies, such as [22, 22] for gold; null: the stage is not run", "nOhm m"
     )
-    mean_free_paths_nm: tuple[Path, Path] | None = key(
+    mean_free_paths_nm: tuple[FreePath, FreePath] | None = key(
         None,
         "mean free paths of the electrons in the two bodies, to be given with resistivities; 37.7 in gold at 20 C "
         "(Gall, J. Appl. Phys. 119 (2016) 085101); 0 leaves Sharvin's resistance out",

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from asperity.guards.settings import Settings, key
 
 Positive = Annotated[float, Field(ge=1e-30, le=1e12)]
-Power = Annotated[float, Field(ge=1e-60, le=1e60)]
+PsdValue = Annotated[float, Field(ge=1e-60, le=1e60)]
 """As far apart as logarithms of single precision are: of a spectrum by points only the shape counts."""
 
 
@@ -23,7 +23,7 @@ class SpectrumSettings(Settings):
     """A spectrum by points instead of the form of eq. 9; only its shape counts, the RMS is that of Table 1."""
 
     q: tuple[Positive, ...] = key(..., "wave vectors in rising order", "1/nm", min_length=2, max_length=10000)
-    psd: tuple[Power, ...] = key(
+    psd: tuple[PsdValue, ...] = key(
         ..., "C at these, of the two-dimensional spectrum", "nm^4", min_length=2, max_length=10000
     )
 

@@ -27,8 +27,8 @@ OUTPUTS = (
 )
 SEEDS = (1, 2, 3)
 
-Choice = tuple[ContactSettings, Numerics]
-Study = tuple[str, str, Choice, list[tuple[Any, Choice]]]
+Setup = tuple[ContactSettings, Numerics]
+Study = tuple[str, str, Setup, list[tuple[Any, Setup]]]
 """Knob, its reference in words, the reference, and its values with what each makes of settings and numerics."""
 
 
@@ -36,7 +36,7 @@ def studies(settings: ContactSettings) -> Iterator[Study]:
     """What is tried; all grids show the surface of the settings: that of its cut-off, or of the Nyquist limit."""
 
     def numerics(knob: str, best: Any, words: str, values: Sequence[Any], **others: Any) -> Study:
-        def changed(value: Any) -> Choice:
+        def changed(value: Any) -> Setup:
             return settings, replace(NUMERICS, **{knob: value}, **others)
 
         return knob, words, changed(best), [(value, changed(value)) for value in values]
@@ -59,7 +59,7 @@ def studies(settings: ContactSettings) -> Iterator[Study]:
         finest = max(finest, min(4 * pixels, 4096))
     grids = [n for n in (pixels // 4, pixels // 2, pixels, 2 * pixels) if 32 <= n < finest]
 
-    def grid(pixels: int) -> Choice:
+    def grid(pixels: int) -> Setup:
         return settings.model_copy(update={"pixels": pixels, "q1_per_nm": cutoff}), NUMERICS
 
     resolving = [(n, grid(n)) for n in grids if np.pi * n / settings.length_nm >= cutoff]

@@ -13,7 +13,6 @@ from mesoscale.uncertainty.designs import SAMPLE_SEED
 from mesoscale.uncertainty.surrogate import Response, evaluate
 
 Array = NDArray[np.float64]
-Responses = Sequence[Response | None]
 
 TOLERANCE = 0.05
 """Relative violation of physics that is put down to the scatter of the fit."""
@@ -50,7 +49,7 @@ def explained(first: Array, second: Array, predicted: Array, rng: np.random.Gene
     return row
 
 
-def against_physics(responses: Responses, table: InputTable, most_GPa: float) -> dict[str, str]:
+def against_physics(responses: Sequence[Response | None], table: InputTable, most_GPa: float) -> dict[str, str]:
     """Outputs whose response contradicts physics, by name, each with a line that says how.
 
     On closing, the repulsion at equal separation rises with E* and hardness, and the attraction goes with the Hamaker

@@ -60,14 +60,14 @@ class Surrogate:
         width = high - low
         return np.where(width > 0, 2 * (x - low) / np.where(width > 0, width, 1.0) - 1, 0.0)
 
-    def __call__(self, x: "Array | Points") -> Array:
+    def __call__(self, x: "Array | SharedBasis") -> Array:
         """Output at inputs x of shape (m, n)."""
-        points = x if isinstance(x, Points) else Points(np.atleast_2d(x))
+        points = x if isinstance(x, SharedBasis) else SharedBasis(np.atleast_2d(x))
         total = points.basis(self) @ self.coefficients
         return np.exp(total) if self.transform == "log" else total
 
 
-class Points:
+class SharedBasis:
     """Inputs at which several responses are wanted: those with the same terms share their basis."""
 
     def __init__(self, x: Array):
@@ -100,7 +100,7 @@ class Below:
         """Degrees of the drop's terms, shape (terms, n)."""
         return self.drop.degrees
 
-    def __call__(self, x: Array | Points) -> Array:
+    def __call__(self, x: Array | SharedBasis) -> Array:
         """Output at inputs x of shape (m, n)."""
         return self.above(x) - self.drop(x)
 
@@ -108,9 +108,9 @@ class Below:
 Response = Surrogate | Below
 
 
-def evaluate(responses: Sequence[Callable[[Points], Array] | None], x: Array) -> Array:
+def evaluate(responses: Sequence[Callable[[SharedBasis], Array] | None], x: Array) -> Array:
     """Responses at inputs x (m, n), shape (m, responses); NaN where there is no response."""
-    points = Points(x)
+    points = SharedBasis(x)
     return np.stack([response(points) if response else np.full(len(x), np.nan) for response in responses], axis=1)
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from workflow.report.measured_surface import doubts
-from workflow.report.page import Doubt
+from workflow.report.page import DoubtNote
 from workflow.report.surface_picture import short_names
 
 DOUBTS = [
@@ -14,8 +14,8 @@ DOUBTS = [
 
 def test_a_doubt_is_said_about_the_numbers_that_it_touches():
     spectrum, heights = (list(doubts({"doubts": DOUBTS}, *about)) for about in (("spectrum",), ("rms", "heights")))
-    assert spectrum == [Doubt("Doubt about spectrum (gap): nothing is measured there. To do: add scans.")]
-    assert heights == [Doubt("Doubt about rms (one_place): one measurement.")]
+    assert spectrum == [DoubtNote("Doubt about spectrum (gap): nothing is measured there. To do: add scans.")]
+    assert heights == [DoubtNote("Doubt about rms (one_place): one measurement.")]
 
 
 @pytest.mark.parametrize(

@@ -6,12 +6,12 @@ from mesoscale.device.points import Pad, Solved
 from mesoscale.pad.memory import Flats
 from mesoscale.settings import ContactSettings, DeviceSettings
 from tests.mesoscale.device.test_release import MIDDLE, SEPARATION, TABLE, cells_of
-from workflow.run.pads import Points, load_model, write_solved
+from workflow.run.pads import ScenePoints, load_model, write_solved
 
 
 def test_a_model_comes_back_from_its_file_and_from_its_parts(tmp_path):
     """With a point that could not be pressed, and one of whose halves one carries no switch."""
-    points = Points(TABLE, ContactSettings(mechanics="asperity"), DeviceSettings(), 2)
+    points = ScenePoints(TABLE, ContactSettings(mechanics="asperity"), DeviceSettings(), 2)
     pad = Pad(cells_of(MIDDLE.pressed(np.full(SEPARATION.size, 0.05), SEPARATION), 0.1), Flats(0.2, 0.165))
     states = {"pull_in_V": 70.0, "release_V": 6.0, "capacitance_fF": 8e3, "landed_share": 0.5, "deepened": 0.0}
     solved = {

@@ -6,7 +6,7 @@ from typing import Any
 from workflow.report.available import Results, Row
 from workflow.report.drawing import draw
 from workflow.report.numbers import cell, show, shown_unit
-from workflow.report.page import Block, Doubt, Figure, Table, table
+from workflow.report.page import Block, DoubtNote, Figure, PageTable, table
 from workflow.report.surface_picture import draw_one_spectrum, short_names
 
 JUDGED = "topography/judged.csv"
@@ -53,12 +53,12 @@ def described_surface(results: Results, parameters: Mapping[str, Any]) -> Iterat
     yield from doubts(parameters, "contact")
 
 
-def doubts(parameters: Mapping[str, Any], *about: str) -> Iterator[Doubt]:
+def doubts(parameters: Mapping[str, Any], *about: str) -> Iterator[DoubtNote]:
     """The doubts about some quantities, to stand behind their numbers."""
     for doubt in parameters.get("doubts", []):
         if doubt["about"] in about:
             remedy = f" To do: {doubt['remedy']}." if doubt["remedy"] else ""
-            yield Doubt(f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}.{remedy}")
+            yield DoubtNote(f"Doubt about {doubt['about']} ({doubt['code']}): {doubt['text']}.{remedy}")
 
 
 def _one_spectrum(results: Results, parameters: Mapping[str, Any]) -> str | None:
@@ -102,7 +102,7 @@ def _statistics(parameters: Mapping[str, Any]) -> Iterator[Block]:
         )
 
 
-def _judgement(rows: Sequence[Row]) -> Table:
+def _judgement(rows: Sequence[Row]) -> PageTable:
     short = short_names(list(dict.fromkeys(row["scan"] for row in rows)))
     return table(
         "The scans pressed (their largest square, made periodic), beside surfaces made from their description",

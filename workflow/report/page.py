@@ -25,7 +25,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Table:
+class PageTable:
     """A table of text cells.
 
     Attributes
@@ -44,15 +44,15 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Doubt:
+class DoubtNote:
     """A doubt, beside the numbers that it touches."""
 
     text: str
 
 
-Block = str | Figure | Table | Doubt
+Block = str | Figure | PageTable | DoubtNote
 """Text is a note, which stands below the figures and tables."""
-Column = str | Callable[[Any], str | None]
+CellText = str | Callable[[Any], str | None]
 
 
 @dataclass(frozen=True)
@@ -132,15 +132,15 @@ def stage(
 def table(
     caption: str,
     rows: Iterable[Mapping[str, Any]],
-    columns: Mapping[str, Column],
+    columns: Mapping[str, CellText],
     heads: int = 1,
     faint: Collection[str] = (),
     front: bool = False,
-) -> Table:
+) -> PageTable:
     """Rows of a result file under column heads; a column is the key of its text, or a function of the row."""
     lines = [tuple(_text(row, column) or "–" for column in columns.values()) for row in rows]
-    return Table(caption, tuple(columns), lines, heads, faint, front)
+    return PageTable(caption, tuple(columns), lines, heads, faint, front)
 
 
-def _text(row: Mapping[str, Any], column: Column) -> str:
+def _text(row: Mapping[str, Any], column: CellText) -> str:
     return str(row.get(column, "")) if isinstance(column, str) else column(row) or ""

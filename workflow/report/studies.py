@@ -6,7 +6,7 @@ import numpy as np
 
 from workflow.report.available import Results, Row
 from workflow.report.numbers import column, number, show
-from workflow.report.page import Block, Section, Table, section
+from workflow.report.page import Block, PageTable, Section, section
 
 GOOD_ENOUGH = 0.01  # an error below this is not worth more time
 NEAR_BEST = 2.0  # nor is one within this factor of the best
@@ -33,7 +33,7 @@ def _accuracy(tables: dict[str, list[Row]]) -> Iterator[Block]:
     )
     names = ("stage", "setting", "recommended", "its largest error", "its time (s)", "best error tried")
     lines = [line for stage, rows in tables.items() for line in recommended(stage, rows)]
-    yield Table("Recommended settings", (*names, "at (s)", "against"), lines, heads=2)
+    yield PageTable("Recommended settings", (*names, "at (s)", "against"), lines, heads=2)
 
 
 def _stability(tables: dict[str, list[Row]]) -> Iterator[Block]:

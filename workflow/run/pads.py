@@ -85,7 +85,7 @@ def _curves(cells: PadCells) -> dict[str, Dataset]:
     return {name: Dataset(values[name], *described) for name, described in CURVES.items()}
 
 
-class Points:
+class ScenePoints:
     """All points of a scene by their numbers, of which 0 is the central one.
 
     Attributes
@@ -101,12 +101,12 @@ class Points:
         self.by_number = dict(enumerate((central_point(table, contact, device), *self.design.points)))
 
 
-def points_of(inputs: str, contact: ContactSettings, device: DeviceSettings, count: int) -> Points:
+def points_of(inputs: str, contact: ContactSettings, device: DeviceSettings, count: int) -> ScenePoints:
     """So many points and the central one, from pad/inputs.csv."""
-    return Points(from_rows(load_csv(inputs)), contact, device, count)
+    return ScenePoints(from_rows(load_csv(inputs)), contact, device, count)
 
 
-def points_of_job(snakemake: Any) -> tuple[Points, PadSettings]:
+def points_of_job(snakemake: Any) -> tuple[ScenePoints, PadSettings]:
     """The points of a job that has the inputs of a cell, and sections `contact`, `device` and `pad` of its scene."""
     contact = contact_settings(snakemake.params.contact, snakemake)
     device = settings_from_job(DeviceSettings, snakemake.params.device)
@@ -114,10 +114,10 @@ def points_of_job(snakemake: Any) -> tuple[Points, PadSettings]:
     path = snakemake.input.get("topography")
     film = load_json(path)["film"] if path else {}
     table = film_table(from_rows(load_csv(snakemake.input.inputs)), film, pad.rms_scatter)
-    return Points(table, contact, device, pad.points), pad
+    return ScenePoints(table, contact, device, pad.points), pad
 
 
-def load_model(paths: Sequence[str], points: Points) -> PadModel:
+def load_model(paths: Sequence[str], points: ScenePoints) -> PadModel:
     """The pad from pad/model.h5, or from the files of its parts."""
     solved = dict(item for path in paths for item in _of_file(path, points.by_number))
     central = solved.pop(0)

@@ -11,7 +11,7 @@ from mesoscale.law.parameters import PARAMETERS
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, INK, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import number, show
-from workflow.report.page import Block, Figure, Table, stage
+from workflow.report.page import Block, Figure, PageTable, stage
 
 MODELS = {
     "elastic": ("elastic", ":"),
@@ -64,7 +64,7 @@ def describe(results: Results) -> Iterator[Block]:
     used = [(label, _in_words(value)) for key, label in words.items() if (value := chosen.get(key)) is not None]
     if used:
         caption = "Readings of the paper in use" if results.beside_paper else "Choices of the contact model"
-        yield Table(caption, ("choice", "value"), used)
+        yield PageTable(caption, ("choice", "value"), used)
 
 
 def spots(results: Results) -> str | None:

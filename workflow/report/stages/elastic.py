@@ -8,7 +8,7 @@ import numpy as np
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, ORANGE, SERIES, draw
 from workflow.report.numbers import cell, column, number, show
-from workflow.report.page import Block, Figure, Table, stage, table
+from workflow.report.page import Block, Figure, PageTable, stage, table
 
 SHARES = {
     "structure": "structure of the glass",
@@ -57,11 +57,11 @@ def describe(results: Results) -> Iterator[Block]:
     yield from summary.get("notes", [])
 
 
-def shares_table(summary: Mapping[str, Any]) -> Table:
+def shares_table(summary: Mapping[str, Any]) -> PageTable:
     """What the variance of E* comes from."""
     shares = summary["shares"]
     lines = [(words, f"{shares[key]['total']:.0%}") for key, words in SHARES.items() if shares.get(key)]
-    return Table("What the variance of E* comes from", ("source", "share of the variance"), lines)
+    return PageTable("What the variance of E* comes from", ("source", "share of the variance"), lines)
 
 
 def elastic_distribution(results: Results) -> str | None:

@@ -8,7 +8,7 @@ import numpy as np
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SOFT, draw
 from workflow.report.numbers import cell, column, number, show, spread
-from workflow.report.page import Block, Column, Figure, stage, table
+from workflow.report.page import Block, CellText, Figure, stage, table
 
 SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE, "s")}
 PAPER_HARDNESS = ((3.0, 10.0), (15.0, 2.0))  # nm, GPa: "~10 GPa at 3 nm, ~2 GPa at 15 nm" in the paper's text
@@ -51,7 +51,7 @@ def describe(results: Results) -> Iterator[Block]:
             "What a film keeps of the difference between its own hardness and that of the body below, against contact "
             "length over thickness: the law in use, with its 68 % interval. Grey: where the runs lie.",
         )
-    columns: dict[str, Column] = {
+    columns: dict[str, CellText] = {
         "run": "run",
         "energy scale": cell("energy_scale"),
         "film (nm)": cell("film_nm"),

@@ -11,7 +11,7 @@ from mesoscale.inputs.table import distribution_of, from_rows
 from mesoscale.settings.definitions import BY_NAME
 from workflow.report.available import Results, Row
 from workflow.report.numbers import number, show, shown_unit
-from workflow.report.page import Block, Table, stage, table
+from workflow.report.page import Block, PageTable, stage, table
 from workflow.report.verdict import in_words
 
 STAGE_FILES = ("hardness/fit.json", "elastic/e_star.json", "topography/parameters.json")
@@ -39,7 +39,7 @@ def describe(results: Results) -> Iterator[Block]:
             "computed: median, 5 to 95 %",
             "the other median moves the release",
         )
-        yield Table("Stated, although a stage computes it", header, beside, front=True)
+        yield PageTable("Stated, although a stage computes it", header, beside, front=True)
     of_pad = results.csv("pad/inputs.csv") if results.has("pad/inputs.csv") else []
     if other := [row for row in of_pad if row not in rows]:
         yield table("Of a pad, which holds all places of the film", other, columns, front=True)

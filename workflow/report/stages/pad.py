@@ -8,7 +8,7 @@ import numpy as np
 from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, SERIES, SOFT, draw
 from workflow.report.numbers import cell, column, show, spread
-from workflow.report.page import Block, Doubt, Figure, Table, stage, table
+from workflow.report.page import Block, DoubtNote, Figure, PageTable, stage, table
 from workflow.report.verdict import causes_of, in_words
 
 CAUSES = {
@@ -69,9 +69,9 @@ def _answer(answer: dict[str, Any]) -> Iterator[Block]:
         ("error of one of them by the number of its cells (V)", show(answer["cells_error_V"], 2)),
         *((f"share of {CAUSES[row['cause']]}", f"{row['share_of_variance']:.1%}") for row in answer["causes"]),
     ]
-    yield Table("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows)
+    yield PageTable("Behind the interval of the release: median and 5 to 95 %", ("quantity", "value"), rows)
     if no_cause := causes_of(answer)[1]:
-        yield Doubt(f"The shares of the variance name no cause: {no_cause}.")
+        yield DoubtNote(f"The shares of the variance name no cause: {no_cause}.")
     for kind, caption in KINDS.items():
         yield table(
             caption,

@@ -7,7 +7,7 @@ import numpy as np
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, ORANGE, draw
 from workflow.report.numbers import column, show
-from workflow.report.page import Block, Figure, Table, stage
+from workflow.report.page import Block, Figure, PageTable, stage
 
 COLORS = {"closing": BLUE, "opening": ORANGE, "closing again": GREEN}
 
@@ -47,4 +47,4 @@ def describe(results: Results) -> Iterator[Block]:
         for force in [quantiles["closing"][0]]
         for k in range(len(force))
     ]
-    yield Table("Resistance (Ω)", ("force (nN)", *quantiles), lines)
+    yield PageTable("Resistance (Ω)", ("force (nN)", *quantiles), lines)

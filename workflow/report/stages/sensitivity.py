@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from workflow.report.available import Results
 from workflow.report.gates import faint_outputs
 from workflow.report.numbers import OUTPUTS, SYMBOLS, number, show
-from workflow.report.page import Block, Table, stage
+from workflow.report.page import Block, PageTable, stage
 
 
 @stage("What matters for the law of one cell", "uq/sensitivity.csv")
@@ -33,7 +33,7 @@ def describe(results: Results) -> Iterator[Block]:
         + " Grey rows are not to be trusted."
     )
     caption = "Elementary effects µ*" + " here (and in the paper's Table 3)" * paper
-    yield Table(caption, ("output", *(SYMBOLS.get(name, name) for name in names)), lines, faint=grey)
+    yield PageTable(caption, ("output", *(SYMBOLS.get(name, name) for name in names)), lines, faint=grey)
     if paper:
         yield (
             "For the closing rows C_a and C_r the paper's Table 3 is read with its two labels exchanged, "

@@ -9,7 +9,7 @@ from workflow.report.available import Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, RED, SKY, SOFT, draw
 from workflow.report.measured_surface import chosen_description, described_surface, doubts
 from workflow.report.numbers import SYMBOLS, cell, show, shown_unit
-from workflow.report.page import Block, Figure, Table, stage, table
+from workflow.report.page import Block, Figure, PageTable, stage, table
 from workflow.report.surface_picture import short_names
 
 
@@ -46,7 +46,7 @@ def describe(results: Results) -> Iterator[Block]:
     yield from described_surface(results, parameters)
 
 
-def _estimates(parameters: Mapping[str, Any], beside_paper: bool) -> Table:
+def _estimates(parameters: Mapping[str, Any], beside_paper: bool) -> PageTable:
     paper = {"q0": "≈ 0.02", "hurst": "≈ 0.92 (0.46 to 1.20) by 2H + 1", "rms": "1.82 to 14.17", "slope": "2.84"}
     truth = parameters.get("truth") or {}
     used = parameters.get("description", {}).get("name", "power_law") == "power_law"

@@ -8,7 +8,7 @@ from workflow.report.available import Results, Row
 from workflow.report.drawing import BLUE, ORANGE, SOFT, draw
 from workflow.report.gates import faint_outputs
 from workflow.report.numbers import OUTPUTS, column, number, show
-from workflow.report.page import Block, Figure, Table, stage
+from workflow.report.page import Block, Figure, PageTable, stage
 
 COLORS = {"closing": BLUE, "opening": ORANGE}
 
@@ -71,7 +71,7 @@ def band(results: Results) -> str:
     return draw("law", "Contact pressure against separation with the spread over uncertain inputs", plot)
 
 
-def _table2(results: Results) -> Table:
+def _table2(results: Results) -> PageTable:
     """Table 2, each number under the method that gave it."""
     paper = results.beside_paper
     rows = {row["output"]: row for row in results.csv("uq/outputs.csv")}
@@ -103,4 +103,4 @@ def _table2(results: Results) -> Table:
         lines.append(tuple(cells))
         faint += [cells[0]] if name in faint_outputs(results) else []
     caption = "Law parameters on closing and their change on opening" + " (the paper's Table 2)" * paper
-    return Table(caption, header, lines, faint=faint)
+    return PageTable(caption, header, lines, faint=faint)
