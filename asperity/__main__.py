@@ -264,15 +264,7 @@ def _refuse(message: str) -> int:
     return 1
 
 
-CARRIED_OUT_BY = {
-    "run": _run,
-    "plan": _plan,
-    "open": _open,
-    "film": _film,
-    "demo": _demo,
-    "new": _new,
-    "serve": _serve,
-}
+CARRIED_OUT_BY = {"run": _run, "plan": _plan, "open": _open, "film": _film, "demo": _demo, "new": _new, "serve": _serve}
 
 
 if __name__ == "__main__":

@@ -149,10 +149,7 @@ MODELS = {
         ServedModel("contact_cycle", ("seed", "contact"), _contact_cycle, lambda config: [3, LEVELS, LEVELS]),
         ServedModel("law", ("seed", "contact"), _law, lambda config: [len(PARAMETERS)] * 2),
         ServedModel(
-            "pad",
-            ("seed", "cells", "separations_nm", "contact"),
-            _pad,
-            lambda config: [len(_separations(config))] * 2,
+            "pad", ("seed", "cells", "separations_nm", "contact"), _pad, lambda config: [len(_separations(config))] * 2
         ),
     )
 }

@@ -222,13 +222,7 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
 
     elements = tuple(material.formula)
     network: NetworkGlass = material.part("network_glass")
-    start = random_structure(
-        material.formula,
-        settings.formula_units,
-        network.start_density_g_cm3,
-        seed,
-        network.edges,
-    )
+    start = random_structure(material.formula, settings.formula_units, network.start_density_g_cm3, seed, network.edges)
     symbols = start.get_chemical_symbols()
     types = np.array([elements.index(symbol) + 1 for symbol in symbols])
     identity = {

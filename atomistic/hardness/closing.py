@@ -13,14 +13,7 @@ from atomistic.hardness.contact_area import Area, calibrated, contact_map, share
 from atomistic.hardness.film_base import Base
 from atomistic.hardness.glass import cations
 from atomistic.hardness.plateau import RULES, may_stop
-from atomistic.hardness.pressing import (
-    Plan,
-    base_thickness_nm,
-    lammps_seed,
-    plan_closing,
-    prepare_body,
-    press_body,
-)
+from atomistic.hardness.pressing import Plan, base_thickness_nm, lammps_seed, plan_closing, prepare_body, press_body
 from atomistic.hardness.readout import OxideBond, PressedCell, Readout, Rows, witness_rows
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
 from atomistic.hardness.stack import Stack, check_film, cut_base, film_properties, lay

@@ -175,11 +175,7 @@ def find_hardness(
         plateau is asked for.
     """
     column = {name: np.array([float(row[name]) for row in curve]) for name in curve[0]}
-    length, stress, travel = (
-        column["contact_length_nm"],
-        column["contact_stress_GPa"],
-        column["displacement_nm"],
-    )
+    length, stress, travel = (column["contact_length_nm"], column["contact_stress_GPa"], column["displacement_nm"])
     elapsed_ps = column["time_ps"][-1] - column["time_ps"][0]
     drift = float(np.max(np.abs(column["energy_drift_meV_per_atom"])) / elapsed_ps)
     temperature = column["temperature_K"]
@@ -189,11 +185,7 @@ def find_hardness(
     window = (length >= rules.min_length_nm) & (np.maximum.accumulate(fraction) <= rules.max_area_fraction)
     apart = np.max(travel[np.cumsum(fraction) == 0], initial=approach_nm)
     onset = plastic_onset(witness, float(apart), rules, by_bonds=not on_base)
-    measured: dict[str, Any] = {
-        "drift_meV_atom_ps": drift,
-        "warming_K": warming,
-        "exchanges_before": onset.background,
-    }
+    measured: dict[str, Any] = {"drift_meV_atom_ps": drift, "warming_K": warming, "exchanges_before": onset.background}
     if drift > rules.max_drift_meV_atom_ps:
         return Hardness(f"rejected: energy drifts by {drift:.2g} meV per atom and ps", **measured)
     if warming > rules.max_warming_K:

@@ -1,13 +1,7 @@
 """Settings of the atomistic stages, a module each: every key with its default, unit and accepted range."""
 
 from atomistic.settings.elastic import DftSettings, ElasticSettings, NitrideGlassSettings
-from atomistic.settings.hardness import (
-    AsperitySettings,
-    ClosingSettings,
-    FitSettings,
-    GlassSettings,
-    HardnessSettings,
-)
+from atomistic.settings.hardness import AsperitySettings, ClosingSettings, FitSettings, GlassSettings, HardnessSettings
 
 __all__ = [
     "AsperitySettings",

@@ -125,9 +125,7 @@ def _judged(number: int, case: str, pixels: int) -> tuple[str, int, float, float
     if settings.mechanics != "asperity" and lost > 1e-3 * work(cycle.closing)[0]:  # else nothing yielded
         for finer in (1, FINER):  # few steps know the work too little to judge a loss so small
             steps = replace(
-                numerics,
-                force_steps=finer * numerics.force_steps,
-                unknown_work=numerics.unknown_work / finer,
+                numerics, force_steps=finer * numerics.force_steps, unknown_work=numerics.unknown_work / finer
             )
             second = close(heights=cycle.heights, numerics=steps)
             again = (dissipated_energy(second)[0] - float(second.flags.get("jump_loss_aJ", 0.0))) / lost

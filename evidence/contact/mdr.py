@@ -66,11 +66,7 @@ def rows(given: Any) -> Iterator[dict[str, Any]]:
     for work_of in WORKS_J_M2:
         depth, force, least = _by_mdr(work_of)
         settings = ContactSettings(
-            mechanics="adhesive",
-            pixels=PIXELS,
-            length_nm=CELL_NM,
-            gap_cutoff_nm=CUTOFF_NM,
-            max_force_nN=LOAD_NN,
+            mechanics="adhesive", pixels=PIXELS, length_nm=CELL_NM, gap_cutoff_nm=CUTOFF_NM, max_force_nN=LOAD_NN
         )
         inputs = replace(
             MIDDLE, hamaker=12 * np.pi * CUTOFF_NM**2 * work_of, e_star=E_STAR, h_macro=HARDNESS, h_prime=0.0

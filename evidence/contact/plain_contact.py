@@ -123,12 +123,7 @@ def attraction(h, separation, inputs: ContactInputs, settings: ContactSettings) 
 
 
 def raise_site(
-    h: np.ndarray,
-    site: tuple[int, int],
-    rise: float,
-    asperity: Asperity,
-    settings: ContactSettings,
-    numerics: Numerics,
+    h: np.ndarray, site: tuple[int, int], rise: float, asperity: Asperity, settings: ContactSettings, numerics: Numerics
 ):
     """One flow, in place: a narrow Gaussian up, a wide one down, no change of volume on the periodic grid."""
     n = len(h)

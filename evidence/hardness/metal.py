@@ -20,15 +20,7 @@ from scipy.spatial import KDTree
 from atomistic.constants import EV_PER_A3_IN_GPA
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.glass import run_segments
-from atomistic.hardness.metal import (
-    METAL,
-    PLACES,
-    Metal,
-    crystal,
-    electron_density,
-    embedding_energy,
-    pair_energy,
-)
+from atomistic.hardness.metal import METAL, PLACES, Metal, crystal, electron_density, embedding_energy, pair_energy
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.runs import PROTOCOL, ClosingRun
 from atomistic.hardness.studies import drift_meV_atom_ps, free_motion, heated

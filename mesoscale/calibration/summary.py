@@ -6,14 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesoscale.calibration.observables import (
-    CURVES,
-    NAMES,
-    SCALARS,
-    curve_names,
-    enter_by_logarithm,
-    force_levels_nN,
-)
+from mesoscale.calibration.observables import CURVES, NAMES, SCALARS, curve_names, enter_by_logarithm, force_levels_nN
 from mesoscale.calibration.posterior import RESPONSE_ERROR, Calibration, Posterior
 from mesoscale.calibration.responses import fit_responses
 from mesoscale.calibration.sampling import Sampling

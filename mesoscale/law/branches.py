@@ -122,10 +122,7 @@ class StoredFit:
 
 
 def fit_stored(
-    curves: Mapping[str, Mapping[str, Array]],
-    name: str,
-    attributes: Mapping[str, Any],
-    cell_area_nm2: float,
+    curves: Mapping[str, Mapping[str, Array]], name: str, attributes: Mapping[str, Any], cell_area_nm2: float
 ) -> Iterator[StoredFit]:
     """The law fitted to both branches of a stored curve.
 

@@ -139,12 +139,7 @@ def extreme_cases(inputs: ContactInputs, settings: ContactSettings) -> list[Case
             inputs,
             {"reading": reading(update={"convention": "profile"})},
         ),
-        Case(
-            "one-pixel asperities",
-            "white noise",
-            inputs,
-            heights=np.random.default_rng(1).normal(0, 5, (n, n)),
-        ),
+        Case("one-pixel asperities", "white noise", inputs, heights=np.random.default_rng(1).normal(0, 5, (n, n))),
         Case("flat", "all sites touch at once", inputs, heights=np.zeros((n, n)), too_much=coupled),
         Case(
             "giant asperity",

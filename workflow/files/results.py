@@ -228,9 +228,7 @@ def _attributes(values: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def load_h5(
-    path: str | Path,
-) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
+def load_h5(path: str | Path) -> tuple[dict[str, dict[str, np.ndarray]], dict[str, Any], dict[str, dict[str, Any]]]:
     """Read an HDF5 result file: datasets by group, root attributes, attributes by group.
 
     Raises

@@ -43,10 +43,7 @@ CURVES = {
 
 
 def write_solved(
-    path: str,
-    solved: Mapping[int, Solved],
-    provenance: Mapping[str, Any],
-    design: Design | None = None,
+    path: str, solved: Mapping[int, Solved], provenance: Mapping[str, Any], design: Design | None = None
 ) -> None:
     """Write switches by their numbers, a group each; with the design, everything that was computed of the pad."""
     groups: dict[str, dict[str, Dataset]] = {}

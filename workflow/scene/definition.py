@@ -26,8 +26,7 @@ class ReportSettings(Settings):
     """The page report.html (docs/report.md)."""
 
     studies: bool = Field(
-        default=False,
-        description="also run the accuracy and stability studies of all stages and show their tables",
+        default=False, description="also run the accuracy and stability studies of all stages and show their tables"
     )
 
 
@@ -40,12 +39,10 @@ class Scene(Settings):
         description="name of the scene; results go to results/<name>/ (default: the file's name)",
     )
     extends: str | None = Field(
-        default=None,
-        description="scene whose keys this one takes where it has none of its own, by name or by path",
+        default=None, description="scene whose keys this one takes where it has none of its own, by name or by path"
     )
     compute: tuple[Literal["hardness", "elastic", "topography"], ...] = Field(
-        default=(),
-        description="stages to run and report although no input is taken from them",
+        default=(), description="stages to run and report although no input is taken from them"
     )
     tails: tuple[Literal["law", "pad"], ...] = Field(
         default=("law", "pad"),

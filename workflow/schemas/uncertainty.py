@@ -153,11 +153,4 @@ _LAW = Table(
     ),
 )
 
-TABLES = (
-    _OUTPUTS,
-    _SENSITIVITY,
-    _SAMPLES,
-    _LAW,
-    _VALIDATION,
-    _DIRECT,
-)
+TABLES = (_OUTPUTS, _SENSITIVITY, _SAMPLES, _LAW, _VALIDATION, _DIRECT)

@@ -32,15 +32,7 @@ with job(snakemake) as run:
         base = below, load_data(cell, below.elements)
     started = time.perf_counter()
     closing = run_closing(
-        closing_run,
-        material,
-        glass,
-        potential,
-        settings,
-        Path(snakemake.params.work),
-        protocol,
-        run.progress,
-        base,
+        closing_run, material, glass, potential, settings, Path(snakemake.params.work), protocol, run.progress, base
     )
     lammps = resource.getrusage(resource.RUSAGE_CHILDREN)
     write_csv(snakemake.output.curve, closing.curve)

@@ -20,11 +20,7 @@ SHARES = {
 }
 
 
-@stage(
-    "Effective elastic modulus",
-    *("elastic/bulk_moduli.csv", "elastic/e_star.json"),
-    also=("elastic/points.csv",),
-)
+@stage("Effective elastic modulus", *("elastic/bulk_moduli.csv", "elastic/e_star.json"), also=("elastic/points.csv",))
 def describe(results: Results) -> Iterator[Block]:
     """Figure 5, and every structure."""
     summary = results.json("elastic/e_star.json")

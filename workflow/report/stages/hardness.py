@@ -112,10 +112,7 @@ def contact_stress(results: Results) -> str | None:
         axis.plot([], [], "o", color=SOFT, markerfacecolor="none", label="onset of plastic flow")
         axis.plot([], [], "D", color=SOFT, label="hardness of the run")
         axis.set(
-            xlabel="contact length √A (nm)",
-            ylabel="contact stress (GPa)",
-            ylim=(0, 1.1 * highest),
-            xlim=(0.8, None),
+            xlabel="contact length √A (nm)", ylabel="contact stress (GPa)", ylim=(0, 1.1 * highest), xlim=(0.8, None)
         )
         axis.legend()
 

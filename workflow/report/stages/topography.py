@@ -13,11 +13,7 @@ from workflow.report.page import Block, Figure, PageTable, stage, table
 from workflow.report.surface_picture import short_names
 
 
-@stage(
-    "Surface topography",
-    *("topography/spectra.h5", "topography/parameters.json"),
-    also=("topography/judged.csv",),
-)
+@stage("Surface topography", *("topography/spectra.h5", "topography/parameters.json"), also=("topography/judged.csv",))
 def describe(results: Results) -> Iterator[Block]:
     """Figures 9 and 10, and the roughness parameters."""
     parameters = results.json("topography/parameters.json")
@@ -149,11 +145,7 @@ def spectra(results: Results) -> str | None:
         for name, (label, color, style) in styles.items():
             if name in fits:
                 axis.loglog(fits["q"], fits[name], style, color=color, label=label, linewidth=1.3)
-        axis.set(
-            xlabel="wave vector q (1/nm)",
-            ylabel="PSD (nm⁴)",
-            ylim=(max(lowest, highest * 1e-12), 5 * highest),
-        )
+        axis.set(xlabel="wave vector q (1/nm)", ylabel="PSD (nm⁴)", ylim=(max(lowest, highest * 1e-12), 5 * highest))
         axis.legend()
 
     return draw("fig10", "Power spectra of the scans with fits", plot, (5.0, 4.2))
