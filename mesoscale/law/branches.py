@@ -12,7 +12,6 @@ from mesoscale.errors import InputError
 from mesoscale.law.compact import Law
 from mesoscale.law.fit import LawFit, contact_separation, fit_branch, row_of
 from mesoscale.law.parameters import PARAMETERS
-from mesoscale.law.wells import well_row
 
 Array = NDArray[np.float64]
 
@@ -70,12 +69,11 @@ def laws_of(cycle: Cycle) -> tuple[Law, Law]:
     for branch, fit in (("closing", outcome.closing), ("opening", outcome.opening)):
         if not np.isfinite(fit.parameters).all():
             raise InputError(f"law of {branch}: {fit.status}; choose a larger force")
-    return law_of_fit(outcome.closing, cycle.inputs.hamaker), law_of_fit(outcome.opening, cycle.inputs.hamaker)
-
-
-def law_of_fit(fit: LawFit, hamaker: float) -> Law:
-    """The law with the four numbers of a fit; Hamaker constant in 1e-18 J."""
-    return Law(**dict(zip(PARAMETERS, fit.parameters.tolist(), strict=True)), hamaker=hamaker)
+    closing, opening = (
+        Law(**dict(zip(PARAMETERS, fit.parameters.tolist(), strict=True)), hamaker=cycle.inputs.hamaker)
+        for fit in (outcome.closing, outcome.opening)
+    )
+    return closing, opening
 
 
 def fit_curve(
@@ -91,40 +89,10 @@ def fit_curve(
     return fit_branch(separation_nm, repulsive_nN, attractive_nN, cell_area_nm2, hamaker, d_c)
 
 
-@dataclass(frozen=True)
-class StoredFit:
-    """The law fitted to one branch of a stored curve.
-
-    Attributes
-    ----------
-    curve : separation (nm, rising), repulsive and attractive pressure (GPa), shapes (n,); None: no such branch.
-    hamaker : Hamaker constant (1e-18 J).
-    curve_status : ok, unconverged, or failed: why.
-    """
-
-    branch: str
-    fit: LawFit
-    curve: tuple[Array, Array, Array] | None
-    hamaker: float
-    curve_status: str
-
-    @property
-    def row(self) -> dict[str, Any]:
-        """Columns of the tables in law/."""
-        return {"branch": self.branch, **row_of(self.fit), "curve_status": self.curve_status}
-
-    @property
-    def well_row(self) -> dict[str, Any]:
-        """Columns of law/wells.csv."""
-        known = np.isfinite(self.fit.parameters).all()
-        law = law_of_fit(self.fit, self.hamaker) if known else None
-        return {"branch": self.branch, **well_row(law, self.curve)}
-
-
-def fit_stored(
+def stored_rows(
     curves: Mapping[str, Mapping[str, Array]], name: str, attributes: Mapping[str, Any], cell_area_nm2: float
-) -> Iterator[StoredFit]:
-    """The law fitted to both branches of a stored curve.
+) -> Iterator[dict[str, Any]]:
+    """Columns of the tables in law/ for both branches of a stored curve.
 
     Parameters
     ----------
@@ -132,13 +100,9 @@ def fit_stored(
     attributes : the curve's: hamaker, first_contact_nm, last_contact_nm, status.
     """
     for branch, touch in TOUCH.items():
-        fit, pressures = NO_FIT, None
-        if f"{name}/{branch}" in curves:
-            curve = curves[f"{name}/{branch}"]
+        fit = NO_FIT
+        if curve := curves.get(f"{name}/{branch}"):
             forces = curve["repulsive_nN"], curve["attractive_nN"]
             hamaker, touched = float(attributes["hamaker"]), attributes.get(touch)
             fit = fit_curve(curve["separation_nm"], *forces, cell_area_nm2, hamaker, touched)
-            order = np.argsort(curve["separation_nm"], kind="stable")
-            repulsive, attractive = (force[order] / cell_area_nm2 for force in forces)
-            pressures = (curve["separation_nm"][order], repulsive, attractive)
-        yield StoredFit(branch, fit, pressures, float(attributes.get("hamaker", np.nan)), attributes.get("status", ""))
+        yield {"branch": branch, **row_of(fit), "curve_status": attributes.get("status", "")}

@@ -106,9 +106,6 @@ def _curves(root: Path) -> None:
     ]
     run = {"run": 0, "node": 0, "seed": 0, "hamaker": 0.215}
     _write(root / "law/parameters.csv", [run | fit for fit in (*fits, {**fits[1], "status": "poor_fit"})])
-    missed = {"run": 0, "node": 0, "seed": 0, "attraction_status": "misses_well: 2 times the curve's"}
-    wells = [missed | {"branch": fit["branch"]} for fit in fits]
-    _write(root / "law/wells.csv", wells)
     _write(root / "law/nominal.csv", [{"curve": "load_7000", **fit} for fit in fits])
 
 

@@ -4,13 +4,12 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from mesoscale.law.wells import MOST_MISSED, missed_wells
 from workflow.report.available import Results
 from workflow.report.numbers import OUTPUTS, column, number, show
 from workflow.report.page import Gate
 
 MOST_MISSING = 0.05
-"""Share of curves without a law, or of laws without the well, beyond which the rest is no fair sample."""
+"""Share of curves without a law beyond which the rest is no fair sample."""
 OTHER_WORK = {"clamped": 1.0 / 3.0, "offset": 3.0}
 """Work of the other law of attraction over that of this one, at touch (docs/contact.md)."""
 
@@ -69,7 +68,7 @@ def _curves(results: Results) -> Iterator[Gate]:
 
 
 def _law(results: Results) -> Iterator[Gate]:
-    """Whether enough curves gave a law, and apart from that whether the laws have the adhesion of their curves."""
+    """Whether enough curves gave a law."""
     if results.has("law/parameters.csv"):
         rows = results.csv("law/parameters.csv")
         poor = [row for row in rows if row["status"] == "poor_fit"]
@@ -83,13 +82,6 @@ def _law(results: Results) -> Iterator[Gate]:
                 f"{len(missing)} of {len(rows)} curves gave no law, which favours those that could be fitted"
             )
         yield Gate("law", len(missing) <= MOST_MISSING * len(rows), tuple(reasons), answer=False)
-    if results.has("law/wells.csv"):
-        missed, known = missed_wells(results.csv("law/wells.csv"))
-        reason = (
-            f"{missed} of {known} laws miss the adhesion well of their curve by more than {MOST_MISSED:.0%}: take "
-            "release and sticking from the pad"
-        )
-        yield Gate("adhesion of the law", missed <= MOST_MISSING * known, (reason,) * (missed > 0), answer=False)
 
 
 def _responses(results: Results) -> Iterator[Gate]:

@@ -32,7 +32,6 @@ rule law:
         nominal=f"{RESULTS}/curves/nominal.h5",
     output:
         parameters=f"{RESULTS}/law/parameters.csv",
-        wells=f"{RESULTS}/law/wells.csv",
         nominal=f"{RESULTS}/law/nominal.csv",
     log:
         f"{RESULTS}/logs/law.log",

@@ -55,34 +55,6 @@ TABLES = (
         ),
     ),
     Table(
-        ("law/wells.csv",),
-        "The adhesion of one branch of one run by its law and by its curve.",
-        (
-            integer("run", "number of the run"),
-            integer("node", "number of the node of the design; 0 is its centre"),
-            SEED,
-            BRANCH,
-            number(
-                "attraction_residual",
-                "1",
-                "root mean square misfit of the attraction up to d_c + ρ_a, relative to the largest attraction",
-                empty=True,
-            ),
-            text(
-                "attraction_status",
-                "ok, misses_well and the factor where depths differ by more than 25 %, no_well, no_law, or no_curve",
-            ),
-            number(
-                "well_law_kPa", "kPa", "deepest net attraction by the law; times the area, its pull-off", empty=True
-            ),
-            number("well_curve_kPa", "kPa", "the same by the curve", empty=True),
-            number("well_law_at_nm", "nm", "separation of the law's well", empty=True),
-            number("well_curve_at_nm", "nm", "separation of the curve's well", empty=True),
-            number("energy_law_uJ_m2", "µJ/m²", "work from the balance of forces outward by the law", empty=True),
-            number("energy_curve_uJ_m2", "µJ/m²", "the same by the curve", empty=True),
-        ),
-    ),
-    Table(
         ("law/nominal.csv",),
         "The law of one branch of one nominal curve.",
         (text("curve", "group of curves/nominal.h5"), BRANCH, *_FIT, _CURVE_STATUS),

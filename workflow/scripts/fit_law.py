@@ -1,36 +1,30 @@
 """Fit the force-separation law to both branches of every curve, of the runs and of the nominal cycles.
 
 In: inputs.csv, curves/runs/chunk_NNN.h5, curves/nominal.h5 (nm, nN).
-Out: law/parameters.csv and law/wells.csv, one row per run and branch; law/nominal.csv, one row per nominal curve and
-branch.
+Out: law/parameters.csv, one row per run and branch; law/nominal.csv, one row per nominal curve and branch.
 """
 
 from mesoscale.inputs.table import from_rows
-from mesoscale.law.branches import fit_stored
+from mesoscale.law.branches import stored_rows
 from workflow.files.results import load_csv, load_h5, write_csv
 from workflow.run.job import job
 
 with job(snakemake) as run:
     names = from_rows(load_csv(snakemake.input.inputs)).names
-    rows, wells = [], []
+    rows = []
     for done, path in enumerate(snakemake.input.chunks):
         curves, root, attributes = load_h5(path)
         for name in sorted(key for key in attributes if "/" not in key):
             attrs = attributes[name]
             head = {key: attrs[key] for key in ("run", "node", "seed")}
             values = {key: attrs[key] for key in names}
-            for stored in fit_stored(curves, name, attrs, root["cell_area_nm2"]):
-                rows.append({**head, **stored.row, **values})
-                wells.append({**head, **stored.well_row})
+            rows += [{**head, **row, **values} for row in stored_rows(curves, name, attrs, root["cell_area_nm2"])]
         run.progress((done + 1) / len(snakemake.input.chunks), "curves fitted")
-    for table, path in ((rows, snakemake.output.parameters), (wells, snakemake.output.wells)):
-        table.sort(key=lambda row: row["run"])
-        write_csv(path, table)
+    write_csv(snakemake.output.parameters, sorted(rows, key=lambda row: row["run"]))
 
     nominal = []
     curves, root, attributes = load_h5(snakemake.input.nominal)
     for name in sorted({key.rpartition("/")[0] for key in curves if "/" in key}):
-        about_curve = {**root, **attributes.get(name, {})}
-        area = float(about_curve["cell_area_nm2"])
-        nominal += [{"curve": name, **stored.row} for stored in fit_stored(curves, name, about_curve, area)]
+        about = {**root, **attributes.get(name, {})}
+        nominal += [{"curve": name, **row} for row in stored_rows(curves, name, about, float(about["cell_area_nm2"]))]
     write_csv(snakemake.output.nominal, nominal)
