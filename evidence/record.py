@@ -1,15 +1,14 @@
 """The tables of the studies: grown row by row, each row with commit, date, processor and command."""
 
+import csv
 import datetime
 import platform
 import subprocess
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import yaml
-
-from mesoscale.tables import grow_table, load_table
 
 ROOT = Path(__file__).resolve().parent.parent
 DATA = ROOT / "evidence" / "data"
@@ -34,19 +33,34 @@ def load(study: str) -> list[dict[str, str]]:
     return load_table(table_of(study))
 
 
-def record(study: str, rows: Iterable[Mapping[str, Any]], command: str) -> int:
-    """Add rows to the table of a study as they come, and count them."""
-    DATA.mkdir(exist_ok=True)
-    made_by = provenance(command)
-    counted = 0
+def load_table(path: Path) -> list[dict[str, str]]:
+    """The rows of a CSV file, all values text; none where there is no file."""
+    if not path.is_file():
+        return []
+    with path.open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
 
-    def complete() -> Iterator[Mapping[str, Any]]:
-        nonlocal counted
+
+def record(study: str, rows: Iterable[Mapping[str, Any]], command: str) -> int:
+    """Add rows to the table of a study as they come, so that one cut short has its part, and count them.
+
+    Raises
+    ------
+    ValueError : a row has a column that the table has not.
+    """
+    DATA.mkdir(exist_ok=True)
+    counted, made_by, columns = 0, provenance(command), list(next(iter(load(study)), {}))
+    with table_of(study).open("a", newline="", encoding="utf-8") as stream:
         for row in rows:
             counted += 1
-            yield {**row, **made_by}
-
-    grow_table(table_of(study), complete(), digits=DIGITS)
+            whole = {**row, **made_by}
+            writer = csv.DictWriter(stream, columns or list(whole), lineterminator="\n")
+            if not columns:
+                columns = list(whole)
+                writer.writeheader()
+            rounded = {key: f"{x:.{DIGITS}g}" if isinstance(x, float) else x for key, x in whole.items()}
+            writer.writerow(rounded)
+            stream.flush()
     return counted
 
 

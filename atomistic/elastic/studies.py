@@ -4,7 +4,7 @@ What the engine cannot compute must be refused or flagged; a plausible number wo
 """
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -17,9 +17,9 @@ from asperity.guards.errors import InputError
 from atomistic.elastic.dft import make_calculator
 from atomistic.elastic.energy_scans import scan_volumes
 from atomistic.elastic.equation_of_state import EquationOfState, fit_equation_of_state
-from atomistic.elastic.networks import no_insulator
+from atomistic.elastic.networks import crystal, no_insulator
 from atomistic.elastic.relaxation import last_gap_eV, strained
-from atomistic.materials import NetworkGlass
+from atomistic.materials import Material, NetworkGlass
 from atomistic.settings import DftSettings, ElasticSettings
 
 Check = tuple[str, str, str, Callable[[], tuple[bool, str]]]  # case, description, what is checked, the check
@@ -79,6 +79,28 @@ def volume_points(
             }
 
 
+def accuracy_points(
+    material: Material,
+    fits: Sequence[Mapping[str, str]],
+    points: Sequence[Mapping[str, str]],
+    settings: ElasticSettings,
+    progress: Callable[[float, str], None] | None = None,
+) -> Iterator[dict[str, Any]]:
+    """Error of B against run time: by the number of glasses, and by the choices of a scan of a crystal.
+
+    Parameters
+    ----------
+    fits, points : rows of elastic/bulk_moduli.csv and elastic/points.csv.
+    """
+    glasses = [row for row in fits if row["structure"] not in material.crystals]
+    clamped = [row for row in glasses if row["xc"] == "GGA" and not row["flags"]]
+    names = {row["structure"] for row in clamped}
+    cost = sum(float(point["wall_s"]) for point in points if point["structure"] in names)
+    yield from ensemble_points([float(row["B_GPa"]) for row in clamped], cost)
+    name = next(iter(material.crystals), "")
+    yield from volume_points(crystal(material, name, (1, 1, 1)), crystal(material, name), settings, progress)
+
+
 def ensemble_points(moduli_GPa: Sequence[float], wall_s: float) -> Iterator[dict[str, Any]]:
     """Standard error of the mean modulus of a glass against the number of structures, from their scatter."""
     B = np.asarray(moduli_GPa, float)
@@ -96,14 +118,10 @@ def ensemble_points(moduli_GPa: Sequence[float], wall_s: float) -> Iterator[dict
         }
 
 
-def stability_checks(cell: Atoms, criteria: NetworkGlass, dft: DftSettings) -> list[Check]:
-    """Hard cases for the engine of a scene.
-
-    Parameters
-    ----------
-    cell : a crystal of the material, small
-    criteria : the `network_glass` of the material
-    """
+def stability_checks(material: Material, dft: DftSettings) -> list[Check]:
+    """Hard cases for the engine of a scene, on a small cell of the first crystal of its material."""
+    cell = crystal(material, next(iter(material.crystals), ""), (1, 1, 1))
+    criteria: NetworkGlass = material.part("network_glass")
     refused = "not converged, or gap too small"
     broken, metal = cell[1:], bulk("Al", "fcc", 4.05, cubic=True)
     return [

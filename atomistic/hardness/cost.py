@@ -43,11 +43,6 @@ def closing_seconds(settings: HardnessSettings, material: Material, base: Base |
     return seconds
 
 
-def base_seconds(settings: HardnessSettings, material: Material, base: Base, tiles: int) -> float:
-    """Of one core, for a cell of the base as wide as so many glass cells."""
-    return base.make_atom_steps(glass_edge_A(settings, material), tiles) / BASE_ATOM_STEPS_PER_CORE_SECOND
-
-
 def glass_edge_A(settings: HardnessSettings, material: Material) -> float:
     """Edge of a quenched cell."""
     return 10 * (settings.glass.atoms / material.part("oxide_glass").quenched.atoms_per_nm3) ** (1 / 3)

@@ -70,10 +70,6 @@ class Base(ABC):
         InputError : what was made is not what its file asks for.
         """
 
-    @abstractmethod
-    def make_atom_steps(self, edge_A: float, tiles: int) -> float:
-        """Atoms times MD steps of `make`."""
-
     def files(self, elements: tuple[str, ...], energy_scale: float) -> dict[str, str]:
         """What LAMMPS needs for a body without a film, as `Potential.files`; it keeps its energies at every scale."""
         lines = [f"pair_style hybrid/overlay {' '.join(self.styles)}", *self.commands(0), *NEIGHBOURS]

@@ -158,11 +158,6 @@ def run_segments(
     return end
 
 
-def total_ps(settings: GlassSettings) -> float:
-    """Time of melt, quench and rest."""
-    return settings.melt_ps + (MELT_K - FINAL_K) / settings.quench_rate_K_ps + settings.rest_ps
-
-
 def schedule(settings: GlassSettings, segment_steps: int) -> list[dict]:
     """Segments of the melt (constant volume), and of the quench and the rest (zero pressure)."""
 

@@ -145,10 +145,6 @@ class Metal(Base):
             )
         return replace(body, positions_A=factor * body.positions_A, cell_A=factor * body.cell_A)
 
-    def make_atom_steps(self, edge_A: float, tiles: int) -> float:
-        """Atoms times MD steps of `make`."""
-        return (tiles * edge_A / 10) ** 3 * self.atoms_per_nm3 * sum(segment["steps"] for segment in _segments())
-
 
 def crystal(metal: Metal, repeats: tuple[int, int, int]) -> Atoms:
     """A hexagonal crystal with its axis upright, in cells of a, a sqrt(3) and c."""

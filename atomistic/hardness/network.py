@@ -86,10 +86,6 @@ class Network(Base):
             raise InputError(f"{self.material.name}: {'; '.join(reasons)}; take another seed or a wider glass cell")
         return glass
 
-    def make_atom_steps(self, edge_A: float, tiles: int) -> float:
-        """Atoms times MD steps of `make`."""
-        return (edge_A / 10) ** 3 * self.atoms_per_nm3 * sum(segment["steps"] for segment in _segments())
-
     def _random_start(self, edge_A: float, seed: int) -> Atoms:
         formula = self.material.formula
         units = max(1, round((edge_A / 10) ** 3 * self.atoms_per_nm3 / sum(formula.values())))

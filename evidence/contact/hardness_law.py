@@ -28,13 +28,13 @@ from scipy.stats import qmc
 
 from evidence.pad.answers import scene_of
 from evidence.pad.runs import results_of
+from evidence.record import load_table
 from mesoscale.contact import Cycle, run_cycle
 from mesoscale.contact.energy import pull_off, work
 from mesoscale.inputs.contact import contact_of
 from mesoscale.inputs.distributions import InputTable
 from mesoscale.inputs.table import from_rows
 from mesoscale.settings import ContactSettings
-from mesoscale.tables import load_table
 from workflow.run.contact_settings import contact_settings
 from workflow.scene import load_scene
 

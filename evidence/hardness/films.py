@@ -40,8 +40,7 @@ from atomistic.hardness.film_law import (
 )
 from atomistic.hardness.size_effect import SYSTEMATIC
 from evidence.hardness.metal import titanium
-from evidence.record import ROOT, load
-from mesoscale.tables import load_table
+from evidence.record import ROOT, load, load_table
 
 PREDICTION = (0.24, 1.2)  # k and m of a prototype with other films, written down before
 SAMPLES = ROOT / "config" / "materials" / "silica_on_titanium.csv"  # k and m of scene reduced

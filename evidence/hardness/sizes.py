@@ -20,8 +20,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from evidence.record import ROOT
-from mesoscale.tables import load_table
+from evidence.record import ROOT, load_table
 
 COLUMNS = (
     "energy_scale", "wavelength_nm", "seed", "status", "contact_length_nm", "hardness_GPa", "hardness_lo",

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from evidence.record import load_table
 from mesoscale.device.points import Point, solve_point
 from mesoscale.inputs.table import from_rows
 from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings
-from mesoscale.tables import load_table
 from mesoscale.topography.pooling import Pooled, pool
 from mesoscale.topography.records import in_order
 from workflow.files.results import load_h5

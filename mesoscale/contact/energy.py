@@ -32,14 +32,3 @@ def dissipated_energy(cycle: Cycle) -> tuple[float, float]:
 def pull_off(opening: Branch) -> float:
     """Largest net attraction on opening, nN; 0 where the surfaces repel each other throughout."""
     return max(-float(opening.net_nN.min()), 0.0)
-
-
-def opening_stiffness(opening: Branch) -> float:
-    """Mean slope of the repulsion from its largest value to half of it, nN/nm; NaN without contact."""
-    half = 0.5 * opening.repulsive_nN[0]
-    if not half > 0.0:
-        return np.nan
-    after = int(np.argmax(opening.repulsive_nN <= half))
-    force, separation = opening.repulsive_nN[after - 1 : after + 1], opening.separation_nm[after - 1 : after + 1]
-    where = np.interp(half, force[::-1], separation[::-1])
-    return float(half / (where - opening.separation_nm[0]))

@@ -22,11 +22,6 @@ def pressure_GPa(separation_nm: ArrayLike, law: Law) -> Array:
     return attractive + repulsive
 
 
-def onset_nm(law: Law) -> Array:
-    """Separation d_c + rho_a where the near attraction begins."""
-    return np.asarray(law.d_c_nm, dtype=float) + law.rho_a_nm
-
-
 def column(law: Law) -> Law:
     """Samples as column vectors, ready to meet rows of separations."""
     return _map(law, lambda value: value[:, None] if value.ndim == 1 else value)

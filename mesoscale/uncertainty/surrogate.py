@@ -1,6 +1,6 @@
 """Responses in Legendre polynomials: evaluate, moments, Sobol' indices, scatter, plain JSON."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -125,22 +125,6 @@ def to_json(response: Response) -> dict[str, Any]:
             for degrees, coefficient in zip(surrogate.degrees.tolist(), surrogate.coefficients.tolist(), strict=True)
         ],
     }
-
-
-def from_json(content: Mapping[str, Any]) -> dict[str, Response]:
-    """The responses of uq/surrogate.json by the name of their output."""
-    ranges = np.array([[row["low"], row["high"]] for row in content["inputs"]], float)
-    sums = {
-        output["name"]: Surrogate(
-            ranges,
-            np.array([term["degrees"] for term in output["terms"]], int),
-            np.array([term["coefficient"] for term in output["terms"]], float),
-            output["transform"],
-        )
-        for output in content["outputs"]
-    }
-    below = {output["name"]: output["below"] for output in content["outputs"] if "below" in output}
-    return {name: Below(below[name], sums[below[name]], drop) if name in below else drop for name, drop in sums.items()}
 
 
 FEWEST_RUNS = 20

@@ -11,9 +11,6 @@ for key, name, known in (
 ):
     if needed("elastic") and name not in known:
         refuse(f"{SCENE_GIVEN}: elastic.{key} = {name!r:.60}: not known; known are {', '.join(known)}")
-if needed("elastic"):
-    ACCURACY.append(f"{RESULTS}/accuracy/elastic.csv")
-    STABILITY.append(f"{RESULTS}/stability/elastic.csv")
 
 
 wildcard_constraints:
@@ -117,35 +114,3 @@ if needed("elastic"):
     SHOWN += rules.elastic.output
     KEPT += rules.elastic.input.scans
     KEPT += expand([*rules.make_amorphous.output, *rules.scan_glass.output], amorphous=GLASSES)
-
-
-rule measure_elastic_accuracy:
-    input:
-        material=MATERIAL,
-        moduli=f"{RESULTS}/elastic/bulk_moduli.csv",
-        points=f"{RESULTS}/elastic/points.csv",
-    output:
-        table=f"{RESULTS}/accuracy/elastic.csv",
-    log:
-        f"{RESULTS}/logs/measure_elastic_accuracy.log",
-    params:
-        settings=ELASTIC,
-    message:
-        "measure the error of the bulk modulus against run time"
-    script:
-        "../scripts/measure_elastic_accuracy.py"
-
-
-rule check_elastic_stability:
-    input:
-        material=MATERIAL,
-    output:
-        table=f"{RESULTS}/stability/elastic.csv",
-    log:
-        f"{RESULTS}/logs/check_elastic_stability.log",
-    params:
-        dft=ELASTIC["dft"],
-    message:
-        "check the elastic stage in hard cases"
-    script:
-        "../scripts/check_elastic_stability.py"

@@ -11,9 +11,6 @@ try:
 except InputError as error:
     refuse(f"{SCENE_GIVEN}: {error}")
 CLOSINGS, SMALLEST, BASE = BODIES.closings, BODIES.smallest, BODIES.base
-if needed("hardness"):
-    ACCURACY.append(f"{RESULTS}/accuracy/hardness.csv")
-    STABILITY.append(f"{RESULTS}/stability/hardness.csv")
 
 
 def of_run(pattern):
@@ -129,7 +126,7 @@ if needed("hardness"):
     KEPT += [*rules.hardness.input.summaries, *expand(rules.make_glass.output, glass=SCENE.hardness.seeds)]
 
 
-# The same run with one choice changed, and hard cases with the scene's own potentials and glasses
+# The same run with one choice changed, for the study of accuracy
 
 
 use rule run_closing as vary_closing with:
@@ -146,36 +143,3 @@ use rule run_closing as vary_closing with:
         work=f"{RESULTS}/work/vary_{{variation}}_{{run}}",
     message:
         "close asperity {wildcards.run} with {wildcards.variation}"
-
-
-rule compare_closings:
-    input:
-        summaries=[f"{RESULTS}/accuracy/hardness/{name}/{SMALLEST.name}.json" for name in variations(SMALLEST)],
-    output:
-        table=f"{RESULTS}/accuracy/hardness.csv",
-    log:
-        f"{RESULTS}/logs/compare_closings.log",
-    params:
-        closing=HARDNESS["closing"],
-    message:
-        "compare the hardness of varied closing runs"
-    script:
-        "../scripts/compare_closings.py"
-
-
-rule check_hardness_stability:
-    input:
-        potential=BODIES.potential,
-        glass=f"{RESULTS}/hardness/glass/{SMALLEST.seed}.data",
-    output:
-        table=f"{RESULTS}/stability/hardness.csv",
-    log:
-        f"{RESULTS}/logs/check_hardness_stability.log",
-    params:
-        material=HARDNESS["material"],
-        energy_scales=HARDNESS["energy_scales"],
-        work=f"{RESULTS}/work/stability_hardness",
-    message:
-        "check the molecular dynamics in hard cases"
-    script:
-        "../scripts/check_hardness_stability.py"

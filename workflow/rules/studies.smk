@@ -7,18 +7,32 @@ STUDIES = {  # what each reads beside settings
     "accuracy/uncertainty": {**OF_CELL, "direct": DIRECT},
     "accuracy/pad": PRESSED,
     "accuracy/failure": PRESSED,
+    "accuracy/hardness": {
+        "summaries": [f"{RESULTS}/accuracy/hardness/{name}/{SMALLEST.name}.json" for name in variations(SMALLEST)]
+    },
+    "accuracy/elastic": {
+        "material": MATERIAL,
+        "moduli": f"{RESULTS}/elastic/bulk_moduli.csv",
+        "points": f"{RESULTS}/elastic/points.csv",
+    },
     "stability/contact": OF_CELL,
+    "stability/hardness": {
+        "potential": BODIES.potential,
+        "glass": f"{RESULTS}/hardness/glass/{SMALLEST.seed}.data",
+    },
+    "stability/elastic": {"material": MATERIAL},
 }
-ACCURACY.append(f"{RESULTS}/accuracy/contact.csv")
-STABILITY.append(f"{RESULTS}/stability/contact.csv")
-if needed("topography"):
-    ACCURACY.append(f"{RESULTS}/accuracy/topography.csv")
-if "law" in SCENE.tails:
-    ACCURACY.append(f"{RESULTS}/accuracy/uncertainty.csv")
-if "pad" in SCENE.tails:
-    ACCURACY.append(f"{RESULTS}/accuracy/pad.csv")
-    if SCENE.failure.probability is not None:
-        ACCURACY.append(f"{RESULTS}/accuracy/failure.csv")
+OF_SCENE = {
+    "contact": True,
+    "topography": needed("topography"),
+    "hardness": needed("hardness"),
+    "elastic": needed("elastic"),
+    "uncertainty": "law" in SCENE.tails,
+    "pad": "pad" in SCENE.tails,
+    "failure": "pad" in SCENE.tails and SCENE.failure.probability is not None,
+}
+for kind, tables in (("accuracy", ACCURACY), ("stability", STABILITY)):
+    tables += [f"{RESULTS}/{name}.csv" for name in STUDIES if name.startswith(kind) and OF_SCENE[name.split("/")[1]]]
 
 
 rule accuracy:
@@ -46,7 +60,8 @@ rule study:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
     params:
         **{section: settings(section) for section in ("contact", "device", "failure", "pad")},
-        **{section: settings(section) for section in ("topography", "uncertainty")},
+        **{section: settings(section) for section in ("topography", "uncertainty", "hardness", "elastic")},
+        work=f"{RESULTS}/work/{{study}}",
     message:
         "study {wildcards.study}"
     script:

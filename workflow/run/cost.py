@@ -31,8 +31,7 @@ TYPICAL_S = {
     "calibrate": 60.0,
     "circuit": 30.0,
     "failure": 180.0,
-    "study": 60.0,
-    "measure_elastic_accuracy": 600.0,
+    "study": 120.0,
 }
 CYCLES = {  # contacts that a job closes and opens, to the largest force of the scene
     "curves": 50,

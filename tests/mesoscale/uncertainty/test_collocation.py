@@ -13,7 +13,8 @@ from mesoscale.uncertainty.collocation import (
     nodes,
     to_values,
 )
-from mesoscale.uncertainty.surrogate import from_json, legendre, to_json
+from mesoscale.uncertainty.surrogate import legendre, to_json
+from tests.mesoscale.uncertainty.surrogate_reader import from_json
 
 RANGES = np.array([[0.18, 0.25], [78.5, 103.5], [0.7, 3.2], [1.95, 14.8], [0.015, 0.035], [0.5, 1.0], [2, 15]])
 

@@ -27,8 +27,9 @@ from mesoscale.uncertainty.propagation import (
     surrogate_json,
 )
 from mesoscale.uncertainty.sensitivity import pick_freeze, sensitivity_rows, sobol_indices
-from mesoscale.uncertainty.surrogate import Surrogate, from_json, joint_scatter
+from mesoscale.uncertainty.surrogate import Surrogate, joint_scatter
 from mesoscale.uncertainty.validation import validation_rows
+from tests.mesoscale.uncertainty.surrogate_reader import from_json
 
 PAPER = Path(__file__).parents[3] / "config" / "paper"
 NONE_AGAIN = np.empty((0, 8))
