@@ -1,48 +1,40 @@
-from asperity.film import Contact, Film, Switch
-from asperity.press import PressedMap, press
-from mesoscale.contact import Branch, ContactInputs, Cycle, run_cycle
-from mesoscale.contact.energy import dissipated_energy, work
-from mesoscale.contact.surface import random_surface
-from mesoscale.errors import InputError
-from mesoscale.extras import MissingExtra
-from mesoscale.inputs.distributions import InputTable
-from mesoscale.inputs.table import input_table
-from mesoscale.law.branches import laws_of
-from mesoscale.law.compact import Law, force, pressure
-from mesoscale.scan_checks.surface import contacting_heights
-from mesoscale.settings import ContactSettings, DeviceSettings, InputRow, PadSettings, TopographySettings
-from mesoscale.topography.measurements.cleaning import Scan, clean
-from mesoscale.uncertainty.runs import MonteCarlo, monte_carlo
-
-__all__ = [
-    "Branch",
-    "Contact",
-    "ContactInputs",
-    "ContactSettings",
-    "Cycle",
-    "DeviceSettings",
-    "Film",
-    "InputError",
-    "InputRow",
-    "InputTable",
-    "Law",
-    "MissingExtra",
-    "MonteCarlo",
-    "PadSettings",
-    "PressedMap",
-    "Scan",
-    "Switch",
-    "TopographySettings",
-    "clean",
-    "contacting_heights",
-    "dissipated_energy",
-    "force",
-    "input_table",
-    "laws_of",
-    "monte_carlo",
-    "press",
-    "pressure",
-    "random_surface",
-    "run_cycle",
-    "work",
-]
+from asperity.film import Contact as Contact
+from asperity.film import Film as Film
+from asperity.film import Switch as Switch
+from asperity.press import PressedMap as PressedMap
+from asperity.press import press as press
+from mesoscale.contact import Branch as Branch
+from mesoscale.contact import ContactInputs as ContactInputs
+from mesoscale.contact import Cycle as Cycle
+from mesoscale.contact import run_cycle as run_cycle
+from mesoscale.contact.energy import dissipated_energy as dissipated_energy
+from mesoscale.contact.energy import work as work
+from mesoscale.contact.surface import random_surface as random_surface
+from mesoscale.errors import InputError as InputError
+from mesoscale.extras import MissingExtra as MissingExtra
+from mesoscale.inputs.distributions import InputTable as InputTable
+from mesoscale.inputs.table import input_table as input_table
+from mesoscale.law.branches import laws_of as laws_of
+from mesoscale.law.compact import Law as Law
+from mesoscale.law.compact import force as force
+from mesoscale.law.compact import pressure as pressure
+from mesoscale.scan_checks.surface import contacting_heights as contacting_heights
+from mesoscale.settings import (
+    ContactSettings as ContactSettings,
+)
+from mesoscale.settings import (
+    DeviceSettings as DeviceSettings,
+)
+from mesoscale.settings import (
+    InputRow as InputRow,
+)
+from mesoscale.settings import (
+    PadSettings as PadSettings,
+)
+from mesoscale.settings import (
+    TopographySettings as TopographySettings,
+)
+from mesoscale.topography.measurements.cleaning import Scan as Scan
+from mesoscale.topography.measurements.cleaning import clean as clean
+from mesoscale.uncertainty.runs import MonteCarlo as MonteCarlo
+from mesoscale.uncertainty.runs import monte_carlo as monte_carlo

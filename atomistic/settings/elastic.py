@@ -13,10 +13,7 @@ class NitrideGlassSettings(Settings):
     formula_units: int = key(4, "formula units of 7 atoms per cell", "[2, 64]")
     quench_rate_K_ps: float = key(300, "cooling rate", "[0.001, 5000] K/ps")
     max_defects: int = key(
-        0,
-        "atoms of a quenched cell that may lack or exceed their valence; 3 of 28 are as many as in large "
-        "melt-quenched models",
-        "[0, 1000]",
+        0, "atoms of a quenched cell that may lack or exceed their valence; large models have 3 of 28", "[0, 1000]"
     )
 
 
@@ -24,14 +21,8 @@ class DftSettings(Settings):
     """The density functional calculations (PySCF)."""
 
     basis: str = key("gth-dzvp-molopt-sr", "GTH basis set by PySCF's name", pattern=r"^gth-[a-z0-9-]{1,56}$")
-    cutoff_Ha: float = key(
-        100, "plane-wave cutoff of the density; at most 80 where forces are computed", "[20, 1000] hartree"
-    )
-    relaxation_steps: int = key(
-        15,
-        "steps that the ions of a quenched glass may take to rest; 0 keeps the cheap potential's geometry",
-        "[0, 500]",
-    )
+    cutoff_Ha: float = key(100, "plane-wave cutoff of the density; forces take at most 80", "[20, 1000] hartree")
+    relaxation_steps: int = key(15, "most steps in which ions of a glass come to rest; 0: none", "[0, 500]")
 
     @property
     def forces_cutoff_Ha(self) -> float:
@@ -50,9 +41,7 @@ class ElasticSettings(Settings):
     )
     structures: int = key(8, "glasses whose E(V) is computed with GGA", "[1, 1000]")
     lda_structures: int = key(4, "the first of them, also with LDA", "[0, 1000]")
-    crystals: tuple[str, ...] = key(
-        ("beta",), "crystals of the material scanned beside the glass, to anchor the engine"
-    )
+    crystals: tuple[str, ...] = key(("beta",), "crystals of the material, scanned to anchor the engine")
     strains: tuple[Annotated[float, Field(gt=-0.2, lt=0.2)], ...] = key(
         (-0.03, -0.015, 0.0, 0.015, 0.03), "linear isotropic strains of an E(V) scan; at least five", min_length=5
     )

@@ -22,11 +22,7 @@ class AsperitySettings(Settings):
     name: str = key(..., "name in file names and tables", pattern=r"^[A-Za-z][A-Za-z0-9]{0,39}$")
     tiles: int = key(..., "wavelength lambda in glass cells, so that nothing is strained", "[1, 40]")
     amplitude_nm: float = key(..., "amplitude A", "[0.001, 10] nm")
-    film_nm: float | None = key(
-        None,
-        "thickness of the oxide on hardness.base; 0: the base without oxide; null: oxide throughout",
-        "[0, 100] nm",
-    )
+    film_nm: float | None = key(None, "oxide on hardness.base; 0: the base alone; null: all oxide", "[0, 100] nm")
 
 
 class ClosingSettings(Settings):
@@ -35,13 +31,9 @@ class ClosingSettings(Settings):
     speed_m_s: float = key(50, "closing speed", "[0.001, 1000] m/s")
     depth_over_amplitude: float = key(2.2, "largest travel below the highest atom, in amplitudes", "[0.01, 4]")
     stop: Literal["settled", "window"] = key(
-        "settled",
-        "settled: a run ends once the mean stress of its plateau is known to 4 %; window: it ends where the "
-        "contact takes up half of the cell",
+        "settled", "end of a run: plateau stress known to 4 % (settled), or contact on half of the cell"
     )
-    base_nm: float = key(
-        2.6, "least thickness below the mean height; always at least the width of the largest contact", "[1, 100] nm"
-    )
+    base_nm: float = key(2.6, "least thickness below the mean height; at least the widest contact", "[1, 100] nm")
     anneal_ps: float = key(5, "time of the anneal of the cut surface and again of its cooling", "[0.001, 10_000] ps")
     processes: int = key(1, "MPI processes of one closing run, started as docs/cluster.md says", "[1, 4096]")
 
@@ -59,11 +51,7 @@ class HardnessSettings(Settings):
 
     potential: str = key("pmmcs", "name of a file in config/potentials, or a path")
     material: str = key("SiO2", "oxide of the asperity: formula of a file in config/materials with an oxide_glass")
-    base: str | None = key(
-        None,
-        "body below the films of asperities with a film_nm: titanium, silicon_nitride, or another file in "
-        "config/materials with a film_base",
-    )
+    base: str | None = key(None, "body below the films: a file in config/materials with a film_base, such as titanium")
     energy_scales: tuple[Annotated[float, Field(ge=1e-3, le=2)], ...] = key(
         (1.0, 0.5), "factors on all energies; 0.5 is the model-form twin", min_length=1
     )

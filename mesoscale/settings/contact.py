@@ -42,9 +42,7 @@ class ReadingSettings(Settings):
     radius: Literal["curvature", "truncation"] = key(
         "curvature", "asperity radius: mean curvature of the sites (eq. 2), or R = A/(2 pi delta)"
     )
-    area: Literal["sites", "hertz"] = key(
-        "sites", "asperity area in eq. 4: its contacting sites, or Hertz's pi R delta"
-    )
+    area: Literal["sites", "hertz"] = key("sites", "asperity area in eq. 4: its sites, or Hertz's pi R delta")
     flow_pair: Literal["paper", "wide"] = key(
         "wide", "second Gaussian of a flow: 3 times the radius of curvature (s2 = 3^(1/4) s1), or the width"
     )
@@ -78,20 +76,14 @@ class AirSettings(Settings):
     surface_tension_mN_m: float | None = key(
         None, "surface tension of the liquid; null: water's at the temperature", "[0.001, 1e5] mN/m"
     )
-    molar_volume_cm3: float | None = key(
-        None, f"molar volume of the liquid; null: water's, {WATER_CM3:g}", "[0.1, 1e5] cm^3"
-    )
+    molar_volume_cm3: float | None = key(None, f"its molar volume; null: water's, {WATER_CM3:g}", "[0.1, 1e5] cm^3")
     contact_angles_deg: tuple[float, float] = key((0.0, 0.0), "contact angles of the liquid on both walls, 0 to 180")
     film_nm: float = key(0.0, "thickness of the adsorbed film on each wall", "[0, 1000] nm")
     hamaker_share: float = key(
-        0.3,
-        "Hamaker constant across the liquid over that across air; for silicon nitride and titanium oxide in water it "
-        "falls several times (assumption, to be replaced by a computed value)",
-        "[0, 1]",
+        0.3, "Hamaker constant across the liquid over that across air (assumption; of nitride in water)", "[0, 1]"
     )
     opening: Opening = key(
-        "balance",
-        "how menisci open: in balance with the vapour, or so fast that their volume stays (not mechanics: adhesive)",
+        "balance", "menisci open in balance with the vapour, or at constant volume (not mechanics: adhesive)"
     )
 
     @model_validator(mode="after")
@@ -110,9 +102,7 @@ class ContactSettings(Settings):
     """Mesoscale contact model (docs/contact.md)."""
 
     mechanics: Literal["asperity", "coupled", "adhesive"] = key(
-        "coupled",
-        "how asperities carry load: each on its own by eq. 3 (the paper's), all on one elastic half-space, or on one "
-        "that the attraction deforms, too",
+        "coupled", "asperities each on its own (the paper's), on one elastic half-space, or one that attraction deforms"
     )
     model: Literal["elastic", "nonlinear", "plastic"] = key(
         "plastic", "asperities: eq. 3 alone; eq. 4 as a cap of the force; eq. 4 with plastic flow of the surface"
@@ -125,24 +115,16 @@ class ContactSettings(Settings):
         "[1, 1e6] nm",
     )
     max_force_nN: float = key(7000.0, "repulsive force at which closing turns into opening", "[1e-6, 1e12] nN")
-    q1_per_nm: float | None = key(
-        None, "short-wave cut-off of the spectrum; null: the grid's Nyquist limit", "[1e-6, 1000] 1/nm"
-    )
+    q1_per_nm: float | None = key(None, "short-wave cut-off of the spectrum; null: Nyquist limit", "[1e-6, 1000] 1/nm")
     surface: SurfaceSettings = SurfaceSettings()
     attraction: AttractionLaw = key(
-        "offset",
-        "law of eq. 1: A_H/(6 pi (g + D0)^3), the walls D0 apart at touch; or A_H/(6 pi max(g, D0)^3), the "
-        "paper's, which spends twice its work within D0 again",
+        "offset", "eq. 1: A_H/(6 pi (g + D0)^3), or the paper's A_H/(6 pi max(g, D0)^3), of twice more work within D0"
     )
     gap_cutoff_nm: float = key(
-        0.165,
-        "D0 of the attraction: the distance of the walls at touch (offset), or the least gap (clamped)",
-        "[1e-6, 30] nm",
+        0.165, "D0: distance of the walls at touch (offset), or least gap (clamped)", "[1e-6, 30] nm"
     )
     retardation_nm: float | None = key(
-        None,
-        "wavelength of Gregory's retardation of the attraction, about 100 nm for most solids; null: none",
-        "[1, 1e6] nm",
+        None, "wavelength of Gregory's retardation, about 100 nm; null: none", "[1, 1e6] nm"
     )
     air: AirSettings | None = key(None, "humid air around the contact; null: dry")
     bodies: tuple[Body, ...] = key(

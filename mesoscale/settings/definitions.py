@@ -75,28 +75,10 @@ INPUTS = (
     ),
     InputDefinition("t_film", "thickness of the film", "t_film", "nm", 1e-3, 1e6, True, optional=True, hardness="film"),
     InputDefinition(
-        "k_film",
-        "factor of softening by the base",
-        "k",
-        "1",
-        1e-6,
-        1e3,
-        True,
-        "hardness",
-        optional=True,
-        hardness="film",
+        "k_film", "softening by the base", "k", "1", 1e-6, 1e3, True, "hardness", optional=True, hardness="film"
     ),
     InputDefinition(
-        "m_film",
-        "exponent of softening by the base",
-        "m",
-        "1",
-        1e-2,
-        10.0,
-        True,
-        "hardness",
-        optional=True,
-        hardness="film",
+        "m_film", "exponent of softening", "m", "1", 1e-2, 10.0, True, "hardness", optional=True, hardness="film"
     ),
     InputDefinition(
         "humidity", "relative humidity", "RH", "1", 1e-6, 1.0 - 1e-6, True, setting="air.humidity", optional=True

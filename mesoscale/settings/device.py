@@ -86,65 +86,35 @@ class DeviceSettings(Settings):
         None, "bends with E (beam) or E/(1 - nu^2) (plate); null: as a plate from a width of 5 thicknesses on"
     )
     residual_stress_MPa: float = key(
-        0.0,
-        "residual stress of the beam at rest at 20 C; negative: compressive, and beyond Euler's it buckles",
-        "[-2000, 2000] MPa",
+        0.0, "residual stress at rest at 20 C; negative: compressive, beyond Euler's it buckles", "[-2000, 2000] MPa"
     )
-    buckled: Literal["up", "down"] = key(
-        "up", "side to which a beam stands that its stress buckles; up: away from the dielectric"
-    )
+    buckled: Literal["up", "down"] = key("up", "side of a buckled beam; up: away from the dielectric")
     temperature_C: float = key(REFERENCE_C, "temperature of the switch", "[-270, 2000] C")
     expansion_ppm_C: float = key(13.4, "thermal expansion of the beam; the default is nickel's", "[-100, 1000] 1e-6/C")
     substrate_expansion_ppm_C: float = key(
         2.6, "thermal expansion of the substrate between the anchors; the default is silicon's", "[-100, 1000] 1e-6/C"
     )
-    anchor_um_per_N: float = key(
-        0.0, "by how much both anchors together give way to the axial force; 0: rigid", "[0, 1e9] um/N"
-    )
-    spring_N_per_m: float | None = key(
-        None, "stiffness of a parallel-plate switch; null computes it from the beam", "[0.001, 1e6] N/m"
-    )
-    electrode_um2: float | None = key(
-        None, "electrode area of a parallel-plate switch; null is length times width", "[0.0001, 1e9] um^2"
-    )
-    electrode: PartOfBeam = key(
-        (0.0, 1.0), "part of the beam over the electrode that pulls it, from and to", "share of the length"
-    )
-    contact: PartOfBeam = key(
-        (0.0, 1.0),
-        "part of the beam over the rough pad, from and to; elsewhere it lands on stoppers",
-        "share of the length",
-    )
+    anchor_um_per_N: float = key(0.0, "how far both anchors together give way to the axial force", "[0, 1e9] um/N")
+    spring_N_per_m: float | None = key(None, "stiffness of a parallel-plate switch; null: a beam", "[0.001, 1e6] N/m")
+    electrode_um2: float | None = key(None, "area of a parallel plate; null: length times width", "[0.0001, 1e9] um^2")
+    electrode: PartOfBeam = key((0.0, 1.0), "part of the beam over the electrode, from and to", "share of the length")
+    contact: PartOfBeam = key((0.0, 1.0), "part over the rough pad, from and to", "share of the length")
     dimple_nm: float = key(0.0, "height of a dimple under the contact part", "[0, 1e5] nm")
-    stopper_nm: float = key(
-        0.0,
-        "height of the stoppers, rigid, where the beam has no contact part; 0: the dielectric itself",
-        "[0, 1e5] nm",
-    )
+    stopper_nm: float = key(0.0, "height of rigid stoppers elsewhere; 0: the dielectric itself", "[0, 1e5] nm")
     fringe: float = key(
         0.64,
-        "pull of the field at the sides, as this many gaps of more width; 0.64 of a thin strip over a plane "
-        "(Palmer, Trans. AIEE 56 (1937) 363)",
+        "pull at the sides, as gaps of more width; a thin strip: 0.64 (Palmer, Trans. AIEE 56 (1937) 363)",
         "[0, 10]",
     )
-    bow_nm: float = key(
-        0.0,
-        "how much farther from the dielectric the beam is in its middle (of a cantilever: at its tip) than at "
-        "its anchors, at rest",
-        "[-1e5, 1e5] nm",
-    )
-    tilt_nm: float = key(
-        0.0, "how much farther from the dielectric the last end of the beam is than the first", "[-1e5, 1e5] nm"
-    )
+    bow_nm: float = key(0.0, "height at rest of the middle (cantilever: of the tip) over the anchors", "[-1e5, 1e5] nm")
+    tilt_nm: float = key(0.0, "height at rest of the last end over the first", "[-1e5, 1e5] nm")
     spread: SpreadSettings = key(SpreadSettings(), "departures from these properties, as uncertain inputs")
     dielectric_nm: float = key(200.0, "thickness of the dielectric", "[0, 1e5] nm")
     permittivity: float = key(7.9, "relative permittivity of the dielectric", "[1, 1e5]")
-    density_g_cm3: float = key(
-        8.9, "density of the electrode, for its motion; the default is nickel's", "[0.01, 30] g/cm^3"
-    )
+    density_g_cm3: float = key(8.9, "density of the electrode, which moves; default: nickel", "[0.01, 30] g/cm^3")
     gas_kPa: float = key(101.325, "pressure of the air around the electrode, for its motion", "[1e-6, 1e4] kPa")
     hold_voltage_V: float | None = key(
-        None, "voltage of the closed switch; null is its own pull-in voltage", "[0.001, 1e4] V"
+        None, "voltage of the closed switch; null: its pull-in voltage", "[0.001, 1e4] V"
     )
 
     @model_validator(mode="after")

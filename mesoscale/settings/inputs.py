@@ -116,9 +116,7 @@ class WorkAndRangeSettings(Settings):
 
     work_mJ_m2: float = key(..., "work that separates two flats from touch", "(0, 100000] mJ/m^2")
     range_nm: float = key(
-        ...,
-        "that work over the largest attraction: D0/2 by contact.attraction offset, 3/2 D0 by clamped",
-        "[0.001, 15] nm",
+        ..., "that work over the largest attraction: D0/2 (offset), 3/2 D0 (clamped)", "[0.001, 15] nm"
     )
 
     def gap_cutoff_nm(self, law: AttractionLaw) -> float:
@@ -147,15 +145,10 @@ class InputsSettings(create_model("InputsSettings", __base__=Settings, **{row.na
 
     hardness: HardnessLawName = key(
         "paper",
-        "law of hardness against contact area: constant (h_macro), eq. 4 (h_macro, h_prime), or film on a base "
-        "(h_film, t_film, k_film, m_film; h_macro of the base)",
+        "hardness by contact area: constant, eq. 4 (h_prime), or film on a base (h_film, t_film, k_film, m_film)",
     )
-    adhesion: WorkAndRangeSettings | None = key(
-        None, "work and range of the attraction, in place of hamaker and gap_cutoff; null: by these"
-    )
-    correlations: tuple[Correlation, ...] = key(
-        (), "rank correlations between inputs, besides those that a stage reports itself"
-    )
+    adhesion: WorkAndRangeSettings | None = key(None, "work and range in place of hamaker and gap_cutoff")
+    correlations: tuple[Correlation, ...] = key((), "rank correlations, besides those that a stage reports")
 
     @model_validator(mode="after")
     def _one_attraction(self) -> "InputsSettings":

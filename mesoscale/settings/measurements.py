@@ -23,14 +23,10 @@ class MeasurementTable(Settings):
     ] = key(..., "what was measured")
     file: str = key(..., "CSV file, its columns named with their units (docs/calibration.md)")
     zero: Literal["unknown", "known"] = key(
-        "unknown",
-        "curves: whether separations count from the mean plane, or from a zero that is unknown for each specimen",
+        "unknown", "whether separations of curves count from the mean plane, or each specimen has its own zero"
     )
     discrepancy: float = key(
-        0.0,
-        "standard deviation of the model's own error, common to all data of the table: in nm for curves and "
-        "contact_begin, else a share of the value",
-        "[0, 1000]",
+        0.0, "standard deviation of the model's error: nm for curves and contact_begin, else a share", "[0, 1000]"
     )
     source: str = key("", "where the measurements come from, shown in the report")
 
@@ -38,9 +34,7 @@ class MeasurementTable(Settings):
 class MeasurementsSettings(Settings):
     """Measurements and the calibration of the inputs with them (docs/calibration.md); off without tables."""
 
-    tables: tuple[MeasurementTable, ...] = key(
-        (), "tables of measurements, one of each kind at most; none: the stage is not run"
-    )
+    tables: tuple[MeasurementTable, ...] = key((), "tables, one of each kind at most; none: not run")
     runs: int = key(800, "contact cycles over the whole prior behind the responses", "[50, 1_000_000]")
     local_runs: int = key(300, "contact cycles where the posterior lies, added at a time", "[20, 1_000_000]")
     rounds: int = key(3, "how often they are added at most, until the responses are exact enough", "[0, 20]")

@@ -22,9 +22,7 @@ class ResistanceSettings(Settings):
         "(Gall, J. Appl. Phys. 119 (2016) 085101); 0 leaves Sharvin's resistance out",
         "nm",
     )
-    film_Ohm_um2: float = key(
-        0.0, "resistance of a thin film on the contact times its area, in series", "[0, 1e12] Ohm um^2"
-    )
+    film_Ohm_um2: float = key(0.0, "resistance of a film on the contact times its area", "[0, 1e12] Ohm um^2")
     runs: int = key(64, "surfaces, each with its own draw of the inputs", "[8, 100_000]")
 
     @model_validator(mode="after")

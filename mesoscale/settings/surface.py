@@ -49,9 +49,7 @@ class SpectrumSettings(Settings):
 class SurfaceSettings(Settings):
     """The contacting surface (docs/topography.md, Surfaces)."""
 
-    spectrum: SpectrumSettings | None = key(
-        None, "spectrum by points (q0 and hurst of Table 1 are then unused); null: eq. 9"
-    )
+    spectrum: SpectrumSettings | None = key(None, "spectrum by points; null: eq. 9")
     counterface: CounterfaceSettings | None = key(None, "second rough surface; null: the counterface is flat")
     heights: tuple[Annotated[float, Field(ge=-1000, le=1000)], ...] = key(
         (),

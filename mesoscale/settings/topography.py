@@ -51,9 +51,7 @@ class TopographySettings(Settings):
     instruments: tuple[InstrumentSettings, ...] = key(
         (), "limits of the instruments, the first that fits a name", max_length=100
     )
-    channel: str | None = key(
-        None, "name of the height channel; null takes the only one (or the first of trace and retrace)"
-    )
+    channel: str | None = key(None, "name of the height channel; null: the only one, or the first of trace and retrace")
     tip_radius_nm: float | None = key(
         None,
         "radius of the tip where neither `instruments` nor the file states one, bounds the range of wave vectors that "
@@ -61,34 +59,24 @@ class TopographySettings(Settings):
         "[0, 1e5] nm",
     )
     detrend: Literal["auto", "none", "plane", "quadratic"] = key(
-        "auto",
-        "what is subtracted from each scan as tilt and form; auto: a plane, or a quadratic where form or a scanner's "
-        "bow is clearly more than roughness",
+        "auto", "what is subtracted as tilt and form; auto: a quadratic where form is clearly more than roughness"
     )
     line_alignment: Literal["none", "median"] = key("median", "what is subtracted from each scan line")
     max_missing: float = key(
         0.05, "largest share of missing pixels that is filled from neighbours; above, the scan is refused", "[0, 0.5]"
     )
     ranges: Literal["scatter", "interval"] = key(
-        "scatter",
-        "range that feeds the inputs: scatter between scans (as the paper), or the confidence interval of the "
-        "typical value",
+        "scatter", "range of the inputs: scatter between scans (the paper's), or interval of the typical value"
     )
     convention: Literal["profile", "areal"] = key(
-        "areal",
-        "how H follows from the slope of the two-dimensional spectrum: profile 2H+1 (as the paper prints it), "
-        "areal 2H+2; contact.reading.convention must be the same",
+        "areal", "slope of the spectrum: profile 2H+1 (the paper's), areal 2H+2; as contact.reading.convention"
     )
     description: Literal["auto", "power_law", "measured_spectrum", "measured_heights"] = key(
         "auto",
         "how random surfaces follow the measurements: eq. 9, the measured spectrum, or the measured spectrum "
         "with the measured heights; auto: the first that the measurements do not contradict",
     )
-    on_doubt: Literal["stop", "warn"] = key(
-        "stop",
-        "what happens to measurements that no description fits: stop before they are used, or warn in the report "
-        "and use them",
-    )
+    on_doubt: Literal["stop", "warn"] = key("stop", "measurements that no description fits: stop, or use them and warn")
     synthetic: SyntheticScanSettings = SyntheticScanSettings()
 
     @property

@@ -32,7 +32,9 @@ OF_SCENE = {
     "failure": "pad" in SCENE.tails and SCENE.failure.probability is not None,
 }
 for kind, tables in (("accuracy", ACCURACY), ("stability", STABILITY)):
-    tables += [f"{RESULTS}/{name}.csv" for name in STUDIES if name.startswith(kind) and OF_SCENE[name.split("/")[1]]]
+    tables += [
+        f"{RESULTS}/{study}.csv" for study in STUDIES if study.startswith(kind) and OF_SCENE[study.split("/")[1]]
+    ]
 
 
 rule accuracy:

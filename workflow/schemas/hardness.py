@@ -78,9 +78,7 @@ TABLES = (
             number("contact_stress_GPa", "GPa", "force over contact area; nan without contact"),
             number("temperature_K", "K", "temperature"),
             number(
-                "energy_drift_meV_per_atom",
-                "meV/atom",
-                "energy minus work of what moves minus heat of the thermostat, between the ends of segments by a line",
+                "energy_drift_meV_per_atom", "meV/atom", "energy less work of what moves and heat of the thermostat"
             ),
             number("contact_atoms", "1", "atoms in contact, mean over the samples of the average"),
             integer("atoms", "number of atoms"),

@@ -13,9 +13,7 @@ BRANCH = text("branch", "closing or opening")
 _FIT: tuple[Column, ...] = (
     *LAW_VALUES,
     text("covariance", "covariance of C_a, C_r and ρ_r as JSON; null where undetermined"),
-    number(
-        "residual", "1", "root mean square misfit of the law over the window, relative to the largest force", empty=True
-    ),
+    number("residual", "1", "RMS misfit of the law over the window, relative to the largest force", empty=True),
     text("status", "ok, or why the fit is poor or missing"),
 )
 _CURVE_STATUS = text("curve_status", "ok, unconverged, or failed: why", empty=True)
@@ -27,10 +25,7 @@ TABLES = (
         (
             text("parameter", "name of the input"),
             text("unit", "its unit"),
-            text(
-                "distribution",
-                "uniform, log_uniform, normal, truncated_normal, fixed, or samples with the values as JSON",
-            ),
+            text("distribution", "its kind, as inputs.<name>.distribution; of samples with the values as JSON"),
             number("a", "`unit`", "lower bound (uniform), mean (normal) or value (fixed)", empty=True),
             number("b", "`unit`", "upper bound (uniform) or standard deviation (normal)", empty=True),
             number("low", "`unit`", "lower end of the truncation", empty=True),

@@ -91,12 +91,7 @@ _VALIDATION = Table(
         *_in_unit("bias", "mean error of held-out predictions", empty=True),
         *_with_ends(number("q2", "1", "1 - rmse² / variance of the direct runs", True), "90 % bootstrap interval"),
         number("q2_linear", "1", "the same of the paper's linear response", empty=True),
-        number(
-            "surface_share",
-            "1",
-            "share of the variance between surfaces at equal inputs, by uq/direct/chunk_again.csv",
-            empty=True,
-        ),
+        number("surface_share", "1", "share of the variance between surfaces at equal inputs", empty=True),
         number("explained", "1", "share of the rest that the response explains of runs left out", empty=True),
         text("doubt", "why the output is not to be trusted; empty where it is", empty=True),
     ),
