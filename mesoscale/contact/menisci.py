@@ -9,8 +9,6 @@ Where the walls part faster than the liquid evaporates, its volume stays, d_c gr
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from mesoscale.settings.contact import WATER_CM3, AirSettings
 
 ZERO_C_K = 273.15
@@ -38,27 +36,24 @@ class Menisci(NamedTuple):
     dispersion: float
     keeps_volume: bool
 
-    def holding(self, gap: np.ndarray, weight: np.ndarray, volume: float) -> tuple["Menisci", np.ndarray]:
-        """The menisci that hold a volume, and how much of each site they fill.
+    def pull_at(self, reach_nm: float) -> float:
+        """p_c (GPa) of liquid that reaches up to a gap; walls that come closer press liquid out, so p_c is the most."""
+        return self.tension / max(reach_nm - self.films_nm, self.tension / self.pull_GPa)  # radius times the cosines
 
-        Walls that come closer press liquid out: p_c is at most that in equilibrium.
 
-        Parameters
-        ----------
-        gap, weight : of all sites (nm, and how many sites' areas each counts for), shape (n,).
-        volume : over the area of a site, nm.
-        """
-        rank = np.argsort(gap)
-        held = np.cumsum(weight[rank] * np.maximum(gap[rank], 0.0))
-        last = int(np.searchsorted(held, volume, side="right"))
-        filled = np.zeros_like(weight)
-        filled[rank[:last]] = weight[rank[:last]]
-        if last == len(rank):  # every gap is full
-            return self, filled
-        before = held[last - 1] if last else 0.0
-        filled[rank[last]] = weight[rank[last]] * (volume - before) / (held[last] - before)
-        radius = max(float(gap[rank[last]]) - self.films_nm, self.tension / self.pull_GPa)  # times the cosines
-        return self._replace(pull_GPa=self.tension / radius), filled
+class Liquid(NamedTuple):
+    """Liquid in a cell.
+
+    Attributes
+    ----------
+    sites : how many sites' areas it fills.
+    volume : over the area of a site, nm.
+    reach : gap up to which there is liquid, nm.
+    """
+
+    sites: float
+    volume: float
+    reach: float
 
 
 def menisci_of(air: AirSettings | None) -> Menisci | None:
