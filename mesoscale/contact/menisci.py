@@ -13,6 +13,7 @@ from mesoscale.settings.contact import WATER_CM3, AirSettings
 
 ZERO_C_K = 273.15
 GAS_J_MOL_K = 8.314462618  # CODATA 2018
+PER_MOL = 6.02214076e23
 WATER_CRITICAL_K, WATER_CRITICAL_KPA = 647.096, 22064.0  # IAPWS
 
 
@@ -57,7 +58,7 @@ class Liquid(NamedTuple):
 
 
 def menisci_of(air: AirSettings | None) -> Menisci | None:
-    """The menisci in air; None where nothing condenses."""
+    """The menisci in air; None where nothing condenses, or liquid would be thinner than one of its molecules."""
     if air is None or air.humidity == 0.0:
         return None
     tension = 1e-3 * surface_tension_mN_m(air)
@@ -65,11 +66,12 @@ def menisci_of(air: AirSettings | None) -> Menisci | None:
     if tension <= 0.0 or wetting <= 1e-12:  # 90 and 90 degrees, but for rounding
         return None
     kelvin = air.temperature_C + ZERO_C_K
-    pull = (
-        1e-3 * GAS_J_MOL_K * kelvin * abs(math.log(air.humidity)) / (air.molar_volume_cm3 or WATER_CM3)
-    )  # 1 J/cm^3 = 1e-3 GPa
+    volume = air.molar_volume_cm3 or WATER_CM3
+    pull = 1e-3 * GAS_J_MOL_K * kelvin * abs(math.log(air.humidity)) / volume  # 1 J/cm^3 = 1e-3 GPa
     films = 2.0 * air.film_nm
     reach = wetting * tension / pull + films
+    if reach < 1e7 * math.cbrt(volume / PER_MOL):  # 0.31 nm of water
+        return None
     return Menisci(pull, reach, films, wetting * tension, air.hamaker_share, air.opening == "volume")
 
 

@@ -72,7 +72,8 @@ class Verdict:
         interval = f"(5\u00a0to\u00a095\u00a0%: {volts(low)} to {volts(high)})"
         if probability <= 1 - DECIDED:
             return f"The switch lets go at {volts(middle)} {interval}; {probability:.0%} stick."
-        return f"Whether the switch lets go is open: {probability:.0%} stick; the median is {volts(middle)} {interval}."
+        median = f"is {volts(middle)}" if middle else "sticks"
+        return f"Whether the switch lets go is open: {probability:.0%} stick; the median {median} {interval}."
 
     @property
     def sentence(self) -> str:
