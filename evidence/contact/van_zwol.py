@@ -20,18 +20,18 @@ from mesoscale.contact.menisci import surface_tension_mN_m
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings.contact import AirSettings
 
-ROUGHNESS_NM, HUMIDITIES = (0.5, 2.0, 5.0, 15.0), (0.02, 0.4)
-DRAWS, CELLS = 64, 8
+ROUGHNESS_NM, HUMIDITIES = (1.0, 2.0, 5.0, 15.0), (0.02, 0.4)
+DRAWS, CELLS = 16, 4
 ANGLES_DEG = {"titanium": (40.0, 75.0), "titanium oxide in ultraviolet light": (0.0, 10.0)}  # assumptions
-# Ranges. A_H of titanium oxide (Bergstrom 1997); an adsorbed film of up to two layers of water; the rest is assumed.
+# Ranges. A_H of titanium oxide (Bergstrom 1997); an adsorbed film of up to a layer of water; the rest is assumed.
 RANGES = {
     "hamaker": (0.15, 0.20),
     "e_star": (60.0, 120.0),
     "h_macro": (3.0, 10.0),
     "q0": (0.01, 0.05),
     "hurst": (0.6, 0.95),
-    "film_nm": (0.0, 0.6),
-    "load_GPa": (1e-3, 3e-2),
+    "film_nm": (0.0, 0.3),
+    "load_GPa": (1e-3, 1e-2),
 }
 
 
