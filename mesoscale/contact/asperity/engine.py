@@ -6,6 +6,7 @@ Asperities grow locally, and flow touches only its own patch.
 import numpy as np
 
 from mesoscale.contact.asperity import kernels, state
+from mesoscale.contact.attraction import Attraction
 from mesoscale.contact.changes import undo
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.pressed import Contact, State
@@ -107,11 +108,10 @@ class AsperityContact(Contact):
         force = self.adhesion.undeformed(
             self.heights, separation, self.order, self.order_heights, self.changes, self.changed
         )
-        return force if self.adhesion.menisci is None else force + self._liquid(separation)
+        return force if self.adhesion.menisci is None else force + self._liquid(self.adhesion, separation)
 
-    def _liquid(self, separation: float) -> float:
+    def _liquid(self, law: Attraction, separation: float) -> float:
         """What liquid adds to the attraction, nN."""
-        law = self.adhesion
         far, edge = law.far_edge(law.near_nm, separation)
         near = self.order if far == len(law.moments) else self.order[: np.searchsorted(self.order_heights, edge)]
         moved = self.changes.sites[: self.changed_sites]
