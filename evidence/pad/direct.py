@@ -3,7 +3,7 @@
 `answer`: points of a finished scene as its answer has them. `other`: the same points on pads of 64 cells of other
 surfaces. `many`: the points that differ most, on pads of 1,024 independent places (drawn one by one, as a device has
 them), each with a cell of its own. `fresh`: further points of the joint distribution on pads of 64 cells, whose
-quantiles and share that sticks are set beside those of the answer. The cells of these pads stand for themselves alone:
+quantiles and share that sticks are set beside those of the answer. The cells of these pads stand only for themselves:
 their curves are not shifted as those of the answer are.
 """
 
