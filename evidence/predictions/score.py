@@ -1,9 +1,9 @@
 """How good were the predictions that were written down before the measured value was seen?
 
 Each file evidence/predictions/*.yaml is one prediction: date, commit, inputs, and for each value the quantiles of its
-predicted distribution at `LEVELS`. A value has `measured` once somebody measured it, with the source in the file. Scored
-are the share inside the central 90 %, and the continuous ranked probability score, which is the mean absolute error of
-a prediction without a width (Gneiting and Raftery, J. Am. Stat. Assoc. 102 (2007) 359).
+predicted distribution at `LEVELS`. Once somebody measured, a value has `measured`, and the file its source. Scored are
+the share inside the central 90 % and the continuous ranked probability score. For a prediction without a width it is
+the absolute error (Gneiting and Raftery, J. Am. Stat. Assoc. 102 (2007) 359).
 """
 
 from argparse import Namespace
