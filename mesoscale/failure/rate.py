@@ -10,6 +10,7 @@ likely. Such switches also correct it.
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
+from functools import cached_property
 from typing import Any, Protocol
 from zlib import crc32
 
@@ -28,6 +29,7 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.memory import PadLaw, attracting, deepened
 from mesoscale.settings import DeviceSettings
 from mesoscale.uncertainty.rare_events import (
+    FURTHEST,
     LEAST,
     REPEATS,
     SAMPLES,
@@ -195,9 +197,18 @@ class Population:
         """Hold voltage of the scene; where it has none, that of the pull-in without contact."""
         return held_V(self.settings)
 
+    @cached_property
+    def positive(self) -> NDArray[np.bool_]:
+        """Which of the numbers stand for what is above zero, as far as `FURTHEST` deviations out."""
+        ends = np.outer([-FURTHEST, FURTHEST], np.ones(self.dimension))
+        return (values_at(ndtr(ends), self.table, self.settings, self.cutoffs_nm) > 0.0).all(axis=0)
+
     def columns(self, z: Array, hold_V: Array) -> Array:
-        """What the response depends on."""
-        return np.column_stack([values_at(ndtr(z), self.table, self.settings, self.cutoffs_nm), hold_V])
+        """What the response depends on; the reserve is a logarithm, and nearly straight in those of lengths and moduli."""
+        values = values_at(ndtr(z), self.table, self.settings, self.cutoffs_nm)
+        floor = np.where(self.positive, np.finfo(float).tiny, -np.inf)
+        logs = np.log(np.maximum(values, floor), where=self.positive, out=values.copy())
+        return np.column_stack([logs, hold_V])
 
     def points(self, z: Array, hold_V: float) -> list[Point]:
         """The switches of numbers (m, dimension)."""
