@@ -29,7 +29,6 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.memory import PadLaw, attracting, deepened
 from mesoscale.settings import DeviceSettings
 from mesoscale.uncertainty.rare_events import (
-    FURTHEST,
     LEAST,
     REPEATS,
     SAMPLES,
@@ -43,6 +42,8 @@ from mesoscale.uncertainty.rare_events import (
 )
 
 Array = NDArray[np.float64]
+FAR = 8.0
+"""Deviations beyond which a probability is 1 in double precision, so that a number would be endless."""
 Known = tuple[int, float]
 """A number of the population that is known, and its value."""
 
@@ -199,16 +200,15 @@ class Population:
 
     @cached_property
     def positive(self) -> NDArray[np.bool_]:
-        """Which of the numbers stand for what is above zero, as far as `FURTHEST` deviations out."""
-        ends = np.outer([-FURTHEST, FURTHEST], np.ones(self.dimension))
+        """Which of the numbers stand for what is above zero."""
+        ends = np.outer([-FAR, FAR], np.ones(self.dimension))
         return (values_at(ndtr(ends), self.table, self.settings, self.cutoffs_nm) > 0.0).all(axis=0)
 
     def columns(self, z: Array, hold_V: Array) -> Array:
-        """What the response depends on; the reserve is a logarithm, and nearly straight in those of lengths and moduli."""
-        values = values_at(ndtr(z), self.table, self.settings, self.cutoffs_nm)
-        floor = np.where(self.positive, np.finfo(float).tiny, -np.inf)
-        logs = np.log(np.maximum(values, floor), where=self.positive, out=values.copy())
-        return np.column_stack([logs, hold_V])
+        """What the response depends on: logarithms of what is positive, as the reserve is a logarithm."""
+        values = values_at(ndtr(np.clip(z, -FAR, FAR)), self.table, self.settings, self.cutoffs_nm)
+        logs = np.log(np.maximum(values, np.finfo(float).tiny))
+        return np.column_stack([np.where(self.positive, logs, values), hold_V])
 
     def points(self, z: Array, hold_V: float) -> list[Point]:
         """The switches of numbers (m, dimension)."""
