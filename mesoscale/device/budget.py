@@ -116,7 +116,7 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
             yield {
                 "effect": row["name"],
                 "volts": wide * float(np.sqrt(share)),
-                "about": "5 to 95 %" if seen else "5 to 95 %; or less: so few switches do not show it",
+                "about": "5 to 95 %" if seen else "5 to 95 %; or less",
                 "held": True,
                 "settle": SETTLE[row["varies"]],
                 **here,

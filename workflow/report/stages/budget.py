@@ -109,7 +109,7 @@ def _caption(results: Results, rows: list[Row]) -> str:
     held = [number(row["volts"]) for row in rows if row["held"] == "True"]
     ends = [results.json("device/pad_switch.json")["answer"]["release_V"]["quantiles"][q] for q in ("0.05", "0.95")]
     return (
-        "What the interval holds, and by how many volts each from 5 to 95 % moves the release at central inputs. "
-        f"Together {show(float(np.sqrt(np.nansum(np.square(held)))))} V, added in quadrature; the interval is "
+        "What the interval holds: volts by which each, from its 5 to its 95 %, moves the release at central inputs. "
+        f"Together they are {show(float(np.sqrt(np.nansum(np.square(held)))))} V, added in quadrature; the interval is "
         f"{show(ends[1] - ends[0])} V wide"
     )
