@@ -15,13 +15,13 @@ from workflow.report.numbers import show
 from workflow.report.page import Gate
 
 NAMES = {
-    "rms_scatter": ("roughness from place to place", ""),
+    "rms_scatter": ("roughness from place to place", "the roughness from place to place"),
     "gap_cutoff_nm": ("D₀", "the pull-off of the contact, which tells D₀"),
-    "thickness_um": ("thickness of the beam", "the thickness of the electrode"),
+    "thickness_um": ("thickness", "the thickness of the electrode"),
     "gap_um": ("gap", "the gap at rest"),
     "youngs_modulus_GPa": ("E of the beam", "Young's modulus of the electrode"),
-    "residual_stress_MPa": ("stress in the beam", "the residual stress of the electrode"),
-    "dielectric_nm": ("thickness of the dielectric", "the thickness of the dielectric"),
+    "residual_stress_MPa": ("stress", "the residual stress of the electrode"),
+    "dielectric_nm": ("dielectric", "the thickness of the dielectric"),
     "permittivity": ("permittivity", "the permittivity of the dielectric"),
     "bow_nm": ("bow", "the bow of the electrode at rest"),
     "tilt_nm": ("tilt", "the tilt of the electrode at rest"),
