@@ -49,21 +49,31 @@ class Process:
 
         self.low, self.width = x.min(axis=0), np.ptp(x, axis=0)
         self.sample, count = ot.Sample, int((self.width > 0).sum())
+        kernel = ot.MaternModel([2.0] * count, [1.0], 2.5)
+        kernel.activateNuggetFactor(True)
         # a likelihood that is flat in some input ends by its number of calls; runs of the model judge the process
         ot.Log.Show(0)
-        for scale in (2.0, 1.0, 0.5):
-            kernel = ot.MaternModel([scale] * count, [1.0], 2.5)
-            kernel.activateNuggetFactor(True)
-            fitter = ot.GaussianProcessFitter(
-                self._scaled(x), ot.Sample(y[:, None]), kernel, ot.LinearBasisFactory(count).build()
+        fitted = self._fitted(x, y, kernel)
+        found = fitted.getCovarianceModel()
+        if found.getAmplitude()[0] == 1.0:  # OpenTURNS 1.27 may leave it as given; the likeliest is this one
+            left = y - np.array(fitted.getMetaModel()(self._scaled(x)))[:, 0]
+            found.setAmplitude(
+                [np.sqrt(left @ np.linalg.solve(np.array(found.discretize(self._scaled(x))), left) / y.size)]
             )
-            fitter.run()
-            if fitter.getResult().getCovarianceModel().getAmplitude()[0] != 1.0:  # OpenTURNS 1.27 may leave it as given
-                break
-        regression = ot.GaussianProcessRegression(fitter.getResult())
+            fitted = self._fitted(x, y, found, optimize=False)
+        regression = ot.GaussianProcessRegression(fitted)
         regression.run()
         self.mean = regression.getResult().getMetaModel()
         self.covariance = ot.GaussianProcessConditionalCovariance(regression.getResult())
+
+    def _fitted(self, x: Array, y: Array, kernel: Any, optimize: bool = True) -> Any:
+        import openturns as ot
+
+        trend = ot.LinearBasisFactory(kernel.getInputDimension()).build()
+        fitter = ot.GaussianProcessFitter(self._scaled(x), ot.Sample(y[:, None]), kernel, trend)
+        fitter.setOptimizeParameters(optimize)
+        fitter.run()
+        return fitter.getResult()
 
     def _scaled(self, x: Array) -> Any:
         used = self.width > 0
