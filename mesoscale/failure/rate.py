@@ -473,8 +473,8 @@ def failure_rate(
             {
                 "attraction": times,
                 "failing": asdict(corrected(response, times, hold)),
-                # lower quantiles miss brute force (evidence pad.two_loops), since the response is extrapolated there
-                "given_common": quantiles_of(rates, (0.95,)),
+                "given_common": quantiles_of(rates),
+                "sure": float(np.mean(rates <= allowed)),
                 "largest_hold_V": allowed_V,
                 "least_rms_nm": least_rms_nm(response, times, hold, allowed, confidence),
                 "least_spring": least_spring(response, likely, times, hold, allowed),

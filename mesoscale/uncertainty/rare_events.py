@@ -54,13 +54,13 @@ class Process:
         # a likelihood that is flat in some input ends by its number of calls; runs of the model judge the process
         ot.Log.Show(0)
         fitted = self._fitted(x, y, kernel)
-        found = fitted.getCovarianceModel()
-        if found.getAmplitude()[0] == 1.0:  # OpenTURNS 1.27 may leave it as given; the likeliest is this one
-            left = y - np.array(fitted.getMetaModel()(self._scaled(x)))[:, 0]
-            found.setAmplitude(
-                [np.sqrt(left @ np.linalg.solve(np.array(found.discretize(self._scaled(x))), left) / y.size)]
-            )
-            fitted = self._fitted(x, y, found, optimize=False)
+        kernel = fitted.getCovarianceModel()
+        if kernel.getAmplitude()[0] == 1.0:  # OpenTURNS 1.27 may leave it as given; the likeliest is this one
+            scaled = self._scaled(x)
+            left = y - np.array(fitted.getMetaModel()(scaled))[:, 0]
+            square = left @ np.linalg.solve(np.array(kernel.discretize(scaled)), left) / y.size
+            kernel.setAmplitude([np.sqrt(square)])
+            fitted = self._fitted(x, y, kernel, optimize=False)
         regression = ot.GaussianProcessRegression(fitted)
         regression.run()
         self.mean = regression.getResult().getMetaModel()

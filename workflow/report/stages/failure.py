@@ -27,11 +27,15 @@ def describe(results: Results) -> Iterator[Block]:
         "batch with 95 % confidence, as what is common to its devices is not known.",
     )
     yield table(
-        "Share of the devices of one batch that fail",
+        "Share of the devices that fail: what is common to them is not known, so that the share is not",
         rate["laws"],
         {
             "attraction": lambda law: f"{show(law['attraction'], 2)} times",
-            "at most, with 95 % confidence": lambda law: _share(law["given_common"]["0.95"]),
+            "median": lambda law: _share(law["given_common"]["0.5"]),
+            "5 to 95 % of the belief": lambda law: " to ".join(
+                _share(law["given_common"][q]) for q in ("0.05", "0.95")
+            ),
+            f"chance of no more than {show(rate['allowed'])}": lambda law: f"{law['sure']:.0%}",
         },
         front=True,
     )
