@@ -202,7 +202,7 @@ class Population:
     def positive(self) -> NDArray[np.bool_]:
         """Which of the numbers stand for what is above zero."""
         ends = np.outer([-FAR, FAR], np.ones(self.dimension))
-        return (values_at(ndtr(ends), self.table, self.settings, self.cutoffs_nm) > 0.0).all(axis=0)
+        return values_at(ndtr(ends), self.table, self.settings, self.cutoffs_nm).min(axis=0) > 0.0
 
     def columns(self, z: Array, hold_V: Array) -> Array:
         """What the response depends on: logarithms of what is positive, as the reserve is a logarithm."""
