@@ -15,7 +15,7 @@ from workflow.report.numbers import show
 from workflow.report.page import Gate
 
 NAMES = {
-    "rms_scatter": ("roughness from place to place", ""),
+    "rms_scatter": ("roughness from place to place", "the roughness from place to place"),
     "gap_cutoff_nm": ("D₀", "the pull-off of the contact, which tells D₀"),
     "thickness_um": ("thickness", "the thickness of the electrode"),
     "gap_um": ("gap", "the gap at rest"),
