@@ -35,6 +35,14 @@ FILM = [[{"young_GPa": 72, "poisson": 0.17, "thickness_nm": 2.5}, {"young_GPa": 
 CYCLES = {
     "coupled cycle": {"mechanics": "coupled"},
     "coupled elastic cycle": {"mechanics": "coupled", "model": "elastic"},
+    **{
+        f"coupled cycle at {percent}{name}": {
+            "mechanics": "coupled",
+            "air": {"humidity": percent / 100, "opening": opening},
+        }
+        for percent in (30, 60, 80, 95)
+        for opening, name in (("balance", ""), ("volume", " constant volume"))
+    },
     "adhesive cycle": ADHESIVE,
     "adhesive cycle on a film": {**ADHESIVE, "bodies": FILM},
 }
@@ -93,10 +101,14 @@ def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
     last = {(row["pixels"], row["what"]): row for row in rows}
     found = {}
     for (pixels, what), row in last.items():
-        value, base = float(row["cpu_s"]), "adhesive cycle" if "film" in what else "surface and cycle"
+        humid = what.startswith("coupled cycle at")
+        value = float(row["cpu_s"])
+        base = "coupled cycle" if humid else "adhesive cycle" if "film" in what else "surface and cycle"
         over = value / float(last[pixels, base]["cpu_s"]) if (pixels, base) in last else np.nan
         if what == "adhesive cycle":
             found[f"adhesive_{pixels}"] = f"{value:.0f} s and {row['MB']} MB"
+        elif humid:
+            found[f"{what.replace(' ', '_')}_{pixels}"] = f"{over:.3g}"
         elif what in ("plain model", "adhesive cycle on a film", *PEERS):
             found[f"{what.replace(' ', '_')}_{pixels}"] = f"{over:.2g}"
         elif what == "floor":

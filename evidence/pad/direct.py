@@ -3,7 +3,7 @@
 `answer`: points of a finished scene as its answer has them. `other`: the same points on pads of 64 cells of other
 surfaces. `many`: the points that differ most, on pads of 1,024 independent places (drawn one by one, as a device has
 them), each with a cell of its own. `fresh`: further points of the joint distribution on pads of 64 cells, whose
-quantiles and share that sticks are set beside those of the answer. The cells of these pads stand for themselves alone:
+quantiles and share that sticks are set beside those of the answer. The cells of these pads stand only for themselves:
 their curves are not shifted as those of the answer are.
 """
 
@@ -11,13 +11,13 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from time import process_time
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from scipy.stats import qmc
 
 from evidence.pad.large_surfaces import random_cells
+from evidence.pad.runs import finished
 from mesoscale.device.electrode import presser, solve_deepened
 from mesoscale.device.points import Point, point_of, surfaces_of, values_at
 from mesoscale.device.pressing import pressing, pressure_to_compute
@@ -27,9 +27,6 @@ from mesoscale.pad.cells import Cell, plan_grid, sample_cells
 from mesoscale.pad.curves import press_cells
 from mesoscale.pad.memory import PadLaw, flats_of
 from mesoscale.settings import ContactSettings
-from workflow.run.contact_settings import contact_settings
-from workflow.run.pads import load_model, points_of
-from workflow.scene import load_scene
 
 OTHER_CELLS = 64
 OTHERS = 500_000
@@ -49,13 +46,8 @@ def arguments(parser: ArgumentParser) -> None:
 def rows(given: Namespace) -> Iterator[dict[str, Any]]:
     """A row for each pad."""
     for folder in given.results:
-        scene = load_scene(folder.name)
-        described = folder / "topography" / "parameters.json"
-        found = {"topography": described} if described.exists() else {}
-        contact = contact_settings(scene.contact.model_dump(mode="json"), SimpleNamespace(input=found))
-        device = scene.device
-        points = points_of(str(folder / "pad" / "inputs.csv"), contact, device, scene.pad.points)
-        model, coarse = load_model([str(folder / "pad" / "model.h5")], points), points.on_grid
+        points, model = finished(folder)
+        device, coarse = points.device, points.on_grid
         apart = {}
         for k, one in enumerate(model.points):
             release = one.states.get("release_V", np.nan)

@@ -14,12 +14,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from resource import RUSAGE_CHILDREN, getrusage
 from time import process_time
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import yaml
 
+from evidence.pad.runs import finished
 from mesoscale.circuit.lumps import LumpErrors, Lumps, lumps_of
 from mesoscale.circuit.numerics import CIRCUIT
 from mesoscale.circuit.spice import spice_switch
@@ -28,8 +27,6 @@ from mesoscale.device.beam_switch import BeamStates, solve_beam, solve_bent
 from mesoscale.device.electrode import with_pad
 from mesoscale.pad.memory import PadLaw, attracting
 from mesoscale.settings import DeviceSettings
-from workflow.run.contact_settings import contact_settings
-from workflow.run.pads import load_model, points_of
 
 PAIRS = (4, 8, 12, 16, 20, 24, 28, 32, 48, 64)
 ELEMENTS = 1024
@@ -86,13 +83,8 @@ def rows(given: Namespace) -> Iterator[dict[str, Any]]:
 
 def central_pad(results: Path) -> tuple[DeviceSettings, PadLaw]:
     """The switch of a scene, and its pad at central inputs."""
-    scene = yaml.safe_load((results / "scene.yaml").read_text(encoding="utf-8"))["scene"]
-    described = results / "topography" / "parameters.json"
-    found = {"topography": described} if described.exists() else {}
-    contact = contact_settings(scene["contact"], SimpleNamespace(input=found))
-    device = DeviceSettings.model_validate(scene["device"])
-    points = points_of(str(results / "pad" / "inputs.csv"), contact, device, scene["pad"]["points"])
-    return device, load_model([str(results / "pad" / "model.h5")], points).central.pressed.law
+    points, model = finished(results)
+    return points.device, model.central.pressed.law
 
 
 def _of(by: str, pairs: int, states: BeamStates, started: float) -> dict[str, Any]:

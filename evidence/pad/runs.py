@@ -7,11 +7,16 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import yaml
 
 from evidence.record import ROOT
+from mesoscale.device.points import PadModel
+from workflow.run.contact_settings import contact_settings
+from workflow.run.pads import Points, load_model, points_of
+from workflow.scene import load_scene
 
 
 @contextmanager
@@ -26,3 +31,12 @@ def results_of(scene: str | Mapping[str, Any], target: str, tree: Path = ROOT) -
         about = os.environ | {"PYTHONPATH": str(tree)}
         subprocess.run(command, check=True, cwd=folder, env=about, stdout=subprocess.DEVNULL)
         yield Path(folder) / "results" / str(name)
+
+
+def finished(folder: Path) -> tuple[Points, PadModel]:
+    """Points and pads of a finished scene, which its folder is named after."""
+    scene, described = load_scene(folder.name), folder / "topography" / "parameters.json"
+    found = SimpleNamespace(input={"topography": described} if described.exists() else {})
+    contact = contact_settings(scene.contact.model_dump(mode="json"), found)
+    points = points_of(str(folder / "pad" / "inputs.csv"), contact, scene.device, scene.pad.points)
+    return points, load_model([str(folder / "pad" / "model.h5")], points)

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from mesoscale.contact.changes import Changes
-from mesoscale.contact.menisci import menisci_of
+from mesoscale.contact.menisci import Liquid, menisci_of
 from mesoscale.contact.numerics import Numerics
 from mesoscale.settings import ContactSettings
 
@@ -46,7 +46,8 @@ class Attraction:
     offset, least : the walls are max(gap, least) + offset apart, nm.
     touching : whether sites in contact attract.
     menisci : liquid in the gaps, where humid air condenses.
-    volume : of that liquid where an opening keeps it, over the area of a site, nm.
+    filled : the liquid of the last force.
+    kept : volume of the liquid that an opening keeps, over the area of a site, nm; None: in equilibrium.
     near_nm : gap below which sites of an undeformed surface are summed one by one, nm.
     """
 
@@ -60,7 +61,8 @@ class Attraction:
         self.touching = settings.reading.touching_attracts
         self.rate = retardation_rate(settings.retardation_nm)
         self.menisci = menisci_of(settings.air)
-        self.volume: float | None = None
+        self.filled = Liquid(0.0, 0.0, self.reach_nm)
+        self.kept: float | None = None
         self.site_area = site_area
         self.strength = hamaker * site_area / (6.0 * np.pi)
         self.lowest = float(heights.min())
@@ -73,13 +75,14 @@ class Attraction:
     def put_in(self, heights: np.ndarray) -> None:
         """Have the histogram hold further sites."""
         bin_heights(heights, self.lowest, self.bin_width, self.moments)
+        self.before: np.ndarray | None = None  # cumulated, where asked for
 
     def take_out(self, changes: Changes) -> None:
         """Have the histogram hold the unchanged sites only."""
         count = int(changes.used[0])
         if count > self.taken_out:
             take_out(changes.original, self.taken_out, count, self.lowest, self.bin_width, self.moments)
-            self.taken_out = count
+            self.taken_out, self.before = count, None
 
     @property
     def reach_nm(self) -> float:
@@ -91,6 +94,12 @@ class Attraction:
         self.take_out(changes)
         self.put_in(heights)
         self.taken_out = 0
+
+    def share_before(self, far: int) -> float:
+        """Share of the sites in the bins before one."""
+        if self.before is None:
+            self.before = np.cumsum(self.moments[:, 0])
+        return float(self.before[far - 1] / self.before[-1]) if far else 0.0
 
     def far_edge(self, near: float, separation: float) -> tuple[int, float]:
         """First bin all of whose sites are at least a gap (nm) away, and the height (nm) at which it begins."""
@@ -104,20 +113,24 @@ class Attraction:
             total += far_inverse_cubes(
                 separation + self.offset, far, self.lowest, self.bin_width, self.moments, self.rate
             )
-        return -self.strength * total + self.liquid(gap, weight)
+        return -self.strength * total + self.liquid(gap, weight, separation, far)
 
-    def liquid(self, gap: np.ndarray, weight: np.ndarray) -> float:
-        """What liquid adds to the force (nN) on sites with given gaps (nm) and weights; all sites that it may fill."""
-        menisci = self.menisci
-        if menisci is None:
+    def liquid(self, gap: np.ndarray, weight: np.ndarray, separation: float = 0.0, far: int | None = None) -> float:
+        """What liquid adds to the force (nN); see `deformed` for the sites."""
+        if self.menisci is None:
             return 0.0
-        reach = menisci.reach_nm
-        if self.volume is not None:
-            reach = math.inf
-            menisci, weight = menisci.holding(gap, weight, self.volume)
-        sites, cubes = filled_sites(gap, weight, reach, self.least, self.offset, self.rate)
-        less = (1.0 - menisci.dispersion) * self.strength * cubes
-        return less - menisci.pull_GPa * self.site_area * sites
+        far = len(self.moments) if far is None else far
+        walls = (self.least, self.offset, self.rate)
+        bins = (separation, far, self.lowest, self.bin_width, self.moments)
+        if self.kept is None:
+            reach = self.menisci.reach_nm
+            sites, volume, cubes = fill(gap, weight, *bins, reach, *walls)
+        else:
+            volume = self.kept
+            sites, reach, cubes = hold(gap, weight, *bins, volume, self.menisci.reach_nm, *walls)
+        self.filled = Liquid(sites, volume, reach)
+        less = (1.0 - self.menisci.dispersion) * self.strength * cubes
+        return less - self.menisci.pull_at(reach) * self.site_area * sites
 
     def around(
         self,
@@ -135,8 +148,7 @@ class Attraction:
         )
         if self.menisci is None:
             return force
-        every, pixels = np.arange(heights.size), math.isqrt(heights.size)
-        weight = attracting(every, place, pressure, pixels, touching)
+        weight = all_attracting(heights.size, sites, place, pressure, touching)
         return force + self.liquid(heights + separation + displacement, weight)
 
     def undeformed(
@@ -183,11 +195,36 @@ def attracting(sites, place, pressure, pixels, touching):
         if here >= 0 and pressure[here] > 0.0:
             weight[k] = 0.0
             continue
-        row, col = sites[k] // pixels, sites[k] % pixels
-        for rows, cols in ((-1, 0), (1, 0), (0, -1), (0, 1)):
-            other = place[(row + rows) % pixels * pixels + (col + cols) % pixels]
+        for beside in _beside(sites[k], pixels):
+            other = place[beside]
             if other >= 0 and pressure[other] > 0.0:
                 weight[k] += EXCESS
+    return weight
+
+
+@njit(cache=True, inline="always")
+def _beside(site, pixels):
+    """The four neighbours of a site in its periodic cell."""
+    col, size = site % pixels, pixels * pixels
+    up, down = site - pixels, site + pixels
+    left, right = site - 1 if col else site + pixels - 1, site + 1 if col < pixels - 1 else site - pixels + 1
+    return up if up >= 0 else up + size, down if down < size else down - size, left, right
+
+
+@njit(cache=True)
+def all_attracting(size, sites, place, pressure, touching):
+    """`attracting` of all sites of a cell, of which few are under pressure."""
+    weight = np.ones(size)
+    if touching:
+        return weight
+    pixels = int(np.sqrt(size) + 0.5)
+    for k in range(sites.size):
+        if not pressure[k] > 0.0:
+            continue
+        weight[sites[k]] = 0.0
+        for beside in _beside(sites[k], pixels):
+            if place[beside] < 0 or not pressure[place[beside]] > 0.0:
+                weight[beside] += EXCESS
     return weight
 
 
@@ -282,14 +319,60 @@ def inverse_cubes_of(gap, weight, least, offset, rate):
 
 
 @njit(cache=True)
-def filled_sites(gap, weight, reach, least, offset, rate):
-    """Sum of the weights of sites with gaps below `reach`, and that of their 1/s^3."""
-    sites = cubes = 0.0
+def fill(gap, weight, separation, far, lowest, width, moments, reach, least, offset, rate):
+    """Sites with gaps below `reach`, those in the bins from `far` on too, their volume, and the sum of their 1/s^3.
+
+    The bin in which liquid ends is filled in part.
+    """
+    sites = volume = cubes = 0.0
     for k in range(gap.size):
         if weight[k] > 0.0 and gap[k] < reach:
             sites += weight[k]
+            volume += weight[k] * max(gap[k], 0.0)
             cubes += weight[k] * inverse_cube(max(gap[k], least) + offset, rate)
-    return sites, cubes
+    for b in range(far, moments.shape[0]):
+        edge = lowest + b * width + separation
+        if edge >= reach:
+            break
+        if moments[b, 0] > 0.0:
+            share = min((reach - edge) / width, 1.0) * moments[b, 0]
+            mean = edge + 0.5 * width + moments[b, 1] / moments[b, 0]
+            sites += share
+            volume += share * max(mean, 0.0)
+            cubes += share * inverse_cube(max(mean, least) + offset, rate)
+    return sites, volume, cubes
+
+
+@njit(cache=True)
+def hold(gap, weight, separation, far, lowest, width, moments, volume, reach, least, offset, rate):
+    """The same of the sites that a volume of liquid fills from the narrowest gap on, with the gap up to which.
+
+    Where it fills all sites, this gap is `reach`.
+    """
+    bins = moments.shape[0]
+    start = lowest + separation  # gap at which the first bin begins; sites with less are in this bin, too
+    sums = np.zeros((bins, 3))
+    for k in range(gap.size):
+        b = min(max(int((gap[k] - start) / width), 0), bins - 1)
+        sums[b, 0] += weight[k]
+        sums[b, 1] += weight[k] * max(gap[k], 0.0)
+        sums[b, 2] += weight[k] * inverse_cube(max(gap[k], least) + offset, rate)
+    sites = held = cubes = 0.0
+    for b in range(bins):
+        if b >= far and moments[b, 0] > 0.0:
+            mean = start + (b + 0.5) * width + moments[b, 1] / moments[b, 0]
+            sums[b, 0] += moments[b, 0]
+            sums[b, 1] += moments[b, 0] * max(mean, 0.0)
+            sums[b, 2] += moments[b, 0] * inverse_cube(max(mean, least) + offset, rate)
+        part = 1.0
+        if held + sums[b, 1] > volume:
+            part = (volume - held) / sums[b, 1]
+        sites += part * sums[b, 0]
+        held += part * sums[b, 1]
+        cubes += part * sums[b, 2]
+        if part < 1.0:
+            return sites, start + (b + part) * width, cubes
+    return sites, reach, cubes
 
 
 @njit(cache=True)
@@ -306,9 +389,7 @@ def inverse_cubes_around(heights, separation, displacement, sites, place, pressu
             continue
         site = sites[k]
         total -= inverse_cube(max(heights[site] + separation + displacement[site], least) + offset, rate)
-        row, col = site // pixels, site % pixels
-        for rows, cols in ((-1, 0), (1, 0), (0, -1), (0, 1)):
-            beside = (row + rows) % pixels * pixels + (col + cols) % pixels
+        for beside in _beside(site, pixels):
             if place[beside] < 0 or not pressure[place[beside]] > 0.0:
                 gap = heights[beside] + separation + displacement[beside]
                 total += EXCESS * inverse_cube(max(gap, least) + offset, rate)

@@ -161,7 +161,7 @@ def run_cycle(
     last = closing.rows[-1]
     changed, remarks = contact.changed_sites, contact.remarks()
     if contact.adhesion and contact.adhesion.menisci:
-        remarks["filled_share"] = contact.liquid(last.separation)[0]
+        remarks["filled_share"] = contact.filled_share(last.separation)
     repeated, unconverged = closing.repeated, closing.unconverged
     if not contact.REVERSIBLE:
         path = reopen(contact, numerics.force_steps, last)

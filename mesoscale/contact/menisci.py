@@ -9,12 +9,11 @@ Where the walls part faster than the liquid evaporates, its volume stays, d_c gr
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from mesoscale.settings.contact import WATER_CM3, AirSettings
 
 ZERO_C_K = 273.15
 GAS_J_MOL_K = 8.314462618  # CODATA 2018
+PER_MOL = 6.02214076e23
 WATER_CRITICAL_K, WATER_CRITICAL_KPA = 647.096, 22064.0  # IAPWS
 
 
@@ -38,31 +37,28 @@ class Menisci(NamedTuple):
     dispersion: float
     keeps_volume: bool
 
-    def holding(self, gap: np.ndarray, weight: np.ndarray, volume: float) -> tuple["Menisci", np.ndarray]:
-        """The menisci that hold a volume, and how much of each site they fill.
+    def pull_at(self, reach_nm: float) -> float:
+        """p_c (GPa) of liquid that reaches up to a gap; walls that come closer press liquid out, so p_c is the most."""
+        return self.tension / max(reach_nm - self.films_nm, self.tension / self.pull_GPa)  # radius times the cosines
 
-        Walls that come closer press liquid out: p_c is at most that in equilibrium.
 
-        Parameters
-        ----------
-        gap, weight : of all sites (nm, and how many sites' areas each counts for), shape (n,).
-        volume : over the area of a site, nm.
-        """
-        rank = np.argsort(gap)
-        held = np.cumsum(weight[rank] * np.maximum(gap[rank], 0.0))
-        last = int(np.searchsorted(held, volume, side="right"))
-        filled = np.zeros_like(weight)
-        filled[rank[:last]] = weight[rank[:last]]
-        if last == len(rank):  # every gap is full
-            return self, filled
-        before = held[last - 1] if last else 0.0
-        filled[rank[last]] = weight[rank[last]] * (volume - before) / (held[last] - before)
-        radius = max(float(gap[rank[last]]) - self.films_nm, self.tension / self.pull_GPa)  # times the cosines
-        return self._replace(pull_GPa=self.tension / radius), filled
+class Liquid(NamedTuple):
+    """Liquid in a cell.
+
+    Attributes
+    ----------
+    sites : how many sites' areas it fills.
+    volume : over the area of a site, nm.
+    reach : gap up to which there is liquid, nm.
+    """
+
+    sites: float
+    volume: float
+    reach: float
 
 
 def menisci_of(air: AirSettings | None) -> Menisci | None:
-    """The menisci in air; None where nothing condenses."""
+    """The menisci in air; None where nothing condenses, or liquid would be thinner than one of its molecules."""
     if air is None or air.humidity == 0.0:
         return None
     tension = 1e-3 * surface_tension_mN_m(air)
@@ -70,11 +66,12 @@ def menisci_of(air: AirSettings | None) -> Menisci | None:
     if tension <= 0.0 or wetting <= 1e-12:  # 90 and 90 degrees, but for rounding
         return None
     kelvin = air.temperature_C + ZERO_C_K
-    pull = (
-        1e-3 * GAS_J_MOL_K * kelvin * abs(math.log(air.humidity)) / (air.molar_volume_cm3 or WATER_CM3)
-    )  # 1 J/cm^3 = 1e-3 GPa
+    volume = air.molar_volume_cm3 or WATER_CM3
+    pull = 1e-3 * GAS_J_MOL_K * kelvin * abs(math.log(air.humidity)) / volume  # 1 J/cm^3 = 1e-3 GPa
     films = 2.0 * air.film_nm
     reach = wetting * tension / pull + films
+    if reach < 1e7 * math.cbrt(volume / PER_MOL):  # 0.31 nm of water
+        return None
     return Menisci(pull, reach, films, wetting * tension, air.hamaker_share, air.opening == "volume")
 
 

@@ -123,25 +123,23 @@ class Contact(ABC):
     def attraction(self, separation: float) -> float:
         """Attractive force in nN, negative (eq. 1); 0 without a pass over anything if A_H = 0."""
 
-    @abstractmethod
-    def gaps(self, separation: float) -> tuple[np.ndarray, np.ndarray]:
-        """Gaps of all sites (nm), and how many sites' areas attract with each; shapes (N^2,)."""
-
     @property
     def keeps_liquid(self) -> bool:
         """Whether an opening keeps the volume of the liquid."""
         return bool(self.adhesion and self.adhesion.menisci and self.adhesion.menisci.keeps_volume)
 
-    def liquid(self, separation: float) -> tuple[float, float]:
-        """Liquid in equilibrium at the current separation: share of the cell that it fills, and mean depth, nm."""
-        gap, weight = self.gaps(separation)
-        filled = np.where(gap < self.adhesion.reach_nm, weight, 0.0) if self.adhesion else np.zeros_like(gap)
-        return float(filled.mean()), float((filled * np.maximum(gap, 0.0)).mean())
+    def filled_share(self, separation: float) -> float:
+        """Share of the cell that liquid fills at the current separation."""
+        self.attraction(separation)
+        return self.adhesion.filled.sites / self.heights.size if self.adhesion else 0.0
 
     def hold_liquid(self, separation: float | None) -> None:
         """Keep the liquid of the current separation from now on, where an opening does; None: no longer."""
         if self.adhesion and self.keeps_liquid:
-            self.adhesion.volume = None if separation is None else self.liquid(separation)[1] * self.heights.size
+            self.adhesion.kept = None
+            if separation is not None:
+                self.attraction(separation)
+                self.adhesion.kept = self.adhesion.filled.volume
 
     @property
     def lost(self) -> float:

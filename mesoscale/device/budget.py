@@ -35,6 +35,7 @@ class Effect(Settings):
     share: float | None = key(None, "a bound from the source, as a share of the release", "[0, 1]")
     squared_V2: float | None = key(None, "what is taken off the square of the voltage", "V^2")
     charge_e_cm2: float | None = key(None, "charge at the surface of the dielectric", "1/cm^2")
+    varied_as: str = key("", "input that stands for it, where a scene varies it")
     changes: str = key("", "property of the device that it changes")
     factor: float = key(1.0, "times its value")
     step: float = key(0.0, "and so much more")
@@ -83,6 +84,8 @@ def budget(effects: Mapping[str, Effect], switch: Mapping[str, Any], central: So
     for name, effect in effects.items():
         if effect.changes and not central.point.device.bends and effect.changes not in OF_A_PLATE:
             continue  # a plate on a spring has no such property
+        if effect.varied_as and effect.varied_as in central.point.values:
+            continue
         volts, remark = _moved_V(effect, pressed)
         stated = effect.model_dump(include={"how", "held", "settle", "source"})
         rows.append({"effect": name, "volts": volts, "about": f"{effect.about}{remark}", **stated})
@@ -97,7 +100,7 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
         yield {
             "effect": "law of attraction",
             "volts": max(by_law) - min(by_law),
-            "about": "a third of the work to three times" + "; it may stick" * (min(by_law) == 0.0),
+            "about": "a third to three times the work of adhesion" + "; it may stick" * (min(by_law) == 0.0),
             "held": False,
             "settle": "pull-off of the contact (target calibrate)",
             **here,
@@ -112,7 +115,7 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
             yield {
                 "effect": row["name"],
                 "volts": wide * float(np.sqrt(share)),
-                "about": "5 to 95 %" if seen else "5 to 95 %; less, as so few switches do not show it",
+                "about": "5 to 95 %" if seen else "5 to 95 %; or less",
                 "held": True,
                 "settle": SETTLE[row["varies"]],
                 **here,
@@ -122,7 +125,7 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
             "volts": 2.0 * 1.645 * answer["cells_error_V"],
             "about": "5 to 95 %, of a point",
             "held": True,
-            "settle": "pad.point_cells",
+            "settle": "more cells a point (pad.point_cells)",
             **here,
         }
         yield {
@@ -130,7 +133,7 @@ def _computed(switch: Mapping[str, Any], of_device: Collection[str]) -> Iterator
             "volts": answer["quantile_error_V"]["0.5"],
             "about": "standard error of the median",
             "held": False,
-            "settle": "pad.points",
+            "settle": "more switches (pad.points)",
             **here,
         }
 

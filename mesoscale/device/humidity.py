@@ -4,13 +4,15 @@ Two limits hold what menisci do while the switch opens: in balance with the vapo
 (docs/humid_air.md).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesoscale.contact.menisci import reach_nm
 from mesoscale.device.points import PadModel, solve_point, surfaces_of
 from mesoscale.device.release import probability
 from mesoscale.inputs.distributions import InputTable
@@ -20,6 +22,7 @@ from mesoscale.settings.contact import AirSettings, Opening
 
 Array = NDArray[np.float64]
 LEVELS = 7  # evenly in the root: a few per cent of humidity change most
+HALVINGS = 3  # of the step of humidity in which the switch begins to stick
 CELLS = 2  # times those of a point
 
 
@@ -38,36 +41,57 @@ def humidity_rows(
     point_cells: int,
     progress: Callable[[float, str], None] | None = None,
 ) -> list[dict[str, Any]]:
-    """Rows of device/humidity.csv: one for each humidity and limit of opening.
+    """Rows of device/humidity.csv: one for each humidity and limit of opening, by rising humidity.
+
+    Further humidities halve the step in which the switch begins to stick.
 
     Parameters
     ----------
     contact : on the grid of the pads.
     """
+    rows: list[dict[str, Any]] = []
+    humidities = levels(table, contact)
+    air = contact.air or AirSettings()
     openings = ("balance",) if contact.mechanics == "adhesive" else get_args(Opening)
-    rows, humidities = [], levels(table, contact)
-    shares = _shares(model, humidities)
-    for humidity, share in zip(humidities.tolist(), shares, strict=True):
+    steps = (len(humidities) + HALVINGS) * len(openings)
+
+    def solve(humidity: float, share: dict[str, float]) -> None:
         point = replace(model.central.point, values={**model.central.point.values, "humidity": humidity})
         for opening in openings:
-            air = (contact.air or AirSettings()).model_copy(update={"opening": opening})
-            chosen = contact.model_copy(update={"air": air})
+            chosen = contact.model_copy(update={"air": air.model_copy(update={"opening": opening})})
             solved = solve_point(point, chosen, CELLS * point_cells, surfaces_of(0))
             opened = adhesion_of(solved.pad.law)[0] if solved.pad else None
             rows.append(
                 {
                     "humidity": humidity,
                     "opening": opening,
+                    "reach_nm": reach_nm(air.model_copy(update={"humidity": humidity})),
                     "release_V": solved.states.get("release_V"),
                     "error_V": solved.error_V if solved.states else None,
                     "energy_mJ_m2": opened.energy_uJ_m2 * 1e-3 if opened else None,
                     "pull_off_kPa": opened.pull_off_kPa if opened else None,
-                    **(share if opening == (contact.air or AirSettings()).opening else {}),
+                    **(share if opening == air.opening else {}),
                 }
             )
             if progress:
-                progress(len(rows) / (len(humidities) * len(openings)), f"{humidity:.0%} humidity, {opening}")
-    return rows
+                progress(len(rows) / steps, f"{humidity:.0%} humidity, {opening}")
+
+    for humidity, share in zip(humidities.tolist(), _shares(model, humidities), strict=True):
+        solve(humidity, share)
+    for _ in range(HALVINGS):
+        step = sticking_between([row for row in rows if row["opening"] == air.opening])
+        if step is not None:
+            solve(0.5 * sum(step), {})
+    return sorted(rows, key=lambda row: row["humidity"])
+
+
+def sticking_between(rows: Sequence[dict[str, Any]]) -> tuple[float, float] | None:
+    """Humidities of two neighbours, of which the switch lets go at the first and sticks at the second."""
+    known = sorted((row["humidity"], row["release_V"]) for row in rows if row["release_V"] is not None)
+    for (low, release), (high, stuck) in pairwise(known):
+        if release > 0.0 == stuck:
+            return low, high
+    return None
 
 
 def _shares(model: PadModel, humidities: Array) -> list[dict[str, float]]:

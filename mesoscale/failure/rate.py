@@ -10,6 +10,7 @@ likely. Such switches also correct it.
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
+from functools import cached_property
 from typing import Any, Protocol
 from zlib import crc32
 
@@ -41,6 +42,8 @@ from mesoscale.uncertainty.rare_events import (
 )
 
 Array = NDArray[np.float64]
+FAR = 8.0
+"""Deviations beyond which a probability is 1 in double precision, so that a number would be endless."""
 Known = tuple[int, float]
 """A number of the population that is known, and its value."""
 
@@ -195,9 +198,17 @@ class Population:
         """Hold voltage of the scene; where it has none, that of the pull-in without contact."""
         return held_V(self.settings)
 
+    @cached_property
+    def positive(self) -> NDArray[np.bool_]:
+        """Which of the numbers stand for what is above zero."""
+        ends = np.outer([-FAR, FAR], np.ones(self.dimension))
+        return values_at(ndtr(ends), self.table, self.settings, self.cutoffs_nm).min(axis=0) > 0.0
+
     def columns(self, z: Array, hold_V: Array) -> Array:
-        """What the response depends on."""
-        return np.column_stack([values_at(ndtr(z), self.table, self.settings, self.cutoffs_nm), hold_V])
+        """What the response depends on: logarithms of what is positive, as the reserve is a logarithm."""
+        values = values_at(ndtr(np.clip(z, -FAR, FAR)), self.table, self.settings, self.cutoffs_nm)
+        logs = np.log(np.maximum(values, np.finfo(float).tiny))
+        return np.column_stack([np.where(self.positive, logs, values), hold_V])
 
     def points(self, z: Array, hold_V: float) -> list[Point]:
         """The switches of numbers (m, dimension)."""
@@ -462,8 +473,8 @@ def failure_rate(
             {
                 "attraction": times,
                 "failing": asdict(corrected(response, times, hold)),
-                # lower quantiles miss brute force (evidence pad.two_loops), since the response is extrapolated there
-                "given_common": quantiles_of(rates, (0.95,)),
+                "given_common": quantiles_of(rates),
+                "sure": float(np.mean(rates <= allowed)),
                 "largest_hold_V": allowed_V,
                 "least_rms_nm": least_rms_nm(response, times, hold, allowed, confidence),
                 "least_spring": least_spring(response, likely, times, hold, allowed),

@@ -182,13 +182,13 @@ def law_of(cells: PadCells, flats: Flats) -> PadLaw:
     Places of another RMS height shift in proportion to it.
     """
     separation, depth = cells.grid.separation_nm[::-1], cells.grid.depth_nm[::-1]
-    alone = [
+    laws = [
         PadLaw(separation, closing[:, ::-1], depth, opening[::-1, :, ::-1], flats)
         for closing, opening in zip(cells.closing, cells.opening, strict=True)
     ]
     closing, opening = np.zeros((2, separation.size)), np.zeros((depth.size, 2, separation.size))
     shifts_nm = _shifts_nm(cells)
-    for law, weight, of_cell in zip(alone, cells.weight / shifts_nm.shape[1], shifts_nm, strict=True):
+    for law, weight, of_cell in zip(laws, cells.weight / shifts_nm.shape[1], shifts_nm, strict=True):
         for shift in of_cell:
             closing += weight * _closing(law, separation - shift)
             for number, deepest in enumerate(depth):

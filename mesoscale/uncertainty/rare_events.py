@@ -48,20 +48,32 @@ class Process:
             import openturns as ot
 
         self.low, self.width = x.min(axis=0), np.ptp(x, axis=0)
-        count = int((self.width > 0).sum())
+        self.sample, count = ot.Sample, int((self.width > 0).sum())
         kernel = ot.MaternModel([2.0] * count, [1.0], 2.5)
         kernel.activateNuggetFactor(True)
-        self.sample = ot.Sample
-        fitter = ot.GaussianProcessFitter(
-            self._scaled(x), ot.Sample(y[:, None]), kernel, ot.LinearBasisFactory(count).build()
-        )
         # a likelihood that is flat in some input ends by its number of calls; runs of the model judge the process
         ot.Log.Show(0)
-        fitter.run()
-        regression = ot.GaussianProcessRegression(fitter.getResult())
+        fitted = self._fitted(x, y, kernel)
+        kernel = fitted.getCovarianceModel()
+        if kernel.getAmplitude()[0] == 1.0:  # OpenTURNS 1.27 may leave it as given; the likeliest is this one
+            scaled = self._scaled(x)
+            left = y - np.array(fitted.getMetaModel()(scaled))[:, 0]
+            square = left @ np.linalg.solve(np.array(kernel.discretize(scaled)), left) / y.size
+            kernel.setAmplitude([np.sqrt(square)])
+            fitted = self._fitted(x, y, kernel, optimize=False)
+        regression = ot.GaussianProcessRegression(fitted)
         regression.run()
         self.mean = regression.getResult().getMetaModel()
         self.covariance = ot.GaussianProcessConditionalCovariance(regression.getResult())
+
+    def _fitted(self, x: Array, y: Array, kernel: Any, optimize: bool = True) -> Any:
+        import openturns as ot
+
+        trend = ot.LinearBasisFactory(kernel.getInputDimension()).build()
+        fitter = ot.GaussianProcessFitter(self._scaled(x), ot.Sample(y[:, None]), kernel, trend)
+        fitter.setOptimizeParameters(optimize)
+        fitter.run()
+        return fitter.getResult()
 
     def _scaled(self, x: Array) -> Any:
         used = self.width > 0

@@ -453,7 +453,8 @@ def _failure(root: Path) -> None:
         {
             "attraction": times,
             "failing": failing,
-            "given_common": {"0.95": {"value": 3e-4}},
+            "given_common": {q: {"value": share} for q, share in (("0.05", 0.0), ("0.5", 2e-8), ("0.95", 3e-4))},
+            "sure": 0.7,
             "largest_hold_V": largest,
             "least_rms_nm": 7.0,
             "least_spring": None if largest is None else 3.9,

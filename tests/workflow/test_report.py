@@ -21,6 +21,7 @@ from workflow.report.gates import gates_of, trust
 from workflow.report.numbers import show
 from workflow.report.render import render
 from workflow.report.stages import pad
+from workflow.report.stages.humidity import against_humidity, begins_to_stick
 from workflow.report.stages.inputs import _distribution, stated_beside_computed
 from workflow.report.studies import recommended
 
@@ -297,3 +298,15 @@ def test_an_input_that_is_fixed_says_so():
 def test_an_input_given_by_samples_shows_their_quantiles():
     row = {"distribution": f"samples {json.dumps([k / 100 for k in range(101)])}", "a": "", "b": ""}
     assert _distribution(row) == "samples, median 0.500, 5 to 95 %: 0.0500 to 0.950"
+
+
+def test_the_page_says_from_which_humidity_on_the_switch_sticks():
+    rows = [
+        {"humidity": str(humidity), "opening": opening, "release_V": str(release)}
+        for opening, releases in (("balance", (5.0, 4.0, 0.0)), ("volume", (5.0, 4.0, 3.0)))
+        for humidity, release in zip((0.0, 0.3, 0.5), releases, strict=True)
+    ]
+    said = begins_to_stick(rows)
+    assert said.startswith("At central inputs the switch sticks from between 30.0% and 50.0% humidity on (menisci")
+    assert said.endswith("at none of these humidities (their volume stays).")
+    assert "<svg" in against_humidity([{**row, "stuck": ""} for row in rows])

@@ -102,7 +102,10 @@ def test_what_varies_is_named_in_words():
     rows = [{"name": "rms_scatter", "varies": "common", "share_of_variance": 0.5, "interval_shrinks_by": 0.3}]
     pad = _pad()
     assert said({**pad, "answer": {**pad["answer"], "sensitivity": rows}}).next_step.startswith("Scan more places next")
-    rows[0]["name"] = "h_macro"
+    rows[0]["varies"] = "each"
+    controlled = said({**pad, "answer": {**pad["answer"], "sensitivity": rows}}).next_step
+    assert controlled.startswith("Control next the roughness from place to place:")
+    rows[0] |= {"name": "h_macro", "varies": "common"}
     hardness = said({**pad, "answer": {**pad["answer"], "sensitivity": rows}})
     assert hardness.next_step.startswith("Measure next the macroscopic hardness H_macro:")
 

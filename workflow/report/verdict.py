@@ -15,7 +15,7 @@ from workflow.report.numbers import show
 from workflow.report.page import Gate
 
 NAMES = {
-    "rms_scatter": ("roughness from place to place", ""),
+    "rms_scatter": ("roughness from place to place", "the roughness from place to place"),
     "gap_cutoff_nm": ("D₀", "the pull-off of the contact, which tells D₀"),
     "thickness_um": ("thickness", "the thickness of the electrode"),
     "gap_um": ("gap", "the gap at rest"),
@@ -72,7 +72,8 @@ class Verdict:
         interval = f"(5\u00a0to\u00a095\u00a0%: {volts(low)} to {volts(high)})"
         if probability <= 1 - DECIDED:
             return f"The switch lets go at {volts(middle)} {interval}; {probability:.0%} stick."
-        return f"Whether the switch lets go is open: {probability:.0%} stick; the median is {volts(middle)} {interval}."
+        median = f"is {volts(middle)}" if middle else "sticks"
+        return f"Whether the switch lets go is open: {probability:.0%} stick; the median {median} {interval}."
 
     @property
     def sentence(self) -> str:

@@ -61,6 +61,7 @@ TABLES = (
         (
             number("humidity", "1", "relative humidity"),
             text("opening", "balance: menisci in balance with the vapour; volume: their volume stays"),
+            number("reach_nm", "nm", "gap below which there is liquid; 0: none, it would be thinner than a molecule"),
             number("release_V", "V", "release voltage at central inputs (0: stuck)", empty=True),
             number("error_V", "V", "its error by the number of cells", empty=True),
             number("energy_mJ_m2", "mJ/m^2", "work per area that opens the pad from its deepest closing", empty=True),

@@ -6,6 +6,7 @@ Asperities grow locally, and flow touches only its own patch.
 import numpy as np
 
 from mesoscale.contact.asperity import kernels, state
+from mesoscale.contact.attraction import Attraction
 from mesoscale.contact.changes import undo
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.contact.pressed import Contact, State
@@ -107,10 +108,12 @@ class AsperityContact(Contact):
         force = self.adhesion.undeformed(
             self.heights, separation, self.order, self.order_heights, self.changes, self.changed
         )
-        return force if self.adhesion.menisci is None else force + self.adhesion.liquid(*self.gaps(separation))
+        return force if self.adhesion.menisci is None else force + self._liquid(self.adhesion, separation)
 
-    def gaps(self, separation: float) -> tuple[np.ndarray, np.ndarray]:
-        """Gaps of all sites (nm), and how many sites' areas attract with each; shapes (N^2,)."""
-        gap = self.heights + separation
-        touching = self.adhesion is not None and self.adhesion.touching
-        return gap, np.ones_like(gap) if touching else (gap >= 0.0).astype(float)
+    def _liquid(self, law: Attraction, separation: float) -> float:
+        """What liquid adds to the attraction, nN."""
+        far, edge = law.far_edge(law.near_nm, separation)
+        near = self.order if far == len(law.moments) else self.order[: np.searchsorted(self.order_heights, edge)]
+        moved = self.changes.sites[: self.changed_sites]
+        gap = self.heights[np.concatenate((near[self.changed[near] == 0], moved))] + separation
+        return law.liquid(gap, np.ones_like(gap) if law.touching else (gap >= 0.0).astype(float), separation, far)

@@ -218,10 +218,10 @@ class AdhesiveContact(CoupledContact):
         gap = np.maximum(self.heights + self.separation + self.now.moved, 0.0)
         return (self._spread() - self.now.pull).reshape(shape), gap.reshape(shape)
 
-    def gaps(self, separation: float) -> tuple[np.ndarray, np.ndarray]:
-        """Gaps of all sites (nm), and how many sites' areas attract with each; shapes (N^2,)."""
-        gap = np.maximum(self.heights + separation + self.now.moved, 0.0)
-        return gap, np.ones_like(gap)
+    def filled_share(self, separation: float) -> float:
+        """Share of the cell that liquid fills at the current separation."""
+        reach = self.adhesion.reach_nm if self.adhesion else 0.0
+        return float(np.mean(np.maximum(self.heights + separation + self.now.moved, 0.0) < reach))
 
     def _spread(self) -> np.ndarray:
         """Pressures of all sites, shape (N^2,)."""

@@ -3,9 +3,18 @@
 import numpy as np
 import pytest
 
-from mesoscale.contact.menisci import menisci_of
-from mesoscale.device.humidity import humidity_rows, levels
-from mesoscale.device.points import PadModel, central_point, plan_points, solve_point, solve_points
+from mesoscale.contact.menisci import menisci_of, reach_nm
+from mesoscale.device.humidity import HALVINGS, humidity_rows, levels, sticking_between
+from mesoscale.device.points import (
+    PadModel,
+    central_point,
+    plan_points,
+    press_pad,
+    solve_point,
+    solve_points,
+    surfaces_of,
+)
+from mesoscale.failure.rate import Population
 from mesoscale.inputs.table import input_table
 from mesoscale.settings import ContactSettings, DeviceSettings, InputRow
 from mesoscale.settings.contact import AirSettings
@@ -42,8 +51,36 @@ def test_humid_air_sticks_what_lets_go_in_dry_air():
     assert balance[-1]["release_V"] == volume[-1]["release_V"] == 0.0
     assert balance[-1]["energy_mJ_m2"] > 3.0 * balance[0]["energy_mJ_m2"]
     assert volume[-1]["energy_mJ_m2"] > balance[-1]["energy_mJ_m2"]
-    assert sum(row["points"] for row in balance) == 6
+    assert sum(row.get("points", 0) for row in balance) == 6
     assert "stuck" not in volume[0]
+    humidities = [row["humidity"] for row in balance]
+    assert humidities == sorted(humidities)
+    free, stuck = sticking_between(balance)
+    coarse = levels(table, CONTACT)
+    assert len(balance) == len(coarse) + HALVINGS
+    assert stuck - free < 0.2 * np.diff(coarse)[np.searchsorted(coarse, stuck) - 1]  # its step is halved
+    assert reach_nm(AirSettings(humidity=stuck)) > 0.31
+
+
+def test_the_step_in_which_it_begins_to_stick():
+    rows = [{"humidity": h, "release_V": r} for h, r in ((0.8, 0.0), (0.0, 5.0), (0.4, None), (0.2, 3.0))]
+    assert sticking_between(rows) == (0.2, 0.8)
+    assert sticking_between(rows[1:]) is None
+    assert sticking_between(rows[:1]) is None
+
+
+def test_humidity_enters_the_rate_of_failure():
+    table = input_table(**HARD, humidity=InputRow(values=(0.0, 0.8)))
+
+    def press(point, times, number):
+        return press_pad(point, CONTACT, 4 * times, surfaces_of(number))
+
+    plates = Population(table, SWITCH, (0.3, 0.3), 0.0, press, (np.empty((0, 0)), []))
+    z = np.zeros((2, plates.dimension))
+    z[:, plates.names.index("humidity")] = -4.0, 2.0  # 0.003 and 78 %
+    assert [point.values["humidity"] for point in plates.points(z, 70.0)] == pytest.approx([0.0, 0.782], abs=1e-3)
+    dry, humid = plates.reserves(z, plates.hold_V)
+    assert humid < dry - 0.3  # nearer to sticking
 
 
 def test_a_pad_is_computed_as_far_as_liquid_reaches():

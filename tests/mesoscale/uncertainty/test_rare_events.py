@@ -136,3 +136,13 @@ def test_the_error_of_the_response_is_common_too():
     rates = rates_given(_plane(1.0, 1.0), np.zeros(4, bool), 0.0, 0)
     for q, shift in ((0.5, 0.0), (0.95, 1.645)):
         assert np.quantile(rates, q) == pytest.approx(ndtr((shift - 1.0) / np.linalg.norm(SLOPES)), rel=0.15)
+
+
+@pytest.mark.parametrize("seed", [4, 11])
+def test_a_process_through_a_plane_with_noise_knows_the_noise(seed):
+    """With seed 11 OpenTURNS 1.27 ends with the amplitude that was given, and a deviation of 4."""
+    rng = np.random.default_rng(seed)
+    x = rng.uniform(-1.0, 1.0, (40, 2))
+    mean, deviation = Process(x, x.sum(axis=1) + 0.03 * rng.normal(size=40))(np.zeros((1, 2)))
+    assert mean[0] == pytest.approx(0.0, abs=0.03)
+    assert deviation[0] == pytest.approx(0.03, rel=0.3)

@@ -5,10 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from workflow.report.available import Results
-from workflow.report.numbers import number, show
+from mesoscale.device.numerics import SWITCH
+from mesoscale.pad.numerics import PAD
+from mesoscale.settings import DeviceSettings
+from workflow.report.available import Results, Row
+from workflow.report.numbers import column, number, show
 from workflow.report.page import Block, stage, table
-from workflow.report.verdict import in_words
+from workflow.report.verdict import NAMES, in_words
 
 HOW = {
     "computed": "computed here",
@@ -18,12 +21,19 @@ HOW = {
 }
 LITTLE_V = 0.1
 """Effects that move the release by less are folded away."""
+IN_USE = {
+    "steps of separation, nm": min,
+    "depths": lambda _: PAD.depths,
+    "sites a side": min,
+    "elements of the beam": lambda _: SWITCH.elements,
+}
+"""Knobs of accuracy/pad.csv that the budget has, and the value in use of those that were tried."""
 
 
 @stage("What the budget leaves small, and its sources", "device/budget.csv", "device/pad_switch.json")
 def describe(results: Results) -> Iterator[Block]:
-    """The effects, the largest first; what is not known ends the table."""
-    rows = results.csv("device/budget.csv")
+    """The effects, the largest first: what the interval holds, then what it leaves out; what is not known is last."""
+    rows = _rows(results)
     yield (
         "Effects below 0.1 V, then the sources of all. Each effect moves the release at central inputs, so that a sum "
         "in quadrature of what the interval holds is near its width, but not equal to it."
@@ -32,35 +42,79 @@ def describe(results: Results) -> Iterator[Block]:
         yield "The switch at central inputs has no release, so there is nothing to move."
         return
     large = [row for row in rows if not number(row["volts"]) < LITTLE_V]
-    yield table(_caption(results, rows), large, COLUMNS, front=True)
-    yield table("Effects below 0.1 V", [row for row in rows if number(row["volts"]) < LITTLE_V], COLUMNS)
+    held = [row for row in large if row["held"] == "True"]
+    if held:
+        yield table(_caption(results, rows), held, HELD, front=True)
+    left_out = "What the interval leaves out, by the volts that the release moves"
+    yield table(left_out, [row for row in large if row["held"] != "True"], LEFT_OUT, front=True)
+    yield table("Effects below 0.1 V", [row for row in rows if number(row["volts"]) < LITTLE_V], LEFT_OUT)
     yield table("Sources", rows, {"effect": _effect, "source": "source"})
 
 
+def _rows(results: Results) -> list[Row]:
+    """The budget, with what the targets `humidity` and `accuracy` computed where they ran."""
+    computed = {"humid air": _by_humidity(results), "finite elements and grid": _by_accuracy(results)}
+    rows = [{**row, **computed.get(row["effect"], {})} for row in results.csv("device/budget.csv")]
+    return sorted(rows, key=lambda row: -np.nan_to_num(number(row["volts"]), nan=-1.0))
+
+
+def _by_humidity(results: Results) -> Row:
+    """From the least to the largest release of the humidities that were computed."""
+    rows = results.csv("device/humidity.csv") if results.has("device/humidity.csv") else []
+    if len(solved := [row for row in rows if row["release_V"]]) < 2:
+        return {}
+    release, humidity = column(solved, "release_V"), column(solved, "humidity")
+    about = f"{humidity.min():.0%} to {humidity.max():.0%}, menisci either way{'; it may stick' * (0.0 in release)}"
+    return {"volts": str(np.ptp(release)), "about": about, "how": "computed", "source": "device/humidity.csv"}
+
+
+def _by_accuracy(results: Results) -> Row:
+    """Errors of the values in use, in quadrature."""
+    rows = results.csv("accuracy/pad.csv") if results.has("accuracy/pad.csv") else []
+    errors = []
+    for knob, in_use in IN_USE.items():
+        tried = {number(row["value"]): number(row["error"]) for row in rows if _is_release(row, knob)}
+        errors += [tried[value] for value in [in_use(tried)] if value in tried] if tried else []
+    if not errors:
+        return {}
+    about = "steps, depths, sites and elements in use against finer ones"
+    volts = str(float(np.sqrt(np.nansum(np.square(errors)))))
+    return {"volts": volts, "about": about, "how": "computed", "source": "accuracy/pad.csv"}
+
+
+def _is_release(row: Row, knob: str) -> bool:
+    return row["knob"] == knob and row["case"] == "release"
+
+
 def _effect(row: dict[str, Any]) -> str:
-    return in_words(row["effect"])
+    """A property of the device in full: "stress" and "thickness" alone may be of anything."""
+    name = row["effect"]
+    return NAMES[name][1].removeprefix("the ") if name in DeviceSettings.model_fields else in_words(name)
 
 
-COLUMNS = {
+def _volts(row: Row) -> str:
+    """Volts, with the remark that ends what they stand for."""
+    remark = row["about"].partition("; ")[2]
+    return show(row["volts"], 2) + f"; {remark}" * bool(remark)
+
+
+HELD = {"effect": _effect, "release moves by (V)": _volts, "what to do": "settle"}
+LEFT_OUT = {
     "effect": _effect,
-    "release moves by (V)": lambda row: show(row["volts"], 2),
-    "which is": "about",
-    "how known": lambda row: HOW[row["how"]],
-    "in the interval": lambda row: "yes" if row["held"] == "True" else "no",
+    "volts": lambda row: show(row["volts"], 2),
+    "which is": lambda row: f"{HOW[row['how']]}: {row['about']}",
     "what would settle it": "settle",
 }
 
 
-def _caption(results: Results, rows: list[dict[str, str]]) -> str:
-    """What the table is, and what the interval holds of it."""
-    said = "By how many volts each effect moves the release at central inputs"
-    answer = results.json("device/pad_switch.json").get("answer")
+def _caption(results: Results, rows: list[Row]) -> str:
+    """What the interval holds, in quadrature, beside its width."""
     held = [number(row["volts"]) for row in rows if row["held"] == "True"]
-    if not answer or not held:
-        return said
-    quadrature = float(np.sqrt(np.nansum(np.square(held))))
-    ends = [answer["release_V"]["quantiles"][q] for q in ("0.05", "0.95")]
-    return (
-        f"{said}. What the interval holds is {show(quadrature)} V, added in quadrature; "
-        f"the interval is {show(ends[1] - ends[0])} V wide"
+    said = (
+        "What the interval holds: volts by which each, from its 5 to its 95 %, moves the release at central inputs. "
+        f"Together they are {show(float(np.sqrt(np.nansum(np.square(held)))))} V, added in quadrature"
     )
+    if answer := results.json("device/pad_switch.json").get("answer"):
+        ends = [answer["release_V"]["quantiles"][q] for q in ("0.05", "0.95")]
+        return f"{said}; the interval is {show(ends[1] - ends[0])} V wide"
+    return said

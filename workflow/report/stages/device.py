@@ -30,6 +30,9 @@ def describe(results: Results) -> Iterator[Block]:
     if not rows:
         yield "The switch at central inputs has no answer, so there is nothing to compare with."
         return
+    if not any(row["release_V"] for row in rows):
+        yield "At central inputs the switch sticks, with each of these changes, too."
+        return
     yield Figure(
         by_key(rows),
         "Release at central inputs if one property of the device were another; the grey line is this scene. At zero "

@@ -18,7 +18,7 @@ def describe(results: Results) -> Iterator[Block]:
     rate = results.json("device/failure.json")
     event = f"is still closed at {volts(rate['release_V'])}" if rate["release_V"] else "sticks"
     yield (
-        f"A switch fails where it {event}. {show(rate['allowed'])} of all may. Statistics does not know the law of "
+        f"A switch fails where it {event}. {show(rate['allowed'])} of all may. No statistics decides the law of "
         "attraction, so each row has its own. Inputs, geometry and pads are drawn together."
     )
     yield Figure(
@@ -27,17 +27,21 @@ def describe(results: Results) -> Iterator[Block]:
         "batch with 95 % confidence, as what is common to its devices is not known.",
     )
     yield table(
-        "Share of the devices of one batch that fail",
+        "Share of the devices that fail; it is uncertain, because what is common to all devices is not known",
         rate["laws"],
         {
             "attraction": lambda law: f"{show(law['attraction'], 2)} times",
-            "at most, with 95 % confidence": lambda law: _share(law["given_common"]["0.95"]),
+            "median": lambda law: _share(law["given_common"]["0.5"]),
+            "5 to 95 % of the belief": lambda law: " to ".join(
+                _share(law["given_common"][q]) for q in ("0.05", "0.95")
+            ),
+            f"chance of no more than {show(rate['allowed'])}": lambda law: f"{law['sure']:.0%}",
         },
         front=True,
     )
     spring, unit = ("thickness of the beam", "µm") if rate["spring"] == "thickness_um" else ("spring", "N/m")
     yield table(
-        f"Failures; hold voltage and roughness that are allowed with a confidence of {rate['confidence']:.0%}; spring",
+        f"Share that fails, and what is allowed; hold voltage and roughness with {rate['confidence']:.0%} confidence",
         rate["laws"],
         {
             "attraction": lambda law: f"{show(law['attraction'], 2)} times",
@@ -50,7 +54,7 @@ def describe(results: Results) -> Iterator[Block]:
         },
     )
     if rate["control"]:
-        fails = f"fails with {show(rate['control_attraction'], 2)} times the attraction"
+        fails = f"share that fails, with {show(rate['control_attraction'], 2)} times the attraction"
         columns = {
             "if this input is at its median": lambda row: in_words(row["name"]),
             fails: cell("failing_if_known", 2),

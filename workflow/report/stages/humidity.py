@@ -17,12 +17,14 @@ def describe(results: Results) -> Iterator[Block]:
     yield (
         "Water condenses in narrow gaps and pulls. While the switch opens it stays in balance with the vapour, or its "
         "volume stays, where opening is too fast to evaporate it: both limits are shown. The air must have stood "
-        "around the closed switch for some seconds, in which it condenses."
+        "around the closed switch for some seconds, in which it condenses. How much it pulls depends on the contact "
+        "angles of the walls (contact.air.contact_angles_deg): clean walls, 0°, are pulled most. Where liquid would be "
+        "thinner than a molecule there is none; air this dry counts as dry."
     )
     yield Figure(
         against_humidity(rows),
-        "Left: release at central inputs; at zero the switch sticks. Right: share that sticks of the points with about "
-        "this humidity, over all that is uncertain, with its 95 % interval.",
+        f"{begins_to_stick(rows)} Left: release at central inputs; at zero the switch sticks. Right: share that sticks "
+        "of the points with about this humidity, over all that is uncertain, with its 95 % interval.",
         wide=True,
         front=True,
     )
@@ -32,13 +34,28 @@ def describe(results: Results) -> Iterator[Block]:
         {
             "humidity": lambda row: f"{float(row['humidity']):.1%}",
             "menisci": lambda row: OPENINGS[row["opening"]][1],
+            "liquid below (nm)": cell("reach_nm"),
             "release (V)": _release,
             "work of opening (mJ/m²)": cell("energy_mJ_m2"),
             "pull-off (kPa)": cell("pull_off_kPa"),
-            "sticks": lambda row: f"{float(row['stuck']):.0%}" if row["stuck"] else "–",
+            "sticks": lambda row: f"{float(row['stuck']):.0%} of {row['points']}" if row["stuck"] else "–",
         },
         heads=2,
     )
+
+
+def begins_to_stick(rows: list[Row]) -> str:
+    """From which humidity on the switch sticks, for each limit of opening."""
+    parts = []
+    for opening, (_, label) in OPENINGS.items():
+        known = [row for row in rows if row["opening"] == opening and row["release_V"]]
+        stuck = [float(row["humidity"]) for row in known if float(row["release_V"]) == 0.0]
+        free = [float(row["humidity"]) for row in known if not stuck or float(row["humidity"]) < stuck[0]]
+        if stuck and free:
+            parts.append(f"from between {free[-1]:.1%} and {stuck[0]:.1%} humidity on ({label})")
+        elif known:
+            parts.append(f"at {'all' if stuck else 'none'} of these humidities ({label})")
+    return f"At central inputs the switch sticks {'; '.join(parts)}." if parts else ""
 
 
 def _release(row: Row) -> str:
@@ -49,18 +66,23 @@ def _release(row: Row) -> str:
 
 def against_humidity(rows: list[Row]) -> str:
     """Release at central inputs, and the share that sticks."""
+    top = max((float(row["release_V"]) for row in rows if row["release_V"]), default=0.0) or 1.0
 
     def plot(release, stuck):
         for opening, (color, label) in OPENINGS.items():
             part = [row for row in rows if row["opening"] == opening and row["release_V"]]
             if part:
-                release.plot(column(part, "humidity"), column(part, "release_V"), "o-", color=color, label=label)
-        release.set(xlabel="relative humidity", ylabel="release (V)", ylim=(0, None))
+                percent = 100.0 * column(part, "humidity")
+                release.plot(percent, column(part, "release_V"), "o-", color=color, label=label)
+        release.set(ylabel="release (V)", ylim=(-0.03 * top, 1.1 * top))
         release.legend()
         part = [row for row in rows if row["stuck"]]
         if part:
             share, low, high = (column(part, name) for name in ("stuck", "stuck_low", "stuck_high"))
-            stuck.errorbar(column(part, "humidity"), share, yerr=[share - low, high - share], fmt="o", color=BLUE)
-        stuck.set(xlabel="relative humidity", ylabel="share that sticks", ylim=(-0.03, 1.03))
+            percent = 100.0 * column(part, "humidity")
+            stuck.errorbar(percent, share, yerr=[share - low, high - share], fmt="o", color=BLUE)
+        stuck.set(ylabel="share that sticks", ylim=(-0.03, 1.03))
+        for axis in (release, stuck):
+            axis.set(xlabel="relative humidity (%)")
 
     return draw("humidity", "Release and sticking against humidity", plot, (9.4, 3.4), columns=2)
