@@ -56,7 +56,7 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     nodes = np.log(bins[0]) + distance * np.arange(count + 15)
     heights, covariance = _solve(nodes, measured)
     keep = (nodes >= np.log(low) - 1e-9) & (nodes <= np.log(high) + 1e-9)
-    # errors of neighbouring nodes go together: with the sum of a row, taken as independent, sums have the error they have
+    # errors of neighbouring nodes go together: sums have their error where each node has that of its row's sum
     apart = np.abs(nodes[keep][:, None] - nodes[keep])
     variance = np.sum(covariance[np.ix_(keep, keep)] * (apart < 0.5 * np.log(10)), axis=1)
     # neighbouring nodes, which the smoothing ties, have together no more than the wave numbers that they lie among
