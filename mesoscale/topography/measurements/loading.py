@@ -92,7 +92,8 @@ def _teach_units() -> None:
     """Add spellings of lengths that instruments write and SurfaceTopography's table lacks."""
     from SurfaceTopography.Support.UnitConversion import length_units
 
-    length_units |= dict.fromkeys(("\u03bcm", "micron", "microns", "micrometer", "\u339b"), 1e-6)
+    # the last one is UTF-8 that was read as Latin-1
+    length_units |= dict.fromkeys(("\u03bcm", "micron", "microns", "micrometer", "\u339b", "\u00c2\u00b5m"), 1e-6)
     length_units |= dict.fromkeys(("Angstrom", "angstrom", "\u212b", "\u00c5ngstr\u00f6m", "Ang"), 1e-10)
 
 
@@ -256,7 +257,7 @@ def _measurement(
         _check_plausible(where, heights, x_nm, y_nm)
         data = Scan(heights, (x_nm, y_nm), name)
     data = replace(data, steps=(*steps, *data.steps))
-    return with_limits(data, settings, instrument, _stated_radius(topography.info))
+    return with_limits(data, settings, instrument, _stated_radius(where, topography.info))
 
 
 def _profile(where: str, name: str, x_nm: np.ndarray, z_nm: np.ndarray) -> Profile:
@@ -337,13 +338,13 @@ def _column_units(head: bytes) -> tuple[float, float] | None:
     return None
 
 
-def _stated_radius(info: Any) -> float | None:
+def _stated_radius(where: str, info: Any) -> float | None:
     """Radius of the tip in nm, as files and containers state it with their instrument; None where they do not."""
     for key in ("instrument", "parameters", "tip_radius"):
         info = info.get(key) if isinstance(info, dict) else None
     if not isinstance(info, dict) or not isinstance(info.get("value"), (int, float)) or info["value"] <= 0:
         return None
-    return float(info["value"]) * _nm("tip_radius", str(info.get("unit")))
+    return float(info["value"]) * _nm(f"{where}: tip_radius", str(info.get("unit")))
 
 
 def _points(x: Any, z: Any) -> tuple[np.ndarray, np.ndarray]:
