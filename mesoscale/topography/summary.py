@@ -87,6 +87,11 @@ def parameters(
         "ranges": settings.ranges,
         "confidence": CONFIDENCE,
         "tip_radius_nm": settings.tip_nm,
+        "estimates_of": (
+            "eq. 9, all waves; inputs have those of a cell"
+            if used == "power_law"
+            else "eq. 9, for comparison; inputs have the measured spectrum, in cells of cell_nm"
+        ),
         "estimates": {
             name: {**estimate.plain(), "unit": units[name]} for name, estimate in topography.estimates.items()
         },

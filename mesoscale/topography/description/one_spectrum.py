@@ -53,11 +53,12 @@ class Overlap:
     expected: float
     misfit: float
 
-    @property
-    def one_surface(self) -> bool:
-        """Can these be two places of one surface, whose spectra differ by one factor, and by no large one?"""
-        # ln C of two places whose RMS heights scatter by 40 %, at 99 %: a factor of 18
-        most = np.hypot(np.log(self.expected), 2.58 * np.sqrt(2) * 0.8)
+    def one_surface(self, pairs: int) -> bool:
+        """Can these, of so many pairs, be places of one surface, whose spectra differ by a factor that is not large?"""
+        from scipy.special import ndtri
+
+        # ln C of two places whose RMS heights scatter by 40 %: the furthest of all pairs, at 95 %
+        most = np.hypot(np.log(self.expected), float(ndtri(1 - 0.025 / pairs)) * np.sqrt(2) * 0.8)
         return bool(abs(np.log(self.ratio)) <= most and self.misfit <= MOST_MISFIT)
 
     @property
