@@ -149,8 +149,8 @@ class OneSpectrum:
         variance = (unseen * (whole - in_bands)) ** 2 + (1 - seen.common) * (short * in_bands) ** 2
         modes = count * rest**2 / (variance + (self.place_sd * rest) ** 2)  # half of them: the shape of a Gamma law
         level, worth = np.polynomial.hermite_e.hermegauss(9)
-        found = mean_square * np.exp(np.hypot(common_error, 0.1) * level) - seen.common * seen.in_bands_nm2
-        over = np.maximum(found, 0.01 * mean_square) / rest[:, None]
+        remaining = mean_square * np.exp(np.hypot(common_error, 0.1) * level) - seen.common * seen.in_bands_nm2
+        over = np.maximum(remaining, 0.01 * mean_square) / rest[:, None]
         modes = modes[:, None]
         gamma = modes * (np.log(modes * over) - over) - gammaln(modes) + np.log(worth)
         chance = np.logaddexp.reduce(gamma, axis=1)
