@@ -50,8 +50,8 @@ def topography_of(given: Namespace) -> dict[str, Any]:
         added |= dict(zip(("unit", "height_unit"), units, strict=False))
     if given.size:
         sides = re.fullmatch(rf"({NUMBER})(?:x({NUMBER}))?", given.size)
-        if sides is None or not given.unit:
-            raise InputError(f"--size {given.size}: accepted is a number or two (10 or 10x5), with their --unit")
+        if sides is None:
+            raise InputError(f"--size {given.size}: accepted is a number or two (10 or 10x5), in --unit or the file's")
         if len(given.files) > 1 or os.path.isdir(given.files[0]):
             raise InputError("--size: accepted for one file; for several, state topography.instruments in a scene")
         added["size"] = float(sides[1]), float(sides[2] or sides[1])

@@ -3,7 +3,8 @@
 Maps have 256 x 256 pixels. Fine ones are of 1 and 5 um, seen by a tip whose radius is told wrong by up to 20 %. Coarse
 ones are of 20 to 100 um, with a roll-off that goes into the cell or is longer. Lines are of 2 and 8 um; mixed are maps
 of 1 um with lines of 8 um. Grainy and grooved maps, of 1 and 3 um, have log-normal heights, upright or upside down. On
-uneven films RMS heights of places scatter by 40 %.
+uneven films RMS heights of places scatter by 40 %. Alone is one line or map of 1 to 10 um, with 0.3 to 30 waves of the
+knee.
 
 Held are: q0, slope and RMS height of eq. 9; the RMS height of the cell in use (`cell`); RMS slope and curvature of the
 one spectrum (`steep`, `curved`); first contact of one more cell (`touch`), of waves up to the measured end. Where eq. 9
@@ -21,7 +22,6 @@ from typing import Any
 import numpy as np
 
 from evidence.record import load
-from evidence.topography.recovery import errors_of, random_truth
 from mesoscale.errors import InputError
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.pad.cells import Cell, FilmPieces
@@ -41,6 +41,7 @@ from mesoscale.topography.synthetic_scans import ScanSet, dilate, measure, synth
 # the tip meets the surface on 2 nm or 5 nm; of what it traces every second pixel is kept, for speed
 BASE = ScanSet(pixels=512, small_scans=4, large_scans=3, large_length_nm=5000.0, rms_variation=0.0, seed=17)
 THINNED = 2
+TIP_ERROR = 0.2
 # of grainy maps: one step for both sizes, because finer roughness under a tip changes all waves of its image
 GRAINY_MAPS = ((1000.0, 512), (3000.0, 1536))
 LINES = ((8000.0, 4), (2000.0, 4))  # length in nm and number of the profiles of a set
@@ -61,6 +62,27 @@ def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:
         for number in range(given.sets):
             if (kind, number) not in present:
                 yield set_row(kind, number)
+
+
+def random_truth(number: int, base: ScanSet) -> tuple[ScanSet, float]:
+    """Truth and artefacts of set `number`, and the tip radius (nm) that the analysis is told."""
+    rng = np.random.default_rng(np.random.SeedSequence(base.seed, spawn_key=(99, number)))
+    tip = float(rng.uniform(2, 10))
+    truth = base.model_copy(
+        update={
+            "seed": int(rng.integers(2**31)),
+            "q0": float(rng.uniform(0.015, 0.035)),
+            "slope": float(rng.uniform(2.2, 3.8)),
+            "rms_nm": float(np.exp(rng.uniform(np.log(2), np.log(12)))),
+            "tip_radius_nm": tip,
+            "noise_nm": float(rng.uniform(0.02, 0.1)),
+            "line_noise_nm": float(rng.uniform(0, 0.5)),
+            "tilt_deg": float(rng.uniform(0, 2)),
+            "drift_nm": float(rng.uniform(0, 10)),
+            "step_nm": float(rng.uniform(0.002, 0.05)),
+        }
+    )
+    return truth, tip * float(rng.uniform(1 - TIP_ERROR, 1 + TIP_ERROR))
 
 
 def maps(truth: ScanSet, stated_nm: float) -> Iterator[Measurement]:
@@ -101,12 +123,12 @@ def _random_rms(spectrum: RoughSpectrum, length: float, sites: int, rng: np.rand
     return float(np.sqrt(square * max(1 + np.sqrt(2 * fourth) / square * rng.standard_normal(), 0.1)))
 
 
-def lines(truth: ScanSet, _stated_nm: float = 0.0) -> Iterator[Measurement]:
-    """Profiles of two lengths across a Gaussian surface, by an instrument without tip, tilted and noisy."""
+def lines(truth: ScanSet, counts: Sequence[tuple[float, int]] = LINES) -> Iterator[Measurement]:
+    """Profiles of some lengths across a Gaussian surface, by an instrument without tip, tilted and noisy."""
     rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(3,)))
     spectrum = RoughSpectrum.from_rms(truth.rms_nm, truth.q0, truth.slope, truth.q1)
     q = np.geomspace(1e-5, truth.q1, 4000)
-    for length, count in LINES:
+    for length, count in counts:
         for number in range(count):
             heights = _line(q, spectrum.psd(q), length, rng)
             heights += truth.noise_nm * rng.standard_normal(LINE_POINTS)
@@ -122,6 +144,19 @@ def _line(q: np.ndarray, psd: np.ndarray, length: float, rng: np.random.Generato
     noise = rng.standard_normal((2, len(k))) / np.sqrt(2)
     waves = (noise[0] + 1j * noise[1]) * np.sqrt(c1 * 2 * np.pi / (n * step)) * n
     return np.fft.irfft(np.concatenate([[0.0], waves]), n)[: n // 2 : FINER]
+
+
+def alone(truth: ScanSet, stated_nm: float, line: bool) -> tuple[ScanSet, Iterator[Measurement]]:
+    """One line or one map: the only measurement of a film, as people have it."""
+    rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(11,)))
+    length = float(np.exp(rng.uniform(*np.log(ALONE_NM))))
+    first = 2 * np.pi / length
+    q0 = first * float(np.exp(rng.uniform(*np.log(ALONE_WAVES))))
+    # the RMS height drawn is that of waves up to its length
+    seen = 1 - mean_square(1.0, q0, truth.slope, first) / mean_square(1.0, q0, truth.slope, truth.q1)
+    known = {"q0": q0, "rms_nm": truth.rms_nm / float(np.sqrt(seen)), "small_scans": 0, "large_scans": 1}
+    truth = truth.model_copy(update=known | {"large_length_nm": length})
+    return truth, lines(truth, counts=((length, 1),)) if line else maps(truth, stated_nm)
 
 
 def mixed(truth: ScanSet, stated_nm: float) -> Iterator[Measurement]:
@@ -146,6 +181,7 @@ def _coarse_truth(truth: ScanSet, waves: tuple[float, float]) -> ScanSet:
 CHARTS = {"grainy": 1, "grooved": -1}
 Kind = Callable[[ScanSet, float], tuple[ScanSet, Iterator[Measurement]]]
 COARSE_NM = (20e3, 100e3)
+ALONE_NM, ALONE_WAVES = (1e3, 1e4), (0.3, 30.0)
 KINDS: dict[str, Kind] = {
     "areal": lambda truth, told: (truth, maps(truth, told)),
     "coarse_inside": lambda truth, _: (made := _coarse_truth(truth, (16, 32)), coarse(made)),
@@ -155,6 +191,8 @@ KINDS: dict[str, Kind] = {
     "grainy": lambda truth, told: (truth, grainy_maps(truth, told)),
     "grooved": lambda truth, told: (truth, grainy_maps(truth, told, upright=-1)),
     "uneven": lambda truth, told: (made := truth.model_copy(update={"rms_variation": 0.4}), maps(made, told)),
+    "line_alone": lambda truth, told: alone(truth, told, line=True),
+    "map_alone": lambda truth, told: alone(truth, told, line=False),
 }
 FINE_CELL_NM = 1000.0
 NAMES = ("q0", "slope", "rms")
@@ -272,6 +310,13 @@ def _cell_rms(spectrum: RoughSpectrum, cell_nm: float, end: float) -> float:
 
 
 CELL_WAVES = 64
+
+
+def errors_of(rows: Sequence[Mapping[str, str]], name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Error of each estimate, relative but for the slope, and whether its interval holds the truth."""
+    columns = (f"{name}_true", name, f"{name}_low", f"{name}_high")
+    true, value, low, high = np.array([[float(row[key]) for key in columns] for row in rows if row[name]]).T
+    return value - true if name == "slope" else value / true - 1, (low <= true) & (true <= high)
 
 
 def figures(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:

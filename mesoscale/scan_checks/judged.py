@@ -1,7 +1,7 @@
 """The scan is the judge: surfaces made from a description are pressed beside the measured scans themselves."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -27,6 +27,8 @@ SITES = 256  # a scan is thinned to at most so many sites a side, and so are the
 TOUCHED, PRESSED = 40, 20  # surfaces that are brought to first contact, and of these the ones that are pressed
 MOST_CONTACT = 0.5  # share of the cell; beyond, contacts have merged and asperities one by one say nothing
 LOADS_NN = (1000.0, 7000.0)  # per cell of the contact settings: 1 and 7 uN
+FALSE_ALARMS = 0.05
+"""Share of films whose description is right that `disagreeing` names."""
 
 
 @dataclass(frozen=True)
@@ -79,10 +81,10 @@ def judge(
 ) -> Iterator[dict[str, Any]]:
     """Rows of topography/judged.csv: pressing each scan, and what its description says of it.
 
-    Each scan is left out of the description that it judges, as far as there are others; a lone scan judges the
-    description made from itself. A scan that the others say nothing of is passed over. The surfaces go the way of the
-    scan: they are cut from larger ones, levelled as it is, and made periodic. They are as blunt as the scan: what the
-    tips took is left out of both.
+    Each scan is left out of the description that it judges, as far as there are others; a lone one meets the
+    description made from itself, which tests nothing. A scan that the others say nothing of is passed over. The
+    surfaces go the way of the scan: they are cut from larger ones, levelled as it is, and made periodic. They are as
+    blunt as the scan: what the tips took is left out of both.
 
     Parameters
     ----------
@@ -95,7 +97,7 @@ def judge(
     cleaned = {scan.name: clean(scan, settings) for scan in scans}
     spectra = [replace(item, tip_radius_nm=0.0) for item in spectra]
     for scan in cleaned.values():
-        left_out = len(cleaned) > 1
+        left_out = len(spectra) > 1
         used = [item for item in spectra if item.name != scan.name] if left_out else list(spectra)
         others = [item for item in cleaned.values() if item.name != scan.name] or [scan]
         heights = tuple(height_maps(others)) if name == "measured_heights" else ()
@@ -106,6 +108,30 @@ def judge(
             continue
         described = Described(topography, one, heights)
         yield from _judged(scan, described, name, left_out, inputs, settings, contact, most_contact)
+
+
+def disagreeing(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """First contacts that are further from their description than the worst of so many scans is by chance.
+
+    Parameters
+    ----------
+    rows : of topography/judged.csv, also as words.
+    """
+    from scipy.special import ndtri
+
+    contacts = [row for row in rows if row["quantity"] == "first_contact"]
+    most = float(ndtri(1 - FALSE_ALARMS / (2 * max(len(contacts), 1)))) / REACH
+
+    def away(row: Mapping[str, Any]) -> float:
+        low, pressed, high = (math.log(float(row[key])) for key in ("low", "pressed", "high"))
+        return abs(pressed - (low + high) / 2) / ((high - low) / 2)
+
+    return sorted((row for row in contacts if away(row) > most), key=away, reverse=True)
+
+
+def testable(rows: Sequence[Mapping[str, Any]]) -> bool:
+    """Does another measurement than the scan itself say what is expected of it?"""
+    return any(str(row["left_out"]) == "True" for row in rows)
 
 
 def height_maps(scans: Sequence[Scan], count: int = 10) -> Iterator[tuple[float, ...]]:

@@ -56,11 +56,12 @@ def isotropic_spectrum(profile: Profile, low: float, high: float) -> Spectrum:
     nodes = np.log(bins[0]) + distance * np.arange(count + 15)
     heights, covariance = _solve(nodes, measured)
     keep = (nodes >= np.log(low) - 1e-9) & (nodes <= np.log(high) + 1e-9)
-    variance = np.diag(covariance)[keep]
+    # errors of neighbouring nodes go together: sums have their error where each node has that of its row's sum
+    apart = np.abs(nodes[keep][:, None] - nodes[keep])
+    variance = np.sum(covariance[np.ix_(keep, keep)] * (apart < 0.5 * np.log(10)), axis=1)
     # neighbouring nodes, which the smoothing ties, have together no more than the wave numbers that they lie among
     near = np.abs(nodes[keep][:, None] - np.log(bins)) < 0.2 * np.log(10)
-    nodes_near = np.abs(nodes[keep][:, None] - nodes[keep]) < 0.2 * np.log(10)
-    worth = np.minimum(1 / variance, near @ modes / nodes_near.sum(axis=1))
+    worth = np.minimum(1 / np.maximum(variance, 1e-3), near @ modes / (apart < 0.2 * np.log(10)).sum(axis=1))
     # error of ln C that no averaging removes: its mean about the knee, on slopes 2.3 to 3.6 (60 lines each)
     worth /= 1 + worth * 0.25**2
     nyquist = np.pi / profile.step_nm
@@ -152,4 +153,7 @@ def _solve(nodes: np.ndarray, measured: Spectrum) -> tuple[np.ndarray, np.ndarra
         if float(np.abs(size * move).max()) < 1e-6:
             break
     information = slope.T @ (modes[:, None] * slope) + prior
-    return y, np.linalg.inv(information + 1e-9 * np.eye(len(y)))
+    covariance = np.linalg.inv(information + 1e-9 * np.eye(len(y)))
+    # what few modes allow is skewed: its mean is above the most likely value by 1 / 2n for n of them
+    skewed = slope.T @ (modes * np.einsum("ki,ij,kj->k", slope, covariance, slope))
+    return y + 0.5 * covariance @ skewed, covariance

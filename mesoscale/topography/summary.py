@@ -44,11 +44,8 @@ def scan_rows(
     pooled: Pooled, attributes: Mapping[str, Mapping[str, Any]], truth: Mapping[str, Any] | None
 ) -> list[dict[str, Any]]:
     """One row per scan: size, RMS from heights and from the spectrum, trusted range and what limits it."""
-    spectrum_rms = {}
     fitted = pooled.topography.likelihood
-    if fitted is not None:
-        used = [item.name for item in pooled.spectra if item.trusted.sum() >= 3]
-        spectrum_rms = dict(zip(used, fitted.scan_rms(pooled.topography.cutoff), strict=True))
+    spectrum_rms = dict(zip(fitted.names, fitted.scan_rms(pooled.topography.cutoff), strict=True)) if fitted else {}
     rows = []
     for item in pooled.spectra:
         loaded = attributes[item.name]
@@ -90,6 +87,11 @@ def parameters(
         "ranges": settings.ranges,
         "confidence": CONFIDENCE,
         "tip_radius_nm": settings.tip_nm,
+        "estimates_of": (
+            "eq. 9, all waves; inputs have those of a cell"
+            if used == "power_law"
+            else "eq. 9, for comparison; inputs have the measured spectrum, in cells of cell_nm"
+        ),
         "estimates": {
             name: {**estimate.plain(), "unit": units[name]} for name, estimate in topography.estimates.items()
         },

@@ -65,6 +65,12 @@ def test_a_folder_becomes_a_scene_and_a_run(scans, started, tmp_path, monkeypatc
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
+        (["scans", "--size", "10"], "--size: accepted for one file"),
+        (["scans", "--unit", "inch"], "--unit inch: accepted are m, mm"),
+        (["scans/place_1.gwy", "--size", "ten"], "--size ten: accepted is a number or two"),
+        (["scans/place_1.gwy", "--size", "10"], "scans/place_1.gwy: states a size itself; leave out"),
+        (["scans/place_1.gwy", "--unit", "um"], "scans/place_1.gwy: states a unit itself; leave out"),
+        (["scans/place_1.gwy", "--channel", "Phase"], "scans/place_1.gwy: no height channel 'Phase'"),
         (["rnu"], "rnu: neither a file nor a command; did you mean run?"),
         (["empty"], "empty: nothing to read"),
         (["scans", "--material", "stiffness=3"], "stiffness: no such input"),

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
+from mesoscale.scan_checks.judged import disagreeing, testable
 from workflow.report.available import Results
 from workflow.report.numbers import OUTPUTS, column, number, show
 from workflow.report.page import Gate
@@ -53,10 +54,9 @@ def _topography(results: Results) -> Iterator[Gate]:
     reasons = tuple(
         f"{row['scan']} touches first at {show(row['pressed'])} nm, its description says {show(row['low'])} to "
         f"{show(row['high'])} nm"
-        for row in rows
-        if row["quantity"] == "first_contact" and row["inside"] != "True"
+        for row in disagreeing(rows)
     )
-    if rows:
+    if reasons or testable(rows):
         yield Gate("pressing the scans", not reasons, reasons, results.uses("topography"))
 
 

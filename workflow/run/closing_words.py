@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+from mesoscale.scan_checks.judged import disagreeing, testable
 from mesoscale.topography.summary import doubt_lines, measurement_lines
 from workflow.files.results import load_csv, load_json
 
@@ -29,16 +30,15 @@ def judgement(rows: list[dict[str, str]]) -> Iterator[str]:
         yield "no scan could be pressed (none is areal with square pixels)"
         return
     inside = sum(row["inside"] == "True" for row in rows)
-    way = "made without it" if rows[0]["left_out"] == "True" else "made from it"
-    contact = [row for row in rows if row["quantity"] == "first_contact"]
-    outside = [row for row in contact if row["inside"] != "True"]
+    way = "made without it" if testable(rows) else "made from it"
     summary = f"pressing each scan agrees with its description ({way}) in {inside} of {len(rows)} numbers"
-    if not outside:
-        yield f"{summary}, in all {len(contact)} first contacts"
-        return
-    row = outside[0]
-    yield (
-        f"DOUBT (pressing_disagrees, about contact): {summary}; {row['scan']} touches first at "
-        f"{float(row['pressed']):.3g} nm, its description says {float(row['low']):.3g} to {float(row['high']):.3g} nm; "
-        "measure more places"
-    )
+    if worst := disagreeing(rows):
+        yield (
+            f"DOUBT (pressing_disagrees, about contact): {summary}; {worst[0]['scan']} touches first at "
+            f"{float(worst[0]['pressed']):.3g} nm, its description says {float(worst[0]['low']):.3g} to "
+            f"{float(worst[0]['high']):.3g} nm; measure more places"
+        )
+    elif testable(rows):
+        yield f"{summary}; first contacts differ by no more than chance"
+    else:
+        yield "pressing the scan is not testable: its description is made from this scan alone; measure more places"

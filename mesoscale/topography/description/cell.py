@@ -197,6 +197,11 @@ def unlike_measured(
         f"{low:.3g} to {high:.3g} nm"
     )
     remedy = "measure an area that is larger than a cell, or set contact.length_nm to at most the size of the largest"
+    if any(min(lengths) > cell_nm for _, lengths in measured.values()):
+        remedy = (
+            "look for steps, particles or pits, which no random surface has, and crop them; if they belong to it, set "
+            "topography.on_doubt to warn"
+        )
     return [Doubt("rms_unlike_measured", text, remedy, "rms", fatal=True)]
 
 

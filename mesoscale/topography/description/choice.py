@@ -120,8 +120,8 @@ def description_doubts(
         if len(one.names) == 1:
             text = "one measurement: how much places differ is unknown, the ranges hold its own error only"
             yield Doubt("one_place", text, "measure other places of the surface", "rms")
-    if name != "power_law" and topography.doubts:
-        first = topography.doubts[0]
+    first = topography.doubts[0] if topography.doubts else None
+    if name != "power_law" and first is not None and not first.fatal:
         text = f"{first.text}; used instead: {DESCRIPTIONS[name]}"
         remedy = first.remedy if first.code in ("no_plateau", "short_range") else "nothing to do"
         if first.code not in ("no_plateau", "short_range"):

@@ -57,8 +57,7 @@ def rows_of(
 ) -> dict[str, Row]:
     """Distributions of q0, hurst and rms over the ranges that the settings ask for.
 
-    Those of eq. 9 are uniform, as the paper's. Those of a measured spectrum have the median of what it allows as their
-    own: q0 and rms are uniform in the logarithm.
+    Those of eq. 9 are uniform, as the paper's. Of a measured spectrum q0 and rms are uniform in the logarithm.
 
     The RMS height is that of the waves of a cell of side `cell_nm`, and of a film whose spectrum is flat beyond, as the
     pad makes it (`pad.cells`). With a measured spectrum q0 and hurst are coordinates that bend the spectrum about
@@ -79,7 +78,7 @@ def rows_of(
             "q0": (pivot_q0 * np.exp(-bend_q0), pivot_q0 * np.exp(bend_q0)),
             # a coordinate, the spectrum itself is the measured one
             "hurst": np.clip([pivot_hurst - bend_hurst, pivot_hurst + bend_hurst], 0.05, 1.95),
-            "rms": _about_median(np.sqrt(mean_square_of_cells(one, drawn, cell_nm))),
+            "rms": np.quantile(np.sqrt(mean_square_of_cells(one, drawn, cell_nm)), QUANTILES),
         }
     by_logarithm = () if one is None else ("q0", "rms")
     return {
@@ -92,12 +91,6 @@ def middle(row: Mapping[str, Any]) -> float:
     """The median of a row."""
     low, high = row["a"], row.get("b", row["a"])
     return float(np.sqrt(low * high) if row["distribution"] == "log_uniform" else 0.5 * (low + high))
-
-
-def _about_median(drawn: np.ndarray) -> np.ndarray:
-    """Ends of a range as wide as that of the draws, whose middle by the logarithm is their median."""
-    low, high = np.quantile(drawn, QUANTILES)
-    return np.median(drawn) * (high / low) ** np.array([-0.5, 0.5])
 
 
 def _over(low: float, high: float, kind: str = "uniform") -> Row:

@@ -39,6 +39,7 @@ class LikelihoodFit:
     dispersion : mean square residual in units of its expectation.
     misfit : RMS of the logarithmic residuals of the pooled bins beyond chance; above about 0.3 this is no power law.
     plateau_gain, power_gain : improvement of 2 ln L over a pure power law and over a flat spectrum.
+    names : of the scans that were fitted.
     """
 
     plateau: float
@@ -51,6 +52,7 @@ class LikelihoodFit:
     misfit: float
     plateau_gain: float
     power_gain: float
+    names: tuple[str, ...]
 
     def spectrum(self, q1: float) -> RoughSpectrum:
         """The typical place's spectrum up to q1."""
@@ -189,6 +191,7 @@ def fit(
         misfit=_misfit(residual, np.bincount(data.bin, data.modes)),
         plateau_gain=float(pure - value) / scale,
         power_gain=float(flat - value) / scale,
+        names=tuple(item.name for item in spectra),
     )
 
 

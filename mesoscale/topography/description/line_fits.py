@@ -133,6 +133,8 @@ def _fit_points(data: Points) -> LineFit | None:
     shape = -slope * np.maximum(data.log_q - log_q0, 0)
     levels = [np.mean((data.log_c - shape)[data.scan == k]) for k in np.unique(data.scan)]
     beyond = data.log_q > log_q0 + np.log(2)
+    if not beyond.any():
+        return None
     slopes = (level - data.log_c[beyond]) / (data.log_q[beyond] - log_q0)
     return LineFit(
         plateau=float(np.exp(level)),

@@ -22,6 +22,7 @@ from mesoscale.errors import InputError
 from mesoscale.topography.description.intervals import QUANTILES, REACH, few_places
 from mesoscale.topography.description.likelihood import DISCREPANCY
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, with_ends
+from mesoscale.topography.profile_conversion import COVER
 
 BANDS_PER_DECADE = 10
 MOST_MISFIT = 3.0
@@ -52,11 +53,12 @@ class Overlap:
     expected: float
     misfit: float
 
-    @property
-    def one_surface(self) -> bool:
-        """Can these be two places of one surface, whose spectra differ by one factor, and by no large one?"""
-        # ln C of two places whose RMS heights scatter by 40 %, at 99 %: a factor of 18
-        most = np.hypot(np.log(self.expected), 2.58 * np.sqrt(2) * 0.8)
+    def one_surface(self, pairs: int) -> bool:
+        """Can these, of so many pairs, be places of one surface, whose spectra differ by a factor that is not large?"""
+        from scipy.special import ndtri
+
+        # ln C of two places whose RMS heights scatter by 40 %: the furthest of all pairs, at 95 %
+        most = np.hypot(np.log(self.expected), float(ndtri(1 - 0.025 / pairs)) * np.sqrt(2) * 0.8)
         return bool(abs(np.log(self.ratio)) <= most and self.misfit <= MOST_MISFIT)
 
     @property
@@ -126,22 +128,32 @@ class OneSpectrum:
     def with_mean_square(self, mean_square: float, seen: "Seen", count: int, common_error: float) -> "OneSpectrum":
         """The spectrum given besides the mean square height (nm^2) of the longest measurements, levelled.
 
-        Of spectra that the bands allow, those are drawn that the mean square allows (importance resampling).
+        Of spectra that the bands allow, those are drawn that the mean square allows (importance resampling). Waves of
+        the bands are in both: what chance makes of them counts once.
 
         Parameters
         ----------
         count : measurements that it is the mean of.
         common_error : of its logarithm, the same in all of them.
         """
+        from scipy.special import gammaln
+
         rng = np.random.default_rng(3)
         candidates = 10_000
         logs = self._normal_draws(rng, candidates)
-        scatter = seen.scatter(self.q, logs)
-        error = np.hypot(np.hypot(scatter, self.place_sd) / np.sqrt(count), np.hypot(common_error, 0.1))
         drawn = np.exp(logs)
-        away = np.log((self.moment(0, low=seen.first, psd=drawn, counted=seen.share) + self.tail(drawn)) / mean_square)
-        away = (away - 0.5 * scatter**2 / count) / error  # the logarithm of a sum of few waves is on average too small
-        chance = -0.5 * away**2 - np.log(error)
+        whole = self.moment(0, low=seen.first, psd=drawn, counted=seen.share) + self.tail(drawn)
+        in_bands = self.moment(0, low=seen.low, high=seen.high, psd=drawn, counted=seen.share_in_bands)
+        rest = np.maximum(whole - seen.common * in_bands, 1e-12)
+        unseen, short = (seen.scatter(self.q, logs, *ends) for ends in ((seen.first, seen.low), (seen.low, self.q[-1])))
+        variance = (unseen * (whole - in_bands)) ** 2 + (1 - seen.common) * (short * in_bands) ** 2
+        modes = count * rest**2 / (variance + (self.place_sd * rest) ** 2)  # half of them: the shape of a Gamma law
+        level, worth = np.polynomial.hermite_e.hermegauss(9)
+        remaining = mean_square * np.exp(np.hypot(common_error, 0.1) * level) - seen.common * seen.in_bands_nm2
+        over = np.maximum(remaining, 0.01 * mean_square) / rest[:, None]
+        modes = modes[:, None]
+        gamma = modes * (np.log(modes * over) - over) - gammaln(modes) + np.log(worth)
+        chance = np.logaddexp.reduce(gamma, axis=1)
         weight = np.exp(chance - chance.max())
         weight /= weight.sum()
         centre = weight @ logs
@@ -181,11 +193,7 @@ class OneSpectrum:
         fine = np.unique(
             np.concatenate([np.geomspace(max(a, 1e-12), b, 9) for a, b in itertools.pairwise(edges) if b > a])
         )
-        place = np.interp(np.log(fine), np.log(self.q), np.arange(len(self.q)))
-        left = np.clip(place.astype(int), 0, len(self.q) - 2)
-        share = place - left
-        logs = np.log(psd)
-        values = np.exp(logs[..., left] * (1 - share) + logs[..., left + 1] * share)
+        values = np.exp(_at(fine, self.q, np.log(psd)))
         below = 2 * np.pi * psd[..., 0] * fine[0] ** (power + 2) / (power + 2) if low == 0 else 0.0
         values *= 2 * np.pi * fine ** (power + 1) * counted(fine)
         return np.asarray(np.trapezoid(values, fine, axis=-1) + below)
@@ -237,7 +245,7 @@ class OneSpectrum:
 
 @dataclass(frozen=True)
 class Seen:
-    """Which waves a levelled measurement has in its mean square height.
+    """Which waves a levelled measurement has in its mean square height, and which of these its bands have, too.
 
     Surfaces of C ~ q^-1 to q^-4 without a plateau hold, levelled by a plane, the waves from 0.63 to 0.81 a side on; so
     do lines (Brownian ones from 0.76 on). A parabola takes waves 1.3 times as short with it.
@@ -247,31 +255,59 @@ class Seen:
     length_nm : side of a map, or length of a line.
     parabola : it was levelled by one.
     line : of a line only the waves along it count, from which those across it are seen as longer ones.
+    low, high : ends of the waves in its bands, 1/nm.
+    in_bands_nm2 : their mean square height as its window sees them.
     """
 
     length_nm: float
     parabola: bool
     line: bool
+    low: float
+    high: float
+    in_bands_nm2: float = 0.0
 
     @property
     def first(self) -> float:
         """Wave vector of the longest, 1/nm."""
         return (0.94 if self.parabola else 0.72) * 2 * np.pi / self.length_nm
 
-    def share(self, q: np.ndarray) -> np.ndarray:
-        """Part of the isotropic waves at q (m,) in 1/nm, all at least the first."""
-        return 2 / np.pi * np.arccos(np.minimum(self.first / q, 1.0)) if self.line else np.ones_like(q)
+    @property
+    def common(self) -> float:
+        """Share of the chance in the bands that is in the mean square, too: 1 over the variance that a window adds.
 
-    def scatter(self, q: np.ndarray, logs: np.ndarray) -> np.ndarray:
-        """Standard deviation of ln of the mean square by spectra ln C (..., m) on q, from the number of their waves."""
-        inside = q > self.first
+        Of a window w it is <w^2>^2 / <w^4>: 18/35 for Hann's, once a side, and `COVER` for the tapers of a line.
+        """
+        return COVER if self.line else (18 / 35) ** 2
+
+    def share(self, q: np.ndarray, first: float | None = None) -> np.ndarray:
+        """Part of the isotropic waves at q (m,) in 1/nm, all at least the first."""
+        return 2 / np.pi * np.arccos(np.minimum((first or self.first) / q, 1.0)) if self.line else np.ones_like(q)
+
+    def share_in_bands(self, q: np.ndarray) -> np.ndarray:
+        """Part of the isotropic waves at q (m,) in 1/nm that is in the bands."""
+        return self.share(q, self.low) - (self.share(q, self.high) if self.line else 0.0)
+
+    def scatter(self, q: np.ndarray, logs: np.ndarray, low: float, high: float) -> np.ndarray:
+        """Relative scatter of the mean square of waves from low to high (1/nm), from their number.
+
+        Parameters
+        ----------
+        logs : (..., m) ln C on q.
+        """
+        points = np.geomspace(min(low, high), high, 24)
         # of a power law C1 is C q times a number; an integral over ln q
-        density = np.exp(logs[..., inside]) * q[inside] ** (1 if self.line else 0)
-        area = q[inside] * (2.0 if self.line else 2 * np.pi * q[inside])
+        density = np.exp(_at(points, q, logs)) * points ** (1 if self.line else 0)
+        area = points * (2.0 if self.line else 2 * np.pi * points) * np.log(points[1] / points[0])
         wave = (2 * np.pi / self.length_nm) ** (1 if self.line else 2)
-        return np.sqrt(2 * wave * (density**2 @ area) * np.log(10) / BANDS_PER_DECADE) / (
-            (density @ area) * np.log(10) / BANDS_PER_DECADE
-        )
+        return np.sqrt(2 * wave * (density**2 @ area)) / (density @ area)
+
+
+def _at(points: np.ndarray, q: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(..., n) values (..., m) at q, read at points (n,) by straight lines over ln q."""
+    place = np.interp(np.log(points), np.log(q), np.arange(len(q)))
+    left = np.clip(place.astype(int), 0, len(q) - 2)
+    share = place - left
+    return values[..., left] * (1 - share) + values[..., left + 1] * share
 
 
 def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneSpectrum | None:
@@ -304,7 +340,7 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     normal[:m, :m] += bends.T @ bends
     unseen, width = int(np.searchsorted(bands, seen.min())), np.log(10) / BANDS_PER_DECADE
     first = min(measured, key=lambda entry: entry[1][0])
-    slope, error = unseen_slope(first[1] * width, first[2])
+    slope, error = unseen_slope(first[1] * width, *first[2:])
     rise = np.diff(np.eye(m), axis=0)[:unseen] / width
     normal[:m, :m] += rise.T @ rise / error**2
     right[:m] += rise.sum(axis=0) * slope / error**2
@@ -338,30 +374,49 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
         return result
     alike = [(item, part) for item, part in rough if part and part.length_nm > 0.8 * longest]
     kind = next(part for _, part in alike if part.length_nm == longest)
-    alike = [item for item, part in alike if part.line == kind.line]
-    mean_square = np.mean([item.rms_nm**2 for item in alike])
+    alike = [(item, part) for item, part in alike if part.line == kind.line]
+    mean_square = np.mean([item.rms_nm**2 for item, _ in alike])
+    kind = replace(kind, in_bands_nm2=float(np.mean([part.in_bands_nm2 for _, part in alike])))
     # what is form and what is roughness is unknown to what a parabola would take
-    error = np.hypot(np.mean([item.form for item in alike]), common_error)
+    error = np.hypot(np.mean([item.form for item, _ in alike]), common_error)
     return result.with_mean_square(float(mean_square), kind, len(alike), float(error))
 
 
 def seen_by(item: TrustedSpectrum) -> Seen | None:
-    """Which waves the levelled heights of a measurement have; None where its size is not known."""
+    """Which waves the levelled heights of a measurement have; None where its size or its bands are not known."""
     line = item.line is not None
     length_nm = 2 * np.pi / item.spectrum.spacing if line else item.side_nm
-    return Seen(length_nm, item.parabola, line) if length_nm > 0 else None
+    numbers, level, _ = on_bands(item)
+    if length_nm == 0 or len(numbers) == 0:
+        return None
+    width = np.log(10) / BANDS_PER_DECADE
+    q = 10 ** ((numbers + 0.5) / BANDS_PER_DECADE)
+    seen = Seen(length_nm, item.parabola, line, float(q[0] * np.exp(-width / 2)), float(q[-1] * np.exp(width / 2)))
+    square = float(np.sum(2 * np.pi * q**2 * np.exp(level) * seen.share_in_bands(q)) * width)
+    return replace(seen, in_bands_nm2=square)
 
 
-def unseen_slope(log_q: np.ndarray, log_psd: np.ndarray) -> tuple[float, float]:
+def unseen_slope(log_q: np.ndarray, log_psd: np.ndarray, variance: np.ndarray) -> tuple[float, float]:
     """Logarithmic slope of waves that are longer than all measured ones, and the deviation of each band from it.
 
     Self-affine surfaces have slopes of -2 to -4 (H of 0 to 1), and go on or roll off. What is shallower rolls off to a
-    plateau, of slope 0. Five bands share a slope.
+    plateau, of slope 0. The longest bands leave a slope uncertain, in which few waves are. Five bands share a slope.
+
+    Parameters
+    ----------
+    log_q, log_psd, variance : ln q, ln C and the variance of ln C of the bands of the longest measurement.
     """
-    end = slice(None, BANDS_PER_DECADE // 2)
-    measured = float(np.clip(np.polyfit(log_q[end], log_psd[end], 1)[0], -4.0, 0.0))
-    going_on = float(np.interp(-measured, (1.5, 3.0), (0.0, 0.85)))
-    return going_on * measured, float(np.sqrt(5) * (0.4 + 0.25 * abs(measured)))
+    end, possible = slice(None, BANDS_PER_DECADE // 2), np.linspace(-4.0, 0.0, 33)
+    q, level, weight = log_q[end], log_psd[end], 1 / variance[end]
+    q = q - weight @ q / weight.sum()
+    precision = float(weight @ q**2)
+    away = possible - np.clip(weight * q @ level / precision, -4.0, 0.0)
+    chance = np.exp(-0.5 * precision * away**2)
+    chance /= chance.sum()
+    going_on = possible * np.interp(-possible, (1.5, 3.0), (0.0, 0.85))
+    mean = float(chance @ going_on)
+    deviation = chance @ ((going_on - mean) ** 2 + (0.4 - 0.25 * possible) ** 2)
+    return mean, float(np.sqrt(5 * deviation))
 
 
 def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -376,7 +431,9 @@ def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     worth = np.bincount(index, modes)
     centre = np.bincount(index, modes * np.log(q)) / worth
     # the logarithm of a mean of few amplitudes is on average too small: by 1 / 2n for n of them
-    level = np.log(np.bincount(index, modes * psd) / worth) + np.minimum(0.5 / worth, 0.3)
+    level = np.log(np.bincount(index, modes * psd) / worth)
+    if not item.spectrum.sharp:
+        level = level + np.minimum(0.5 / worth, 0.3)
     if len(numbers) < 2:
         return nothing
     wanted = (numbers + 0.5) / BANDS_PER_DECADE * np.log(10)

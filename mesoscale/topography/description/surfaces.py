@@ -137,7 +137,7 @@ def several_surfaces(
             f"more than places of one surface do (by chance once in {1 / chance:.0f})"
         )
         return [Doubt("several_surfaces", text, _apart(groups, files), fatal=True)]
-    strangers = [pair for pair in pairs if not pair.one_surface]
+    strangers = [pair for pair in pairs if not pair.one_surface(len(pairs))]
     if strangers:
         worst = max(strangers, key=lambda pair: max(pair.misfit, abs(np.log(pair.ratio))))
         differ = f"by a factor of {max(worst.ratio, 1 / worst.ratio):.2g}"

@@ -92,7 +92,8 @@ def _teach_units() -> None:
     """Add spellings of lengths that instruments write and SurfaceTopography's table lacks."""
     from SurfaceTopography.Support.UnitConversion import length_units
 
-    length_units |= dict.fromkeys(("\u03bcm", "micron", "microns", "micrometer", "\u339b"), 1e-6)
+    # the last one is UTF-8 that was read as Latin-1
+    length_units |= dict.fromkeys(("\u03bcm", "micron", "microns", "micrometer", "\u339b", "\u00c2\u00b5m"), 1e-6)
     length_units |= dict.fromkeys(("Angstrom", "angstrom", "\u212b", "\u00c5ngstr\u00f6m", "Ang"), 1e-10)
 
 
@@ -133,9 +134,9 @@ def _alone(path: Path, name: str, settings: TopographySettings) -> Measurement:
     head = head if read == path else read.read_bytes()[:HEAD_BYTES]
     reader = _tried(str(path), lambda: open_topography(str(read)), head)
     channels = _tried(str(path), lambda: list(reader.channels))
-    channel, note = _height_channel(path, channels, instrument.channel or settings.channel)
+    channel, note = _height_channel(path, channels, instrument, settings.channel)
     given = _given(str(path), channel, instrument)
-    _check_sized(str(path), channel, channel.unit or instrument.unit, instrument.size)
+    _check_sized(str(path), channel, instrument)
     topography = _tried(str(path), lambda: channel.topography(**given))
     marked = None
     if masks := getattr(reader, "_masks", None):  # Gwyddion's mask is over what is missing, and over grains
@@ -248,7 +249,7 @@ def _measurement(
         data: Scan | Profile = _profile(where, name, x * factors[0], z * factors[1])
         data = replace(data, bow=topography.info.get("detrend_mode") == "curvature")
     else:
-        _check_sized(where, topography, unit, instrument.size)
+        _check_sized(where, topography, instrument)
         heights = factors[1] * _tried(where, lambda: _filled(topography.heights()))
         if min(heights.shape) < MIN_SIDE:
             raise InputError(f"{where}: {heights.shape[0]} x {heights.shape[1]} pixels; at least {MIN_SIDE} a side")
@@ -256,7 +257,7 @@ def _measurement(
         _check_plausible(where, heights, x_nm, y_nm)
         data = Scan(heights, (x_nm, y_nm), name)
     data = replace(data, steps=(*steps, *data.steps))
-    return with_limits(data, settings, instrument, _stated_radius(topography.info))
+    return with_limits(data, settings, instrument, _stated_radius(where, topography.info))
 
 
 def _profile(where: str, name: str, x_nm: np.ndarray, z_nm: np.ndarray) -> Profile:
@@ -283,8 +284,11 @@ def _no_reader(where: str, head: bytes, tried: str) -> str:
     )
 
 
-def _height_channel(path: Path, channels: list[Any], wanted: str | None) -> tuple[Any, tuple[str, ...]]:
+def _height_channel(
+    path: Path, channels: list[Any], instrument: InstrumentSettings, channel: str | None
+) -> tuple[Any, tuple[str, ...]]:
     """The height channel, and a note when there was a choice."""
+    wanted = instrument.channel or channel
     # some readers call a phase a height, but then its unit is no length
     lengths = [c for c in channels if c.is_height_channel and (c.unit is None or isinstance(c.unit, str))]
     pixels = {id(c): int(np.prod(getattr(c, "nb_grid_pts", None) or 1)) for c in lengths}
@@ -299,7 +303,9 @@ def _height_channel(path: Path, channels: list[Any], wanted: str | None) -> tupl
         if not heights:
             raise InputError(f"{path}: no height channel {wanted!r} (--channel, topography.channel); it has: {listed}")
     elif len({DIRECTION.sub("", name).strip() for name in names}) > 1:
-        raise InputError(f"{path}: several height channels: {listed}; name one in topography.channel (--channel)")
+        lacks, keys = _lacking(path.name, heights[0], instrument)
+        also = f"; they have no {lacks}: state them, too, in topography.instruments {keys}" if lacks else ""
+        raise InputError(f"{path}: several height channels: {listed}; name one in topography.channel (--channel){also}")
     if not heights:
         raise InputError(
             f"{path}: no channel of heights in a unit of length (m, um, nm, Å); save the topography too, or calibrate "
@@ -332,13 +338,13 @@ def _column_units(head: bytes) -> tuple[float, float] | None:
     return None
 
 
-def _stated_radius(info: Any) -> float | None:
+def _stated_radius(where: str, info: Any) -> float | None:
     """Radius of the tip in nm, as files and containers state it with their instrument; None where they do not."""
     for key in ("instrument", "parameters", "tip_radius"):
         info = info.get(key) if isinstance(info, dict) else None
     if not isinstance(info, dict) or not isinstance(info.get("value"), (int, float)) or info["value"] <= 0:
         return None
-    return float(info["value"]) * _nm("tip_radius", str(info.get("unit")))
+    return float(info["value"]) * _nm(f"{where}: tip_radius", str(info.get("unit")))
 
 
 def _points(x: Any, z: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -349,14 +355,29 @@ def _filled(values: Any) -> np.ndarray:
     return np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
 
 
-def _check_sized(where: str, item: Any, unit: str | None, size: tuple[float, float] | None) -> None:
-    sizes = item.physical_sizes or size
-    if item.dim == 2 and (sizes is None or not all(np.isfinite(size) and size > 0 for size in sizes)):
-        lacks = "physical size" if unit else "physical size and no length unit"
+def _check_sized(where: str, item: Any, instrument: InstrumentSettings) -> None:
+    lacks, keys = _lacking(Path(where).name, item, instrument)
+    if "size" in lacks:
         raise InputError(
-            f"{where}: has no {lacks}; state them in topography.instruments "
-            f"(files: {Path(where).name!r}, size: [1, 1], unit: um; --size 1x1 --unit um), or save it with both (.gwy)"
+            f"{where}: has no {lacks}; state them in topography.instruments {keys}, or save it with both (.gwy)"
         )
+
+
+def _lacking(name: str, item: Any, instrument: InstrumentSettings) -> tuple[str, str]:
+    """What neither a file nor its user says of the size and unit of a map, and the keys and options to fill."""
+    sizes = item.physical_sizes or instrument.size
+    sized = item.dim == 1 or (sizes is not None and all(np.isfinite(size) and size > 0 for size in sizes))
+    named = item.unit or instrument.unit
+    asked = [
+        words
+        for words, stated in (
+            (("physical size", "size: [1, 1]", "--size 1x1"), sized),
+            (("length unit", "unit: um", "--unit um"), named),
+        )
+        if not stated
+    ]
+    lacks, keys, options = ([words[k] for words in asked] for k in range(3))
+    return " and no ".join(lacks), f"({', '.join([f'files: {name!r}', *keys])}; {' '.join(options)})"
 
 
 def _check_plausible(where: str, heights_nm: np.ndarray, *lengths_nm: float) -> None:

@@ -152,3 +152,27 @@ def test_maps_with_few_waves_of_the_knee_keep_their_rms_height():
         found.append(middle(film.description["film"]["rms"]))
     # mean of 24 maps whose RMS heights scatter by 6 % between places and 4 % by chance: 1.5 %; of the bias 2 %
     assert np.mean(found) == pytest.approx(4.0, rel=0.035)
+
+
+def test_all_that_a_file_leaves_open_is_asked_at_once(tmp_path):
+    """An .h5 of two data sets, without size and unit: one line with the keys and options for all of it."""
+    import h5py
+
+    heights = np.random.default_rng(0).standard_normal((2, 64, 64))
+    with h5py.File(tmp_path / "two.h5", "w") as file:
+        file["first"], file["second"] = heights
+    with pytest.raises(InputError) as asked:
+        load_measurements(tmp_path / "two.h5")
+    for word in ("first, second", "topography.channel", "--channel", "size: [1, 1], unit: um", "--size 1x1 --unit um"):
+        assert word in str(asked.value)
+    stated = InstrumentSettings(files="*.h5", channel="second", unit="nm", size=(200.0, 200.0))
+    (measured,) = load_measurements(tmp_path / "two.h5", settings=TopographySettings(instruments=(stated,)))
+    assert measured.data.lengths_nm == pytest.approx((200.0, 200.0))
+    assert measured.data.heights_nm.std() == pytest.approx(heights[1].std())
+
+
+def test_a_size_that_the_file_states_is_not_stated_again(tmp_path):
+    write_gwy(tmp_path / "sized.gwy", Scan(np.random.default_rng(0).standard_normal((64, 64)), (100.0, 100.0), "a"))
+    twice = InstrumentSettings(files="*", size=(1.0, 1.0))
+    with pytest.raises(InputError, match="states a size itself; leave out"):
+        load_measurements(tmp_path / "sized.gwy", settings=TopographySettings(instruments=(twice,)))

@@ -2,9 +2,9 @@
 
 import pytest
 
-from evidence.attacks.nonsense import NONSENSE
-from evidence.attacks.scene_mutations import mutated
-from evidence.attacks.scenes import campaign, judge
+from tests.workflow.judged_scenes import judge
+from tests.workflow.mutated_scenes import mutated
+from tests.workflow.nonsense_scenes import NONSENSE
 from workflow.scene import load_scene
 
 
@@ -23,9 +23,9 @@ def test_nonsense_is_refused_with_its_key(tmp_path, name):
 
 
 def test_mutated_scenes_are_refused_in_lines_or_used_as_they_stand(tmp_path):
-    rows = list(campaign(tmp_path, 0, 100))
-    assert not [row for row in rows if row.outcome == "fault"]
-    assert {row.outcome for row in rows} == {"used", "refused"}
+    rows = [judge(mutated(seed), tmp_path / "mutated.yaml") for seed in range(100)]
+    assert not [words for outcome, words in rows if outcome == "fault"]
+    assert {outcome for outcome, _ in rows} == {"used", "refused"}
 
 
 def test_a_seed_gives_its_scene_again():
@@ -44,7 +44,7 @@ def test_the_judge_sees_a_value_that_is_read_as_another(tmp_path, monkeypatch, u
     other = tmp_path / "other.yaml"
     other.write_text(used)
     scene = load_scene(str(other))
-    monkeypatch.setattr("evidence.attacks.scenes.load_scene", lambda path: scene)
+    monkeypatch.setattr("tests.workflow.judged_scenes.load_scene", lambda path: scene)
     outcome, said = judge("device: {gap_um: 3.5}", tmp_path / "given.yaml")
     assert outcome == ("fault" if words else "used")
     assert words in said

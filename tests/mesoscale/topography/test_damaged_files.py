@@ -5,8 +5,8 @@ import random
 import numpy as np
 import pytest
 
-from evidence.attacks.scans import DAMAGES, judge, made_files
 from mesoscale.settings import TopographySettings
+from tests.mesoscale.topography.damaged_files import DAMAGES, judge, made_files
 
 SETTINGS = TopographySettings()
 
@@ -34,8 +34,10 @@ def test_the_judge_sees_an_exception_and_numbers_that_are_not_finite(files, monk
     def broken(path, settings):
         raise KeyError("Miscellaneous")
 
-    monkeypatch.setattr("evidence.attacks.scans.load_measurements", broken)
+    monkeypatch.setattr("tests.mesoscale.topography.damaged_files.load_measurements", broken)
     assert judge(files[".gwy"], SETTINGS)[0] == "fault"
     monkeypatch.undo()
-    monkeypatch.setattr("evidence.attacks.scans.record", lambda *given: ({"c2": np.array([np.nan])}, {}))
+    monkeypatch.setattr(
+        "tests.mesoscale.topography.damaged_files.record", lambda *given: ({"c2": np.array([np.nan])}, {})
+    )
     assert judge(files[".gwy"], SETTINGS) == ("fault", "numbers that are not finite")

@@ -1,31 +1,22 @@
-"""Is a damaged scan refused in one line, or does it give a surface?
+"""Files that are cut, flipped, blown up or misnamed, and the judge of what reading them gives.
 
-Files of instruments are cut, flipped, blown up or misnamed.
 A file is refused in one line, or what it gives is a surface: finite heights and spectra, of a plausible size.
-Anything else is a fault: another exception, a crash, numbers that are no surface.
 """
 
 import random
-import time
-import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from evidence.attacks.runs import Attack, campaign_table, figures
 from mesoscale.errors import InputError
-from mesoscale.settings import InstrumentSettings, TopographySettings
+from mesoscale.settings import TopographySettings
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import FILE_NM, load_measurements, write_gwy
 from mesoscale.topography.records import record
 
-__all__ = ["campaign", "figures", "judge", "rows"]
 ANALYSED = 300_000  # bytes of a file whose spectra are computed, too
 HEAD = 2048  # bytes in which a format describes itself
-CHANNELS = {"di-3.di": "ZSensor", "nid-1.nid": "Scan forward (Z-Axis)"}
-WITHOUT_UNIT = ("csv-1.csv", "csv-2.csv", "made.xyz", "opdx-3.txt", "xy-4.txt")
 
 Damage = Callable[[random.Random, bytes], bytes]
 
@@ -124,32 +115,3 @@ def judge(path: Path, settings: TopographySettings) -> tuple[str, str]:
     except Exception as error:  # a campaign counts whatever comes
         return "fault", f"{type(error).__name__}: {error}"
     return "used", "a surface"
-
-
-def arguments(parser: Any) -> None:
-    """Options of the study."""
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument(
-        "--files", nargs="*", default=(), help="folders of files of instruments, beside those made here"
-    )
-
-
-def rows(given: Any) -> Iterator[dict[str, Any]]:
-    """A row for each kind of damage."""
-    yield from campaign_table(campaign, [Path(name) for name in given.files], given.seed)
-
-
-def campaign(folder: Path, places: list[Path], seed: int) -> Iterator[Attack]:
-    """Every kind of damage to each file of some folders, and to files made here."""
-    given = [path for place in places for path in sorted(place.iterdir()) if path.is_file()]
-    for path in [*given, *made_files(folder / "made")]:
-        content = path.read_bytes()
-        instruments = (InstrumentSettings(files="*", unit="um"),) if path.name in WITHOUT_UNIT else ()
-        settings = TopographySettings(channel=CHANNELS.get(path.name), instruments=instruments)
-        for kind, damage in DAMAGES.items():
-            rng = random.Random(zlib.crc32(f"{seed} {path.name} {kind}".encode()))
-            target = folder / f"damaged_{path.name}"
-            target.write_bytes(damage(rng, content))
-            started = time.monotonic()
-            outcome, words = judge(target, settings)
-            yield Attack(kind, outcome, time.monotonic() - started, words.replace(f"{folder}/", ""))

@@ -2,19 +2,7 @@
 
 import itertools
 
-LITERATURE = {
-    "e_star": "{distribution: normal, values: [91, 3.8]}",
-    "h_prime": "{values: [1.95, 14.8]}",
-    "q0": "{values: [0.015, 0.035]}",
-    "hurst": "{values: [0.5, 1.0]}",
-    "rms": "{values: [2, 15]}",
-}
-
-
-def scene(*lines: str, **rows: str) -> str:
-    """A scene whose inputs are all from the literature, some rows exchanged, with further lines."""
-    table = "".join(f"  {name}: {row}\n" for name, row in {**LITERATURE, **rows}.items())
-    return "\n".join([f"inputs:\n{table}", *lines])
+from evidence.attacks.runs import scene
 
 
 def _bomb() -> str:

@@ -1,15 +1,12 @@
-"""Is a mutated scene refused in lines, or used as it stands?
-
-Each is judged in this process by what a run does before its first job.
+"""The judge of a scene with mistakes, by what a run does before its first job.
 
 A scene is refused in single lines that begin with its file, or accepted as it stands: every value that an independent
 reader (text only, no types) finds in the file is the value that the run would use, and the published JSON Schema
-agrees.  Anything else is a fault: another exception, a refusal of several lines, a value that was read as another.
+agrees. Anything else is a fault: another exception, a refusal of several lines, a value that was read as another.
 """
 
 import json
 import re
-import time
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -19,13 +16,10 @@ import jsonschema
 import yaml
 
 from asperity.guards.foreign_yaml import load_mapping
-from evidence.attacks.runs import Attack, campaign_table, figures
-from evidence.attacks.scene_mutations import mutated
 from workflow.scene import Scene, SceneError, files_of, load_scene, locate
 from workflow.scene.checks import mistakes
 from workflow.scene.documented import SCHEMA
 
-__all__ = ["campaign", "figures", "judge", "rows"]
 LONGEST_LINE = 1500  # an unknown key lists the known ones
 PLAIN = re.compile(r"[-+]?(0|[1-9][0-9]*)?(\.[0-9]*)?([eE][-+]?[0-9]+)?")
 TRUTH = {True: {"true", "yes", "on"}, False: {"false", "no", "off"}, None: {"", "~", "null"}}
@@ -39,7 +33,7 @@ def judge(text: str, path: Path) -> tuple[str, str]:
         lines = [f"{path}: {line}" for line in _beyond_keys(scene, path)]
     except SceneError as error:
         lines = str(error).split("\n")
-    except Exception as error:  # a campaign counts whatever comes
+    except Exception as error:  # whatever comes
         return "fault", f"{type(error).__name__}: {error}"
     if lines:
         bad = next((line for line in lines if not (line.startswith(str(path)) and len(line) < LONGEST_LINE)), None)
@@ -100,22 +94,3 @@ def _same(used: Any, word: str) -> bool:
     if isinstance(used, str):
         return used == word
     return isinstance(used, (int, float)) and bool(PLAIN.fullmatch(word)) and float(word) == used
-
-
-def arguments(parser: Any) -> None:
-    """Options of the study."""
-    parser.add_argument("--seed", type=int, default=0, help="of the first scene")
-    parser.add_argument("--count", type=int, default=1500)
-
-
-def rows(given: Any) -> Iterator[dict[str, Any]]:
-    """A row for all scenes of each number of mistakes in text or content."""
-    yield from campaign_table(campaign, given.seed, given.count)
-
-
-def campaign(folder: Path, first: int, count: int) -> Iterator[Attack]:
-    """Scenes `first` to `first + count`."""
-    for seed in range(first, first + count):
-        started = time.process_time()
-        outcome, words = judge(mutated(seed), folder / "mutated.yaml")
-        yield Attack("mutated scene", outcome, time.process_time() - started, f"{seed}: {words}")
