@@ -27,8 +27,9 @@ def budget_of(tmp_path):
 
 
 def test_humid_air_and_the_grid_are_those_that_were_computed(budget_of):
+    other = {"reach_nm": 1.0, "error_V": 0.1, "energy_mJ_m2": 1.0, "pull_off_kPa": 1.0}
     humid = [
-        {"humidity": rh, "opening": way, "release_V": volts, "error_V": 0.1, "energy_mJ_m2": 1.0, "pull_off_kPa": 1.0}
+        {"humidity": rh, "opening": way, "release_V": volts, **other}
         for rh, way, volts in (
             (0.0, "balance", 6.0),
             (0.5, "balance", 5.2),
