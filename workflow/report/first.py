@@ -62,15 +62,15 @@ def _known(answer: dict[str, Any]) -> str:
     most = known["stuck_share"]["0.95"]
     return (
         f"Not known: where the typical device lets go, {typical[0]} to {typical[1]} V. From device to device: "
-        f"{device[0]} to {device[1]} V, all else known. With 95 % confidence, no more than "
-        f"{_rate(most['value'], answer)} of one batch stick. That limit itself may be {_rate(most['high'], answer)}."
+        f"{device[0]} to {device[1]} V, all else known. With 95 % confidence, less than {_rate(most['value'], answer)} "
+        f"of one batch stick. By its own error this limit may be {_rate(most['high'], answer)}."
     )
 
 
 def _rate(share: float, answer: dict[str, Any]) -> str:
     """A share of devices; so many switches know none below one in their number."""
     least = 1.0 / answer["points"]
-    return f"less than {least:.1%}" if share <= 1.001 * least else f"{share:.0%}" if share > 0.095 else f"{share:.1%}"
+    return f"{max(share, least):.0%}" if share > 0.095 else f"{max(share, least):.1%}"
 
 
 def release_bar(said: Verdict, bands: dict[str, Any] | None = None) -> str:
