@@ -1,6 +1,7 @@
 """Settings: keys with default, meaning, accepted range and unit in one line each, and the base of their classes."""
 
 import difflib
+import inspect
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -84,7 +85,7 @@ class Settings(BaseModel, metaclass=_OneLine):
             head = f"{name} : {'required' if field.is_required() else f'default {default}'}"
             lines += [head if unit is None else f"{head}, {unit}", f"    {field.description or ''}".rstrip()]
         if lines:
-            cls.__doc__ = "\n".join([(cls.__doc__ or "").strip(), "", "Parameters", "----------", *lines])
+            cls.__doc__ = "\n".join([inspect.cleandoc(cls.__doc__ or ""), "", "Parameters", "----------", *lines])
 
 
 Content = TypeVar("Content", bound=Settings)
