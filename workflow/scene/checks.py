@@ -117,7 +117,7 @@ def _stages(scene: Scene) -> Iterator[str]:
 
 def _too_few_points(scene: Scene) -> Iterator[str]:
     """A line on points too few to tell causes apart: for a curve of second degree each, a constant, and one over."""
-    inputs = len(scene.inputs.rows()) + scene.unequal_places
+    inputs = sum(row.distribution != "fixed" for row in scene.inputs.rows().values()) + scene.unequal_places
     needed = 2 * (inputs + ("gap_cutoff" not in scene.inputs.rows()) + len(scene.device.varied)) + 2
     if "pad" in scene.tails and 0 < scene.pad.points < needed:
         yield (
