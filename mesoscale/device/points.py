@@ -7,6 +7,7 @@ they leave undecided has more cells.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -150,7 +151,7 @@ class Pad:
     cells: PadCells
     flats: Flats
 
-    @property
+    @cached_property
     def law(self) -> PadLaw:
         """Its curves."""
         return law_of(self.cells, self.flats)

@@ -213,10 +213,13 @@ def _shifts_nm(cells: PadCells) -> Array:
 
 
 def _opened(law: PadLaw, risen_nm: Array, deepest_nm: float) -> Array:
-    """Rows of `PadLaw.opened` from any depth, in proportion to where closing ended; the nearest known depth counts."""
+    """Rows of `PadLaw.opened` from any depth, in proportion to where closing ended; the nearest known depth counts.
+
+    The first rise is 0.
+    """
     known_nm = float(np.clip(deepest_nm, law.depth_nm[0], law.depth_nm[-1]))
-    start, rows = law.opened(np.zeros(1), known_nm)[:, 0], law.opened(risen_nm, known_nm)
-    ended = _closing(law, np.array([deepest_nm]))[:, 0]
+    rows = law.opened(risen_nm, known_nm)
+    start, ended = rows[:, 0], _closing(law, np.array([deepest_nm]))[:, 0]
     return rows * np.divide(ended, start, out=np.ones(2), where=start != 0.0)[:, None]
 
 
