@@ -151,9 +151,13 @@ class Pad:
     cells: PadCells
     flats: Flats
 
-    @cached_property
+    @property
     def law(self) -> PadLaw:
         """Its curves."""
+        return self._law
+
+    @cached_property
+    def _law(self) -> PadLaw:
         return law_of(self.cells, self.flats)
 
     @property
