@@ -13,7 +13,7 @@ from mesoscale.scan_checks.surface import contacting_heights
 from mesoscale.settings import ContactSettings, TopographySettings
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.topography.description.heights import common_heights, height_quantiles
-from mesoscale.topography.description.intervals import CONFIDENCE, REACH, few_places, student_reach
+from mesoscale.topography.description.intervals import CONFIDENCE, REACH, student_reach
 from mesoscale.topography.description.one_spectrum import OneSpectrum, merge
 from mesoscale.topography.description.parameters import Topography, analyse
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
@@ -53,7 +53,7 @@ class Described:
         golden = 0.5 * (5.0**0.5 - 1.0)  # its multiples (modulo 1) are spread evenly, however many
         places = ndtri((np.arange(count) + 0.5) * golden % 1.0)
         if self.one is not None:
-            scatter = self.one.place_sd * few_places(len(self.one.names))
+            scatter = self.one.place_sd
             for psd, place in zip(self.one.draws(places=False, count=count), places, strict=True):
                 # as the contact's own surfaces
                 yield SpectrumTable(*self.one.carried_on(psd * math.exp(scatter * place))).psd
@@ -63,7 +63,7 @@ class Described:
         rms = estimates["rms"]
         error = 0.5 * math.log(rms.interval[1] / rms.interval[0]) / REACH  # of the typical place
         if fitted is not None:  # and one more place besides
-            error = math.hypot(error, few_places(len(fitted.amplitudes)) * fitted.amplitude_sd / 2)
+            error = math.hypot(error, fitted.amplitude_sd / 2)
         for place in places:
             q0, slope = (rng.uniform(*estimates[name].scatter) for name in ("q0", "slope"))
             rms_nm = rms.value * math.exp(error * place)

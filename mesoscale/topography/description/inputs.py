@@ -180,19 +180,13 @@ def rms_before(
 def rms_scatter_row(topography: Topography, one: OneSpectrum | None) -> Row:
     """Distribution of the standard deviation of ln RMS between places, uniform over its interval.
 
-    n normal factors of variance s^2 have (n - 1) s^2 / chi^2 for their true variance (chi-squared, n - 1 degrees of
-    freedom). Beyond MOST_APART measurements have no common level.
+    Beyond MOST_APART measurements have no common level.
     """
     fitted = topography.likelihood
     if one is not None:
-        count, between = len(one.names), one.place_sd
-    elif fitted is not None and fitted.misfit <= MAX_MISFIT:
-        count, between = len(fitted.amplitudes), fitted.amplitude_sd
+        low, high = one.between.interval()
     else:
-        count, between = 0, 0.0
-    if between == 0:  # one measurement, or places that do not differ
+        low, high = fitted.between.interval() if fitted is not None and fitted.misfit <= MAX_MISFIT else (0.0, 0.0)
+    if high == 0:  # one measurement
         return {"distribution": "fixed", "a": 0.0}
-    from scipy.special import gammaincinv
-
-    chi_squared = 2 * gammaincinv((count - 1) / 2, QUANTILES[::-1])
-    return _over(*np.minimum(between * np.sqrt((count - 1) / chi_squared), MOST_APART) / 2)
+    return _over(min(low, MOST_APART / 2) / 2, min(high, MOST_APART) / 2)

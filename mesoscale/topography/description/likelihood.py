@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from mesoscale.topography.description.intervals import SCATTERS, PlaceScatter
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, blur, curvature, tip_bias
 from mesoscale.topography.profile_conversion import spread
 from mesoscale.topography.roughness_spectrum import RoughSpectrum, mean_square
@@ -35,7 +36,7 @@ class LikelihoodFit:
     plateau, q0, slope : of the typical place (median of the population).
     covariance : (3, 3) of (ln plateau, ln q0, slope).
     amplitudes : (scans,) plateau of each scan, nm^4.
-    amplitude_sd : standard deviation of ln amplitude between places, statistical error removed.
+    between : scatter of ln amplitude between places, statistical error removed.
     dispersion : mean square residual in units of its expectation.
     misfit : RMS of the logarithmic residuals of the pooled bins beyond chance; above about 0.3 this is no power law.
     plateau_gain, power_gain : improvement of 2 ln L over a pure power law and over a flat spectrum.
@@ -47,12 +48,17 @@ class LikelihoodFit:
     slope: float
     covariance: np.ndarray
     amplitudes: np.ndarray
-    amplitude_sd: float
+    between: PlaceScatter
     dispersion: float
     misfit: float
     plateau_gain: float
     power_gain: float
     names: tuple[str, ...]
+
+    @property
+    def amplitude_sd(self) -> float:
+        """Standard deviation of ln amplitude between places."""
+        return self.between.deviation
 
     def spectrum(self, q1: float) -> RoughSpectrum:
         """The typical place's spectrum up to q1."""
@@ -161,7 +167,7 @@ def fit(
 
     grid = [(q0, slope) for q0 in np.linspace(low, high, 14)[:-1] for slope in (1.0, 2.0, 3.0, 4.0)]
     best = np.array(min(grid, key=lambda point: objective(np.array(point))))
-    dispersion, raw, residual = 1.0, level, np.ones(bins)
+    dispersion, raw, residual, between = 1.0, level, np.ones(bins), PlaceScatter()
     for _ in range(4):
         minimum = minimize(objective, best, method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-3})
         best = np.clip(minimum.x, [low, 0.0], [high, MAX_SLOPE])
@@ -172,7 +178,8 @@ def fit(
         bin_weight = np.bincount(data.bin, data.weight)
         freedom = max(bins - 2 - data.scans / 2, 2)
         dispersion = float(np.sum(bin_weight * (residual - 1) ** 2) / freedom)
-        spread = _between(raw, max(dispersion, 1.0) / data.per_scan)
+        between = _between(raw, max(dispersion, 1.0) / data.per_scan)
+        spread = between.deviation
 
     scale = max(dispersion, 1.0)
     typical, typical_variance = _typical(raw, scale / data.per_scan, spread)
@@ -186,7 +193,7 @@ def fit(
         slope=float(best[1]),
         covariance=covariance,
         amplitudes=np.exp(raw),
-        amplitude_sd=float(spread),
+        between=between,
         dispersion=dispersion,
         misfit=_misfit(residual, np.bincount(data.bin, data.modes)),
         plateau_gain=float(pure - value) / scale,
@@ -223,14 +230,14 @@ def _misfit(residual: np.ndarray, modes: np.ndarray) -> float:
     return float(np.sqrt(max(np.sum(weight * excess) / weight.sum(), 0.0)))
 
 
-def _between(raw: np.ndarray, variance: np.ndarray) -> float:
-    """Spread between places by moments (DerSimonian and Laird, doi:10.1016/0197-2456(86)90046-2)."""
+def _between(raw: np.ndarray, variance: np.ndarray) -> PlaceScatter:
+    """Scatter between places of ln amplitudes known to `variance`, by their restricted likelihood."""
     if len(raw) < 2:
-        return 0.0
-    weight = 1 / variance
-    mean = np.sum(weight * raw) / weight.sum()
-    excess = np.sum(weight * (raw - mean) ** 2) - (len(raw) - 1)
-    return float(np.sqrt(max(excess, 0.0) / (weight.sum() - np.sum(weight**2) / weight.sum())))
+        return PlaceScatter()
+    every = variance + SCATTERS[:, None] ** 2
+    mean = np.sum(raw / every, axis=1, keepdims=True) / np.sum(1 / every, axis=1, keepdims=True)
+    terms = np.sum(np.log(every) + (raw - mean) ** 2 / every, axis=1) + np.log(np.sum(1 / every, axis=1))
+    return PlaceScatter.of(-0.5 * terms)
 
 
 def _typical(raw: np.ndarray, variance: np.ndarray, spread: float) -> tuple[float, float]:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from mesoscale.errors import InputError
-from mesoscale.topography.description.intervals import QUANTILES, REACH, few_places
+from mesoscale.topography.description.intervals import QUANTILES, REACH, SCATTERS, PlaceScatter
 from mesoscale.topography.description.likelihood import DISCREPANCY
 from mesoscale.topography.description.trusted_range import TrustedSpectrum, with_ends
 from mesoscale.topography.profile_conversion import COVER
@@ -75,8 +75,8 @@ class OneSpectrum:
     ----------
     q : (m,) centres of the bands, 1/nm, from waves twice as long as the longest measurement on.
     log_psd : (m,) ln C of the typical place, C in nm^4.
-    covariance : (m, m) of log_psd; REACH times its root is an end of the interval, also by few places.
-    place_sd : standard deviation of ln C between places and instruments, common to all bands; 0 for one measurement.
+    covariance : (m, m) of log_psd; REACH times its root is an end of the interval.
+    between : scatter of ln C between places and instruments, common to all bands.
     count : (m,) measurements behind each band; 0 in a gap between instruments and before the first.
     names : measurements that take part.
     longest : smallest wave vector that a mean square height tells of (1/nm); None where only bands tell.
@@ -86,11 +86,16 @@ class OneSpectrum:
     q: np.ndarray
     log_psd: np.ndarray
     covariance: np.ndarray
-    place_sd: float
+    between: PlaceScatter
     count: np.ndarray
     names: tuple[str, ...]
     longest: float | None = None
     logs: np.ndarray | None = None
+
+    @property
+    def place_sd(self) -> float:
+        """Standard deviation of ln C between places; 0 for one measurement."""
+        return self.between.deviation
 
     @property
     def seen(self) -> float:
@@ -122,7 +127,7 @@ class OneSpectrum:
         rng = np.random.default_rng(0)  # the same draws whenever they are asked for
         logs = self._normal_draws(rng, count) if self.logs is None else self.logs[:count]
         if places:
-            logs = logs + self.place_sd * few_places(len(self.names)) * rng.standard_normal((count, 1))
+            logs = logs + self.place_sd * rng.standard_normal((count, 1))
         return np.exp(logs)
 
     def with_mean_square(self, mean_square: float, seen: "Seen", count: int, common_error: float) -> "OneSpectrum":
@@ -344,27 +349,16 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     rise = np.diff(np.eye(m), axis=0)[:unseen] / width
     normal[:m, :m] += rise.T @ rise / error**2
     right[:m] += rise.sum(axis=0) * slope / error**2
-    shared = np.bincount(index, minlength=m) > 1
-    variance = 0.1 if shared.any() else 0.0
-    covariance, solution = normal, right
-    for _ in range(200):
-        penalty = np.zeros(m + places)
-        penalty[m:] = 1 / max(variance, 1e-6)
-        covariance = np.linalg.inv(normal + np.diag(penalty))
-        solution = covariance @ right
-        if variance == 0:
-            break
-        offsets = solution[m:]
-        new = float(np.mean(offsets**2 + np.diag(covariance)[m:]))
-        if abs(new - variance) < 1e-6 * variance + 1e-9:
-            break
-        variance = new
+    between = _between(normal, right, places)
+    normal[m:, m:] += np.eye(places) / max(between.deviation, SCATTERS[0]) ** 2
+    covariance = np.linalg.inv(normal)
+    solution = covariance @ right
     centres = 10 ** ((bands + 0.5) / BANDS_PER_DECADE)
     result = OneSpectrum(
         centres,
         solution[:m],
-        covariance[:m, :m] + common_error**2 + variance / places * (few_places(places) ** 2 - 1),
-        float(np.sqrt(variance)),
+        covariance[:m, :m] + common_error**2,
+        between,
         np.sum([(bands >= entry[1][0]) & (bands <= entry[1][-1]) for entry in measured], axis=0),
         tuple(entry[0] for entry in measured),
     )
@@ -380,6 +374,21 @@ def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneS
     # what is form and what is roughness is unknown to what a parabola would take
     error = np.hypot(np.mean([item.form for item, _ in alike]), common_error)
     return result.with_mean_square(float(mean_square), kind, len(alike), float(error))
+
+
+def _between(normal: np.ndarray, right: np.ndarray, places: int) -> PlaceScatter:
+    """How much places differ, by the likelihood of the mixed model without bands and levels (restricted likelihood).
+
+    Parameters
+    ----------
+    normal, right : normal equations of bands and, last, levels of the places, which have no prior yet.
+    """
+    if places == 1:
+        return PlaceScatter()
+    levels = np.diag(np.arange(len(normal)) >= len(normal) - places).astype(float)
+    covariances = np.linalg.inv(normal + levels / SCATTERS[:, None, None] ** 2)
+    chance = np.linalg.slogdet(covariances)[1] + right @ covariances @ right - 2 * places * np.log(SCATTERS)
+    return PlaceScatter.of(0.5 * chance)
 
 
 def seen_by(item: TrustedSpectrum) -> Seen | None:

@@ -8,7 +8,7 @@ import numpy as np
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description import likelihood, line_fits
 from mesoscale.topography.description.doubts import Doubt
-from mesoscale.topography.description.intervals import REACH, Estimate, student_reach, union
+from mesoscale.topography.description.intervals import REACH, Estimate, union
 from mesoscale.topography.description.likelihood import LikelihoodFit
 from mesoscale.topography.description.line_fits import LineFit
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
@@ -132,10 +132,8 @@ def _estimates(
     gradient = np.array([(log_rms(centre + step * e) - log_rms(centre - step * e)) / (2 * step) for e in np.eye(3)])
     # unidentified: a factor of e^10 is wide enough
     rms_error = min(float(np.sqrt(gradient @ fitted.covariance @ gradient)), 10.0)
-    rms, reach = float(np.exp(log_rms(centre))), REACH
-    if fitted.amplitude_sd > 0:  # the typical place is then the mean of few: Student's distribution
-        reach = student_reach(max(len(fitted.amplitudes) - 1, 1))
-    low, high = rms * np.exp(reach * rms_error * np.array([-1, 1]))
+    rms = float(np.exp(log_rms(centre)))
+    low, high = rms * np.exp(REACH * rms_error * np.array([-1, 1]))
     own_q0, own_slope = likelihood.single_scans(spectra, fitted)
     # where places differ, the range of RMS is theirs; otherwise it is the statistical one
     rms_scatter = union([rms] if fitted.amplitude_sd > 0 else [low, high], fitted.scan_rms(cutoff))
