@@ -15,7 +15,7 @@ import numpy as np
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.cell import mean_square_of_cells, share_on_cells
 from mesoscale.topography.description.heights import common_heights
-from mesoscale.topography.description.intervals import QUANTILES, REACH
+from mesoscale.topography.description.intervals import QUANTILES, REACH, PlaceScatter
 from mesoscale.topography.description.one_spectrum import OneSpectrum
 from mesoscale.topography.description.parameters import MAX_MISFIT, MOST_APART, Topography
 from mesoscale.topography.description.tip import LIFT
@@ -23,6 +23,8 @@ from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.roughness_spectrum import SpectrumTable, hurst_from_slope, mean_square
 
 Row = dict[str, Any]
+HALF_NORMAL = 1.9599639845400545
+"""What 95 % of a half-normal distribution stay below, over the standard deviation of the whole one."""
 
 
 def surface_of(
@@ -178,15 +180,19 @@ def rms_before(
 
 
 def rms_scatter_row(topography: Topography, one: OneSpectrum | None) -> Row:
-    """Distribution of the standard deviation of ln RMS between places, uniform over its interval.
+    """Distribution of the standard deviation of ln RMS between places.
 
-    Beyond MOST_APART measurements have no common level.
+    Uniform over its interval; half of a normal distribution of the same upper end where it is not told from 0. Beyond
+    MOST_APART measurements have no common level.
     """
-    fitted = topography.likelihood
+    fitted, most = topography.likelihood, MOST_APART / 2
     if one is not None:
-        low, high = one.between.interval()
+        between = one.between
     else:
-        low, high = fitted.between.interval() if fitted is not None and fitted.misfit <= MAX_MISFIT else (0.0, 0.0)
+        between = fitted.between if fitted is not None and fitted.misfit <= MAX_MISFIT else PlaceScatter()
+    low, high = (min(end / 2, most) for end in between.interval())
     if high == 0:  # one measurement
         return {"distribution": "fixed", "a": 0.0}
-    return _over(min(low, MOST_APART / 2) / 2, min(high, MOST_APART) / 2)
+    if low > 0.1 * high:
+        return _over(low, high)
+    return {"distribution": "truncated_normal", "a": 0.0, "b": high / HALF_NORMAL, "low": 0.0, "high": most}

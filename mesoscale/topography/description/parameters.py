@@ -135,14 +135,12 @@ def _estimates(
     rms = float(np.exp(log_rms(centre)))
     low, high = rms * np.exp(REACH * rms_error * np.array([-1, 1]))
     own_q0, own_slope = likelihood.single_scans(spectra, fitted)
-    # where places differ, the range of RMS is theirs; otherwise it is the statistical one
-    rms_scatter = union([rms] if fitted.amplitude_sd > 0 else [low, high], fitted.scan_rms(cutoff))
     slope = Estimate(fitted.slope, slope_interval, union(slope_interval, own_slope))
     return {
         "q0": Estimate(fitted.q0, q0_interval, union(q0_interval, own_q0)),
         "slope": slope,
         "hurst": _hurst(slope, settings.convention),
-        "rms": Estimate(rms, (float(low), float(high)), rms_scatter),
+        "rms": Estimate(rms, (float(low), float(high)), union([low, high], fitted.scan_rms(cutoff))),
     }
 
 

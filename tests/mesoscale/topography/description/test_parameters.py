@@ -94,7 +94,8 @@ def test_the_range_of_the_scatter_between_places_covers_it():
     rng = np.random.default_rng(6)
     rows = [rms_scatter_row(analyse(drawn_set(rng, 0.4), TopographySettings()), None) for _ in range(20)]
     assert sum(row["a"] <= 0.4 <= row["b"] for row in rows) >= 15  # fewer of 20 happen once in 400 times at 90 %
-    assert max(row["b"] / row["a"] for row in rows) < 2.2  # eleven places know their scatter to a factor of 1.5
+    # eleven places: 2.16 by chi-squared of ten degrees of freedom, besides what is known of each level
+    assert max(row["b"] / row["a"] for row in rows) < 2.3
 
 
 def test_one_scan_says_nothing_of_other_places():
