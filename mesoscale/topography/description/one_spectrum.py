@@ -53,12 +53,11 @@ class Overlap:
     expected: float
     misfit: float
 
-    def one_surface(self, pairs: int) -> bool:
-        """Can these, of so many pairs, be places of one surface, whose spectra differ by a factor that is not large?"""
+    def one_surface(self, chance: float) -> bool:
+        """Can these be places of one surface? Of two whose RMS heights scatter by 40 % a share `chance` is denied."""
         from scipy.special import ndtri
 
-        # ln C of two places whose RMS heights scatter by 40 %: the furthest of all pairs, at 95 %
-        most = np.hypot(np.log(self.expected), float(ndtri(1 - 0.025 / pairs)) * np.sqrt(2) * 0.8)
+        most = np.hypot(np.log(self.expected), float(ndtri(1 - chance / 2)) * np.sqrt(2) * 0.8)
         return bool(abs(np.log(self.ratio)) <= most and self.misfit <= MOST_MISFIT)
 
     @property

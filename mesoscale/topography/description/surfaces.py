@@ -22,7 +22,7 @@ from mesoscale.topography.description.trusted_range import TrustedSpectrum
 
 Array = np.ndarray
 FALSE_ALARMS = 0.05
-"""Of films of one surface, shared by level and tilt."""
+"""Of films of one surface, shared by level, tilt and the furthest pair."""
 SIMULATED = 999
 """Sets of places behind a probability."""
 FEWEST = 4
@@ -115,7 +115,7 @@ def two_heaps(spectra: Sequence[TrustedSpectrum]) -> tuple[str, Cut, float] | No
     # 0.2 of ln C is 10 % of the RMS height; the same of the slope of ln C over ln q
     asked = [(by_chance(*estimates[name], cut.score), name, cut) for name, cut in cuts if cut.apart > 0.2]
     chance, name, cut = min(asked, key=lambda item: item[0], default=(1.0, "", None))
-    return None if cut is None or chance > FALSE_ALARMS / len(estimates) else (name, cut, chance)
+    return None if cut is None or chance > FALSE_ALARMS / 3 else (name, cut, chance)
 
 
 def several_surfaces(
@@ -137,7 +137,7 @@ def several_surfaces(
             f"more than places of one surface do (by chance once in {1 / chance:.0f})"
         )
         return [Doubt("several_surfaces", text, _apart(groups, files), fatal=True)]
-    strangers = [pair for pair in pairs if not pair.one_surface(len(pairs))]
+    strangers = [pair for pair in pairs if not pair.one_surface(FALSE_ALARMS / 3 / len(pairs))]
     if strangers:
         worst = max(strangers, key=lambda pair: max(pair.misfit, abs(np.log(pair.ratio))))
         differ = f"by a factor of {max(worst.ratio, 1 / worst.ratio):.2g}"
