@@ -4,7 +4,7 @@ Maps have 256 x 256 pixels. Fine ones are of 1 and 5 um, seen by a tip whose rad
 ones are of 20 to 100 um, with a roll-off that goes into the cell or is longer. Lines are of 2 and 8 um; mixed are maps
 of 1 um with lines of 8 um. Grainy and grooved maps, of 1 and 3 um, have log-normal heights, upright or upside down. On
 uneven films RMS heights of places scatter by 40 %. Alone is one line or map of 1 to 10 um, with 0.3 to 30 waves of the
-knee.
+knee. Few are a map of 1 um and a line of 200 um, as the diamond film has them, of places that scatter by up to 50 %.
 
 Held are: q0, slope and RMS height of eq. 9; the RMS height of the cell in use (`cell`); RMS slope and curvature of the
 one spectrum (`steep`, `curved`); first contact of one more cell (`touch`), of waves up to the measured end. Where eq. 9
@@ -165,6 +165,21 @@ def mixed(truth: ScanSet, stated_nm: float) -> Iterator[Measurement]:
     yield from (item for item in lines(truth) if item.data.name.startswith(f"line_{LINES[0][0]:g}"))
 
 
+def few(truth: ScanSet, stated_nm: float) -> Iterator[Measurement]:
+    """A map of 1 um and a line of 200 um at places that differ, without a wave in common."""
+    rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(13,)))
+    yield from maps(truth.model_copy(update={"small_scans": 1, "large_scans": 0}), stated_nm)
+    level = float(np.exp(truth.rms_variation * rng.standard_normal()))
+    yield from lines(truth.model_copy(update={"rms_nm": level * truth.rms_nm}), counts=((200e3, 1),))
+
+
+def _few_truth(truth: ScanSet) -> ScanSet:
+    """A film of long waves whose places scatter by up to 50 %."""
+    rng = np.random.default_rng(np.random.SeedSequence(truth.seed, spawn_key=(12,)))
+    q0, scatter = float(np.exp(rng.uniform(*np.log(FEW_Q0)))), float(rng.uniform(0, 0.5))
+    return truth.model_copy(update={"q0": q0, "rms_nm": 3 * truth.rms_nm, "rms_variation": scatter})
+
+
 def coarse(truth: ScanSet) -> Iterator[Measurement]:
     """Maps of `large_length_nm` by an instrument without tip."""
     yield from maps(truth.model_copy(update={"small_scans": 0, "large_scans": 4, "tip_radius_nm": 0.0}), 0.0)
@@ -182,6 +197,7 @@ CHARTS = {"grainy": 1, "grooved": -1}
 Kind = Callable[[ScanSet, float], tuple[ScanSet, Iterator[Measurement]]]
 COARSE_NM = (20e3, 100e3)
 ALONE_NM, ALONE_WAVES = (1e3, 1e4), (0.3, 30.0)
+FEW_Q0 = (0.001, 0.005)
 KINDS: dict[str, Kind] = {
     "areal": lambda truth, told: (truth, maps(truth, told)),
     "coarse_inside": lambda truth, _: (made := _coarse_truth(truth, (16, 32)), coarse(made)),
@@ -193,6 +209,7 @@ KINDS: dict[str, Kind] = {
     "uneven": lambda truth, told: (made := truth.model_copy(update={"rms_variation": 0.4}), maps(made, told)),
     "line_alone": lambda truth, told: alone(truth, told, line=True),
     "map_alone": lambda truth, told: alone(truth, told, line=False),
+    "few": lambda truth, told: (made := _few_truth(truth), few(made, told)),
 }
 FINE_CELL_NM = 1000.0
 NAMES = ("q0", "slope", "rms")

@@ -19,7 +19,7 @@ import numpy as np
 
 from evidence.record import load
 from mesoscale.settings import TopographySettings
-from mesoscale.topography.description.one_spectrum import overlaps
+from mesoscale.topography.description.overlaps import overlaps
 from mesoscale.topography.description.surfaces import several_surfaces
 from mesoscale.topography.description.trusted_range import trusted_scan
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans

@@ -21,15 +21,10 @@ from mesoscale.topography.description.choice import Choice, choose, description_
 from mesoscale.topography.description.doubts import Doubt
 from mesoscale.topography.description.heights import HeightTest, compare_heights, not_gaussian
 from mesoscale.topography.description.inputs import cutoff_row, middle, rms_before, rms_scatter_row, rows_of, surface_of
-from mesoscale.topography.description.one_spectrum import (
-    OneSpectrum,
-    Overlap,
-    merge,
-    overlaps,
-    refuse_different_films,
-)
+from mesoscale.topography.description.one_spectrum import OneSpectrum, merge
+from mesoscale.topography.description.overlaps import Overlap, overlaps, refuse_different_films
 from mesoscale.topography.description.parameters import Topography, analyse
-from mesoscale.topography.description.surfaces import disagreements, several_surfaces
+from mesoscale.topography.description.surfaces import several_surfaces
 from mesoscale.topography.description.tip import (
     lift_doubt,
     spectrum_with_radius_error,
@@ -145,7 +140,6 @@ def pool(
         files = {name: str(values.get("file", name)) for name, values in attributes.items()}
         doubts += several_surfaces(images, pairs, files)
         doubts += description_doubts(topography, choice.name, one, attributes, tests, cell_nm)
-        doubts += disagreements(pairs, one)
         if one is not None:
             doubts += finer_waves_doubt(SpectrumTable(*one.carried_on(one.psd)).psd, spectra, cell_nm)
     if settings.scans and rows:

@@ -3,17 +3,14 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description.choice import DESCRIPTIONS
 from mesoscale.topography.description.inputs import trusted_end
 from mesoscale.topography.description.intervals import CONFIDENCE
 from mesoscale.topography.description.likelihood import LikelihoodFit
-from mesoscale.topography.description.line_fits import LineFit
 from mesoscale.topography.pooling import Pooled
 from mesoscale.topography.records import is_profile
-from mesoscale.topography.roughness_spectrum import hurst_from_slope, mean_square
+from mesoscale.topography.roughness_spectrum import hurst_from_slope
 
 
 def measurement_lines(content: Mapping[str, Any]) -> Iterator[str]:
@@ -83,7 +80,6 @@ def parameters(
     content: dict[str, Any] = {
         "synthetic": truth is not None,
         "convention": settings.convention,
-        "method": "likelihood",
         "ranges": settings.ranges,
         "confidence": CONFIDENCE,
         "tip_radius_nm": settings.tip_nm,
@@ -98,7 +94,6 @@ def parameters(
         "q1": {"value": topography.q1, "unit": "1/nm", "instrument_limited": topography.q1_limited},
         "integrated_to_q": topography.cutoff,
         "likelihood": _likelihood(topography.likelihood, topography.cutoff),
-        "lines": _lines(topography.line_fit, topography.cutoff, settings),
         "scans": list(rows),
         "description": {
             "name": used,
@@ -121,36 +116,13 @@ def parameters(
     return content
 
 
-def _hursts(slope: float) -> dict[str, float]:
-    return {"hurst_profile": hurst_from_slope(slope, "profile"), "hurst_areal": hurst_from_slope(slope, "areal")}
-
-
 def _likelihood(fitted: LikelihoodFit | None, cutoff: float) -> dict[str, Any] | None:
     if fitted is None:
         return None
     names = ("q0", "slope", "covariance", "amplitude_sd", "dispersion", "misfit", "plateau_gain", "power_gain")
     spectrum = fitted.spectrum(cutoff)
     roughness = {"plateau_nm4": fitted.plateau, "rms_nm": spectrum.rms_nm, "rms_slope": spectrum.rms_slope}
-    return roughness | {name: getattr(fitted, name) for name in names} | _hursts(fitted.slope)
-
-
-def _lines(line: LineFit | None, cutoff: float, settings: TopographySettings) -> dict[str, Any] | None:
-    if line is None:
-        return None
-    slopes = (line.slope_low, line.slope_high)
-    share = mean_square(1.0, line.q0, line.slope, cutoff)
-    return {
-        "plateau_nm4": line.plateau,
-        "q0": line.q0,
-        "q0_departure": line.departure,
-        "q1": line.q1,
-        "slope": line.slope,
-        "slope_bounds": list(slopes),
-        "hurst_bounds": [hurst_from_slope(slope, settings.convention) for slope in slopes],
-        "rms_nm": float(np.sqrt(mean_square(line.plateau, line.q0, line.slope, cutoff))),
-        "rms_bounds_nm": [float(np.sqrt(level * share)) for level in (line.plateau_low, line.plateau_high)],
-        **_hursts(line.slope),
-    }
+    return roughness | {name: getattr(fitted, name) for name in names}
 
 
 def _one(pooled: Pooled) -> dict[str, Any] | None:

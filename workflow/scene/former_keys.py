@@ -40,7 +40,7 @@ REPLACED = {
     "contact.unloading_radius": "take mechanics: coupled where opening matters",
     "contact.merge": "take mechanics: coupled, whose repulsion does not fall where asperities merge",
     **{f"contact.surface.{key}": "give `heights`" for key in ("moments", "skewness", "kurtosis")},
-    "topography.method": "maximum likelihood; parameters.json has the paper's line fits, too",
+    "topography.method": "maximum likelihood; figure 10 shows the paper's line fits, too",
     "coupling": "both mechanics were compared once (docs/contact.md)",
     "adhesion": "device/pad_switch.json has the adhesion of the pad",
     "law": "d_c is where the first asperity touches, rho_a is the paper's 2 nm",

@@ -11,59 +11,19 @@ is: its levelled heights have the mean square that the spectrum must give from a
 is measured, the spectrum of a rough surface is flat or falls as steeply as a self-affine one, and nothing else.
 """
 
-import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from mesoscale.errors import InputError
+from mesoscale.topography.description.bands import BANDS_PER_DECADE, Seen, at_points, on_bands, seen_by
 from mesoscale.topography.description.intervals import QUANTILES, REACH, SCATTERS, PlaceScatter
-from mesoscale.topography.description.likelihood import DISCREPANCY
-from mesoscale.topography.description.trusted_range import TrustedSpectrum, with_ends
-from mesoscale.topography.profile_conversion import COVER
+from mesoscale.topography.description.trusted_range import TrustedSpectrum
 
-BANDS_PER_DECADE = 10
-MOST_MISFIT = 3.0
-"""Of reduced chi^2 of a common shape: of 143 pairs of maps of one simulated surface none reaches 1.8."""
 DRAWS = 500
 EXTENSION_DECADES = 1.0
 """The last slope is carried on this far beyond what is measured."""
-
-
-@dataclass(frozen=True)
-class Overlap:
-    """Two measurements where both see the surface.
-
-    Attributes
-    ----------
-    first, second : their names.
-    low, high : shared wave vectors, 1/nm.
-    ratio : C of the second over that of the first, geometric mean over the shared bands.
-    expected : factor within which they should agree, by their own errors alone, at 90 %.
-    misfit : reduced chi^2 of one ratio for all shared bands: far above 1 where the spectra differ in shape.
-    """
-
-    first: str
-    second: str
-    low: float
-    high: float
-    ratio: float
-    expected: float
-    misfit: float
-
-    def one_surface(self, chance: float) -> bool:
-        """Can these be places of one surface? Of two whose RMS heights scatter by 40 % a share `chance` is denied."""
-        from scipy.special import ndtri
-
-        most = np.hypot(np.log(self.expected), float(ndtri(1 - chance / 2)) * np.sqrt(2) * 0.8)
-        return bool(abs(np.log(self.ratio)) <= most and self.misfit <= MOST_MISFIT)
-
-    @property
-    def agrees(self) -> bool:
-        """Do they agree within their own errors?"""
-        return bool(max(self.ratio, 1 / self.ratio) <= self.expected)
 
 
 @dataclass(frozen=True)
@@ -129,7 +89,7 @@ class OneSpectrum:
             logs = logs + self.place_sd * rng.standard_normal((count, 1))
         return np.exp(logs)
 
-    def with_mean_square(self, mean_square: float, seen: "Seen", count: int, common_error: float) -> "OneSpectrum":
+    def with_mean_square(self, mean_square: float, seen: Seen, count: int, common_error: float) -> "OneSpectrum":
         """The spectrum given besides the mean square height (nm^2) of the longest measurements, levelled.
 
         Of spectra that the bands allow, those are drawn that the mean square allows (importance resampling). Waves of
@@ -191,16 +151,16 @@ class OneSpectrum:
         waves at q (1/nm) the share `counted` enters.
         """
         psd = self.psd if psd is None else psd
-        edges = np.concatenate([[max(low, 0.0)], [v for v in self.q if low < v < high], [min(high, self.q[-1])]])
-        if edges[-1] <= edges[0]:
+        start, end = float(low or self.q[0]), min(high, self.q[-1])
+        if end <= start:
             return np.zeros(psd.shape[:-1])
-        fine = np.unique(
-            np.concatenate([np.geomspace(max(a, 1e-12), b, 9) for a, b in itertools.pairwise(edges) if b > a])
-        )
-        values = np.exp(_at(fine, self.q, np.log(psd)))
-        below = 2 * np.pi * psd[..., 0] * fine[0] ** (power + 2) / (power + 2) if low == 0 else 0.0
-        values *= 2 * np.pi * fine ** (power + 1) * counted(fine)
-        return np.asarray(np.trapezoid(values, fine, axis=-1) + below)
+        below = 2 * np.pi * psd[..., 0] * start ** (power + 2) / (power + 2) if low == 0 else 0.0
+        edges = np.log([start, *self.q[(self.q > start) & (self.q < end)], end])
+        half = np.diff(edges)[:, None] / 2
+        place, weight = np.polynomial.legendre.leggauss(3)  # of a power law between two bands exact to 1e-6
+        fine = np.exp(edges[:-1, None] + half * (1 + place)).ravel()
+        weight = (half * weight).ravel() * 2 * np.pi * fine ** (power + 2) * counted(fine)
+        return np.asarray(np.exp(at_points(fine, self.q, np.log(psd))) @ weight + below)
 
     def carried_on(self, psd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points (1/nm, nm^4) of a spectrum (m,) on the bands, with its last slope carried on for a decade."""
@@ -245,73 +205,6 @@ class OneSpectrum:
                 "unit": unit,
             }
         return result
-
-
-@dataclass(frozen=True)
-class Seen:
-    """Which waves a levelled measurement has in its mean square height, and which of these its bands have, too.
-
-    Surfaces of C ~ q^-1 to q^-4 without a plateau hold, levelled by a plane, the waves from 0.63 to 0.81 a side on; so
-    do lines (Brownian ones from 0.76 on). A parabola takes waves 1.3 times as short with it.
-
-    Attributes
-    ----------
-    length_nm : side of a map, or length of a line.
-    parabola : it was levelled by one.
-    line : of a line only the waves along it count, from which those across it are seen as longer ones.
-    low, high : ends of the waves in its bands, 1/nm.
-    in_bands_nm2 : their mean square height as its window sees them.
-    """
-
-    length_nm: float
-    parabola: bool
-    line: bool
-    low: float
-    high: float
-    in_bands_nm2: float = 0.0
-
-    @property
-    def first(self) -> float:
-        """Wave vector of the longest, 1/nm."""
-        return (0.94 if self.parabola else 0.72) * 2 * np.pi / self.length_nm
-
-    @property
-    def common(self) -> float:
-        """Share of the chance in the bands that is in the mean square, too: 1 over the variance that a window adds.
-
-        Of a window w it is <w^2>^2 / <w^4>: 18/35 for Hann's, once a side, and `COVER` for the tapers of a line.
-        """
-        return COVER if self.line else (18 / 35) ** 2
-
-    def share(self, q: np.ndarray, first: float | None = None) -> np.ndarray:
-        """Part of the isotropic waves at q (m,) in 1/nm, all at least the first."""
-        return 2 / np.pi * np.arccos(np.minimum((first or self.first) / q, 1.0)) if self.line else np.ones_like(q)
-
-    def share_in_bands(self, q: np.ndarray) -> np.ndarray:
-        """Part of the isotropic waves at q (m,) in 1/nm that is in the bands."""
-        return self.share(q, self.low) - (self.share(q, self.high) if self.line else 0.0)
-
-    def scatter(self, q: np.ndarray, logs: np.ndarray, low: float, high: float) -> np.ndarray:
-        """Relative scatter of the mean square of waves from low to high (1/nm), from their number.
-
-        Parameters
-        ----------
-        logs : (..., m) ln C on q.
-        """
-        points = np.geomspace(min(low, high), high, 24)
-        # of a power law C1 is C q times a number; an integral over ln q
-        density = np.exp(_at(points, q, logs)) * points ** (1 if self.line else 0)
-        area = points * (2.0 if self.line else 2 * np.pi * points) * np.log(points[1] / points[0])
-        wave = (2 * np.pi / self.length_nm) ** (1 if self.line else 2)
-        return np.sqrt(2 * wave * (density**2 @ area)) / (density @ area)
-
-
-def _at(points: np.ndarray, q: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """(..., n) values (..., m) at q, read at points (n,) by straight lines over ln q."""
-    place = np.interp(np.log(points), np.log(q), np.arange(len(q)))
-    left = np.clip(place.astype(int), 0, len(q) - 2)
-    share = place - left
-    return values[..., left] * (1 - share) + values[..., left + 1] * share
 
 
 def merge(spectra: Sequence[TrustedSpectrum], common_error: float = 0.0) -> OneSpectrum | None:
@@ -390,20 +283,6 @@ def _between(normal: np.ndarray, right: np.ndarray, places: int) -> PlaceScatter
     return PlaceScatter.of(0.5 * chance)
 
 
-def seen_by(item: TrustedSpectrum) -> Seen | None:
-    """Which waves the levelled heights of a measurement have; None where its size or its bands are not known."""
-    line = item.line is not None
-    length_nm = 2 * np.pi / item.spectrum.spacing if line else item.side_nm
-    numbers, level, _ = on_bands(item)
-    if length_nm == 0 or len(numbers) == 0:
-        return None
-    width = np.log(10) / BANDS_PER_DECADE
-    q = 10 ** ((numbers + 0.5) / BANDS_PER_DECADE)
-    seen = Seen(length_nm, item.parabola, line, float(q[0] * np.exp(-width / 2)), float(q[-1] * np.exp(width / 2)))
-    square = float(np.sum(2 * np.pi * q**2 * np.exp(level) * seen.share_in_bands(q)) * width)
-    return replace(seen, in_bands_nm2=square)
-
-
 def unseen_slope(log_q: np.ndarray, log_psd: np.ndarray, variance: np.ndarray) -> tuple[float, float]:
     """Logarithmic slope of waves that are longer than all measured ones, and the deviation of each band from it.
 
@@ -425,69 +304,3 @@ def unseen_slope(log_q: np.ndarray, log_psd: np.ndarray, variance: np.ndarray) -
     mean = float(chance @ going_on)
     deviation = chance @ ((going_on - mean) ** 2 + (0.4 - 0.25 * possible) ** 2)
     return mean, float(np.sqrt(5 * deviation))
-
-
-def on_bands(item: TrustedSpectrum) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Numbers of the bands that a measurement reaches, ln C at their centres, and its variance."""
-    inside, corrected, error = with_ends(item)
-    nothing = np.empty(0, dtype=int), np.empty(0), np.empty(0)
-    if inside.sum() < 3:
-        return nothing
-    q, psd, modes = item.spectrum.q[inside], corrected[inside], item.spectrum.modes[inside]
-    grid = np.floor(np.log10(q) * BANDS_PER_DECADE).astype(int)
-    numbers, index = np.unique(grid, return_inverse=True)
-    worth = np.bincount(index, modes)
-    centre = np.bincount(index, modes * np.log(q)) / worth
-    # the logarithm of a mean of few amplitudes is on average too small: by 1 / 2n for n of them
-    level = np.log(np.bincount(index, modes * psd) / worth)
-    if not item.spectrum.sharp:
-        level = level + np.minimum(0.5 / worth, 0.3)
-    if len(numbers) < 2:
-        return nothing
-    wanted = (numbers + 0.5) / BANDS_PER_DECADE * np.log(10)
-    # a band that is only half covered is read at its centre along the measurement's own slope
-    slope = np.gradient(level, centre)
-    # the mean over a band of a power law is above its middle
-    width = np.bincount(index, modes * np.log(q) ** 2) / worth - centre**2
-    level = level - 0.5 * slope**2 * np.maximum(width, 0.0)
-    tip = np.bincount(index, modes * error[inside]) / worth
-    return numbers, level + slope * (wanted - centre), 1 / worth + DISCREPANCY**2 + tip**2
-
-
-def overlaps(spectra: Sequence[TrustedSpectrum]) -> list[Overlap]:
-    """Every pair of measurements of different size or kind that sees common bands, the largest shared range first."""
-    bands = [(item, *on_bands(item)) for item in spectra]
-    pairs = []
-    for i, (first, numbers, level, variance) in enumerate(bands):
-        for second, other, other_level, other_variance in bands[i + 1 :]:
-            common, a, b = np.intersect1d(numbers, other, return_indices=True)
-            if len(common) == 0:
-                continue
-            weight = 1 / (variance[a] + other_variance[b])
-            apart = other_level[b] - level[a]
-            difference = float(np.sum(weight * apart) / weight.sum())
-            misfit = float(np.sum(weight * (apart - difference) ** 2)) / max(len(common) - 1, 1)
-            # errors of neighbouring bands go together: no more certain than a typical band
-            spread = float(np.sqrt(1 / weight.mean()))
-            edges = 10 ** (np.array([common[0], common[-1] + 1]) / BANDS_PER_DECADE)
-            expected = float(np.exp(REACH * spread))
-            ratio = float(np.exp(difference))
-            pairs.append(Overlap(first.name, second.name, edges[0], edges[1], ratio, expected, misfit))
-    return sorted(pairs, key=lambda item: item.low / item.high)
-
-
-def refuse_different_films(pairs: Sequence[Overlap]) -> None:
-    """Refuse measurements that cannot be of one surface.
-
-    Raises
-    ------
-    InputError : naming the two that differ most.
-    """
-    worst = max(pairs, key=lambda pair: abs(np.log(pair.ratio)), default=None)
-    most = 100.0  # of C: a factor of 10 in RMS height
-    if worst is not None and max(worst.ratio, 1 / worst.ratio) > most * worst.expected:
-        raise InputError(
-            f"topography.scans: {worst.first} and {worst.second} cannot be one surface: between {worst.low:.2g} and "
-            f"{worst.high:.2g} /nm their spectra differ by a factor of {max(worst.ratio, 1 / worst.ratio):.3g}; "
-            f"accepted is {most:g}; give the files of one film, or correct a unit or a height scale"
-        )

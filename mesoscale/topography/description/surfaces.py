@@ -10,14 +10,14 @@ A scatter that is estimated hides two films whose places differ by as much as th
 be about ten times the scatter apart (python -m evidence topography.surfaces has the error rates).
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from mesoscale.topography.description.bands import BANDS_PER_DECADE, on_bands
 from mesoscale.topography.description.doubts import Doubt
-from mesoscale.topography.description.intervals import REACH
-from mesoscale.topography.description.one_spectrum import BANDS_PER_DECADE, MOST_MISFIT, OneSpectrum, Overlap, on_bands
+from mesoscale.topography.description.overlaps import MOST_MISFIT, Overlap
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 
 Array = np.ndarray
@@ -157,23 +157,6 @@ def several_surfaces(
         )
         return [Doubt("few_places", text, "measure other places of the surface", "rms")]
     return []
-
-
-def disagreements(pairs: Sequence[Overlap], one: OneSpectrum | None) -> Iterator[Doubt]:
-    """A doubt for each of the worst three pairs of measurements that differ by more than places do."""
-    from scipy.special import ndtri
-
-    between = REACH * np.sqrt(2) * one.place_sd if one else 0.0
-    # of many pairs some differ by more than one pair does
-    further = ndtri(1 - FALSE_ALARMS / max(len(pairs), 1)) / REACH
-    worst = [pair for pair in pairs if abs(np.log(pair.ratio)) > further * np.hypot(np.log(pair.expected), between)]
-    for pair in sorted(worst, key=lambda pair: -abs(np.log(pair.ratio)))[:3]:
-        text = (
-            f"{pair.first} and {pair.second} differ by a factor of {max(pair.ratio, 1 / pair.ratio):.2g} in C from "
-            f"{pair.low:.2g} to {pair.high:.2g} /nm, expected is {pair.expected:.2g}"
-        )
-        remedy = "check their units, height scales and places; the band of the spectrum holds both"
-        yield Doubt("measurements_disagree", text, remedy, "spectrum")
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 
 from mesoscale.errors import InputError
 from mesoscale.settings import InstrumentSettings, TopographySettings
-from mesoscale.topography.description.one_spectrum import overlaps, refuse_different_films
+from mesoscale.topography.description.overlaps import overlaps, refuse_different_films
 from mesoscale.topography.measurements.cleaning import Scan
 from mesoscale.topography.measurements.loading import load_measurements, write_gwy
 from mesoscale.topography.pooling import pool

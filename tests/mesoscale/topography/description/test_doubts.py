@@ -74,7 +74,7 @@ LAW = {"description": "power_law"}
 CAUSES = {
     "form": lambda: film(bowed()),
     "aborted_scan": lambda: film(aborted()),
-    "alignment_took_roughness": lambda: film(along_lines(4.0)),
+    "alignment_took_roughness": lambda: film(along_lines(9.0)),
     "anisotropic": lambda: film(Scan(heights()[:, :64], (3000.0, 3000.0), "stretched")),
     "gap": lambda: film(*(Scan(heights(side, q0=0.0005, rms=100.0), (side, side), f"{side}") for side in (100.0, 2e4))),
     "one_place": lambda: film(heights()),

@@ -7,7 +7,8 @@ import pytest
 
 from mesoscale.errors import InputError
 from mesoscale.topography.description.intervals import REACH
-from mesoscale.topography.description.one_spectrum import merge, overlaps, refuse_different_films
+from mesoscale.topography.description.one_spectrum import merge
+from mesoscale.topography.description.overlaps import overlaps, refuse_different_films
 from mesoscale.topography.description.trusted_range import TrustedSpectrum
 from mesoscale.topography.roughness_spectrum import RoughSpectrum
 from mesoscale.topography.spectrum import Spectrum

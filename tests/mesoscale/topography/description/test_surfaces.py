@@ -8,7 +8,7 @@ import pytest
 
 from mesoscale.settings import TopographySettings
 from mesoscale.topography.description import surfaces
-from mesoscale.topography.description.one_spectrum import overlaps
+from mesoscale.topography.description.overlaps import overlaps
 from mesoscale.topography.description.surfaces import best_cut, by_chance, several_surfaces
 from mesoscale.topography.description.trusted_range import trusted_scan
 from mesoscale.topography.synthetic_scans import ScanSet, synthetic_scans
