@@ -251,8 +251,8 @@ def set_row(kind: str, number: int) -> dict[str, Any]:
     if "rms" in pooled.film:
         low, high = pooled.film["rms"]["a"], pooled.film["rms"].get("b", pooled.film["rms"]["a"])
         found["cell"] = (np.sqrt(low * high), low, high)
-        by_table = bool(pooled.surface) and one is not None
-        true["cell"] = _cell_rms(spectrum, cell_nm, 10 * one.q[-1] if by_table else pooled.topography.cutoff)
+        end = 10 * one.q[-1] if pooled.surface and one is not None else pooled.topography.cutoff
+        true["cell"] = _cell_rms(spectrum, cell_nm, end)
     if one is not None:
         statistics = one.statistics()
         for name, of, power, factor in (("steep", "rms_slope", 2, 1.0), ("curved", "rms_curvature", 4, 0.5)):
