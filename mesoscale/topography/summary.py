@@ -40,9 +40,7 @@ def doubt_lines(content: Mapping[str, Any]) -> Iterator[str]:
 def scan_rows(
     pooled: Pooled, attributes: Mapping[str, Mapping[str, Any]], truth: Mapping[str, Any] | None
 ) -> list[dict[str, Any]]:
-    """One row per scan: size, RMS from heights and from the spectrum, trusted range and what limits it."""
-    fitted = pooled.topography.likelihood
-    spectrum_rms = dict(zip(fitted.names, fitted.scan_rms(pooled.topography.cutoff), strict=True)) if fitted else {}
+    """One row per scan: size, RMS from heights, trusted range and what limits it."""
     rows = []
     for item in pooled.spectra:
         loaded = attributes[item.name]
@@ -54,7 +52,6 @@ def scan_rows(
             "length_nm": loaded["length_x_nm"] if line else min(loaded["length_x_nm"], loaded["length_y_nm"]),
             "pixels": f"{loaded['pixels_x']}" if line else f"{loaded['pixels_x']} x {loaded['pixels_y']}",
             "rms_heights_nm": loaded["rms_nm"],
-            "rms_spectrum_nm": spectrum_rms.get(item.name, float("nan")),
             "trusted_low": item.low,
             "trusted_high": item.high,
             "limit": item.limit,
@@ -92,7 +89,6 @@ def parameters(
             name: {**estimate.plain(), "unit": units[name]} for name, estimate in topography.estimates.items()
         },
         "q1": {"value": topography.q1, "unit": "1/nm", "instrument_limited": topography.q1_limited},
-        "integrated_to_q": topography.cutoff,
         "likelihood": _likelihood(topography.likelihood, topography.cutoff),
         "scans": list(rows),
         "description": {

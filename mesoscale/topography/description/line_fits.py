@@ -38,7 +38,6 @@ class LineFit:
     Attributes
     ----------
     plateau, q0, slope : level (nm^4), knee (1/nm) and fall of the pooled spectrum.
-    departure : literal reading of q0, where the plateau's slope becomes significant, 1/nm.
     q1 : end of the constant slope, 1/nm; `q1_limited` when that is merely the end of the trusted range.
     slope_low, slope_high : slopes of the lines through the knee that bound the scans' points.
     plateau_low, plateau_high : lowest and highest level of a scan, nm^4.
@@ -47,7 +46,6 @@ class LineFit:
     plateau: float
     q0: float
     slope: float
-    departure: float
     q1: float
     q1_limited: bool
     slope_low: float
@@ -140,7 +138,6 @@ def _fit_points(data: Points) -> LineFit | None:
         plateau=float(np.exp(level)),
         q0=float(np.exp(log_q0)),
         slope=slope,
-        departure=float(np.exp(x[end])),
         q1=float(np.exp(x[first + 3 + last])),
         q1_limited=last == len(fits) - 1,
         slope_low=float(slopes.min()),
