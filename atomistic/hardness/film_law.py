@@ -33,8 +33,8 @@ class FilmFit:
     Attributes
     ----------
     bond : standard deviation of ln k by the assumed bonds of film and metal: films with bonds half and 1.5 times as
-        deep have stresses that differ by 4 % with a scatter of 10 % (accuracy/hardness.csv of scene films), seven times
-        as much in k.
+        deep have stresses that differ by 4 % with a scatter of 10 % (runs of scene films, commit 9151035b), seven
+        times as much in k.
     bin_nm : of contact length: a run has one mean stress in each.
     least_points, least_thicknesses : mean stresses of films, and their thicknesses.
     trials, draws : values drawn from the prior, and how many of them are kept by their likelihood.

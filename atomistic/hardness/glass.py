@@ -22,7 +22,7 @@ from atomistic.settings import GlassSettings
 
 NEAREST_START_A = 1.5  # random starts keep atoms this far apart
 MELT_K, FINAL_K = 4000.0, 300.0  # every shipped potential melts in some ps; the temperature of the closings
-TIMESTEP_FS = 2.0  # energy is kept to 0.2 meV per atom and ps, also in the melt (stability/hardness.csv)
+TIMESTEP_FS = 2.0  # energy is kept to 0.2 meV per atom and ps, also in the melt
 
 
 def cations(material: Material, potential: Potential) -> tuple[str, ...]:

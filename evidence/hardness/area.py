@@ -102,7 +102,7 @@ def on_base(glass: Atoms, potential: Potential, below: Base, work: Path) -> dict
     found = {}
     for name, film_nm in ((base, 0.0), (f"{potential.name} film on {base}", SLAB_FILM_NM)):
         run = _flat_run(1.0, film_nm)
-        found[name] = cut_body(run, glass, potential, SLAB_BASE_NM, (1, 0), PROTOCOL, (below, cell))
+        found[name] = cut_body(run, glass, potential, SLAB_BASE_NM, (1, 0), (below, cell))
     return found
 
 

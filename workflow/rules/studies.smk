@@ -1,4 +1,4 @@
-# Error against run time (accuracy) and hard cases (stability) of the stages that the scene uses
+# Error against run time (accuracy) of the stages that the scene uses, and hard cases of its contact (stability)
 
 OF_CELL = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv"}
 STUDIES = {  # what each reads beside settings
@@ -7,26 +7,11 @@ STUDIES = {  # what each reads beside settings
     "accuracy/uncertainty": {**OF_CELL, "direct": DIRECT},
     "accuracy/pad": PRESSED,
     "accuracy/failure": PRESSED,
-    "accuracy/hardness": {
-        "summaries": [f"{RESULTS}/accuracy/hardness/{name}/{SMALLEST.name}.json" for name in variations(SMALLEST)]
-    },
-    "accuracy/elastic": {
-        "material": MATERIAL,
-        "moduli": f"{RESULTS}/elastic/bulk_moduli.csv",
-        "points": f"{RESULTS}/elastic/points.csv",
-    },
     "stability/contact": OF_CELL,
-    "stability/hardness": {
-        "potential": BODIES.potential,
-        "glass": f"{RESULTS}/hardness/glass/{SMALLEST.seed}.data",
-    },
-    "stability/elastic": {"material": MATERIAL},
 }
 OF_SCENE = {
     "contact": True,
     "topography": needed("topography"),
-    "hardness": needed("hardness"),
-    "elastic": needed("elastic"),
     "uncertainty": "law" in SCENE.tails,
     "pad": "pad" in SCENE.tails,
     "failure": "pad" in SCENE.tails and SCENE.failure.probability is not None,
@@ -44,7 +29,7 @@ rule accuracy:
 
 
 rule stability:
-    """stiff and extreme cases"""
+    """stiff and extreme cases of the contact"""
     input:
         STABILITY,
 
@@ -62,8 +47,7 @@ rule study:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
     params:
         **{section: settings(section) for section in ("contact", "device", "failure", "pad")},
-        **{section: settings(section) for section in ("topography", "uncertainty", "hardness", "elastic")},
-        work=f"{RESULTS}/work/{{study}}",
+        **{section: settings(section) for section in ("topography", "uncertainty")},
     message:
         "study {wildcards.study}"
     script:

@@ -22,14 +22,6 @@ from mesoscale.settings import (
 COMPUTED = ("hardness", "elastic", "topography")
 
 
-class ReportSettings(Settings):
-    """The page report.html (docs/report.md)."""
-
-    studies: bool = Field(
-        default=False, description="also run the accuracy and stability studies of all stages and show their tables"
-    )
-
-
 class Scene(Settings):
     """Everything a run depends on."""
 
@@ -62,7 +54,6 @@ class Scene(Settings):
     resistance: ResistanceSettings = ResistanceSettings()
     history: HistorySettings = HistorySettings()
     measurements: MeasurementsSettings = MeasurementsSettings()
-    report: ReportSettings = ReportSettings()
 
     def stages(self) -> set[str]:
         """The stages among hardness, elastic and topography that this scene computes."""
