@@ -8,7 +8,6 @@ from mesoscale.settings.history import HistorySettings
 from mesoscale.settings.inputs import TABLE_1, Correlation, DistributionRow, InputRow, InputsSettings
 from mesoscale.settings.measurements import MeasurementsSettings, MeasurementTable
 from mesoscale.settings.pad import PadSettings
-from mesoscale.settings.resistance import ResistanceSettings
 from mesoscale.settings.topography import InstrumentSettings, SyntheticScanSettings, TopographySettings
 from mesoscale.settings.uncertainty import UncertaintySettings
 
@@ -27,7 +26,6 @@ __all__ = [
     "MeasurementsSettings",
     "PadSettings",
     "ReadingSettings",
-    "ResistanceSettings",
     "Settings",
     "SyntheticScanSettings",
     "TopographySettings",

@@ -467,13 +467,6 @@ def _failure(root: Path) -> None:
     control = [{"name": "rms", "failing_if_known": 1e-7}, {"name": "hurst", "failing_if_known": 3e-5}]
     write_json(root / "device/failure.json", rate | {"control_attraction": 1.0, "control": control}, PROVENANCE)
     _write(root / "device/failure.csv", rows)
-    contacts = [
-        {"run": run, "seed": run, "way": way, "force_nN": force, "resistance_Ohm": (1 + run) / force}
-        for run in range(3)
-        for way in ("closing", "opening", "closing again")
-        for force in (10.0, 20.0)
-    ]
-    _write(root / "device/resistance.csv", contacts)
     study = {"lumps": 24, "pull_in": 1e-4, "release": 3e-3, "capacitance": 0.01, "pull_in_V": 70.0, "release_V": 6.0}
     study |= {"reference": 1e-3}
     write_json(root / "device/circuit.json", {"lumps": study}, PROVENANCE)

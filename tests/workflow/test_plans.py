@@ -65,11 +65,6 @@ def test_a_scene_computes_the_tails_that_it_wants(plan, make_workflow, tmp_path)
     )
 
 
-def test_the_resistance_is_measured_where_a_scene_has_metals(plan):
-    assert "resistance" not in plan("paper") | plan("ci")
-    assert plan("paper", "resistance") == {"inputs", "resistance"}
-
-
 def test_humidity_is_swept_where_a_scene_has_humid_air(plan, make_workflow, tmp_path):
     assert "humidity" not in plan("paper") | plan("ci") | plan("reduced")
     assert "humidity" in plan("humid") & plan("humid", "humidity")

@@ -142,29 +142,3 @@ def test_a_file_dated_in_the_future_is_refused(tmp_path, monkeypatch):
     os.utime(tmp_path / "rms.csv", (time.time() + 1e6,) * 2)
     with pytest.raises(SceneError, match=r"inputs\.rms\.file = rms\.csv: dated in the future"):
         locate("mine.yaml", "inputs.rms.file", ["rms.csv"])
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        (
-            "resistance: {film_Ohm_um2: 1}",
-            "film_Ohm_um2 = 1 without resistivities_nOhm_m: give those of the two bodies",
-        ),
-        ("resistance: {resistivities_nOhm_m: [22, 22]}", "give both, such as [22, 22] and [38, 38] for gold"),
-        (
-            "resistance: {resistivities_nOhm_m: [22, 22], mean_free_paths_nm: [38, 38]}",
-            "no current passes a dielectric; set one to 0",
-        ),
-        ("resistance: {resistivities_nOhm_m: [22, 0]}", "resistivities_nOhm_m.1 = 0: accepted is"),
-        ("resistance: {resistivities_nOhm_m: [22]}", "resistivities_nOhm_m"),
-        (
-            "contact: {mechanics: asperity}\ndevice: {dielectric_nm: 0}\n"
-            "resistance: {resistivities_nOhm_m: [22, 22], mean_free_paths_nm: [38, 38]}",
-            "stiffness gives the resistance of mechanics: coupled without bodies",
-        ),
-    ],
-)
-def test_contacts_that_cannot_conduct_are_one_line(tmp_path, text, said):
-    (line,) = lines(tmp_path, text)
-    assert said in line

@@ -42,7 +42,6 @@ CYCLES = {  # contacts that a job closes and opens, to the largest force of the 
     "press_prior_pads": 250,
     "study": 500,
     "humidity": 1000,
-    "resistance": 100,
     "history": 100,
 }
 CYCLE_S = {"asperity": 0.06, "coupled": 2.5, "adhesive": 36.0}  # of a cycle on 1024² sites

@@ -42,6 +42,7 @@ REPLACED = {
     **{f"contact.surface.{key}": "give `heights`" for key in ("moments", "skewness", "kurtosis")},
     "topography.method": "maximum likelihood; parameters.json has the paper's line fits, too",
     "coupling": "both mechanics were compared once (docs/contact.md)",
+    "resistance": "mesoscale.device.resistance has it in Python (docs/resistance.md)",
     "report": "the page shows the studies that ran: targets accuracy and stability",
     "adhesion": "device/pad_switch.json has the adhesion of the pad",
     "law": "d_c is where the first asperity touches, rho_a is the paper's 2 nm",
