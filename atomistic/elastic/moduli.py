@@ -20,6 +20,8 @@ SAMPLE_COLUMNS = {
     "xc": ("1", "functional: 0 GGA, 1 GGA + (LDA - GGA)"),
 }
 """Unit and long name of each array of samples, as elastic/e_star.h5 states them."""
+SAMPLES = 20_000
+"""Samples of E*, of which its quantiles and the page are made."""
 
 
 @dataclass(frozen=True)
@@ -180,7 +182,7 @@ def effective_modulus(
         means = np.array([variance_shares(*pair, delta, *others)["mean_GPa"] for pair in left_out])
         jackknife = float(np.sqrt((len(B) - 1) / len(B) * np.sum((means - means.mean()) ** 2)))
     rng = np.random.default_rng(np.random.SeedSequence([settings.seed, 51]))
-    n = settings.samples
+    n = SAMPLES
     lda = rng.integers(0, 2, n)
     drawn = rng.integers(0, len(B), n)
     B_samples = B[drawn] + delta * lda

@@ -42,7 +42,7 @@ def plan_closing(closing: ClosingSettings, run: ClosingRun, protocol: Protocol =
     """Divide the run into samples (for averages) and segments (for restart files)."""
     timestep = protocol.timestep_fs / 1000 / np.sqrt(run.energy_scale)  # the same share of a vibration's period
     anneal = round(closing.anneal_ps / timestep)
-    travel = 10 * protocol.approach_nm + 10 * closing.depth_over_amplitude * run.asperity.amplitude_nm
+    travel = 10 * protocol.approach_nm + 10 * protocol.depth_over_amplitude * run.asperity.amplitude_nm
     speed = closing.speed_m_s / 100
     per_sample = protocol.averaged_travel_A / protocol.samples / (speed * timestep)
     sample = max(5, 5 * round(per_sample / 5))

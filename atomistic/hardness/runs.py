@@ -23,6 +23,7 @@ class Protocol(Settings):
     base_over_contact : thickness of the base over the largest contact; thinner is felt (study `hardness.choices`).
     frozen_nm, thermostat_nm : thickness of the rigid bottom, and of the Langevin layer above it.
     wall_stiffness_eV_A3 : K of a flat, F = K depth^2, times the energy scale.
+    depth_over_amplitude : largest travel below the highest atom, in amplitudes.
     approach_nm : clearance at the start; bonds exchanged on this way are the background.
     averaged_travel_A, samples : travel over which area and force are averaged, snapshots of an average.
     segment_nm : travel between restart files and relaxed snapshots.
@@ -35,6 +36,7 @@ class Protocol(Settings):
     frozen_nm: float = 0.5
     thermostat_nm: float = 0.7
     wall_stiffness_eV_A3: float = 10.0
+    depth_over_amplitude: float = 2.2
     approach_nm: float = 0.1
     averaged_travel_A: float = 0.25
     samples: int = 5

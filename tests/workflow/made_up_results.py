@@ -295,16 +295,6 @@ def _hardness(root: Path) -> None:
         "curve": [
             {"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9, **scatter} for x in (2.0, 10.0)
         ],
-        "budget": {
-            "statistical": {"std": 1.0, "share": 0.2, "sources": {"seed": 0.8, "run": 0.6}},
-            "systematic": {"std": 2.0, "share": 0.8, "sources": {"area": 0.3, "energies": 1.9}},
-        },
-        "size_effect_at_one_shape": {
-            "scale_0.5": {
-                **{"mean": -0.3, "low": -0.5, "high": -0.1, "runs": 6},
-                **{"length_min_nm": 2.4, "length_max_nm": 4.4},
-            }
-        },
         "film": {
             "base_GPa": {"low": 4, "median": 5, "high": 6},
             "left_out": {"film": 0.08, "paper": 0.2, "constant": 0.21},

@@ -57,7 +57,6 @@ rule scan_glass:
     priority: 90
     params:
         dft=ELASTIC["dft"],
-        strains=ELASTIC["strains"],
         functionals=lambda wildcards: (
             ["GGA", "LDA"] if wildcards.amorphous in GLASSES[: ELASTIC["lda_structures"]] else ["GGA"]
         ),
@@ -78,7 +77,6 @@ rule scan_crystal:
     priority: 80
     params:
         dft=ELASTIC["dft"],
-        strains=ELASTIC["strains"],
         store=f"{RESULTS}/work/scf/{{crystal}}",
     message:
         "E(V) of {wildcards.crystal}"

@@ -111,7 +111,6 @@ rule hardness:
         f"{RESULTS}/logs/hardness.log",
     params:
         potential=HARDNESS["potential"],
-        fit=HARDNESS["fit"],
         energy_scales=HARDNESS["energy_scales"],
     message:
         "find the hardness of each closing run and fit it"

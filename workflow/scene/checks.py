@@ -4,12 +4,8 @@ Everything here is known before the first job. Imports the table of the inputs (
 """
 
 import math
-import warnings
 from collections.abc import Iterator, Mapping
 
-from asperity.guards.bundle import ROOT
-from atomistic.materials import load_material
-from atomistic.settings import DftSettings
 from mesoscale.contact.menisci import water_vapour_kPa
 from mesoscale.errors import InputError
 from mesoscale.inputs.table import check_literature
@@ -19,7 +15,6 @@ from mesoscale.settings.definitions import BY_NAME
 from workflow.scene.definition import Scene
 from workflow.scene.memory import contact_MB, history_MB, machine_MB, propagation_MB
 
-MATERIALS = ROOT / "config" / "materials"
 MOST_CYCLES = 1_000_000  # of a job of histories; one of a coupled contact takes a second
 
 
@@ -99,7 +94,7 @@ def _stages(scene: Scene) -> Iterator[str]:
         yield line
     if device.area_um2 < side_um**2 and not scene.cell_follows_film:
         yield (
-            f"device: an electrode of {device.area_um2:g} um^2 (electrode_um2, or length_um times width_um) is smaller "
+            f"device: an electrode of {device.area_um2:g} um^2 (length_um times width_um) is smaller "
             f"than one cell of {side_um:g} um (contact.length_nm); take a larger electrode or a smaller cell"
         )
     if line := _no_switch(device):
@@ -111,8 +106,6 @@ def _stages(scene: Scene) -> Iterator[str]:
         scene.topography.scans or synthetic.small_scans or synthetic.large_scans
     ):
         yield "topography.scans: empty, and synthetic.small_scans and large_scans are 0: nothing to analyse; give scans"
-    if "elastic" in scene.stages():
-        yield from _unknown_bases(scene)
 
 
 def _too_few_points(scene: Scene) -> Iterator[str]:
@@ -151,24 +144,6 @@ def _no_switch(device: DeviceSettings) -> str:
         return never_closes(device, pull_in_V(device))
     except InputError as error:
         return str(error)
-
-
-def _unknown_bases(scene: Scene) -> Iterator[str]:
-    """A basis set that PySCF does not have for an element of the material; the default one is known."""
-    elastic, material = scene.elastic, MATERIALS / f"{scene.elastic.material}.yaml"
-    name = elastic.dft.basis
-    if name == DftSettings.model_fields["basis"].default or not material.is_file():
-        return
-    from pyscf.lib.exceptions import BasisNotFoundError  # takes two seconds
-    from pyscf.pbc.gto import basis
-
-    for element in load_material(material).formula:
-        try:
-            with warnings.catch_warnings(action="ignore"):
-                basis.load(name, element)
-        except BasisNotFoundError:
-            yield f"elastic.dft.basis = {name}: PySCF has no such basis set for {element}; give one of its GTH sets"
-            return
 
 
 def _machine(scene: Scene) -> Iterator[str]:

@@ -19,6 +19,11 @@ RENAMED = {
     "device.tilt_deviation_nm": "device.spread.tilt_nm",
 }
 REPLACED = {
+    "device.electrode_um2": "the area is length_um times width_um",
+    **dict.fromkeys(
+        ("device.expansion_ppm_C", "device.substrate_expansion_ppm_C"),
+        "write device.excess_expansion_ppm_C, the beam's less the substrate's",
+    ),
     "device.landed_fraction": "gap_um, bow_nm and tilt_nm say what is in contact",
     **{
         f"inputs.{row}.{key}": f"now among `values`, as one of {FORMS}"
@@ -29,12 +34,23 @@ REPLACED = {
     "hardness.area": "the potential's file says with what its area is calibrated",
     **{
         f"hardness.closing.{key}": "a rigid flat at constant speed presses every asperity"
-        for key in ("counterface", "control", "interface", "counter_material", "counter_potential", "dwell_ps")
+        for key in (
+            "depth_over_amplitude",
+            "counterface",
+            "control",
+            "interface",
+            "counter_material",
+            "counter_potential",
+            "dwell_ps",
+        )
     },
-    "hardness.fit.h_macro": "H_macro is that of fit.h_macro_GPa",
+    "hardness.fit": "H_macro is that of Table 1; H' follows from it",
     "hardness.plasticity": "`closing.stop: window` takes runs to their end",
     **dict.fromkeys(("elastic.ions", "elastic.relaxed_structures"), "ions are clamped in E(V)"),
     **dict.fromkeys(("elastic.poisson", "elastic.tensor_structures"), "state the range as elastic.poisson_ratio"),
+    **dict.fromkeys(
+        ("elastic.strains", "elastic.samples", "elastic.dft.basis"), "a number of the stage (atomistic/elastic)"
+    ),
     **{f"elastic.dft.{key}": "PySCF computes; state an e_star of another code" for key in ("engine", "parameters")},
     "elastic.relaxation": "max_steps is dft.relaxation_steps, basis and cut-off are those of dft",
     "contact.unloading_radius": "take mechanics: coupled where opening matters",
@@ -51,6 +67,7 @@ REPLACED = {
     "uncertainty.model_form_pairs": "both mechanics were compared once (docs/contact.md)",
     **{f"pad.{key}": "it follows from the switch" for key in ("max_pressure_MPa", "pilot_cells", "depths", "grid")},
     "device.adhesion_scale": "it acted on the calibration alone; inputs.adhesion states the attraction",
+    **dict.fromkeys(("measurements.local_runs", "measurements.rounds"), "they follow from measurements.runs"),
     "pad.gap_cutoff_high_nm": "for another range of D0 than up to 0.3 nm give inputs.gap_cutoff",
 }
 FORMER_KEYS = {

@@ -28,6 +28,7 @@ GLASS = GlassSettings(atoms=120, melt_ps=0.5, quench_rate_K_ps=2000, rest_ps=0.3
 QUICK = PROTOCOL.model_copy(
     update={
         "base_over_contact": 0.0,
+        "depth_over_amplitude": 1.7,
         "frozen_nm": 0.3,
         "thermostat_nm": 0.3,
         "timestep_fs": 2.0,
@@ -40,7 +41,6 @@ def settings(**closing):
     quick = {
         "base_nm": 1,
         "speed_m_s": 400,  # violent: with the time step of slower closings an atom can be driven through the thin base
-        "depth_over_amplitude": 1.7,
         "anneal_ps": 0.1,
     }
     return HardnessSettings.model_validate(

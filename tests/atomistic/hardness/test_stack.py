@@ -26,8 +26,10 @@ from evidence.hardness.motion import free_motion
 MATERIALS = Path(__file__).parents[3] / "config" / "materials"
 TITANIUM, NITRIDE = MATERIALS / "titanium.yaml", MATERIALS / "silicon_nitride.yaml"
 GLASS = GlassSettings(atoms=240, melt_ps=0.5, quench_rate_K_ps=2000, rest_ps=0.3)
-QUICK = PROTOCOL.model_copy(update={"base_over_contact": 0.0, "frozen_nm": 0.3, "thermostat_nm": 0.3})
-CLOSING = ClosingSettings(base_nm=1.2, speed_m_s=400, depth_over_amplitude=1.7, anneal_ps=0.1)
+QUICK = PROTOCOL.model_copy(
+    update={"base_over_contact": 0.0, "frozen_nm": 0.3, "thermostat_nm": 0.3, "depth_over_amplitude": 1.7}
+)
+CLOSING = ClosingSettings(base_nm=1.2, speed_m_s=400, anneal_ps=0.1)
 
 
 @pytest.fixture(scope="module")
@@ -250,7 +252,7 @@ def test_a_film_is_pressed_and_keeps_its_energy(pressed):
 
 
 def test_a_film_on_nitride_and_nitride_itself_are_pressed(potential, oxides, glass, nitride, tmp_path):
-    quick = CLOSING.model_copy(update={"speed_m_s": 800, "depth_over_amplitude": 1.5})
+    quick = CLOSING.model_copy(update={"speed_m_s": 800})
     for film_nm in (0.4, 0.0):
         work = tmp_path / f"{film_nm:g}"
         closing = run_closing(run_of(film_nm), oxides["SiO2"], glass, potential, quick, work, QUICK, base=nitride)

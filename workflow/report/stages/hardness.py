@@ -214,10 +214,4 @@ def _fit_notes(fit: dict[str, Any]) -> list[str]:
             f"{show(cutoff['a'])} nm (atoms follow) to {show(cutoff['b'])} nm (rigid). Their largest force is that of "
             f"{show(float(np.mean(column(fit['tops'], 'by_force_nm'))))} nm, which no contact of several tops feels."
         )
-    for scale, change in fit.get("size_effect_at_one_shape", {}).items():
-        words, _, _ = _scale({"energy_scale": scale.removeprefix("scale_")})
-        notes.append(
-            f"At one shape of contact, runs with {words} have hardness as length to the power {show(-change['mean'])} "
-            f"[{show(-change['high'])}, {show(-change['low'])}] ({change['runs']} runs)."
-        )
     return notes
