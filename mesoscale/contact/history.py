@@ -42,11 +42,9 @@ class HeldCycle:
 def hardness_factor(held_s: np.ndarray | float, settings: HistorySettings) -> np.ndarray:
     """Share of the hardness that is left after a time under load."""
     time = np.asarray(held_s, dtype=float) / settings.creep_time_s
-    if settings.creep == "power":
-        return (1.0 + settings.creep_exponent * time) ** (-1.0 / settings.creep_exponent)
-    if settings.creep == "logarithmic":
-        return 1.0 / (1.0 + settings.creep_strength * np.log1p(time))
-    return np.ones_like(time)
+    if (exponent := settings.creep_exponent) is not None:
+        return (1.0 + exponent * time) ** (-1.0 / exponent)
+    return 1.0 / (1.0 + settings.creep_strength * np.log1p(time))
 
 
 def follow(

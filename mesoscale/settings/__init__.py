@@ -1,7 +1,7 @@
 """Settings of the mesoscale stages, a module each: every key with its default, unit and accepted range."""
 
 from asperity.guards.settings import Settings
-from mesoscale.settings.contact import ContactSettings, ReadingSettings
+from mesoscale.settings.contact import ContactSettings, ReadingSettings, SceneContact
 from mesoscale.settings.device import DeviceSettings
 from mesoscale.settings.failure import FailureSettings
 from mesoscale.settings.history import HistorySettings
@@ -26,6 +26,7 @@ __all__ = [
     "MeasurementsSettings",
     "PadSettings",
     "ReadingSettings",
+    "SceneContact",
     "Settings",
     "SyntheticScanSettings",
     "TopographySettings",

@@ -13,9 +13,7 @@ from mesoscale.settings import DeviceSettings
 from mesoscale.settings.contact import AirSettings, advised_grid, base_modulus
 from mesoscale.settings.definitions import BY_NAME
 from workflow.scene.definition import Scene
-from workflow.scene.memory import contact_MB, history_MB, machine_MB, propagation_MB
-
-MOST_CYCLES = 1_000_000  # of a job of histories; one of a coupled contact takes a second
+from workflow.scene.memory import contact_MB, machine_MB
 
 
 def mistakes(scene: Scene, samples: Mapping[str, str]) -> list[str]:
@@ -123,7 +121,7 @@ def _no_such_air(scene: Scene) -> str:
     """One line on vapour of more pressure than the gas around the switch has; empty where it has less."""
     row, air, gas = scene.inputs.rows().get("humidity"), scene.contact.air or AirSettings(), scene.device.gas_kPa
     humidity = (row.reaches or 0.0) if row else air.humidity
-    if air.liquid != "water" or (vapour := humidity * water_vapour_kPa(air.temperature_C)) <= gas:
+    if air.surface_tension_mN_m is not None or (vapour := humidity * water_vapour_kPa(air.temperature_C)) <= gas:
         return ""
     return (
         f"device.gas_kPa = {gas:g}: air of {humidity:.0%} humidity has {vapour:.3g} kPa of vapour alone at "
@@ -152,22 +150,4 @@ def _machine(scene: Scene) -> Iterator[str]:
         yield (
             f"contact.pixels = {pixels}: a contact needs {needed / 1000:.1f} GB of memory, this machine has "
             f"{present / 1000:.1f}; take fewer pixels"
-        )
-    runs = scene.uncertainty.direct_runs
-    if (needed := propagation_MB(scene.uncertainty)) > present:
-        yield (
-            f"uncertainty.direct_runs = {runs}: they need {needed / 1000:.1f} GB of memory, this machine has "
-            f"{present / 1000:.1f}; take fewer"
-        )
-    cycles = scene.history.cycles
-    if cycles and (needed := history_MB(scene.history, scene.contact)) > present:
-        yield (
-            f"history.cycles = {cycles}: with {scene.history.seeds} surfaces their tables need {needed / 1000:.0f} GB "
-            f"of memory, this machine has {present / 1000:.1f}; take fewer of both"
-        )
-    elif cycles * scene.history.seeds > MOST_CYCLES:
-        yield (
-            f"history.cycles = {cycles}: with {scene.history.seeds} surfaces this is one job of "
-            f"{cycles * scene.history.seeds:,} cycles, which starts again when it is interrupted; accepted are "
-            f"{MOST_CYCLES:,}: take fewer cycles or surfaces"
         )

@@ -6,13 +6,13 @@ from pydantic import Field, model_validator
 
 from atomistic.settings import ElasticSettings, HardnessSettings
 from mesoscale.settings import (
-    ContactSettings,
     DeviceSettings,
     FailureSettings,
     HistorySettings,
     InputsSettings,
     MeasurementsSettings,
     PadSettings,
+    SceneContact,
     Settings,
     TopographySettings,
     UncertaintySettings,
@@ -45,7 +45,7 @@ class Scene(Settings):
     hardness: HardnessSettings = HardnessSettings()
     elastic: ElasticSettings = ElasticSettings()
     topography: TopographySettings = TopographySettings()
-    contact: ContactSettings = ContactSettings()
+    contact: SceneContact = SceneContact()
     pad: PadSettings = PadSettings()
     uncertainty: UncertaintySettings = UncertaintySettings()
     device: DeviceSettings = DeviceSettings()
