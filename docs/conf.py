@@ -11,10 +11,8 @@ from evidence.pages import figures, write_pages
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "docs"))
 
-from settings_tables import write_tables  # noqa: E402
 
 write_pages(ROOT / "docs" / "evidence")
-write_tables(ROOT / "docs" / "_build" / "settings_tables.md")
 
 project = "Asperity"
 author = copyright = "The Asperity developers"

@@ -1,25 +1,15 @@
-# Error against run time (accuracy) of the stages that the scene uses, and hard cases of its contact (stability)
+# Error against run time (accuracy) of what a scene can choose, and hard cases of its contact (stability)
 
-OF_CELL = {**SURFACE, "inputs": f"{RESULTS}/inputs.csv"}
 STUDIES = {  # what each reads beside settings
     "accuracy/topography": {},
-    "accuracy/contact": OF_CELL,
-    "accuracy/uncertainty": {**OF_CELL, "direct": DIRECT},
     "accuracy/pad": PRESSED,
-    "accuracy/failure": PRESSED,
-    "stability/contact": OF_CELL,
+    "stability/contact": {**SURFACE, "inputs": f"{RESULTS}/inputs.csv"},
 }
-OF_SCENE = {
-    "contact": True,
-    "topography": needed("topography"),
-    "uncertainty": "law" in SCENE.tails,
-    "pad": "pad" in SCENE.tails,
-    "failure": "pad" in SCENE.tails and SCENE.failure.probability is not None,
-}
-for kind, tables in (("accuracy", ACCURACY), ("stability", STABILITY)):
-    tables += [
-        f"{RESULTS}/{study}.csv" for study in STUDIES if study.startswith(kind) and OF_SCENE[study.split("/")[1]]
-    ]
+STABILITY.append(f"{RESULTS}/stability/contact.csv")
+if needed("topography"):
+    ACCURACY.append(f"{RESULTS}/accuracy/topography.csv")
+if "pad" in SCENE.tails:
+    ACCURACY.append(f"{RESULTS}/accuracy/pad.csv")
 
 
 rule accuracy:
@@ -46,8 +36,7 @@ rule study:
     resources:
         mem_mb=contact_MB(SCENE.contact, PILOTS),
     params:
-        **{section: settings(section) for section in ("contact", "device", "failure", "pad")},
-        **{section: settings(section) for section in ("topography", "uncertainty")},
+        **{section: settings(section) for section in ("contact", "device", "pad", "topography")},
     message:
         "study {wildcards.study}"
     script:
