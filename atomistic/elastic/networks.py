@@ -240,7 +240,7 @@ def quench(material: Material, settings: NitrideGlassSettings, seed: int, work: 
         network.masses_u,
     )
     steps_per_ps = 1000 / QUENCH.timestep_fs
-    steps_per_K = steps_per_ps / settings.quench_rate_K_ps
+    steps_per_K = steps_per_ps / QUENCH.rate_K_ps
     run_lammps(
         "nitride.in",
         workspace,

@@ -9,7 +9,6 @@ class NitrideGlassSettings(Settings):
     """Melt and quench of a small amorphous Si3N4 cell (Tersoff potential and soft cores)."""
 
     formula_units: int = key(4, "formula units of 7 atoms per cell", "[2, 64]")
-    quench_rate_K_ps: float = key(300, "cooling rate", "[0.001, 5000] K/ps")
     max_defects: int = key(
         0, "atoms of a quenched cell that may lack or exceed their valence; large models have 3 of 28", "[0, 1000]"
     )
@@ -36,8 +35,7 @@ class ElasticSettings(Settings):
     counter_body: str = key(
         "titanium", "file in config/materials: the other body, from experiment", pattern=r"^[A-Za-z0-9_-]{1,60}$"
     )
-    structures: int = key(8, "glasses whose E(V) is computed with GGA", "[1, 1000]")
-    lda_structures: int = key(4, "the first of them, also with LDA", "[0, 1000]")
+    structures: int = key(8, "glasses whose E(V) is computed with GGA, half of them also with LDA", "[1, 1000]")
     crystals: tuple[str, ...] = key(("beta",), "crystals of the material, scanned to anchor the engine")
     poisson_ratio: tuple[float, float] = key(
         (0.15, 0.25), "range of the glass's Poisson ratio; the default is that of Kim et al. (2013)"

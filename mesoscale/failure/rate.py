@@ -80,6 +80,7 @@ class FailureNumerics:
     springs : springs among which the least is sought, over that of the scene.
     spring_runs : switches that are solved with each spring. They know a probability to some 25 %, and a spring to 1 or
         2 %.
+    confidence : that no more fail than allowed, by what is common to all devices and not known.
     near : difference of logarithms to which attractions and springs are sought.
     """
 
@@ -99,6 +100,7 @@ class FailureNumerics:
     rough: tuple[float, ...] = (0.98, 0.84, 0.5, 0.16, 0.02)
     springs: tuple[float, float] = (0.5, 2.0)
     spring_runs: int = 32
+    confidence: float = 0.9
     near: float = 0.02
 
 
@@ -372,10 +374,8 @@ def furthest_allowed(values: Array, probability: Array, allowed: float) -> float
     return float(values[beyond - 1] + share * (values[beyond] - values[beyond - 1]))
 
 
-def least_rms_nm(
-    response: ReserveResponse, times: float, hold_V: float, allowed: float, confidence: float
-) -> float | None:
-    """Least RMS height (nm), all else varying, with which no more switches fail than allowed, by this confidence.
+def least_rms_nm(response: ReserveResponse, times: float, hold_V: float, allowed: float) -> float | None:
+    """Least RMS height (nm), all else varying, with which no more switches fail than allowed, by `FAILURE.confidence`.
 
     None where even the largest of `FAILURE.rough` is too little, or where roughness is no input.
     """
@@ -387,7 +387,7 @@ def least_rms_nm(
     middle = np.zeros((rough.size, population.dimension))
     middle[:, place] = rough
     rms_nm = values_at(ndtr(middle), population.table, population.settings, population.cutoffs_nm)[:, place]
-    failing = [np.quantile(response.rates(times, hold_V, (place, z)), confidence) for z in rough.tolist()]
+    failing = [np.quantile(response.rates(times, hold_V, (place, z)), FAILURE.confidence) for z in rough.tolist()]
     return furthest_allowed(rms_nm, np.array(failing), allowed)
 
 
@@ -436,14 +436,13 @@ def least_spring(
 
 
 def failure_rate(
-    population: Population, allowed: float, confidence: float, tell: Callable[[float, str], None]
+    population: Population, allowed: float, tell: Callable[[float, str], None]
 ) -> tuple[dict[str, Any], list[dict[str, float]]]:
     """Content of device/failure.json and rows of device/failure.csv.
 
     Parameters
     ----------
     allowed : share of the switches that may fail.
-    confidence : with which no more fail, by what is common to all devices and not known.
 
     Raises
     ------
@@ -457,7 +456,7 @@ def failure_rate(
             "attraction": times,
             "failing": response.sample(times, volts, 0).probability,
             "failing_q95": float(np.quantile(rates, 0.95)),
-            "failing_sure": float(np.quantile(rates, confidence)),
+            "failing_sure": float(np.quantile(rates, FAILURE.confidence)),
         }
         for (volts, times), rates in given.items()
     ]
@@ -476,7 +475,7 @@ def failure_rate(
                 "given_common": quantiles_of(rates),
                 "sure": float(np.mean(rates <= allowed)),
                 "largest_hold_V": allowed_V,
-                "least_rms_nm": least_rms_nm(response, times, hold, allowed, confidence),
+                "least_rms_nm": least_rms_nm(response, times, hold, allowed),
                 "least_spring": least_spring(response, likely, times, hold, allowed),
                 "there": None if allowed_V is None else asdict(corrected(response, times, allowed_V)),
             }
@@ -486,7 +485,7 @@ def failure_rate(
     return {
         "release_V": population.release_V,
         "allowed": allowed,
-        "confidence": confidence,
+        "confidence": FAILURE.confidence,
         "hold_V": hold,
         "spring": population.spring,
         "laws": laws,

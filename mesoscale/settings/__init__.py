@@ -5,7 +5,7 @@ from mesoscale.settings.contact import ContactSettings, ReadingSettings, SceneCo
 from mesoscale.settings.device import DeviceSettings
 from mesoscale.settings.failure import FailureSettings
 from mesoscale.settings.history import HistorySettings
-from mesoscale.settings.inputs import TABLE_1, Correlation, DistributionRow, InputRow, InputsSettings
+from mesoscale.settings.inputs import TABLE_1, DistributionRow, InputRow, InputsSettings
 from mesoscale.settings.measurements import MeasurementsSettings, MeasurementTable
 from mesoscale.settings.pad import PadSettings
 from mesoscale.settings.topography import InstrumentSettings, SyntheticScanSettings, TopographySettings
@@ -14,7 +14,6 @@ from mesoscale.settings.uncertainty import UncertaintySettings
 __all__ = [
     "TABLE_1",
     "ContactSettings",
-    "Correlation",
     "DeviceSettings",
     "DistributionRow",
     "FailureSettings",

@@ -4,6 +4,8 @@ from asperity.guards.settings import Settings, key
 
 DWELL_STEPS = 12
 """Times within a dwell at which the contact is solved, evenly in ln(1 + t/t0)."""
+CREEP_TIME_S = 1.0
+"""t0 of the creep laws: the hardness of the inputs is that of fast contacts, up to about this time."""
 SURFACES = 4
 """Surfaces that are followed."""
 
@@ -15,7 +17,6 @@ class HistorySettings(Settings):
     dwell_s: float = key(
         0.0, "time that every cycle holds the largest force, while the hardness falls; 0: no creep", "[0, 1e12] s"
     )
-    creep_time_s: float = key(1.0, "t0 of the creep laws", "[1e-12, 1e12] s")
     creep_strength: float = key(0.02, "c: hardness as 1/(1 + c ln(1 + t/t0)), c lost per e-fold of time", "[0, 10]")
     creep_exponent: float | None = key(
         None,

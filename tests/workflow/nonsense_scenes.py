@@ -12,10 +12,7 @@ def _bomb() -> str:
 
 
 TWICE = "[{name: a, tiles: 2, amplitude_nm: 0.4}, {name: a, tiles: 3, amplitude_nm: 0.6}]"
-CYCLIC = (
-    "[{first: rms, second: q0, rank: 0.9}, {first: q0, second: hurst, rank: 0.9}, "
-    "{first: rms, second: hurst, rank: -0.9}]"
-)
+CYCLIC = "{rms: {q0: 0.9, hurst: -0.9}, q0: {hurst: 0.9}}"
 NONSENSE: dict[str, tuple[str, str]] = {
     "alias bomb": (_bomb(), "alias *a: write the value out"),
     "alias of itself": ("contact: &a {pixels: *a}", "alias *a"),
@@ -50,8 +47,8 @@ NONSENSE: dict[str, tuple[str, str]] = {
     "missing samples": (scene(rms="{distribution: samples, values: nowhere.csv}"), "no such file"),
     "source of 200 kB": (scene(rms="{values: [2, 15], source: " + 200_000 * "x" + "}"), "at most 500 characters"),
     "contradictory correlations": (f"inputs: {{correlations: {CYCLIC}}}", "correlation"),
-    "correlation with itself": ("inputs: {correlations: [{first: rms, second: rms, rank: 0.5}]}", "with itself"),
-    "correlation of nobody": ("inputs: {correlations: [{first: rms, second: x, rank: 0.5}]}", "unknown input x"),
+    "correlation with itself": ("inputs: {correlations: {rms: {rms: 0.5}}}", "with itself"),
+    "correlation of nobody": ("inputs: {correlations: {rms: {x: 0.5}}}", "unknown input x"),
     "uniform q0 beyond the grid": (scene("contact: {pixels: 64}", q0="{values: [0.5, 0.9]}"), "beyond what the grid"),
     "normal q0 beyond the grid": (scene(q0="{distribution: normal, values: [5, 0.1]}"), "beyond what the grid"),
     "fixed q0 beyond the grid": (scene(q0="{distribution: fixed, values: [5]}"), "beyond what the grid"),

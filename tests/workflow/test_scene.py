@@ -48,7 +48,6 @@ def test_an_exponent_without_a_point_is_a_number(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("device: {landed_fraction: 0.01}", ["device.landed_fraction: no longer a key, delete it", "bow_nm"]),
         ("contact: {pixls: 256}", ["contact.pixls", "unknown key", "did you mean pixels?"]),
         ("contact: {pixels: 1}", ["contact.pixels = 1", "an integer", ">= "]),
         ("contact: {pixels: '256'}", ['contact.pixels = "256"', "an integer"]),
@@ -60,8 +59,6 @@ def test_an_exponent_without_a_point_is_a_number(tmp_path):
         ("contact: {q1_per_nm: 5}", ["contact.q1_per_nm reaches 5 1/nm", "3.217 1/nm"]),
         ("inputs: {q1: {values: [0.4, 5]}}", ["inputs.q1 reaches 5 1/nm", "3.217 1/nm", "raise contact.pixels"]),
         ("inputs: {e_star: {values: [90, 90], varies: each}}", ["inputs.e_star", "each", "no spread"]),
-        ("failure: {confidence: 1}", ["failure.confidence = 1", "< 1"]),
-        ("failure: {confidence: 0}", ["failure.confidence = 0", "> 0"]),
         ("- a", ["a scene is a mapping"]),
         ("a: [", ["not valid YAML"]),
         ("contact: {pixels: 256, pixels: 512}", ["'pixels' stands twice"]),

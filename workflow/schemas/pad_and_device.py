@@ -39,7 +39,7 @@ TABLES = (
             number("attraction", "1", "factor on the attraction"),
             number("failing", "1", "probability of a failure by the response"),
             number("failing_q95", "1", "share that fails of one batch, at most, with 95 % confidence"),
-            number("failing_sure", "1", "the same at failure.confidence"),
+            number("failing_sure", "1", "the same with 90 % confidence"),
         ),
     ),
     Table(

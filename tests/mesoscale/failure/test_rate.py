@@ -109,7 +109,7 @@ def test_the_probability_is_that_of_brute_force():
     assert 1e-7 < one_in_a_million.probability < 1e-4
     assert one_in_a_million.variation < 0.3
     # less attraction bears smoother films
-    smoother, least = (least_rms_nm(response, times, plates.hold_V, 0.01, 0.9) for times in (1.18, 1.42))
+    smoother, least = (least_rms_nm(response, times, plates.hold_V, 0.01) for times in (1.18, 1.42))
     assert smoother is not None
     assert least is not None
     assert smoother <= least
