@@ -243,8 +243,7 @@ def fit_films(
     Returns
     -------
     Content of fit.json (docs/hardness.md): the inputs H_film, k and m with their rank correlations, and in `film` what
-    the runs say of the base, how well each law foretells a thickness that its fit had not, the range of L/t, and the
-    film's share of the difference between both hardnesses against L/t.
+    the runs say of the base, how well each law foretells a thickness that its fit had not, and the range of L/t.
     """
     reasons = [reason for glass in glasses for reason in glass["gate"]["reasons"]]
     unsound = [{"run": point["run"], "status": point["status"]} for point in points if point["sound"] != "True"]
@@ -282,8 +281,5 @@ def fit_films(
         "base_GPa": summary(base),
         "left_out": {name: left_out(name, of) for name in LAWS},
         "length_over_thickness": [float(of.length_over_thickness.min()), float(of.length_over_thickness.max())],
-        "share": [
-            {"length_over_thickness": at, **summary(1 / (1 + k * at**m))} for at in np.geomspace(0.5, 10, 30).tolist()
-        ],
     }
     return result

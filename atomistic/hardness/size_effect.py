@@ -118,7 +118,7 @@ def fit_size_effect(
     }
     result["H_macro_GPa"] = summary(h_macro)
     result["H_prime_GPa_nm0.5"] = summary(h_prime)
-    result["curve"] = band(h_macro, h_prime, scatter_of_h_prime(used, H_MACRO_GPA))
+    result["curve"] = band(h_macro, h_prime)
     if result["inputs"]["h_prime"]["a"] <= 0 or low <= 0:
         reasons.append("the fit allows a hardness that falls with decreasing size or is negative: not identifiable")
     result["gate"] = {"passed": not reasons, "reasons": reasons}
@@ -196,49 +196,14 @@ def steepness(points: Sequence[PointRow]) -> dict[str, list[float]]:
     return {"rms_slope": list(SLOPES), "factor": [factor / of_runs for factor in SLOPES.values()]}
 
 
-def scatter_of_h_prime(points: Sequence[PointRow], h_macro_GPa: tuple[float, float]) -> float:
-    """Standard deviation of H' that more runs would average, GPa nm^0.5: between the seeds of an asperity, within runs.
-
-    The law of total variance splits the runs: between energy scales, asperities and seeds, and within a run.
-    """
-    hardness, spread, length, scale = _columns(points)
-    root = np.sqrt(length)
-    h_prime = (hardness - float(np.mean(h_macro_GPa))) * root
-    asperity = np.array([point["asperity"] for point in points])
-    scales, weight = np.unique(scale), 1 / len(np.unique(scale))
-    seed = run = 0.0
-    for one in scales:
-        of_scale = scale == one
-        for name in np.unique(asperity[of_scale]):
-            group = of_scale & (asperity == name)
-            seed += weight * np.sum(group) / np.sum(of_scale) * float(np.var(h_prime[group]))
-        run += weight * float(np.mean((spread[of_scale] * root[of_scale]) ** 2))
-    return float(np.sqrt(seed + run))
-
-
-def band(h_macro: np.ndarray, h_prime: np.ndarray, statistical: float) -> list[dict[str, float]]:
-    """H(L), L = sqrt(A) from 1 to 20 nm, with its 68 % band and the part of that which more runs would narrow.
-
-    Parameters
-    ----------
-    statistical : of `scatter_of_h_prime`.
-    """
+def band(h_macro: np.ndarray, h_prime: np.ndarray) -> list[dict[str, float]]:
+    """H(L), L = sqrt(A) from 1 to 20 nm, with its 68 % band."""
     rows = []
-    low_quantile, high_quantile = FIT_RULES.interval
     for length in np.geomspace(1, 20, 40).tolist():
-        hardness = h_macro + h_prime / np.sqrt(length)
-        low, middle, high = np.quantile(hardness, [low_quantile, 0.5, high_quantile]).tolist()
-        half = statistical / float(np.sqrt(length))
-        rows.append(
-            {
-                "contact_length_nm": length,
-                "low_GPa": low,
-                "median_GPa": middle,
-                "high_GPa": high,
-                "statistical_low_GPa": middle - half,
-                "statistical_high_GPa": middle + half,
-            }
+        low, middle, high = np.quantile(
+            h_macro + h_prime / np.sqrt(length), [FIT_RULES.interval[0], 0.5, FIT_RULES.interval[1]]
         )
+        rows.append({"contact_length_nm": length, "low_GPa": low, "median_GPa": middle, "high_GPa": high})
     return rows
 
 

@@ -17,7 +17,7 @@ from mesoscale.contact.cycle import Cycle, run_cycle
 from mesoscale.contact.energy import dissipated_energy, pull_off
 from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.inputs.contact import ContactInputs
-from mesoscale.law.fit import fit_branch, separation_at_share
+from mesoscale.law.fit import fit_branch
 from mesoscale.settings import ContactSettings
 from mesoscale.studies.driver import Knob, Row, compared, rows_of
 
@@ -118,6 +118,23 @@ def cycle_outputs(cycle: Cycle, inputs: ContactInputs, settings: ContactSettings
         dissipated_energy(cycle)[0],
         pull_off(cycle.opening),
     ]
+
+
+def separation_at_share(separation_nm: np.ndarray, repulsive_nN: np.ndarray, share: float) -> float:
+    """The separation where the repulsion reaches a share of its maximum, linear between points; NaN without contact.
+
+    Unlike first contact it depends on how the curve was computed. It is smaller by about rho_r ln(...).
+    """
+    order = np.argsort(separation_nm)[::-1]
+    h, f = np.asarray(separation_nm, float)[order], np.asarray(repulsive_nN, float)[order]
+    if not (f > 0).any():
+        return np.nan
+    target = share * f.max()
+    index = int(np.flatnonzero(f >= target)[0])
+    if index == 0:
+        return float(h[0])
+    between = (target - f[index - 1]) / (f[index] - f[index - 1])
+    return float(h[index - 1] + between * (h[index] - h[index - 1]))
 
 
 def rows(given: argparse.Namespace) -> Iterator[dict[str, Any]]:

@@ -287,22 +287,15 @@ def _hardness(root: Path) -> None:
             [{"step": step, "displacement_nm": step / 1000, "exchanged_bonds": step // 10} for step in steps],
         )
     _write(root / "hardness/points.csv", points)
-    scatter = {"statistical_low_GPa": 6, "statistical_high_GPa": 8}
     fit = {
         "method": "literature",
         "gate": {"passed": False, "reasons": ["only 2 of 9 runs <gave> a hardness"]},
         "H_macro_GPa": {"median": 1.9, "low": 1.1, "high": 2.8},
-        "curve": [
-            {"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9, **scatter} for x in (2.0, 10.0)
-        ],
+        "curve": [{"contact_length_nm": x, "low_GPa": 5, "median_GPa": 7, "high_GPa": 9} for x in (2.0, 10.0)],
         "film": {
             "base_GPa": {"low": 4, "median": 5, "high": 6},
             "left_out": {"film": 0.08, "paper": 0.2, "constant": 0.21},
             "length_over_thickness": [1.1, 5.6],
-            "share": [
-                {"length_over_thickness": x, "low": 0.3 / x, "median": 0.4 / x, "high": 0.5 / x}
-                for x in (0.5, 2.0, 10.0)
-            ],
         },
     }
     write_json(root / "hardness/fit.json", fit, PROVENANCE)
@@ -334,7 +327,6 @@ def _elastic(root: Path) -> None:
     gate = {"passed": True, "reasons": []}
     used = [f"a{i:02d}" for i in range(1, 4)]
     e_star = {"mean_GPa": 90.0, "std_GPa": 4.0, "structures_used": used, "notes": ["no broken <bonds>"], "gate": gate}
-    e_star["shares"] = {"structure": {"total": 0.2}, "poisson_ratio": {"total": 0.3}, "counter_body": {"total": 0.5}}
     write_json(root / "elastic/e_star.json", e_star, PROVENANCE)
     values = Dataset(np.random.default_rng(1).normal(90, 4, 500), "GPa", "E*", ("sample",))
     write_h5(root / "elastic/e_star.h5", {"samples": {"e_star_GPa": values}}, {}, PROVENANCE)

@@ -15,8 +15,9 @@ FORM_TAKEN = "subtracted a quadratic fit, the form"
 
 LINES_CUT = "cut off the end of an aborted scan"
 MARKED = "a mask marks"
-MAX_MISSING = 0.05  # largest share of missing pixels that is filled from neighbours
 """How other steps begin of which the user should hear."""
+MAX_MISSING = 0.05
+"""Largest share of missing pixels that is filled from their neighbours."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ from atomistic.hardness.size_effect import (
     literature_samples,
     relative_hardness,
     rms_slope,
-    scatter_of_h_prime,
     steepness,
 )
 

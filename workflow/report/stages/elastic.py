@@ -1,23 +1,13 @@
 """Effective elastic modulus: figure 5."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
 from workflow.report.available import Results
 from workflow.report.drawing import BLUE, ORANGE, SERIES, draw
 from workflow.report.numbers import cell, column, number, show
-from workflow.report.page import Block, Figure, PageTable, stage, table
-
-SHARES = {
-    "structure": "structure of the glass",
-    "fit": "misfit of E(V)",
-    "functional": "functional (GGA or LDA)",
-    "ions": "ions that follow the strain",
-    "poisson_ratio": "Poisson's ratio",
-    "counter_body": "counter body",
-}
+from workflow.report.page import Block, Figure, stage, table
 
 
 @stage("Effective elastic modulus", *("elastic/bulk_moduli.csv", "elastic/e_star.json"), also=("elastic/points.csv",))
@@ -48,16 +38,7 @@ def describe(results: Results) -> Iterator[Block]:
             "flags": "flags",
         },
     )
-    if summary.get("shares"):
-        yield shares_table(summary)
     yield from summary.get("notes", [])
-
-
-def shares_table(summary: Mapping[str, Any]) -> PageTable:
-    """What the variance of E* comes from."""
-    shares = summary["shares"]
-    lines = [(words, f"{shares[key]['total']:.0%}") for key, words in SHARES.items() if shares.get(key)]
-    return PageTable("What the variance of E* comes from", ("source", "share of the variance"), lines)
 
 
 def elastic_distribution(results: Results) -> str | None:

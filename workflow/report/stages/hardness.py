@@ -32,12 +32,7 @@ def describe(results: Results) -> Iterator[Block]:
     yield Figure(
         hardness_size(results),
         "Hardness against contact length."
-        + (
-            f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval; dark green: the part of it that is scatter "
-            "between runs."
-            if fit.get("curve")
-            else ""
-        )
+        + (f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval." if fit.get("curve") else "")
         + (
             " Grey: the range that the paper's Table 1 spans; crosses: the two values its text gives."
             if results.beside_paper
@@ -45,12 +40,6 @@ def describe(results: Results) -> Iterator[Block]:
         ),
         "Figure 8",
     )
-    if film := fit.get("film"):
-        yield Figure(
-            film_share(film),
-            "What a film keeps of the difference between its own hardness and that of the body below, against contact "
-            "length over thickness: the law in use, with its 68 % interval. Grey: where the runs lie.",
-        )
     columns: dict[str, CellText] = {
         "run": "run",
         "energy scale": cell("energy_scale"),
@@ -144,30 +133,12 @@ def hardness_size(results: Results) -> str | None:
             )
             axis.plot(length, middle, color=GREEN, label="H_macro + H′/√L (eq. 4)")
             axis.fill_between(length, low, high, color=GREEN, alpha=0.18, linewidth=0, label="its 68 % interval")
-            inner = (column(fit["curve"], f"statistical_{end}_GPa") for end in ("low", "high"))
-            axis.fill_between(length, *inner, color=GREEN, alpha=0.35, linewidth=0, label="scatter between runs alone")
         if results.beside_paper:
             _draw_paper(axis)
         axis.set(xlabel="contact length √A (nm)", ylabel="hardness (GPa)", ylim=(0, None), xlim=(1, 1.1 * longest))
         axis.legend()
 
     return draw("fig8", "Hardness of single asperities against contact length", plot)
-
-
-def film_share(film: dict[str, Any]) -> str | None:
-    """The law of films against contact length over thickness."""
-
-    def plot(axis):
-        at, low, middle, high = (
-            column(film["share"], key) for key in ("length_over_thickness", "low", "median", "high")
-        )
-        axis.fill_between(at, low, high, color=GREEN, alpha=0.18, linewidth=0, label="68 % interval")
-        axis.plot(at, middle, color=GREEN, label="1 / (1 + k (L/t)^m)")
-        axis.axvspan(*film["length_over_thickness"], color=SOFT, alpha=0.13, linewidth=0, label="runs")
-        axis.set(xlabel="contact length over thickness L/t", ylabel="share of the film", ylim=(0, 1.05), xscale="log")
-        axis.legend()
-
-    return draw("film_share", "Share of the film in the hardness, against contact length over thickness", plot)
 
 
 def _draw_paper(axis) -> None:
