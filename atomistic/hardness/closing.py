@@ -18,7 +18,7 @@ from atomistic.hardness.readout import OxideBond, PressedCell, Readout, Rows, wi
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol, slowed
 from atomistic.hardness.stack import Stack, check_film, cut_base, film_properties, lay
 from atomistic.hardness.top_attraction import attract_top, bulk_density_per_A3
-from atomistic.lammps import Atoms, Progress, Workspace, run_lammps
+from atomistic.lammps import Atoms, LammpsFolder, Progress, run_lammps
 from atomistic.materials import Material
 from atomistic.potentials import ForceField, Potential
 from atomistic.settings import ClosingSettings
@@ -80,10 +80,10 @@ def run_closing(
     if base is not None:
         identity["base"] = [base[0].material.model_dump(), base[1].positions_A.sum(axis=0).tolist()]
     place = (run.seed, run.asperity.tiles, round(1000 * run.asperity.amplitude_nm))
-    aside = Workspace(work / "anneal", identity, "anneal.in")
+    aside = LammpsFolder(work / "anneal", identity, "anneal.in")
     cut = cut_body(run, glass, potential, base_thickness_nm(closing, wavelength_nm, protocol), place, base)
     body = prepare_body(run, cut.atoms, cut.formula, cut.force, closing, protocol, aside, place, progress)
-    workspace = Workspace(work / "closing", identity, "closing.in")
+    workspace = LammpsFolder(work / "closing", identity, "closing.in")
     bond = oxide_bond(body.elements, material, potential)
 
     @cache

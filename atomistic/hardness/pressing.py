@@ -10,7 +10,7 @@ from atomistic.hardness.glass import write_forcefield
 from atomistic.hardness.plateau import RULES
 from atomistic.hardness.readout import PressedCell
 from atomistic.hardness.runs import PROTOCOL, ClosingRun, Protocol
-from atomistic.lammps import Atoms, Progress, Workspace, load_data, run_lammps, write_data
+from atomistic.lammps import Atoms, LammpsFolder, Progress, load_data, run_lammps, write_data
 from atomistic.potentials import ForceField
 from atomistic.settings import ClosingSettings
 
@@ -65,7 +65,7 @@ def prepare_body(
     potential: ForceField,
     closing: ClosingSettings,
     protocol: Protocol,
-    workspace: Workspace,
+    workspace: LammpsFolder,
     place: tuple[int, ...],
     progress: Progress | None = None,
 ) -> Atoms:
@@ -116,7 +116,7 @@ def press_body(
     protocol: Protocol,
     plan: Plan,
     place: tuple[int, ...],
-    workspace: Workspace,
+    workspace: LammpsFolder,
     complete: Callable[[PressedCell, int], bool],
     progress: Progress | None = None,
 ) -> tuple[PressedCell, Plan]:

@@ -19,7 +19,7 @@ from mesoscale.contact.numerics import NUMERICS, Numerics
 from mesoscale.inputs.contact import ContactInputs
 from mesoscale.law.fit import fit_branch
 from mesoscale.settings import ContactSettings
-from mesoscale.studies.driver import Knob, Row, compared, rows_of
+from mesoscale.studies.driver import Knob, StudyRow, compared, rows_of
 
 SETTINGS = {
     "asperity": ContactSettings(mechanics="asperity", attraction="clamped"),
@@ -76,7 +76,7 @@ def studies(settings: ContactSettings) -> Iterator[Study]:
     yield "pixels", f"{finest} pixels, cut-off {cutoff:.3g} 1/nm", grid(finest), resolving
 
 
-def accuracy_points(inputs: ContactInputs, settings: ContactSettings) -> Iterator[Row]:
+def accuracy_points(inputs: ContactInputs, settings: ContactSettings) -> Iterator[StudyRow]:
     """Error and cost of every value of every knob, over the surfaces of `SEEDS`."""
 
     def error(tried: np.ndarray, wanted: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 
 from atomistic.constants import BOLTZMANN_EV_PER_K, KE_EV
 from atomistic.hardness.glass import write_forcefield
-from atomistic.lammps import Atoms, Workspace, load_averages, load_data, run_lammps, write_data
+from atomistic.lammps import Atoms, LammpsFolder, load_averages, load_data, run_lammps, write_data
 from atomistic.potentials import ForceField
 
 
@@ -17,7 +17,7 @@ def free_motion(
 ) -> tuple[np.ndarray, Atoms]:
     """Run at constant energy; rows (step, potential, total energy in eV), and the atoms at the end."""
     shutil.rmtree(work, ignore_errors=True)
-    workspace = Workspace(work, {}, "nve.in")
+    workspace = LammpsFolder(work, {}, "nve.in")
     write_forcefield(workspace, potential, atoms.elements, energy_scale)
     write_data(workspace / "start.data", atoms, potential.masses_u)
     variables = {

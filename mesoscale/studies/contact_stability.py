@@ -16,7 +16,7 @@ from mesoscale.inputs.contact import ContactInputs
 from mesoscale.settings import ContactSettings
 from mesoscale.settings.contact import NOMINAL_SEED
 from mesoscale.settings.definitions import definition
-from mesoscale.studies.driver import Progress, Row
+from mesoscale.studies.driver import Progress, StudyRow
 
 FINER = 16  # force steps of the path that judges a gain of energy, over those of the cycle
 
@@ -193,7 +193,9 @@ def judge(case: Case, settings: ContactSettings) -> tuple[list[str], str]:
     return broken, detail
 
 
-def stability_rows(inputs: ContactInputs, settings: ContactSettings, progress: Progress | None = None) -> Iterator[Row]:
+def stability_rows(
+    inputs: ContactInputs, settings: ContactSettings, progress: Progress | None = None
+) -> Iterator[StudyRow]:
     """Rows of stability/contact.csv without the stage; a case that raises has failed.
 
     The extreme cases have at most 256 pixels a side of the scene's spacing: they cost more than usual ones.

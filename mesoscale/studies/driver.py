@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
-Row = dict[str, Any]
+StudyRow = dict[str, Any]
 T = TypeVar("T")
 
 
@@ -42,7 +42,7 @@ class Knob:
     cases: Sequence[str] = ("release",)
 
 
-def rows_of(knobs: Sequence[Knob], progress: Progress | None = None) -> Iterator[Row]:
+def rows_of(knobs: Sequence[Knob], progress: Progress | None = None) -> Iterator[StudyRow]:
     """Rows of an accuracy table without the stage: every case of every value of every knob, and memory held so far."""
     for done, knob in enumerate(knobs):
         metrics = [knob.metric] * len(knob.cases) if isinstance(knob.metric, str) else knob.metric

@@ -18,7 +18,7 @@ from mesoscale.inputs.distributions import InputTable
 from mesoscale.pad.memory import PadLaw
 from mesoscale.pad.numerics import PAD
 from mesoscale.settings import ContactSettings, DeviceSettings
-from mesoscale.studies.driver import Array, Knob, Progress, Row, Try, compared, rows_of, timed
+from mesoscale.studies.driver import Array, Knob, Progress, StudyRow, Try, compared, rows_of, timed
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def accuracy_points(
     cells: int,
     progress: Progress | None = None,
     tried: Tried | None = None,
-) -> Iterator[Row]:
+) -> Iterator[StudyRow]:
     """Rows of accuracy/pad.csv.
 
     Parameters

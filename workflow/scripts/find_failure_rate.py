@@ -7,7 +7,8 @@ import numpy as np
 
 from mesoscale.device.points import press_pad, surfaces_of
 from mesoscale.errors import InputError
-from mesoscale.failure.rate import Population, failure_rate
+from mesoscale.failure.population import Population
+from mesoscale.failure.rate import failure_rate
 from mesoscale.settings import FailureSettings
 from workflow.files.results import write_csv, write_json
 from workflow.run.job import job, settings_from_job

@@ -16,7 +16,7 @@ from asperity.guards.errors import InputError
 from atomistic.hardness.closing import run_closing
 from atomistic.hardness.glass import glass_properties, make_glass
 from atomistic.hardness.runs import PROTOCOL, planned_runs
-from atomistic.lammps import Atoms, Workspace, load_data, write_data
+from atomistic.lammps import Atoms, LammpsFolder, load_data, write_data
 from atomistic.settings import GlassSettings, HardnessSettings
 from evidence.hardness.motion import free_motion, heated
 
@@ -160,10 +160,10 @@ def test_killed_closing_resumes_bit_for_bit(glass, potential, oxides, closing, t
 
 
 def test_a_changed_setting_does_not_resume_old_work(tmp_path):
-    first = Workspace(tmp_path / "w", {"speed": 50}, "glass.in")
+    first = LammpsFolder(tmp_path / "w", {"speed": 50}, "glass.in")
     (first / "restart.1").write_text("")
-    assert Workspace(tmp_path / "w", {"speed": 50}, "glass.in").segments_done(3) == 1
-    assert Workspace(tmp_path / "w", {"speed": 60}, "glass.in").segments_done(3) == 0
+    assert LammpsFolder(tmp_path / "w", {"speed": 50}, "glass.in").segments_done(3) == 1
+    assert LammpsFolder(tmp_path / "w", {"speed": 60}, "glass.in").segments_done(3) == 0
 
 
 def plant_commands(folder, outside):

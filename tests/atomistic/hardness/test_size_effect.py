@@ -47,15 +47,6 @@ def test_a_hardness_below_h_macro_is_not_identifiable_and_says_so():
     assert "not identifiable" in result["gate"]["reasons"][-1]
 
 
-def test_scatter_that_more_runs_average_is_that_of_seeds_and_of_runs():
-    """H' is hardness times 2 at 4 nm; sizes and energies that differ are no scatter."""
-    macro = (1.9999, 2.0001)
-    sizes = [point(10, 4, asperity="a", spread=0.0), point(20, 9, 0.5, asperity="b", spread=0.0)]
-    assert scatter_of_h_prime(sizes, macro) == pytest.approx(0, abs=1e-3)
-    assert scatter_of_h_prime([point(10, 4, spread=0.5)] * 3, macro) == pytest.approx(0.5 * 2)
-    assert scatter_of_h_prime([point(9, 4, spread=0.0), point(11, 4, spread=0.0)], macro) == pytest.approx(2)
-
-
 def test_literature_h_macro_gives_the_hand_calculation():
     """10.6 and 5.3 GPa at 3 nm with H_macro 1.95 GPa: H' = 15.0 and 5.8 GPa nm^0.5."""
     for hardness, expected in ((10.6, 15.0), (5.3, 5.8)):

@@ -11,9 +11,8 @@ from evidence.pad.rare_failures import KnownPad, known_pad, population
 from mesoscale.device.beam_switch import closed_beam, solve_beam
 from mesoscale.device.plate import plate_from_settings, solve_on_pad
 from mesoscale.errors import InputError
+from mesoscale.failure.population import FAILURE, Attracted
 from mesoscale.failure.rate import (
-    FAILURE,
-    Attracted,
     corrected,
     furthest_allowed,
     just_allowed,

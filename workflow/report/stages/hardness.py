@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import BLUE, GREEN, INK, ORANGE, PURPLE, SOFT, draw
 from workflow.report.numbers import cell, column, number, show, spread
 from workflow.report.page import Block, CellText, Figure, stage, table
@@ -149,11 +149,11 @@ def _draw_paper(axis) -> None:
     axis.fill_between([], [], [], color=SOFT, alpha=0.3, label="paper, range of its Table 1")
 
 
-def _scale(point: Row) -> tuple[str, str, str]:
+def _scale(point: CsvRow) -> tuple[str, str, str]:
     return SCALES.get(_key(point), ("other energies", PURPLE, "^"))
 
 
-def _key(point: Row) -> str:
+def _key(point: CsvRow) -> str:
     value = number(point.get("energy_scale", "1"))
     return f"{value:.1f}" if np.isfinite(value) else "1.0"
 

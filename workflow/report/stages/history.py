@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from workflow.report.available import Results, Row
+from workflow.report.available import CsvRow, Results
 from workflow.report.drawing import SERIES, draw
 from workflow.report.numbers import column, number, show
 from workflow.report.page import Block, Figure, stage
@@ -60,7 +60,7 @@ def history_drift(results: Results) -> str:
     return draw("drift", "Energy lost by each cycle and sinking of the closed contact", plot, (9.4, 3.6), columns=2)
 
 
-def _shakedown(rows: list[Row]) -> str:
+def _shakedown(rows: list[CsvRow]) -> str:
     """How much less energy the last cycle loses than the first."""
     numbers = [int(row["cycle"]) for row in rows]
     by_cycle = {
