@@ -30,11 +30,6 @@ def follow_all(
                 progress((done + held.number / settings.cycles) / SURFACES, f"surface {seed}, cycle {held.number}")
 
 
-def shown_cycles(settings: HistorySettings) -> set[int]:
-    """Cycles whose curves are kept: the first, the second, the last and a few between."""
-    return {1, min(2, settings.cycles), *np.geomspace(1, settings.cycles, 5).round().astype(int).tolist()}
-
-
 def cycle_row(seed: int, held: HeldCycle) -> dict[str, Any]:
     """Row of history/cycles.csv: the cycle, and the law of its opening."""
     cycle = held.cycle

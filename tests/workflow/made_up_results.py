@@ -362,7 +362,7 @@ def _topography(root: Path) -> None:
 
 
 def _history(root: Path) -> None:
-    cycles, dwell, groups, facts = [], [], {}, {}
+    cycles, dwell = [], []
     for cycle in (1, 2):
         row = {"seed": 1, "cycle": cycle, "held_s": 10.0 * cycle, "closed_nm": 25.0 - cycle, "last_contact_nm": 29.0}
         row |= {"contact_area_nm2": 1e3, "dissipated_nN_nm": 1e4 / cycle**6, "pull_off_nN": 300.0}
@@ -374,16 +374,8 @@ def _history(root: Path) -> None:
                 "separation_nm": 25.0 - cycle - time / 20,
             }
             dwell.append({"seed": 1, "cycle": cycle, **held, "contact_area_nm2": 1e3, "asperities": 100})
-        facts[f"cycle_{cycle:04d}"] = {"cycle": cycle, "seed": 1}
-        for branch in ("closing", "opening"):
-            h = np.linspace(20, 45, 30)
-            values = {"separation_nm": h, "repulsive_nN": np.where(h < 35, 7e3, 0.0), "attractive_nN": -100 + 0 * h}
-            groups[f"cycle_{cycle:04d}/{branch}"] = {
-                key: Dataset(value, "nN", "made up", ("point",)) for key, value in values.items()
-            }
     _write(root / "history/cycles.csv", cycles)
     _write(root / "history/dwell.csv", dwell)
-    write_h5(root / "history/curves.h5", groups, {"cell_area_nm2": 1e6}, PROVENANCE, facts)
 
 
 def _calibration(root: Path) -> None:

@@ -26,8 +26,8 @@ with job(snakemake) as run:
     def press(point, times, number):
         return press_pad(point, points.on_grid, times * pad.point_cells, surfaces_of(FIRST_SURFACES + number))
 
-    solved = [k for k, one in enumerate(model.points) if one.pad]
-    known = points.design.probability[np.array(solved, int)], [model.points[k].pad for k in solved]
+    pads = {k: one.pad for k, one in enumerate(model.points) if one.pad}
+    known = points.design.probability[np.array(list(pads), int)], list(pads.values())
     population = Population(points.table, points.device, points.cutoffs_nm, asked.release_V, press, known)
     rate, rows = failure_rate(population, asked.probability, run.progress)
     write_json(snakemake.output.rate, rate, run.provenance)

@@ -11,7 +11,6 @@ from workflow.report.numbers import cell, column, number, show, spread
 from workflow.report.page import Block, CellText, Figure, stage, table
 
 SCALES = {"1.0": ("full energies", BLUE, "o"), "0.5": ("halved energies", ORANGE, "s")}
-PAPER_HARDNESS = ((3.0, 10.0), (15.0, 2.0))  # nm, GPa: "~10 GPa at 3 nm, ~2 GPa at 15 nm" in the paper's text
 
 
 @stage("Hardness of single asperities", "hardness/points.csv", also=("hardness/fit.json",))
@@ -32,12 +31,7 @@ def describe(results: Results) -> Iterator[Block]:
     yield Figure(
         hardness_size(results),
         "Hardness against contact length."
-        + (f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval." if fit.get("curve") else "")
-        + (
-            " Grey: the range that the paper's Table 1 spans; crosses: the two values its text gives."
-            if results.beside_paper
-            else ""
-        ),
+        + (f" Green: eq. 4{_use_of_eq_4(results)}, with its 68 % interval." if fit.get("curve") else ""),
         "Figure 8",
     )
     columns: dict[str, CellText] = {
@@ -133,20 +127,10 @@ def hardness_size(results: Results) -> str | None:
             )
             axis.plot(length, middle, color=GREEN, label="H_macro + H′/√L (eq. 4)")
             axis.fill_between(length, low, high, color=GREEN, alpha=0.18, linewidth=0, label="its 68 % interval")
-        if results.beside_paper:
-            _draw_paper(axis)
         axis.set(xlabel="contact length √A (nm)", ylabel="hardness (GPa)", ylim=(0, None), xlim=(1, 1.1 * longest))
         axis.legend()
 
     return draw("fig8", "Hardness of single asperities against contact length", plot)
-
-
-def _draw_paper(axis) -> None:
-    length = np.linspace(1.5, 20, 200)
-    low, high = 0.7 + 1.95 / np.sqrt(length), 3.2 + 14.8 / np.sqrt(length)
-    axis.fill_between(length, low, high, color=SOFT, alpha=0.13, linewidth=0)
-    axis.plot(*zip(*PAPER_HARDNESS, strict=True), "x", color=INK, markersize=8, label="paper, values in its text")
-    axis.fill_between([], [], [], color=SOFT, alpha=0.3, label="paper, range of its Table 1")
 
 
 def _scale(point: CsvRow) -> tuple[str, str, str]:
